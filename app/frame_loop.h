@@ -1,0 +1,47 @@
+// The loop that makes a film: step, draw, compress, overlapped through bounded queues. Nothing that a later stage does can change a result.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "output/profile.h"
+#include "output/run_folder.h"
+#include "render/gl_context.h"
+#include "scene/assemble.h"
+
+namespace supple {
+
+struct FilmOptions {
+  int threads = 1;
+  int error_every = 0;  // measure equation 12 every so many frames; 0: never
+  bool images = true;
+  bool video = true;
+  GlChoice gl = GlChoice::automatic;
+  bool quiet = false;
+  std::filesystem::path shaders;
+  std::string font;
+};
+
+enum class FilmEnd { done, interrupted, failed };
+
+struct FilmResult {
+  FilmEnd end = FilmEnd::done;
+  std::string message;         // why it failed, for people
+  std::vector<FrameRow> rows;  // of finished frames
+  std::string gl_backend, gl_renderer, gl_version;
+  std::string video_message;   // why there is no film
+  bool video_written = false;
+  double setup_ms = 0;
+  double wall_ms = 0;          // the loop
+};
+
+// Runs a scene into a folder. Whatever happens, the frames before it are whole, and rows tells of them.
+FilmResult make_film(const SceneDef& scene, const std::vector<Body>& bodies, std::vector<Model>& models, const RunFolder& folder,
+                     const FilmOptions& options);
+
+// True once SIGINT or SIGTERM asked the run to end after the frame in progress.
+bool interrupted();
+void catch_interrupts();
+
+}  // namespace supple

@@ -1,0 +1,53 @@
+// supple: films of soft bodies from scene files. Exit status: 0 done, 1 the run failed, 2 the input is wrong, 130 interrupted.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <new>
+
+#include "app/verbs.h"
+#include "base/error.h"
+#include "output/run_folder.h"
+
+namespace {
+
+int run(int argc, char** argv) {
+  CLI::App app("Simulates soft bodies fast and accurately, and films them.", "supple");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", supple::program_version());
+  app.failure_message([](const CLI::App* a, const CLI::Error& e) {
+    return fmt::format("supple: {}\nTry: supple {}--help\n", e.what(), a->get_subcommands().empty() ? "" : a->get_subcommands().front()->get_name() + " ");
+  });
+  const std::vector<std::string> command(argv, argv + argc);
+  supple::Action action;
+  supple::add_render(app, action, command);
+  supple::add_check(app, action);
+  supple::add_mesh(app, action);
+  supple::add_info(app, action);
+  supple::add_list(app, action);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {
+    return app.exit(asked);
+  } catch (const CLI::ParseError& error) {
+    (void)app.exit(error);
+    return 2;
+  }
+  return action();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const supple::InputError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 2;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "supple: out of memory\n");
+    return 1;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "supple: {}\n", error.what());
+    return 1;
+  }
+}

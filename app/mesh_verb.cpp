@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+
+#include "app/verbs.h"
+#include "base/error.h"
+#include "base/timing.h"
+#include "geometry/mesh_file.h"
+#include "geometry/tetrahedralize.h"
+#include "scene/shape_reader.h"
+
+namespace supple {
+namespace {
+
+std::filesystem::path shape_file(const std::string& name) {
+  std::error_code error;
+  if (std::filesystem::exists(name, error)) return name;
+  const std::filesystem::path shipped = assets_folder() / "shapes" / (name + ".toml");
+  return std::filesystem::exists(shipped, error) ? shipped : std::filesystem::path(name);
+}
+
+void describe(const TetMesh& mesh) {
+  const MeshQuality q = quality(mesh);
+  const Manifoldness m = manifoldness(mesh);
+  const Bounds box = bounds_of(mesh.rest);
+  fmt::print("vertices        {}\nelements        {}\nboundary faces  {}\n", mesh.rest.rows(), mesh.tets.rows(), boundary_faces(mesh.tets).rows());
+  fmt::print("extent          {:.4g} x {:.4g} x {:.4g}\nvolume          {:.6g}\n", box.extent().x(), box.extent().y(), box.extent().z(), q.volume);
+  fmt::print("dihedral angles {:.2f} to {:.2f} degrees\nsmallest volume {:.2e} of the mean\n", q.smallest_dihedral, q.largest_dihedral, q.smallest_volume);
+  fmt::print("pieces          {}\nboundary        {}\n", m.pieces,
+             m.bad_edges + m.bad_vertices == 0 ? "manifold" : fmt::format("touches itself at {} edges and {} vertices", m.bad_edges, m.bad_vertices));
+}
+
+int make_mesh(const std::string& input, const std::string& output, int vertices) {
+  const Stopwatch watch;
+  const std::filesystem::path path = shape_file(input);
+  TetMesh mesh;
+  if (path.extension() == ".mesh") {
+    MeshFile file = read_mesh(path);
+    for (const std::string& note : file.notes) fmt::print("note: {}\n", note);
+    mesh = std::move(file.mesh);
+  } else if (path.extension() == ".toml") {
+    mesh = tetrahedralize(load_shape(path, assets_folder()), vertices, path.string());
+  } else {
+    throw InputError(input, "should be a shape (.toml) or a tetrahedral mesh (.mesh)");
+  }
+  write_mesh(output, mesh);
+  describe(mesh);
+  fmt::print("written         {} ({:.2f} s)\n", output, watch.elapsed_ms() / 1000);
+  return 0;
+}
+
+}  // namespace
+
+void add_mesh(CLI::App& app, Action& action) {
+  struct Options {
+    std::string input, output;
+    int vertices = 4000;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("mesh", "Make tetrahedra of a shape, or check and rewrite a mesh.");
+  verb->footer("Example: supple mesh squirrel -o squirrel.mesh --vertices 8395");
+  verb->add_option("INPUT", options->input, "shape file (.toml), the name of a shape that ships, or a .mesh file")->required();
+  verb->add_option("-o,--output", options->output, "MEDIT .mesh file to write")->required();
+  verb->add_option("--vertices", options->vertices, "wanted (within 3 %)")->check(CLI::Range(50, 500000));
+  verb->callback([&action, options] { action = [options] { return make_mesh(options->input, options->output, options->vertices); }; });
+}
+
+void add_info(CLI::App& app, Action& action) {
+  auto input = std::make_shared<std::string>();
+  CLI::App* verb = app.add_subcommand("info", "What is in a mesh, and its quality.");
+  verb->footer("Example: supple info squirrel.mesh");
+  verb->add_option("MESH", *input, "MEDIT .mesh file")->required();
+  verb->callback([&action, input] {
+    action = [input] {
+      const MeshFile file = read_mesh(*input);
+      for (const std::string& note : file.notes) fmt::print("note: {}\n", note);
+      describe(file.mesh);
+      return 0;
+    };
+  });
+}
+
+}  // namespace supple

@@ -1,0 +1,37 @@
+#include <system_error>
+
+#include "app/verbs.h"
+
+namespace supple {
+namespace {
+
+std::filesystem::path shared_folder() {
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  const std::filesystem::path installed = program.parent_path().parent_path() / "share" / "supple";
+  if (std::filesystem::is_directory(installed / "shaders", error)) return installed;
+  return SUPPLE_SOURCE_FOLDER;
+}
+
+}  // namespace
+
+std::filesystem::path assets_folder() { return shared_folder() / "assets"; }
+std::filesystem::path shaders_folder() { return shared_folder() / "shaders"; }
+
+std::string caption_font() {
+  for (const char* font : {"/usr/share/fonts/truetype/lato/Lato-Regular.ttf", "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
+                           "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"}) {
+    std::error_code error;
+    if (std::filesystem::exists(font, error)) return font;
+  }
+  return "";
+}
+
+std::filesystem::path scene_file(const std::string& name) {
+  std::error_code error;
+  if (std::filesystem::exists(name, error)) return name;
+  const std::filesystem::path shipped = assets_folder() / "scenes" / (name + ".toml");
+  return std::filesystem::exists(shipped, error) ? shipped : std::filesystem::path(name);
+}
+
+}  // namespace supple

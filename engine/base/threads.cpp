@@ -1,0 +1,56 @@
+#include "base/threads.h"
+
+namespace supple {
+
+Threads::Threads(int count) {
+  for (int i = 1; i < count; ++i) workers_.emplace_back([this] { work(); });
+}
+
+Threads::~Threads() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  work_ready_.notify_all();
+  for (std::thread& worker : workers_) worker.join();
+}
+
+void Threads::take_chunks(Call call, const void* context, int chunks) {
+  for (int chunk; (chunk = next_chunk_.fetch_add(1, std::memory_order_relaxed)) < chunks;) call(context, chunk);
+}
+
+void Threads::run_shared(int chunks, Call call, const void* context) {
+  {
+    const std::lock_guard lock(mutex_);
+    next_chunk_.store(0, std::memory_order_relaxed);
+    call_ = call;
+    context_ = context;
+    chunks_ = chunks;
+    ++generation_;
+  }
+  work_ready_.notify_all();
+  take_chunks(call, context, chunks);
+  std::unique_lock lock(mutex_);
+  call_ = nullptr;  // who has not entered by now stays out
+  work_done_.wait(lock, [this] { return running_ == 0; });
+}
+
+void Threads::work() {
+  unsigned long seen = 0;
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    work_ready_.wait(lock, [&] { return stopping_ || (call_ != nullptr && generation_ != seen); });
+    if (stopping_) return;
+    seen = generation_;
+    const Call call = call_;
+    const void* context = context_;
+    const int chunks = chunks_;
+    ++running_;
+    lock.unlock();
+    take_chunks(call, context, chunks);
+    lock.lock();
+    if (--running_ == 0) work_done_.notify_one();
+  }
+}
+
+}  // namespace supple

@@ -1,0 +1,25 @@
+// Wall-clock durations in milliseconds. Never a source of decisions: nothing that changes a result may depend on a clock.
+#pragma once
+
+#include <chrono>
+
+namespace supple {
+
+class Stopwatch {
+ public:
+  double elapsed_ms() const { return std::chrono::duration<double, std::milli>(Clock::now() - start_).count(); }
+
+  // Milliseconds since the start or the last lap, and starts the next one.
+  double lap_ms() {
+    const Clock::time_point now = Clock::now();
+    const double ms = std::chrono::duration<double, std::milli>(now - start_).count();
+    start_ = now;
+    return ms;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+}  // namespace supple

@@ -1,0 +1,94 @@
+// A solid described by a signed distance field: primitives, rigid transforms, mirrored copies, unions, cuts and smooth blends. One
+// description serves for meshing at any resolution, for colliding and for drawing. Not here: files (scene/) and meshes.
+// The distance is negative inside. It is exact outside for single primitives other than the ellipsoid, and a bound of the right sign
+// after blends and cuts; its zero set is always exact.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "base/types.h"
+
+namespace supple {
+
+struct Sphere {
+  double radius;
+};
+struct Ellipsoid {
+  Vec3 radii;
+};
+struct Capsule {  // the points within `radius` of a segment
+  Vec3 from, to;
+  double radius;
+};
+struct RoundCone {  // the hull of two spheres
+  Vec3 from, to;
+  double from_radius, to_radius;
+};
+struct Box {  // edges rounded by `round`, inside the given extent
+  Vec3 half;
+  double round;
+};
+struct Cylinder {  // around the y axis; edges rounded by `round`
+  double radius, half_height, round;
+};
+struct Torus {  // around the y axis
+  double radius, tube;
+};
+struct HalfSpace {  // the side that the unit normal points away from
+  Vec3 normal;
+  double offset;
+};
+
+struct ShapePart;
+struct ShapeGroup {
+  std::vector<ShapePart> parts;
+};
+
+using Primitive = std::variant<Sphere, Ellipsoid, Capsule, RoundCone, Box, Cylinder, Torus, HalfSpace, ShapeGroup>;
+
+enum class Combine { add, cut, intersect };
+
+// One step of a shape: the field so far is combined with this part.
+struct ShapePart {
+  Primitive primitive;
+  Eigen::Isometry3d to_local = Eigen::Isometry3d::Identity();  // from the parent's frame
+  double scale = 1;                                            // local lengths times scale are the parent's
+  bool mirror_x = false;                                       // also present at x -> -x of the parent's frame
+  Combine combine = Combine::add;
+  double blend = 0;  // width over which the surfaces melt into each other [m]
+  int region = 0;    // tag of the elements inside; 0 is untagged
+
+  // Distance of the part alone in its parent's frame.
+  double distance(const Vec3& point) const;
+};
+
+// A layer of colour on the drawn skin: where a field is negative. Never part of the geometry.
+struct PaintLayer {
+  std::string name;
+  Vec3 color;    // sRGB, 0 to 1
+  double gloss;  // 0 matt to 1 wet
+  double soft;   // width of the border [m]
+  ShapeGroup area;
+};
+
+struct Shape {
+  ShapeGroup root;
+  std::vector<std::string> regions = {""};  // names by tag; the first is untagged
+  Vec3 color = Vec3(0.8, 0.6, 0.4);         // sRGB of what no layer covers
+  std::vector<PaintLayer> paint;            // later layers lie over earlier ones
+
+  double distance(const Vec3& point) const;
+  Vec3 gradient(const Vec3& point, double step) const;  // central differences over +-step
+  Bounds bounds() const;                                // conservative; unbounded shapes give an extent above 1e6
+
+  // The tag of the last tagged part that holds the point; outside all parts, that of the nearest one.
+  int region(const Vec3& point) const;
+};
+
+double distance(const ShapeGroup& group, const Vec3& point);
+
+}  // namespace supple

@@ -1,0 +1,247 @@
+#include "geometry/skin.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace supple {
+namespace {
+
+// A dense grid of samples over a box with one cell of air around it.
+struct SampleGrid {
+  Vec3 origin;
+  double cell;
+  Eigen::Vector3i points;
+  std::vector<float> field;
+
+  std::size_t at(int i, int j, int k) const { return (std::size_t(k) * points.y() + j) * points.x() + i; }
+  Vec3 position(int i, int j, int k) const { return origin + cell * Vec3(i, j, k); }
+};
+
+SampleGrid sample(const Shape& shape, double cell) {
+  const Bounds box = shape.bounds();
+  SampleGrid grid{box.lower - Vec3::Constant(1.5 * cell), cell, {}, {}};
+  grid.points = (box.extent() / cell).array().ceil().cast<int>() + 4;
+  grid.field.resize(std::size_t(grid.points.x()) * grid.points.y() * grid.points.z());
+  for (int k = 0; k < grid.points.z(); ++k) {
+    for (int j = 0; j < grid.points.y(); ++j) {
+      // A distance field cannot change faster than the point moves: far from the surface most samples follow from the last one.
+      double known = 0;
+      int skip = 0;
+      for (int i = 0; i < grid.points.x(); ++i) {
+        if (skip > 0) {
+          --skip;
+        } else {
+          known = shape.distance(grid.position(i, j, k));
+          skip = std::max(0, static_cast<int>(0.5 * std::abs(known) / cell) - 3);
+        }
+        grid.field[grid.at(i, j, k)] = static_cast<float>(known);
+      }
+    }
+  }
+  return grid;
+}
+
+Vec3 onto_surface(const Shape& shape, Vec3 point, double cell) {
+  const Vec3 start = point;
+  for (int step = 0; step < 4; ++step) {
+    const double d = shape.distance(point);
+    if (std::abs(d) < 1e-4 * cell) break;
+    const Vec3 slope = shape.gradient(point, 0.02 * cell);
+    const double steepness2 = slope.squaredNorm();
+    if (steepness2 < 1e-4) break;
+    point -= d * slope / steepness2;
+  }
+  return (point - start).norm() < cell ? point : start;
+}
+
+// Openness of the sky over a point: how far the field falls short of free space along the normal (Evans 2006, "Fast approximations
+// for global illumination on dynamic scenes", with the shape's own field).
+float openness(const Shape& shape, const Vec3& point, const Vec3& normal, double size) {
+  double blocked = 0, weight = 0.55;
+  for (int ring = 1; ring <= 5; ++ring) {
+    const double reach = 0.016 * size * ring * ring * 0.6;
+    blocked += weight * std::clamp(1 - shape.distance(point + reach * normal) / reach, 0.0, 1.0);
+    weight *= 0.62;
+  }
+  return static_cast<float>(std::clamp(1 - 0.95 * blocked, 0.0, 1.0));
+}
+
+}  // namespace
+
+TriMesh contour(const Shape& shape, double cell) {
+  const SampleGrid grid = sample(shape, cell);
+  std::vector<std::int32_t> name(grid.field.size(), -1);
+  std::vector<Vec3> points;
+  for (int k = 0; k + 1 < grid.points.z(); ++k) {
+    for (int j = 0; j + 1 < grid.points.y(); ++j) {
+      for (int i = 0; i + 1 < grid.points.x(); ++i) {
+        float value[8];
+        int inside = 0;
+        for (int c = 0; c < 8; ++c) {
+          value[c] = grid.field[grid.at(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2))];
+          inside += value[c] < 0 ? 1 : 0;
+        }
+        if (inside == 0 || inside == 8) continue;
+        Vec3 sum = Vec3::Zero();
+        int crossings = 0;
+        for (int a = 0; a < 8; ++a) {
+          for (int bit = 1; bit < 8; bit <<= 1) {
+            const int b = a | bit;
+            if (b == a || (value[a] < 0) == (value[b] < 0)) continue;
+            const double t = value[a] / (value[a] - value[b]);
+            sum += (1 - t) * Vec3(a & 1, a >> 1 & 1, a >> 2) + t * Vec3(b & 1, b >> 1 & 1, b >> 2);
+            ++crossings;
+          }
+        }
+        name[grid.at(i, j, k)] = static_cast<std::int32_t>(points.size());
+        points.push_back(onto_surface(shape, grid.position(i, j, k) + cell * sum / crossings, cell));
+      }
+    }
+  }
+
+  std::vector<std::array<std::int32_t, 3>> triangles;
+  const auto quad = [&](std::int32_t a, std::int32_t b, std::int32_t c, std::int32_t d, bool flip) {
+    if (flip) std::swap(b, d);
+    if ((points[a] - points[c]).squaredNorm() <= (points[b] - points[d]).squaredNorm()) {
+      triangles.push_back({a, b, c});
+      triangles.push_back({a, c, d});
+    } else {
+      triangles.push_back({a, b, d});
+      triangles.push_back({b, c, d});
+    }
+  };
+  for (int k = 1; k + 1 < grid.points.z(); ++k) {
+    for (int j = 1; j + 1 < grid.points.y(); ++j) {
+      for (int i = 1; i + 1 < grid.points.x(); ++i) {
+        const bool here = grid.field[grid.at(i, j, k)] < 0;
+        if (here != (grid.field[grid.at(i + 1, j, k)] < 0)) {
+          quad(name[grid.at(i, j - 1, k - 1)], name[grid.at(i, j, k - 1)], name[grid.at(i, j, k)], name[grid.at(i, j - 1, k)], !here);
+        }
+        if (here != (grid.field[grid.at(i, j + 1, k)] < 0)) {
+          quad(name[grid.at(i - 1, j, k - 1)], name[grid.at(i - 1, j, k)], name[grid.at(i, j, k)], name[grid.at(i, j, k - 1)], !here);
+        }
+        if (here != (grid.field[grid.at(i, j, k + 1)] < 0)) {
+          quad(name[grid.at(i - 1, j - 1, k)], name[grid.at(i, j - 1, k)], name[grid.at(i, j, k)], name[grid.at(i - 1, j, k)], !here);
+        }
+      }
+    }
+  }
+  TriMesh mesh;
+  mesh.points.resize(static_cast<Eigen::Index>(points.size()), 3);
+  for (std::size_t v = 0; v < points.size(); ++v) mesh.points.row(v) = points[v];
+  mesh.triangles.resize(static_cast<Eigen::Index>(triangles.size()), 3);
+  for (std::size_t t = 0; t < triangles.size(); ++t) mesh.triangles.row(t) << triangles[t][0], triangles[t][1], triangles[t][2];
+  return mesh;
+}
+
+Skin skin_of(const Shape& shape, double cell) {
+  Skin skin;
+  skin.rest = contour(shape, cell);
+  const double size = bounds_of(skin.rest.points).diagonal();
+  skin.occlusion.resize(skin.rest.points.rows());
+  skin.paint.resize(skin.rest.points.rows());
+  for (Eigen::Index v = 0; v < skin.rest.points.rows(); ++v) {
+    const Vec3 point = skin.rest.points.row(v);
+    const Vec3 normal = shape.gradient(point, 0.1 * cell).normalized();
+    skin.occlusion[v] = openness(shape, point, normal, size);
+    skin.paint[v].fill(1e3f);
+    for (std::size_t layer = 0; layer < shape.paint.size(); ++layer) {
+      skin.paint[v][layer] = static_cast<float>(distance(shape.paint[layer].area, point));
+    }
+  }
+  return skin;
+}
+
+Skin skin_of_boundary(const TetMesh& mesh, std::vector<std::int32_t>& vertex_of) {
+  Skin skin;
+  skin.rest.triangles = boundary_faces(mesh.tets);
+  std::vector<std::int32_t> name(mesh.rest.rows(), -1);
+  vertex_of.clear();
+  for (std::int32_t& corner : skin.rest.triangles.reshaped()) {
+    if (name[corner] < 0) {
+      name[corner] = static_cast<std::int32_t>(vertex_of.size());
+      vertex_of.push_back(corner);
+    }
+    corner = name[corner];
+  }
+  skin.rest.points.resize(vertex_of.size(), 3);
+  for (std::size_t v = 0; v < vertex_of.size(); ++v) skin.rest.points.row(v) = mesh.rest.row(vertex_of[v]);
+  skin.occlusion.assign(vertex_of.size(), 1.0f);
+  skin.paint.resize(vertex_of.size());
+  for (auto& layers : skin.paint) layers.fill(1e3f);
+  return skin;
+}
+
+Embedding embed(const Positions& points, const TetMesh& mesh) {
+  // Elements by grid cell, each in every cell that its box touches.
+  const Bounds box = bounds_of(mesh.rest);
+  const double cell = std::max(1e-12, 1.5 * std::cbrt(box.extent().prod() / std::max<double>(1, mesh.tets.rows())));
+  const Eigen::Vector3i cells = (box.extent() / cell).array().floor().cast<int>() + 1;
+  const auto cell_of = [&](const Vec3& p) -> Eigen::Vector3i {
+    const Vec3 grid = (p - box.lower) / cell;
+    return grid.array().floor().max(0.0).min((cells.cast<double>().array() - 1)).cast<int>();
+  };
+  const auto slot = [&](int i, int j, int k) { return (std::size_t(k) * cells.y() + j) * cells.x() + i; };
+  std::vector<std::vector<std::int32_t>> inside(std::size_t(cells.x()) * cells.y() * cells.z());
+  std::vector<Mat3> to_weights(mesh.tets.rows());
+  for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
+    Bounds element;
+    for (int k = 0; k < 4; ++k) element.include(mesh.rest.row(mesh.tets(e, k)).transpose());
+    const Eigen::Vector3i low = cell_of(element.lower), high = cell_of(element.upper);
+    for (int k = low.z(); k <= high.z(); ++k) {
+      for (int j = low.y(); j <= high.y(); ++j) {
+        for (int i = low.x(); i <= high.x(); ++i) inside[slot(i, j, k)].push_back(static_cast<std::int32_t>(e));
+      }
+    }
+    Mat3 edges;
+    for (int k = 0; k < 3; ++k) edges.col(k) = (mesh.rest.row(mesh.tets(e, k + 1)) - mesh.rest.row(mesh.tets(e, 0))).transpose();
+    to_weights[e] = edges.inverse();
+  }
+
+  Embedding result;
+  result.corners.resize(points.rows(), 4);
+  result.weights.resize(points.rows(), 4);
+  for (Eigen::Index v = 0; v < points.rows(); ++v) {
+    const Vec3 point = points.row(v);
+    const Eigen::Vector3i center = cell_of(point);
+    double best = -1e300;
+    // Rings of cells until one holds elements, and one ring more: the nearest element may lie across a cell's border.
+    int rings_left = -1;
+    for (int ring = 0; rings_left != 0; ++ring) {
+      for (int k = std::max(0, center.z() - ring); k <= std::min(cells.z() - 1, center.z() + ring); ++k) {
+        for (int j = std::max(0, center.y() - ring); j <= std::min(cells.y() - 1, center.y() + ring); ++j) {
+          for (int i = std::max(0, center.x() - ring); i <= std::min(cells.x() - 1, center.x() + ring); ++i) {
+            const int away = std::max({std::abs(i - center.x()), std::abs(j - center.y()), std::abs(k - center.z())});
+            if (away != ring) continue;
+            for (const std::int32_t e : inside[slot(i, j, k)]) {
+              const Vec3 w = to_weights[e] * (point - mesh.rest.row(mesh.tets(e, 0)).transpose());
+              const double least = std::min({1 - w.sum(), w.x(), w.y(), w.z()});
+              if (least <= best) continue;
+              best = least;
+              result.corners.row(v) = mesh.tets.row(e);
+              result.weights.row(v) << 1 - w.sum(), w.x(), w.y(), w.z();
+            }
+          }
+        }
+      }
+      if (best >= 0) break;
+      if (rings_left < 0 && best > -1e299) rings_left = 2;
+      if (rings_left > 0) --rings_left;
+    }
+  }
+  return result;
+}
+
+void apply(const Embedding& embedding, const Positions& mesh_positions, Positions& result) {
+  result.resize(embedding.corners.rows(), 3);
+  for (Eigen::Index v = 0; v < result.rows(); ++v) {
+    result.row(v) = embedding.weights(v, 0) * mesh_positions.row(embedding.corners(v, 0)) +
+                    embedding.weights(v, 1) * mesh_positions.row(embedding.corners(v, 1)) +
+                    embedding.weights(v, 2) * mesh_positions.row(embedding.corners(v, 2)) +
+                    embedding.weights(v, 3) * mesh_positions.row(embedding.corners(v, 3));
+  }
+}
+
+}  // namespace supple

@@ -1,0 +1,486 @@
+#include "geometry/tetrahedralize.h"
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace supple {
+namespace {
+
+// Fractions of an edge within which a cut point pulls its lattice point onto the surface: the pair for which the paper's computer
+// search proves the dihedral angles (Labelle and Shewchuk 2007, section 4, uniform tetrahedra).
+constexpr double snap_long = 0.24999;
+constexpr double snap_short = 0.41189;
+
+// Lattice coordinates count half spacings: even triples are cell corners, odd triples cell centres.
+using Site = std::array<int, 3>;
+
+constexpr Site forward_edges[7] = {{2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 1, 1}, {-1, 1, 1}, {1, -1, 1}, {-1, -1, 1}};
+constexpr int long_edges = 3;  // the first three
+
+class Stuffing {
+ public:
+  Stuffing(const Shape& shape, double spacing, const Vec3& shift) : shape_(shape), spacing_(spacing) {
+    const Bounds box = shape.bounds();
+    origin_ = box.lower - (1.5 * Vec3::Ones() + shift) * spacing;
+    for (int axis = 0; axis < 3; ++axis) {
+      cells_[static_cast<std::size_t>(axis)] = static_cast<int>(std::ceil(box.extent()[axis] / spacing + 4));
+    }
+    const auto layers = static_cast<std::size_t>(2 * cells_[2] + 1);
+    const std::size_t sites = layers * static_cast<std::size_t>(cells_[1] + 1) * static_cast<std::size_t>(cells_[0] + 1);
+    field_.assign(sites, 1.0);
+    moved_.resize(sites);
+    cut_.assign(sites * 7, no_cut);
+    cut_vertex_.assign(sites * 7, -1);
+    site_vertex_.assign(sites, -1);
+  }
+
+  TetMesh run() {
+    sample();
+    find_cuts();
+    snap();
+    emit_all();
+    TetMesh mesh;
+    mesh.rest.resize(static_cast<Eigen::Index>(vertices_.size()), 3);
+    for (std::size_t v = 0; v < vertices_.size(); ++v) mesh.rest.row(static_cast<Eigen::Index>(v)) = vertices_[v];
+    mesh.tets.resize(static_cast<Eigen::Index>(tets_.size()), 4);
+    for (std::size_t e = 0; e < tets_.size(); ++e) {
+      for (int k = 0; k < 4; ++k) mesh.tets(static_cast<Eigen::Index>(e), k) = tets_[e][static_cast<std::size_t>(k)];
+      if (tet_volume(mesh, static_cast<Eigen::Index>(e)) < 0) {
+        std::swap(mesh.tets(static_cast<Eigen::Index>(e), 2), mesh.tets(static_cast<Eigen::Index>(e), 3));
+      }
+    }
+    return mesh;
+  }
+
+ private:
+  static constexpr double no_cut = -1;
+
+  bool inside_lattice(const Site& s) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (s[axis] < 0 || s[axis] > 2 * cells_[axis]) return false;
+    }
+    return true;
+  }
+  std::size_t id(const Site& s) const {
+    return (static_cast<std::size_t>(s[2]) * static_cast<std::size_t>(cells_[1] + 1) + static_cast<std::size_t>(s[1] / 2)) *
+               static_cast<std::size_t>(cells_[0] + 1) +
+           static_cast<std::size_t>(s[0] / 2);
+  }
+  Vec3 lattice_position(const Site& s) const { return origin_ + 0.5 * spacing_ * Vec3(s[0], s[1], s[2]); }
+  Vec3 position(const Site& s) const { return lattice_position(s) + moved_[id(s)]; }
+
+  template <class Visit>
+  void for_each_site(const Visit& visit) const {
+    for (int k = 0; k <= 2 * cells_[2]; ++k) {
+      for (int j = k % 2; j <= 2 * cells_[1] - k % 2; j += 2) {
+        for (int i = k % 2; i <= 2 * cells_[0] - k % 2; i += 2) visit(Site{i, j, k});
+      }
+    }
+  }
+
+  void sample() {
+    for (Vec3& m : moved_) m.setZero();
+    for_each_site([&](const Site& s) { field_[id(s)] = shape_.distance(lattice_position(s)); });
+  }
+
+  // The cut's parameter along a -> b by bisection with the secant's first guess; a and b have opposite signs.
+  double find_cut(const Site& a, const Site& b) const {
+    const Vec3 from = lattice_position(a), to = lattice_position(b);
+    double low = 0, high = 1;
+    const bool low_inside = field_[id(a)] < 0;
+    double t = field_[id(a)] / (field_[id(a)] - field_[id(b)]);
+    for (int step = 0; step < 30; ++step) {
+      const double value = shape_.distance(from + t * (to - from));
+      if (std::abs(value) < 1e-9 * spacing_) break;
+      ((value < 0) == low_inside ? low : high) = t;
+      if (high - low < 1e-7) break;
+      t = 0.5 * (low + high);
+    }
+    return t;
+  }
+
+  void find_cuts() {
+    for_each_site([&](const Site& s) {
+      for (int e = 0; e < 7; ++e) {
+        const Site other = stepped(s, forward_edges[e], 1);
+        if (!inside_lattice(other)) continue;
+        if ((field_[id(s)] < 0) != (field_[id(other)] < 0)) cut_[id(s) * 7 + static_cast<std::size_t>(e)] = find_cut(s, other);
+      }
+    });
+  }
+
+  static Site stepped(const Site& s, const Site& edge, int sign) {
+    return {s[0] + sign * edge[0], s[1] + sign * edge[1], s[2] + sign * edge[2]};
+  }
+
+  // Calls visit(slot of the edge, the other end, the cut's fraction from s) for each cut edge of s.
+  template <class Visit>
+  void for_each_cut(const Site& s, const Visit& visit) {
+    for (int e = 0; e < 7; ++e) {
+      const std::size_t slot = id(s) * 7 + static_cast<std::size_t>(e);
+      if (cut_[slot] != no_cut) visit(slot, stepped(s, forward_edges[e], 1), cut_[slot], e);
+      const Site other = stepped(s, forward_edges[e], -1);
+      if (!inside_lattice(other)) continue;
+      const std::size_t back = id(other) * 7 + static_cast<std::size_t>(e);
+      if (cut_[back] != no_cut) visit(back, other, 1 - cut_[back], e);
+    }
+  }
+
+  void snap() {
+    for_each_site([&](const Site& s) {
+      double nearest = 1;  // in units of the edge's own snapping distance
+      Vec3 target = Vec3::Zero();
+      for_each_cut(s, [&](std::size_t, const Site& other, double fraction, int edge) {
+        const double relative = fraction / (edge < long_edges ? snap_long : snap_short);
+        if (relative >= nearest) return;
+        nearest = relative;
+        target = fraction * (lattice_position(other) - lattice_position(s));
+      });
+      if (nearest >= 1) return;
+      for_each_cut(s, [&](std::size_t slot, const Site&, double, int) { cut_[slot] = no_cut; });
+      moved_[id(s)] = target;
+      field_[id(s)] = 0;
+    });
+  }
+
+  static bool is_long(const Site& a, const Site& b) { return (a[0] + b[0]) % 2 == 0; }
+
+  int vertex(const Site& s) {
+    int& name = site_vertex_[id(s)];
+    if (name < 0) {
+      name = static_cast<int>(vertices_.size());
+      vertices_.push_back(position(s).transpose());
+    }
+    return name;
+  }
+
+  int cut_vertex(const Site& a, const Site& b) {
+    for (int e = 0; e < 7; ++e) {
+      for (const bool swapped : {false, true}) {
+        const Site& from = swapped ? b : a;
+        if (stepped(from, forward_edges[e], 1) != (swapped ? a : b)) continue;
+        const std::size_t slot = id(from) * 7 + static_cast<std::size_t>(e);
+        SUPPLE_CHECK(cut_[slot], >=, 0.0);
+        int& name = cut_vertex_[slot];
+        if (name < 0) {
+          name = static_cast<int>(vertices_.size());
+          const Vec3 p = lattice_position(from), q = lattice_position(swapped ? a : b);
+          vertices_.push_back((p + cut_[slot] * (q - p)).transpose());
+        }
+        return name;
+      }
+    }
+    SUPPLE_CHECK(0, ==, 1);
+    return -1;
+  }
+
+  // On a face with a, b inside and c outside the kept quadrilateral is (a, b, bc, ac). True: its diagonal is a-bc; false: b-ac. Both
+  // elements at a face decide alike. With both cuts on short edges the lattice's parity decides; otherwise the diagonal leaves from
+  // the cut on the long edge.
+  static bool diagonal_from_first(const Site& a, const Site& b, const Site& c) {
+    if (is_long(a, b)) {
+      std::size_t axis = 0;
+      while (a[axis] == b[axis]) ++axis;
+      return (a[axis] / 2) % 2 == 0;
+    }
+    return is_long(b, c);
+  }
+
+  void add(int a, int b, int c, int d) { tets_.push_back({a, b, c, d}); }
+
+  // The pyramid over the quadrilateral (a, b, b_cut, a_cut).
+  void add_pyramid(int apex, int a, int b, int b_cut, int a_cut, bool from_a) {
+    if (from_a) {
+      add(apex, a, b, b_cut);
+      add(apex, a, b_cut, a_cut);
+    } else {
+      add(apex, a, b, a_cut);
+      add(apex, b, b_cut, a_cut);
+    }
+  }
+
+  void emit_three_inside(std::array<Site, 3> in, const Site& out) {
+    // in[0]: the one joined to `out` by the long edge. Both diagonals on its side leave from the long cut.
+    for (std::size_t k = 1; k < 3; ++k) {
+      if (is_long(in[k], out)) std::swap(in[0], in[k]);
+    }
+    const int a = vertex(in[0]), b = vertex(in[1]), c = vertex(in[2]);
+    const int a_cut = cut_vertex(in[0], out), b_cut = cut_vertex(in[1], out), c_cut = cut_vertex(in[2], out);
+    add(a, b, c, a_cut);
+    add_pyramid(a_cut, b, c, c_cut, b_cut, diagonal_from_first(in[1], in[2], out));
+  }
+
+  void emit_two_inside(const Site& a, const Site& b, Site c, Site d) {
+    const int va = vertex(a), vb = vertex(b);
+    if (!is_long(a, b) && !is_long(a, c)) std::swap(c, d);
+    const int ac = cut_vertex(a, c), ad = cut_vertex(a, d), bc = cut_vertex(b, c), bd = cut_vertex(b, d);
+    if (!is_long(a, b)) {  // a-c and b-d are long: diagonals b-ac and a-bd, which leave ac-bd as the only one for the surface
+      add(va, ac, ad, bd);
+      add(va, vb, ac, bd);
+      add(vb, ac, bc, bd);
+      return;
+    }
+    const double first = (vertices_[static_cast<std::size_t>(ac)] - vertices_[static_cast<std::size_t>(bd)]).squaredNorm();
+    const double second = (vertices_[static_cast<std::size_t>(bc)] - vertices_[static_cast<std::size_t>(ad)]).squaredNorm();
+    if (diagonal_from_first(a, b, c)) {
+      add(va, vb, bc, bd);
+      add_pyramid(va, ac, bc, bd, ad, first <= second);
+    } else {
+      add(vb, va, ac, ad);
+      add_pyramid(vb, ac, bc, bd, ad, first <= second);
+    }
+  }
+
+  void emit(const std::array<Site, 4>& corners) {
+    std::array<Site, 4> in, out, on;
+    std::size_t ins = 0, outs = 0, ons = 0;
+    for (const Site& s : corners) {
+      const double value = field_[id(s)];
+      if (value < 0) in[ins++] = s;
+      else if (value > 0) out[outs++] = s;
+      else on[ons++] = s;
+    }
+    if (ins == 0) return;
+    if (outs == 0) {
+      add(vertex(corners[0]), vertex(corners[1]), vertex(corners[2]), vertex(corners[3]));
+    } else if (ins == 1) {
+      int names[3];
+      for (std::size_t k = 0; k < ons; ++k) names[k] = vertex(on[k]);
+      for (std::size_t k = 0; k < outs; ++k) names[ons + k] = cut_vertex(in[0], out[k]);
+      add(vertex(in[0]), names[0], names[1], names[2]);
+    } else if (ins == 3) {
+      emit_three_inside({in[0], in[1], in[2]}, out[0]);
+    } else if (outs == 1) {
+      add_pyramid(vertex(on[0]), vertex(in[0]), vertex(in[1]), cut_vertex(in[1], out[0]), cut_vertex(in[0], out[0]),
+                  diagonal_from_first(in[0], in[1], out[0]));
+    } else {
+      emit_two_inside(in[0], in[1], out[0], out[1]);
+    }
+  }
+
+  // Each element of the lattice has two neighbouring centres and one edge of the square between their cells.
+  void emit_all() {
+    for (int k = 1; k < 2 * cells_[2]; k += 2) {
+      for (int j = 1; j < 2 * cells_[1]; j += 2) {
+        for (int i = 1; i < 2 * cells_[0]; i += 2) {
+          for (std::size_t axis = 0; axis < 3; ++axis) {
+            const Site a{i, j, k};
+            Site b = a;
+            b[axis] += 2;
+            if (b[axis] > 2 * cells_[axis]) continue;
+            const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+            constexpr int square[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+            for (int side = 0; side < 4; ++side) {
+              Site c = a, d = a;
+              c[axis] += 1;
+              d[axis] += 1;
+              c[u] += square[side][0];
+              c[v] += square[side][1];
+              d[u] += square[(side + 1) % 4][0];
+              d[v] += square[(side + 1) % 4][1];
+              emit({a, b, c, d});
+            }
+          }
+        }
+      }
+    }
+  }
+
+  const Shape& shape_;
+  const double spacing_;
+  Vec3 origin_;
+  std::array<int, 3> cells_{};
+  std::vector<double> field_;      // distance by site; 0 where the site was moved onto the surface
+  std::vector<Vec3> moved_;        // displacement by site [m]
+  std::vector<double> cut_;        // fraction by forward edge, or no_cut
+  std::vector<int> cut_vertex_;    // vertex by forward edge, or -1
+  std::vector<int> site_vertex_;   // vertex by site, or -1
+  std::vector<Eigen::RowVector3d> vertices_;
+  std::vector<std::array<int, 4>> tets_;
+};
+
+// Flags to drop: elements at boundary edges and vertices where the surface touches itself, the smaller side of each touch.
+bool drop_touching(const TetMesh& mesh, std::vector<char>& keep) {
+  const Triangles faces = boundary_faces(mesh.tets);
+  std::vector<std::vector<Eigen::Index>> faces_at(static_cast<std::size_t>(mesh.rest.rows()));
+  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+    for (int k = 0; k < 3; ++k) faces_at[static_cast<std::size_t>(faces(f, k))].push_back(f);
+  }
+  std::vector<char> drop_vertex_fan(static_cast<std::size_t>(faces.rows()), 0);
+  bool found = false;
+  for (std::size_t v = 0; v < faces_at.size(); ++v) {
+    std::vector<Eigen::Index> open = faces_at[v];
+    std::vector<std::vector<Eigen::Index>> fans;
+    while (!open.empty()) {  // grow a fan over shared edges at v
+      std::vector<Eigen::Index> fan = {open.back()};
+      open.pop_back();
+      for (std::size_t at = 0; at < fan.size(); ++at) {
+        for (std::size_t i = 0; i < open.size();) {
+          int shared = 0;
+          for (int a = 0; a < 3; ++a) {
+            for (int b = 0; b < 3; ++b) shared += faces(fan[at], a) == faces(open[i], b) ? 1 : 0;
+          }
+          if (shared >= 2) {
+            fan.push_back(open[i]);
+            open.erase(open.begin() + static_cast<std::ptrdiff_t>(i));
+          } else {
+            ++i;
+          }
+        }
+      }
+      fans.push_back(std::move(fan));
+    }
+    // An edge with four faces joins two fans into one that visits a neighbour more than twice.
+    bool pinched = fans.size() > 1;
+    for (const auto& fan : fans) {
+      std::vector<std::int32_t> neighbours;
+      for (Eigen::Index f : fan) {
+        for (int k = 0; k < 3; ++k) {
+          if (faces(f, k) != static_cast<std::int32_t>(v)) neighbours.push_back(faces(f, k));
+        }
+      }
+      std::sort(neighbours.begin(), neighbours.end());
+      for (std::size_t i = 2; i < neighbours.size(); ++i) pinched |= neighbours[i] == neighbours[i - 2];
+    }
+    if (!pinched) continue;
+    found = true;
+    const auto smallest = std::min_element(fans.begin(), fans.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
+    for (Eigen::Index f : *smallest) drop_vertex_fan[static_cast<std::size_t>(f)] = 1;
+  }
+  if (!found) return false;
+  // A boundary face belongs to one element: find it by its three vertices.
+  std::vector<std::vector<Eigen::Index>> tets_at(static_cast<std::size_t>(mesh.rest.rows()));
+  for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
+    for (int k = 0; k < 4; ++k) tets_at[static_cast<std::size_t>(mesh.tets(e, k))].push_back(e);
+  }
+  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+    if (!drop_vertex_fan[static_cast<std::size_t>(f)]) continue;
+    for (Eigen::Index e : tets_at[static_cast<std::size_t>(faces(f, 0))]) {
+      int shared = 0;
+      for (int k = 0; k < 4; ++k) {
+        for (int j = 0; j < 3; ++j) shared += mesh.tets(e, k) == faces(f, j) ? 1 : 0;
+      }
+      if (shared == 3) keep[static_cast<std::size_t>(e)] = 0;
+    }
+  }
+  return true;
+}
+
+TetMesh largest_piece(const TetMesh& mesh) {
+  const std::vector<int> pieces = face_connected_pieces(mesh.tets);
+  std::vector<double> volumes;
+  for (std::size_t e = 0; e < pieces.size(); ++e) {
+    const auto piece = static_cast<std::size_t>(pieces[e]);
+    if (piece >= volumes.size()) volumes.resize(piece + 1, 0);
+    volumes[piece] += tet_volume(mesh, static_cast<Eigen::Index>(e));
+  }
+  if (volumes.size() <= 1) return mesh;
+  const auto largest = std::max_element(volumes.begin(), volumes.end()) - volumes.begin();
+  std::vector<char> keep(pieces.size());
+  for (std::size_t e = 0; e < pieces.size(); ++e) keep[e] = pieces[e] == largest;
+  return submesh(mesh, keep);
+}
+
+// The share of the bounding box that the shape fills, from a coarse grid of samples.
+double sampled_volume(const Shape& shape, const Bounds& box) {
+  constexpr int samples = 24;
+  int inside = 0;
+  for (int i = 0; i < samples; ++i) {
+    for (int j = 0; j < samples; ++j) {
+      for (int k = 0; k < samples; ++k) {
+        const Vec3 unit((i + 0.5) / samples, (j + 0.5) / samples, (k + 0.5) / samples);
+        inside += shape.distance(box.lower + unit.cwiseProduct(box.extent())) < 0 ? 1 : 0;
+      }
+    }
+  }
+  return inside * box.extent().prod() / (samples * samples * samples);
+}
+
+}  // namespace
+
+TetMesh stuff_lattice(const Shape& shape, double spacing, const Vec3& shift) {
+  TetMesh mesh = Stuffing(shape, spacing, shift).run();
+  for (int round = 0; round < 20 && mesh.tets.rows() > 0; ++round) {
+    mesh = largest_piece(mesh);
+    std::vector<char> keep(static_cast<std::size_t>(mesh.tets.rows()), 1);
+    if (!drop_touching(mesh, keep)) break;
+    mesh = submesh(mesh, keep);
+  }
+  mesh.regions.resize(static_cast<std::size_t>(mesh.tets.rows()));
+  for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
+    Vec3 centroid = Vec3::Zero();
+    for (int k = 0; k < 4; ++k) centroid += 0.25 * mesh.rest.row(mesh.tets(e, k)).transpose();
+    mesh.regions[static_cast<std::size_t>(e)] = shape.region(centroid);
+  }
+  return mesh;
+}
+
+TetMesh tetrahedralize(const Shape& shape, int vertices, const std::string& source) {
+  const Bounds box = shape.bounds();
+  if (box.empty()) throw InputError(source, "the shape is empty: add a part such as sphere = { radius = 0.1 }");
+  if (box.extent().maxCoeff() > 1e6) {
+    throw InputError(source, "the shape is unbounded: a half space can cut or intersect a body, but not be one");
+  }
+  const double volume = sampled_volume(shape, box);
+  if (volume <= 0) throw InputError(source, "the shape has no inside: its parts cut each other away, or are too thin to mesh");
+
+  // Two lattice points a cell, and about as many again on the surface of a small body: a guess that the iteration corrects.
+  double spacing = std::cbrt(2 * volume / vertices);
+  TetMesh best;
+  const auto miss = [&](const TetMesh& mesh) { return std::abs(static_cast<double>(mesh.rest.rows()) / vertices - 1); };
+  for (int attempt = 0; attempt < 24; ++attempt) {
+    // After six attempts at the same alignment the lattice itself is shifted: small bodies change by whole layers of vertices.
+    const Vec3 shift = Vec3(0.31, 0.17, 0.43) * (attempt < 6 ? 0.0 : 0.37 * attempt);
+    TetMesh mesh = stuff_lattice(shape, spacing, shift - Vec3(shift.array().floor()));
+    const double count = std::max<double>(static_cast<double>(mesh.rest.rows()), 1.0);
+    if (best.rest.rows() == 0 || miss(mesh) < miss(best)) best = std::move(mesh);
+    if (miss(best) < 0.01 || (attempt >= 8 && miss(best) < 0.03)) break;
+    spacing *= std::clamp(std::cbrt(count / vertices), 0.5, 2.0);
+  }
+  if (miss(best) > 0.03) {
+    throw InputError(source, fmt::format("cannot be meshed with {} vertices (nearest: {}): its thinnest part needs more of them", vertices,
+                                         best.rest.rows()));
+  }
+  return best;
+}
+
+TetMesh box_mesh(const Vec3& extent, const Eigen::Vector3i& cells) {
+  const Eigen::Vector3i points = cells.array() + 1;
+  const auto name = [&](int i, int j, int k) { return (k * points.y() + j) * points.x() + i; };
+  TetMesh mesh;
+  mesh.rest.resize(points.prod(), 3);
+  for (int k = 0; k < points.z(); ++k) {
+    for (int j = 0; j < points.y(); ++j) {
+      for (int i = 0; i < points.x(); ++i) {
+        mesh.rest.row(name(i, j, k)) = extent.cwiseProduct(Vec3(i, j, k)).cwiseQuotient(cells.cast<double>()).transpose();
+      }
+    }
+  }
+  // Kuhn's six tetrahedra: one for each order in which the three axes can be walked from the low to the high corner.
+  constexpr int walks[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+  mesh.tets.resize(6 * cells.prod(), 4);
+  Eigen::Index row = 0;
+  for (int k = 0; k < cells.z(); ++k) {
+    for (int j = 0; j < cells.y(); ++j) {
+      for (int i = 0; i < cells.x(); ++i) {
+        for (const auto& walk : walks) {
+          int step[3] = {0, 0, 0};
+          for (int corner = 0; corner < 4; ++corner) {
+            if (corner > 0) step[walk[corner - 1]] = 1;
+            const auto at = [](int cell, int s) { return cell + (cell % 2 == 0 ? s : 1 - s); };  // mirrored in odd cells
+            mesh.tets(row, corner) = name(at(i, step[0]), at(j, step[1]), at(k, step[2]));
+          }
+          if (tet_volume(mesh, row) < 0) std::swap(mesh.tets(row, 2), mesh.tets(row, 3));
+          ++row;
+        }
+      }
+    }
+  }
+  mesh.regions.assign(static_cast<std::size_t>(mesh.tets.rows()), 0);
+  return mesh;
+}
+
+}  // namespace supple

@@ -1,0 +1,32 @@
+// PC2 point caches: the motion of one mesh, frame by frame, as Blender and others read it.
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "base/types.h"
+
+namespace supple {
+
+class PointCacheWriter {
+ public:
+  // Throws RunError when the file cannot be written.
+  PointCacheWriter(const std::filesystem::path& path, int points);
+
+  // Appends a frame (points x 3, float in the file). The header's count is brought up to date, so that the file is valid after every frame.
+  void add(const Positions& points);
+
+ private:
+  void fail(const char* doing) const;
+
+  std::filesystem::path path_;
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  std::unique_ptr<std::FILE, Close> file_;
+  int points_;
+  int frames_ = 0;
+};
+
+}  // namespace supple

@@ -1,0 +1,151 @@
+#include "output/profile.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "base/hash.h"
+
+namespace supple {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Ten significant digits are plenty for times, and all seventeen are kept where a number may be compared.
+double rounded_ms(double ms) { return std::round(ms * 1e4) / 1e4; }
+
+Json json_of(const BodyRow& body) {
+  Json row = {{"name", body.name},
+              {"step_ms", rounded_ms(body.step_ms)},
+              {"evaluate_ms", rounded_ms(body.evaluate_ms)},
+              {"solve_ms", rounded_ms(body.solve_ms)},
+              {"lbfgs_ms", rounded_ms(body.lbfgs_ms)},
+              {"other_ms", rounded_ms(body.other_ms)},
+              {"iterations", body.iterations},
+              {"line_search", body.line_search},
+              {"objective_start", body.objective_start},
+              {"objective_end", body.objective_end},
+              {"error_estimate", body.error_estimate}};
+  if (body.error_measured) row["error"] = body.error ? Json(*body.error) : Json(nullptr);
+  row["stretch"] = body.stretch;
+  if (body.jiggle) row["jiggle"] = *body.jiggle;
+  row["stop_reason"] = body.stop_reason;
+  return row;
+}
+
+Json json_of(const Distribution& d) {
+  return {{"p50", rounded_ms(d.p50)}, {"p95", rounded_ms(d.p95)},   {"p99", rounded_ms(d.p99)},
+          {"max", rounded_ms(d.max)}, {"mean", rounded_ms(d.mean)}, {"total", rounded_ms(d.total)}};
+}
+
+std::vector<double> of_body(const std::vector<FrameRow>& rows, std::size_t body, const std::function<std::optional<double>(const BodyRow&)>& get) {
+  std::vector<double> values;
+  for (const FrameRow& row : rows) {
+    if (body >= row.bodies.size()) continue;
+    if (const auto value = get(row.bodies[body])) values.push_back(*value);
+  }
+  return values;
+}
+
+}  // namespace
+
+Distribution distribution_of(std::vector<double> values) {
+  Distribution d;
+  if (values.empty()) return d;
+  std::sort(values.begin(), values.end());
+  const auto rank = [&](double share) {
+    const auto index = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
+    return values[std::clamp<std::size_t>(index, 1, values.size()) - 1];
+  };
+  d.p50 = rank(0.50);
+  d.p95 = rank(0.95);
+  d.p99 = rank(0.99);
+  d.max = values.back();
+  for (const double value : values) d.total += value;
+  d.mean = d.total / static_cast<double>(values.size());
+  return d;
+}
+
+std::vector<StageSummary> summarize(const std::vector<FrameRow>& rows) {
+  struct Stage {
+    const char* name;
+    std::optional<double> (*get)(const FrameRow&);
+  };
+  constexpr Stage stages[] = {{"step", [](const FrameRow& r) { return std::optional<double>(r.step_ms); }},
+                              {"draw", [](const FrameRow& r) { return r.draw_ms; }},
+                              {"render", [](const FrameRow& r) { return r.render_ms; }},
+                              {"encode", [](const FrameRow& r) { return r.encode_ms; }}};
+  std::vector<StageSummary> result;
+  for (const Stage& stage : stages) {
+    std::vector<double> values;
+    for (const FrameRow& row : rows) {
+      if (const auto value = stage.get(row)) values.push_back(*value);
+    }
+    if (values.empty()) continue;
+    const double first = values.front();
+    if (values.size() > 1) values.erase(values.begin());
+    result.push_back({stage.name, first, distribution_of(std::move(values))});
+  }
+  return result;
+}
+
+std::string profile_json(const std::vector<FrameRow>& rows) {
+  Json frames = Json::array();
+  for (const FrameRow& row : rows) {
+    Json frame = {{"frame", row.frame}, {"time_s", row.time_s}, {"step_ms", rounded_ms(row.step_ms)}};
+    if (row.draw_ms) frame["draw_ms"] = rounded_ms(*row.draw_ms);
+    if (row.render_ms) frame["render_ms"] = rounded_ms(*row.render_ms);
+    if (row.encode_ms) frame["encode_ms"] = rounded_ms(*row.encode_ms);
+    frame["state_hash"] = hash_text_form(row.state_hash);
+    frame["bodies"] = Json::array();
+    for (const BodyRow& body : row.bodies) frame["bodies"].push_back(json_of(body));
+    frames.push_back(std::move(frame));
+  }
+  Json first, rest;
+  for (const StageSummary& stage : summarize(rows)) {
+    first[stage.stage + "_ms"] = rounded_ms(stage.first);
+    rest[stage.stage + "_ms"] = json_of(stage.rest);
+  }
+  Json document;
+  document["frames"] = std::move(frames);
+  document["summary"] = {{"frames", rows.size()}, {"first_frame", first}, {"without_first_frame", rest}};
+  return document.dump(1) + "\n";
+}
+
+std::string profile_table(const std::vector<FrameRow>& rows) {
+  std::string text = fmt::format("  {:<10}{:>9}{:>9}{:>9}{:>9}{:>11}{:>10}\n", "ms/frame", "p50", "p95", "p99", "max", "first", "total s");
+  for (const StageSummary& stage : summarize(rows)) {
+    text += fmt::format("  {:<10}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>11.2f}{:>10.1f}\n", stage.stage, stage.rest.p50, stage.rest.p95,
+                        stage.rest.p99, stage.rest.max, stage.first, (stage.rest.total + stage.first) / 1000);
+  }
+  if (rows.empty()) return text;
+  bool measured = false;
+  for (const FrameRow& row : rows) measured |= std::any_of(row.bodies.begin(), row.bodies.end(), [](const BodyRow& b) { return b.error_measured; });
+  text += fmt::format("\n  {:<14}{:>9}{:>9}{:>12}{:>10}{:>10}{:>12}", "body", "step ms", "p95", "trials/it", "stretch", "jiggle", "error est.");
+  text += measured ? fmt::format("{:>11}{:>10}{:>10}\n", "error mean", "p95", "worst") : "\n";
+  for (std::size_t b = 0; b < rows.front().bodies.size(); ++b) {
+    const Distribution step = distribution_of(of_body(rows, b, [](const BodyRow& r) { return std::optional(r.step_ms); }));
+    double trials = 0, iterations = 0;
+    for (const FrameRow& row : rows) {
+      trials += row.bodies[b].line_search;
+      iterations += row.bodies[b].iterations;
+    }
+    const Distribution stretch = distribution_of(of_body(rows, b, [](const BodyRow& r) { return std::optional(r.stretch); }));
+    const std::vector<double> jiggles = of_body(rows, b, [](const BodyRow& r) { return r.jiggle; });
+    const Distribution estimate = distribution_of(of_body(rows, b, [](const BodyRow& r) { return std::optional(r.error_estimate); }));
+    text += fmt::format("  {:<14}{:>9.2f}{:>9.2f}{:>12.3f}{:>10.3f}{:>10}{:>12.1e}", rows.front().bodies[b].name, step.p50, step.p95,
+                        iterations > 0 ? trials / iterations : 0.0, stretch.max,
+                        jiggles.empty() ? "-" : fmt::format("{:.3f}", distribution_of(jiggles).max), estimate.mean);
+    if (measured) {
+      const Distribution error = distribution_of(of_body(rows, b, [](const BodyRow& r) { return r.error; }));
+      text += fmt::format("{:>11.1e}{:>10.1e}{:>10.1e}", error.mean, error.p95, error.max);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace supple

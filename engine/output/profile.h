@@ -1,0 +1,54 @@
+// What a run took, frame by frame, as profile.json and as a table on the terminal. Plain rows: filled in by whoever has the numbers.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace supple {
+
+struct BodyRow {
+  std::string name;
+  double step_ms = 0, evaluate_ms = 0, solve_ms = 0, lbfgs_ms = 0, other_ms = 0;
+  int iterations = 0, line_search = 0;
+  double objective_start = 0, objective_end = 0;  // [J]
+  double error_estimate = 0;
+  bool error_measured = false;
+  std::optional<double> error;  // equation 12; null where the start is already the minimum to round-off
+  double stretch = 0;           // volume-weighted 99.9th percentile of the largest stretch
+  std::optional<double> jiggle; // over size; only for bodies with a handle
+  std::string stop_reason;
+};
+
+struct FrameRow {
+  int frame = 0;
+  double time_s = 0;
+  double step_ms = 0;
+  std::optional<double> draw_ms, render_ms, encode_ms;  // absent without images
+  std::uint64_t state_hash = 0;
+  std::vector<BodyRow> bodies;
+};
+
+struct Distribution {
+  double p50 = 0, p95 = 0, p99 = 0, max = 0, mean = 0, total = 0;
+};
+
+// Nearest-rank percentiles; zeros for an empty list.
+Distribution distribution_of(std::vector<double> values);
+
+// The stages of a frame that were used, in the order in which they run; the first frame is left out (it compiles shaders and warms caches).
+struct StageSummary {
+  std::string stage;
+  double first = 0;
+  Distribution rest;
+};
+std::vector<StageSummary> summarize(const std::vector<FrameRow>& rows);
+
+std::string profile_json(const std::vector<FrameRow>& rows);
+
+// A table for people: stages, then solver figures by body.
+std::string profile_table(const std::vector<FrameRow>& rows);
+
+}  // namespace supple

@@ -1,0 +1,65 @@
+#include "output/run_folder.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "output/whole_file.h"
+
+namespace supple {
+namespace {
+
+std::string cpu_name() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  }
+  return "unknown";
+}
+
+}  // namespace
+
+std::string program_version() { return SUPPLE_VERSION; }
+std::string build_flags() { return SUPPLE_BUILD_FLAGS; }
+
+RunFolder::RunFolder(const std::filesystem::path& path) : path_(path) {
+  std::error_code error;
+  if (std::filesystem::exists(path, error)) {
+    if (!std::filesystem::is_directory(path, error)) throw InputError("--out " + path.string(), "exists and is not a folder");
+    const bool empty = std::filesystem::is_empty(path, error);
+    if (!empty && !std::filesystem::exists(path / "run.json", error)) {
+      throw InputError("--out " + path.string(), "holds files that no run left there (no run.json); choose another folder or empty it");
+    }
+  }
+  for (const char* part : {"frames", "motion"}) std::filesystem::remove_all(path / part, error);
+  for (const char* part : {"video.mp4", "profile.json", "run.json"}) std::filesystem::remove(path / part, error);
+  for (const char* part : {"frames", "motion"}) {
+    std::filesystem::create_directories(path / part, error);
+    if (error) throw RunError(fmt::format("{}: cannot be made: {}", (path / part).string(), error.message()));
+  }
+}
+
+std::filesystem::path RunFolder::frame(int index) const { return frames() / fmt::format("{:06}.png", index); }
+
+void RunFolder::write_info(const RunInfo& info) const {
+  nlohmann::ordered_json json;
+  json["program"] = {{"name", "supple"}, {"version", program_version()}, {"build", build_flags()}, {"kernels", info.kernel_variant}};
+  json["command"] = info.command;
+  json["ended"] = info.ended;
+  json["frames"] = info.frames;
+  json["machine"] = {{"cpu", cpu_name()}, {"threads", info.threads}};
+  if (!info.gl_backend.empty()) json["gl"] = {{"backend", info.gl_backend}, {"renderer", info.gl_renderer}, {"version", info.gl_version}};
+  json["meshes"] = nlohmann::ordered_json::array();
+  for (const RunInfo::Mesh& mesh : info.meshes) {
+    json["meshes"].push_back({{"body", mesh.body}, {"source", mesh.source}, {"xxh64", mesh.hash}, {"vertices", mesh.vertices}, {"elements", mesh.elements}});
+  }
+  json["scene_file"] = info.scene_file;
+  json["scene"] = nlohmann::ordered_json::parse(info.scene_json, nullptr, false);
+  write_whole_file(path_ / "run.json", json.dump(1) + "\n");
+}
+
+void RunFolder::write_profile(const std::string& json) const { write_whole_file(path_ / "profile.json", json); }
+
+}  // namespace supple

@@ -1,0 +1,49 @@
+// The folder that a run leaves behind: run.json, frames/, video.mp4, motion/, profile.json.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace supple {
+
+struct RunInfo {
+  std::vector<std::string> command;  // as it was called
+  std::string scene_file;
+  std::string scene_json;            // the scene after --set
+  struct Mesh {
+    std::string body, source, hash;
+    int vertices = 0, elements = 0;
+  };
+  std::vector<Mesh> meshes;
+  std::string kernel_variant;
+  int threads = 1;
+  std::string gl_backend, gl_renderer, gl_version;  // empty without images
+  int frames = 0;                                   // finished
+  std::string ended;                                // "done", "interrupted" or the failure
+};
+
+class RunFolder {
+ public:
+  // Makes the folder, or takes over one that an earlier run left (its results are removed). Throws InputError when the folder holds
+  // something else, RunError when it cannot be made.
+  explicit RunFolder(const std::filesystem::path& path);
+
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path frames() const { return path_ / "frames"; }
+  std::filesystem::path frame(int index) const;
+  std::filesystem::path motion(const std::string& body) const { return path_ / "motion" / (body + ".pc2"); }
+  std::filesystem::path video() const { return path_ / "video.mp4"; }
+
+  void write_info(const RunInfo& info) const;
+  void write_profile(const std::string& json) const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+// Version of the program and how it was built, as run.json has them.
+std::string program_version();
+std::string build_flags();
+
+}  // namespace supple

@@ -1,0 +1,31 @@
+// How much of the sky the bodies take from the ground below them: the contact shadow that seats a figure. Computed on a grid from the surface's
+// vertices, each frame.
+#pragma once
+
+#include <vector>
+
+#include "base/types.h"
+
+namespace supple {
+
+class GroundOcclusion {
+ public:
+  static constexpr int cells = 128;  // a side
+
+  // Covers a square of the ground.
+  GroundOcclusion(const Bounds& stage, double largest_body);
+
+  // Open sky by cell, 1 to 0, row by row along z, for surfaces given by their vertices (x y z).
+  const std::vector<float>& compute(const std::vector<std::vector<float>>& positions);
+
+  double origin_x() const { return origin_x_; }
+  double origin_z() const { return origin_z_; }
+  double extent() const { return extent_; }
+
+ private:
+  double origin_x_, origin_z_, extent_, reach_;  // [m]
+  std::vector<float> lowest_;                    // height of the lowest surface by cell; huge when none [m]
+  std::vector<float> open_;
+};
+
+}  // namespace supple

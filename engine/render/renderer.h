@@ -1,0 +1,74 @@
+// Draws a stage with OpenGL 3.3: key light with shadow map, fill, rim and sky light, a ground that fades into the background, captions. All
+// functions are called on the thread that made the renderer.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <string>
+
+#include "render/draw_list.h"
+#include "render/gl_context.h"
+#include "render/gl_table.h"
+#include "render/ground_occlusion.h"
+
+namespace supple {
+
+class Renderer {
+ public:
+  // Throws RunError: no context, a broken one (checked with a test triangle), shaders that do not compile.
+  Renderer(const Stage& stage, GlChoice choice, const std::filesystem::path& shaders);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  Image draw(const DrawList& list);
+
+  std::string backend() const { return context_.backend(); }
+  const std::string& name() const { return name_; }        // GL_RENDERER
+  const std::string& version() const { return version_; }  // GL_VERSION
+
+ private:
+  struct MeshBuffers {
+    GLuint array = 0, positions = 0, normals = 0, fixed = 0, indices = 0;
+    GLsizei count = 0;
+    std::size_t vertices = 0;
+    std::vector<float> normal_data;
+  };
+  struct Target {
+    GLuint framebuffer = 0, color = 0, depth = 0;
+  };
+  struct Label {
+    GLuint texture = 0;
+    int width = 0, height = 0;
+    Vec3 anchor = Vec3::Zero();
+  };
+
+  void make_targets();
+  void make_meshes();
+  void make_labels();
+  void check_test_triangle();
+  void upload(const DrawList& list);
+  void draw_shadow_map();
+  void draw_scene(const Camera& camera);
+  void draw_labels(const Camera& camera);
+  void set_lights(GLuint program, const Camera& camera) const;
+
+  GLint uniform(GLuint program, const char* name) const { return gl_.GetUniformLocation(program, name); }
+
+  Stage stage_;
+  GlContext context_;
+  GlTable gl_;
+  std::string name_, version_;
+  GLuint body_program_ = 0, ground_program_ = 0, shadow_program_ = 0, label_program_ = 0, backdrop_program_ = 0;
+  Target scene_, resolved_;
+  GLuint shadow_framebuffer_ = 0, shadow_texture_ = 0, occlusion_texture_ = 0, empty_array_ = 0;
+  std::vector<MeshBuffers> meshes_;
+  std::vector<Label> labels_;
+  Bounds bounds_;  // of the stage at rest, widened: what lights and shadows cover
+  double largest_body_ = 1;
+  GroundOcclusion occlusion_;
+  Eigen::Matrix4f light_matrix_ = Eigen::Matrix4f::Identity();
+  Vec3 key_direction_;  // towards the light
+};
+
+}  // namespace supple

@@ -1,0 +1,276 @@
+#include "scene/assemble.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/text.h"
+#include "geometry/mesh_file.h"
+#include "geometry/tetrahedralize.h"
+#include "scene/rotation.h"
+#include "scene/shape_reader.h"
+
+namespace supple {
+namespace {
+
+// From the file's frame to the world: turned about the origin, scaled, then put with the middle of its bottom at `position`.
+Eigen::Affine3d placement(const BodyDef& def, const Positions& points) {
+  Eigen::Affine3d turned(rotation_from_degrees(def.turn_deg).toRotationMatrix());
+  Bounds box, untouched;
+  for (Eigen::Index v = 0; v < points.rows(); ++v) {
+    box.include(turned * Vec3(points.row(v)));
+    untouched.include(points.row(v).transpose());
+  }
+  const double scale = def.size ? *def.size / untouched.extent().maxCoeff() : 1;
+  const Vec3 foot(box.center().x(), box.lower.y(), box.center().z());
+  return Eigen::Translation3d(def.position) * Eigen::Scaling(scale) * Eigen::Translation3d(-foot) * turned;
+}
+
+void apply(const Eigen::Affine3d& place, Positions& points) {
+  for (Eigen::Index v = 0; v < points.rows(); ++v) points.row(v) = (place * Vec3(points.row(v))).transpose();
+}
+
+std::vector<std::int32_t> selected(const Selection& s, const TetMesh& mesh, const Positions& file_points, const std::vector<std::string>& regions) {
+  // Relative to the rest box before the body is turned, so that a selection means the same part however the body stands.
+  const Bounds box = bounds_of(file_points);
+  const Vec3 extent = box.extent().cwiseMax(1e-300);
+  std::vector<std::int32_t> result;
+  if (s.kind == Selection::Kind::region) {
+    const auto tag = std::find(regions.begin(), regions.end(), s.region) - regions.begin();
+    std::vector<char> in(mesh.rest.rows(), 0);
+    for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
+      if (mesh.regions[e] != tag) continue;
+      for (int k = 0; k < 4; ++k) in[mesh.tets(e, k)] = 1;
+    }
+    for (std::int32_t v = 0; v < mesh.rest.rows(); ++v) {
+      if (in[v]) result.push_back(v);
+    }
+    return result;
+  }
+  for (std::int32_t v = 0; v < mesh.rest.rows(); ++v) {
+    const Vec3 point = file_points.row(v);
+    const Vec3 relative = (point - box.lower).cwiseQuotient(extent);
+    const Vec3 away = point - (box.lower + s.center.cwiseProduct(extent));
+    bool in = false;
+    // A millionth of slack: a box that ends at 1 means to include what lies at 1.
+    if (s.kind == Selection::Kind::box) in = (relative.array() >= s.lower.array() - 1e-6).all() && (relative.array() <= s.upper.array() + 1e-6).all();
+    if (s.kind == Selection::Kind::sphere) in = away.norm() <= s.radius * box.extent().maxCoeff();
+    if (s.kind == Selection::Kind::plane) in = away.dot(s.normal.normalized()) >= -1e-6 * box.extent().maxCoeff();
+    if (in) result.push_back(v);
+  }
+  return result;
+}
+
+struct Loaded {
+  TetMesh mesh;
+  std::vector<std::string> regions;  // names by tag
+  std::vector<std::string> notes;
+};
+
+// Meshes that several bodies share are read or made once.
+class MeshCache {
+ public:
+  const Loaded& get(const SceneDef& scene, const BodyDef& def) {
+    const std::string key = def.mesh.empty() ? fmt::format("{}#{}", def.shape.string(), def.vertices) : def.mesh.string();
+    const auto known = loaded_.find(key);
+    if (known != loaded_.end()) return known->second;
+    Loaded loaded;
+    if (def.mesh.empty()) {
+      const Shape shape = load_shape(def.shape, scene.assets);
+      loaded.mesh = tetrahedralize(shape, def.vertices, def.shape.string());
+      loaded.regions = shape.regions;
+    } else {
+      MeshFile file = read_mesh(def.mesh);
+      loaded.mesh = std::move(file.mesh);
+      loaded.notes = std::move(file.notes);
+      name_references(loaded);
+    }
+    return loaded_.emplace(key, std::move(loaded)).first->second;
+  }
+
+ private:
+  // A file's element references become tags 0, 1, ...: reference 0 stays the untagged body.
+  static void name_references(Loaded& loaded) {
+    std::map<int, int> tag = {{0, 0}};
+    loaded.regions = {""};
+    for (int& region : loaded.mesh.regions) {
+      const auto [at, added] = tag.try_emplace(region, static_cast<int>(loaded.regions.size()));
+      if (added) loaded.regions.push_back(fmt::format("{}", region));
+      region = at->second;
+    }
+  }
+
+  std::map<std::string, Loaded> loaded_;
+};
+
+Problem at(const Problem& place, std::string message) { return {place.source, place.line, place.column, std::move(message)}; }
+
+void add_regions(const BodyDef& def, const Loaded& loaded, BodyDescription& description, std::vector<Problem>& problems) {
+  description.materials.assign(loaded.regions.size(), def.material);
+  for (const RegionDef& region : def.regions) {
+    const auto known = std::find(loaded.regions.begin(), loaded.regions.end(), region.name);
+    if (known == loaded.regions.end()) {
+      const std::vector<std::string> names(loaded.regions.begin() + 1, loaded.regions.end());
+      const std::string nearest = nearest_word(region.name, names);
+      // A body made of another mesh than the scene was written for has no teeth to be stiff: that is said, not refused.
+      if (def.mesh.empty()) {
+        problems.push_back(at(region.place, fmt::format("body '{}' has no region '{}'; {}", def.name, region.name,
+                                                        names.empty() ? "its shape has no tags" : nearest.empty() ? "there is " + word_list(names) : "did you mean '" + nearest + "'?")));
+      }
+      continue;
+    }
+    description.materials[known - loaded.regions.begin()] = region.material;
+  }
+}
+
+void add_handles(Body& body, const Loaded& loaded, std::vector<Problem>& problems) {
+  std::vector<char> taken(loaded.mesh.rest.rows(), 0);
+  for (const HandleDef& def : body.def.handles) {
+    Handle handle{def.name, selected(def.select, loaded.mesh, loaded.mesh.rest, loaded.regions), def.spring};
+    // Where two handles overlap the first one has the vertices.
+    std::erase_if(handle.vertices, [&](std::int32_t v) { return taken[v] != 0; });
+    for (const std::int32_t v : handle.vertices) taken[v] = 1;
+    if (handle.vertices.empty()) {
+      const bool by_region = def.select.kind == Selection::Kind::region;
+      problems.push_back(at(def.select.place, fmt::format("handle '{}' of body '{}' selects no vertex{}", def.name, body.def.name,
+                                                          by_region ? fmt::format(": there is no region '{}'", def.select.region)
+                                                                    : "; boxes, spheres and planes are relative to the rest bounding box (0 to 1)")));
+    } else if (def.spring <= 0 && static_cast<Eigen::Index>(handle.vertices.size()) == loaded.mesh.rest.rows()) {
+      problems.push_back(at(def.select.place, fmt::format("handle '{}' holds every vertex of body '{}': nothing is left to move", def.name, body.def.name)));
+    }
+    HandleMotion motion{Vec3::Zero(), def.ease, def.keys};
+    Bounds box;
+    for (const std::int32_t v : handle.vertices) box.include(body.description.mesh.rest.row(v).transpose());
+    if (!box.empty()) motion.center = box.center();
+    body.description.handles.push_back(std::move(handle));
+    body.motions.push_back(std::move(motion));
+  }
+}
+
+}  // namespace
+
+Eigen::Isometry3d HandleMotion::at(double time) const {
+  Vec3 move = Vec3::Zero();
+  Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
+  if (!keys.empty()) {
+    const auto after = std::find_if(keys.begin(), keys.end(), [time](const HandleKey& key) { return key.time > time; });
+    if (after == keys.begin() || after == keys.end()) {
+      const HandleKey& key = after == keys.end() ? keys.back() : keys.front();
+      move = key.move;
+      turn = rotation_from_degrees(key.turn_deg);
+    } else {
+      const HandleKey& before = *(after - 1);
+      double s = (time - before.time) / (after->time - before.time);
+      if (ease == Ease::smooth) s = s * s * (3 - 2 * s);
+      move = before.move + s * (after->move - before.move);
+      turn = rotation_from_degrees(before.turn_deg).slerp(s, rotation_from_degrees(after->turn_deg));
+    }
+  }
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translate(center + move).rotate(turn).translate(-center);
+  return pose;
+}
+
+std::vector<Body> assemble(const SceneDef& scene) {
+  std::vector<Body> bodies;
+  std::vector<Problem> problems;
+  MeshCache meshes;
+  for (const BodyDef& def : scene.bodies) {
+    try {
+      const Loaded& loaded = meshes.get(scene, def);
+      Body body;
+      body.def = def;
+      body.notes = loaded.notes;
+      body.source = (def.mesh.empty() ? def.shape : def.mesh).string();
+      body.description.name = def.name;
+      body.description.mesh = loaded.mesh;
+      body.placement = placement(def, loaded.mesh.rest);
+      apply(body.placement, body.description.mesh.rest);
+      body.description.density = def.density.value_or(1000);
+      if (def.total_mass) body.description.density = *def.total_mass / quality(body.description.mesh).volume;
+      body.description.time_step = scene.time_step();
+      body.description.fit = def.fit;
+      body.description.precision = def.precision;
+      add_regions(def, loaded, body.description, problems);
+      add_handles(body, loaded, problems);
+      bodies.push_back(std::move(body));
+    } catch (const InputError& error) {
+      problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+    }
+  }
+  std::vector<Problem> unique;
+  for (Problem& problem : problems) {
+    const bool seen = std::any_of(unique.begin(), unique.end(), [&](const Problem& p) { return p.text() == problem.text(); });
+    if (!seen) unique.push_back(std::move(problem));
+  }
+  if (!unique.empty()) throw InputError(std::move(unique));
+  return bodies;
+}
+
+DrawnBody drawn_body(const SceneDef& scene, const Body& body) {
+  DrawnBody drawn;
+  const TetMesh& placed = body.description.mesh;
+  if (!body.def.mesh.empty()) {
+    drawn.skin = skin_of_boundary(placed, drawn.vertex_of);
+    drawn.color = body.def.color.value_or(Shape{}.color);
+    return drawn;
+  }
+  const Shape shape = load_shape(body.def.shape, scene.assets);
+  const double scale = std::cbrt(body.placement.linear().determinant());
+  drawn.skin = skin_of(shape, bounds_of(placed.rest).extent().maxCoeff() / scale / body.def.skin_cells);
+  apply(body.placement, drawn.skin.rest.points);
+  drawn.embedding = embed(drawn.skin.rest.points, placed);
+  drawn.color = body.def.color.value_or(shape.color);
+  drawn.layers = shape.paint;
+  return drawn;
+}
+
+void handle_targets(const Model& model, const Body& body, double time, Positions& targets) {
+  targets.resize(model.handled.size(), 3);
+  std::vector<Eigen::Isometry3d> pose;
+  for (const HandleMotion& motion : body.motions) pose.push_back(motion.at(time));
+  for (std::size_t i = 0; i < model.handled.size(); ++i) {
+    const auto& [vertex, handle] = model.handled[i];
+    targets.row(i) = (pose[handle] * Vec3(model.rest.row(vertex))).transpose();
+  }
+}
+
+std::vector<Problem> warnings(const SceneDef& scene, const std::vector<Body>& bodies) {
+  std::vector<Problem> list;
+  const double h = scene.time_step();
+  for (const Body& body : bodies) {
+    const TetMesh& mesh = body.description.mesh;
+    const MeshQuality q = quality(mesh);
+    const Bounds box = bounds_of(mesh.rest);
+    if (q.smallest_volume < 1e-4) {
+      list.push_back(at(body.def.place, fmt::format("body '{}' has slivers: its smallest element has {:.1e} of the mean volume, its smallest dihedral angle is {:.2g} degrees",
+                                                    body.def.name, q.smallest_volume, q.smallest_dihedral)));
+    }
+    const double mass = body.description.density * q.volume;
+    for (std::size_t i = 0; i < body.description.handles.size(); ++i) {
+      const Handle& handle = body.description.handles[i];
+      if (handle.spring <= 0) continue;
+      const double sag = mass * scene.gravity.norm() / (handle.spring * static_cast<double>(handle.vertices.size()));
+      if (sag > 0.02 * box.diagonal()) {
+        list.push_back(at(body.def.handles[i].select.place, fmt::format("handle '{}' of body '{}' is soft for its load: the body's weight alone stretches its springs by {:.2g} m ({:.0f} % of its size)",
+                                                                        handle.name, body.def.name, sag, 100 * sag / box.diagonal())));
+      }
+    }
+    // mu h^2 / (rho L^2): how many times per step a wave crosses the body, squared. Far above 1, ten iterations leave visible error.
+    const double k = stiffness(body.def.material, body.def.fit);
+    const double crossing = k * h * h / (body.description.density * box.diagonal() * box.diagonal());
+    if (crossing > 300 && body.def.solver.iterations <= 10) {
+      list.push_back(at(body.def.place, fmt::format("body '{}' is stiff for {} iterations a step: k h^2 / (rho L^2) = {:.3g}; more iterations or substeps make it sharper",
+                                                    body.def.name, body.def.solver.iterations, crossing)));
+    }
+    for (const Body& other : bodies) {
+      if (&other == &body) break;
+      const Bounds b = bounds_of(other.description.mesh.rest);
+      const bool apart = (box.lower.array() >= b.upper.array()).any() || (b.lower.array() >= box.upper.array()).any();
+      if (!apart) list.push_back(at(body.def.place, fmt::format("bodies '{}' and '{}' overlap at the start; bodies do not collide with each other", other.def.name, body.def.name)));
+    }
+  }
+  return list;
+}
+
+}  // namespace supple

@@ -1,0 +1,51 @@
+// From definitions to ready-to-run objects: meshes read or made, placed and scaled, handles chosen, models built, skins prepared.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "geometry/skin.h"
+#include "scene/scene_def.h"
+
+namespace supple {
+
+// A handle's motion: where each of its vertices is at a time.
+struct HandleMotion {
+  Vec3 center = Vec3::Zero();  // of its vertices at rest [m]
+  Ease ease = Ease::smooth;
+  std::vector<HandleKey> keys;
+
+  // The rigid motion from rest at a time.
+  Eigen::Isometry3d at(double time) const;
+};
+
+// What is drawn of a body: a skin carried by its elements, or (vertex_of) the mesh's own boundary.
+struct DrawnBody {
+  Skin skin;
+  Embedding embedding;                   // when the skin is finer than the mesh
+  std::vector<std::int32_t> vertex_of;   // when it is the boundary: mesh vertex by skin vertex
+  Vec3 color;
+  std::vector<PaintLayer> layers;        // colours only; their areas live in the skin
+};
+
+struct Body {
+  BodyDef def;
+  BodyDescription description;        // the mesh as placed, and its handles
+  std::vector<HandleMotion> motions;  // by handle
+  std::vector<std::string> notes;     // what reading the mesh had to say
+  std::string source;                 // the mesh or shape file
+  Eigen::Affine3d placement = Eigen::Affine3d::Identity();  // from the file's frame to the world: turned, scaled, moved
+};
+
+// Throws InputError: unreadable meshes, empty selections, regions that the mesh does not have. All bodies' problems at once.
+std::vector<Body> assemble(const SceneDef& scene);
+
+// Only for pictures; separate because a run without images does not pay for it.
+DrawnBody drawn_body(const SceneDef& scene, const Body& body);
+
+// Targets of all handled vertices, by model.handled.
+void handle_targets(const Model& model, const Body& body, double time, Positions& targets);
+
+// What is legal and unwise in a scene, in words with a place.
+std::vector<Problem> warnings(const SceneDef& scene, const std::vector<Body>& bodies);
+
+}  // namespace supple

@@ -1,0 +1,138 @@
+// A parsed TOML file in which every value knows its file, line and column, and in which a key that nobody asked for is an error.
+// Problems are collected, not thrown one by one: a reader asks for all that it needs, then calls finish(). The readers' questions are
+// also the documentation: each key is asked for with its unit and meaning. The only place that knows the TOML parser.
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "base/types.h"
+
+namespace toml {
+inline namespace v3 {
+class node;
+class table;
+}  // namespace v3
+}  // namespace toml
+
+namespace supple {
+
+// What a key is called, in which unit it is given and what it means; ends up in docs/scene-format.md.
+struct Key {
+  const char* name;
+  const char* unit;
+  const char* meaning;
+};
+
+struct Range {
+  double lowest = -std::numeric_limits<double>::infinity();
+  double highest = std::numeric_limits<double>::infinity();
+  bool open_below = false;  // `lowest` itself is not allowed
+
+  static Range any() { return {}; }
+  static Range positive() { return {0, std::numeric_limits<double>::infinity(), true}; }
+  static Range at_least(double lowest) { return {lowest}; }
+  static Range between(double lowest, double highest) { return {lowest, highest}; }
+  static Range above(double lowest, double highest) { return {lowest, highest, true}; }
+  bool contains(double value) const { return (open_below ? value > lowest : value >= lowest) && value <= highest; }
+  std::string text() const;
+};
+
+// One row of the documentation: a key that some reader asked for.
+struct DocumentedKey {
+  std::string path;  // with [] behind lists: body[].handles[].stiffness
+  std::string type;
+  std::string fallback;  // the default, or "required"
+  std::string allowed;
+  std::string unit;
+  std::string meaning;
+};
+
+class ConfigTable;
+
+class Config {
+ public:
+  // Throws InputError: no such file, larger than 1 MB, or not TOML. `assets`: where relative paths are looked up second.
+  static Config load(const std::filesystem::path& path, const std::filesystem::path& assets);
+  static Config parse(std::string_view text, const std::string& name, const std::filesystem::path& assets);
+  Config(Config&&) noexcept;
+  Config& operator=(Config&&) noexcept;
+  ~Config();
+
+  // Applies "path=value", as on the command line. Lists are entered by the name of their element: body.soft.material.mu. Setting one
+  // key of an exclusive group removes the others. Throws InputError.
+  void set(const std::string& assignment, const std::vector<std::set<std::string>>& exclusive);
+
+  ConfigTable root();
+  void complain(const toml::node* where, const std::string& message);
+  void complain(Problem problem);
+
+  // Throws InputError with all problems, unknown keys among them, in the order of their lines.
+  void finish();
+  // The problems so far, unknown keys among them; empties the list.
+  std::vector<Problem> take_problems();
+
+  const std::vector<DocumentedKey>& documented() const;
+  std::string as_json() const;  // the whole document after set()
+  const std::filesystem::path& assets() const;
+  const std::string& name() const;
+
+ private:
+  friend class ConfigTable;
+  struct Content;
+  explicit Config(std::unique_ptr<Content> content);
+  std::unique_ptr<Content> content_;
+};
+
+// A view of one table of a Config; valid while that lives.
+class ConfigTable {
+ public:
+  bool has(const char* key) const;
+  // Keys as they stand, for tables whose keys are names that the user chose.
+  std::vector<std::string> keys() const;
+
+  // Each returns the value, or the default when the key is absent or wrong (and then the problem is recorded). Without a default
+  // the key is required.
+  double number(const Key& key, std::optional<double> fallback, const Range& range) const;
+  int integer(const Key& key, std::optional<int> fallback, const Range& range) const;
+  bool boolean(const Key& key, bool fallback) const;
+  std::string text(const Key& key, std::optional<std::string> fallback) const;
+  std::string choice(const Key& key, std::optional<std::string> fallback, const std::vector<std::string>& allowed) const;
+  Vec3 vector(const Key& key, std::optional<Vec3> fallback, const Range& range = Range::any()) const;
+  std::vector<Vec3> vectors(const Key& key, std::size_t count) const;
+  // A path that exists, found beside the file that names it or among the assets; empty when absent or wrong.
+  std::filesystem::path file(const Key& key) const;
+
+  std::optional<ConfigTable> table(const Key& key) const;
+  std::vector<ConfigTable> tables(const Key& key) const;
+  // The value of `key` when it is a word or number instead of a table.
+  std::optional<std::string> word(const Key& key) const;
+  std::optional<double> plain_number(const Key& key) const;
+
+  // Records a problem at a key's value, or at this table.
+  void complain(const char* key, const std::string& message) const;
+  void complain(const std::string& message) const;
+  // Where a key (or this table) stands, for messages that come later.
+  Problem place(const char* key, std::string message) const;
+  Config& config() const { return *config_; }
+
+ private:
+  friend class Config;
+  ConfigTable(Config* config, const toml::table* table, std::string path);
+  const toml::node* find(const Key& key, const char* type, std::string fallback, std::string allowed) const;
+  void wrong(const Key& key, const toml::node& node, const std::string& allowed) const;
+
+  Config* config_;
+  const toml::table* table_;
+  std::string path_;  // as in DocumentedKey
+};
+
+}  // namespace supple

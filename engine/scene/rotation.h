@@ -1,0 +1,18 @@
+// Angles as scene files give them.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <numbers>
+
+#include "base/types.h"
+
+namespace supple {
+
+// Degrees about the fixed axes x, then y, then z.
+inline Eigen::Quaterniond rotation_from_degrees(const Vec3& degrees) {
+  const Vec3 angle = degrees * (std::numbers::pi / 180);
+  return Eigen::AngleAxisd(angle.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(angle.y(), Vec3::UnitY()) *
+         Eigen::AngleAxisd(angle.x(), Vec3::UnitX());
+}
+
+}  // namespace supple

@@ -1,0 +1,137 @@
+#include "scene/shape_reader.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "scene/rotation.h"
+
+namespace supple {
+namespace {
+
+constexpr int deepest_group = 8;
+
+const std::vector<std::string> primitive_names = {"sphere", "ellipsoid", "capsule", "round_cone", "box", "cylinder", "torus", "half_space", "parts"};
+
+const Range lengths = Range::above(0, 1e6);
+
+ShapeGroup read_parts(const ConfigTable& table, const Key& key, std::vector<std::string>& regions, int depth);
+
+std::optional<Primitive> read_primitive(const ConfigTable& part, std::vector<std::string>& regions, int depth) {
+  std::optional<Primitive> result;
+  if (const auto t = part.table({"sphere", "", "a ball around the origin"})) {
+    result = Sphere{t->number({"radius", "m", "radius"}, std::nullopt, lengths)};
+  }
+  if (const auto t = part.table({"ellipsoid", "", "a ball stretched along the axes"})) {
+    result = Ellipsoid{t->vector({"radii", "m", "half axes"}, std::nullopt, lengths)};
+  }
+  if (const auto t = part.table({"capsule", "", "all points within a radius of a segment"})) {
+    const std::vector<Vec3> ends = t->vectors({"ends", "m", "the segment's two ends"}, 2);
+    const double radius = t->number({"radius", "m", "radius"}, std::nullopt, lengths);
+    if (ends.size() == 2) result = Capsule{ends[0], ends[1], radius};
+  }
+  if (const auto t = part.table({"round_cone", "", "the hull of two balls"})) {
+    const std::vector<Vec3> ends = t->vectors({"ends", "m", "the balls' centres"}, 2);
+    const std::vector<double> radii = {t->number({"radius", "m", "the first ball's radius"}, std::nullopt, lengths),
+                                       t->number({"end_radius", "m", "the second ball's radius"}, std::nullopt, lengths)};
+    if (ends.size() == 2) result = RoundCone{ends[0], ends[1], radii[0], radii[1]};
+  }
+  if (const auto t = part.table({"box", "", "a box around the origin"})) {
+    const Vec3 half = 0.5 * t->vector({"extent", "m", "the three edges"}, std::nullopt, lengths);
+    result = Box{half, t->number({"round", "m", "radius of the edges"}, 0.0, Range::between(0, half.minCoeff()))};
+  }
+  if (const auto t = part.table({"cylinder", "", "a cylinder around the y axis"})) {
+    const double radius = t->number({"radius", "m", "radius"}, std::nullopt, lengths);
+    const double half = 0.5 * t->number({"height", "m", "height"}, std::nullopt, lengths);
+    result = Cylinder{radius, half, t->number({"round", "m", "radius of the edges"}, 0.0, Range::between(0, std::min(radius, half)))};
+  }
+  if (const auto t = part.table({"torus", "", "a ring around the y axis"})) {
+    const double radius = t->number({"radius", "m", "from the centre to the middle of the tube"}, std::nullopt, lengths);
+    result = Torus{radius, t->number({"tube", "m", "the tube's radius"}, std::nullopt, lengths)};
+  }
+  if (const auto t = part.table({"half_space", "", "everything behind a plane"})) {
+    const Vec3 normal = t->vector({"normal", "", "points out of the solid"}, std::nullopt);
+    if (normal.norm() < 1e-9) t->complain("normal", "normal: must not be zero");
+    result = HalfSpace{normal.normalized(), t->number({"offset", "m", "distance of the plane from the origin along the normal"}, 0.0, Range::any())};
+  }
+  if (part.has("parts")) {
+    if (depth >= deepest_group) {
+      part.complain("parts", fmt::format("parts inside parts more than {} deep", deepest_group));
+    } else {
+      result = read_parts(part, {"parts", "", "a group: parts combined among themselves first"}, regions, depth + 1);
+    }
+  }
+  return result;
+}
+
+ShapePart read_part(const ConfigTable& table, std::vector<std::string>& regions, int depth) {
+  ShapePart part;
+  part.primitive = Sphere{1};
+  std::vector<std::string> given;
+  for (const std::string& name : primitive_names) {
+    if (table.has(name.c_str())) given.push_back(name);
+  }
+  if (given.size() != 1) {
+    std::string all;
+    for (const std::string& name : primitive_names) all += (all.empty() ? "" : ", ") + name;
+    table.complain(given.empty() ? fmt::format("a part needs one of {}", all)
+                                 : fmt::format("a part is one thing, not both '{}' and '{}'", given[0], given[1]));
+  }
+  if (const auto primitive = read_primitive(table, regions, depth)) part.primitive = *primitive;
+
+  const Vec3 position = table.vector({"position", "m", "where the part's origin lies"}, Vec3(0, 0, 0));
+  const Vec3 turn = table.vector({"turn_deg", "degrees", "rotation about x, then y, then z"}, Vec3(0, 0, 0));
+  Eigen::Isometry3d to_parent = Eigen::Isometry3d::Identity();
+  to_parent.linear() = rotation_from_degrees(turn).toRotationMatrix();
+  to_parent.translation() = position;
+  part.to_local = to_parent.inverse();
+  part.scale = table.number({"scale", "", "enlarges the part about its origin"}, 1.0, Range::above(0, 1e6));
+  part.mirror_x = table.boolean({"mirror", "", "the part also stands at -x"}, false);
+  const std::string op = table.choice({"op", "", "how the part joins what came before"}, "add", {"add", "cut", "intersect"});
+  part.combine = op == "cut" ? Combine::cut : op == "intersect" ? Combine::intersect : Combine::add;
+  part.blend = table.number({"blend", "m", "width over which the surfaces melt into each other"}, 0.0, Range::at_least(0));
+  const std::string region = table.text({"region", "", "tag of the elements inside"}, "");
+  const auto known = std::find(regions.begin(), regions.end(), region);
+  part.region = static_cast<int>(known - regions.begin());
+  if (known == regions.end()) regions.push_back(region);
+  return part;
+}
+
+ShapeGroup read_parts(const ConfigTable& table, const Key& key, std::vector<std::string>& regions, int depth) {
+  ShapeGroup group;
+  for (const ConfigTable& part : table.tables(key)) group.parts.push_back(read_part(part, regions, depth));
+  return group;
+}
+
+Vec3 read_color(const ConfigTable& table, const Vec3& fallback) {
+  return table.vector({"color", "sRGB", "red, green, blue"}, fallback, Range::between(0, 1));
+}
+
+}  // namespace
+
+Shape read_shape(const ConfigTable& table) {
+  Shape shape;
+  shape.color = read_color(table, shape.color);
+  shape.root = read_parts(table, {"part", "", "combined in the order of the file"}, shape.regions, 0);
+  if (shape.root.parts.empty()) table.complain("a shape needs at least one [[part]]");
+  for (const ConfigTable& layer : table.tables({"paint", "", "layers of colour on the drawn skin; later ones lie on top"})) {
+    PaintLayer paint;
+    paint.name = layer.text({"name", "", "for people"}, "");
+    paint.color = read_color(layer, Vec3(0.2, 0.2, 0.2));
+    paint.gloss = layer.number({"gloss", "", "0 matt to 1 wet"}, 0.2, Range::between(0, 1));
+    paint.soft = layer.number({"soft", "m", "width of the layer's border"}, 0.0, Range::at_least(0));
+    std::vector<std::string> unused = {""};
+    paint.area = read_parts(layer, {"part", "", "where the colour is"}, unused, 0);
+    shape.paint.push_back(std::move(paint));
+  }
+  if (shape.paint.size() > 8) table.complain("paint", fmt::format("{} layers of paint: at most 8", shape.paint.size()));
+  return shape;
+}
+
+Shape load_shape(const std::filesystem::path& path, const std::filesystem::path& assets) {
+  Config config = Config::load(path, assets);
+  Shape shape = read_shape(config.root());
+  config.finish();
+  return shape;
+}
+
+}  // namespace supple

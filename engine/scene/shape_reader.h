@@ -1,0 +1,15 @@
+// Shapes as TOML tables: see docs/scene-format.md, "Shapes".
+#pragma once
+
+#include "geometry/shape.h"
+#include "scene/config.h"
+
+namespace supple {
+
+// Reads a shape file's root table (lists `part` and `paint`). Problems are recorded in the table's Config.
+Shape read_shape(const ConfigTable& table);
+
+// Loads and reads a shape file; throws InputError with all problems.
+Shape load_shape(const std::filesystem::path& path, const std::filesystem::path& assets);
+
+}  // namespace supple

@@ -1,0 +1,240 @@
+// Compiled once for each instruction set (SUPPLE_VARIANT names it). Free functions on plain arrays with internal linkage, so that nothing
+// compiled for a wide machine can be linked into the code for a narrow one.
+#include "sim/kernels.h"
+
+#include <xsimd/xsimd.hpp>
+
+#if defined(__FMA__) || defined(__AVX__)
+#include <immintrin.h>
+#endif
+
+namespace supple {
+namespace {
+
+using Lanes = xsimd::batch<double>;
+constexpr int lanes = static_cast<int>(Lanes::size);
+static_assert(block_width % lanes == 0);
+
+// Sums lanes in their order, so that the order of a sum is the order of the elements.
+double sum_in_order(const Lanes& v) {
+  alignas(64) double value[lanes];
+  v.store_aligned(value);
+  double sum = value[0];
+  for (int i = 1; i < lanes; ++i) sum += value[i];
+  return sum;
+}
+
+template <class M>
+Lanes density_of(const M& material, const Matrix3<Lanes>& f, Matrix3<Lanes>& stress) {
+  if constexpr (M::needs == Needs::gradient) {
+    return material.density(f, stress);
+  } else {
+    const Matrix3<Lanes> r = polar_rotation(f);
+    Symmetric3<Lanes> slope;
+    const Lanes energy = material.density(symmetric_product(r, f), slope);
+    stress = product(r, slope);
+    return energy;
+  }
+}
+
+// F = (current edges) (rest edges)^-1 and the gradient -f = V P (rest edges)^-T, as in Sifakis and Barbic 2012, "FEM simulation of 3D deformable
+// solids", section 4.
+template <bool with_force, class M>
+double elements_of(const M& material, const ElementChunk& chunk, const double* previous, double* energy, double* force, const double* local) {
+  Lanes change(0.0);
+  for (int block = 0; block < chunk.blocks; ++block) {
+    for (int lane = 0; lane < block_width; lane += lanes) {
+      const std::uint16_t* corner = chunk.corner + (block * 4) * block_width + lane;
+      alignas(64) double gathered[12][lanes];
+      for (int k = 0; k < 4; ++k) {
+        for (int i = 0; i < lanes; ++i) {
+          const double* p = local + 3 * corner[k * block_width + i];
+          gathered[3 * k][i] = p[0];
+          gathered[3 * k + 1][i] = p[1];
+          gathered[3 * k + 2][i] = p[2];
+        }
+      }
+      Lanes edge[3][3];  // [coordinate][edge]
+      for (int c = 0; c < 3; ++c) {
+        const Lanes origin = Lanes::load_aligned(gathered[c]);
+        for (int k = 0; k < 3; ++k) edge[c][k] = Lanes::load_aligned(gathered[3 * (k + 1) + c]) - origin;
+      }
+      Lanes b[9];
+      for (int i = 0; i < 9; ++i) b[i] = Lanes::load_aligned(chunk.rest_inverse + (block * 9 + i) * block_width + lane);
+      Matrix3<Lanes> f;
+      for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+          f(i, j) = madd(edge[i][0], b[j], madd(edge[i][1], b[3 + j], edge[i][2] * b[6 + j]));
+        }
+      }
+      Matrix3<Lanes> stress;
+      const Lanes volume = Lanes::load_aligned(chunk.volume + block * block_width + lane);
+      const Lanes value = volume * density_of(material, f, stress);
+      const long at = long(block) * block_width + lane;
+      change += previous != nullptr ? value - Lanes::load_aligned(previous + at) : value;
+      value.store_aligned(energy + at);
+      if constexpr (with_force) {
+        alignas(64) double out[9][lanes];  // [3 * edge + coordinate]
+        for (int i = 0; i < 3; ++i) {
+          const Lanes p0 = volume * stress(i, 0), p1 = volume * stress(i, 1), p2 = volume * stress(i, 2);
+          for (int k = 0; k < 3; ++k) madd(p0, b[3 * k], madd(p1, b[3 * k + 1], p2 * b[3 * k + 2])).store_aligned(out[3 * k + i]);
+        }
+        for (int i = 0; i < lanes; ++i) {
+          double* f0 = force + 3 * corner[i];
+          double sum[3] = {0, 0, 0};
+          for (int k = 0; k < 3; ++k) {
+            double* fk = force + 3 * corner[(k + 1) * block_width + i];
+            for (int c = 0; c < 3; ++c) {
+              const double value_c = out[3 * k + c][i];
+              fk[c] += value_c;
+              sum[c] += value_c;
+            }
+          }
+          for (int c = 0; c < 3; ++c) f0[c] -= sum[c];
+        }
+      }
+    }
+  }
+  return sum_in_order(change);
+}
+
+double elements(const ElementChunk& chunk, const double* x, const double* previous, double* energy, double* force, double* local) {
+  for (int v = 0; v < chunk.vertices; ++v) {
+    const double* p = x + 3 * long(chunk.vertex[v]);
+    local[3 * v] = p[0];
+    local[3 * v + 1] = p[1];
+    local[3 * v + 2] = p[2];
+  }
+  if (force != nullptr) {
+    for (int i = 0; i < 3 * chunk.vertices; ++i) force[i] = 0;
+  }
+  return std::visit(
+      [&](const auto& material) {
+        return force != nullptr ? elements_of<true>(material, chunk, previous, energy, force, local)
+                                : elements_of<false>(material, chunk, previous, energy, nullptr, local);
+      },
+      *chunk.material);
+}
+
+// Four right-hand sides side by side: x, y, z and a spare that keeps loads whole.
+template <class T>
+struct Four {
+  typedef T Register __attribute__((vector_size(4 * sizeof(T))));
+  Register v;
+
+  static Four load(const T* p) {
+    Four f;
+    __builtin_memcpy(&f.v, p, sizeof f.v);
+    return f;
+  }
+  void store(T* p) const { __builtin_memcpy(p, &v, sizeof v); }
+  // this -= a * x
+  void subtract_scaled(T a, const Four& x) {
+#if defined(__FMA__)
+    if constexpr (sizeof(T) == 4) {
+      v = _mm_fnmadd_ps(_mm_set1_ps(a), x.v, v);
+    } else {
+      v = _mm256_fnmadd_pd(_mm256_set1_pd(a), x.v, v);
+    }
+#else
+    v -= a * x.v;
+#endif
+  }
+};
+
+template <class T, int width>
+void forward(const PanelsView& view, int panel, T* x) {
+  const T* value = static_cast<const T*>(view.values) + view.first_value[panel];
+  T* top = x + 4 * long(view.first_column[panel]);
+  Four<T> known[width];
+  for (int j = 0; j < width; ++j) {
+    Four<T> sum = Four<T>::load(top + 4 * j);
+    for (int k = 0; k < j; ++k) sum.subtract_scaled(value[j * width + k], known[k]);
+    sum.v *= value[j * width + j];
+    sum.store(top + 4 * j);
+    known[j] = sum;
+  }
+  value += width * width;
+  const std::int32_t* rows = view.rows + view.first_row[panel];
+  const long count = view.first_row[panel + 1] - view.first_row[panel];
+  for (long i = 0; i < count; ++i, value += width) {
+    T* target = x + 4 * long(rows[i]);
+    Four<T> sum = Four<T>::load(target);
+    for (int k = 0; k < width; ++k) sum.subtract_scaled(value[k], known[k]);
+    sum.store(target);
+  }
+}
+
+template <class T, int width>
+void backward(const PanelsView& view, int panel, T* x) {
+  const T* triangle = static_cast<const T*>(view.values) + view.first_value[panel];
+  const T* value = triangle + width * width;
+  T* top = x + 4 * long(view.first_column[panel]);
+  Four<T> sum[width];
+  for (int j = 0; j < width; ++j) sum[j] = Four<T>::load(top + 4 * j);
+  const std::int32_t* rows = view.rows + view.first_row[panel];
+  const long count = view.first_row[panel + 1] - view.first_row[panel];
+  for (long i = 0; i < count; ++i, value += width) {
+    const Four<T> known = Four<T>::load(x + 4 * long(rows[i]));
+    for (int k = 0; k < width; ++k) sum[k].subtract_scaled(value[k], known);
+  }
+  for (int j = width - 1; j >= 0; --j) {
+    for (int k = j + 1; k < width; ++k) sum[j].subtract_scaled(triangle[k * width + j], sum[k]);
+    sum[j].v *= triangle[j * width + j];
+    sum[j].store(top + 4 * j);
+  }
+}
+
+template <class T>
+using PanelStep = void (*)(const PanelsView&, int, T*);
+
+template <class T>
+void solve(const PanelsView& view, T* x) {
+  static constexpr PanelStep<T> down[panel_width] = {forward<T, 1>, forward<T, 2>, forward<T, 3>, forward<T, 4>,
+                                                     forward<T, 5>, forward<T, 6>, forward<T, 7>, forward<T, 8>};
+  static constexpr PanelStep<T> up[panel_width] = {backward<T, 1>, backward<T, 2>, backward<T, 3>, backward<T, 4>,
+                                                   backward<T, 5>, backward<T, 6>, backward<T, 7>, backward<T, 8>};
+  for (int panel = 0; panel < view.panels; ++panel) down[view.width[panel] - 1](view, panel, x);
+  for (int panel = view.panels - 1; panel >= 0; --panel) up[view.width[panel] - 1](view, panel, x);
+}
+
+void dots(const double* const* a, int count, const double* b, long begin, long end, double* result) {
+  for (int i = 0; i < count; ++i) {
+    const double* v = a[i];
+    Lanes s0(0.0), s1(0.0), s2(0.0), s3(0.0);
+    long at = begin;
+    for (; at + 4 * lanes <= end; at += 4 * lanes) {
+      s0 = madd(Lanes::load_unaligned(v + at), Lanes::load_unaligned(b + at), s0);
+      s1 = madd(Lanes::load_unaligned(v + at + lanes), Lanes::load_unaligned(b + at + lanes), s1);
+      s2 = madd(Lanes::load_unaligned(v + at + 2 * lanes), Lanes::load_unaligned(b + at + 2 * lanes), s2);
+      s3 = madd(Lanes::load_unaligned(v + at + 3 * lanes), Lanes::load_unaligned(b + at + 3 * lanes), s3);
+    }
+    double sum = sum_in_order((s0 + s1) + (s2 + s3));
+    for (; at < end; ++at) sum += v[at] * b[at];
+    result[i] = sum;
+  }
+}
+
+void add_scaled(const double* const* a, const double* c, int count, double* r, long begin, long end) {
+  long at = begin;
+  for (; at + lanes <= end; at += lanes) {
+    Lanes sum = Lanes::load_unaligned(r + at);
+    for (int i = 0; i < count; ++i) sum = madd(Lanes(c[i]), Lanes::load_unaligned(a[i] + at), sum);
+    sum.store_unaligned(r + at);
+  }
+  for (; at < end; ++at) {
+    for (int i = 0; i < count; ++i) r[at] += c[i] * a[i][at];
+  }
+}
+
+}  // namespace
+
+#define SUPPLE_TEXT_OF(word) #word
+#define SUPPLE_TEXT(word) SUPPLE_TEXT_OF(word)
+#define SUPPLE_JOINED(a, b) a##b
+#define SUPPLE_TABLE(variant) SUPPLE_JOINED(kernels_, variant)
+
+extern const Kernels SUPPLE_TABLE(SUPPLE_VARIANT);
+const Kernels SUPPLE_TABLE(SUPPLE_VARIANT) = {SUPPLE_TEXT(SUPPLE_VARIANT), elements, solve<float>, solve<double>, dots, add_scaled};
+
+}  // namespace supple

@@ -1,0 +1,132 @@
+#include "sim/lbfgs.h"
+
+#include <algorithm>
+#include <array>
+
+#include "base/timing.h"
+
+namespace supple {
+namespace {
+
+constexpr int most_pairs = 128;
+constexpr long numbers_a_chunk = 3L * vertices_a_chunk;
+
+using Pointers = std::array<const double*, most_pairs>;
+using Numbers = std::array<double, most_pairs>;
+
+// result[i] = a_i . b, chunk by chunk, so that the sums do not depend on threads.
+void dot_all(const Model& model, Workspace& workspace, const Pointers& a, int count, const double* b, double* result) {
+  if (count == 0) return;
+  const int chunks = vertex_chunks(model);
+  double* partial = workspace.partial.data();
+  run_chunks(workspace, chunks, long(model.free) * count, [&](int c) {
+    kernels().dots(a.data(), count, b, c * numbers_a_chunk, std::min(3L * model.free, (c + 1) * numbers_a_chunk), partial + c * count);
+  });
+  std::fill(result, result + count, 0.0);
+  for (int c = 0; c < chunks; ++c) {
+    for (int i = 0; i < count; ++i) result[i] += partial[c * count + i];
+  }
+}
+
+void add_all(const Model& model, Workspace& workspace, const Pointers& a, const double* factors, int count, double* r) {
+  if (count == 0) return;
+  run_chunks(workspace, vertex_chunks(model), long(model.free) * count, [&](int c) {
+    kernels().add_scaled(a.data(), factors, count, r, c * numbers_a_chunk, std::min(3L * model.free, (c + 1) * numbers_a_chunk));
+  });
+}
+
+// A body that nothing holds moves as a whole by exactly 1^T M z = h^2 1^T r, because L does not see translations; single precision only nearly
+// does so, and would let the centre of mass drift.
+void restore_translation(const Model& model, const Positions& r, Positions& z) {
+  Eigen::RowVector3d wanted = Eigen::RowVector3d::Zero(), found = Eigen::RowVector3d::Zero();
+  for (int v = 0; v < model.free; ++v) {
+    wanted += r.row(v);
+    found += model.mass[v] * z.row(v);
+  }
+  const double h = model.time_step;
+  const Eigen::RowVector3d shift = (h * h * wanted - found) / model.total_mass;
+  for (int v = 0; v < model.free; ++v) z.row(v) += shift;
+}
+
+}  // namespace
+
+double search_direction(const Model& model, Workspace& workspace, const PairHistory& history) {
+  Stopwatch watch;
+  const int count = history.count;
+  Pointers s{}, t{};
+  for (int i = 0; i < count; ++i) {
+    s[i] = workspace.step_pairs[history.place(i)].data();
+    t[i] = workspace.gradient_pairs[history.place(i)].data();
+  }
+  // s_i . t_j of the i-th and j-th newest pairs
+  const auto product = [&](int i, int j) { return workspace.products[history.place(i) * history.window + history.place(j)]; };
+
+  // The recursion's inner products change as r and z do; with the products of the pairs among themselves at hand, one pass over the
+  // vectors gives them all, and one more applies the result.
+  Positions& r = workspace.direction;
+  r = workspace.gradient;
+  Numbers alpha{}, against{}, factor{};
+  dot_all(model, workspace, s, count, r.data(), against.data());
+  for (int i = 0; i < count; ++i) {
+    double left = against[i];
+    for (int j = 0; j < i; ++j) left -= alpha[j] * product(i, j);
+    alpha[i] = left / product(i, i);
+    factor[i] = -alpha[i];
+  }
+  add_all(model, workspace, t, factor.data(), count, r.data());
+  workspace.report.lbfgs_ms += watch.lap_ms();
+
+  Positions& z = workspace.trial_gradient;  // free until the next trial
+  model.factor.solve(r.data(), z.data(), workspace.solve_scratch.data());
+  if (model.free_floating) restore_translation(model, r, z);
+  r = z;
+  workspace.report.solve_ms += watch.lap_ms();
+
+  dot_all(model, workspace, t, count, r.data(), against.data());
+  for (int i = count - 1; i >= 0; --i) {
+    double beta = against[i];
+    for (int j = count - 1; j > i; --j) beta += factor[j] * product(j, i);
+    factor[i] = alpha[i] - beta / product(i, i);
+  }
+  add_all(model, workspace, s, factor.data(), count, r.data());
+  r = -r;
+  double slope = 0;
+  Pointers gradient{workspace.gradient.data()};
+  dot_all(model, workspace, gradient, 1, r.data(), &slope);
+  workspace.report.lbfgs_ms += watch.lap_ms();
+  return slope;
+}
+
+void remember_pair(const Model& model, Workspace& workspace, PairHistory& history) {
+  if (history.window == 0) return;
+  const int next = (history.newest + 1) % history.window;
+  Positions& s = workspace.step_pairs[next];
+  Positions& t = workspace.gradient_pairs[next];
+  s = workspace.trial.topRows(model.free) - workspace.x.topRows(model.free);
+  t = workspace.trial_gradient - workspace.gradient;
+
+  Pointers other{s.data(), t.data()};
+  double of_t[2];  // s.t and t.t
+  dot_all(model, workspace, other, 2, t.data(), of_t);
+  double of_s = 0;
+  dot_all(model, workspace, other, 1, s.data(), &of_s);
+  // Curvature along s that is negative or lost in round-off would spoil the matrix: Nocedal and Wright 2006, section 7.2, skip such pairs.
+  if (!(of_t[0] > 1e-10 * std::sqrt(of_s * of_t[1]))) {
+    // The place that was overwritten held the oldest pair of a full window.
+    if (history.count == history.window) --history.count;
+    return;
+  }
+  history.newest = next;
+  history.count = std::min(history.count + 1, history.window);
+
+  Pointers all{};
+  Numbers with{};
+  for (int i = 0; i < history.count; ++i) all[i] = workspace.step_pairs[history.place(i)].data();
+  dot_all(model, workspace, all, history.count, t.data(), with.data());
+  for (int i = 0; i < history.count; ++i) workspace.products[history.place(i) * history.window + next] = with[i];
+  for (int i = 0; i < history.count; ++i) all[i] = workspace.gradient_pairs[history.place(i)].data();
+  dot_all(model, workspace, all, history.count, s.data(), with.data());
+  for (int i = 0; i < history.count; ++i) workspace.products[next * history.window + history.place(i)] = with[i];
+}
+
+}  // namespace supple

@@ -1,0 +1,31 @@
+#include "sim/state.h"
+
+#include "base/hash.h"
+
+namespace supple {
+
+State rest_state(const Model& model) { return {model.rest, Positions::Zero(model.vertices, 3), 0}; }
+
+Positions in_input_order(const Model& model, const Positions& internal) {
+  Positions result(model.vertices, 3);
+  for (int i = 0; i < model.vertices; ++i) result.row(model.input_of[i]) = internal.row(i);
+  return result;
+}
+
+std::uint64_t state_hash(const Model& model, const State& state) {
+  const Positions x = in_input_order(model, state.x);
+  const Positions v = in_input_order(model, state.v);
+  return hash_bytes(v.data(), sizeof(double) * v.size(), hash_bytes(x.data(), sizeof(double) * x.size()));
+}
+
+const char* text_of(StopReason reason) {
+  switch (reason) {
+    case StopReason::iterations: return "iterations";
+    case StopReason::round_off: return "round-off";
+    case StopReason::target_error: return "target error";
+    case StopReason::line_search_failed: return "line search failed";
+  }
+  return "";
+}
+
+}  // namespace supple

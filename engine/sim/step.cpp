@@ -1,0 +1,239 @@
+#include "sim/step.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/timing.h"
+#include "sim/lbfgs.h"
+
+namespace supple {
+namespace {
+
+constexpr int most_halvings = 30;
+constexpr double round_off = std::numeric_limits<double>::epsilon();
+
+// x + alpha d for the free vertices; handled ones stay at their targets.
+void set_trial(const Model& model, Workspace& w, double alpha) {
+  w.trial.topRows(model.free) = w.x.topRows(model.free) + alpha * w.direction;
+}
+
+// A direction too short to change the positions' last bits: nothing is left to gain. Also true of the round-off of a body at rest, which
+// must not be integrated into a drift.
+bool below_resolution(const Model& model, const Workspace& w) {
+  const double extent = w.x.topRows(model.free).cwiseAbs().maxCoeff();
+  return w.direction.cwiseAbs().maxCoeff() <= 4 * round_off * std::max(extent, model.size);
+}
+
+// Values below this are lost in the sums that they are differences of.
+double noise_of(double objective) { return 32 * round_off * std::abs(objective); }
+
+// Armijo's test; where the decrease drowns in round-off, its equivalent by slopes, which does not subtract large numbers
+// (Hager and Zhang 2005, "A new conjugate gradient method with guaranteed descent and an efficient line search", equation 4.1).
+bool decreases_by_slope(const Change& change, double slope, double armijo, double noise) {
+  return change.value <= noise && change.slope <= (2 * armijo - 1) * slope;
+}
+
+// Tries alpha = 1, 1/2, ... Leaves the accepted point, its gradient and energies in the trial arrays.
+bool search_line(const Model& model, const SolverSettings& solver, Workspace& w, double slope, double objective, Change& change) {
+  double alpha = 1;
+  for (int halving = 0; halving <= most_halvings; ++halving, alpha /= 2) {
+    set_trial(model, w, alpha);
+    const double noise = noise_of(objective);
+    const bool by_slope = -alpha * slope < noise / solver.armijo;
+    // The first trial nearly always succeeds: its gradient is the next iterate's. After a rejection the energy alone decides.
+    const bool with_gradient = halving == 0 || by_slope;
+    change = evaluate(model, w, w.trial, w.trial_energy, with_gradient ? &w.trial_gradient : nullptr, &w.x, &w.energy);
+    ++w.report.line_search;
+    const bool accepted = by_slope ? decreases_by_slope(change, slope, solver.armijo, noise)
+                                   : change.value <= solver.armijo * alpha * slope;
+    if (!accepted || !std::isfinite(change.value)) continue;
+    if (!with_gradient) change = evaluate(model, w, w.trial, w.trial_energy, &w.trial_gradient, &w.x, &w.energy);
+    return true;
+  }
+  return false;
+}
+
+// What the remaining decreases would add up to if they went on as they did: equation 12 seen from inside. Decreases of quasi-Newton
+// iterations shrink unevenly, so the ratio is averaged over the last three.
+double estimate_error(const StepReport& report) {
+  const std::vector<double>& g = report.objective;
+  const std::size_t n = g.size();
+  if (n < 3 || report.decrease <= 0) return n < 2 ? 0 : 1;
+  const double last = g[n - 2] - g[n - 1];
+  const std::size_t back = std::min<std::size_t>(3, n - 2);
+  const double earlier = g[n - 2 - back] - g[n - 1 - back];
+  if (last <= 0 || earlier <= 0) return 0;
+  const double ratio = std::min(0.95, std::pow(last / earlier, 1.0 / static_cast<double>(back)));
+  const double left = last * ratio / (1 - ratio);
+  return left / (report.decrease + left);
+}
+
+int first_bad_vertex(const Model& model, const Positions& x) {
+  int worst = 0;
+  double furthest = -1;
+  for (int v = 0; v < model.vertices; ++v) {
+    if (!x.row(v).allFinite()) return model.input_of[v];
+    const double away = (x.row(v) - model.rest.row(v)).norm();
+    if (away > furthest) {
+      furthest = away;
+      worst = v;
+    }
+  }
+  return model.input_of[worst];
+}
+
+// The objective of a body that flies apart: many times what it takes to move all of it by its own size in one step.
+bool absurd(const Model& model, double objective, double start) {
+  const double speed = model.size / model.time_step;
+  return !std::isfinite(objective) || objective > 1e6 * (0.5 * model.total_mass * speed * speed + std::abs(start));
+}
+
+void fail(const Model& model, Workspace& w, const char* phase, const Positions& x, double objective) {
+  w.report.failed = true;
+  w.report.failure.phase = phase;
+  w.report.failure.vertex = first_bad_vertex(model, x);
+  w.report.failure.what = std::isfinite(objective) ? "the objective has grown beyond all bounds" : "a number is no longer finite";
+}
+
+struct Descent {
+  bool done = false;
+  double slope = 0;
+};
+
+// A direction that leads downhill: L-BFGS, or the plain quasi-Newton one when that fails.
+Descent next_direction(const Model& model, Workspace& w, PairHistory& history) {
+  for (;;) {
+    const double slope = search_direction(model, w, history);
+    if (below_resolution(model, w)) return {true, slope};
+    if (slope < 0) return {false, slope};
+    if (history.count == 0) return {true, slope};
+    history.clear();
+  }
+}
+
+}  // namespace
+
+void begin_step(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
+  const double h = model.time_step;
+  w.y = (state.x + h * state.v).rowwise() + (h * h * inputs.gravity).transpose();
+  w.x = w.y;
+  for (std::size_t i = 0; i < model.handled.size(); ++i) {
+    const std::int32_t v = model.handled[i].vertex;
+    if (v < model.free) {
+      w.target.row(v) = inputs.targets.row(i);
+    } else {
+      w.x.row(v) = inputs.targets.row(i);
+    }
+  }
+  if (model.vertices > model.free) w.trial.bottomRows(model.vertices - model.free) = w.x.bottomRows(model.vertices - model.free);
+}
+
+void minimize(const Model& model, const SolverSettings& solver, Workspace& w, double enough) {
+  StepReport& report = w.report;
+  Stopwatch watch;
+  PairHistory history{solver.history, 0, -1};
+  Change start = evaluate(model, w, w.x, w.energy, &w.gradient, nullptr, nullptr);
+  report.evaluate_ms += watch.lap_ms();
+  double objective = start.value;
+  report.objective.push_back(objective);
+  if (!std::isfinite(objective)) return fail(model, w, "evaluate", w.x, objective);
+
+  report.stop_reason = StopReason::iterations;
+  for (report.iterations = 0; report.iterations < solver.iterations;) {
+    watch.lap_ms();
+    const Descent descent = next_direction(model, w, history);
+    report.slope = descent.slope;
+    if (!std::isfinite(descent.slope)) return fail(model, w, "solve", w.x, descent.slope);
+    if (descent.done || -descent.slope <= enough) {
+      report.stop_reason = StopReason::round_off;
+      break;
+    }
+    watch.lap_ms();
+    Change change{};
+    if (solver.line_search == LineSearch::none) {
+      set_trial(model, w, 1);
+      change = evaluate(model, w, w.trial, w.trial_energy, &w.trial_gradient, &w.x, &w.energy);
+      ++report.line_search;
+    } else {
+      bool found = search_line(model, solver, w, descent.slope, objective, change);
+      report.evaluate_ms += watch.lap_ms();
+      if (!found && history.count > 0) {
+        history.clear();
+        const Descent plain = next_direction(model, w, history);
+        report.slope = plain.slope;
+        watch.lap_ms();
+        found = !plain.done && search_line(model, solver, w, plain.slope, objective, change);
+      }
+      if (!found) {
+        report.stop_reason = StopReason::line_search_failed;
+        break;
+      }
+    }
+    report.evaluate_ms += watch.lap_ms();
+    objective += change.value;
+    ++report.iterations;
+    report.objective.push_back(objective);
+    report.decrease -= change.value;
+    if (absurd(model, objective, start.value)) return fail(model, w, "line search", w.trial, objective);
+    remember_pair(model, w, history);
+    w.x.swap(w.trial);
+    w.gradient.swap(w.trial_gradient);
+    w.energy.swap(w.trial_energy);
+    report.lbfgs_ms += watch.lap_ms();
+    if (solver.target_error > 0 && estimate_error(report) < solver.target_error) {
+      report.stop_reason = StopReason::target_error;
+      break;
+    }
+  }
+  report.error_estimate = estimate_error(report);
+}
+
+namespace {
+
+void clear(StepReport& report) {
+  report.objective.clear();
+  std::vector<double> kept = std::move(report.objective);
+  report = StepReport{};
+  report.objective = std::move(kept);
+}
+
+// Backward Euler's answer must not be worse than staying where the body is (its handles moved). Costs an evaluation only when the elastic
+// energy, which is never negative here, cannot settle it.
+void fall_back_to_staying(const Model& model, const State& state, Workspace& w) {
+  const double inverse_h2 = 1 / (model.time_step * model.time_step);
+  double inertia = 0;
+  for (int v = 0; v < model.free; ++v) inertia += 0.5 * inverse_h2 * model.mass[v] * (state.x.row(v) - w.y.row(v)).squaredNorm();
+  const double reached = w.report.objective.back();
+  if (reached <= inertia) return;
+  w.trial.topRows(model.free) = state.x.topRows(model.free);
+  const Change staying = evaluate(model, w, w.trial, w.trial_energy, nullptr, nullptr, nullptr);
+  if (!(staying.value < reached - noise_of(reached))) return;
+  w.x.swap(w.trial);
+  w.report.decrease += reached - staying.value;
+  w.report.objective.push_back(staying.value);
+}
+
+}  // namespace
+
+const StepReport& step(const Model& model, const FrameInputs& inputs, State& state, Workspace& w) {
+  Stopwatch whole;
+  w.prepare(model, inputs.solver);
+  StepReport& report = w.report;
+  clear(report);
+  begin_step(model, inputs, state, w);
+  minimize(model, inputs.solver, w);
+  if (!report.failed && inputs.solver.line_search != LineSearch::none) fall_back_to_staying(model, state, w);
+  if (!report.failed && !w.x.allFinite()) fail(model, w, "step", w.x, std::numeric_limits<double>::quiet_NaN());
+  if (!report.failed) {
+    state.v = (w.x - state.x) / model.time_step;
+    state.x = w.x;
+    state.time += model.time_step;
+  }
+  report.step_ms = whole.elapsed_ms();
+  report.other_ms = report.step_ms - report.evaluate_ms - report.solve_ms - report.lbfgs_ms;
+  return report;
+}
+
+}  // namespace supple

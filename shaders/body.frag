@@ -1,0 +1,54 @@
+#version 330 core
+// Clay with painted layers. A layer's border is the zero of its interpolated distance, so it is sharp however coarse the surface is.
+#include "film.glsl"
+#include "lighting.glsl"
+in vec3 world;
+in vec3 world_normal;
+in float open_sky;
+in vec4 layer_low;
+in vec4 layer_high;
+uniform vec4 colors[9];  // linear colour and gloss; the first is the uncovered surface
+uniform vec4 soft[2];
+uniform int layers;
+out vec4 pixel;
+
+vec4 surface() {
+  vec4 material = colors[0];
+  for (int i = 0; i < layers; ++i) {
+    float d = i < 4 ? layer_low[i] : layer_high[i - 4];
+    float width = max(soft[i / 4][i % 4], 1.2 * fwidth(d));
+    material = mix(material, colors[i + 1], 1.0 - smoothstep(-0.5 * width, 0.5 * width, d));
+  }
+  return material;
+}
+
+void main() {
+  vec3 n = normalize(world_normal);
+  vec3 v = normalize(eye - world);
+  if (dot(n, v) < 0.0 && !gl_FrontFacing) n = -n;
+  vec4 material = surface();
+  vec3 albedo = material.rgb;
+  float gloss = material.a;
+
+  // A little wrap makes clay of plastic: light bleeds past the terminator, reddened by the material's own colour.
+  float facing = dot(n, key_direction);
+  float lit = shadow(world, n);
+  float wrapped = max((facing + 0.25) / 1.25, 0.0);
+  vec3 key = key_color * mix(vec3(max(facing, 0.0)), vec3(wrapped) * (0.55 + 0.45 * albedo), 0.5) * mix(lit, 1.0, 0.06);
+  vec3 fill = fill_color * max(dot(n, normalize(vec3(0.95, 0.25, 0.45))) * 0.7 + 0.3, 0.0);
+  float up = 0.5 + 0.5 * n.y;
+  vec3 sky = mix(0.55 * ground_color, sky_color, up);
+  float open = open_sky * open_sky;
+  vec3 light = albedo * (key * mix(1.0, open_sky, 0.35) + (fill * mix(open, 1.0, 0.3) + sky * open));
+
+  float edge = pow(1.0 - max(dot(n, v), 0.0), 3.0);
+  light += rim_color * edge * max(dot(n, normalize(vec3(0.35, 0.55, -0.8))) + 0.15, 0.0) * (0.25 + 0.75 * albedo) * open_sky;
+
+  vec3 h = normalize(key_direction + v);
+  float power = mix(12.0, 420.0, gloss * gloss);
+  float fresnel = 0.04 + 0.96 * pow(1.0 - max(dot(v, h), 0.0), 5.0);
+  light += key_color * fresnel * lit * (power + 8.0) / 25.0 * pow(max(dot(n, h), 0.0), power) * gloss;
+  // The sky's reflection, for what is wet.
+  light += sky_color * gloss * gloss * (0.04 + 0.5 * pow(1.0 - max(dot(n, v), 0.0), 5.0)) * open * smoothstep(-0.2, 0.6, reflect(-v, n).y);
+  pixel = film(light);
+}
