@@ -5,7 +5,8 @@
 namespace supple {
 
 void Workspace::prepare(const Model& model, const SolverSettings& solver) {
-  if (report.objective.capacity() < std::size_t(solver.iterations) + 2) report.objective.reserve(solver.iterations + 2);
+  const std::size_t most_values = 2 * (std::size_t(solver.iterations) + 1);  // a step may descend twice
+  if (report.objective.capacity() < most_values) report.objective.reserve(most_values);
   if (prepared_for_ == &model && window_ >= solver.history) return;
   prepared_for_ = &model;
   window_ = std::max(window_, solver.history);

@@ -199,20 +199,35 @@ void clear(StepReport& report) {
   report.objective = std::move(kept);
 }
 
-// Backward Euler's answer must not be worse than staying where the body is (its handles moved). Costs an evaluation only when the elastic
-// energy, which is never negative here, cannot settle it.
-void fall_back_to_staying(const Model& model, const State& state, Workspace& w) {
-  const double inverse_h2 = 1 / (model.time_step * model.time_step);
-  double inertia = 0;
-  for (int v = 0; v < model.free; ++v) inertia += 0.5 * inverse_h2 * model.mass[v] * (state.x.row(v) - w.y.row(v)).squaredNorm();
-  const double reached = w.report.objective.back();
-  if (reached <= inertia) return;
+// Where the body was, its handles moved; a body that nothing holds is also carried along with its centre of mass, which costs no elastic
+// energy and keeps its momentum.
+void set_staying(const Model& model, const State& state, Workspace& w) {
   w.trial.topRows(model.free) = state.x.topRows(model.free);
+  if (!model.free_floating) return;
+  Eigen::RowVector3d moved = Eigen::RowVector3d::Zero();
+  for (int v = 0; v < model.free; ++v) moved += model.mass[v] * (w.y.row(v) - state.x.row(v));
+  moved /= model.total_mass;
+  for (int v = 0; v < model.free; ++v) w.trial.row(v) += moved;
+}
+
+// The answer must not be worse than staying: g(x) <= g(q) bounds the energy of backward Euler (docs/method.md). When the iterations from y have
+// not come that far (elements turned inside out by a violent step), descend from there instead. Costs an evaluation only when the inertia
+// of staying, with an elastic energy that is never negative, cannot settle it.
+void descend_from_staying(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
+  StepReport& report = w.report;
+  const double reached = report.objective.back();
+  const double inverse_h2 = 1 / (model.time_step * model.time_step);
+  set_staying(model, state, w);
+  double inertia = 0;
+  for (int v = 0; v < model.free; ++v) inertia += 0.5 * inverse_h2 * model.mass[v] * (w.trial.row(v) - w.y.row(v)).squaredNorm();
+  if (reached <= inertia) return;
   const Change staying = evaluate(model, w, w.trial, w.trial_energy, nullptr, nullptr, nullptr);
   if (!(staying.value < reached - noise_of(reached))) return;
   w.x.swap(w.trial);
-  w.report.decrease += reached - staying.value;
-  w.report.objective.push_back(staying.value);
+  report.decrease += reached - staying.value;
+  const int iterations = report.iterations;
+  minimize(model, inputs.solver, w);
+  report.iterations += iterations;
 }
 
 }  // namespace
@@ -224,7 +239,7 @@ const StepReport& step(const Model& model, const FrameInputs& inputs, State& sta
   clear(report);
   begin_step(model, inputs, state, w);
   minimize(model, inputs.solver, w);
-  if (!report.failed && inputs.solver.line_search != LineSearch::none) fall_back_to_staying(model, state, w);
+  if (!report.failed && inputs.solver.line_search != LineSearch::none) descend_from_staying(model, inputs, state, w);
   if (!report.failed && !w.x.allFinite()) fail(model, w, "step", w.x, std::numeric_limits<double>::quiet_NaN());
   if (!report.failed) {
     state.v = (w.x - state.x) / model.time_step;

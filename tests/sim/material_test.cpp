@@ -1,0 +1,268 @@
+// Energies against their derivatives, at every kind of deformation; the SIMD kernel against the plain formulas.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <cmath>
+
+#include "sim/small_matrix.h"
+#include "support/bodies.h"
+
+namespace supple {
+namespace {
+
+using test::all_materials;
+
+Mat3 random_rotation(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  Eigen::Quaterniond q(normal(random), normal(random), normal(random), normal(random));
+  return q.normalized().toRotationMatrix();
+}
+
+struct Kind {
+  const char* name;
+  Vec3 (*stretches)(std::mt19937&);
+};
+
+double uniform(std::mt19937& random, double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
+
+const Kind kinds[] = {
+    {"near rest", [](std::mt19937& r) { return Vec3(uniform(r, 0.99, 1.01), uniform(r, 0.99, 1.01), uniform(r, 0.99, 1.01)); }},
+    {"random", [](std::mt19937& r) { return Vec3(uniform(r, 0.3, 2), uniform(r, 0.3, 2), uniform(r, 0.3, 2)); }},
+    {"inverted", [](std::mt19937& r) { return Vec3(uniform(r, 0.8, 2), uniform(r, 0.8, 1.5), uniform(r, -0.6, -0.1)); }},
+    {"two equal stretches", [](std::mt19937& r) { const double s = uniform(r, 0.4, 1.6); return Vec3(s, s, uniform(r, 0.4, 1.6)); }},
+    {"three equal stretches", [](std::mt19937& r) { return Vec3(Vec3::Constant(uniform(r, 0.4, 1.6))); }},
+    {"nearly flat", [](std::mt19937& r) { return Vec3(uniform(r, 0.8, 1.5), uniform(r, 0.8, 1.5), uniform(r, -1e-3, 1e-3)); }},
+    {"huge", [](std::mt19937& r) { return Vec3(uniform(r, 20, 50), uniform(r, 20, 50), uniform(r, 20, 50)); }},
+};
+
+Mat3 deformation(const Kind& kind, std::mt19937& random) {
+  return random_rotation(random) * kind.stretches(random).asDiagonal() * random_rotation(random);
+}
+
+Matrix3<double> plain(const Mat3& f) {
+  Matrix3<double> m;
+  for (int i = 0; i < 9; ++i) m.m[i] = f(i / 3, i % 3);
+  return m;
+}
+
+// Energy density and first Piola-Kirchhoff stress by the plain path.
+double density(const Material& material, const Mat3& f, Mat3* stress) {
+  return std::visit(
+      [&](const auto& m) {
+        Matrix3<double> p;
+        double energy;
+        if constexpr (std::decay_t<decltype(m)>::needs == Needs::gradient) {
+          energy = m.density(plain(f), p);
+        } else {
+          const Matrix3<double> r = polar_rotation(plain(f));
+          Symmetric3<double> slope;
+          energy = m.density(symmetric_product(r, plain(f)), slope);
+          p = product(r, slope);
+        }
+        if (stress != nullptr) {
+          for (int i = 0; i < 9; ++i) (*stress)(i / 3, i % 3) = p.m[i];
+        }
+        return energy;
+      },
+      material);
+}
+
+TEST(Materials, StressIsTheDerivativeOfTheEnergyAtEveryKindOfDeformation) {
+  std::mt19937 random(7);
+  for (const Material& material : all_materials()) {
+    for (const Kind& kind : kinds) {
+      for (int sample = 0; sample < 40; ++sample) {
+        const Mat3 f = deformation(kind, random);
+        Mat3 direction = Mat3::Random();
+        direction /= direction.norm();
+        Mat3 stress;
+        density(material, f, &stress);
+        const double slope = stress.cwiseProduct(direction).sum();
+        // The best of several steps: a large one sees curvature, a small one round-off.
+        double best = 1e300;
+        for (const double h : {1e-3, 1e-4, 1e-5, 1e-6}) {
+          const double step = h * std::max(1.0, 0.1 * f.norm());
+          const double difference = (density(material, f + step * direction, nullptr) - density(material, f - step * direction, nullptr)) / (2 * step);
+          best = std::min(best, std::abs(difference - slope));
+        }
+        EXPECT_LT(best, 1e-6 * std::max(stress.norm(), 1e-2 * 1e4)) << name_of(material) << ", " << kind.name << "\nF =\n" << f;
+      }
+    }
+  }
+}
+
+TEST(Materials, EnergyIsTheValanisLandelSumOfItsStretches) {
+  // Equation 9 with the table's a, b, c, at random stretches.
+  std::mt19937 random(8);
+  for (int sample = 0; sample < 100; ++sample) {
+    const Vec3 s(uniform(random, 0.4, 2), uniform(random, 0.4, 2), uniform(random, 0.4, 2));
+    const Mat3 f = random_rotation(random) * s.asDiagonal() * random_rotation(random);
+    const double mu = 3, lambda = 5, j = s.prod();
+    const auto sum = [&](auto a) { return a(s[0]) + a(s[1]) + a(s[2]); };
+    const double pairs = s[0] * s[1] + s[1] * s[2] + s[2] * s[0];
+    EXPECT_NEAR(density(AsRigidAsPossible{mu}, f, nullptr), sum([&](double x) { return mu * (x - 1) * (x - 1); }), 1e-11);
+    EXPECT_NEAR(density(Polynomial{mu}, f, nullptr), sum([&](double x) { return mu * std::pow(x - 1, 4); }), 1e-11);
+    EXPECT_NEAR(density(Corotated{mu, lambda}, f, nullptr),
+                sum([&](double x) { return mu * (x - 1) * (x - 1) + lambda / 2 * (x * x - 6 * x + 3); }) + lambda * pairs, 1e-11);
+    EXPECT_NEAR(density(NeoHookean{mu, lambda}, f, nullptr),
+                sum([&](double x) { return mu / 2 * (x * x - 1); }) - mu * std::log(j) + lambda / 2 * std::log(j) * std::log(j), 1e-11);
+  }
+}
+
+TEST(Materials, EnergyAndStressVanishAtRestAndUnderRotation) {
+  std::mt19937 random(9);
+  for (const Material& material : all_materials()) {
+    for (int sample = 0; sample < 20; ++sample) {
+      Mat3 stress;
+      const double energy = density(material, random_rotation(random), &stress);
+      EXPECT_NEAR(energy, 0, 1e-13 * 1e4) << name_of(material);  // moduli are of the size of 1e4
+      EXPECT_LT(stress.norm(), 1e-13 * 1e4) << name_of(material);
+    }
+  }
+}
+
+TEST(Materials, NeoHookeanContinuesSmoothlyBelowItsSmallestVolumeRatio) {
+  const NeoHookean material{2, 3};
+  const double j = NeoHookean::smallest_volume_ratio, step = 1e-7;
+  const auto slope = [&](double ratio) {  // dPsi/dJ along F = diag(1, 1, J), less the part mu J of mu/2 tr F^T F
+    Mat3 f = Mat3::Identity(), stress;
+    f(2, 2) = ratio;
+    density(material, f, &stress);
+    return stress(2, 2) - 2 * ratio;
+  };
+  EXPECT_NEAR(slope(j - step), slope(j + step), 1e-3);
+  EXPECT_NEAR((slope(j - step) - slope(j - 2 * step)) / step, (slope(j + 2 * step) - slope(j + step)) / step, 0.05);
+  Mat3 stress;
+  EXPECT_TRUE(std::isfinite(density(material, Mat3::Zero(), &stress)));
+  EXPECT_TRUE(stress.allFinite());
+}
+
+TEST(Materials, ForceIsFiniteWhereTheRotationIsNotUnique) {
+  // s2 + s3 = 0: the energy has a kink there.
+  for (const Material& material : all_materials()) {
+    for (const Vec3& s : {Vec3(1, 0.5, -0.5), Vec3(1, 0, 0), Vec3(0, 0, 0), Vec3(-1, -1, -1)}) {
+      Mat3 stress;
+      EXPECT_TRUE(std::isfinite(density(material, s.asDiagonal(), &stress)));
+      EXPECT_TRUE(stress.allFinite()) << name_of(material) << " at " << s.transpose();
+    }
+  }
+}
+
+TEST(Polar, SimdRotationEqualsJacobiForEveryKindOfDeformation) {
+  using V = xsimd::batch<double>;
+  std::mt19937 random(10);
+  double worst = 0, worst_orthogonality = 0;
+  for (const Kind& kind : kinds) {
+    for (int sample = 0; sample < 4000; ++sample) {
+      Mat3 f[V::size];
+      alignas(64) double lanes[9][V::size];
+      for (std::size_t lane = 0; lane < V::size; ++lane) {
+        f[lane] = deformation(kind, random);
+        for (int i = 0; i < 9; ++i) lanes[i][lane] = f[lane](i / 3, i % 3);
+      }
+      Matrix3<V> wide;
+      for (int i = 0; i < 9; ++i) wide.m[i] = V::load_aligned(lanes[i]);
+      const Matrix3<V> r = polar_rotation(wide);
+      for (int i = 0; i < 9; ++i) r.m[i].store_aligned(lanes[i]);
+      for (std::size_t lane = 0; lane < V::size; ++lane) {
+        Mat3 found, expected;
+        Matrix3<double> jacobi = polar_rotation(plain(f[lane]));
+        for (int i = 0; i < 9; ++i) {
+          found(i / 3, i % 3) = lanes[i][lane];
+          expected(i / 3, i % 3) = jacobi.m[i];
+        }
+        worst = std::max(worst, (found - expected).norm());
+        worst_orthogonality = std::max(worst_orthogonality, (found.transpose() * found - Mat3::Identity()).norm());
+        EXPECT_GT(found.determinant(), 0);
+      }
+    }
+  }
+  EXPECT_LT(worst, 1e-11);
+  EXPECT_LT(worst_orthogonality, 1e-11);
+}
+
+TEST(Polar, JacobiRotationMaximisesTheTraceAsTheSvdDoes) {
+  std::mt19937 random(11);
+  for (const Kind& kind : kinds) {
+    for (int sample = 0; sample < 200; ++sample) {
+      const Mat3 f = deformation(kind, random);
+      Eigen::JacobiSVD<Mat3> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
+      Vec3 sign = Vec3::Ones();
+      sign[2] = svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1;
+      const Mat3 expected = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+      const Matrix3<double> r = polar_rotation(plain(f));
+      Mat3 found;
+      for (int i = 0; i < 9; ++i) found(i / 3, i % 3) = r.m[i];
+      EXPECT_LT((found - expected).norm(), 1e-11) << kind.name;
+    }
+  }
+}
+
+TEST(Stiffness, FollowsEquationElevenInClosedForm) {
+  // f = 4 mu (s-1)^3: 12 integral 4 mu (s-1)^4 = 0.6 mu; linear stresses give their own slope.
+  EXPECT_NEAR(stiffness(Polynomial{7}), 0.6 * 7, 1e-12);
+  EXPECT_NEAR(stiffness(AsRigidAsPossible{7}), 2 * 7, 1e-12);
+  EXPECT_NEAR(stiffness(Corotated{7, 11}), 2 * 7 + 11, 1e-12);
+  // f = mu (s - 1/s) + lambda log(s)/s; integrals of (s-1)(s-1/s) and (s-1) log(s)/s over [1/2, 3/2].
+  const auto over = [](auto primitive) { return primitive(1.5) - primitive(0.5); };
+  const double by_mu = 12 * over([](double s) { return s * s * s / 3 - s * s / 2 - s + std::log(s); });
+  const double by_lambda = 12 * over([](double s) { return s * std::log(s) - s - std::log(s) * std::log(s) / 2; });
+  EXPECT_NEAR(stiffness(NeoHookean{3, 0}), 3 * by_mu, 1e-12);
+  EXPECT_NEAR(stiffness(NeoHookean{3, 5}), 3 * by_mu + 5 * by_lambda, 1e-12);
+  // An interval that reaches into the extension is integrated in two smooth parts.
+  double sum = 0;
+  const int cells = 200000;
+  for (int i = 0; i < cells; ++i) {
+    const double s = 0.02 + (1.5 - 0.02) * (i + 0.5) / cells;
+    sum += (s - 1) * NeoHookean{3, 5}.axial_stress(s) * (1.5 - 0.02) / cells;
+  }
+  EXPECT_NEAR(stiffness(NeoHookean{3, 5}, {0.02, 1.5}) / (sum / ((0.125 + std::pow(0.98, 3)) / 3)), 1, 1e-7);
+}
+
+TEST(Kernels, EveryVariantAgreesWithThePlainFormulas) {
+  for (const Material& material : all_materials()) {
+    const Model model = build_model(test::bar(material, test::Held::nothing, Precision::double_precision, 2));
+    const Positions x = test::shaken(model.rest, 0.04, 3);  // inverts some elements
+    // The plain path: one element after the other.
+    double expected = 0;
+    Positions force = Positions::Zero(model.vertices, 3);
+    const TetMesh mesh = test::bar(material, test::Held::nothing, Precision::double_precision, 2).mesh;
+    const Positions in_order = in_input_order(model, x);
+    for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
+      Mat3 rest, now, stress;
+      for (int k = 0; k < 3; ++k) {
+        rest.col(k) = (mesh.rest.row(mesh.tets(e, k + 1)) - mesh.rest.row(mesh.tets(e, 0))).transpose();
+        now.col(k) = (in_order.row(mesh.tets(e, k + 1)) - in_order.row(mesh.tets(e, 0))).transpose();
+      }
+      const Mat3 inverse = rest.inverse();
+      const double volume = rest.determinant() / 6;
+      expected += volume * density(material, now * inverse, &stress);
+      const Mat3 gradient = volume * stress * inverse.transpose();
+      for (int k = 0; k < 3; ++k) {
+        force.row(mesh.tets(e, k + 1)) += gradient.col(k).transpose();
+        force.row(mesh.tets(e, 0)) -= gradient.col(k).transpose();
+      }
+    }
+    int count = 0;
+    const Kernels* const* variants = kernel_variants(count);
+    for (int v = 0; v < count; ++v) {
+      double energy = 0;
+      Positions found = Positions::Zero(model.vertices, 3);
+      for (std::size_t c = 0; c < model.chunks.size(); ++c) {
+        const ElementChunk chunk = model.chunk(static_cast<int>(c));
+        AlignedVector<double> values(chunk.blocks * block_width), local(chunk.vertices * 3), list_force(chunk.vertices * 3);
+        energy += variants[v]->elements(chunk, x.data(), nullptr, values.data(), list_force.data(), local.data());
+        for (int i = 0; i < chunk.vertices; ++i) {
+          for (int k = 0; k < 3; ++k) found(model.input_of[chunk.vertex[i]], k) += list_force[3 * i + k];
+        }
+      }
+      EXPECT_NEAR(energy / expected, 1, 1e-12) << name_of(material) << " by " << variants[v]->name;
+      EXPECT_LT((found - force).norm(), 1e-11 * force.norm()) << name_of(material) << " by " << variants[v]->name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace supple

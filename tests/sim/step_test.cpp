@@ -1,0 +1,362 @@
+// The time step as a whole: derivatives of the objective, equivalences, conservation, determinism.
+#include "sim/step.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+#include "baselines/reference.h"
+#include "geometry/tetrahedralize.h"
+#include "support/allocation_counter.h"
+#include "support/bodies.h"
+
+namespace supple {
+namespace {
+
+using test::bar;
+using test::Held;
+using test::still_inputs;
+
+TEST(Objective, GradientIsTheDerivativeOfTheValueForEveryMaterialAndHandle) {
+  for (const Material& material : test::all_materials()) {
+    for (const Held held : {Held::nothing, Held::hard_end, Held::spring_end}) {
+      const Model model = build_model(bar(material, held));
+      Workspace w;
+      FrameInputs inputs = still_inputs(model);
+      w.prepare(model, inputs.solver);
+      State state = rest_state(model);
+      state.v = test::shaken(Positions::Zero(model.vertices, 3), 1, 5);
+      inputs.targets.array() += 0.01;
+      begin_step(model, inputs, state, w);
+      w.x.topRows(model.free) = test::shaken(model.rest, 0.02, 4).topRows(model.free);
+      w.direction = test::shaken(Positions::Zero(model.free, 3), 1, 6);
+      const Change at = evaluate(model, w, w.x, w.energy, &w.gradient, nullptr, nullptr);
+      double best = 1e300;
+      for (const double h : {1e-4, 1e-5, 1e-6, 1e-7}) {
+        Positions ahead = w.x, behind = w.x;
+        ahead.topRows(model.free) += h * w.direction;
+        behind.topRows(model.free) -= h * w.direction;
+        const double difference = (evaluate(model, w, ahead, w.trial_energy, nullptr, nullptr, nullptr).value -
+                                   evaluate(model, w, behind, w.trial_energy, nullptr, nullptr, nullptr).value) / (2 * h);
+        best = std::min(best, std::abs(difference - at.slope));
+      }
+      EXPECT_LT(best, 1e-6 * std::abs(at.slope)) << name_of(material);
+      // A difference with a reference is the difference of the values.
+      w.trial = w.x;
+      w.trial.topRows(model.free) += 1e-3 * w.direction;
+      const double change = evaluate(model, w, w.trial, w.trial_energy, nullptr, &w.x, &w.energy).value;
+      const double value = evaluate(model, w, w.trial, w.trial_energy, nullptr, nullptr, nullptr).value;
+      EXPECT_NEAR(change, value - at.value, 1e-11 * std::abs(value)) << name_of(material);
+    }
+  }
+}
+
+// One step of Projective Dynamics as Bouaziz et al. 2014 write it, for as-rigid-as-possible elements: rotations by SVD, then a dense solve.
+Positions local_global(const BodyDescription& body, const Positions& y, Positions x, int iterations) {
+  const int n = static_cast<int>(x.rows());
+  const double h = body.time_step, mu = std::get<AsRigidAsPossible>(body.materials[0]).mu;
+  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n, n);
+  Eigen::VectorXd mass = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index e = 0; e < body.mesh.tets.rows(); ++e) {
+    for (int k = 0; k < 4; ++k) mass[body.mesh.tets(e, k)] += body.density * tet_volume(body.mesh, e) / 4;
+  }
+  system.diagonal() = mass / (h * h);
+  struct Element {
+    Eigen::Matrix<double, 4, 3> gradient;
+    double weight;
+  };
+  std::vector<Element> elements;
+  for (Eigen::Index e = 0; e < body.mesh.tets.rows(); ++e) {
+    Mat3 edges;
+    for (int k = 0; k < 3; ++k) edges.col(k) = (body.mesh.rest.row(body.mesh.tets(e, k + 1)) - body.mesh.rest.row(body.mesh.tets(e, 0))).transpose();
+    Element element;
+    element.gradient.bottomRows<3>() = edges.inverse();
+    element.gradient.row(0) = -element.gradient.bottomRows<3>().colwise().sum();
+    element.weight = 2 * mu * tet_volume(body.mesh, e);
+    for (int a = 0; a < 4; ++a) {
+      for (int b = 0; b < 4; ++b) {
+        system(body.mesh.tets(e, a), body.mesh.tets(e, b)) += element.weight * element.gradient.row(a).dot(element.gradient.row(b));
+      }
+    }
+    elements.push_back(element);
+  }
+  std::vector<char> held(n, 0);
+  for (const Handle& handle : body.handles) {
+    for (const std::int32_t v : handle.vertices) held[v] = 1;
+  }
+  std::vector<int> free;
+  for (int v = 0; v < n; ++v) {
+    if (!held[v]) free.push_back(v);
+  }
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    Eigen::MatrixXd right = mass.asDiagonal() * Eigen::MatrixXd(y) / (h * h);
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+      Mat3 f = Mat3::Zero();
+      for (int k = 0; k < 4; ++k) f += x.row(body.mesh.tets(e, k)).transpose() * elements[e].gradient.row(k);
+      Eigen::JacobiSVD<Mat3> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
+      Mat3 sign = Mat3::Identity();
+      sign(2, 2) = svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1;
+      const Mat3 rotation = svd.matrixU() * sign * svd.matrixV().transpose();
+      for (int k = 0; k < 4; ++k) right.row(body.mesh.tets(e, k)) += elements[e].weight * (rotation * elements[e].gradient.row(k).transpose()).transpose();
+    }
+    Eigen::MatrixXd reduced(free.size(), free.size()), reduced_right(free.size(), 3);
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      reduced_right.row(i) = right.row(free[i]);
+      for (int v = 0; v < n; ++v) {
+        if (held[v]) reduced_right.row(i) -= system(free[i], v) * x.row(v);
+      }
+      for (std::size_t j = 0; j < free.size(); ++j) reduced(i, j) = system(free[i], free[j]);
+    }
+    const Eigen::MatrixXd solved = reduced.ldlt().solve(reduced_right);
+    for (std::size_t i = 0; i < free.size(); ++i) x.row(free[i]) = solved.row(i);
+  }
+  return x;
+}
+
+TEST(Step, WithWindowZeroOnAsRigidAsPossibleEqualsLocalGlobalAndNeverRejectsATrial) {
+  for (const Held held : {Held::nothing, Held::hard_end}) {
+    const BodyDescription body = bar(AsRigidAsPossible{2e4}, held);
+    const Model model = build_model(body);
+    FrameInputs inputs = still_inputs(model);
+    inputs.targets.col(1).array() += 0.03;
+    inputs.solver.history = 0;
+    inputs.solver.armijo = 0.5;
+    for (const int iterations : {1, 3, 10}) {
+      inputs.solver.iterations = iterations;
+      State state = rest_state(model);
+      state.x = test::shaken(model.rest, 0.01, 1);
+      state.v = test::shaken(Positions::Zero(model.vertices, 3), 0.4, 2);
+      Workspace w;
+      w.prepare(model, inputs.solver);
+      begin_step(model, inputs, state, w);
+      const Positions y = in_input_order(model, w.y), start = in_input_order(model, w.x);
+      const StepReport& report = step(model, inputs, state, w);
+      EXPECT_EQ(report.line_search, iterations);
+      const Positions expected = local_global(body, y, start, iterations);
+      EXPECT_LT((in_input_order(model, state.x) - expected).cwiseAbs().maxCoeff(), 1e-12 * model.size);
+    }
+  }
+}
+
+TEST(Step, ABodyAtRestWithoutForcesStaysWhereItIs) {
+  for (const Material& material : test::all_materials()) {
+    for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
+      const Model model = build_model(bar(material, Held::nothing, precision));
+      FrameInputs inputs = still_inputs(model);
+      inputs.gravity.setZero();
+      State state = rest_state(model);
+      Workspace w;
+      for (int frame = 0; frame < 1000; ++frame) step(model, inputs, state, w);
+      EXPECT_LT((state.x - model.rest).cwiseAbs().maxCoeff(), 1e-12 * model.size) << name_of(material);
+    }
+  }
+}
+
+TEST(Step, FreeFlightKeepsMomentum) {
+  for (const Material& material : test::all_materials()) {
+    for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
+      const Model model = build_model(bar(material, Held::nothing, precision, 2));
+      FrameInputs inputs = still_inputs(model);
+      inputs.gravity.setZero();
+      State state = rest_state(model);
+      state.x = test::shaken(model.rest, 0.01, 1);
+      state.v = test::shaken(Positions::Zero(model.vertices, 3), 1, 2);
+      state.v.rowwise() += Eigen::RowVector3d(3, 1, -2);
+      const auto momentum = [&] {
+        Vec3 p = Vec3::Zero();
+        for (int v = 0; v < model.vertices; ++v) p += model.mass[v] * state.v.row(v).transpose();
+        return p;
+      };
+      Workspace w;
+      for (int frame = 0; frame < 20; ++frame) {
+        const Vec3 before = momentum();
+        step(model, inputs, state, w);
+        EXPECT_LT((momentum() - before).norm(), 1e-11 * before.norm()) << name_of(material) << " frame " << frame;
+      }
+    }
+  }
+}
+
+TEST(Step, GravityAloneIsFreeFall) {
+  const Model model = build_model(bar(NeoHookean{1e4, 3e4}, Held::nothing, Precision::single_precision));
+  const FrameInputs inputs = still_inputs(model);
+  State state = rest_state(model);
+  Workspace w;
+  const int frames = 30;
+  for (int frame = 0; frame < frames; ++frame) step(model, inputs, state, w);
+  // Backward Euler: x_n = x_0 + g h^2 n (n + 1) / 2.
+  const double h = model.time_step, fall = -9.81 * h * h * frames * (frames + 1) / 2;
+  EXPECT_LT((state.x.col(1).array() - model.rest.col(1).array() - fall).abs().maxCoeff(), 1e-10);
+}
+
+// A swinging bar some frames into its motion.
+State swinging(const Model& model, const FrameInputs& inputs, int frames) {
+  State state = rest_state(model);
+  Workspace w;
+  for (int frame = 0; frame < frames; ++frame) step(model, inputs, state, w);
+  return state;
+}
+
+TEST(Step, ConvergesToAnErrorOf1e12WithoutStalling) {
+  for (const Material& material : test::all_materials()) {
+    for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
+      const Model model = build_model(bar(material, Held::hard_end, precision, 2));
+      FrameInputs inputs = still_inputs(model);
+      const State before = swinging(model, inputs, 5);
+      inputs.solver.iterations = 2000;
+      State state = before;
+      Workspace w, reference;
+      const StepReport& report = step(model, inputs, state, w);
+      ASSERT_FALSE(report.failed);
+      EXPECT_EQ(report.stop_reason, StopReason::round_off) << name_of(material) << ": " << text_of(report.stop_reason) << " after " << report.iterations;
+      EXPECT_LT(step_error(model, inputs, before, state, report, reference).value_or(1), 1e-12) << name_of(material);
+    }
+  }
+}
+
+TEST(Step, IsNeverWorseThanStaying) {
+  for (const Material& material : test::all_materials()) {
+    const Model model = build_model(bar(material, Held::hard_end, Precision::single_precision));
+    FrameInputs inputs = still_inputs(model);
+    inputs.solver.iterations = 1;  // too few on purpose
+    State state = rest_state(model);
+    state.x.topRows(model.free) = test::shaken(model.rest, 0.05, 3).topRows(model.free);
+    Workspace w, probe;
+    probe.prepare(model, inputs.solver);
+    for (int frame = 0; frame < 60; ++frame) {
+      begin_step(model, inputs, state, probe);
+      probe.x.topRows(model.free) = state.x.topRows(model.free);
+      const double staying = evaluate(model, probe, probe.x, probe.energy, nullptr, nullptr, nullptr).value;
+      step(model, inputs, state, w);
+      probe.x.topRows(model.free) = state.x.topRows(model.free);
+      const double reached = evaluate(model, probe, probe.x, probe.energy, nullptr, nullptr, nullptr).value;
+      EXPECT_LE(reached, staying * (1 + 1e-12)) << name_of(material) << " frame " << frame;
+    }
+  }
+}
+
+TEST(Step, DoesNotDependOnTheNumberOfThreads) {
+  const Model model = build_model(bar(Polynomial{4e4}, Held::hard_end, Precision::single_precision, 8));  // 2,900 vertices: work is shared
+  FrameInputs inputs = still_inputs(model);
+  inputs.targets.col(2).array() += 0.02;
+  std::vector<std::uint64_t> hashes;
+  for (const int count : {1, 2, 4}) {
+    Threads threads(count);
+    State state = rest_state(model);
+    Workspace w;
+    w.threads = &threads;
+    for (int frame = 0; frame < 5; ++frame) step(model, inputs, state, w);
+    hashes.push_back(state_hash(model, state));
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+  EXPECT_EQ(hashes[0], hashes[2]);
+}
+
+TEST(Step, AllocatesNothingOnceTheWorkspaceIsPrepared) {
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "the sanitizer owns malloc";
+#endif
+  const Model model = build_model(bar(Corotated{1e4, 3e4}, Held::spring_end, Precision::single_precision, 8));
+  const FrameInputs inputs = still_inputs(model);
+  Threads threads(2);
+  State state = rest_state(model);
+  Workspace w;
+  w.threads = &threads;
+  step(model, inputs, state, w);
+  const long before = test::allocations();
+  for (int frame = 0; frame < 3; ++frame) step(model, inputs, state, w);
+  EXPECT_EQ(test::allocations() - before, 0);
+}
+
+TEST(Step, WithoutLineSearchReportsTheVertexWhenTheBodyFliesApart) {
+  const Model model = build_model(bar(Polynomial{1e5}, Held::hard_end, Precision::single_precision));
+  FrameInputs inputs = still_inputs(model);
+  inputs.solver.line_search = LineSearch::none;
+  State state = rest_state(model);
+  state.x.topRows(model.free) *= 6;
+  Workspace w;
+  StepReport report;
+  State before = state;
+  for (int frame = 0; frame < 200 && !report.failed; ++frame) {
+    before = state;
+    report = step(model, inputs, state, w);
+  }
+  ASSERT_TRUE(report.failed);
+  EXPECT_GE(report.failure.vertex, 0);
+  EXPECT_LT(report.failure.vertex, model.vertices);
+  EXPECT_FALSE(report.failure.phase.empty());
+  EXPECT_TRUE(state.x == before.x && state.v == before.v) << "a failed step must leave the state alone";
+}
+
+TEST(Step, ErrorEstimateFollowsTheMeasuredError) {
+  // Not a bound: the estimate must be of the error's size, so that it can be used to stop.
+  const Model model = build_model(bar(NeoHookean{2e4, 8e4}, Held::hard_end, Precision::single_precision, 3));
+  FrameInputs inputs = still_inputs(model);
+  State state = swinging(model, inputs, 10);
+  double log_ratio = 0;
+  int count = 0;
+  for (int frame = 0; frame < 20; ++frame) {
+    const State before = state;
+    Workspace w, reference;
+    const StepReport& report = step(model, inputs, state, w);
+    const auto error = step_error(model, inputs, before, state, report, reference);
+    if (!error || *error <= 0 || report.error_estimate <= 0) continue;
+    log_ratio += std::log10(report.error_estimate / *error);
+    ++count;
+  }
+  ASSERT_GT(count, 10);
+  EXPECT_LT(std::abs(log_ratio / count), 1.0);
+}
+
+TEST(Step, AllHandlesArriveAtTheirTargets) {
+  for (const Held held : {Held::hard_end, Held::spring_end}) {
+    const Model model = build_model(bar(Corotated{1e3, 1e3}, held));
+    FrameInputs inputs = still_inputs(model);
+    inputs.gravity.setZero();
+    inputs.targets.col(0).array() += 0.05;
+    State state = rest_state(model);
+    Workspace w;
+    for (int frame = 0; frame < 600; ++frame) step(model, inputs, state, w);
+    for (std::size_t i = 0; i < model.handled.size(); ++i) {
+      EXPECT_LT((state.x.row(model.handled[i].vertex) - inputs.targets.row(i)).norm(), 1e-6);
+    }
+  }
+}
+
+TEST(Cholesky, SolvesInBothPrecisionsAsADenseSolverDoes) {
+  const BodyDescription body = bar(Corotated{1e5, 2e5}, Held::nothing, Precision::double_precision, 3);
+  const Model exact = build_model(body);
+  BodyDescription rough = body;
+  rough.precision = Precision::single_precision;
+  const Model single = build_model(rough);
+  const Positions b = test::shaken(Positions::Zero(exact.free, 3), 1, 9);
+  Positions x(exact.free, 3), y(exact.free, 3);
+  AlignedVector<double> scratch(4 * exact.free);
+  exact.factor.solve(b.data(), x.data(), scratch.data());
+  single.factor.solve(b.data(), y.data(), scratch.data());
+  EXPECT_LT((x - y).norm(), 1e-4 * x.norm());
+
+  // A x = b, with A applied as the second derivative of the quadratic part: M/h^2 x + L x, element by element.
+  Positions product(exact.free, 3);
+  for (int v = 0; v < exact.free; ++v) product.row(v) = exact.mass[v] / (exact.time_step * exact.time_step) * x.row(v);
+  for (Eigen::Index e = 0; e < body.mesh.tets.rows(); ++e) {
+    Mat3 edges;
+    for (int k = 0; k < 3; ++k) edges.col(k) = (body.mesh.rest.row(body.mesh.tets(e, k + 1)) - body.mesh.rest.row(body.mesh.tets(e, 0))).transpose();
+    Eigen::Matrix<double, 4, 3> g;
+    g.bottomRows<3>() = edges.inverse();
+    g.row(0) = -g.bottomRows<3>().colwise().sum();
+    const double weight = edges.determinant() / 6 * exact.stiffness[0];
+    for (int a = 0; a < 4; ++a) {
+      for (int c = 0; c < 4; ++c) {
+        product.row(exact.internal_of[body.mesh.tets(e, a)]) += weight * g.row(a).dot(g.row(c)) * x.row(exact.internal_of[body.mesh.tets(e, c)]);
+      }
+    }
+  }
+  EXPECT_LT((product - b).norm(), 1e-10 * b.norm());
+}
+
+}  // namespace
+}  // namespace supple

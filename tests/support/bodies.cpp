@@ -1,0 +1,76 @@
+#include "support/bodies.h"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "geometry/tetrahedralize.h"
+
+namespace supple::test {
+
+std::optional<std::filesystem::path> paper_mesh(const std::string& name) {
+  const char* folder = std::getenv("SUPPLE_PAPER_MESHES");
+  if (folder != nullptr) {
+    const std::filesystem::path path = std::filesystem::path(folder) / (name + ".mesh");
+    if (std::filesystem::exists(path)) return path;
+  }
+  const char* required = std::getenv("SUPPLE_REQUIRE_PAPER");
+  if (required != nullptr && std::string(required) == "1") ADD_FAILURE() << "the paper's mesh " << name << " is required and missing";
+  return std::nullopt;
+}
+
+std::vector<Material> all_materials() {
+  return {AsRigidAsPossible{1e4}, Polynomial{4e4}, Corotated{1e4, 3e4}, NeoHookean{1e4, 3e4}};
+}
+
+BodyDescription bar(const Material& material, Held held, Precision precision, int cells) {
+  BodyDescription body;
+  body.name = "bar";
+  body.mesh = box_mesh(Vec3(0.4, 0.1, 0.1), Eigen::Vector3i(4 * cells, cells, cells));
+  body.materials = {material};
+  body.precision = precision;
+  if (held != Held::nothing) {
+    Handle end{"end", {}, held == Held::spring_end ? 500.0 : 0.0};
+    for (std::int32_t v = 0; v < body.mesh.rest.rows(); ++v) {
+      if (body.mesh.rest(v, 0) < 1e-9) end.vertices.push_back(v);
+    }
+    body.handles.push_back(end);
+  }
+  return body;
+}
+
+FrameInputs still_inputs(const Model& model) {
+  FrameInputs inputs;
+  inputs.targets.resize(model.handled.size(), 3);
+  for (std::size_t i = 0; i < model.handled.size(); ++i) inputs.targets.row(i) = model.rest.row(model.handled[i].vertex);
+  return inputs;
+}
+
+Positions shaken(const Positions& rest, double amount, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-amount, amount);
+  Positions x = rest;
+  for (double& value : x.reshaped()) value += uniform(random);
+  return x;
+}
+
+std::string read_file(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+TemporaryFolder::TemporaryFolder() {
+  std::string pattern = (std::filesystem::temp_directory_path() / "supple-test-XXXXXX").string();
+  path = mkdtemp(pattern.data());
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path, ignored);
+}
+
+}  // namespace supple::test

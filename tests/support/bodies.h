@@ -1,0 +1,43 @@
+// Small bodies and states that many tests share.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "sim/step.h"
+
+namespace supple::test {
+
+inline const std::filesystem::path source_folder = SUPPLE_SOURCE_FOLDER;
+inline const std::filesystem::path assets = source_folder / "assets";
+
+// The paper's mesh by name; the calling test is skipped by name when there is none (a failure with SUPPLE_REQUIRE_PAPER=1).
+std::optional<std::filesystem::path> paper_mesh(const std::string& name);
+
+// One of each material, with moduli of the same size.
+std::vector<Material> all_materials();
+
+// A bar of 4 x 1 x 1 cells, 0.4 m long; its left end can be held.
+enum class Held { nothing, hard_end, spring_end };
+BodyDescription bar(const Material& material, Held held, Precision precision = Precision::double_precision, int cells = 1);
+
+// Inputs for a body whose handles stay where they rest.
+FrameInputs still_inputs(const Model& model);
+
+// Rest positions with every coordinate moved by up to `amount`.
+Positions shaken(const Positions& rest, double amount, unsigned seed);
+
+std::string read_file(const std::filesystem::path& path);
+
+// A folder that is removed with the object.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  std::filesystem::path path;
+};
+
+}  // namespace supple::test
