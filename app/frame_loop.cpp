@@ -184,7 +184,7 @@ std::string advance(const SceneDef& scene, int frame, bool measure_error, Actor&
     if (report.failed) return failure_text(frame, actor, report.failure);
     if (measure) {
       row.error_measured = true;
-      row.error = step_error(actor.model, actor.inputs, before, actor.state, report, actor.reference_workspace);
+      row.error = step_error(actor.model, actor.inputs, before, actor.state, actor.reference_workspace);
     }
   }
   row.stretch = stretch(actor.model, actor.state.x);

@@ -12,16 +12,17 @@ const vec3 fill_color = vec3(0.46, 0.54, 0.66);
 const vec3 rim_color = vec3(1.15, 1.12, 1.05);
 const vec3 sky_color = vec3(0.62, 0.66, 0.72);
 
-// Eight taps on a spiral (golden angle), each with the hardware's bilinear comparison.
+// Taps on a spiral (golden angle), each with the hardware's bilinear comparison.
+const vec2 taps[12] = vec2[12](vec2(0.2041, 0.0000), vec2(-0.2607, 0.2388), vec2(0.0399, -0.4547),
+                               vec2(0.3286, 0.4286), vec2(-0.6030, -0.1067), vec2(0.5712, -0.3634),
+                               vec2(-0.1910, 0.7108), vec2(-0.3644, -0.7016), vec2(0.7906, 0.2887),
+                               vec2(-0.8224, 0.3395), vec2(0.3964, -0.8472), vec2(0.2930, 0.9341));
+
 float shadow(vec3 position, vec3 normal) {
   vec4 p = light_matrix * vec4(position + 0.004 * normal, 1.0);
   vec3 c = 0.5 * p.xyz + 0.5;
   if (any(lessThan(c, vec3(0.0))) || any(greaterThan(c, vec3(1.0)))) return 1.0;
   float sum = 0.0;
-  for (int i = 0; i < 8; ++i) {
-    float radius = shadow_softness * sqrt((float(i) + 0.5) / 8.0);
-    float angle = 2.39996 * float(i);
-    sum += texture(shadow_map, vec3(c.xy + radius * vec2(cos(angle), sin(angle)), c.z - 0.0012));
-  }
-  return sum / 8.0;
+  for (int i = 0; i < 12; ++i) sum += texture(shadow_map, vec3(c.xy + shadow_softness * taps[i], c.z - 0.0012));
+  return sum / 12.0;
 }

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <map>
 #include <numeric>
 
 #include "base/error.h"
@@ -142,9 +143,11 @@ void pack_elements(Model& model, const std::vector<Element>& elements) {
   }
 }
 
-// A = M/h^2 + sum_e V_e k_e G_e^T G_e + springs, over the free vertices (equation 8 of the paper with its k).
-Eigen::SparseMatrix<double> system_matrix(const Model& model, const std::vector<Element>& elements) {
+// A = M/h^2 + sum_e V_e k_e G_e^T G_e + springs, over the free vertices (equation 8 of the paper with its k); what couples them to held
+// vertices goes to model.couplings.
+Eigen::SparseMatrix<double> system_matrix(Model& model, const std::vector<Element>& elements) {
   std::vector<Eigen::Triplet<double>> entries;
+  std::map<std::pair<std::int32_t, std::int32_t>, double> couplings;
   entries.reserve(elements.size() * 10 + model.free);
   const double h = model.time_step;
   for (int v = 0; v < model.free; ++v) entries.emplace_back(v, v, model.mass[v] / (h * h) + (model.spring.empty() ? 0.0 : model.spring[v]));
@@ -156,10 +159,13 @@ Eigen::SparseMatrix<double> system_matrix(const Model& model, const std::vector<
     for (int a = 0; a < 4; ++a) {
       for (int b = 0; b < 4; ++b) {
         const std::int32_t i = element.corner[a], j = element.corner[b];
-        if (i >= j && i < model.free) entries.emplace_back(i, j, weight * g.row(a).dot(g.row(b)));
+        const double value = weight * g.row(a).dot(g.row(b));
+        if (i >= j && i < model.free) entries.emplace_back(i, j, value);
+        if (i < model.free && j >= model.free) couplings[{i, j}] += value;
       }
     }
   }
+  for (const auto& [place, value] : couplings) model.couplings.push_back({place.first, place.second, value});
   Eigen::SparseMatrix<double> matrix(model.free, model.free);
   matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;

