@@ -22,7 +22,10 @@ float shadow(vec3 position, vec3 normal) {
   vec4 p = light_matrix * vec4(position + 0.004 * normal, 1.0);
   vec3 c = 0.5 * p.xyz + 0.5;
   if (any(lessThan(c, vec3(0.0))) || any(greaterThan(c, vec3(1.0)))) return 1.0;
+  // Most points are fully lit or fully in shadow: four wide taps say so.
   float sum = 0.0;
-  for (int i = 0; i < 12; ++i) sum += texture(shadow_map, vec3(c.xy + shadow_softness * taps[i], c.z - 0.0012));
+  for (int i = 8; i < 12; ++i) sum += texture(shadow_map, vec3(c.xy + shadow_softness * taps[i], c.z - 0.0012));
+  if (sum < 0.01 || sum > 3.99) return 0.25 * sum;
+  for (int i = 0; i < 8; ++i) sum += texture(shadow_map, vec3(c.xy + shadow_softness * taps[i], c.z - 0.0012));
   return sum / 12.0;
 }

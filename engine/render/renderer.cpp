@@ -252,7 +252,7 @@ void Renderer::make_meshes() {
 
 void Renderer::make_labels() {
   if (stage_.font.empty()) return;
-  const int pixels = std::max(9, static_cast<int>(std::lround(stage_.height / 26.0)));
+  const int pixels = std::max(9, static_cast<int>(std::lround(stage_.height / 32.0)));
   gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
   for (const DrawMesh& mesh : stage_.meshes) {
     if (mesh.label.empty()) continue;
@@ -348,13 +348,6 @@ void Renderer::draw_scene(const Camera& camera) {
   gl_.ClearColor(0, 0, 0, 1);
   gl_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 
-  gl_.Disable(GL_DEPTH_TEST);
-  gl_.UseProgram(backdrop_program_);
-  set_lights(backdrop_program_, camera);
-  gl_.BindVertexArray(empty_array_);
-  gl_.DrawArrays(GL_TRIANGLES, 0, 3);
-  gl_.Enable(GL_DEPTH_TEST);
-
   gl_.UseProgram(body_program_);
   set_lights(body_program_, camera);
   gl_.UniformMatrix4fv(uniform(body_program_, "view_matrix"), 1, GL_FALSE, view.matrix.data());
@@ -392,6 +385,13 @@ void Renderer::draw_scene(const Camera& camera) {
   gl_.ActiveTexture(GL_TEXTURE0);
   gl_.BindVertexArray(empty_array_);
   gl_.DrawArrays(GL_TRIANGLES, 0, 6);
+
+  // Front to back, so that each pixel is shaded about once.
+  gl_.DepthFunc(GL_LEQUAL);
+  gl_.UseProgram(backdrop_program_);
+  set_lights(backdrop_program_, camera);
+  gl_.DrawArrays(GL_TRIANGLES, 0, 3);
+  gl_.DepthFunc(GL_LESS);
 }
 
 void Renderer::draw_labels(const Camera& camera) {

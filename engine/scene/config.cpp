@@ -16,17 +16,22 @@ constexpr std::uintmax_t largest_file = 1 << 20;
 constexpr std::string_view set_option = "--set ";
 
 std::string shown(const toml::node& node) {
-  std::ostringstream out;
   if (node.is_table()) return "a table";
-  if (node.is_array()) {
-    out << *node.as_array();
+  std::string text;
+  if (const auto number = node.value_exact<double>()) {
+    text = fmt::format("{}", *number);
+  } else if (const auto word = node.value_exact<std::string>()) {
+    text = fmt::format("'{}'", *word);
   } else {
-    node.visit([&out](const auto& value) {
-      if constexpr (toml::is_value<decltype(value)>) out << value;
-    });
+    std::ostringstream out;
+    if (node.is_array()) out << *node.as_array();
+    if (!node.is_array()) {
+      node.visit([&out](const auto& value) {
+        if constexpr (toml::is_value<decltype(value)>) out << value;
+      });
+    }
+    text = out.str();
   }
-  std::string text = out.str();
-  if (node.is_floating_point() && text.find_first_of(".en") == std::string::npos) text += ".0";
   return text.size() > 60 ? text.substr(0, 57) + "..." : text;
 }
 
@@ -122,12 +127,12 @@ void Config::set(const std::string& assignment, const std::vector<std::set<std::
     }
     if (toml::array* list = next->as_array()) {
       const std::string& wanted = path[++depth];
-      std::vector<std::string> names;
+      std::vector<std::string> names;  // an element without a name bears its list's
       toml::node* found = nullptr;
       for (toml::node& element : *list) {
         const toml::table* candidate = element.as_table();
         if (candidate == nullptr) continue;
-        const std::string element_name = candidate->get("name") ? candidate->get("name")->value_or(std::string()) : std::string();
+        const std::string element_name = candidate->get("name") ? candidate->get("name")->value_or(std::string()) : path[depth - 1];
         names.push_back(element_name);
         if (element_name == wanted) found = &element;
       }
@@ -146,7 +151,7 @@ void Config::set(const std::string& assignment, const std::vector<std::set<std::
     if (!group.contains(path.back())) continue;
     for (const std::string& other : group) table->erase(other);
   }
-  table->insert_or_assign(path.back(), *parsed.get("value"));
+  table->insert_or_assign(path.back(), std::move(*parsed.get("value")));
 }
 
 ConfigTable Config::root() { return ConfigTable(this, &content_->document, ""); }
@@ -239,6 +244,16 @@ double ConfigTable::number(const Key& key, std::optional<double> fallback, const
     return instead;
   }
   return *value;
+}
+
+std::optional<double> ConfigTable::number_if_given(const Key& key, const Range& range) const {
+  if (find(key, "number", "none", range.text()) == nullptr) return std::nullopt;
+  return number(key, std::nullopt, range);
+}
+
+std::optional<Vec3> ConfigTable::vector_if_given(const Key& key, const Range& range) const {
+  if (find(key, "three numbers", "none", "three numbers") == nullptr) return std::nullopt;
+  return vector(key, std::nullopt, range);
 }
 
 int ConfigTable::integer(const Key& key, std::optional<int> fallback, const Range& range) const {

@@ -107,6 +107,8 @@ class ConfigTable {
   std::string text(const Key& key, std::optional<std::string> fallback) const;
   std::string choice(const Key& key, std::optional<std::string> fallback, const std::vector<std::string>& allowed) const;
   Vec3 vector(const Key& key, std::optional<Vec3> fallback, const Range& range = Range::any()) const;
+  std::optional<double> number_if_given(const Key& key, const Range& range) const;
+  std::optional<Vec3> vector_if_given(const Key& key, const Range& range = Range::any()) const;
   std::vector<Vec3> vectors(const Key& key, std::size_t count) const;
   // A path that exists, found beside the file that names it or among the assets; empty when absent or wrong.
   std::filesystem::path file(const Key& key) const;

@@ -148,11 +148,11 @@ BodyDef read_body(const ConfigTable& table, const Defaults& defaults) {
   body.mesh = table.file({"mesh", "", "a tetrahedral mesh (MEDIT .mesh)"});
   if (table.has("shape") + table.has("mesh") != 1) table.complain("a body needs exactly one of 'shape' and 'mesh'");
   body.vertices = table.integer({"vertices", "", "of the tetrahedra made from a shape (within 3 %)"}, 4000, Range::between(50, 500000));
-  if (table.has("size")) body.size = table.number({"size", "m", "longest side; without it the file's units are metres"}, std::nullopt, Range::above(0, 1e6));
+  body.size = table.number_if_given({"size", "m", "longest side; without it the file's units are metres"}, Range::above(0, 1e6));
   body.position = table.vector({"position", "m", "of the middle of the bounding box's bottom"}, Vec3(0, 0, 0));
   body.turn_deg = table.vector({"turn_deg", "degrees", "rotation about x, then y, then z, before it is placed"}, Vec3(0, 0, 0));
-  if (table.has("density")) body.density = table.number({"density", "kg/m^3", "mass by volume; 1000 without it and total_mass"}, std::nullopt, Range::positive());
-  if (table.has("total_mass")) body.total_mass = table.number({"total_mass", "kg", "spread evenly over the volume"}, std::nullopt, Range::positive());
+  body.density = table.number_if_given({"density", "kg/m^3", "mass by volume; 1000 without it and total_mass"}, Range::positive());
+  body.total_mass = table.number_if_given({"total_mass", "kg", "spread evenly over the volume"}, Range::positive());
   if (body.density && body.total_mass) table.complain("total_mass", "a body has a density or a total_mass, not both");
   body.material = read_material(table);
   if (const auto regions = table.table({"regions", "", "materials of tagged parts, by the name of the tag"})) {
@@ -172,7 +172,7 @@ BodyDef read_body(const ConfigTable& table, const Defaults& defaults) {
   if (const auto solver = table.table({"solver", "", "this body's own, over the scene's"})) {
     body.solver = read_solver(*solver, body.solver, body.fit, body.precision);
   }
-  if (table.has("color")) body.color = table.vector({"color", "sRGB", "over the shape's own"}, std::nullopt, Range::between(0, 1));
+  body.color = table.vector_if_given({"color", "sRGB", "over the shape's own"}, Range::between(0, 1));
   body.skin_cells = table.number({"skin_cells", "", "cells of the drawn skin along the longest side of a shape"}, 72, Range::between(8, 400));
   return body;
 }
@@ -207,8 +207,8 @@ SceneDef read_scene(Config& config) {
   if (scene.bodies.empty()) root.complain("a scene needs at least one [[body]]");
 
   if (const auto camera = root.table({"camera", "", "where the film is seen from"})) {
-    if (camera->has("position")) scene.camera.position = camera->vector({"position", "m", "of the eye; without it all bodies are framed"}, std::nullopt);
-    if (camera->has("target")) scene.camera.target = camera->vector({"target", "m", "what the eye looks at"}, std::nullopt);
+    scene.camera.position = camera->vector_if_given({"position", "m", "of the eye; without it all bodies are framed"});
+    scene.camera.target = camera->vector_if_given({"target", "m", "what the eye looks at"});
     scene.camera.fov_deg = camera->number({"fov_deg", "degrees", "vertical field of view"}, scene.camera.fov_deg, Range::between(1, 150));
     scene.camera.margin = camera->number({"margin", "", "air around the bodies when they are framed"}, scene.camera.margin, Range::between(0.5, 10));
   }

@@ -1,0 +1,86 @@
+// Reads every #include of ours and holds it against the arrows of the house; and keeps third parties in their cages.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+
+#include "support/bodies.h"
+
+namespace supple {
+namespace {
+
+const std::map<std::string, std::set<std::string>> allowed = {
+    {"base", {"base"}},
+    {"geometry", {"geometry", "base"}},
+    {"sim", {"sim", "geometry", "base"}},
+    {"baselines", {"baselines", "sim", "geometry", "base"}},
+    {"scene", {"scene", "sim", "geometry", "base"}},
+    {"render", {"render", "base"}},
+    {"output", {"output", "geometry", "base"}},
+};
+
+// Headers of third parties, and where they may be seen.
+const std::vector<std::pair<std::regex, std::regex>> cages = {
+    {std::regex("cholmod\\.h"), std::regex("engine/sim/cholesky\\.cpp")},
+    {std::regex("png\\.h"), std::regex("engine/output/png_file\\.cpp")},
+    {std::regex("(GL|EGL)/.*"), std::regex("engine/render/.*")},
+    {std::regex("ft2build\\.h"), std::regex("engine/render/caption\\.cpp")},
+    {std::regex("toml\\+\\+/.*"), std::regex("engine/scene/config\\.cpp")},
+    {std::regex("xxhash\\.h"), std::regex("engine/base/hash\\.cpp")},
+};
+
+struct Include {
+  std::string file;  // relative to the project
+  std::string name;
+};
+
+std::vector<Include> all_includes() {
+  std::vector<Include> includes;
+  const std::regex pattern("^\\s*#\\s*include\\s*[<\"]([^>\"]+)[>\"].*");
+  for (const char* top : {"app", "engine"}) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(test::source_folder / top)) {
+      if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+      std::ifstream file(entry.path());
+      for (std::string line; std::getline(file, line);) {
+        std::smatch match;
+        if (std::regex_match(line, match, pattern)) {
+          includes.push_back({std::filesystem::relative(entry.path(), test::source_folder).string(), match[1].str()});
+        }
+      }
+    }
+  }
+  return includes;
+}
+
+TEST(House, EveryIncludeFollowsTheArrows) {
+  int checked = 0;
+  for (const Include& include : all_includes()) {
+    const std::string target = include.name.substr(0, include.name.find('/'));
+    if (include.file.starts_with("app/")) continue;
+    EXPECT_NE(target, "app") << include.file;
+    if (!allowed.contains(target)) continue;  // not ours
+    const std::string rest = include.file.substr(std::string("engine/").size());
+    const std::string folder = rest.substr(0, rest.find('/'));
+    ASSERT_TRUE(allowed.contains(folder)) << include.file << " lies in a folder that the house does not have";
+    EXPECT_TRUE(allowed.at(folder).contains(target)) << include.file << " includes " << include.name;
+    ++checked;
+  }
+  EXPECT_GT(checked, 50);
+}
+
+TEST(House, ThirdPartiesStayInTheirCages) {
+  int seen = 0;
+  for (const Include& include : all_includes()) {
+    for (const auto& [header, place] : cages) {
+      if (!std::regex_match(include.name, header)) continue;
+      EXPECT_TRUE(std::regex_match(include.file, place)) << include.file << " includes " << include.name;
+      ++seen;
+    }
+  }
+  EXPECT_GE(seen, static_cast<int>(cages.size()));
+}
+
+}  // namespace
+}  // namespace supple

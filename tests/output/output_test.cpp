@@ -1,0 +1,95 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "base/error.h"
+#include "output/png_file.h"
+#include "output/point_cache.h"
+#include "output/profile.h"
+#include "output/run_folder.h"
+#include "output/whole_file.h"
+#include "support/bodies.h"
+
+namespace supple {
+namespace {
+
+TEST(Png, GivesBackItsPixelsAndLeavesNoTemporaryFile) {
+  const test::TemporaryFolder folder;
+  std::vector<std::uint8_t> pixels(3 * 7 * 5);
+  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = static_cast<std::uint8_t>(37 * i);
+  write_png(folder.path / "a.png", 7, 5, pixels);
+  const PngImage read = read_png(folder.path / "a.png");
+  EXPECT_EQ(read.width, 7);
+  EXPECT_EQ(read.height, 5);
+  EXPECT_EQ(read.rgb, pixels);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path), {}), 1);
+}
+
+TEST(WholeFile, SaysWhatTheDiskSaid) {
+  try {
+    write_whole_file("/proc/nothing/here", std::string_view("x"));
+    FAIL();
+  } catch (const RunError& error) {
+    EXPECT_EQ(std::string(error.what()), "/proc/nothing/here: cannot be created: No such file or directory");
+  }
+}
+
+TEST(PointCache, IsValidAfterEveryFrame) {
+  const test::TemporaryFolder folder;
+  PointCacheWriter writer(folder.path / "body.pc2", 2);
+  Positions points(2, 3);
+  points << 1, 2, 3, 4, 5, 6;
+  for (int frame = 1; frame <= 3; ++frame) {
+    writer.add(points * frame);
+    const std::string bytes = test::read_file(folder.path / "body.pc2");
+    ASSERT_EQ(bytes.size(), 32u + frame * 24u);
+    std::int32_t samples = 0;
+    std::memcpy(&samples, bytes.data() + 28, 4);
+    EXPECT_EQ(samples, frame);
+    float last = 0;
+    std::memcpy(&last, bytes.data() + bytes.size() - 4, 4);
+    EXPECT_EQ(last, 6.0f * frame);
+  }
+}
+
+TEST(Profile, PercentilesAreNearestRanks) {
+  std::vector<double> values;
+  for (int i = 100; i >= 1; --i) values.push_back(i);
+  const Distribution d = distribution_of(values);
+  EXPECT_EQ(d.p50, 50);
+  EXPECT_EQ(d.p95, 95);
+  EXPECT_EQ(d.p99, 99);
+  EXPECT_EQ(d.max, 100);
+  EXPECT_EQ(d.mean, 50.5);
+}
+
+TEST(Profile, LeavesOutWhatWasNotUsedAndTheFirstFrame) {
+  FrameRow row;
+  row.step_ms = 100;
+  row.bodies.push_back({});
+  std::vector<FrameRow> rows(3, row);
+  rows[1].step_ms = rows[2].step_ms = 2;
+  const std::string json = profile_json(rows);
+  for (const char* absent : {"render_ms", "encode_ms", "\"error\"", "jiggle", "collide_ms"}) EXPECT_EQ(json.find(absent), std::string::npos) << absent;
+  EXPECT_EQ(summarize(rows)[0].rest.max, 2);
+  EXPECT_EQ(summarize(rows)[0].first, 100);
+  rows[0].bodies[0].error_measured = true;  // measured, and not to be had
+  EXPECT_NE(profile_json(rows).find("\"error\": null"), std::string::npos);
+}
+
+TEST(RunFolder, TakesOverItsOwnAndRefusesWhatOthersLeft) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path run = folder.path / "run";
+  RunFolder(run).write_info({});
+  write_whole_file(run / "frames" / "000000.png", std::string_view("old"));
+  const RunFolder again(run);
+  EXPECT_FALSE(std::filesystem::exists(run / "frames" / "000000.png"));
+  std::filesystem::create_directory(folder.path / "photos");
+  write_whole_file(folder.path / "photos" / "me.png", std::string_view("x"));
+  EXPECT_THROW(RunFolder(folder.path / "photos"), InputError);
+  EXPECT_TRUE(std::filesystem::exists(folder.path / "photos" / "me.png"));
+  EXPECT_THROW(RunFolder(folder.path / "photos" / "me.png"), InputError);
+}
+
+}  // namespace
+}  // namespace supple

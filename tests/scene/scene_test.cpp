@@ -1,0 +1,226 @@
+// Scene files: what is refused, in which words, and that the documentation lists what the readers ask for.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "scene/assemble.h"
+#include "scene/scene_reader.h"
+#include "scene/shape_reader.h"
+#include "support/bodies.h"
+
+namespace supple {
+namespace {
+
+std::vector<std::string> problems_of(const std::string& text) {
+  Config config = Config::parse(text, "scene.toml", test::assets);
+  (void)read_scene(config);
+  std::vector<std::string> list;
+  for (const Problem& problem : config.take_problems()) list.push_back(problem.text());
+  return list;
+}
+
+const std::string good_body = "[[body]]\nshape = \"shapes/squirrel.toml\"\nmaterial = { model = \"polynomial\", mu = 1e4 }\n";
+
+TEST(SceneFile, ReportsEveryProblemAtOnceWithItsPlace) {
+  const std::vector<std::string> list = problems_of(R"(frams = 10
+fps = 0
+gravity = [0, nan, 0]
+substeps = 1.5
+[solver]
+iterations = 0
+armijo = -0.3
+line_search = "armjo"
+[[body]]
+shape = "shapes/squirel.toml"
+material = { model = "polynomal", mu = 1 }
+[[body]]
+name = "body"
+shape = "shapes/squirrel.toml"
+material = { model = "polynomial", mu = -1.0 }
+[[body.handles]]
+name = "neck"
+select = { box = [[0, 0, 0], [1, 1]] }
+stiffness = -5
+keys = [ { t = 1 }, { t = 0.5 } ]
+)");
+  const std::vector<std::string> expected = {
+      "scene.toml:1:1: unknown key 'frams'; did you mean 'frames'?",
+      "scene.toml:2:7: fps = 0: must be 1 to 100000",
+      "scene.toml:3:11: gravity = [ 0, nan, 0 ]: must be a list of three numbers, all finite",
+      "scene.toml:4:12: substeps = 1.5: must be a whole number, 1 to 1000",
+      "scene.toml:6:14: iterations = 0: must be a whole number, 1 to 10000",
+      "scene.toml:7:10: armijo = -0.3: must be above 0 to 0.5",
+      "scene.toml:8:15: line_search = 'armjo': must be armijo or none; did you mean 'armijo'?",
+      "scene.toml:10:9: shape = 'shapes/squirel.toml': no such file (looked for shapes/squirel.toml and " + (test::assets / "shapes/squirel.toml").string() + ")",
+      "scene.toml:11:22: model = 'polynomal': must be as-rigid-as-possible, polynomial, corotated or neo-hookean; did you mean 'polynomial'?",
+      "scene.toml:13:8: two bodies named 'body'",
+      "scene.toml:15:41: mu = -1: must be above 0",
+      "scene.toml:18:18: box = [ [ 0, 0, 0 ], [ 1, 1 ] ]: must be 2 lists of three numbers, all finite",
+      "scene.toml:19:13: stiffness = -5: must be \"hard\" or above 0",
+      "scene.toml:20:27: t = 0.5: keys must stand in order of time (the one before is at 1)",
+  };
+  for (const std::string& message : expected) {
+    EXPECT_NE(std::find(list.begin(), list.end(), message), list.end()) << "missing: " << message;
+  }
+  if (HasFailure()) {
+    for (const std::string& message : list) std::cout << message << '\n';
+  }
+}
+
+TEST(SceneFile, AcceptsAGoodSceneWithoutAWord) { EXPECT_EQ(problems_of(good_body), std::vector<std::string>{}); }
+
+TEST(SceneFile, NeedsABodyAndAMaterial) {
+  EXPECT_EQ(problems_of("frames = 3"), std::vector<std::string>{"scene.toml:1:1: a scene needs at least one [[body]]"});
+  EXPECT_EQ(problems_of("[[body]]\nshape = \"shapes/squirrel.toml\"").size(), 1u);
+}
+
+TEST(SceneFile, RefusesWhatIsNotTomlAndWhatIsTooLarge) {
+  EXPECT_THROW(Config::parse("frames = = 3", "scene.toml", {}), InputError);
+  EXPECT_THROW(Config::parse(std::string(2 << 20, ' '), "scene.toml", {}), InputError);
+  EXPECT_THROW(load_scene("/nonexistent.toml", {}, {}), InputError);
+}
+
+TEST(SceneFile, SettingsReachEveryValueByItsPath) {
+  const auto scene_with = [](const std::vector<std::string>& settings) {
+    const test::TemporaryFolder folder;
+    std::ofstream(folder.path / "s.toml") << good_body << "[[body.handles]]\nname = \"neck\"\nselect = { plane = { point = [0, 0.1, 0], normal = [0, -1, 0] } }\n";
+    return load_scene(folder.path / "s.toml", test::assets, settings);
+  };
+  const SceneDef scene = scene_with({"frames=7", "body.body.material.mu=2.5e3", "solver.iterations=3", "body.body.solver.line_search=none",
+                                     "body.body.handles.neck.stiffness=12", "body.body.total_mass=4", "gravity=[0, -1, 0]", "title=a word"});
+  EXPECT_EQ(scene.frames, 7);
+  EXPECT_EQ(std::get<Polynomial>(scene.bodies[0].material).mu, 2.5e3);
+  EXPECT_EQ(scene.bodies[0].solver.iterations, 3);
+  EXPECT_EQ(scene.bodies[0].solver.line_search, LineSearch::none);
+  EXPECT_EQ(scene.bodies[0].handles[0].spring, 12);
+  EXPECT_EQ(scene.bodies[0].total_mass, 4);
+  EXPECT_EQ(scene.gravity.y(), -1);
+  EXPECT_EQ(scene.title, "a word");
+  const auto refused = [&](const std::string& setting) -> std::string {
+    try {
+      (void)scene_with({setting});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(refused("frames"), "--set frames: should read path=value, such as solver.iterations=20");
+  EXPECT_EQ(refused("body.head.material.mu=1"), "--set body.head.material.mu=1: there is no body named 'head' (there is body)");
+  EXPECT_EQ(refused("solver.iteration=5"), "--set solver.iteration=5: unknown key 'iteration'; did you mean 'iterations'?");
+  EXPECT_EQ(refused("fps=-3"), "--set fps=-3: fps = -3: must be 1 to 100000");
+}
+
+TEST(SceneFile, EmptySelectionsAndUnknownRegionsAreRefusedTogether) {
+  Config config = Config::parse(R"([[body]]
+shape = "shapes/squirrel.toml"
+vertices = 1500
+material = { model = "polynomial", mu = 1e4 }
+[body.regions.tooth]
+material = { model = "polynomial", mu = 1e4 }
+[[body.handles]]
+name = "air"
+select = { box = [[2, 2, 2], [3, 3, 3]] }
+[[body.handles]]
+name = "tail"
+select = { region = "tail" }
+)", "scene.toml", test::assets);
+  const SceneDef scene = read_scene(config);
+  config.finish();
+  try {
+    (void)assemble(scene);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "scene.toml:5:1: body 'body' has no region 'tooth'; did you mean 'teeth'?\n"
+              "scene.toml:9:10: handle 'air' of body 'body' selects no vertex; boxes, spheres and planes are relative to the rest bounding box (0 to 1)\n"
+              "scene.toml:12:10: handle 'tail' of body 'body' selects no vertex: there is no region 'tail'");
+  }
+}
+
+TEST(Scenes, EverySceneThatShipsIsWithoutErrors) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(test::assets / "scenes")) {
+    const SceneDef scene = load_scene(entry.path(), test::assets, {"frames=2"});
+    EXPECT_FALSE(scene.title.empty()) << entry.path();
+    ++count;
+  }
+  EXPECT_GE(count, 2);
+}
+
+TEST(HandleMotion, PassesThroughItsKeysAndStandsStillOutside) {
+  HandleMotion motion{Vec3(1, 0, 0), Ease::smooth, {{1, Vec3(0, 0, 0), Vec3::Zero()}, {2, Vec3(0, 1, 0), Vec3(0, 90, 0)}}};
+  EXPECT_TRUE(motion.at(0).isApprox(Eigen::Isometry3d::Identity()));
+  const Eigen::Isometry3d end = motion.at(5);
+  EXPECT_LT((end * Vec3(1, 0, 0) - Vec3(1, 1, 0)).norm(), 1e-12);  // the centre moves without turning
+  EXPECT_LT((end * Vec3(2, 0, 0) - Vec3(1, 1, -1)).norm(), 1e-12);
+  EXPECT_LT((motion.at(1.5) * Vec3(1, 0, 0) - Vec3(1, 0.5, 0)).norm(), 1e-12);
+  EXPECT_LT((motion.at(1.01).translation() - motion.at(1).translation()).norm(), 2e-2);  // starts without a jump
+}
+
+// A scene and a shape that ask for every key there is.
+std::vector<DocumentedKey> all_keys() {
+  std::vector<DocumentedKey> keys;
+  for (const char* model : {"as-rigid-as-possible", "polynomial", "corotated", "neo-hookean"}) {
+    Config config = Config::parse(fmt::format(R"([solver]
+[[body]]
+shape = "shapes/squirrel.toml"
+material = {{ model = "{0}", mu = 1, lambda = 1 }}
+[body.solver]
+[body.regions.NAME]
+material = {{ model = "{0}", mu = 1, lambda = 1 }}
+[[body.handles]]
+name = "a"
+select = {{ region = "x", box = [[0, 0, 0], [1, 1, 1]], sphere = {{ center = [0, 0, 0], radius = 1 }}, plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }} }}
+keys = [{{ t = 0 }}]
+[camera]
+[look]
+[output]
+)", model), "keys", test::assets);
+    (void)read_scene(config);
+    keys.insert(keys.end(), config.documented().begin(), config.documented().end());
+  }
+  return keys;
+}
+
+std::vector<DocumentedKey> shape_keys() {
+  Config config = Config::parse(R"([[part]]
+sphere = { radius = 1 }
+ellipsoid = { radii = [1, 1, 1] }
+capsule = { ends = [[0, 0, 0], [1, 0, 0]], radius = 1 }
+round_cone = { ends = [[0, 0, 0], [1, 0, 0]], radius = 1, end_radius = 1 }
+box = { extent = [1, 1, 1] }
+cylinder = { radius = 1, height = 1 }
+torus = { radius = 1, tube = 0.5 }
+half_space = { normal = [0, 1, 0] }
+parts = []
+[[paint]]
+)", "keys", test::assets);
+  (void)read_shape(config.root());
+  return config.documented();
+}
+
+std::string table_of(const std::vector<DocumentedKey>& keys) {
+  std::string table = "| key | default | allowed | unit | meaning |\n|---|---|---|---|---|\n";
+  std::set<std::string> seen;
+  for (const DocumentedKey& key : keys) {
+    // A region's material, a body's solver: documented once, where they first stand.
+    if (key.path.find("regions.") != std::string::npos && !key.path.ends_with("regions.NAME")) continue;
+    if (key.path.starts_with("body[].solver.") || !seen.insert(key.path + key.type).second) continue;
+    table += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.path, key.fallback, key.allowed, key.unit, key.meaning);
+  }
+  return table;
+}
+
+TEST(Documentation, ListsEveryKeyOfScenesAndShapesWithItsDefault) {
+  const std::string page = test::read_file(test::source_folder / "docs" / "scene-format.md");
+  for (const auto& [name, table] : {std::pair<std::string, std::string>{"scene", table_of(all_keys())}, {"shape", table_of(shape_keys())}}) {
+    if (page.find(table) != std::string::npos) continue;
+    const std::filesystem::path candidate = std::filesystem::path(SUPPLE_BUILD_FOLDER) / (name + "-keys.md");
+    std::ofstream(candidate) << table;
+    ADD_FAILURE() << "docs/scene-format.md does not hold the " << name << " table as the code has it; it is in " << candidate;
+  }
+}
+
+}  // namespace
+}  // namespace supple
