@@ -1,0 +1,172 @@
+// The program as a user meets it: exit statuses, messages, and the folder that a run leaves.
+#include <gtest/gtest.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "output/png_file.h"
+#include "output/video.h"
+#include "support/bodies.h"
+
+namespace supple {
+namespace {
+
+struct Result {
+  int status;
+  std::string out, err;
+};
+
+// Runs the program in `folder`; with interrupt_after_frame >= 0 it gets SIGINT once that frame's picture exists.
+Result run(const std::filesystem::path& folder, const std::vector<std::string>& arguments, const std::filesystem::path& interrupt_when = {}) {
+  const pid_t child = fork();
+  if (child == 0) {
+    std::filesystem::current_path(folder);
+    (void)!freopen("stdout.txt", "w", stdout);
+    (void)!freopen("stderr.txt", "w", stderr);
+    std::vector<char*> words = {const_cast<char*>(SUPPLE_PROGRAM)};
+    for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
+    words.push_back(nullptr);
+    execv(words[0], words.data());
+    _exit(127);
+  }
+  int status = 0;
+  if (!interrupt_when.empty()) {
+    while (!std::filesystem::exists(interrupt_when) && waitpid(child, &status, WNOHANG) == 0) usleep(2000);
+    kill(child, SIGINT);
+  }
+  waitpid(child, &status, 0);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), test::read_file(folder / "stdout.txt"), test::read_file(folder / "stderr.txt")};
+}
+
+// A head of 400 vertices, filmed small.
+void write_scene(const std::filesystem::path& path, const std::string& more = "") {
+  std::ofstream(path) << "frames = 6\n" << more << R"(
+[[body]]
+name = "head"
+shape = "shapes/squirrel.toml"
+vertices = 1500
+size = 0.4
+skin_cells = 24
+material = { model = "polynomial", mu = 2e7 }
+[[body.handles]]
+name = "neck"
+select = { box = [[0, 0, 0], [1, 0.2, 1]] }
+keys = [{ t = 0 }, { t = 0.1, move = [0.03, 0, 0] }]
+[output]
+width = 160
+height = 90
+samples = 1
+)";
+}
+
+nlohmann::json profile_of(const std::filesystem::path& run_folder) { return nlohmann::json::parse(test::read_file(run_folder / "profile.json")); }
+
+std::vector<std::string> hashes_of(const std::filesystem::path& run_folder) {
+  std::vector<std::string> hashes;
+  const nlohmann::json profile = profile_of(run_folder);
+  for (const auto& frame : profile["frames"]) hashes.push_back(frame["state_hash"]);
+  return hashes;
+}
+
+TEST(Program, LeavesAFolderThatExplainsItself) {
+  const test::TemporaryFolder folder;
+  write_scene(folder.path / "head.toml");
+  const Result result = run(folder.path, {"render", "head.toml", "--error-every", "2"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::filesystem::path out = folder.path / "out" / "head";
+  for (int frame = 0; frame < 6; ++frame) EXPECT_EQ(read_png(out / "frames" / fmt::format("{:06}.png", frame)).width, 160);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(out / "frames"), {}), 6);
+  if (std::filesystem::exists(out / "video.mp4")) {
+    EXPECT_EQ(count_video_frames(out / "video.mp4"), 6);
+  }
+  const auto info = nlohmann::json::parse(test::read_file(out / "run.json"));
+  EXPECT_EQ(info["ended"], "done");
+  EXPECT_EQ(info["frames"], 6);
+  EXPECT_EQ(info["scene"]["body"][0]["vertices"], 1500);
+  EXPECT_EQ(info["command"][2], "head.toml");
+  EXPECT_FALSE(info["gl"]["renderer"].get<std::string>().empty());
+  const auto profile = profile_of(out);
+  ASSERT_EQ(profile["frames"].size(), 6u);
+  const auto& body = profile["frames"][2]["bodies"][0];
+  EXPECT_TRUE(body["error"].is_number());
+  EXPECT_FALSE(profile["frames"][1]["bodies"][0].contains("error"));
+  const double phases = body["evaluate_ms"].get<double>() + body["solve_ms"].get<double>() + body["lbfgs_ms"].get<double>() + body["other_ms"].get<double>();
+  EXPECT_NEAR(phases, body["step_ms"].get<double>(), 0.01);
+  EXPECT_EQ(std::filesystem::file_size(out / "motion" / "head.pc2") % 12, 32 % 12);
+}
+
+TEST(Program, GivesTheSameHashesForAnyThreadsWithAndWithoutImages) {
+  const test::TemporaryFolder folder;
+  write_scene(folder.path / "head.toml");
+  const auto hashes = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"render", "head.toml", "--no-video", "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(run(folder.path, arguments).status, 0);
+    return hashes_of(folder.path / "out" / "head");
+  };
+  const std::vector<std::string> expected = hashes({"--threads", "1", "--no-images"});
+  EXPECT_EQ(expected.size(), 6u);
+  EXPECT_NE(expected[0], expected[1]);
+  for (const char* threads : {"1", "2", "4"}) EXPECT_EQ(hashes({"--threads", threads}), expected);
+}
+
+TEST(Program, RefusesBadInputWithStatusTwoAndOneClearMessage) {
+  const test::TemporaryFolder folder;
+  write_scene(folder.path / "typo.toml", "frmes = 3\n");
+  EXPECT_EQ(run(folder.path, {"render", "typo.toml"}).status, 2);
+  EXPECT_EQ(run(folder.path, {"check", "typo.toml"}).err, "typo.toml:2:1: unknown key 'frmes'; did you mean 'frames'?\n");
+  EXPECT_FALSE(std::filesystem::exists(folder.path / "out"));
+  EXPECT_EQ(run(folder.path, {"render", "none.toml"}).err, "none.toml: no such file\n");
+  EXPECT_EQ(run(folder.path, {"render"}).status, 2);
+  EXPECT_EQ(run(folder.path, {"frobnicate"}).status, 2);
+  EXPECT_EQ(run(folder.path, {"render", "typo.toml", "--threads", "0"}).status, 2);
+  EXPECT_EQ(run(folder.path, {"info", "typo.toml"}).status, 2);
+  EXPECT_EQ(run(folder.path, {"--help"}).status, 0);
+  EXPECT_EQ(run(folder.path, {"list"}).status, 0);
+}
+
+TEST(Program, KeepsTheFramesBeforeABodyThatFliesApart) {
+  const test::TemporaryFolder folder;
+  write_scene(folder.path / "wild.toml");
+  const Result result = run(folder.path, {"render", "wild.toml", "--no-video", "--frames", "200", "--set", "body.head.solver.line_search=none", "--set",
+                                          "body.head.material.mu=1e9", "--set", "gravity=[0,-2000,0]"});
+  ASSERT_EQ(result.status, 1) << result.err;
+  EXPECT_NE(result.err.find("supple: frame "), std::string::npos);
+  for (const char* word : {"body 'head'", "vertex ", "kept: "}) EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
+  const std::filesystem::path out = folder.path / "out" / "wild";
+  const auto info = nlohmann::json::parse(test::read_file(out / "run.json"));
+  EXPECT_TRUE(info["ended"].get<std::string>().starts_with("failed"));
+  const int frames = info["frames"];
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(out / "frames"), {}), frames);
+  EXPECT_EQ(profile_of(out)["frames"].size(), std::size_t(frames));
+}
+
+TEST(Program, EndsAfterTheFrameInProgressWhenInterrupted) {
+  const test::TemporaryFolder folder;
+  write_scene(folder.path / "long.toml");
+  const std::filesystem::path out = folder.path / "out" / "long";
+  const Result result = run(folder.path, {"render", "long.toml", "--frames", "100000", "--no-video"}, out / "frames" / "000003.png");
+  EXPECT_EQ(result.status, 130) << result.err;
+  const auto profile = profile_of(out);
+  const std::size_t frames = profile["frames"].size();
+  EXPECT_GE(frames, 4u);
+  EXPECT_EQ(std::size_t(std::distance(std::filesystem::directory_iterator(out / "frames"), {})), frames);
+  EXPECT_NO_THROW(read_png(out / "frames" / fmt::format("{:06}.png", frames - 1)));
+}
+
+TEST(Program, TakesThePapersSquirrelInThePlaceOfOurs) {
+  const auto mesh = test::paper_mesh("squirrel_modified");
+  if (!mesh) GTEST_SKIP() << "no SUPPLE_PAPER_MESHES: squirrel_modified";
+  const test::TemporaryFolder folder;
+  const Result result = run(folder.path, {"render", "squirrel", "--no-images", "--frames", "3", "--set", "body.polynomial.mesh=" + mesh->string()});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.err.find("polynomial: 8395 vertices, 23645 elements"), std::string::npos) << result.err;
+}
+
+}  // namespace
+}  // namespace supple
