@@ -23,6 +23,7 @@ vec4 surface() {
 }
 
 void main() {
+  if (world.y < -1e-4) discard;  // under the ground, which is drawn on its own
   vec3 n = normalize(world_normal);
   vec3 v = normalize(eye - world);
   if (dot(n, v) < 0.0 && !gl_FrontFacing) n = -n;

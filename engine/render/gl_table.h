@@ -28,7 +28,6 @@
   F(PFNGLDELETESHADERPROC, DeleteShader)                                                                                             \
   F(PFNGLDELETETEXTURESPROC, DeleteTextures)                                                                                         \
   F(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)                                                                                 \
-  F(PFNGLDEPTHFUNCPROC, DepthFunc)                                                                                                   \
   F(PFNGLDEPTHMASKPROC, DepthMask)                                                                                                   \
   F(PFNGLDISABLEPROC, Disable)                                                                                                       \
   F(PFNGLDRAWARRAYSPROC, DrawArrays)                                                                                                 \

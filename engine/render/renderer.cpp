@@ -114,6 +114,7 @@ Renderer::Renderer(const Stage& stage, GlChoice choice, const std::filesystem::p
   shadow_program_ = load_program(gl_, shaders, "shadow");
   label_program_ = load_program(gl_, shaders, "label");
   backdrop_program_ = load_program(gl_, shaders, "backdrop");
+  layer_program_ = load_program(gl_, shaders, "layer");
   gl_.GenVertexArrays(1, &empty_array_);
   make_targets();
   check_test_triangle();
@@ -129,13 +130,16 @@ Renderer::~Renderer() {
     gl_.DeleteVertexArrays(1, &mesh.array);
   }
   for (Label& label : labels_) gl_.DeleteTextures(1, &label.texture);
-  for (const GLuint program : {body_program_, ground_program_, shadow_program_, label_program_, backdrop_program_}) gl_.DeleteProgram(program);
-  for (const Target* target : {&scene_, &resolved_}) {
+  for (const GLuint program : {body_program_, ground_program_, shadow_program_, label_program_, backdrop_program_, layer_program_}) {
+    gl_.DeleteProgram(program);
+  }
+  for (const Target* target : {&bodies_, &resolved_, &picture_}) {
     gl_.DeleteFramebuffers(1, &target->framebuffer);
     gl_.DeleteRenderbuffers(1, &target->color);
     gl_.DeleteRenderbuffers(1, &target->depth);
   }
   gl_.DeleteFramebuffers(1, &shadow_framebuffer_);
+  gl_.DeleteTextures(1, &layer_texture_);
   gl_.DeleteTextures(1, &shadow_texture_);
   gl_.DeleteTextures(1, &occlusion_texture_);
   gl_.DeleteVertexArrays(1, &empty_array_);
@@ -149,21 +153,31 @@ void Renderer::make_targets() {
   GLint most_samples = 1;
   gl_.GetIntegerv(GL_MAX_SAMPLES, &most_samples);
   const int samples = std::min(stage_.samples, most_samples);
-  const auto make = [&](Target& target, int sample_count, const char* what) {
+  const auto renderbuffer = [&](GLuint& buffer, int sample_count, GLenum format, GLenum attachment) {
+    gl_.GenRenderbuffers(1, &buffer);
+    gl_.BindRenderbuffer(GL_RENDERBUFFER, buffer);
+    gl_.RenderbufferStorageMultisample(GL_RENDERBUFFER, sample_count, format, stage_.width, stage_.height);
+    gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, attachment, GL_RENDERBUFFER, buffer);
+  };
+  const auto framebuffer = [&](Target& target) {
     gl_.GenFramebuffers(1, &target.framebuffer);
     gl_.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
-    gl_.GenRenderbuffers(1, &target.color);
-    gl_.BindRenderbuffer(GL_RENDERBUFFER, target.color);
-    gl_.RenderbufferStorageMultisample(GL_RENDERBUFFER, sample_count, GL_RGBA8, stage_.width, stage_.height);
-    gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target.color);
-    gl_.GenRenderbuffers(1, &target.depth);
-    gl_.BindRenderbuffer(GL_RENDERBUFFER, target.depth);
-    gl_.RenderbufferStorageMultisample(GL_RENDERBUFFER, sample_count, GL_DEPTH_COMPONENT24, stage_.width, stage_.height);
-    gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, target.depth);
-    check(what);
   };
-  make(scene_, samples > 1 ? samples : 0, "scene");
-  make(resolved_, 0, "resolved");
+  framebuffer(bodies_);
+  renderbuffer(bodies_.color, samples > 1 ? samples : 0, GL_RGBA8, GL_COLOR_ATTACHMENT0);
+  renderbuffer(bodies_.depth, samples > 1 ? samples : 0, GL_DEPTH_COMPONENT24, GL_DEPTH_ATTACHMENT);
+  check("bodies'");
+  framebuffer(picture_);
+  renderbuffer(picture_.color, 0, GL_RGBA8, GL_COLOR_ATTACHMENT0);
+  check("picture's");
+  framebuffer(resolved_);
+  gl_.GenTextures(1, &layer_texture_);
+  gl_.BindTexture(GL_TEXTURE_2D, layer_texture_);
+  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, stage_.width, stage_.height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  gl_.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, layer_texture_, 0);
+  check("resolved");
 
   gl_.GenTextures(1, &shadow_texture_);
   gl_.BindTexture(GL_TEXTURE_2D, shadow_texture_);
@@ -190,7 +204,7 @@ void Renderer::make_targets() {
 
 // Some software rasterisers take a multisampled framebuffer and leave it blank, without an error.
 void Renderer::check_test_triangle() {
-  gl_.BindFramebuffer(GL_FRAMEBUFFER, scene_.framebuffer);
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, bodies_.framebuffer);
   gl_.Viewport(0, 0, stage_.width, stage_.height);
   gl_.ClearColor(0, 0, 0, 1);
   gl_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -200,7 +214,7 @@ void Renderer::check_test_triangle() {
   gl_.Uniform1f(uniform(backdrop_program_, "exposure"), 1);
   gl_.BindVertexArray(empty_array_);
   gl_.DrawArrays(GL_TRIANGLES, 0, 3);
-  gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, scene_.framebuffer);
+  gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, bodies_.framebuffer);
   gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_.framebuffer);
   gl_.BlitFramebuffer(0, 0, stage_.width, stage_.height, 0, 0, stage_.width, stage_.height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
   gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, resolved_.framebuffer);
@@ -301,6 +315,7 @@ void Renderer::draw_shadow_map() {
   gl_.Clear(GL_DEPTH_BUFFER_BIT);
   gl_.Enable(GL_POLYGON_OFFSET_FILL);
   gl_.PolygonOffset(2.0f, 4.0f);
+  gl_.Enable(GL_CULL_FACE);  // bodies are closed: their far sides are hidden, and small triangles are what costs
   gl_.UseProgram(shadow_program_);
   gl_.UniformMatrix4fv(uniform(shadow_program_, "light_matrix"), 1, GL_FALSE, light_matrix_.data());
   for (const MeshBuffers& mesh : meshes_) {
@@ -340,14 +355,13 @@ void Renderer::set_lights(GLuint program, const Camera& camera) const {
   gl_.BindTexture(GL_TEXTURE_2D, shadow_texture_);
 }
 
-void Renderer::draw_scene(const Camera& camera) {
+void Renderer::draw_bodies(const Camera& camera) {
   const double aspect = static_cast<double>(stage_.width) / stage_.height;
   const View view = view_of(camera, aspect, bounds_.diagonal() + largest_body_);
-  gl_.BindFramebuffer(GL_FRAMEBUFFER, scene_.framebuffer);
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, bodies_.framebuffer);
   gl_.Viewport(0, 0, stage_.width, stage_.height);
-  gl_.ClearColor(0, 0, 0, 1);
+  gl_.ClearColor(0, 0, 0, 0);
   gl_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-
   gl_.UseProgram(body_program_);
   set_lights(body_program_, camera);
   gl_.UniformMatrix4fv(uniform(body_program_, "view_matrix"), 1, GL_FALSE, view.matrix.data());
@@ -371,6 +385,22 @@ void Renderer::draw_scene(const Camera& camera) {
     gl_.DrawElements(GL_TRIANGLES, meshes_[m].count, GL_UNSIGNED_INT, nullptr);
   }
 
+  gl_.Disable(GL_CULL_FACE);
+  gl_.Disable(GL_DEPTH_TEST);
+  gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, bodies_.framebuffer);
+  gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_.framebuffer);
+  gl_.BlitFramebuffer(0, 0, stage_.width, stage_.height, 0, 0, stage_.width, stage_.height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+}
+
+// The ground has no edges of its own: it is drawn with one sample a pixel, at a fraction of the cost, and the bodies are laid over it.
+void Renderer::draw_ground(const Camera& camera) {
+  const View view = view_of(camera, static_cast<double>(stage_.width) / stage_.height, bounds_.diagonal() + largest_body_);
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, picture_.framebuffer);
+  gl_.BindVertexArray(empty_array_);
+  gl_.UseProgram(backdrop_program_);
+  set_lights(backdrop_program_, camera);
+  gl_.DrawArrays(GL_TRIANGLES, 0, 3);
+
   gl_.UseProgram(ground_program_);
   set_lights(ground_program_, camera);
   gl_.UniformMatrix4fv(uniform(ground_program_, "view_matrix"), 1, GL_FALSE, view.matrix.data());
@@ -385,21 +415,22 @@ void Renderer::draw_scene(const Camera& camera) {
   gl_.ActiveTexture(GL_TEXTURE0);
   gl_.BindVertexArray(empty_array_);
   gl_.DrawArrays(GL_TRIANGLES, 0, 6);
+}
 
-  // Front to back, so that each pixel is shaded about once.
-  gl_.DepthFunc(GL_LEQUAL);
-  gl_.UseProgram(backdrop_program_);
-  set_lights(backdrop_program_, camera);
+void Renderer::lay_bodies_over_ground() {
+  gl_.Enable(GL_BLEND);
+  gl_.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);  // resolved samples are weighted by their coverage already
+  gl_.UseProgram(layer_program_);
+  gl_.Uniform1i(uniform(layer_program_, "layer"), 0);
+  gl_.BindTexture(GL_TEXTURE_2D, layer_texture_);
   gl_.DrawArrays(GL_TRIANGLES, 0, 3);
-  gl_.DepthFunc(GL_LESS);
+  gl_.Disable(GL_BLEND);
 }
 
 void Renderer::draw_labels(const Camera& camera) {
   if (labels_.empty()) return;
   const double aspect = static_cast<double>(stage_.width) / stage_.height;
   const Eigen::Matrix4f view = view_of(camera, aspect, bounds_.diagonal() + largest_body_).matrix;
-  gl_.BindFramebuffer(GL_FRAMEBUFFER, resolved_.framebuffer);
-  gl_.Disable(GL_DEPTH_TEST);
   gl_.Enable(GL_BLEND);
   gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   gl_.UseProgram(label_program_);
@@ -423,13 +454,12 @@ void Renderer::draw_labels(const Camera& camera) {
 Image Renderer::draw(const DrawList& list) {
   upload(list);
   draw_shadow_map();
-  draw_scene(list.camera);
-  gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, scene_.framebuffer);
-  gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_.framebuffer);
-  gl_.BlitFramebuffer(0, 0, stage_.width, stage_.height, 0, 0, stage_.width, stage_.height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  draw_bodies(list.camera);
+  draw_ground(list.camera);
+  lay_bodies_over_ground();
   draw_labels(list.camera);
 
-  gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, resolved_.framebuffer);
+  gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, picture_.framebuffer);
   gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
   std::vector<std::uint8_t> rows(std::size_t(stage_.width) * stage_.height * 4);
   gl_.ReadPixels(0, 0, stage_.width, stage_.height, GL_RGBA, GL_UNSIGNED_BYTE, rows.data());

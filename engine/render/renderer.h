@@ -35,7 +35,7 @@ class Renderer {
     std::vector<float> normal_data;
   };
   struct Target {
-    GLuint framebuffer = 0, color = 0, depth = 0;
+    GLuint framebuffer = 0, color = 0, depth = 0;  // depth only where bodies are drawn
   };
   struct Label {
     GLuint texture = 0;
@@ -49,7 +49,9 @@ class Renderer {
   void check_test_triangle();
   void upload(const DrawList& list);
   void draw_shadow_map();
-  void draw_scene(const Camera& camera);
+  void draw_bodies(const Camera& camera);
+  void draw_ground(const Camera& camera);
+  void lay_bodies_over_ground();
   void draw_labels(const Camera& camera);
   void set_lights(GLuint program, const Camera& camera) const;
 
@@ -59,8 +61,12 @@ class Renderer {
   GlContext context_;
   GlTable gl_;
   std::string name_, version_;
-  GLuint body_program_ = 0, ground_program_ = 0, shadow_program_ = 0, label_program_ = 0, backdrop_program_ = 0;
-  Target scene_, resolved_;
+  GLuint body_program_ = 0, ground_program_ = 0, shadow_program_ = 0, label_program_ = 0, backdrop_program_ = 0,
+         layer_program_ = 0;
+  Target bodies_;              // antialiased; transparent where there is no body
+  Target resolved_;            // the same, one sample a pixel; its colour is layer_texture_
+  Target picture_;
+  GLuint layer_texture_ = 0;
   GLuint shadow_framebuffer_ = 0, shadow_texture_ = 0, occlusion_texture_ = 0, empty_array_ = 0;
   std::vector<MeshBuffers> meshes_;
   std::vector<Label> labels_;
