@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "app/verbs.h"
+#include "base/console.h"
 #include "base/error.h"
 #include "scene/assemble.h"
 #include "scene/scene_reader.h"
@@ -12,18 +13,21 @@ int check(const std::string& name, const std::vector<std::string>& settings) {
   const SceneDef scene = load_scene(scene_file(name), assets_folder(), settings);
   const std::vector<Body> bodies = assemble(scene);
   for (const Body& body : bodies) {
-    for (const std::string& note : body.notes) fmt::print("note: {}: {}\n", body.source, note);
+    for (const std::string& note : body.notes) say(stdout, fmt::format("note: {}: {}\n", body.source, note));
   }
   const std::vector<Problem> list = warnings(scene, bodies);
-  for (const Problem& warning : list) fmt::print("warning: {}\n", warning.text());
-  fmt::print("{}: no errors, {} warning{}; {} frames, {} {}\n", scene.name, list.size(), list.size() == 1 ? "" : "s", scene.frames,
-             bodies.size(), bodies.size() == 1 ? "body" : "bodies");
+  for (const Problem& warning : list) say(stdout, fmt::format("warning: {}\n", warning.text()));
+  say(stdout,
+      fmt::format("{}: no errors, {} warning{}; {} frames, {} {}\n", scene.name, list.size(),
+                  list.size() == 1 ? "" : "s", scene.frames, bodies.size(), bodies.size() == 1 ? "body" : "bodies"));
   for (const Body& body : bodies) {
     const TetMesh& mesh = body.description.mesh;
     const double h = scene.time_step();
     const double size = bounds_of(mesh.rest).diagonal();
-    fmt::print("  {}: {} vertices, {} elements, k h^2 / (rho L^2) = {:.3g}\n", body.def.name, mesh.rest.rows(), mesh.tets.rows(),
-               stiffness(body.def.material, body.def.fit) * h * h / (body.description.density * size * size));
+    say(stdout,
+        fmt::format("  {}: {} vertices, {} elements, k h^2 / (rho L^2) = {:.3g}\n", body.def.name, mesh.rest.rows(),
+                    mesh.tets.rows(),
+                    stiffness(body.def.material, body.def.fit) * h * h / (body.description.density * size * size)));
   }
   return 0;
 }
@@ -36,7 +40,9 @@ void add_check(CLI::App& app, Action& action) {
   CLI::App* verb = app.add_subcommand("check", "Every error and warning of a scene at once; writes nothing.");
   verb->footer("Example: supple check my-scene.toml");
   verb->add_option("SCENE", *name, "scene file, or the name of one that ships")->required();
-  verb->add_option("--set", *settings, "path=value over the scene's; may be repeated")->take_all()->allow_extra_args(false);
+  verb->add_option("--set", *settings, "path=value over the scene's; may be repeated")
+      ->take_all()
+      ->allow_extra_args(false);
   verb->callback([&action, name, settings] { action = [name, settings] { return check(*name, *settings); }; });
 }
 

@@ -1,8 +1,11 @@
 #include "app/draw_scene.h"
 
+#include "render/view.h"
+
 namespace supple {
 
-Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const std::vector<DrawnBody>& drawn, const std::string& font) {
+Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const std::vector<DrawnBody>& drawn,
+                 const std::string& font) {
   Stage stage;
   stage.width = scene.output.width;
   stage.height = scene.output.height;
@@ -32,7 +35,8 @@ Camera make_camera(const SceneDef& scene, const Stage& stage) {
     box.include(mesh.rest.lower);
     box.include(mesh.rest.upper);
   }
-  Camera camera = framing(box, scene.camera.fov_deg, scene.camera.margin, static_cast<double>(stage.width) / stage.height);
+  Camera camera =
+      framing(box, scene.camera.fov_deg, scene.camera.margin, static_cast<double>(stage.width) / stage.height);
   if (scene.camera.target) camera.target = *scene.camera.target;
   if (scene.camera.position) camera.eye = *scene.camera.position;
   return camera;

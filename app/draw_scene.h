@@ -6,7 +6,8 @@
 
 namespace supple {
 
-Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const std::vector<DrawnBody>& drawn, const std::string& font);
+Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const std::vector<DrawnBody>& drawn,
+                 const std::string& font);
 
 // The scene's camera, or one that frames all bodies and the motion of their handles.
 Camera make_camera(const SceneDef& scene, const Stage& stage);

@@ -9,7 +9,9 @@
 #include <thread>
 
 #include "app/draw_scene.h"
+#include "base/console.h"
 #include "base/error.h"
+#include "base/hash.h"
 #include "base/queue.h"
 #include "base/text.h"
 #include "base/timing.h"
@@ -33,7 +35,8 @@ extern "C" void on_interrupt(int) {
 
 constexpr std::size_t frames_in_flight = 3;  // between two stages
 
-// Drawing and compressing, each on a thread of its own. A stage that fails closes the queues; its error waits to be collected.
+// Drawing and compressing, each on a thread of its own. A stage that fails closes the queues; its error waits to be
+// collected.
 class Pictures {
  public:
   Pictures(const Stage& stage, const FilmOptions& options, const RunFolder& folder)
@@ -126,12 +129,12 @@ class Progress {
     if (quiet_ || (!due && done != frames_)) return;
     last_ = elapsed;
     const std::string left = duration_text(elapsed / done * (frames_ - done));
-    fmt::print(stderr, "{}frame {} of {}, {:.1f} a second, {} left{}", terminal_ ? "\r\033[K" : "", done, frames_, done / elapsed, left,
-               terminal_ ? "" : "\n");
+    say(stderr, fmt::format("{}frame {} of {}, {:.1f} a second, {} left{}", terminal_ ? "\r\033[K" : "", done, frames_,
+                            done / elapsed, left, terminal_ ? "" : "\n"));
     shown_ = true;
   }
   void end() {
-    if (!quiet_ && terminal_ && shown_) fmt::print(stderr, "\n");
+    if (!quiet_ && terminal_ && shown_) say(stderr, fmt::format("\n"));
   }
 
  private:
@@ -166,8 +169,8 @@ void add_up(BodyRow& row, const StepReport& report) {
 }
 
 std::string failure_text(int frame, const Actor& actor, const StepFailure& failure) {
-  return fmt::format("frame {}: body '{}' failed while in '{}': {} (vertex {} is furthest out)", frame, actor.body.def.name, failure.phase,
-                     failure.what, failure.vertex + 1);
+  return fmt::format("frame {}: body '{}' failed while in '{}': {} (vertex {} is furthest out)", frame,
+                     actor.body.def.name, failure.phase, failure.what, failure.vertex + 1);
 }
 
 // One frame's steps of one body. A message when the solver failed.
@@ -207,33 +210,39 @@ void catch_interrupts() {
   std::signal(SIGPIPE, SIG_IGN);
 }
 
-FilmResult make_film(const SceneDef& scene, const std::vector<Body>& bodies, std::vector<Model>& models, const RunFolder& folder,
-                     const FilmOptions& options) {
+FilmResult make_film(const SceneDef& scene, const std::vector<Body>& bodies, std::vector<Model>& models,
+                     const RunFolder& folder, const FilmOptions& options) {
   FilmResult result;
   const Stopwatch setup;
   Threads threads(options.threads);
   std::vector<DrawnBody> drawn;
   std::optional<Pictures> pictures;
-  Camera camera;
-  if (options.images) {
-    for (const Body& body : bodies) drawn.push_back(drawn_body(scene, body));
-    const Stage stage = make_stage(scene, bodies, drawn, options.font);
-    camera = make_camera(scene, stage);
-    pictures.emplace(stage, options, folder);
-  }
-  std::vector<std::unique_ptr<Actor>> actors;
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    actors.push_back(std::make_unique<Actor>(Actor{bodies[b], models[b], rest_state(models[b]), {scene.gravity, {}, bodies[b].def.solver}, {}, {},
-                                                   PointCacheWriter(folder.motion(bodies[b].def.name), models[b].vertices)}));
-    actors.back()->workspace.threads = &threads;
-    actors.back()->reference_workspace.threads = &threads;
-  }
-  result.setup_ms = setup.elapsed_ms();
-
-  const Stopwatch loop;
-  Progress progress(scene.frames, options.quiet);
   std::vector<FrameRow> rows;
+  Progress progress(scene.frames, options.quiet);
+  Stopwatch loop;
   try {
+    Camera camera;
+    if (options.images) {
+      for (const Body& body : bodies) drawn.push_back(drawn_body(scene, body));
+      const Stage stage = make_stage(scene, bodies, drawn, options.font);
+      camera = make_camera(scene, stage);
+      pictures.emplace(stage, options, folder);
+    }
+    std::vector<std::unique_ptr<Actor>> actors;
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      actors.push_back(
+          std::make_unique<Actor>(Actor{bodies[b],
+                                        models[b],
+                                        rest_state(models[b]),
+                                        {scene.gravity, {}, bodies[b].def.solver},
+                                        {},
+                                        {},
+                                        PointCacheWriter(folder.motion(bodies[b].def.name), models[b].vertices)}));
+      actors.back()->workspace.threads = &threads;
+      actors.back()->reference_workspace.threads = &threads;
+    }
+    result.setup_ms = setup.elapsed_ms();
+    loop.lap_ms();
     for (int frame = 0; frame < scene.frames; ++frame) {
       if (interrupted()) {
         result.end = FilmEnd::interrupted;
@@ -243,21 +252,26 @@ FilmResult make_film(const SceneDef& scene, const std::vector<Body>& bodies, std
       row.frame = frame;
       row.time_s = (frame + 1) / scene.fps;
       const bool measure_error = options.error_every > 0 && frame % options.error_every == 0;
+      std::vector<std::uint64_t> hashes;
       for (const auto& actor : actors) {
         row.bodies.emplace_back();
         result.message = advance(scene, frame, measure_error, *actor, row.bodies.back());
         if (!result.message.empty()) break;
         row.step_ms += row.bodies.back().step_ms;
-        row.state_hash = row.state_hash * 0x9E3779B97F4A7C15u + state_hash(actor->model, actor->state);
+        hashes.push_back(state_hash(actor->model, actor->state));
       }
       if (!result.message.empty()) {
         result.end = FilmEnd::failed;
         break;
       }
+      // Of one body its own; of several, XXH64 of theirs in the order of the scene.
+      row.state_hash =
+          hashes.size() == 1 ? hashes.front() : hash_bytes(hashes.data(), sizeof(hashes.front()) * hashes.size());
       if (pictures) {
         const Stopwatch watch;
         DrawList list{camera, {}};
-        for (std::size_t b = 0; b < actors.size(); ++b) list.positions.push_back(skin_positions(drawn[b], actors[b]->model, actors[b]->state));
+        for (std::size_t b = 0; b < actors.size(); ++b)
+          list.positions.push_back(skin_positions(drawn[b], actors[b]->model, actors[b]->state));
         row.draw_ms = watch.elapsed_ms();
         if (!pictures->put(frame, std::move(list))) break;
       }
@@ -288,8 +302,10 @@ FilmResult make_film(const SceneDef& scene, const std::vector<Body>& bodies, std
   result.wall_ms = loop.elapsed_ms();
   result.rows = std::move(rows);
   if (pictures && options.video && !result.rows.empty()) {
-    const VideoResult video = encode_video(folder.frames(), static_cast<int>(result.rows.size()), scene.fps, folder.video());
+    const VideoResult video =
+        encode_video(folder.frames(), static_cast<int>(result.rows.size()), scene.fps, folder.video());
     result.video_written = video.outcome == VideoOutcome::written;
+    result.video_failed = video.outcome == VideoOutcome::failed;
     result.video_message = video.message;
   }
   return result;

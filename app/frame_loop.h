@@ -1,4 +1,5 @@
-// The loop that makes a film: step, draw, compress, overlapped through bounded queues. Nothing that a later stage does can change a result.
+// The loop that makes a film: step, draw, compress, overlapped through bounded queues. Nothing that a later stage does
+// can change a result.
 #pragma once
 
 #include <filesystem>
@@ -30,15 +31,16 @@ struct FilmResult {
   std::string message;         // why it failed, for people
   std::vector<FrameRow> rows;  // of finished frames
   std::string gl_backend, gl_renderer, gl_version;
-  std::string video_message;   // why there is no film
+  std::string video_message;  // why there is no film
   bool video_written = false;
+  bool video_failed = false;  // ffmpeg is there, and did not make it
   double setup_ms = 0;
-  double wall_ms = 0;          // the loop
+  double wall_ms = 0;  // the loop
 };
 
 // Runs a scene into a folder. Whatever happens, the frames before it are whole, and rows tells of them.
-FilmResult make_film(const SceneDef& scene, const std::vector<Body>& bodies, std::vector<Model>& models, const RunFolder& folder,
-                     const FilmOptions& options);
+FilmResult make_film(const SceneDef& scene, const std::vector<Body>& bodies, std::vector<Model>& models,
+                     const RunFolder& folder, const FilmOptions& options);
 
 // True once SIGINT or SIGTERM asked the run to end after the frame in progress.
 bool interrupted();

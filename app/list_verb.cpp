@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/verbs.h"
+#include "base/console.h"
 #include "scene/scene_reader.h"
 
 namespace supple {
@@ -16,7 +17,7 @@ int list_scenes() {
   std::sort(files.begin(), files.end());
   for (const std::filesystem::path& file : files) {
     const SceneDef scene = load_scene(file, assets_folder(), {});
-    fmt::print("{:<22}{}\n", scene.name, scene.title);
+    say(stdout, fmt::format("{:<22}{}\n", scene.name, scene.title));
   }
   return 0;
 }

@@ -1,10 +1,12 @@
-// supple: films of soft bodies from scene files. Exit status: 0 done, 1 the run failed, 2 the input is wrong, 130 interrupted.
+// supple: films of soft bodies from scene files. Exit status: 0 done, 1 the run failed, 2 the input is wrong, 130
+// interrupted.
 #include <fmt/format.h>
 
 #include <cstdio>
 #include <new>
 
 #include "app/verbs.h"
+#include "base/console.h"
 #include "base/error.h"
 #include "output/run_folder.h"
 
@@ -15,7 +17,8 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", supple::program_version());
   app.failure_message([](const CLI::App* a, const CLI::Error& e) {
-    return fmt::format("supple: {}\nTry: supple {}--help\n", e.what(), a->get_subcommands().empty() ? "" : a->get_subcommands().front()->get_name() + " ");
+    return fmt::format("supple: {}\nTry: supple {}--help\n", e.what(),
+                       a->get_subcommands().empty() ? "" : a->get_subcommands().front()->get_name() + " ");
   });
   const std::vector<std::string> command(argv, argv + argc);
   supple::Action action;
@@ -32,7 +35,9 @@ int run(int argc, char** argv) {
     (void)app.exit(error);
     return 2;
   }
-  return action();
+  const int status = action();
+  const bool said = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  return status == 0 && !said ? 1 : status;
 }
 
 }  // namespace
@@ -41,13 +46,13 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const supple::InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    supple::say(stderr, fmt::format("{}\n", error.what()));
     return 2;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "supple: out of memory\n");
+    supple::say(stderr, fmt::format("supple: out of memory\n"));
     return 1;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "supple: {}\n", error.what());
+    supple::say(stderr, fmt::format("supple: {}\n", error.what()));
     return 1;
   }
 }

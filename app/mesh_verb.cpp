@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "app/verbs.h"
+#include "base/console.h"
 #include "base/error.h"
 #include "base/timing.h"
 #include "geometry/mesh_file.h"
@@ -21,11 +22,16 @@ void describe(const TetMesh& mesh) {
   const MeshQuality q = quality(mesh);
   const Manifoldness m = manifoldness(mesh);
   const Bounds box = bounds_of(mesh.rest);
-  fmt::print("vertices        {}\nelements        {}\nboundary faces  {}\n", mesh.rest.rows(), mesh.tets.rows(), boundary_faces(mesh.tets).rows());
-  fmt::print("extent          {:.4g} x {:.4g} x {:.4g}\nvolume          {:.6g}\n", box.extent().x(), box.extent().y(), box.extent().z(), q.volume);
-  fmt::print("dihedral angles {:.2f} to {:.2f} degrees\nsmallest volume {:.2e} of the mean\n", q.smallest_dihedral, q.largest_dihedral, q.smallest_volume);
-  fmt::print("pieces          {}\nboundary        {}\n", m.pieces,
-             m.bad_edges + m.bad_vertices == 0 ? "manifold" : fmt::format("touches itself at {} edges and {} vertices", m.bad_edges, m.bad_vertices));
+  say(stdout, fmt::format("vertices        {}\nelements        {}\nboundary faces  {}\n", mesh.rest.rows(),
+                          mesh.tets.rows(), boundary_faces(mesh.tets).rows()));
+  say(stdout, fmt::format("extent          {:.4g} x {:.4g} x {:.4g}\nvolume          {:.6g}\n", box.extent().x(),
+                          box.extent().y(), box.extent().z(), q.volume));
+  say(stdout, fmt::format("dihedral angles {:.2f} to {:.2f} degrees\nsmallest volume {:.2e} of the mean\n",
+                          q.smallest_dihedral, q.largest_dihedral, q.smallest_volume));
+  say(stdout, fmt::format("pieces          {}\nboundary        {}\n", m.pieces,
+                          m.bad_edges + m.bad_vertices == 0 ? "manifold"
+                                                            : fmt::format("touches itself at {} edges and {} vertices",
+                                                                          m.bad_edges, m.bad_vertices)));
 }
 
 int make_mesh(const std::string& input, const std::string& output, int vertices) {
@@ -34,7 +40,7 @@ int make_mesh(const std::string& input, const std::string& output, int vertices)
   TetMesh mesh;
   if (path.extension() == ".mesh") {
     MeshFile file = read_mesh(path);
-    for (const std::string& note : file.notes) fmt::print("note: {}\n", note);
+    for (const std::string& note : file.notes) say(stdout, fmt::format("note: {}\n", note));
     mesh = std::move(file.mesh);
   } else if (path.extension() == ".toml") {
     mesh = tetrahedralize(load_shape(path, assets_folder()), vertices, path.string());
@@ -43,7 +49,7 @@ int make_mesh(const std::string& input, const std::string& output, int vertices)
   }
   write_mesh(output, mesh);
   describe(mesh);
-  fmt::print("written         {} ({:.2f} s)\n", output, watch.elapsed_ms() / 1000);
+  say(stdout, fmt::format("written         {} ({:.2f} s)\n", output, watch.elapsed_ms() / 1000));
   return 0;
 }
 
@@ -57,10 +63,13 @@ void add_mesh(CLI::App& app, Action& action) {
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("mesh", "Make tetrahedra of a shape, or check and rewrite a mesh.");
   verb->footer("Example: supple mesh squirrel -o squirrel.mesh --vertices 8395");
-  verb->add_option("INPUT", options->input, "shape file (.toml), the name of a shape that ships, or a .mesh file")->required();
+  verb->add_option("INPUT", options->input, "shape file (.toml), the name of a shape that ships, or a .mesh file")
+      ->required();
   verb->add_option("-o,--output", options->output, "MEDIT .mesh file to write")->required();
   verb->add_option("--vertices", options->vertices, "wanted (within 3 %)")->check(CLI::Range(50, 500000));
-  verb->callback([&action, options] { action = [options] { return make_mesh(options->input, options->output, options->vertices); }; });
+  verb->callback([&action, options] {
+    action = [options] { return make_mesh(options->input, options->output, options->vertices); };
+  });
 }
 
 void add_info(CLI::App& app, Action& action) {
@@ -71,7 +80,7 @@ void add_info(CLI::App& app, Action& action) {
   verb->callback([&action, input] {
     action = [input] {
       const MeshFile file = read_mesh(*input);
-      for (const std::string& note : file.notes) fmt::print("note: {}\n", note);
+      for (const std::string& note : file.notes) say(stdout, fmt::format("note: {}\n", note));
       describe(file.mesh);
       return 0;
     };

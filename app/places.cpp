@@ -19,8 +19,9 @@ std::filesystem::path assets_folder() { return shared_folder() / "assets"; }
 std::filesystem::path shaders_folder() { return shared_folder() / "shaders"; }
 
 std::string caption_font() {
-  for (const char* font : {"/usr/share/fonts/truetype/lato/Lato-Regular.ttf", "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
-                           "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"}) {
+  for (const char* font :
+       {"/usr/share/fonts/truetype/lato/Lato-Regular.ttf", "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
+        "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"}) {
     std::error_code error;
     if (std::filesystem::exists(font, error)) return font;
   }

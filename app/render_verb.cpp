@@ -5,6 +5,7 @@
 
 #include "app/frame_loop.h"
 #include "app/verbs.h"
+#include "base/console.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/text.h"
@@ -32,24 +33,29 @@ std::string mesh_hash(const TetMesh& mesh) {
 }
 
 void print_result(const FilmResult& result, const RunFolder& folder, const SceneDef& scene) {
-  fmt::print("\n{}\n", profile_table(result.rows));
+  say(stdout, fmt::format("\n{}\n", profile_table(result.rows)));
   const double seconds = result.wall_ms / 1000;
-  fmt::print("  {} frames in {} ({:.1f} a second; the film's rate is {:g}), after {} of set-up\n", result.rows.size(), duration_text(seconds),
-             static_cast<double>(result.rows.size()) / seconds, scene.fps, duration_text(result.setup_ms / 1000));
-  if (result.video_written) fmt::print("  film     {}\n", folder.video().string());
-  if (!result.video_message.empty()) fmt::print("  {}\n", result.video_message);
-  fmt::print("  profile  {}\n", (folder.path() / "profile.json").string());
+  say(stdout, fmt::format("  {} frames in {} ({:.1f} a second; the film's rate is {:g}), after {} of set-up\n",
+                          result.rows.size(), duration_text(seconds), static_cast<double>(result.rows.size()) / seconds,
+                          scene.fps, duration_text(result.setup_ms / 1000)));
+  if (result.video_written) say(stdout, fmt::format("  film     {}\n", folder.video().string()));
+  if (!result.video_message.empty() && !result.video_failed) say(stdout, fmt::format("  {}\n", result.video_message));
+  say(stdout, fmt::format("  profile  {}\n", (folder.path() / "profile.json").string()));
 }
 
 void print_json(const FilmResult& result, const RunFolder& folder) {
-  nlohmann::ordered_json json = {{"ended", result.end == FilmEnd::done ? "done" : result.end == FilmEnd::interrupted ? "interrupted" : "failed"},
+  nlohmann::ordered_json json = {{"ended", result.end == FilmEnd::done          ? "done"
+                                           : result.end == FilmEnd::interrupted ? "interrupted"
+                                                                                : "failed"},
                                  {"message", result.message},
                                  {"frames", result.rows.size()},
                                  {"wall_ms", result.wall_ms},
                                  {"setup_ms", result.setup_ms},
                                  {"profile", (folder.path() / "profile.json").string()}};
-  json["video"] = result.video_written ? nlohmann::ordered_json(folder.video().string()) : nlohmann::ordered_json(nullptr);
-  fmt::print("{}\n", json.dump());
+  json["video"] =
+      result.video_written ? nlohmann::ordered_json(folder.video().string()) : nlohmann::ordered_json(nullptr);
+  json["video_message"] = result.video_message;
+  say(stdout, fmt::format("{}\n", json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)));
 }
 
 int render(const RenderOptions& options, const std::vector<std::string>& command) {
@@ -62,15 +68,16 @@ int render(const RenderOptions& options, const std::vector<std::string>& command
   SceneDef scene = load_scene(info.scene_file, assets_folder(), settings, &info.scene_json);
   std::vector<Body> bodies = assemble(scene);
   if (!options.quiet) {
-    for (const Problem& warning : warnings(scene, bodies)) fmt::print(stderr, "warning: {}\n", warning.text());
+    for (const Problem& warning : warnings(scene, bodies)) say(stderr, fmt::format("warning: {}\n", warning.text()));
     for (const Body& body : bodies) {
-      for (const std::string& note : body.notes) fmt::print(stderr, "note: {}: {}\n", body.source, note);
+      for (const std::string& note : body.notes) say(stderr, fmt::format("note: {}: {}\n", body.source, note));
     }
   }
   std::vector<Model> models;
   for (const Body& body : bodies) models.push_back(build_model(body.description));
 
-  const RunFolder folder(options.out.empty() ? std::filesystem::path("out") / scene.name : std::filesystem::path(options.out));
+  const RunFolder folder(options.out.empty() ? std::filesystem::path("out") / scene.name
+                                             : std::filesystem::path(options.out));
   FilmOptions film;
   film.threads = options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   film.error_every = options.error_every;
@@ -86,7 +93,9 @@ int render(const RenderOptions& options, const std::vector<std::string>& command
   for (const Body& body : bodies) {
     const TetMesh& mesh = body.description.mesh;
     info.meshes.push_back({body.def.name, body.source, mesh_hash(mesh), int(mesh.rest.rows()), int(mesh.tets.rows())});
-    if (!options.quiet) fmt::print(stderr, "{}: {} vertices, {} elements ({})\n", body.def.name, mesh.rest.rows(), mesh.tets.rows(), body.source);
+    if (!options.quiet)
+      say(stderr, fmt::format("{}: {} vertices, {} elements ({})\n", body.def.name, mesh.rest.rows(), mesh.tets.rows(),
+                              body.source));
   }
   info.ended = "running";
   folder.write_info(info);
@@ -100,23 +109,29 @@ int render(const RenderOptions& options, const std::vector<std::string>& command
   info.gl_renderer = result.gl_renderer;
   info.gl_version = result.gl_version;
   info.frames = static_cast<int>(result.rows.size());
-  info.ended = result.end == FilmEnd::done ? "done" : result.end == FilmEnd::interrupted ? "interrupted" : "failed: " + result.message;
+  info.ended = result.end == FilmEnd::done          ? "done"
+               : result.end == FilmEnd::interrupted ? "interrupted"
+                                                    : "failed: " + result.message;
+  info.video = result.video_written ? "video.mp4" : result.video_message;
+  folder.write_profile(profile_json(result.rows));
+  folder.write_info(info);
   if (options.json) {
     print_json(result, folder);
   } else if (!options.quiet && !result.rows.empty()) {
     print_result(result, folder, scene);
   }
-  std::fflush(stdout);
   if (result.end == FilmEnd::failed) {
-    fmt::print(stderr, "supple: {}\n  kept: {} whole frames in {}\n", result.message, result.rows.size(), folder.path().string());
+    say(stderr, fmt::format("supple: {}\n  kept: {} whole frames in {}\n", result.message, result.rows.size(),
+                            folder.path().string()));
   }
-  folder.write_profile(profile_json(result.rows));
-  folder.write_info(info);
+  if (result.video_failed) say(stderr, fmt::format("supple: {}\n", result.video_message));
   if (result.end == FilmEnd::interrupted) {
-    fmt::print(stderr, "supple: interrupted after {} frames; they are whole, and so is what belongs to them in {}\n", result.rows.size(), folder.path().string());
+    say(stderr,
+        fmt::format("supple: interrupted after {} frames; they are whole, and so is what belongs to them in {}\n",
+                    result.rows.size(), folder.path().string()));
     return 130;
   }
-  return result.end == FilmEnd::done ? 0 : 1;
+  return result.end == FilmEnd::done && !result.video_failed ? 0 : 1;
 }
 
 }  // namespace
@@ -124,16 +139,19 @@ int render(const RenderOptions& options, const std::vector<std::string>& command
 void add_render(CLI::App& app, Action& action, const std::vector<std::string>& command) {
   auto options = std::make_shared<RenderOptions>();
   CLI::App* verb = app.add_subcommand("render", "Simulate a scene and film it.");
-  verb->footer("Example: supple render squirrel --frames 60 --set body.polynomial.material.mu=6e4\n"
-               "Leaves frames/, video.mp4, motion/, profile.json and run.json in out/NAME.");
+  verb->footer(
+      "Example: supple render squirrel --frames 60 --set body.polynomial.material.mu=6e4\n"
+      "Leaves frames/, video.mp4, motion/, profile.json and run.json in out/NAME.");
   verb->add_option("SCENE", options->scene, "scene file, or the name of one that ships (supple list)")->required();
   verb->add_option("--out", options->out, "folder for the results [out/NAME]");
   verb->add_option("--frames", options->frames, "length of the film, over the scene's")->check(CLI::Range(1, 1000000));
-  verb->add_option("--threads", options->threads, "threads of the solver [all cores]; results do not depend on it")->check(CLI::Range(1, 256));
+  verb->add_option("--threads", options->threads, "threads of the solver [all cores]; results do not depend on it")
+      ->check(CLI::Range(1, 256));
   verb->add_option("--set", options->set, "path=value over the scene's, such as solver.iterations=20; may be repeated")
       ->take_all()
       ->allow_extra_args(false);
-  verb->add_option("--error-every", options->error_every, "measure the error of equation 12 every N frames (slow)")->check(CLI::Range(1, 1000000));
+  verb->add_option("--error-every", options->error_every, "measure the error of equation 12 every N frames (slow)")
+      ->check(CLI::Range(1, 1000000));
   verb->add_flag("--no-video", options->no_video, "frames only");
   verb->add_flag("--no-images", options->no_images, "simulate only");
   verb->add_option("--gl", options->gl, "auto, osmesa or egl")->check(CLI::IsMember({"auto", "osmesa", "egl"}));

@@ -1,4 +1,5 @@
-// The program's verbs, a file each. Each adds itself to the command line and returns the exit status when it was called.
+// The program's verbs, a file each. Each adds itself to the command line and returns the exit status when it was
+// called.
 #pragma once
 
 #include <CLI/CLI.hpp>

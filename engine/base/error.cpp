@@ -22,9 +22,11 @@ std::string Problem::text() const {
   return fmt::format("{}:{}:{}: {}", source, line, column, message);
 }
 
-InputError::InputError(std::vector<Problem> problems) : std::runtime_error(joined(problems)), problems_(std::move(problems)) {}
+InputError::InputError(std::vector<Problem> problems)
+    : std::runtime_error(joined(problems)), problems_(std::move(problems)) {}
 
-void check_failed(const char* file, int line, std::string_view text, const std::string& left, const std::string& right) {
+void check_failed(const char* file, int line, std::string_view text, const std::string& left,
+                  const std::string& right) {
   throw std::logic_error(fmt::format("{}:{}: check failed: {} ({} against {})", file, line, text, left, right));
 }
 

@@ -1,4 +1,5 @@
-// A bounded queue between two stages: a full one makes the producer wait, so a slow disk slows a run and never drops a frame.
+// A bounded queue between two stages: a full one makes the producer wait, so a slow disk slows a run and never drops a
+// frame.
 #pragma once
 
 #include <condition_variable>

@@ -1,6 +1,7 @@
-// A small pool that runs numbered chunks of work. Chunks are fixed by the caller, never by the number of threads, and each chunk writes
-// only its own output: so the same bits come out however many threads take part. Waiting threads sleep. The calling thread takes chunks
-// itself and a worker that wakes late finds nothing to do, so a core that somebody else holds costs a little, not a barrier.
+// A small pool that runs numbered chunks of work. Chunks are fixed by the caller, never by the number of threads, and
+// each chunk writes only its own output: so the same bits come out however many threads take part. Waiting threads
+// sleep. The calling thread takes chunks itself and a worker that wakes late finds nothing to do, so a core that
+// somebody else holds costs a little, not a barrier.
 #pragma once
 
 #include <atomic>
@@ -23,7 +24,8 @@ class Threads {
 
   int count() const { return static_cast<int>(workers_.size()) + 1; }
 
-  // Calls body(chunk) once for each chunk in [0, chunks) and returns when all are done. body must not throw; nothing is allocated.
+  // Calls body(chunk) once for each chunk in [0, chunks) and returns when all are done. body must not throw; nothing is
+  // allocated.
   template <class Body>
   void run(int chunks, const Body& body) {
     if (chunks <= 0) return;
@@ -31,7 +33,8 @@ class Threads {
       for (int chunk = 0; chunk < chunks; ++chunk) body(chunk);
       return;
     }
-    run_shared(chunks, [](const void* context, int chunk) { (*static_cast<const Body*>(context))(chunk); }, &body);
+    run_shared(
+        chunks, [](const void* context, int chunk) { (*static_cast<const Body*>(context))(chunk); }, &body);
   }
 
  private:
@@ -48,8 +51,8 @@ class Threads {
   Call call_ = nullptr;            // the job in progress, guarded by mutex_; null between jobs
   const void* context_ = nullptr;  // its body
   int chunks_ = 0;
-  int running_ = 0;                 // workers inside the job
-  unsigned long generation_ = 0;    // counts jobs, so that a worker enters each at most once
+  int running_ = 0;               // workers inside the job
+  unsigned long generation_ = 0;  // counts jobs, so that a worker enters each at most once
   bool stopping_ = false;
   std::atomic<int> next_chunk_{0};
 };

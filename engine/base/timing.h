@@ -1,4 +1,5 @@
-// Wall-clock durations in milliseconds. Never a source of decisions: nothing that changes a result may depend on a clock.
+// Wall-clock durations in milliseconds. Never a source of decisions: nothing that changes a result may depend on a
+// clock.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,5 @@
-// The vocabulary that every folder shares: arrays of points and of indices. Not here: anything that knows what a point is for.
+// The vocabulary that every folder shares: arrays of points and of indices. Not here: anything that knows what a point
+// is for.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,10 +10,12 @@ namespace supple {
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 
-// One row a vertex, interleaved in memory (x0 y0 z0 x1 ...), so that a vertex is one cache line's worth of neighbours. [m]
+// One row a vertex, interleaved in memory (x0 y0 z0 x1 ...), so that a vertex is one cache line's worth of neighbours.
+// [m]
 using Positions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
-using Triangles = Eigen::Matrix<std::int32_t, Eigen::Dynamic, 3, Eigen::RowMajor>;   // vertex indices, anticlockwise from outside
+using Triangles =
+    Eigen::Matrix<std::int32_t, Eigen::Dynamic, 3, Eigen::RowMajor>;  // vertex indices, anticlockwise from outside
 using Tetrahedra = Eigen::Matrix<std::int32_t, Eigen::Dynamic, 4, Eigen::RowMajor>;  // det[x1-x0, x2-x0, x3-x0] > 0
 
 // An axis-aligned box; empty while any lower bound exceeds its upper one.

@@ -32,9 +32,8 @@ std::vector<FaceUse> sorted_faces(const Tetrahedra& tets) {
       uses.push_back(use);
     }
   }
-  std::sort(uses.begin(), uses.end(), [](const FaceUse& a, const FaceUse& b) {
-    return a.key != b.key ? a.key < b.key : a.element < b.element;
-  });
+  std::sort(uses.begin(), uses.end(),
+            [](const FaceUse& a, const FaceUse& b) { return a.key != b.key ? a.key < b.key : a.element < b.element; });
   return uses;
 }
 
@@ -170,7 +169,8 @@ TetMesh submesh(const TetMesh& mesh, const std::vector<char>& keep) {
   TetMesh result;
   result.rest.resize(vertices, 3);
   for (Eigen::Index v = 0; v < mesh.rest.rows(); ++v) {
-    if (renamed[static_cast<std::size_t>(v)] >= 0) result.rest.row(renamed[static_cast<std::size_t>(v)]) = mesh.rest.row(v);
+    if (renamed[static_cast<std::size_t>(v)] >= 0)
+      result.rest.row(renamed[static_cast<std::size_t>(v)]) = mesh.rest.row(v);
   }
   result.tets.resize(kept, 4);
   Eigen::Index row = 0;

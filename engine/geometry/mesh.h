@@ -20,10 +20,10 @@ struct TriMesh {
 
 // What a mesh is like, for `supple info` and for warnings.
 struct MeshQuality {
-  double volume = 0;              // of all elements [m^3]
-  double smallest_volume = 0;     // over the mean volume
-  double smallest_dihedral = 180; // [degrees]
-  double largest_dihedral = 0;    // [degrees]
+  double volume = 0;               // of all elements [m^3]
+  double smallest_volume = 0;      // over the mean volume
+  double smallest_dihedral = 180;  // [degrees]
+  double largest_dihedral = 0;     // [degrees]
 };
 
 double tet_volume(const TetMesh& mesh, Eigen::Index element);
@@ -32,7 +32,8 @@ MeshQuality quality(const TetMesh& mesh);
 // Faces that belong to one element, outward; the indices are the mesh's vertices.
 Triangles boundary_faces(const Tetrahedra& tets);
 
-// A boundary without loose ends: each edge on exactly two faces, the faces around each vertex one fan; all elements in one piece.
+// A boundary without loose ends: each edge on exactly two faces, the faces around each vertex one fan; all elements in
+// one piece.
 struct Manifoldness {
   int bad_edges = 0;
   int bad_vertices = 0;

@@ -50,7 +50,8 @@ class Words {
     Number value{};
     const char* begin = word.data() + (word.front() == '+' ? 1 : 0);
     const auto [end, error] = std::from_chars(begin, word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size()) refuse(fmt::format("'{}' is not {}", word.substr(0, 40), what));
+    if (error != std::errc() || end != word.data() + word.size())
+      refuse(fmt::format("'{}' is not {}", word.substr(0, 40), what));
     if constexpr (std::is_floating_point_v<Number>) {
       if (!std::isfinite(value)) refuse(fmt::format("{} is not finite ({})", what, word.substr(0, 40)));
     }
@@ -61,7 +62,8 @@ class Words {
   Eigen::Index count(std::string_view section, std::size_t fewest_bytes_a_row) {
     const auto value = number<long long>(fmt::format("the number of {}", section));
     if (value < 0 || static_cast<unsigned long long>(value) > bytes_left() / fewest_bytes_a_row + 1) {
-      refuse(fmt::format("{} {} announced, but the file has room for at most {}", value, section, bytes_left() / fewest_bytes_a_row));
+      refuse(fmt::format("{} {} announced, but the file has room for at most {}", value, section,
+                         bytes_left() / fewest_bytes_a_row));
     }
     return static_cast<Eigen::Index>(value);
   }
@@ -118,7 +120,8 @@ void orient(MeshFile& file, const Lines& lines, const std::string& name) {
     const double volume = tet_volume(mesh, e);
     const int line = lines.tets[static_cast<std::size_t>(e)];
     // 1e-18 of the box's cube: a flat element in double coordinates; the flattest sliver in use has 1e-14.
-    if (!(std::abs(volume) > 1e-18 * edge * edge * edge)) throw InputError({Problem{name, line, 0, "the element has no volume"}});
+    if (!(std::abs(volume) > 1e-18 * edge * edge * edge))
+      throw InputError({Problem{name, line, 0, "the element has no volume"}});
     if (volume < 0) {
       ++negative;
       if (first_negative < 0) first_negative = e;
@@ -126,9 +129,10 @@ void orient(MeshFile& file, const Lines& lines, const std::string& name) {
   }
   if (negative == 0) return;
   if (negative != mesh.tets.rows()) {
-    throw InputError({Problem{name, lines.tets[static_cast<std::size_t>(first_negative)], 0,
-                              fmt::format("{} of {} elements are turned inside out, the first here; all must be oriented alike",
-                                          negative, mesh.tets.rows())}});
+    throw InputError(
+        {Problem{name, lines.tets[static_cast<std::size_t>(first_negative)], 0,
+                 fmt::format("{} of {} elements are turned inside out, the first here; all must be oriented alike",
+                             negative, mesh.tets.rows())}});
   }
   mesh.tets.col(2).swap(mesh.tets.col(3));
   file.notes.push_back("all elements were oriented the other way round, and have been turned");
@@ -148,9 +152,11 @@ void drop_unused(MeshFile& file) {
 MeshFile read_mesh(const std::filesystem::path& path) {
   const std::string name = path.string();
   Words words(read_text(path), name);
-  if (words.next() != "MeshVersionFormatted") words.refuse("not a MEDIT mesh: it should begin with MeshVersionFormatted");
+  if (words.next() != "MeshVersionFormatted")
+    words.refuse("not a MEDIT mesh: it should begin with MeshVersionFormatted");
   const int version = words.number<int>("the version");
-  if (version < 1 || version > 4) words.refuse(fmt::format("version {} of the format is not known (1 to 4 are)", version));
+  if (version < 1 || version > 4)
+    words.refuse(fmt::format("version {} of the format is not known (1 to 4 are)", version));
 
   MeshFile file;
   Lines lines;
@@ -162,6 +168,7 @@ MeshFile read_mesh(const std::filesystem::path& path) {
     } else if (section == "Dimension") {
       if (words.number<int>("the dimension") != 3) words.refuse("the dimension must be 3");
     } else if (section == "Vertices") {
+      if (file.mesh.rest.rows() > 0) words.refuse("a second Vertices section");
       const Eigen::Index count = words.count("vertices", 8);
       file.mesh.rest.resize(count, 3);
       lines.vertices = words.line();
@@ -170,20 +177,23 @@ MeshFile read_mesh(const std::filesystem::path& path) {
         (void)words.number<long long>("a vertex's reference");
       }
     } else if (section == "Tetrahedra") {
+      if (file.mesh.tets.rows() > 0) words.refuse("a second Tetrahedra section");
       const Eigen::Index count = words.count("elements", 10);
       file.mesh.tets.resize(count, 4);
       for (Eigen::Index e = 0; e < count; ++e) {
         for (int k = 0; k < 4; ++k) {
           const auto v = words.number<long long>("a vertex of an element");
           if (v < 1 || v > file.mesh.rest.rows()) {
-            words.refuse(fmt::format("vertex {} does not exist: there are {} (vertices count from 1, and stand before the elements)", v,
-                                     file.mesh.rest.rows()));
+            words.refuse(fmt::format(
+                "vertex {} does not exist: there are {} (vertices count from 1, and stand before the elements)", v,
+                file.mesh.rest.rows()));
           }
           file.mesh.tets(e, k) = static_cast<std::int32_t>(v - 1);
         }
         lines.tets.push_back(words.line());
         const auto reference = words.number<long long>("an element's reference");
-        if (reference < 0 || reference > 1'000'000) words.refuse(fmt::format("reference {} is outside 0 to 1000000", reference));
+        if (reference < 0 || reference > 1'000'000)
+          words.refuse(fmt::format("reference {} is outside 0 to 1000000", reference));
         file.mesh.regions.push_back(static_cast<int>(reference));
       }
     } else {
@@ -192,15 +202,18 @@ MeshFile read_mesh(const std::filesystem::path& path) {
         std::string_view name;
         int integers;
       };
-      constexpr Skipped skipped[] = {{"Triangles", 4}, {"Edges", 3}, {"Corners", 1}, {"Ridges", 1}, {"RequiredVertices", 1},
-                                     {"RequiredEdges", 1}, {"RequiredTriangles", 1}};
-      const auto* known = std::find_if(std::begin(skipped), std::end(skipped), [&](const Skipped& s) { return s.name == section; });
+      constexpr Skipped skipped[] = {
+          {"Triangles", 4},        {"Edges", 3},         {"Corners", 1},          {"Ridges", 1},
+          {"RequiredVertices", 1}, {"RequiredEdges", 1}, {"RequiredTriangles", 1}};
+      const auto* known =
+          std::find_if(std::begin(skipped), std::end(skipped), [&](const Skipped& s) { return s.name == section; });
       if (known == std::end(skipped)) words.refuse(fmt::format("section '{}' is not known", section.substr(0, 40)));
       const Eigen::Index count = words.count(known->name, static_cast<std::size_t>(2 * known->integers));
       for (Eigen::Index i = 0; i < count * known->integers; ++i) (void)words.number<long long>("an index");
     }
   }
-  if (file.mesh.rest.rows() == 0 || file.mesh.tets.rows() == 0) words.refuse("the file has no Vertices or no Tetrahedra");
+  if (file.mesh.rest.rows() == 0 || file.mesh.tets.rows() == 0)
+    words.refuse("the file has no Vertices or no Tetrahedra");
   check_duplicates(file.mesh, lines, name);
   orient(file, lines, name);
   drop_unused(file);
@@ -216,11 +229,12 @@ void write_mesh(const std::filesystem::path& path, const TetMesh& mesh) {
   }
   const Triangles faces = boundary_faces(mesh.tets);
   text += fmt::format("Triangles\n{}\n", faces.rows());
-  for (Eigen::Index f = 0; f < faces.rows(); ++f) text += fmt::format("{} {} {} 0\n", faces(f, 0) + 1, faces(f, 1) + 1, faces(f, 2) + 1);
+  for (Eigen::Index f = 0; f < faces.rows(); ++f)
+    text += fmt::format("{} {} {} 0\n", faces(f, 0) + 1, faces(f, 1) + 1, faces(f, 2) + 1);
   text += fmt::format("Tetrahedra\n{}\n", mesh.tets.rows());
   for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
-    text += fmt::format("{} {} {} {} {}\n", mesh.tets(e, 0) + 1, mesh.tets(e, 1) + 1, mesh.tets(e, 2) + 1, mesh.tets(e, 3) + 1,
-                        mesh.regions.empty() ? 0 : mesh.regions[static_cast<std::size_t>(e)]);
+    text += fmt::format("{} {} {} {} {}\n", mesh.tets(e, 0) + 1, mesh.tets(e, 1) + 1, mesh.tets(e, 2) + 1,
+                        mesh.tets(e, 3) + 1, mesh.regions.empty() ? 0 : mesh.regions[static_cast<std::size_t>(e)]);
   }
   text += "End\n";
   file << text << std::flush;

@@ -16,7 +16,10 @@ double primitive_distance(const Sphere& s, const Vec3& p) { return p.norm() - s.
 double primitive_distance(const Ellipsoid& e, const Vec3& p) {
   const double k0 = p.cwiseQuotient(e.radii).norm();
   const double k1 = p.cwiseQuotient(e.radii.cwiseProduct(e.radii)).norm();
-  return k1 < 1e-300 ? -e.radii.minCoeff() : k0 * (k0 - 1) / k1;
+  if (k1 < 1e-300) return -e.radii.minCoeff();
+  const double first_order = k0 * (k0 - 1) / k1;
+  return k0 < 1 ? std::max(first_order, (k0 - 1) * e.radii.minCoeff())
+                : first_order;  // never deeper than the thinnest axis allows
 }
 
 double primitive_distance(const Capsule& c, const Vec3& p) {
@@ -57,7 +60,9 @@ double primitive_distance(const Cylinder& c, const Vec3& p) {
   return std::hypot(std::max(radial, 0.0), std::max(axial, 0.0)) + std::min(std::max(radial, axial), 0.0) - c.round;
 }
 
-double primitive_distance(const Torus& t, const Vec3& p) { return std::hypot(std::hypot(p.x(), p.z()) - t.radius, p.y()) - t.tube; }
+double primitive_distance(const Torus& t, const Vec3& p) {
+  return std::hypot(std::hypot(p.x(), p.z()) - t.radius, p.y()) - t.tube;
+}
 
 double primitive_distance(const HalfSpace& h, const Vec3& p) { return h.normal.dot(p) - h.offset; }
 
@@ -106,7 +111,9 @@ Bounds primitive_bounds(const Primitive& primitive) {
       return merged(box_around(c.from, Vec3::Constant(c.from_radius)), box_around(c.to, Vec3::Constant(c.to_radius)));
     }
     Bounds operator()(const Box& b) const { return box_around(Vec3::Zero(), b.half); }
-    Bounds operator()(const Cylinder& c) const { return box_around(Vec3::Zero(), Vec3(c.radius, c.half_height, c.radius)); }
+    Bounds operator()(const Cylinder& c) const {
+      return box_around(Vec3::Zero(), Vec3(c.radius, c.half_height, c.radius));
+    }
     Bounds operator()(const Torus& t) const {
       return box_around(Vec3::Zero(), Vec3(t.radius + t.tube, t.tube, t.radius + t.tube));
     }
@@ -135,15 +142,16 @@ Bounds bounds_of_group(const ShapeGroup& group) {
   Bounds box;
   for (const ShapePart& part : group.parts) {
     if (part.combine == Combine::cut) continue;
-    Bounds other = part_bounds(part);
+    const Bounds other = part_bounds(part);
     if (part.combine == Combine::intersect) {
       box.lower = box.lower.cwiseMax(other.lower);
       box.upper = box.upper.cwiseMin(other.upper);
     } else {
-      const Vec3 pad = Vec3::Constant(0.25 * part.blend);
-      other.lower -= pad;
-      other.upper += pad;
       box = merged(box, other);
+      if (part.blend > 0 && !box.empty()) {
+        box.lower.array() -= 0.25 * part.blend;
+        box.upper.array() += 0.25 * part.blend;
+      }
     }
   }
   return box;

@@ -1,7 +1,7 @@
-// A solid described by a signed distance field: primitives, rigid transforms, mirrored copies, unions, cuts and smooth blends. One
-// description serves for meshing at any resolution, for colliding and for drawing. Not here: files (scene/) and meshes.
-// The distance is negative inside. It is exact outside for single primitives other than the ellipsoid, and a bound of the right sign
-// after blends and cuts; its zero set is always exact.
+// A solid described by a signed distance field: primitives, rigid transforms, mirrored copies, unions, cuts and smooth
+// blends. One description serves for meshing at any resolution, for colliding and for drawing. Not here: files (scene/)
+// and meshes. The distance is negative inside. It is exact outside for single primitives other than the ellipsoid, and
+// a bound of the right sign after blends and cuts; its zero set is always exact.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -26,7 +26,8 @@ SampleGrid sample(const Shape& shape, double cell) {
   grid.field.resize(std::size_t(grid.points.x()) * grid.points.y() * grid.points.z());
   for (int k = 0; k < grid.points.z(); ++k) {
     for (int j = 0; j < grid.points.y(); ++j) {
-      // A distance field cannot change faster than the point moves: far from the surface most samples follow from the last one.
+      // A distance field cannot change faster than the point moves: far from the surface most samples follow from the
+      // last one.
       double known = 0;
       int skip = 0;
       for (int i = 0; i < grid.points.x(); ++i) {
@@ -56,8 +57,8 @@ Vec3 onto_surface(const Shape& shape, Vec3 point, double cell) {
   return (point - start).norm() < cell ? point : start;
 }
 
-// Openness of the sky over a point: how far the field falls short of free space along the normal (Evans 2006, "Fast approximations
-// for global illumination on dynamic scenes", with the shape's own field).
+// Openness of the sky over a point: how far the field falls short of free space along the normal (Evans 2006, "Fast
+// approximations for global illumination on dynamic scenes", with the shape's own field).
 float openness(const Shape& shape, const Vec3& point, const Vec3& normal, double size) {
   double blocked = 0, weight = 0.55;
   for (int ring = 1; ring <= 5; ++ring) {
@@ -117,13 +118,16 @@ TriMesh contour(const Shape& shape, double cell) {
       for (int i = 1; i + 1 < grid.points.x(); ++i) {
         const bool here = grid.field[grid.at(i, j, k)] < 0;
         if (here != (grid.field[grid.at(i + 1, j, k)] < 0)) {
-          quad(name[grid.at(i, j - 1, k - 1)], name[grid.at(i, j, k - 1)], name[grid.at(i, j, k)], name[grid.at(i, j - 1, k)], !here);
+          quad(name[grid.at(i, j - 1, k - 1)], name[grid.at(i, j, k - 1)], name[grid.at(i, j, k)],
+               name[grid.at(i, j - 1, k)], !here);
         }
         if (here != (grid.field[grid.at(i, j + 1, k)] < 0)) {
-          quad(name[grid.at(i - 1, j, k - 1)], name[grid.at(i - 1, j, k)], name[grid.at(i, j, k)], name[grid.at(i, j, k - 1)], !here);
+          quad(name[grid.at(i - 1, j, k - 1)], name[grid.at(i - 1, j, k)], name[grid.at(i, j, k)],
+               name[grid.at(i, j, k - 1)], !here);
         }
         if (here != (grid.field[grid.at(i, j, k + 1)] < 0)) {
-          quad(name[grid.at(i - 1, j - 1, k)], name[grid.at(i, j - 1, k)], name[grid.at(i, j, k)], name[grid.at(i - 1, j, k)], !here);
+          quad(name[grid.at(i - 1, j - 1, k)], name[grid.at(i, j - 1, k)], name[grid.at(i, j, k)],
+               name[grid.at(i - 1, j, k)], !here);
         }
       }
     }
@@ -132,7 +136,8 @@ TriMesh contour(const Shape& shape, double cell) {
   mesh.points.resize(static_cast<Eigen::Index>(points.size()), 3);
   for (std::size_t v = 0; v < points.size(); ++v) mesh.points.row(v) = points[v];
   mesh.triangles.resize(static_cast<Eigen::Index>(triangles.size()), 3);
-  for (std::size_t t = 0; t < triangles.size(); ++t) mesh.triangles.row(t) << triangles[t][0], triangles[t][1], triangles[t][2];
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    mesh.triangles.row(t) << triangles[t][0], triangles[t][1], triangles[t][2];
   return mesh;
 }
 
@@ -196,7 +201,8 @@ Embedding embed(const Positions& points, const TetMesh& mesh) {
       }
     }
     Mat3 edges;
-    for (int k = 0; k < 3; ++k) edges.col(k) = (mesh.rest.row(mesh.tets(e, k + 1)) - mesh.rest.row(mesh.tets(e, 0))).transpose();
+    for (int k = 0; k < 3; ++k)
+      edges.col(k) = (mesh.rest.row(mesh.tets(e, k + 1)) - mesh.rest.row(mesh.tets(e, 0))).transpose();
     to_weights[e] = edges.inverse();
   }
 

@@ -1,5 +1,5 @@
-// The drawn surface of a body: a finer contour of its shape than the elements have, with colour layers, carried by the elements it lies
-// in. Not here: lights and pixels (render/), the shape's own description (shape.h).
+// The drawn surface of a body: a finer contour of its shape than the elements have, with colour layers, carried by the
+// elements it lies in. Not here: lights and pixels (render/), the shape's own description (shape.h).
 #pragma once
 
 #include <array>
@@ -12,9 +12,9 @@ namespace supple {
 constexpr int max_paint_layers = 8;
 
 struct Skin {
-  TriMesh rest;                                               // in the body's rest frame
-  std::vector<float> occlusion;                               // by vertex: share of the sky that the rest shape leaves open, 0 to 1
-  std::vector<std::array<float, max_paint_layers>> paint;     // by vertex: signed distance to each colour layer [m]
+  TriMesh rest;                  // in the body's rest frame
+  std::vector<float> occlusion;  // by vertex: share of the sky that the rest shape leaves open, 0 to 1
+  std::vector<std::array<float, max_paint_layers>> paint;  // by vertex: signed distance to each colour layer [m]
 };
 
 // Contour with cells of the given size [m] (surface nets), its vertices moved onto the zero set.
@@ -28,8 +28,9 @@ Skin skin_of_boundary(const TetMesh& mesh, std::vector<std::int32_t>& vertex_of)
 
 // Points as fixed combinations of mesh vertices.
 struct Embedding {
-  Tetrahedra corners;                                                          // mesh vertices of each point, n x 4
-  Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor> weights;           // barycentric; sum to 1, negative outside the element
+  Tetrahedra corners;  // mesh vertices of each point, n x 4
+  Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>
+      weights;  // barycentric; sum to 1, negative outside the element
 };
 
 // Each point in the element that holds it, or the one that it lies least outside of.

@@ -5,12 +5,13 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "geometry/mesh_repair.h"
 
 namespace supple {
 namespace {
 
-// Fractions of an edge within which a cut point pulls its lattice point onto the surface: the pair for which the paper's computer
-// search proves the dihedral angles (Labelle and Shewchuk 2007, section 4, uniform tetrahedra).
+// Fractions of an edge within which a cut point pulls its lattice point onto the surface: the pair for which the
+// paper's computer search proves the dihedral angles (Labelle and Shewchuk 2007, section 4, uniform tetrahedra).
 constexpr double snap_long = 0.24999;
 constexpr double snap_short = 0.41189;
 
@@ -29,7 +30,8 @@ class Stuffing {
       cells_[static_cast<std::size_t>(axis)] = static_cast<int>(std::ceil(box.extent()[axis] / spacing + 4));
     }
     const auto layers = static_cast<std::size_t>(2 * cells_[2] + 1);
-    const std::size_t sites = layers * static_cast<std::size_t>(cells_[1] + 1) * static_cast<std::size_t>(cells_[0] + 1);
+    const std::size_t sites =
+        layers * static_cast<std::size_t>(cells_[1] + 1) * static_cast<std::size_t>(cells_[0] + 1);
     field_.assign(sites, 1.0);
     moved_.resize(sites);
     cut_.assign(sites * 7, no_cut);
@@ -65,7 +67,8 @@ class Stuffing {
     return true;
   }
   std::size_t id(const Site& s) const {
-    return (static_cast<std::size_t>(s[2]) * static_cast<std::size_t>(cells_[1] + 1) + static_cast<std::size_t>(s[1] / 2)) *
+    return (static_cast<std::size_t>(s[2]) * static_cast<std::size_t>(cells_[1] + 1) +
+            static_cast<std::size_t>(s[1] / 2)) *
                static_cast<std::size_t>(cells_[0] + 1) +
            static_cast<std::size_t>(s[0] / 2);
   }
@@ -107,7 +110,8 @@ class Stuffing {
       for (int e = 0; e < 7; ++e) {
         const Site other = stepped(s, forward_edges[e], 1);
         if (!inside_lattice(other)) continue;
-        if ((field_[id(s)] < 0) != (field_[id(other)] < 0)) cut_[id(s) * 7 + static_cast<std::size_t>(e)] = find_cut(s, other);
+        if ((field_[id(s)] < 0) != (field_[id(other)] < 0))
+          cut_[id(s) * 7 + static_cast<std::size_t>(e)] = find_cut(s, other);
       }
     });
   }
@@ -177,9 +181,9 @@ class Stuffing {
     return -1;
   }
 
-  // On a face with a, b inside and c outside the kept quadrilateral is (a, b, bc, ac). True: its diagonal is a-bc; false: b-ac. Both
-  // elements at a face decide alike. With both cuts on short edges the lattice's parity decides; otherwise the diagonal leaves from
-  // the cut on the long edge.
+  // On a face with a, b inside and c outside the kept quadrilateral is (a, b, bc, ac). True: its diagonal is a-bc;
+  // false: b-ac. Both elements at a face decide alike. With both cuts on short edges the lattice's parity decides;
+  // otherwise the diagonal leaves from the cut on the long edge.
   static bool diagonal_from_first(const Site& a, const Site& b, const Site& c) {
     if (is_long(a, b)) {
       std::size_t axis = 0;
@@ -217,14 +221,18 @@ class Stuffing {
     const int va = vertex(a), vb = vertex(b);
     if (!is_long(a, b) && !is_long(a, c)) std::swap(c, d);
     const int ac = cut_vertex(a, c), ad = cut_vertex(a, d), bc = cut_vertex(b, c), bd = cut_vertex(b, d);
-    if (!is_long(a, b)) {  // a-c and b-d are long: diagonals b-ac and a-bd, which leave ac-bd as the only one for the surface
+    if (!is_long(
+            a,
+            b)) {  // a-c and b-d are long: diagonals b-ac and a-bd, which leave ac-bd as the only one for the surface
       add(va, ac, ad, bd);
       add(va, vb, ac, bd);
       add(vb, ac, bc, bd);
       return;
     }
-    const double first = (vertices_[static_cast<std::size_t>(ac)] - vertices_[static_cast<std::size_t>(bd)]).squaredNorm();
-    const double second = (vertices_[static_cast<std::size_t>(bc)] - vertices_[static_cast<std::size_t>(ad)]).squaredNorm();
+    const double first =
+        (vertices_[static_cast<std::size_t>(ac)] - vertices_[static_cast<std::size_t>(bd)]).squaredNorm();
+    const double second =
+        (vertices_[static_cast<std::size_t>(bc)] - vertices_[static_cast<std::size_t>(ad)]).squaredNorm();
     if (diagonal_from_first(a, b, c)) {
       add(va, vb, bc, bd);
       add_pyramid(va, ac, bc, bd, ad, first <= second);
@@ -239,9 +247,12 @@ class Stuffing {
     std::size_t ins = 0, outs = 0, ons = 0;
     for (const Site& s : corners) {
       const double value = field_[id(s)];
-      if (value < 0) in[ins++] = s;
-      else if (value > 0) out[outs++] = s;
-      else on[ons++] = s;
+      if (value < 0)
+        in[ins++] = s;
+      else if (value > 0)
+        out[outs++] = s;
+      else
+        on[ons++] = s;
     }
     if (ins == 0) return;
     if (outs == 0) {
@@ -293,96 +304,14 @@ class Stuffing {
   const double spacing_;
   Vec3 origin_;
   std::array<int, 3> cells_{};
-  std::vector<double> field_;      // distance by site; 0 where the site was moved onto the surface
-  std::vector<Vec3> moved_;        // displacement by site [m]
-  std::vector<double> cut_;        // fraction by forward edge, or no_cut
-  std::vector<int> cut_vertex_;    // vertex by forward edge, or -1
-  std::vector<int> site_vertex_;   // vertex by site, or -1
+  std::vector<double> field_;     // distance by site; 0 where the site was moved onto the surface
+  std::vector<Vec3> moved_;       // displacement by site [m]
+  std::vector<double> cut_;       // fraction by forward edge, or no_cut
+  std::vector<int> cut_vertex_;   // vertex by forward edge, or -1
+  std::vector<int> site_vertex_;  // vertex by site, or -1
   std::vector<Eigen::RowVector3d> vertices_;
   std::vector<std::array<int, 4>> tets_;
 };
-
-// Flags to drop: elements at boundary edges and vertices where the surface touches itself, the smaller side of each touch.
-bool drop_touching(const TetMesh& mesh, std::vector<char>& keep) {
-  const Triangles faces = boundary_faces(mesh.tets);
-  std::vector<std::vector<Eigen::Index>> faces_at(static_cast<std::size_t>(mesh.rest.rows()));
-  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
-    for (int k = 0; k < 3; ++k) faces_at[static_cast<std::size_t>(faces(f, k))].push_back(f);
-  }
-  std::vector<char> drop_vertex_fan(static_cast<std::size_t>(faces.rows()), 0);
-  bool found = false;
-  for (std::size_t v = 0; v < faces_at.size(); ++v) {
-    std::vector<Eigen::Index> open = faces_at[v];
-    std::vector<std::vector<Eigen::Index>> fans;
-    while (!open.empty()) {  // grow a fan over shared edges at v
-      std::vector<Eigen::Index> fan = {open.back()};
-      open.pop_back();
-      for (std::size_t at = 0; at < fan.size(); ++at) {
-        for (std::size_t i = 0; i < open.size();) {
-          int shared = 0;
-          for (int a = 0; a < 3; ++a) {
-            for (int b = 0; b < 3; ++b) shared += faces(fan[at], a) == faces(open[i], b) ? 1 : 0;
-          }
-          if (shared >= 2) {
-            fan.push_back(open[i]);
-            open.erase(open.begin() + static_cast<std::ptrdiff_t>(i));
-          } else {
-            ++i;
-          }
-        }
-      }
-      fans.push_back(std::move(fan));
-    }
-    // An edge with four faces joins two fans into one that visits a neighbour more than twice.
-    bool pinched = fans.size() > 1;
-    for (const auto& fan : fans) {
-      std::vector<std::int32_t> neighbours;
-      for (Eigen::Index f : fan) {
-        for (int k = 0; k < 3; ++k) {
-          if (faces(f, k) != static_cast<std::int32_t>(v)) neighbours.push_back(faces(f, k));
-        }
-      }
-      std::sort(neighbours.begin(), neighbours.end());
-      for (std::size_t i = 2; i < neighbours.size(); ++i) pinched |= neighbours[i] == neighbours[i - 2];
-    }
-    if (!pinched) continue;
-    found = true;
-    const auto smallest = std::min_element(fans.begin(), fans.end(), [](const auto& a, const auto& b) { return a.size() < b.size(); });
-    for (Eigen::Index f : *smallest) drop_vertex_fan[static_cast<std::size_t>(f)] = 1;
-  }
-  if (!found) return false;
-  // A boundary face belongs to one element: find it by its three vertices.
-  std::vector<std::vector<Eigen::Index>> tets_at(static_cast<std::size_t>(mesh.rest.rows()));
-  for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
-    for (int k = 0; k < 4; ++k) tets_at[static_cast<std::size_t>(mesh.tets(e, k))].push_back(e);
-  }
-  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
-    if (!drop_vertex_fan[static_cast<std::size_t>(f)]) continue;
-    for (Eigen::Index e : tets_at[static_cast<std::size_t>(faces(f, 0))]) {
-      int shared = 0;
-      for (int k = 0; k < 4; ++k) {
-        for (int j = 0; j < 3; ++j) shared += mesh.tets(e, k) == faces(f, j) ? 1 : 0;
-      }
-      if (shared == 3) keep[static_cast<std::size_t>(e)] = 0;
-    }
-  }
-  return true;
-}
-
-TetMesh largest_piece(const TetMesh& mesh) {
-  const std::vector<int> pieces = face_connected_pieces(mesh.tets);
-  std::vector<double> volumes;
-  for (std::size_t e = 0; e < pieces.size(); ++e) {
-    const auto piece = static_cast<std::size_t>(pieces[e]);
-    if (piece >= volumes.size()) volumes.resize(piece + 1, 0);
-    volumes[piece] += tet_volume(mesh, static_cast<Eigen::Index>(e));
-  }
-  if (volumes.size() <= 1) return mesh;
-  const auto largest = std::max_element(volumes.begin(), volumes.end()) - volumes.begin();
-  std::vector<char> keep(pieces.size());
-  for (std::size_t e = 0; e < pieces.size(); ++e) keep[e] = pieces[e] == largest;
-  return submesh(mesh, keep);
-}
 
 // The share of the bounding box that the shape fills, from a coarse grid of samples.
 double sampled_volume(const Shape& shape, const Bounds& box) {
@@ -402,13 +331,7 @@ double sampled_volume(const Shape& shape, const Bounds& box) {
 }  // namespace
 
 TetMesh stuff_lattice(const Shape& shape, double spacing, const Vec3& shift) {
-  TetMesh mesh = Stuffing(shape, spacing, shift).run();
-  for (int round = 0; round < 20 && mesh.tets.rows() > 0; ++round) {
-    mesh = largest_piece(mesh);
-    std::vector<char> keep(static_cast<std::size_t>(mesh.tets.rows()), 1);
-    if (!drop_touching(mesh, keep)) break;
-    mesh = submesh(mesh, keep);
-  }
+  TetMesh mesh = one_manifold_piece(Stuffing(shape, spacing, shift).run());
   mesh.regions.resize(static_cast<std::size_t>(mesh.tets.rows()));
   for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
     Vec3 centroid = Vec3::Zero();
@@ -425,14 +348,17 @@ TetMesh tetrahedralize(const Shape& shape, int vertices, const std::string& sour
     throw InputError(source, "the shape is unbounded: a half space can cut or intersect a body, but not be one");
   }
   const double volume = sampled_volume(shape, box);
-  if (volume <= 0) throw InputError(source, "the shape has no inside: its parts cut each other away, or are too thin to mesh");
+  if (volume <= 0)
+    throw InputError(source, "the shape has no inside: its parts cut each other away, or are too thin to mesh");
 
-  // Two lattice points a cell, and about as many again on the surface of a small body: a guess that the iteration corrects.
+  // Two lattice points a cell, and about as many again on the surface of a small body: a guess that the iteration
+  // corrects.
   double spacing = std::cbrt(2 * volume / vertices);
   TetMesh best;
   const auto miss = [&](const TetMesh& mesh) { return std::abs(static_cast<double>(mesh.rest.rows()) / vertices - 1); };
   for (int attempt = 0; attempt < 24; ++attempt) {
-    // After six attempts at the same alignment the lattice itself is shifted: small bodies change by whole layers of vertices.
+    // After six attempts at the same alignment the lattice itself is shifted: small bodies change by whole layers of
+    // vertices.
     const Vec3 shift = Vec3(0.31, 0.17, 0.43) * (attempt < 6 ? 0.0 : 0.37 * attempt);
     TetMesh mesh = stuff_lattice(shape, spacing, shift - Vec3(shift.array().floor()));
     const double count = std::max<double>(static_cast<double>(mesh.rest.rows()), 1.0);
@@ -441,46 +367,20 @@ TetMesh tetrahedralize(const Shape& shape, int vertices, const std::string& sour
     spacing *= std::clamp(std::cbrt(count / vertices), 0.5, 2.0);
   }
   if (miss(best) > 0.03) {
-    throw InputError(source, fmt::format("cannot be meshed with {} vertices (nearest: {}): its thinnest part needs more of them", vertices,
-                                         best.rest.rows()));
+    throw InputError(
+        source, fmt::format("cannot be meshed with {} vertices (nearest: {}): its thinnest part needs more of them",
+                            vertices, best.rest.rows()));
+  }
+  // Far below the sampled volume (whose own error is a few per cent), whole parts are missing.
+  const double share = quality(best).volume / volume;
+  if (share < 0.85) {
+    throw InputError(
+        source,
+        fmt::format(
+            "is not one piece: its largest holds {:.0f} % of the volume (parts must touch by more than an element)",
+            100 * share));
   }
   return best;
-}
-
-TetMesh box_mesh(const Vec3& extent, const Eigen::Vector3i& cells) {
-  const Eigen::Vector3i points = cells.array() + 1;
-  const auto name = [&](int i, int j, int k) { return (k * points.y() + j) * points.x() + i; };
-  TetMesh mesh;
-  mesh.rest.resize(points.prod(), 3);
-  for (int k = 0; k < points.z(); ++k) {
-    for (int j = 0; j < points.y(); ++j) {
-      for (int i = 0; i < points.x(); ++i) {
-        mesh.rest.row(name(i, j, k)) = extent.cwiseProduct(Vec3(i, j, k)).cwiseQuotient(cells.cast<double>()).transpose();
-      }
-    }
-  }
-  // Kuhn's six tetrahedra: one for each order in which the three axes can be walked from the low to the high corner.
-  constexpr int walks[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
-  mesh.tets.resize(6 * cells.prod(), 4);
-  Eigen::Index row = 0;
-  for (int k = 0; k < cells.z(); ++k) {
-    for (int j = 0; j < cells.y(); ++j) {
-      for (int i = 0; i < cells.x(); ++i) {
-        for (const auto& walk : walks) {
-          int step[3] = {0, 0, 0};
-          for (int corner = 0; corner < 4; ++corner) {
-            if (corner > 0) step[walk[corner - 1]] = 1;
-            const auto at = [](int cell, int s) { return cell + (cell % 2 == 0 ? s : 1 - s); };  // mirrored in odd cells
-            mesh.tets(row, corner) = name(at(i, step[0]), at(j, step[1]), at(k, step[2]));
-          }
-          if (tet_volume(mesh, row) < 0) std::swap(mesh.tets(row, 2), mesh.tets(row, 3));
-          ++row;
-        }
-      }
-    }
-  }
-  mesh.regions.assign(static_cast<std::size_t>(mesh.tets.rows()), 0);
-  return mesh;
 }
 
 }  // namespace supple

@@ -38,7 +38,8 @@ void write_png(const std::filesystem::path& path, int width, int height, std::sp
     ~Release() { png_destroy_write_struct(png, info); }
   } release{&png, &info};
   png_set_write_fn(png, &bytes, append, nothing_to_flush);
-  png_set_IHDR(png, info, width, height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_IHDR(png, info, width, height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
   png_set_compression_level(png, 3);
   png_set_filter(png, 0, PNG_FILTER_NONE);
@@ -54,7 +55,8 @@ PngImage read_png(const std::filesystem::path& path) {
   if (!png_image_begin_read_from_file(&image, path.c_str())) throw InputError(path.string(), image.message);
   image.format = PNG_FORMAT_RGB;
   PngImage result{int(image.width), int(image.height), std::vector<std::uint8_t>(PNG_IMAGE_SIZE(image))};
-  if (!png_image_finish_read(&image, nullptr, result.rgb.data(), 0, nullptr)) throw InputError(path.string(), image.message);
+  if (!png_image_finish_read(&image, nullptr, result.rgb.data(), 0, nullptr))
+    throw InputError(path.string(), image.message);
   return result;
 }
 

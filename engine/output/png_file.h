@@ -1,5 +1,5 @@
-// PNG images. Level 3 without row filters: several times faster than libpng's defaults on rendered frames, and hardly larger. The only place
-// that knows libpng.
+// PNG images. Level 3 without row filters: several times faster than libpng's defaults on rendered frames, and hardly
+// larger. The only place that knows libpng.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,8 @@
 
 namespace supple {
 
-// 8-bit RGB, rows from the top. Written under a temporary name and renamed: a file that exists is whole. Throws RunError (the disk).
+// 8-bit RGB, rows from the top. Written under a temporary name and renamed: a file that exists is whole. Throws
+// RunError (the disk).
 void write_png(const std::filesystem::path& path, int width, int height, std::span<const std::uint8_t> rgb);
 
 struct PngImage {

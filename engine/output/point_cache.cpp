@@ -36,8 +36,9 @@ void PointCacheWriter::add(const Positions& points) {
   const Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> rows = points.cast<float>();
   if (std::fwrite(rows.data(), sizeof(float), rows.size(), file_.get()) != std::size_t(rows.size())) fail("be written");
   const std::int32_t samples = ++frames_;
-  if (std::fseek(file_.get(), offsetof(Header, samples), SEEK_SET) != 0 || std::fwrite(&samples, sizeof samples, 1, file_.get()) != 1 ||
-      std::fseek(file_.get(), 0, SEEK_END) != 0 || std::fflush(file_.get()) != 0) {
+  if (std::fseek(file_.get(), offsetof(Header, samples), SEEK_SET) != 0 ||
+      std::fwrite(&samples, sizeof samples, 1, file_.get()) != 1 || std::fseek(file_.get(), 0, SEEK_END) != 0 ||
+      std::fflush(file_.get()) != 0) {
     fail("be written");
   }
 }

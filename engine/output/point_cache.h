@@ -14,7 +14,8 @@ class PointCacheWriter {
   // Throws RunError when the file cannot be written.
   PointCacheWriter(const std::filesystem::path& path, int points);
 
-  // Appends a frame (points x 3, float in the file). The header's count is brought up to date, so that the file is valid after every frame.
+  // Appends a frame (points x 3, float in the file). The header's count is brought up to date, so that the file is
+  // valid after every frame.
   void add(const Positions& points);
 
  private:

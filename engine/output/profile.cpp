@@ -41,7 +41,8 @@ Json json_of(const Distribution& d) {
           {"max", rounded_ms(d.max)}, {"mean", rounded_ms(d.mean)}, {"total", rounded_ms(d.total)}};
 }
 
-std::vector<double> of_body(const std::vector<FrameRow>& rows, std::size_t body, const std::function<std::optional<double>(const BodyRow&)>& get) {
+std::vector<double> of_body(const std::vector<FrameRow>& rows, std::size_t body,
+                            const std::function<std::optional<double>(const BodyRow&)>& get) {
   std::vector<double> values;
   for (const FrameRow& row : rows) {
     if (body >= row.bodies.size()) continue;
@@ -86,7 +87,7 @@ std::vector<StageSummary> summarize(const std::vector<FrameRow>& rows) {
     }
     if (values.empty()) continue;
     const double first = values.front();
-    if (values.size() > 1) values.erase(values.begin());
+    values.erase(values.begin());
     result.push_back({stage.name, first, distribution_of(std::move(values))});
   }
   return result;
@@ -116,28 +117,35 @@ std::string profile_json(const std::vector<FrameRow>& rows) {
 }
 
 std::string profile_table(const std::vector<FrameRow>& rows) {
-  std::string text = fmt::format("  {:<10}{:>9}{:>9}{:>9}{:>9}{:>11}{:>10}\n", "ms/frame", "p50", "p95", "p99", "max", "first", "total s");
+  std::string text = fmt::format("  {:<10}{:>9}{:>9}{:>9}{:>9}{:>11}{:>10}\n", "ms/frame", "p50", "p95", "p99", "max",
+                                 "first", "total s");
   for (const StageSummary& stage : summarize(rows)) {
-    text += fmt::format("  {:<10}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>11.2f}{:>10.1f}\n", stage.stage, stage.rest.p50, stage.rest.p95,
-                        stage.rest.p99, stage.rest.max, stage.first, (stage.rest.total + stage.first) / 1000);
+    text += fmt::format("  {:<10}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>11.2f}{:>10.1f}\n", stage.stage, stage.rest.p50,
+                        stage.rest.p95, stage.rest.p99, stage.rest.max, stage.first,
+                        (stage.rest.total + stage.first) / 1000);
   }
   if (rows.empty()) return text;
   bool measured = false;
-  for (const FrameRow& row : rows) measured |= std::any_of(row.bodies.begin(), row.bodies.end(), [](const BodyRow& b) { return b.error_measured; });
-  text += fmt::format("\n  {:<14}{:>9}{:>9}{:>12}{:>10}{:>10}{:>12}", "body", "step ms", "p95", "trials/it", "stretch", "jiggle", "error est.");
+  for (const FrameRow& row : rows)
+    measured |= std::any_of(row.bodies.begin(), row.bodies.end(), [](const BodyRow& b) { return b.error_measured; });
+  text += fmt::format("\n  {:<14}{:>9}{:>9}{:>12}{:>10}{:>10}{:>12}", "body", "step ms", "p95", "trials/it", "stretch",
+                      "jiggle", "error est.");
   text += measured ? fmt::format("{:>11}{:>10}{:>10}\n", "error mean", "p95", "worst") : "\n";
   for (std::size_t b = 0; b < rows.front().bodies.size(); ++b) {
-    const Distribution step = distribution_of(of_body(rows, b, [](const BodyRow& r) { return std::optional(r.step_ms); }));
+    const Distribution step =
+        distribution_of(of_body(rows, b, [](const BodyRow& r) { return std::optional(r.step_ms); }));
     double trials = 0, iterations = 0;
     for (const FrameRow& row : rows) {
       trials += row.bodies[b].line_search;
       iterations += row.bodies[b].iterations;
     }
-    const Distribution stretch = distribution_of(of_body(rows, b, [](const BodyRow& r) { return std::optional(r.stretch); }));
+    const Distribution stretch =
+        distribution_of(of_body(rows, b, [](const BodyRow& r) { return std::optional(r.stretch); }));
     const std::vector<double> jiggles = of_body(rows, b, [](const BodyRow& r) { return r.jiggle; });
-    const Distribution estimate = distribution_of(of_body(rows, b, [](const BodyRow& r) { return std::optional(r.error_estimate); }));
-    text += fmt::format("  {:<14}{:>9.2f}{:>9.2f}{:>12.3f}{:>10.3f}{:>10}{:>12.1e}", rows.front().bodies[b].name, step.p50, step.p95,
-                        iterations > 0 ? trials / iterations : 0.0, stretch.max,
+    const Distribution estimate =
+        distribution_of(of_body(rows, b, [](const BodyRow& r) { return std::optional(r.error_estimate); }));
+    text += fmt::format("  {:<14}{:>9.2f}{:>9.2f}{:>12.3f}{:>10.3f}{:>10}{:>12.1e}", rows.front().bodies[b].name,
+                        step.p50, step.p95, iterations > 0 ? trials / iterations : 0.0, stretch.max,
                         jiggles.empty() ? "-" : fmt::format("{:.3f}", distribution_of(jiggles).max), estimate.mean);
     if (measured) {
       const Distribution error = distribution_of(of_body(rows, b, [](const BodyRow& r) { return r.error; }));

@@ -1,4 +1,5 @@
-// What a run took, frame by frame, as profile.json and as a table on the terminal. Plain rows: filled in by whoever has the numbers.
+// What a run took, frame by frame, as profile.json and as a table on the terminal. Plain rows: filled in by whoever has
+// the numbers.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +17,9 @@ struct BodyRow {
   double objective_start = 0, objective_end = 0;  // [J]
   double error_estimate = 0;
   bool error_measured = false;
-  std::optional<double> error;  // equation 12; null where the start is already the minimum to round-off
-  double stretch = 0;           // volume-weighted 99.9th percentile of the largest stretch
-  std::optional<double> jiggle; // over size; only for bodies with a handle
+  std::optional<double> error;   // equation 12; null where the start is already the minimum to round-off
+  double stretch = 0;            // volume-weighted 99.9th percentile of the largest stretch
+  std::optional<double> jiggle;  // over size; only for bodies with a handle
   std::string stop_reason;
 };
 
@@ -38,7 +39,8 @@ struct Distribution {
 // Nearest-rank percentiles; zeros for an empty list.
 Distribution distribution_of(std::vector<double> values);
 
-// The stages of a frame that were used, in the order in which they run; the first frame is left out (it compiles shaders and warms caches).
+// The stages of a frame that were used, in the order in which they run; the first frame is left out (it compiles
+// shaders and warms caches).
 struct StageSummary {
   std::string stage;
   double first = 0;

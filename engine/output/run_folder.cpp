@@ -27,37 +27,49 @@ std::string build_flags() { return SUPPLE_BUILD_FLAGS; }
 RunFolder::RunFolder(const std::filesystem::path& path) : path_(path) {
   std::error_code error;
   if (std::filesystem::exists(path, error)) {
-    if (!std::filesystem::is_directory(path, error)) throw InputError("--out " + path.string(), "exists and is not a folder");
+    if (!std::filesystem::is_directory(path, error))
+      throw InputError("--out " + path.string(), "exists and is not a folder");
     const bool empty = std::filesystem::is_empty(path, error);
     if (!empty && !std::filesystem::exists(path / "run.json", error)) {
-      throw InputError("--out " + path.string(), "holds files that no run left there (no run.json); choose another folder or empty it");
+      throw InputError("--out " + path.string(),
+                       "holds files that no run left there (no run.json); choose another folder or empty it");
     }
   }
   for (const char* part : {"frames", "motion"}) std::filesystem::remove_all(path / part, error);
-  for (const char* part : {"video.mp4", "profile.json", "run.json"}) std::filesystem::remove(path / part, error);
+  for (const char* part : {"video.mp4", "profile.json"}) std::filesystem::remove(path / part, error);
   for (const char* part : {"frames", "motion"}) {
     std::filesystem::create_directories(path / part, error);
     if (error) throw RunError(fmt::format("{}: cannot be made: {}", (path / part).string(), error.message()));
   }
+  write_whole_file(path / "run.json", std::string_view("{}\n"));  // from now on the folder is known as a run's
 }
 
 std::filesystem::path RunFolder::frame(int index) const { return frames() / fmt::format("{:06}.png", index); }
 
 void RunFolder::write_info(const RunInfo& info) const {
   nlohmann::ordered_json json;
-  json["program"] = {{"name", "supple"}, {"version", program_version()}, {"build", build_flags()}, {"kernels", info.kernel_variant}};
+  json["program"] = {
+      {"name", "supple"}, {"version", program_version()}, {"build", build_flags()}, {"kernels", info.kernel_variant}};
   json["command"] = info.command;
   json["ended"] = info.ended;
   json["frames"] = info.frames;
   json["machine"] = {{"cpu", cpu_name()}, {"threads", info.threads}};
-  if (!info.gl_backend.empty()) json["gl"] = {{"backend", info.gl_backend}, {"renderer", info.gl_renderer}, {"version", info.gl_version}};
+  if (!info.gl_backend.empty())
+    json["gl"] = {{"backend", info.gl_backend}, {"renderer", info.gl_renderer}, {"version", info.gl_version}};
   json["meshes"] = nlohmann::ordered_json::array();
   for (const RunInfo::Mesh& mesh : info.meshes) {
-    json["meshes"].push_back({{"body", mesh.body}, {"source", mesh.source}, {"xxh64", mesh.hash}, {"vertices", mesh.vertices}, {"elements", mesh.elements}});
+    json["meshes"].push_back({{"body", mesh.body},
+                              {"source", mesh.source},
+                              {"xxh64", mesh.hash},
+                              {"vertices", mesh.vertices},
+                              {"elements", mesh.elements}});
   }
   json["scene_file"] = info.scene_file;
   json["scene"] = nlohmann::ordered_json::parse(info.scene_json, nullptr, false);
-  write_whole_file(path_ / "run.json", json.dump(1) + "\n");
+  if (!info.video.empty()) json["video"] = info.video;
+  // File names need not be UTF-8; JSON must be.
+  write_whole_file(path_ / "run.json",
+                   json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 
 void RunFolder::write_profile(const std::string& json) const { write_whole_file(path_ / "profile.json", json); }

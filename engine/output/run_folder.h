@@ -10,7 +10,7 @@ namespace supple {
 struct RunInfo {
   std::vector<std::string> command;  // as it was called
   std::string scene_file;
-  std::string scene_json;            // the scene after --set
+  std::string scene_json;  // the scene after --set
   struct Mesh {
     std::string body, source, hash;
     int vertices = 0, elements = 0;
@@ -20,13 +20,14 @@ struct RunInfo {
   int threads = 1;
   std::string gl_backend, gl_renderer, gl_version;  // empty without images
   int frames = 0;                                   // finished
+  std::string video;                                // its file, or why there is none
   std::string ended;                                // "done", "interrupted" or the failure
 };
 
 class RunFolder {
  public:
-  // Makes the folder, or takes over one that an earlier run left (its results are removed). Throws InputError when the folder holds
-  // something else, RunError when it cannot be made.
+  // Makes the folder, or takes over one that an earlier run left (its results are removed). Throws InputError when the
+  // folder holds something else, RunError when it cannot be made.
   explicit RunFolder(const std::filesystem::path& path);
 
   const std::filesystem::path& path() const { return path_; }

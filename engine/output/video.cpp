@@ -33,7 +33,8 @@ std::optional<Finished> run(const std::vector<std::string>& words) {
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
-  // Ctrl-C on the terminal is ours to handle: the encoder finishes what it has, so it stands in a process group of its own.
+  // Ctrl-C on the terminal is ours to handle: the encoder finishes what it has, so it stands in a process group of its
+  // own.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
@@ -64,36 +65,63 @@ std::optional<Finished> run(const std::vector<std::string>& words) {
 }  // namespace
 
 long count_video_frames(const std::filesystem::path& video) {
-  const auto probe = run({"ffprobe", "-v", "error", "-count_packets", "-select_streams", "v:0", "-show_entries", "stream=nb_read_packets",
-                          "-of", "csv=p=0", video.string()});
+  const auto probe = run({"ffprobe", "-v", "error", "-count_packets", "-select_streams", "v:0", "-show_entries",
+                          "stream=nb_read_packets", "-of", "csv=p=0", video.string()});
   if (!probe || probe->status != 0) return -1;
   char* end = nullptr;
   const long count = std::strtol(probe->output.c_str(), &end, 10);
   return end == probe->output.c_str() ? -1 : count;
 }
 
-VideoResult encode_video(const std::filesystem::path& frames, int count, double fps, const std::filesystem::path& video) {
-  const std::filesystem::path part = video.parent_path() / (video.stem().string() + ".part" + video.extension().string());
-  const auto encoded = run({"ffmpeg", "-nostdin", "-y", "-loglevel", "error", "-framerate", fmt::format("{}", fps), "-start_number", "0",
-                            "-i", (frames / "%06d.png").string(), "-frames:v", fmt::format("{}", count), "-c:v", "libx264", "-preset",
-                            "medium", "-crf", "17", "-pix_fmt", "yuv420p", "-movflags", "+faststart", part.string()});
+VideoResult encode_video(const std::filesystem::path& frames, int count, double fps,
+                         const std::filesystem::path& video) {
+  const std::filesystem::path part =
+      video.parent_path() / (video.stem().string() + ".part" + video.extension().string());
+  const auto encoded = run({"ffmpeg",
+                            "-nostdin",
+                            "-y",
+                            "-loglevel",
+                            "error",
+                            "-framerate",
+                            fmt::format("{}", fps),
+                            "-start_number",
+                            "0",
+                            "-i",
+                            (frames / "%06d.png").string(),
+                            "-frames:v",
+                            fmt::format("{}", count),
+                            "-c:v",
+                            "libx264",
+                            "-preset",
+                            "medium",
+                            "-crf",
+                            "17",
+                            "-pix_fmt",
+                            "yuv420p",
+                            "-movflags",
+                            "+faststart",
+                            part.string()});
   std::error_code ignored;
   if (!encoded || (WIFEXITED(encoded->status) && WEXITSTATUS(encoded->status) == 127)) {
     return {VideoOutcome::no_ffmpeg, "no film: ffmpeg is not installed (Debian: ffmpeg); the frames are whole"};
   }
   if (encoded->status != 0) {
     std::filesystem::remove(part, ignored);
-    const std::string how = WIFSIGNALED(encoded->status) ? fmt::format("was ended by signal {}", WTERMSIG(encoded->status))
-                                                         : fmt::format("ended with status {}", WEXITSTATUS(encoded->status));
+    const std::string how = WIFSIGNALED(encoded->status)
+                                ? fmt::format("was ended by signal {}", WTERMSIG(encoded->status))
+                                : fmt::format("ended with status {}", WEXITSTATUS(encoded->status));
     return {VideoOutcome::failed, fmt::format("no film: ffmpeg {}; the frames are whole. {}", how, encoded->output)};
   }
   const long found = count_video_frames(part);
   if (found >= 0 && found != count) {
     std::filesystem::remove(part, ignored);
-    return {VideoOutcome::failed, fmt::format("no film: ffmpeg wrote {} of {} frames; the frames are whole", found, count)};
+    return {VideoOutcome::failed,
+            fmt::format("no film: ffmpeg wrote {} of {} frames; the frames are whole", found, count)};
   }
   std::filesystem::rename(part, video, ignored);
-  if (ignored) return {VideoOutcome::failed, fmt::format("no film: {} cannot be renamed into place: {}", part.string(), ignored.message())};
+  if (ignored)
+    return {VideoOutcome::failed,
+            fmt::format("no film: {} cannot be renamed into place: {}", part.string(), ignored.message())};
   return {VideoOutcome::written, ""};
 }
 

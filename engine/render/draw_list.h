@@ -11,9 +11,9 @@
 namespace supple {
 
 struct PaintColor {
-  Vec3 color;   // sRGB
-  double gloss; // 0 matt to 1 wet
-  double soft;  // width of the border, in the unit of DrawMesh::paint
+  Vec3 color;    // sRGB
+  double gloss;  // 0 matt to 1 wet
+  double soft;   // width of the border, in the unit of DrawMesh::paint
 };
 
 // A surface whose vertices move and whose other attributes stay.
@@ -51,8 +51,5 @@ struct Image {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgb;  // rows from the top
 };
-
-// A camera a little above eye level that has all of the box in view, with air around it.
-Camera framing(const Bounds& box, double fov_deg, double margin, double aspect);
 
 }  // namespace supple

@@ -50,8 +50,17 @@ std::string GlContext::open_osmesa() {
     dlclose(library);
     return "libOSMesa is too old: it has no OSMesaCreateContextAttribs";
   }
-  const int attributes[] = {OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 24, OSMESA_PROFILE, OSMESA_CORE_PROFILE,
-                            OSMESA_CONTEXT_MAJOR_VERSION, 3, OSMESA_CONTEXT_MINOR_VERSION, 3, 0};
+  const int attributes[] = {OSMESA_FORMAT,
+                            OSMESA_RGBA,
+                            OSMESA_DEPTH_BITS,
+                            24,
+                            OSMESA_PROFILE,
+                            OSMESA_CORE_PROFILE,
+                            OSMESA_CONTEXT_MAJOR_VERSION,
+                            3,
+                            OSMESA_CONTEXT_MINOR_VERSION,
+                            3,
+                            0};
   OSMesaContext context = create(attributes, nullptr);
   if (context == nullptr) {
     dlclose(library);
@@ -95,8 +104,9 @@ std::string GlContext::open_egl() {
   EGLConfig config = nullptr;
   EGLint count = 0;
   choose(display, config_attributes, &config, 1, &count);
-  const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                               EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+  const EGLint attributes[] = {
+      EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
   EGLContext context = create(display, count > 0 ? config : nullptr, EGL_NO_CONTEXT, attributes);
   if (context == EGL_NO_CONTEXT || !make_current(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
     symbol<decltype(&eglTerminate)>(library, "eglTerminate")(display);
@@ -113,7 +123,8 @@ std::string GlContext::open_egl() {
 // The library stays open: Mesa's worker threads may outlive the context by a moment.
 GlContext::~GlContext() {
   if (display_ != nullptr) {
-    symbol<decltype(&eglMakeCurrent)>(library_, "eglMakeCurrent")(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    symbol<decltype(&eglMakeCurrent)>(library_, "eglMakeCurrent")(display_, EGL_NO_SURFACE, EGL_NO_SURFACE,
+                                                                  EGL_NO_CONTEXT);
     symbol<decltype(&eglDestroyContext)>(library_, "eglDestroyContext")(display_, context_);
     symbol<decltype(&eglTerminate)>(library_, "eglTerminate")(display_);
   } else if (context_ != nullptr) {

@@ -1,5 +1,5 @@
-// An OpenGL 3.3 core context without a window: OSMesa, or a surfaceless EGL display (Mesa dropped OSMesa in 25.1). The libraries are opened
-// at run time, so that a machine without either still simulates.
+// An OpenGL 3.3 core context without a window: OSMesa, or a surfaceless EGL display (Mesa dropped OSMesa in 25.1). The
+// libraries are opened at run time, so that a machine without either still simulates.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@ enum class GlChoice { automatic, osmesa, egl };
 
 class GlContext {
  public:
-  // Makes the context current on the calling thread, which must be the one that draws and destroys it. Throws RunError saying what was
-  // tried, and which packages provide it.
+  // Makes the context current on the calling thread, which must be the one that draws and destroys it. Throws RunError
+  // saying what was tried, and which packages provide it.
   explicit GlContext(GlChoice choice);
   ~GlContext();
   GlContext(const GlContext&) = delete;

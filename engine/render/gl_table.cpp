@@ -9,8 +9,8 @@ namespace supple {
 
 GlTable load_gl(const GlContext& context) {
   GlTable gl;
-#define SUPPLE_GL_LOAD(type, name)                                      \
-  gl.name = reinterpret_cast<type>(context.resolve("gl" #name));        \
+#define SUPPLE_GL_LOAD(type, name)                               \
+  gl.name = reinterpret_cast<type>(context.resolve("gl" #name)); \
   if (gl.name == nullptr) throw RunError("this OpenGL has no gl" #name);
   SUPPLE_GL_FUNCTIONS(SUPPLE_GL_LOAD)
 #undef SUPPLE_GL_LOAD

@@ -1,5 +1,5 @@
-// How much of the sky the bodies take from the ground below them: the contact shadow that seats a figure. Computed on a grid from the surface's
-// vertices, each frame.
+// How much of the sky the bodies take from the ground below them: the contact shadow that seats a figure. Computed on a
+// grid from the surface's vertices, each frame.
 #pragma once
 
 #include <vector>

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "render/caption.h"
 #include "render/shader.h"
+#include "render/view.h"
 
 namespace supple {
 namespace {
@@ -19,29 +20,6 @@ constexpr int shadow_map_edge = 2048;
 double linear_of(double srgb) { return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4); }
 
 Vec3 linear_of(const Vec3& srgb) { return {linear_of(srgb.x()), linear_of(srgb.y()), linear_of(srgb.z())}; }
-
-Eigen::Matrix4f perspective(double fov_deg, double aspect, double near, double far) {
-  const double f = 1 / std::tan(fov_deg * std::numbers::pi / 360);
-  Eigen::Matrix4f m = Eigen::Matrix4f::Zero();
-  m(0, 0) = static_cast<float>(f / aspect);
-  m(1, 1) = static_cast<float>(f);
-  m(2, 2) = static_cast<float>((far + near) / (near - far));
-  m(2, 3) = static_cast<float>(2 * far * near / (near - far));
-  m(3, 2) = -1;
-  return m;
-}
-
-Eigen::Matrix4f look_at(const Vec3& eye, const Vec3& target) {
-  const Vec3 back = (eye - target).normalized();
-  const Vec3 up = std::abs(back.y()) > 0.999 ? Vec3::UnitZ() : Vec3::UnitY();
-  const Vec3 right = up.cross(back).normalized();
-  Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
-  m.block<1, 3>(0, 0) = right.transpose();
-  m.block<1, 3>(1, 0) = back.cross(right).transpose();
-  m.block<1, 3>(2, 0) = back.transpose();
-  m.block<3, 1>(0, 3) = -m.block<3, 3>(0, 0) * eye;
-  return m.cast<float>();
-}
 
 Bounds stage_bounds(const Stage& stage) {
   Bounds box;
@@ -58,46 +36,12 @@ double largest_of(const Stage& stage) {
   return largest;
 }
 
-// Smooth normals: each vertex's is the sum of its triangles', weighted by area.
-void compute_normals(const std::vector<float>& positions, const std::vector<std::uint32_t>& triangles, std::vector<float>& normals) {
-  normals.assign(positions.size(), 0.0f);
-  for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) {
-    const float* a = &positions[3 * triangles[t]];
-    const float* b = &positions[3 * triangles[t + 1]];
-    const float* c = &positions[3 * triangles[t + 2]];
-    const float u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
-    const float n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-    for (int corner = 0; corner < 3; ++corner) {
-      float* sum = &normals[3 * triangles[t + corner]];
-      for (int k = 0; k < 3; ++k) sum[k] += n[k];
-    }
-  }
-  for (std::size_t i = 0; i + 2 < normals.size(); i += 3) {
-    const float length = std::sqrt(normals[i] * normals[i] + normals[i + 1] * normals[i + 1] + normals[i + 2] * normals[i + 2]);
-    if (length > 0) {
-      for (int k = 0; k < 3; ++k) normals[i + k] /= length;
-    }
-  }
-}
-
 std::string gl_text(const GlTable& gl, GLenum what) {
   const auto* text = reinterpret_cast<const char*>(gl.GetString(what));
   return text != nullptr ? text : "";
 }
 
 }  // namespace
-
-Camera framing(const Bounds& box, double fov_deg, double margin, double aspect) {
-  Camera camera;
-  camera.fov_deg = fov_deg;
-  const double half = std::tan(fov_deg * std::numbers::pi / 360);
-  const Vec3 extent = box.extent();
-  const double across = margin * std::max(0.5 * extent.y(), 0.5 * extent.x() / aspect);
-  const double distance = across / half + 0.5 * extent.z();
-  camera.target = box.center() - Vec3(0, 0.06 * extent.y(), 0);
-  camera.eye = camera.target + distance * Vec3(0, 0.16, 1).normalized();
-  return camera;
-}
 
 Renderer::Renderer(const Stage& stage, GlChoice choice, const std::filesystem::path& shaders)
     : stage_(stage),
@@ -130,7 +74,8 @@ Renderer::~Renderer() {
     gl_.DeleteVertexArrays(1, &mesh.array);
   }
   for (Label& label : labels_) gl_.DeleteTextures(1, &label.texture);
-  for (const GLuint program : {body_program_, ground_program_, shadow_program_, label_program_, backdrop_program_, layer_program_}) {
+  for (const GLuint program :
+       {body_program_, ground_program_, shadow_program_, label_program_, backdrop_program_, layer_program_}) {
     gl_.DeleteProgram(program);
   }
   for (const Target* target : {&bodies_, &resolved_, &picture_}) {
@@ -148,7 +93,8 @@ Renderer::~Renderer() {
 void Renderer::make_targets() {
   const auto check = [this](const char* what) {
     const GLenum status = gl_.CheckFramebufferStatus(GL_FRAMEBUFFER);
-    if (status != GL_FRAMEBUFFER_COMPLETE) throw RunError(fmt::format("the {} framebuffer is incomplete (0x{:04x})", what, status));
+    if (status != GL_FRAMEBUFFER_COMPLETE)
+      throw RunError(fmt::format("the {} framebuffer is incomplete (0x{:04x})", what, status));
   };
   GLint most_samples = 1;
   gl_.GetIntegerv(GL_MAX_SAMPLES, &most_samples);
@@ -181,10 +127,14 @@ void Renderer::make_targets() {
 
   gl_.GenTextures(1, &shadow_texture_);
   gl_.BindTexture(GL_TEXTURE_2D, shadow_texture_);
-  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, shadow_map_edge, shadow_map_edge, 0, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, nullptr);
-  for (const auto& [key, value] : {std::pair{GL_TEXTURE_MIN_FILTER, GL_LINEAR}, {GL_TEXTURE_MAG_FILTER, GL_LINEAR},
-                                   {GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE}, {GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE},
-                                   {GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE}, {GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL}}) {
+  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, shadow_map_edge, shadow_map_edge, 0, GL_DEPTH_COMPONENT,
+                 GL_UNSIGNED_INT, nullptr);
+  for (const auto& [key, value] : {std::pair{GL_TEXTURE_MIN_FILTER, GL_LINEAR},
+                                   {GL_TEXTURE_MAG_FILTER, GL_LINEAR},
+                                   {GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE},
+                                   {GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE},
+                                   {GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE},
+                                   {GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL}}) {
     gl_.TexParameteri(GL_TEXTURE_2D, key, value);
   }
   gl_.GenFramebuffers(1, &shadow_framebuffer_);
@@ -196,8 +146,10 @@ void Renderer::make_targets() {
 
   gl_.GenTextures(1, &occlusion_texture_);
   gl_.BindTexture(GL_TEXTURE_2D, occlusion_texture_);
-  for (const auto& [key, value] : {std::pair{GL_TEXTURE_MIN_FILTER, GL_LINEAR}, {GL_TEXTURE_MAG_FILTER, GL_LINEAR},
-                                   {GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE}, {GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE}}) {
+  for (const auto& [key, value] : {std::pair{GL_TEXTURE_MIN_FILTER, GL_LINEAR},
+                                   {GL_TEXTURE_MAG_FILTER, GL_LINEAR},
+                                   {GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE},
+                                   {GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE}}) {
     gl_.TexParameteri(GL_TEXTURE_2D, key, value);
   }
 }
@@ -216,14 +168,16 @@ void Renderer::check_test_triangle() {
   gl_.DrawArrays(GL_TRIANGLES, 0, 3);
   gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, bodies_.framebuffer);
   gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_.framebuffer);
-  gl_.BlitFramebuffer(0, 0, stage_.width, stage_.height, 0, 0, stage_.width, stage_.height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  gl_.BlitFramebuffer(0, 0, stage_.width, stage_.height, 0, 0, stage_.width, stage_.height, GL_COLOR_BUFFER_BIT,
+                      GL_NEAREST);
   gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, resolved_.framebuffer);
   std::uint8_t pixel[4] = {0, 0, 0, 0};
   gl_.ReadPixels(stage_.width / 2, stage_.height / 2, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel);
   check_gl(gl_, "drawing a test triangle");
   if (pixel[0] < 64) {
-    throw RunError(fmt::format("{} ({}) draws blank frames with {} samples a pixel; try --set output.samples=1 or another --gl", name_,
-                               context_.backend(), stage_.samples));
+    throw RunError(
+        fmt::format("{} ({}) draws blank frames with {} samples a pixel; try --set output.samples=1 or another --gl",
+                    name_, context_.backend(), stage_.samples));
   }
 }
 
@@ -241,7 +195,8 @@ void Renderer::make_meshes() {
     for (auto [buffer, index] : {std::pair{&buffers.positions, 0u}, {&buffers.normals, 1u}}) {
       gl_.GenBuffers(1, buffer);
       gl_.BindBuffer(GL_ARRAY_BUFFER, *buffer);
-      gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(buffers.vertices * 3 * sizeof(float)), nullptr, GL_STREAM_DRAW);
+      gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(buffers.vertices * 3 * sizeof(float)), nullptr,
+                     GL_STREAM_DRAW);
       attribute(index, 3, 0, 0);
     }
     std::vector<float> fixed;
@@ -251,14 +206,15 @@ void Renderer::make_meshes() {
     }
     gl_.GenBuffers(1, &buffers.fixed);
     gl_.BindBuffer(GL_ARRAY_BUFFER, buffers.fixed);
-    gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(fixed.size() * sizeof(float)), fixed.data(), GL_STATIC_DRAW);
+    gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(fixed.size() * sizeof(float)), fixed.data(),
+                   GL_STATIC_DRAW);
     attribute(2, 1, 9 * sizeof(float), 0);
     attribute(3, 4, 9 * sizeof(float), sizeof(float));
     attribute(4, 4, 9 * sizeof(float), 5 * sizeof(float));
     gl_.GenBuffers(1, &buffers.indices);
     gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers.indices);
-    gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.triangles.size() * sizeof(std::uint32_t)), mesh.triangles.data(),
-                   GL_STATIC_DRAW);
+    gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.triangles.size() * sizeof(std::uint32_t)),
+                   mesh.triangles.data(), GL_STATIC_DRAW);
     meshes_.push_back(std::move(buffers));
   }
   gl_.BindVertexArray(0);
@@ -274,7 +230,8 @@ void Renderer::make_labels() {
     Label label{0, bitmap.width, bitmap.height, Vec3(mesh.rest.center().x(), mesh.rest.lower.y(), mesh.rest.upper.z())};
     gl_.GenTextures(1, &label.texture);
     gl_.BindTexture(GL_TEXTURE_2D, label.texture);
-    gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, bitmap.width, bitmap.height, 0, GL_RED, GL_UNSIGNED_BYTE, bitmap.coverage.data());
+    gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, bitmap.width, bitmap.height, 0, GL_RED, GL_UNSIGNED_BYTE,
+                   bitmap.coverage.data());
     gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     labels_.push_back(label);
@@ -295,7 +252,8 @@ void Renderer::upload(const DrawList& list) {
   }
   const std::vector<float>& open = occlusion_.compute(list.positions);
   gl_.BindTexture(GL_TEXTURE_2D, occlusion_texture_);
-  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R32F, GroundOcclusion::cells, GroundOcclusion::cells, 0, GL_RED, GL_FLOAT, open.data());
+  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R32F, GroundOcclusion::cells, GroundOcclusion::cells, 0, GL_RED, GL_FLOAT,
+                 open.data());
 }
 
 // An orthographic map that covers the stage with room for motion; fixed for a whole film, so that shadows do not swim.
@@ -325,30 +283,18 @@ void Renderer::draw_shadow_map() {
   gl_.Disable(GL_POLYGON_OFFSET_FILL);
 }
 
-namespace {
-
-struct View {
-  Eigen::Matrix4f matrix;
-};
-
-View view_of(const Camera& camera, double aspect, double depth) {
-  const double distance = (camera.eye - camera.target).norm();
-  const double near = std::max(0.02 * distance, distance - depth);
-  return {perspective(camera.fov_deg, aspect, near, distance + 60 * depth) * look_at(camera.eye, camera.target)};
-}
-
-}  // namespace
-
 void Renderer::set_lights(GLuint program, const Camera& camera) const {
   const auto vector = [&](const char* name, const Vec3& v) {
-    gl_.Uniform3f(uniform(program, name), static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()));
+    gl_.Uniform3f(uniform(program, name), static_cast<float>(v.x()), static_cast<float>(v.y()),
+                  static_cast<float>(v.z()));
   };
   vector("key_direction", key_direction_);
   vector("eye", camera.eye);
   vector("background", linear_of(stage_.background));
   vector("ground_color", linear_of(stage_.ground));
   gl_.Uniform1f(uniform(program, "exposure"), static_cast<float>(stage_.exposure));
-  gl_.Uniform1f(uniform(program, "shadow_softness"), static_cast<float>(0.018 * largest_body_ / (0.5 * bounds_.diagonal() + 0.45 * largest_body_)));
+  gl_.Uniform1f(uniform(program, "shadow_softness"),
+                static_cast<float>(0.018 * largest_body_ / (0.5 * bounds_.diagonal() + 0.45 * largest_body_)));
   gl_.UniformMatrix4fv(uniform(program, "light_matrix"), 1, GL_FALSE, light_matrix_.data());
   gl_.Uniform1i(uniform(program, "shadow_map"), 0);
   gl_.ActiveTexture(GL_TEXTURE0);
@@ -357,14 +303,14 @@ void Renderer::set_lights(GLuint program, const Camera& camera) const {
 
 void Renderer::draw_bodies(const Camera& camera) {
   const double aspect = static_cast<double>(stage_.width) / stage_.height;
-  const View view = view_of(camera, aspect, bounds_.diagonal() + largest_body_);
+  const Eigen::Matrix4f view = view_matrix(camera, aspect, bounds_.center(), bounds_.diagonal() + largest_body_);
   gl_.BindFramebuffer(GL_FRAMEBUFFER, bodies_.framebuffer);
   gl_.Viewport(0, 0, stage_.width, stage_.height);
   gl_.ClearColor(0, 0, 0, 0);
   gl_.Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   gl_.UseProgram(body_program_);
   set_lights(body_program_, camera);
-  gl_.UniformMatrix4fv(uniform(body_program_, "view_matrix"), 1, GL_FALSE, view.matrix.data());
+  gl_.UniformMatrix4fv(uniform(body_program_, "view_matrix"), 1, GL_FALSE, view.data());
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
     const DrawMesh& mesh = stage_.meshes[m];
     float colors[9 * 4] = {}, soft[8] = {};
@@ -389,12 +335,15 @@ void Renderer::draw_bodies(const Camera& camera) {
   gl_.Disable(GL_DEPTH_TEST);
   gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, bodies_.framebuffer);
   gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_.framebuffer);
-  gl_.BlitFramebuffer(0, 0, stage_.width, stage_.height, 0, 0, stage_.width, stage_.height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  gl_.BlitFramebuffer(0, 0, stage_.width, stage_.height, 0, 0, stage_.width, stage_.height, GL_COLOR_BUFFER_BIT,
+                      GL_NEAREST);
 }
 
-// The ground has no edges of its own: it is drawn with one sample a pixel, at a fraction of the cost, and the bodies are laid over it.
+// The ground has no edges of its own: it is drawn with one sample a pixel, at a fraction of the cost, and the bodies
+// are laid over it.
 void Renderer::draw_ground(const Camera& camera) {
-  const View view = view_of(camera, static_cast<double>(stage_.width) / stage_.height, bounds_.diagonal() + largest_body_);
+  const double aspect = static_cast<double>(stage_.width) / stage_.height;
+  const Eigen::Matrix4f view = view_matrix(camera, aspect, bounds_.center(), bounds_.diagonal() + largest_body_);
   gl_.BindFramebuffer(GL_FRAMEBUFFER, picture_.framebuffer);
   gl_.BindVertexArray(empty_array_);
   gl_.UseProgram(backdrop_program_);
@@ -403,12 +352,13 @@ void Renderer::draw_ground(const Camera& camera) {
 
   gl_.UseProgram(ground_program_);
   set_lights(ground_program_, camera);
-  gl_.UniformMatrix4fv(uniform(ground_program_, "view_matrix"), 1, GL_FALSE, view.matrix.data());
+  gl_.UniformMatrix4fv(uniform(ground_program_, "view_matrix"), 1, GL_FALSE, view.data());
   const Vec3 center = bounds_.center();
   const double radius = 0.5 * bounds_.diagonal() + largest_body_;
-  gl_.Uniform4f(uniform(ground_program_, "stage"), static_cast<float>(center.x()), static_cast<float>(center.z()), static_cast<float>(radius), 0);
-  gl_.Uniform4f(uniform(ground_program_, "occlusion_area"), static_cast<float>(occlusion_.origin_x()), static_cast<float>(occlusion_.origin_z()),
-                static_cast<float>(occlusion_.extent()), 0);
+  gl_.Uniform4f(uniform(ground_program_, "stage"), static_cast<float>(center.x()), static_cast<float>(center.z()),
+                static_cast<float>(radius), 0);
+  gl_.Uniform4f(uniform(ground_program_, "occlusion_area"), static_cast<float>(occlusion_.origin_x()),
+                static_cast<float>(occlusion_.origin_z()), static_cast<float>(occlusion_.extent()), 0);
   gl_.Uniform1i(uniform(ground_program_, "occlusion_map"), 1);
   gl_.ActiveTexture(GL_TEXTURE1);
   gl_.BindTexture(GL_TEXTURE_2D, occlusion_texture_);
@@ -430,21 +380,23 @@ void Renderer::lay_bodies_over_ground() {
 void Renderer::draw_labels(const Camera& camera) {
   if (labels_.empty()) return;
   const double aspect = static_cast<double>(stage_.width) / stage_.height;
-  const Eigen::Matrix4f view = view_of(camera, aspect, bounds_.diagonal() + largest_body_).matrix;
+  const Eigen::Matrix4f view = view_matrix(camera, aspect, bounds_.center(), bounds_.diagonal() + largest_body_);
   gl_.Enable(GL_BLEND);
   gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   gl_.UseProgram(label_program_);
   gl_.BindVertexArray(empty_array_);
   gl_.Uniform1i(uniform(label_program_, "caption"), 0);
   for (const Label& label : labels_) {
-    const Eigen::Vector4f clip = view * Eigen::Vector4f(float(label.anchor.x()), float(label.anchor.y()), float(label.anchor.z()), 1);
+    const Eigen::Vector4f clip =
+        view * Eigen::Vector4f(float(label.anchor.x()), float(label.anchor.y()), float(label.anchor.z()), 1);
     if (clip.w() <= 0) continue;
     // Whole pixels, so that the letters stay sharp; below the body, or at the bottom edge when there is no room.
     const double x = std::round((clip.x() / clip.w() * 0.5 + 0.5) * stage_.width - 0.5 * label.width);
     const double below = (clip.y() / clip.w() * 0.5 + 0.5) * stage_.height - 0.035 * stage_.height;
     const double y = std::round(std::max(below - label.height, 0.01 * stage_.height));
-    gl_.Uniform4f(uniform(label_program_, "area"), static_cast<float>(2 * x / stage_.width - 1), static_cast<float>(2 * y / stage_.height - 1),
-                  static_cast<float>(2.0 * label.width / stage_.width), static_cast<float>(2.0 * label.height / stage_.height));
+    gl_.Uniform4f(uniform(label_program_, "area"), static_cast<float>(2 * x / stage_.width - 1),
+                  static_cast<float>(2 * y / stage_.height - 1), static_cast<float>(2.0 * label.width / stage_.width),
+                  static_cast<float>(2.0 * label.height / stage_.height));
     gl_.BindTexture(GL_TEXTURE_2D, label.texture);
     gl_.DrawArrays(GL_TRIANGLES, 0, 6);
   }

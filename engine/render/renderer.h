@@ -1,5 +1,5 @@
-// Draws a stage with OpenGL 3.3: key light with shadow map, fill, rim and sky light, a ground that fades into the background, captions. All
-// functions are called on the thread that made the renderer.
+// Draws a stage with OpenGL 3.3: key light with shadow map, fill, rim and sky light, a ground that fades into the
+// background, captions. All functions are called on the thread that made the renderer.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -63,8 +63,8 @@ class Renderer {
   std::string name_, version_;
   GLuint body_program_ = 0, ground_program_ = 0, shadow_program_ = 0, label_program_ = 0, backdrop_program_ = 0,
          layer_program_ = 0;
-  Target bodies_;              // antialiased; transparent where there is no body
-  Target resolved_;            // the same, one sample a pixel; its colour is layer_texture_
+  Target bodies_;    // antialiased; transparent where there is no body
+  Target resolved_;  // the same, one sample a pixel; its colour is layer_texture_
   Target picture_;
   GLuint layer_texture_ = 0;
   GLuint shadow_framebuffer_ = 0, shadow_texture_ = 0, occlusion_texture_ = 0, empty_array_ = 0;

@@ -13,7 +13,8 @@
 namespace supple {
 namespace {
 
-// From the file's frame to the world: turned about the origin, scaled, then put with the middle of its bottom at `position`.
+// From the file's frame to the world: turned about the origin, scaled, then put with the middle of its bottom at
+// `position`.
 Eigen::Affine3d placement(const BodyDef& def, const Positions& points) {
   Eigen::Affine3d turned(rotation_from_degrees(def.turn_deg).toRotationMatrix());
   Bounds box, untouched;
@@ -30,8 +31,10 @@ void apply(const Eigen::Affine3d& place, Positions& points) {
   for (Eigen::Index v = 0; v < points.rows(); ++v) points.row(v) = (place * Vec3(points.row(v))).transpose();
 }
 
-std::vector<std::int32_t> selected(const Selection& s, const TetMesh& mesh, const Positions& file_points, const std::vector<std::string>& regions) {
-  // Relative to the rest box before the body is turned, so that a selection means the same part however the body stands.
+std::vector<std::int32_t> selected(const Selection& s, const TetMesh& mesh, const Positions& file_points,
+                                   const std::vector<std::string>& regions) {
+  // Relative to the rest box before the body is turned, so that a selection means the same part however the body
+  // stands.
   const Bounds box = bounds_of(file_points);
   const Vec3 extent = box.extent().cwiseMax(1e-300);
   std::vector<std::int32_t> result;
@@ -53,7 +56,8 @@ std::vector<std::int32_t> selected(const Selection& s, const TetMesh& mesh, cons
     const Vec3 away = point - (box.lower + s.center.cwiseProduct(extent));
     bool in = false;
     // A millionth of slack: a box that ends at 1 means to include what lies at 1.
-    if (s.kind == Selection::Kind::box) in = (relative.array() >= s.lower.array() - 1e-6).all() && (relative.array() <= s.upper.array() + 1e-6).all();
+    if (s.kind == Selection::Kind::box)
+      in = (relative.array() >= s.lower.array() - 1e-6).all() && (relative.array() <= s.upper.array() + 1e-6).all();
     if (s.kind == Selection::Kind::sphere) in = away.norm() <= s.radius * box.extent().maxCoeff();
     if (s.kind == Selection::Kind::plane) in = away.dot(s.normal.normalized()) >= -1e-6 * box.extent().maxCoeff();
     if (in) result.push_back(v);
@@ -71,7 +75,8 @@ struct Loaded {
 class MeshCache {
  public:
   const Loaded& get(const SceneDef& scene, const BodyDef& def) {
-    const std::string key = def.mesh.empty() ? fmt::format("{}#{}", def.shape.string(), def.vertices) : def.mesh.string();
+    const std::string key =
+        def.mesh.empty() ? fmt::format("{}#{}", def.shape.string(), def.vertices) : def.mesh.string();
     const auto known = loaded_.find(key);
     if (known != loaded_.end()) return known->second;
     Loaded loaded;
@@ -103,9 +108,12 @@ class MeshCache {
   std::map<std::string, Loaded> loaded_;
 };
 
-Problem at(const Problem& place, std::string message) { return {place.source, place.line, place.column, std::move(message)}; }
+Problem at(const Problem& place, std::string message) {
+  return {place.source, place.line, place.column, std::move(message)};
+}
 
-void add_regions(const BodyDef& def, const Loaded& loaded, BodyDescription& description, std::vector<Problem>& problems) {
+void add_regions(const BodyDef& def, const Loaded& loaded, BodyDescription& description,
+                 std::vector<Problem>& problems) {
   description.materials.assign(loaded.regions.size(), def.material);
   for (const RegionDef& region : def.regions) {
     const auto known = std::find(loaded.regions.begin(), loaded.regions.end(), region.name);
@@ -115,7 +123,9 @@ void add_regions(const BodyDef& def, const Loaded& loaded, BodyDescription& desc
       // A body made of another mesh than the scene was written for has no teeth to be stiff: that is said, not refused.
       if (def.mesh.empty()) {
         problems.push_back(at(region.place, fmt::format("body '{}' has no region '{}'; {}", def.name, region.name,
-                                                        names.empty() ? "its shape has no tags" : nearest.empty() ? "there is " + word_list(names) : "did you mean '" + nearest + "'?")));
+                                                        names.empty()     ? "its shape has no tags"
+                                                        : nearest.empty() ? "there is " + word_list(names)
+                                                                          : "did you mean '" + nearest + "'?")));
       }
       continue;
     }
@@ -125,6 +135,7 @@ void add_regions(const BodyDef& def, const Loaded& loaded, BodyDescription& desc
 
 void add_handles(Body& body, const Loaded& loaded, std::vector<Problem>& problems) {
   std::vector<char> taken(loaded.mesh.rest.rows(), 0);
+  Eigen::Index held = 0;
   for (const HandleDef& def : body.def.handles) {
     Handle handle{def.name, selected(def.select, loaded.mesh, loaded.mesh.rest, loaded.regions), def.spring};
     // Where two handles overlap the first one has the vertices.
@@ -132,11 +143,17 @@ void add_handles(Body& body, const Loaded& loaded, std::vector<Problem>& problem
     for (const std::int32_t v : handle.vertices) taken[v] = 1;
     if (handle.vertices.empty()) {
       const bool by_region = def.select.kind == Selection::Kind::region;
-      problems.push_back(at(def.select.place, fmt::format("handle '{}' of body '{}' selects no vertex{}", def.name, body.def.name,
-                                                          by_region ? fmt::format(": there is no region '{}'", def.select.region)
-                                                                    : "; boxes, spheres and planes are relative to the rest bounding box (0 to 1)")));
-    } else if (def.spring <= 0 && static_cast<Eigen::Index>(handle.vertices.size()) == loaded.mesh.rest.rows()) {
-      problems.push_back(at(def.select.place, fmt::format("handle '{}' holds every vertex of body '{}': nothing is left to move", def.name, body.def.name)));
+      problems.push_back(
+          at(def.select.place,
+             fmt::format("handle '{}' of body '{}' selects no vertex{}", def.name, body.def.name,
+                         by_region ? fmt::format(": there is no region '{}'", def.select.region)
+                                   : "; boxes, spheres and planes are relative to the rest bounding box (0 to 1)")));
+    }
+    if (def.spring <= 0) held += static_cast<Eigen::Index>(handle.vertices.size());
+    if (def.spring <= 0 && held == loaded.mesh.rest.rows()) {
+      problems.push_back(at(def.select.place,
+                            fmt::format("with handle '{}' every vertex of body '{}' is held: nothing is left to move",
+                                        def.name, body.def.name)));
     }
     HandleMotion motion{Vec3::Zero(), def.ease, def.keys};
     Bounds box;
@@ -163,7 +180,8 @@ Eigen::Isometry3d HandleMotion::at(double time) const {
       double s = (time - before.time) / (after->time - before.time);
       if (ease == Ease::smooth) s = s * s * (3 - 2 * s);
       move = before.move + s * (after->move - before.move);
-      turn = rotation_from_degrees(before.turn_deg).slerp(s, rotation_from_degrees(after->turn_deg));
+      // Angles are joined, not rotations: a turn by 360 degrees is a full turn.
+      turn = rotation_from_degrees(before.turn_deg + s * (after->turn_deg - before.turn_deg));
     }
   }
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -200,7 +218,8 @@ std::vector<Body> assemble(const SceneDef& scene) {
   }
   std::vector<Problem> unique;
   for (Problem& problem : problems) {
-    const bool seen = std::any_of(unique.begin(), unique.end(), [&](const Problem& p) { return p.text() == problem.text(); });
+    const bool seen =
+        std::any_of(unique.begin(), unique.end(), [&](const Problem& p) { return p.text() == problem.text(); });
     if (!seen) unique.push_back(std::move(problem));
   }
   if (!unique.empty()) throw InputError(std::move(unique));
@@ -243,7 +262,8 @@ std::vector<Problem> warnings(const SceneDef& scene, const std::vector<Body>& bo
     const MeshQuality q = quality(mesh);
     const Bounds box = bounds_of(mesh.rest);
     if (q.smallest_volume < 1e-4) {
-      list.push_back(at(body.def.place, fmt::format("body '{}' has slivers: its smallest element has {:.1e} of the mean volume, its smallest dihedral angle is {:.2g} degrees",
+      list.push_back(at(body.def.place, fmt::format("body '{}' has slivers: its smallest element has {:.1e} of the "
+                                                    "mean volume, its smallest dihedral angle is {:.2g} degrees",
                                                     body.def.name, q.smallest_volume, q.smallest_dihedral)));
     }
     const double mass = body.description.density * q.volume;
@@ -252,22 +272,30 @@ std::vector<Problem> warnings(const SceneDef& scene, const std::vector<Body>& bo
       if (handle.spring <= 0) continue;
       const double sag = mass * scene.gravity.norm() / (handle.spring * static_cast<double>(handle.vertices.size()));
       if (sag > 0.02 * box.diagonal()) {
-        list.push_back(at(body.def.handles[i].select.place, fmt::format("handle '{}' of body '{}' is soft for its load: the body's weight alone stretches its springs by {:.2g} m ({:.0f} % of its size)",
-                                                                        handle.name, body.def.name, sag, 100 * sag / box.diagonal())));
+        list.push_back(at(body.def.handles[i].select.place,
+                          fmt::format("handle '{}' of body '{}' is soft for its load: the body's weight alone "
+                                      "stretches its springs by {:.2g} m ({:.0f} % of its size)",
+                                      handle.name, body.def.name, sag, 100 * sag / box.diagonal())));
       }
     }
-    // mu h^2 / (rho L^2): how many times per step a wave crosses the body, squared. Far above 1, ten iterations leave visible error.
+    // mu h^2 / (rho L^2): how many times per step a wave crosses the body, squared. Far above 1, ten iterations leave
+    // visible error.
     const double k = stiffness(body.def.material, body.def.fit);
     const double crossing = k * h * h / (body.description.density * box.diagonal() * box.diagonal());
     if (crossing > 300 && body.def.solver.iterations <= 10) {
-      list.push_back(at(body.def.place, fmt::format("body '{}' is stiff for {} iterations a step: k h^2 / (rho L^2) = {:.3g}; more iterations or substeps make it sharper",
+      list.push_back(at(body.def.place, fmt::format("body '{}' is stiff for {} iterations a step: k h^2 / (rho L^2) = "
+                                                    "{:.3g}; more iterations or substeps make it sharper",
                                                     body.def.name, body.def.solver.iterations, crossing)));
     }
     for (const Body& other : bodies) {
       if (&other == &body) break;
       const Bounds b = bounds_of(other.description.mesh.rest);
       const bool apart = (box.lower.array() >= b.upper.array()).any() || (b.lower.array() >= box.upper.array()).any();
-      if (!apart) list.push_back(at(body.def.place, fmt::format("bodies '{}' and '{}' overlap at the start; bodies do not collide with each other", other.def.name, body.def.name)));
+      if (!apart)
+        list.push_back(
+            at(body.def.place,
+               fmt::format("bodies '{}' and '{}' overlap at the start; bodies do not collide with each other",
+                           other.def.name, body.def.name)));
     }
   }
   return list;

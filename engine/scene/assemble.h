@@ -1,4 +1,5 @@
-// From definitions to ready-to-run objects: meshes read or made, placed and scaled, handles chosen, models built, skins prepared.
+// From definitions to ready-to-run objects: meshes read or made, placed and scaled, handles chosen, models built, skins
+// prepared.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -21,22 +22,23 @@ struct HandleMotion {
 // What is drawn of a body: a skin carried by its elements, or (vertex_of) the mesh's own boundary.
 struct DrawnBody {
   Skin skin;
-  Embedding embedding;                   // when the skin is finer than the mesh
-  std::vector<std::int32_t> vertex_of;   // when it is the boundary: mesh vertex by skin vertex
+  Embedding embedding;                  // when the skin is finer than the mesh
+  std::vector<std::int32_t> vertex_of;  // when it is the boundary: mesh vertex by skin vertex
   Vec3 color;
-  std::vector<PaintLayer> layers;        // colours only; their areas live in the skin
+  std::vector<PaintLayer> layers;  // colours only; their areas live in the skin
 };
 
 struct Body {
   BodyDef def;
-  BodyDescription description;        // the mesh as placed, and its handles
-  std::vector<HandleMotion> motions;  // by handle
-  std::vector<std::string> notes;     // what reading the mesh had to say
-  std::string source;                 // the mesh or shape file
+  BodyDescription description;                              // the mesh as placed, and its handles
+  std::vector<HandleMotion> motions;                        // by handle
+  std::vector<std::string> notes;                           // what reading the mesh had to say
+  std::string source;                                       // the mesh or shape file
   Eigen::Affine3d placement = Eigen::Affine3d::Identity();  // from the file's frame to the world: turned, scaled, moved
 };
 
-// Throws InputError: unreadable meshes, empty selections, regions that the mesh does not have. All bodies' problems at once.
+// Throws InputError: unreadable meshes, empty selections, regions that the mesh does not have. All bodies' problems at
+// once.
 std::vector<Body> assemble(const SceneDef& scene);
 
 // Only for pictures; separate because a run without images does not pay for it.

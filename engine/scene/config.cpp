@@ -41,7 +41,8 @@ std::string number_text(double value) { return fmt::format("{:g}", value); }
 
 std::string Range::text() const {
   const bool below = std::isfinite(lowest), above = std::isfinite(highest);
-  if (below && above) return fmt::format("{}{} to {}", open_below ? "above " : "", number_text(lowest), number_text(highest));
+  if (below && above)
+    return fmt::format("{}{} to {}", open_below ? "above " : "", number_text(lowest), number_text(highest));
   if (below) return fmt::format("{} {}", open_below ? "above" : "at least", number_text(lowest));
   if (above) return fmt::format("at most {}", number_text(highest));
   return "any number";
@@ -61,7 +62,8 @@ struct Config::Content {
     const toml::source_region& region = node->source();
     const std::string source = region.path ? *region.path : name;
     const bool from_option = source.starts_with(set_option);
-    return {source, from_option ? 0 : int(region.begin.line), from_option ? 0 : int(region.begin.column), std::move(message)};
+    return {source, from_option ? 0 : int(region.begin.line), from_option ? 0 : int(region.begin.column),
+            std::move(message)};
   }
 };
 
@@ -75,7 +77,8 @@ Config Config::load(const std::filesystem::path& path, const std::filesystem::pa
   if (!std::filesystem::is_regular_file(path, error)) {
     throw InputError(path.string(), std::filesystem::exists(path, error) ? "is not a file" : "no such file");
   }
-  if (std::filesystem::file_size(path, error) > largest_file) throw InputError(path.string(), "is larger than 1 MB: not a scene");
+  if (std::filesystem::file_size(path, error) > largest_file)
+    throw InputError(path.string(), "is larger than 1 MB: not a scene");
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
   text << file.rdbuf();
@@ -102,13 +105,15 @@ Config Config::parse(std::string_view text, const std::string& name, const std::
 void Config::set(const std::string& assignment, const std::vector<std::set<std::string>>& exclusive) {
   const std::string source = std::string(set_option) + assignment;
   const std::size_t equals = assignment.find('=');
-  if (equals == std::string::npos || equals == 0) throw InputError(source, "should read path=value, such as solver.iterations=20");
+  if (equals == std::string::npos || equals == 0)
+    throw InputError(source, "should read path=value, such as solver.iterations=20");
   std::vector<std::string> path;
   std::istringstream words(assignment.substr(0, equals));
   for (std::string word; std::getline(words, word, '.');) path.push_back(word);
   const std::string value = assignment.substr(equals + 1);
 
-  // A value that is not TOML is taken as the word that it is, so that no shell quotes are needed around names and paths.
+  // A value that is not TOML is taken as the word that it is, so that no shell quotes are needed around names and
+  // paths.
   toml::table parsed;
   try {
     parsed = toml::parse("value = " + value, source);
@@ -132,17 +137,19 @@ void Config::set(const std::string& assignment, const std::vector<std::set<std::
       for (toml::node& element : *list) {
         const toml::table* candidate = element.as_table();
         if (candidate == nullptr) continue;
-        const std::string element_name = candidate->get("name") ? candidate->get("name")->value_or(std::string()) : path[depth - 1];
+        const std::string element_name =
+            candidate->get("name") ? candidate->get("name")->value_or(std::string()) : path[depth - 1];
         names.push_back(element_name);
         if (element_name == wanted) found = &element;
       }
       if (found == nullptr || depth + 1 >= path.size()) {
-        throw InputError(source, found == nullptr ? fmt::format("there is no {} named '{}' (there is {})", path[depth - 1], wanted, word_list(names))
-                                                  : fmt::format("names a whole {}; a value inside it is wanted", path[depth - 1]));
+        throw InputError(source, found == nullptr
+                                     ? fmt::format("there is no {} named '{}' (there is {})", path[depth - 1], wanted,
+                                                   word_list(names))
+                                     : fmt::format("names a whole {}; a value inside it is wanted", path[depth - 1]));
       }
       next = found;
     }
-    // A word or number in the place of a table (material = "rubber") gives way to a table.
     if (!next->is_table()) throw InputError(source, fmt::format("'{}' is not a table", path[depth]));
     table = next->as_table();
   }
@@ -177,8 +184,9 @@ std::vector<Problem> Config::take_problems() {
       std::vector<std::string> sorted = asked;
       std::sort(sorted.begin(), sorted.end());
       sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-      problem.message = nearest.empty() ? fmt::format("unknown key '{}'; allowed here: {}", std::string(key.str()), word_list(sorted))
-                                        : fmt::format("unknown key '{}'; did you mean '{}'?", std::string(key.str()), nearest);
+      problem.message =
+          nearest.empty() ? fmt::format("unknown key '{}'; allowed here: {}", std::string(key.str()), word_list(sorted))
+                          : fmt::format("unknown key '{}'; did you mean '{}'?", std::string(key.str()), nearest);
       problems.push_back(std::move(problem));
     }
   }
@@ -208,7 +216,10 @@ ConfigTable::ConfigTable(Config* config, const toml::table* table, std::string p
   config_->content_->asked.try_emplace(table_);
 }
 
-bool ConfigTable::has(const char* key) const { return table_->contains(key); }
+bool ConfigTable::has(const char* key) const {
+  config_->content_->asked[table_].push_back(key);
+  return table_->contains(key);
+}
 
 std::vector<std::string> ConfigTable::keys() const {
   std::vector<std::string> names;
@@ -220,9 +231,8 @@ const toml::node* ConfigTable::find(const Key& key, const char* type, std::strin
   config_->content_->asked[table_].push_back(key.name);
   const std::string path = path_.empty() ? key.name : path_ + "." + key.name;
   auto& documented = config_->content_->documented;
-  const bool known = std::any_of(documented.begin(), documented.end(), [&](const DocumentedKey& d) {
-    return d.path == path && d.type == type;
-  });
+  const bool known = std::any_of(documented.begin(), documented.end(),
+                                 [&](const DocumentedKey& d) { return d.path == path && d.type == type; });
   if (!known) documented.push_back({path, type, std::move(fallback), std::move(allowed), key.unit, key.meaning});
   return table_->get(key.name);
 }
@@ -257,7 +267,8 @@ std::optional<Vec3> ConfigTable::vector_if_given(const Key& key, const Range& ra
 }
 
 int ConfigTable::integer(const Key& key, std::optional<int> fallback, const Range& range) const {
-  const toml::node* node = find(key, "whole number", fallback ? fmt::format("{}", *fallback) : "required", range.text());
+  const toml::node* node =
+      find(key, "whole number", fallback ? fmt::format("{}", *fallback) : "required", range.text());
   const int instead = fallback.value_or(1);
   if (node == nullptr) {
     if (!fallback) complain(fmt::format("'{}' is missing: {} ({})", key.name, key.meaning, range.text()));
@@ -290,8 +301,10 @@ std::string ConfigTable::text(const Key& key, std::optional<std::string> fallbac
   return fallback.value_or("");
 }
 
-std::string ConfigTable::choice(const Key& key, std::optional<std::string> fallback, const std::vector<std::string>& allowed) const {
-  const toml::node* node = find(key, "word", fallback ? fmt::format("\"{}\"", *fallback) : "required", word_list(allowed));
+std::string ConfigTable::choice(const Key& key, std::optional<std::string> fallback,
+                                const std::vector<std::string>& allowed) const {
+  const toml::node* node =
+      find(key, "word", fallback ? fmt::format("\"{}\"", *fallback) : "required", word_list(allowed));
   const std::string instead = fallback.value_or(allowed.front());
   if (node == nullptr) {
     if (!fallback) complain(fmt::format("'{}' is missing: {} ({})", key.name, key.meaning, word_list(allowed)));
@@ -300,7 +313,8 @@ std::string ConfigTable::choice(const Key& key, std::optional<std::string> fallb
   const auto value = node->value_exact<std::string>();
   if (value && std::find(allowed.begin(), allowed.end(), *value) != allowed.end()) return *value;
   const std::string nearest = value ? nearest_word(*value, allowed) : "";
-  wrong(key, *node, nearest.empty() ? word_list(allowed) : fmt::format("{}; did you mean '{}'?", word_list(allowed), nearest));
+  wrong(key, *node,
+        nearest.empty() ? word_list(allowed) : fmt::format("{}; did you mean '{}'?", word_list(allowed), nearest));
   return instead;
 }
 
@@ -331,7 +345,9 @@ Vec3 ConfigTable::vector(const Key& key, std::optional<Vec3> fallback, const Ran
     return instead;
   }
   const std::optional<Vec3> value = as_vector(*node);
-  const auto fits = [&range](const Vec3& v) { return range.contains(v.x()) && range.contains(v.y()) && range.contains(v.z()); };
+  const auto fits = [&range](const Vec3& v) {
+    return range.contains(v.x()) && range.contains(v.y()) && range.contains(v.z());
+  };
   if (value && fits(*value)) return *value;
   wrong(key, *node, value ? allowed : "a list of " + allowed + ", all finite");
   return instead;
@@ -369,12 +385,13 @@ std::filesystem::path ConfigTable::file(const Key& key) const {
   std::error_code error;
   if (std::filesystem::exists(beside, error)) return beside;
   if (std::filesystem::exists(asset, error)) return asset;
-  config_->complain(node, fmt::format("{} = '{}': no such file (looked for {} and {})", key.name, *value, beside.string(), asset.string()));
+  config_->complain(node, fmt::format("{} = '{}': no such file (looked for {} and {})", key.name, *value,
+                                      beside.string(), asset.string()));
   return {};
 }
 
-std::optional<ConfigTable> ConfigTable::table(const Key& key) const {
-  const toml::node* node = find(key, "table", "none", "a table");
+std::optional<ConfigTable> ConfigTable::table(const Key& key, const char* fallback) const {
+  const toml::node* node = find(key, "table", fallback, "a table");
   if (node == nullptr) return std::nullopt;
   if (const toml::table* inner = node->as_table()) {
     return ConfigTable(config_, inner, path_.empty() ? key.name : path_ + "." + key.name);
@@ -394,7 +411,8 @@ std::vector<ConfigTable> ConfigTable::tables(const Key& key) const {
   }
   for (const toml::node& element : *list) {
     if (const toml::table* inner = element.as_table()) {
-      result.push_back(ConfigTable(config_, inner, (path_.empty() ? key.name : path_ + "." + key.name) + std::string("[]")));
+      result.push_back(
+          ConfigTable(config_, inner, (path_.empty() ? key.name : path_ + "." + key.name) + std::string("[]")));
     } else {
       wrong(key, element, "a list of tables");
     }
@@ -402,17 +420,14 @@ std::vector<ConfigTable> ConfigTable::tables(const Key& key) const {
   return result;
 }
 
-std::optional<std::string> ConfigTable::word(const Key& key) const {
-  const toml::node* node = table_->get(key.name);
-  if (node == nullptr || !node->is_string()) return std::nullopt;
-  (void)find(key, "word", "none", "a word");
-  return node->value_exact<std::string>();
-}
-
-std::optional<double> ConfigTable::plain_number(const Key& key) const {
-  const toml::node* node = table_->get(key.name);
-  if (node == nullptr || !node->is_number()) return std::nullopt;
-  return number(key, 1.0, Range::any());
+std::optional<double> ConfigTable::number_or_word(const Key& key, const char* word, const Range& range) const {
+  const std::string allowed = fmt::format("\"{}\" or {}", word, range.text());
+  const toml::node* node = find(key, "number or word", fmt::format("\"{}\"", word), allowed);
+  if (node == nullptr || node->value_exact<std::string>() == word) return std::nullopt;
+  const std::optional<double> value = node->is_number() ? node->value<double>() : std::nullopt;
+  if (value && std::isfinite(*value) && range.contains(*value)) return value;
+  wrong(key, *node, allowed);
+  return std::nullopt;
 }
 
 Problem ConfigTable::place(const char* key, std::string message) const {
@@ -420,7 +435,9 @@ Problem ConfigTable::place(const char* key, std::string message) const {
   return config_->content_->place(node != nullptr ? node : table_, std::move(message));
 }
 
-void ConfigTable::complain(const char* key, const std::string& message) const { config_->complain(place(key, message)); }
+void ConfigTable::complain(const char* key, const std::string& message) const {
+  config_->complain(place(key, message));
+}
 
 void ConfigTable::complain(const std::string& message) const { config_->complain(place(nullptr, message)); }
 

@@ -1,6 +1,7 @@
-// A parsed TOML file in which every value knows its file, line and column, and in which a key that nobody asked for is an error.
-// Problems are collected, not thrown one by one: a reader asks for all that it needs, then calls finish(). The readers' questions are
-// also the documentation: each key is asked for with its unit and meaning. The only place that knows the TOML parser.
+// A parsed TOML file in which every value knows its file, line and column, and in which a key that nobody asked for is
+// an error. Problems are collected, not thrown one by one: a reader asks for all that it needs, then calls finish().
+// The readers' questions are also the documentation: each key is asked for with its unit and meaning. The only place
+// that knows the TOML parser.
 #pragma once
 
 #include <filesystem>
@@ -60,15 +61,16 @@ class ConfigTable;
 
 class Config {
  public:
-  // Throws InputError: no such file, larger than 1 MB, or not TOML. `assets`: where relative paths are looked up second.
+  // Throws InputError: no such file, larger than 1 MB, or not TOML. `assets`: where relative paths are looked up
+  // second.
   static Config load(const std::filesystem::path& path, const std::filesystem::path& assets);
   static Config parse(std::string_view text, const std::string& name, const std::filesystem::path& assets);
   Config(Config&&) noexcept;
   Config& operator=(Config&&) noexcept;
   ~Config();
 
-  // Applies "path=value", as on the command line. Lists are entered by the name of their element: body.soft.material.mu. Setting one
-  // key of an exclusive group removes the others. Throws InputError.
+  // Applies "path=value", as on the command line. Lists are entered by the name of their element:
+  // body.soft.material.mu. Setting one key of an exclusive group removes the others. Throws InputError.
   void set(const std::string& assignment, const std::vector<std::set<std::string>>& exclusive);
 
   ConfigTable root();
@@ -95,17 +97,19 @@ class Config {
 // A view of one table of a Config; valid while that lives.
 class ConfigTable {
  public:
+  // Whether the key stands here; it counts as known to the reader.
   bool has(const char* key) const;
   // Keys as they stand, for tables whose keys are names that the user chose.
   std::vector<std::string> keys() const;
 
-  // Each returns the value, or the default when the key is absent or wrong (and then the problem is recorded). Without a default
-  // the key is required.
+  // Each returns the value, or the default when the key is absent or wrong (and then the problem is recorded). Without
+  // a default the key is required.
   double number(const Key& key, std::optional<double> fallback, const Range& range) const;
   int integer(const Key& key, std::optional<int> fallback, const Range& range) const;
   bool boolean(const Key& key, bool fallback) const;
   std::string text(const Key& key, std::optional<std::string> fallback) const;
-  std::string choice(const Key& key, std::optional<std::string> fallback, const std::vector<std::string>& allowed) const;
+  std::string choice(const Key& key, std::optional<std::string> fallback,
+                     const std::vector<std::string>& allowed) const;
   Vec3 vector(const Key& key, std::optional<Vec3> fallback, const Range& range = Range::any()) const;
   std::optional<double> number_if_given(const Key& key, const Range& range) const;
   std::optional<Vec3> vector_if_given(const Key& key, const Range& range = Range::any()) const;
@@ -113,11 +117,10 @@ class ConfigTable {
   // A path that exists, found beside the file that names it or among the assets; empty when absent or wrong.
   std::filesystem::path file(const Key& key) const;
 
-  std::optional<ConfigTable> table(const Key& key) const;
+  std::optional<ConfigTable> table(const Key& key, const char* fallback = "none") const;
   std::vector<ConfigTable> tables(const Key& key) const;
-  // The value of `key` when it is a word or number instead of a table.
-  std::optional<std::string> word(const Key& key) const;
-  std::optional<double> plain_number(const Key& key) const;
+  // A number, or nothing when the key is absent or says `word`.
+  std::optional<double> number_or_word(const Key& key, const char* word, const Range& range) const;
 
   // Records a problem at a key's value, or at this table.
   void complain(const char* key, const std::string& message) const;

@@ -1,5 +1,5 @@
-// A scene as its file describes it: plain nested structs with defaults, SI units, angles in degrees where the name says so. Nothing is built yet
-// (assemble.h), and nothing here knows TOML.
+// A scene as its file describes it: plain nested structs with defaults, SI units, angles in degrees where the name says
+// so. Nothing is built yet (assemble.h), and nothing here knows TOML.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,8 @@
 
 namespace supple {
 
-// A box, ball, half space or region that picks vertices of a body, in coordinates relative to its rest bounding box (0 to 1 along each axis).
+// A box, ball, half space or region that picks vertices of a body, in coordinates relative to its rest bounding box (0
+// to 1 along each axis).
 struct Selection {
   enum class Kind { region, box, sphere, plane } kind = Kind::box;
   std::string region;
@@ -25,9 +26,9 @@ struct Selection {
 };
 
 struct HandleKey {
-  double time = 0;                // [s]
-  Vec3 move = Vec3::Zero();       // from rest [m]
-  Vec3 turn_deg = Vec3::Zero();   // about the handle's centre
+  double time = 0;               // [s]
+  Vec3 move = Vec3::Zero();      // from rest [m]
+  Vec3 turn_deg = Vec3::Zero();  // about the handle's centre
 };
 
 enum class Ease { smooth, linear };
@@ -52,28 +53,28 @@ struct BodyDef {
   // One of the two. A mesh file's regions are named by their reference numbers.
   std::filesystem::path shape;
   std::filesystem::path mesh;
-  int vertices = 0;                   // of the tetrahedra made from a shape
-  std::optional<double> size;         // longest side; otherwise the file's units are metres [m]
-  Vec3 position = Vec3::Zero();       // of the middle of the bounding box's bottom [m]
+  int vertices = 0;              // of the tetrahedra made from a shape
+  std::optional<double> size;    // longest side; otherwise the file's units are metres [m]
+  Vec3 position = Vec3::Zero();  // of the middle of the bounding box's bottom [m]
   Vec3 turn_deg = Vec3::Zero();
-  std::optional<double> density;      // [kg/m^3]
-  std::optional<double> total_mass;   // spread over the volume [kg]
+  std::optional<double> density;     // [kg/m^3]
+  std::optional<double> total_mass;  // spread over the volume [kg]
   Material material;
   std::vector<RegionDef> regions;
   std::vector<HandleDef> handles;
   SolverSettings solver;
   StretchInterval fit;
   Precision precision = Precision::single_precision;
-  std::optional<Vec3> color;          // over the shape's own [sRGB]
-  double skin_cells = 0;              // cells of the drawn skin along the longest side
+  std::optional<Vec3> color;  // over the shape's own [sRGB]
+  double skin_cells = 0;      // cells of the drawn skin along the longest side
   Problem place;
 };
 
 struct CameraDef {
   std::optional<Vec3> position;  // [m]; without it the camera frames all bodies
   std::optional<Vec3> target;
-  double fov_deg = 30;           // vertical
-  double margin = 1.25;          // air around the bodies when they are framed
+  double fov_deg = 30;   // vertical
+  double margin = 1.25;  // air around the bodies when they are framed
 };
 
 struct LookDef {
@@ -90,7 +91,7 @@ struct OutputDef {
 };
 
 struct SceneDef {
-  std::string name;   // of the file, without folder and ending
+  std::string name;  // of the file, without folder and ending
   std::string title;
   int frames = 120;
   double fps = 30;

@@ -10,8 +10,8 @@ namespace supple {
 SceneDef read_scene(Config& config);
 
 // Loads a file, applies "path=value" settings in order, reads. Throws InputError with all problems.
-SceneDef load_scene(const std::filesystem::path& path, const std::filesystem::path& assets, const std::vector<std::string>& settings,
-                    std::string* resolved_json = nullptr);
+SceneDef load_scene(const std::filesystem::path& path, const std::filesystem::path& assets,
+                    const std::vector<std::string>& settings, std::string* resolved_json = nullptr);
 
 // Keys of which a body has one: setting one removes the others.
 const std::vector<std::set<std::string>>& exclusive_keys();

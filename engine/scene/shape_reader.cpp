@@ -10,11 +10,20 @@ namespace {
 
 constexpr int deepest_group = 8;
 
-const std::vector<std::string> primitive_names = {"sphere", "ellipsoid", "capsule", "round_cone", "box", "cylinder", "torus", "half_space", "parts"};
+const std::vector<std::string> primitive_names = {"sphere",   "ellipsoid", "capsule",    "round_cone", "box",
+                                                  "cylinder", "torus",     "half_space", "parts"};
 
 const Range lengths = Range::above(0, 1e6);
 
 ShapeGroup read_parts(const ConfigTable& table, const Key& key, std::vector<std::string>& regions, int depth);
+
+double read_round(const ConfigTable& table, double largest) {
+  const double round =
+      table.number({"round", "m", "radius of the edges, at most half the shortest extent"}, 0.0, Range::at_least(0));
+  if (round > largest)
+    table.complain("round", fmt::format("round = {}: must be at most {:g}, half the shortest extent", round, largest));
+  return std::min(round, largest);
+}
 
 std::optional<Primitive> read_primitive(const ConfigTable& part, std::vector<std::string>& regions, int depth) {
   std::optional<Primitive> result;
@@ -31,27 +40,31 @@ std::optional<Primitive> read_primitive(const ConfigTable& part, std::vector<std
   }
   if (const auto t = part.table({"round_cone", "", "the hull of two balls"})) {
     const std::vector<Vec3> ends = t->vectors({"ends", "m", "the balls' centres"}, 2);
-    const std::vector<double> radii = {t->number({"radius", "m", "the first ball's radius"}, std::nullopt, lengths),
-                                       t->number({"end_radius", "m", "the second ball's radius"}, std::nullopt, lengths)};
+    const std::vector<double> radii = {
+        t->number({"radius", "m", "the first ball's radius"}, std::nullopt, lengths),
+        t->number({"end_radius", "m", "the second ball's radius"}, std::nullopt, lengths)};
     if (ends.size() == 2) result = RoundCone{ends[0], ends[1], radii[0], radii[1]};
   }
   if (const auto t = part.table({"box", "", "a box around the origin"})) {
     const Vec3 half = 0.5 * t->vector({"extent", "m", "the three edges"}, std::nullopt, lengths);
-    result = Box{half, t->number({"round", "m", "radius of the edges"}, 0.0, Range::between(0, half.minCoeff()))};
+    result = Box{half, read_round(*t, half.minCoeff())};
   }
   if (const auto t = part.table({"cylinder", "", "a cylinder around the y axis"})) {
     const double radius = t->number({"radius", "m", "radius"}, std::nullopt, lengths);
     const double half = 0.5 * t->number({"height", "m", "height"}, std::nullopt, lengths);
-    result = Cylinder{radius, half, t->number({"round", "m", "radius of the edges"}, 0.0, Range::between(0, std::min(radius, half)))};
+    result = Cylinder{radius, half, read_round(*t, std::min(radius, half))};
   }
   if (const auto t = part.table({"torus", "", "a ring around the y axis"})) {
-    const double radius = t->number({"radius", "m", "from the centre to the middle of the tube"}, std::nullopt, lengths);
+    const double radius =
+        t->number({"radius", "m", "from the centre to the middle of the tube"}, std::nullopt, lengths);
     result = Torus{radius, t->number({"tube", "m", "the tube's radius"}, std::nullopt, lengths)};
   }
   if (const auto t = part.table({"half_space", "", "everything behind a plane"})) {
     const Vec3 normal = t->vector({"normal", "", "points out of the solid"}, std::nullopt);
     if (normal.norm() < 1e-9) t->complain("normal", "normal: must not be zero");
-    result = HalfSpace{normal.normalized(), t->number({"offset", "m", "distance of the plane from the origin along the normal"}, 0.0, Range::any())};
+    result = HalfSpace{
+        normal.normalized(),
+        t->number({"offset", "m", "distance of the plane from the origin along the normal"}, 0.0, Range::any())};
   }
   if (part.has("parts")) {
     if (depth >= deepest_group) {
@@ -86,9 +99,11 @@ ShapePart read_part(const ConfigTable& table, std::vector<std::string>& regions,
   part.to_local = to_parent.inverse();
   part.scale = table.number({"scale", "", "enlarges the part about its origin"}, 1.0, Range::above(0, 1e6));
   part.mirror_x = table.boolean({"mirror", "", "the part also stands at -x"}, false);
-  const std::string op = table.choice({"op", "", "how the part joins what came before"}, "add", {"add", "cut", "intersect"});
+  const std::string op =
+      table.choice({"op", "", "how the part joins what came before"}, "add", {"add", "cut", "intersect"});
   part.combine = op == "cut" ? Combine::cut : op == "intersect" ? Combine::intersect : Combine::add;
-  part.blend = table.number({"blend", "m", "width over which the surfaces melt into each other"}, 0.0, Range::at_least(0));
+  part.blend =
+      table.number({"blend", "m", "width over which the surfaces melt into each other"}, 0.0, Range::at_least(0));
   const std::string region = table.text({"region", "", "tag of the elements inside"}, "");
   const auto known = std::find(regions.begin(), regions.end(), region);
   part.region = static_cast<int>(known - regions.begin());
@@ -113,7 +128,8 @@ Shape read_shape(const ConfigTable& table) {
   shape.color = read_color(table, shape.color);
   shape.root = read_parts(table, {"part", "", "combined in the order of the file"}, shape.regions, 0);
   if (shape.root.parts.empty()) table.complain("a shape needs at least one [[part]]");
-  for (const ConfigTable& layer : table.tables({"paint", "", "layers of colour on the drawn skin; later ones lie on top"})) {
+  for (const ConfigTable& layer :
+       table.tables({"paint", "", "layers of colour on the drawn skin; later ones lie on top"})) {
     PaintLayer paint;
     paint.name = layer.text({"name", "", "for people"}, "");
     paint.color = read_color(layer, Vec3(0.2, 0.2, 0.2));

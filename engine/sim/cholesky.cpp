@@ -52,8 +52,8 @@ cholmod_sparse view_of(const Eigen::SparseMatrix<double>& matrix, int xtype) {
   return view;
 }
 
-// Adjacent columns with (nearly) one pattern. Children are merged into their parents while the zeros that this stores stay few: the
-// thresholds are CHOLMOD's (nrelax, zrelax), which our solve times confirm to within noise.
+// Adjacent columns with (nearly) one pattern. Children are merged into their parents while the zeros that this stores
+// stay few: the thresholds are CHOLMOD's (nrelax, zrelax), which our solve times confirm to within noise.
 struct Supernode {
   int first, last;
   std::int64_t nonzeros;  // without the zeros that merging stores
@@ -71,7 +71,8 @@ std::vector<Supernode> find_supernodes(int size, const std::vector<int>& columns
       const std::int64_t wide = node.last - child.first + 1;
       const std::int64_t dense = wide * (wide + 1) / 2 + wide * below(node.last);
       const double zeros = static_cast<double>(dense - child.nonzeros - node.nonzeros) / static_cast<double>(dense);
-      const bool few = zeros <= 0 || wide <= 4 || (wide <= 16 && zeros < 0.8) || (wide <= 48 && zeros < 0.1) || zeros < 0.05;
+      const bool few =
+          zeros <= 0 || wide <= 4 || (wide <= 16 && zeros < 0.8) || (wide <= 48 && zeros < 0.1) || zeros < 0.05;
       if (!few) break;
       node = {child.first, node.last, child.nonzeros + node.nonzeros};
       merged.pop_back();
@@ -83,7 +84,8 @@ std::vector<Supernode> find_supernodes(int size, const std::vector<int>& columns
 
 }  // namespace
 
-std::vector<std::int32_t> fill_reducing_order(int count, const std::vector<std::pair<std::int32_t, std::int32_t>>& edges) {
+std::vector<std::int32_t> fill_reducing_order(int count,
+                                              const std::vector<std::pair<std::int32_t, std::int32_t>>& edges) {
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(edges.size() + count);
   for (int i = 0; i < count; ++i) entries.emplace_back(i, i, 1.0);
@@ -113,7 +115,8 @@ CholeskyFactor::CholeskyFactor(const Eigen::SparseMatrix<double>& matrix, Precis
     cholmod_sparse view = view_of(matrix, CHOLMOD_REAL);
     const auto factor = cholmod.hold(size_ > 0 ? cholmod_analyze(&view, &cholmod.common) : nullptr);
     if (size_ > 0) {
-      if (!factor || !cholmod_factorize(&view, factor.get(), &cholmod.common)) throw RunError("the stiffness matrix could not be factored: out of memory");
+      if (!factor || !cholmod_factorize(&view, factor.get(), &cholmod.common))
+        throw RunError("the stiffness matrix could not be factored: out of memory");
       if (cholmod.common.status == CHOLMOD_NOT_POSDEF || factor->minor < factor->n) {
         throw RunError(fmt::format("the stiffness matrix is not positive definite (unknown {})", factor->minor));
       }
@@ -132,7 +135,8 @@ CholeskyFactor::CholeskyFactor(const Eigen::SparseMatrix<double>& matrix, Precis
   first_row_.push_back(0);
   std::int64_t value_count = 0;
   for (const Supernode& node : find_supernodes(size_, columns, rows)) {
-    // Panels split a supernode into equal parts; the rows below a panel are the supernode's later columns and the rows of its last.
+    // Panels split a supernode into equal parts; the rows below a panel are the supernode's later columns and the rows
+    // of its last.
     const int wide = node.last - node.first + 1;
     const int parts = (wide + panel_width - 1) / panel_width;
     for (int part = 0; part < parts; ++part) {
@@ -158,8 +162,8 @@ CholeskyFactor::CholeskyFactor(const Eigen::SparseMatrix<double>& matrix, Precis
 }
 
 template <class T>
-void CholeskyFactor::fill(const std::vector<int>& columns, const std::vector<int>& rows, const std::vector<double>& values,
-                          AlignedVector<T>& out) {
+void CholeskyFactor::fill(const std::vector<int>& columns, const std::vector<int>& rows,
+                          const std::vector<double>& values, AlignedVector<T>& out) {
   for (std::size_t panel = 0; panel < width_.size(); ++panel) {
     const int first = first_column_[panel], width = width_[panel];
     T* triangle = out.data() + first_value_[panel];
@@ -184,13 +188,21 @@ void CholeskyFactor::fill(const std::vector<int>& columns, const std::vector<int
 }
 
 PanelsView CholeskyFactor::view() const {
-  const void* values = precision_ == Precision::single_precision ? static_cast<const void*>(single_.data()) : double_.data();
-  return {static_cast<int>(width_.size()), first_column_.data(), width_.data(), first_row_.data(), rows_.data(), first_value_.data(), values};
+  const void* values =
+      precision_ == Precision::single_precision ? static_cast<const void*>(single_.data()) : double_.data();
+  return {static_cast<int>(width_.size()),
+          first_column_.data(),
+          width_.data(),
+          first_row_.data(),
+          rows_.data(),
+          first_value_.data(),
+          values};
 }
 
 namespace {
 
-// A power of two that brings the largest entry near 1, so that single precision neither overflows nor falls into denormals.
+// A power of two that brings the largest entry near 1, so that single precision neither overflows nor falls into
+// denormals.
 double scale_of(const double* b, int count) {
   double largest = 0;
   for (int i = 0; i < count; ++i) largest = std::max(largest, std::abs(b[i]));

@@ -1,6 +1,6 @@
-// Sparse Cholesky of a symmetric positive definite matrix: ordering and numbers by CHOLMOD (its simplicial code, whose bits depend neither
-// on the number of threads nor on a BLAS), solves by our own panels for three right-hand sides at once. The only place that knows
-// CHOLMOD. Not thread-safe against itself: build on one thread.
+// Sparse Cholesky of a symmetric positive definite matrix: ordering and numbers by CHOLMOD (its simplicial code, whose
+// bits depend neither on the number of threads nor on a BLAS), solves by our own panels for three right-hand sides at
+// once. The only place that knows CHOLMOD. Not thread-safe against itself: build on one thread.
 #pragma once
 
 #include <cstdint>
@@ -16,14 +16,16 @@ namespace supple {
 
 // An order of elimination with little fill (nested dissection): order[k] is the k-th unknown to be eliminated.
 // edges: pairs of different unknowns below `count` that share a matrix entry, each at least once.
-std::vector<std::int32_t> fill_reducing_order(int count, const std::vector<std::pair<std::int32_t, std::int32_t>>& edges);
+std::vector<std::int32_t> fill_reducing_order(int count,
+                                              const std::vector<std::pair<std::int32_t, std::int32_t>>& edges);
 
 enum class Precision { single_precision, double_precision };
 
 class CholeskyFactor {
  public:
   CholeskyFactor() = default;
-  // Factors the lower triangle of `matrix` in the order given. Throws RunError when it is not positive definite, naming the column.
+  // Factors the lower triangle of `matrix` in the order given. Throws RunError when it is not positive definite, naming
+  // the column.
   CholeskyFactor(const Eigen::SparseMatrix<double>& matrix, Precision precision);
 
   int size() const { return size_; }
@@ -34,7 +36,8 @@ class CholeskyFactor {
 
  private:
   template <class T>
-  void fill(const std::vector<int>& columns, const std::vector<int>& rows, const std::vector<double>& values, AlignedVector<T>& out);
+  void fill(const std::vector<int>& columns, const std::vector<int>& rows, const std::vector<double>& values,
+            AlignedVector<T>& out);
   PanelsView view() const;
 
   int size_ = 0;

@@ -1,5 +1,5 @@
-// Compiled once for each instruction set (SUPPLE_VARIANT names it). Free functions on plain arrays with internal linkage, so that nothing
-// compiled for a wide machine can be linked into the code for a narrow one.
+// Compiled once for each instruction set (SUPPLE_VARIANT names it). Free functions on plain arrays with internal
+// linkage, so that nothing compiled for a wide machine can be linked into the code for a narrow one.
 #include "sim/kernels.h"
 
 #include <xsimd/xsimd.hpp>
@@ -37,10 +37,11 @@ Lanes density_of(const M& material, const Matrix3<Lanes>& f, Matrix3<Lanes>& str
   }
 }
 
-// F = (current edges) (rest edges)^-1 and the gradient -f = V P (rest edges)^-T, as in Sifakis and Barbic 2012, "FEM simulation of 3D deformable
-// solids", section 4.
+// F = (current edges) (rest edges)^-1 and the gradient -f = V P (rest edges)^-T, as in Sifakis and Barbic 2012, "FEM
+// simulation of 3D deformable solids", section 4.
 template <bool with_force, class M>
-double elements_of(const M& material, const ElementChunk& chunk, const double* previous, double* energy, double* force, const double* local) {
+double elements_of(const M& material, const ElementChunk& chunk, const double* previous, double* energy, double* force,
+                   const double* local) {
   Lanes change(0.0);
   for (int block = 0; block < chunk.blocks; ++block) {
     for (int lane = 0; lane < block_width; lane += lanes) {
@@ -77,7 +78,8 @@ double elements_of(const M& material, const ElementChunk& chunk, const double* p
         alignas(64) double out[9][lanes];  // [3 * edge + coordinate]
         for (int i = 0; i < 3; ++i) {
           const Lanes p0 = volume * stress(i, 0), p1 = volume * stress(i, 1), p2 = volume * stress(i, 2);
-          for (int k = 0; k < 3; ++k) madd(p0, b[3 * k], madd(p1, b[3 * k + 1], p2 * b[3 * k + 2])).store_aligned(out[3 * k + i]);
+          for (int k = 0; k < 3; ++k)
+            madd(p0, b[3 * k], madd(p1, b[3 * k + 1], p2 * b[3 * k + 2])).store_aligned(out[3 * k + i]);
         }
         for (int i = 0; i < lanes; ++i) {
           double* f0 = force + 3 * corner[i];
@@ -98,7 +100,8 @@ double elements_of(const M& material, const ElementChunk& chunk, const double* p
   return sum_in_order(change);
 }
 
-double elements(const ElementChunk& chunk, const double* x, const double* previous, double* energy, double* force, double* local) {
+double elements(const ElementChunk& chunk, const double* x, const double* previous, double* energy, double* force,
+                double* local) {
   for (int v = 0; v < chunk.vertices; ++v) {
     const double* p = x + 3 * long(chunk.vertex[v]);
     local[3 * v] = p[0];
@@ -235,6 +238,7 @@ void add_scaled(const double* const* a, const double* c, int count, double* r, l
 #define SUPPLE_TABLE(variant) SUPPLE_JOINED(kernels_, variant)
 
 extern const Kernels SUPPLE_TABLE(SUPPLE_VARIANT);
-const Kernels SUPPLE_TABLE(SUPPLE_VARIANT) = {SUPPLE_TEXT(SUPPLE_VARIANT), elements, solve<float>, solve<double>, dots, add_scaled};
+const Kernels SUPPLE_TABLE(SUPPLE_VARIANT) = {
+    SUPPLE_TEXT(SUPPLE_VARIANT), elements, solve<float>, solve<double>, dots, add_scaled};
 
 }  // namespace supple

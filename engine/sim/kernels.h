@@ -1,5 +1,6 @@
-// The hot loops, as a table of functions compiled once for each instruction set that the build covers; kernels() picks the best one that the
-// machine has. All take plain arrays. Not here: what the loops are for (objective.h, cholesky.h, lbfgs.h).
+// The hot loops, as a table of functions compiled once for each instruction set that the build covers; kernels() picks
+// the best one that the machine has. All take plain arrays. Not here: what the loops are for (objective.h, cholesky.h,
+// lbfgs.h).
 #pragma once
 
 #include <cstdint>
@@ -11,24 +12,26 @@ namespace supple {
 // Elements are stored in blocks of this many, whatever the register width: field by field, one element a lane.
 constexpr int block_width = 8;
 
-// A run of blocks of one material with its own short list of vertices: small enough that its positions and forces stay in the first-level
-// cache, and the unit of work of a thread.
+// A run of blocks of one material with its own short list of vertices: small enough that its positions and forces stay
+// in the first-level cache, and the unit of work of a thread.
 struct ElementChunk {
   const Material* material;
   int blocks;
-  int vertices;                    // of the list
-  const std::int32_t* vertex;      // the list: mesh vertices
-  const std::uint16_t* corner;     // blocks x 4 x block_width indices into the list
-  const double* rest_inverse;      // blocks x 9 x block_width: inverse of the rest edge matrix, row by row [1/m]
-  const double* volume;            // blocks x block_width; 0 in padding lanes [m^3]
+  int vertices;                 // of the list
+  const std::int32_t* vertex;   // the list: mesh vertices
+  const std::uint16_t* corner;  // blocks x 4 x block_width indices into the list
+  const double* rest_inverse;   // blocks x 9 x block_width: inverse of the rest edge matrix, row by row [1/m]
+  const double* volume;         // blocks x block_width; 0 in padding lanes [m^3]
 };
 
 struct Kernels {
   const char* name;
 
-  // Energies by element [J] into energy (blocks x block_width); returns the sum of energy - previous (previous may be null: 0). With
-  // force != null also the gradient by list vertex into force (vertices x 3) [N]. local: scratch of vertices x 3.
-  double (*elements)(const ElementChunk& chunk, const double* x, const double* previous, double* energy, double* force, double* local);
+  // Energies by element [J] into energy (blocks x block_width); returns the sum of energy - previous (previous may be
+  // null: 0). With force != null also the gradient by list vertex into force (vertices x 3) [N]. local: scratch of
+  // vertices x 3.
+  double (*elements)(const ElementChunk& chunk, const double* x, const double* previous, double* energy, double* force,
+                     double* local);
 
   // Solves L L^T x = b in place for four interleaved right-hand sides (n x 4), by panels of up to panel_width columns.
   void (*solve_float)(const struct PanelsView& panels, float* x);
@@ -42,15 +45,16 @@ struct Kernels {
 
 constexpr int panel_width = 8;
 
-// A Cholesky factor cut into panels of adjacent columns with one row pattern. Row-major: each row of a panel holds its `width` values.
+// A Cholesky factor cut into panels of adjacent columns with one row pattern. Row-major: each row of a panel holds its
+// `width` values.
 struct PanelsView {
   int panels;
   const std::int32_t* first_column;  // by panel
   const std::int32_t* width;         // by panel, 1 to panel_width
   const std::int64_t* first_row;     // by panel, into rows; panels + 1 entries
   const std::int32_t* rows;          // below the triangle
-  const std::int64_t* first_value;   // by panel, into values: triangle (width x width, inverted diagonal), then the rows
-  const void* values;                // float or double
+  const std::int64_t* first_value;  // by panel, into values: triangle (width x width, inverted diagonal), then the rows
+  const void* values;               // float or double
 };
 
 const Kernels& kernels();

@@ -20,7 +20,8 @@ void dot_all(const Model& model, Workspace& workspace, const Pointers& a, int co
   const int chunks = vertex_chunks(model);
   double* partial = workspace.partial.data();
   run_chunks(workspace, chunks, long(model.free) * count, [&](int c) {
-    kernels().dots(a.data(), count, b, c * numbers_a_chunk, std::min(3L * model.free, (c + 1) * numbers_a_chunk), partial + c * count);
+    kernels().dots(a.data(), count, b, c * numbers_a_chunk, std::min(3L * model.free, (c + 1) * numbers_a_chunk),
+                   partial + c * count);
   });
   std::fill(result, result + count, 0.0);
   for (int c = 0; c < chunks; ++c) {
@@ -31,12 +32,13 @@ void dot_all(const Model& model, Workspace& workspace, const Pointers& a, int co
 void add_all(const Model& model, Workspace& workspace, const Pointers& a, const double* factors, int count, double* r) {
   if (count == 0) return;
   run_chunks(workspace, vertex_chunks(model), long(model.free) * count, [&](int c) {
-    kernels().add_scaled(a.data(), factors, count, r, c * numbers_a_chunk, std::min(3L * model.free, (c + 1) * numbers_a_chunk));
+    kernels().add_scaled(a.data(), factors, count, r, c * numbers_a_chunk,
+                         std::min(3L * model.free, (c + 1) * numbers_a_chunk));
   });
 }
 
-// A body that nothing holds moves as a whole by exactly 1^T M z = h^2 1^T r, because L does not see translations; single precision only nearly
-// does so, and would let the centre of mass drift.
+// A body that nothing holds moves as a whole by exactly 1^T M z = h^2 1^T r, because L does not see translations;
+// single precision only nearly does so, and would let the centre of mass drift.
 void restore_translation(const Model& model, const Positions& r, Positions& z) {
   Eigen::RowVector3d wanted = Eigen::RowVector3d::Zero(), found = Eigen::RowVector3d::Zero();
   for (int v = 0; v < model.free; ++v) {
@@ -59,10 +61,12 @@ double search_direction(const Model& model, Workspace& workspace, const PairHist
     t[i] = workspace.gradient_pairs[history.place(i)].data();
   }
   // s_i . t_j of the i-th and j-th newest pairs
-  const auto product = [&](int i, int j) { return workspace.products[history.place(i) * history.window + history.place(j)]; };
+  const auto product = [&](int i, int j) {
+    return workspace.products[history.place(i) * history.window + history.place(j)];
+  };
 
-  // The recursion's inner products change as r and z do; with the products of the pairs among themselves at hand, one pass over the
-  // vectors gives them all, and one more applies the result.
+  // The recursion's inner products change as r and z do; with the products of the pairs among themselves at hand, one
+  // pass over the vectors gives them all, and one more applies the result.
   Positions& r = workspace.direction;
   r = workspace.gradient;
   Numbers alpha{}, against{}, factor{};
@@ -110,7 +114,8 @@ void remember_pair(const Model& model, Workspace& workspace, PairHistory& histor
   dot_all(model, workspace, other, 2, t.data(), of_t);
   double of_s = 0;
   dot_all(model, workspace, other, 1, s.data(), &of_s);
-  // Curvature along s that is negative or lost in round-off would spoil the matrix: Nocedal and Wright 2006, section 7.2, skip such pairs.
+  // Curvature along s that is negative or lost in round-off would spoil the matrix: Nocedal and Wright 2006,
+  // section 7.2, skip such pairs.
   if (!(of_t[0] > 1e-10 * std::sqrt(of_s * of_t[1]))) {
     // The place that was overwritten held the oldest pair of a full window.
     if (history.count == history.window) --history.count;

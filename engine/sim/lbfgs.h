@@ -1,4 +1,5 @@
-// Search directions of algorithm 2: the two-loop recursion of L-BFGS with A = M/h^2 + L as the initial Hessian (Liu et al. 2017, section 4.2).
+// Search directions of algorithm 2: the two-loop recursion of L-BFGS with A = M/h^2 + L as the initial Hessian (Liu et
+// al. 2017, section 4.2).
 #pragma once
 
 #include "sim/objective.h"
@@ -16,8 +17,8 @@ struct PairHistory {
   void clear() { count = 0; }
 };
 
-// workspace.direction = -H grad with H the L-BFGS approximation of the inverse Hessian; returns tr(grad^T d). Adds the milliseconds of the
-// solve and of the rest to the report.
+// workspace.direction = -H grad with H the L-BFGS approximation of the inverse Hessian; returns tr(grad^T d). Adds the
+// milliseconds of the solve and of the rest to the report.
 double search_direction(const Model& model, Workspace& workspace, const PairHistory& history);
 
 // Keeps s = trial - x and t = trial_gradient - gradient as the newest pair when tr(s^T t) is safely positive.

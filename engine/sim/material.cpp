@@ -46,7 +46,8 @@ double stiffness(const Material& material, const StretchInterval& interval) {
   };
   const double kink = NeoHookean::smallest_volume_ratio;
   const bool split = interval.start < kink && kink < interval.end;
-  const double numerator = split ? moment(interval.start, kink) + moment(kink, interval.end) : moment(interval.start, interval.end);
+  const double numerator =
+      split ? moment(interval.start, kink) + moment(kink, interval.end) : moment(interval.start, interval.end);
   const double a = interval.start - 1, b = interval.end - 1;
   return numerator / ((b * b * b - a * a * a) / 3);
 }

@@ -1,5 +1,5 @@
-// The closed set of materials. A new one is a header in materials/ (parameters, energy density with its derivative, axial stress) and an entry
-// here; kernels, scene files, the stiffness fit and the derivative tests then know it.
+// The closed set of materials. A new one is a header in materials/ (parameters, energy density with its derivative,
+// axial stress) and an entry here; kernels, scene files, the stiffness fit and the derivative tests then know it.
 #pragma once
 
 #include <variant>
@@ -23,8 +23,8 @@ struct StretchInterval {
   double end = 1.5;
 };
 
-// k of equation 11: the slope of the line through rest that fits the axial stress f best over the interval, by Gauss-Legendre quadrature.
-// Can be zero or negative for materials that soften; Model puts a floor under it. [Pa]
+// k of equation 11: the slope of the line through rest that fits the axial stress f best over the interval, by
+// Gauss-Legendre quadrature. Can be zero or negative for materials that soften; Model puts a floor under it. [Pa]
 double stiffness(const Material& material, const StretchInterval& interval = {});
 
 }  // namespace supple

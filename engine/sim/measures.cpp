@@ -8,7 +8,8 @@
 namespace supple {
 namespace {
 
-// The largest eigenvalue of a symmetric 3 x 3 matrix, in closed form (Smith 1961, "Eigenvalues of a symmetric 3 x 3 matrix").
+// The largest eigenvalue of a symmetric 3 x 3 matrix, in closed form (Smith 1961, "Eigenvalues of a symmetric 3 x 3
+// matrix").
 double largest_eigenvalue(const Mat3& c) {
   const double mean = c.trace() / 3;
   const Mat3 d = c - mean * Mat3::Identity();
@@ -29,7 +30,9 @@ double stretch(const Model& model, const Positions& x) {
     for (int lane = range.first_block * block_width; lane < (range.first_block + range.blocks) * block_width; ++lane) {
       if (model.element_of_lane[lane] < 0) continue;
       const std::size_t block = lane / block_width, place = lane % block_width;
-      const auto corner = [&](int k) -> Vec3 { return x.row(list[model.corner[(block * 4 + k) * block_width + place]]); };
+      const auto corner = [&](int k) -> Vec3 {
+        return x.row(list[model.corner[(block * 4 + k) * block_width + place]]);
+      };
       Mat3 edges, inverse;
       for (int k = 0; k < 3; ++k) edges.col(k) = corner(k + 1) - corner(0);
       for (int i = 0; i < 9; ++i) inverse(i / 3, i % 3) = model.rest_inverse[(block * 9 + i) * block_width + place];

@@ -10,17 +10,19 @@
 namespace supple {
 namespace {
 
-constexpr int blocks_a_chunk = 32;  // 256 elements and about 130 vertices: positions and forces fit the first-level cache
+constexpr int blocks_a_chunk =
+    32;  // 256 elements and about 130 vertices: positions and forces fit the first-level cache
 
-// The least k, as a share of the largest Lame-like parameter: a material that softens over the whole interval fits k <= 0, and A would
-// not be positive definite.
+// The least k, as a share of the largest Lame-like parameter: a material that softens over the whole interval fits k <=
+// 0, and A would not be positive definite.
 constexpr double stiffness_floor = 1e-3;
 
 double largest_parameter(const Material& material) {
   return std::visit(
       [](const auto& m) {
         double largest = 0;
-        for (const auto& parameter : std::decay_t<decltype(m)>::parameters()) largest = std::max(largest, m.*parameter.value);
+        for (const auto& parameter : std::decay_t<decltype(m)>::parameters())
+          largest = std::max(largest, m.*parameter.value);
         return largest;
       },
       material);
@@ -93,9 +95,11 @@ std::vector<Element> sorted_elements(const Model& model, const TetMesh& mesh) {
 }
 
 // Fills one lane. Padding repeats the chunk's first element without volume: finite, and worth nothing.
-void fill_lane(Model& model, int block, int lane, const Element& element, bool padding, const std::vector<std::int32_t>& local) {
+void fill_lane(Model& model, int block, int lane, const Element& element, bool padding,
+               const std::vector<std::int32_t>& local) {
   Mat3 edges;
-  for (int k = 0; k < 3; ++k) edges.col(k) = (model.rest.row(element.corner[k + 1]) - model.rest.row(element.corner[0])).transpose();
+  for (int k = 0; k < 3; ++k)
+    edges.col(k) = (model.rest.row(element.corner[k + 1]) - model.rest.row(element.corner[0])).transpose();
   const Mat3 inverse = edges.inverse();
   const auto at = [&](int field, int fields) { return (std::size_t(block) * fields + field) * block_width + lane; };
   for (int i = 0; i < 9; ++i) model.rest_inverse[at(i, 9)] = inverse(i / 3, i % 3);
@@ -110,10 +114,13 @@ void pack_elements(Model& model, const std::vector<Element>& elements) {
   for (std::size_t begin = 0; begin < elements.size();) {
     const int material = elements[begin].material;
     std::size_t end = begin;
-    while (end < elements.size() && elements[end].material == material && end - begin < blocks_a_chunk * block_width) ++end;
-    Model::ChunkRange chunk{model.blocks, int((end - begin + block_width - 1) / block_width), int(model.chunk_vertex.size()), 0, material};
+    while (end < elements.size() && elements[end].material == material && end - begin < blocks_a_chunk * block_width)
+      ++end;
+    Model::ChunkRange chunk{model.blocks, int((end - begin + block_width - 1) / block_width),
+                            int(model.chunk_vertex.size()), 0, material};
     std::vector<std::int32_t> list;
-    for (std::size_t e = begin; e < end; ++e) list.insert(list.end(), elements[e].corner.begin(), elements[e].corner.end());
+    for (std::size_t e = begin; e < end; ++e)
+      list.insert(list.end(), elements[e].corner.begin(), elements[e].corner.end());
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
     chunk.vertices = static_cast<int>(list.size());
@@ -127,14 +134,16 @@ void pack_elements(Model& model, const std::vector<Element>& elements) {
     model.element_of_lane.resize(std::size_t(model.blocks) * block_width);
     for (int lane = 0; lane < chunk.blocks * block_width; ++lane) {
       const bool padding = begin + lane >= end;
-      fill_lane(model, chunk.first_block + lane / block_width, lane % block_width, elements[padding ? begin : begin + lane], padding, local);
+      fill_lane(model, chunk.first_block + lane / block_width, lane % block_width,
+                elements[padding ? begin : begin + lane], padding, local);
     }
     model.chunks.push_back(chunk);
     begin = end;
   }
   std::vector<std::vector<std::int32_t>> slots(model.free);
   for (std::size_t slot = 0; slot < model.chunk_vertex.size(); ++slot) {
-    if (model.chunk_vertex[slot] < model.free) slots[model.chunk_vertex[slot]].push_back(static_cast<std::int32_t>(slot));
+    if (model.chunk_vertex[slot] < model.free)
+      slots[model.chunk_vertex[slot]].push_back(static_cast<std::int32_t>(slot));
   }
   model.slot_begin.push_back(0);
   for (const auto& list : slots) {
@@ -143,17 +152,19 @@ void pack_elements(Model& model, const std::vector<Element>& elements) {
   }
 }
 
-// A = M/h^2 + sum_e V_e k_e G_e^T G_e + springs, over the free vertices (equation 8 of the paper with its k); what couples them to held
-// vertices goes to model.couplings.
+// A = M/h^2 + sum_e V_e k_e G_e^T G_e + springs, over the free vertices (equation 8 of the paper with its k); what
+// couples them to held vertices goes to model.couplings.
 Eigen::SparseMatrix<double> system_matrix(Model& model, const std::vector<Element>& elements) {
   std::vector<Eigen::Triplet<double>> entries;
   std::map<std::pair<std::int32_t, std::int32_t>, double> couplings;
   entries.reserve(elements.size() * 10 + model.free);
   const double h = model.time_step;
-  for (int v = 0; v < model.free; ++v) entries.emplace_back(v, v, model.mass[v] / (h * h) + (model.spring.empty() ? 0.0 : model.spring[v]));
+  for (int v = 0; v < model.free; ++v)
+    entries.emplace_back(v, v, model.mass[v] / (h * h) + (model.spring.empty() ? 0.0 : model.spring[v]));
   for (const Element& element : elements) {
     Mat3 edges;
-    for (int k = 0; k < 3; ++k) edges.col(k) = (model.rest.row(element.corner[k + 1]) - model.rest.row(element.corner[0])).transpose();
+    for (int k = 0; k < 3; ++k)
+      edges.col(k) = (model.rest.row(element.corner[k + 1]) - model.rest.row(element.corner[0])).transpose();
     const Eigen::Matrix<double, 4, 3> g = shape_gradients(edges.inverse());
     const double weight = edges.determinant() / 6 * model.stiffness[element.material];
     for (int a = 0; a < 4; ++a) {
@@ -209,11 +220,15 @@ Model build_model(const BodyDescription& body) {
   std::vector<char> held(model.vertices, 0), taken(model.vertices, 0);
   for (const Handle& handle : body.handles) {
     for (const std::int32_t v : handle.vertices) {
-      if (taken[v]) throw InputError(body.name, fmt::format("handle '{}' holds a vertex that another handle holds already", handle.name));
+      if (taken[v])
+        throw InputError(body.name,
+                         fmt::format("handle '{}' holds a vertex that another handle holds already", handle.name));
       taken[v] = 1;
       held[v] = handle.spring <= 0;
     }
   }
+  if (std::count(held.begin(), held.end(), 0) == 0)
+    throw InputError(body.name, "every vertex is held: nothing is left to move");
   fit_stiffness(model, body.fit);
   number_vertices(model, body, held);
   model.mass.assign(model.vertices, 0.0);
@@ -225,7 +240,11 @@ Model build_model(const BodyDescription& body) {
   place_handles(model, body);
   const std::vector<Element> elements = sorted_elements(model, body.mesh);
   pack_elements(model, elements);
-  model.factor = CholeskyFactor(system_matrix(model, elements), body.precision);
+  try {
+    model.factor = CholeskyFactor(system_matrix(model, elements), body.precision);
+  } catch (const RunError& error) {
+    throw RunError(fmt::format("body '{}': {}", body.name, error.what()));
+  }
   return model;
 }
 

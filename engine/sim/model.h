@@ -1,7 +1,7 @@
-// A body, constant after build: elements in SIMD blocks, masses, handles and the factor of A = M/h^2 + L (Liu et al. 2017, section 3.3). Not
-// here: where the body is (State), what drives it (FrameInputs).
-// Vertices are renumbered: free ones first, in the factor's order of elimination (so that solves permute nothing), then those that hard
-// handles hold. Elements are sorted by material and by their first vertex.
+// A body, constant after build: elements in SIMD blocks, masses, handles and the factor of A = M/h^2 + L (Liu et al.
+// 2017, section 3.3). Not here: where the body is (State), what drives it (FrameInputs). Vertices are renumbered: free
+// ones first, in the factor's order of elimination (so that solves permute nothing), then those that hard handles hold.
+// Elements are sorted by material and by their first vertex.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ namespace supple {
 struct Handle {
   std::string name;
   std::vector<std::int32_t> vertices;  // of the mesh, in its own numbering; one vertex belongs to one handle
-  double spring = 0;                   // stiffness of each vertex's spring to its target [N/m]; 0: hard, the rows are eliminated
+  double spring = 0;  // stiffness of each vertex's spring to its target [N/m]; 0: hard, the rows are eliminated
 };
 
 // What a model is built from.
@@ -26,19 +26,18 @@ struct BodyDescription {
   std::vector<Material> materials;  // by region tag of the elements
   double density = 1000;            // [kg/m^3]
   std::vector<Handle> handles;
-  double time_step = 1.0 / 30;  // h [s]
-  StretchInterval fit;          // equation 11
+  double time_step = 1.0 / 30;                        // h [s]
+  StretchInterval fit;                                // equation 11
   Precision precision = Precision::single_precision;  // of the factor, hence of search directions
 };
 
-// What is wrong with a description that cannot become a model, with the element; a message for the person who wrote the scene.
 struct Model {
   std::string name;
   int vertices = 0;  // n
   int free = 0;      // vertices that the solver moves: 0 .. free-1
   double time_step = 0;
-  double size = 0;      // diagonal of the rest bounding box [m]
-  Positions rest;       // n x 3 [m]
+  double size = 0;                        // diagonal of the rest bounding box [m]
+  Positions rest;                         // n x 3 [m]
   std::vector<double> mass;               // n [kg]
   double total_mass = 0;                  // of the free vertices [kg]
   std::vector<std::int32_t> input_of;     // vertex of the input file by ours
@@ -71,14 +70,14 @@ struct Model {
     std::int32_t handle;
   };
   std::vector<HandleVertex> handled;  // the order of FrameInputs::targets
-  struct Coupling {  // an entry of A between a free vertex and one that a hard handle holds
+  struct Coupling {                   // an entry of A between a free vertex and one that a hard handle holds
     std::int32_t free;
     std::int32_t held;
     double value;
   };
-  std::vector<Coupling> couplings;    // sorted by free vertex
-  std::vector<double> spring;         // by free vertex [N/m]; empty when all handles are hard
-  bool free_floating = false;         // nothing holds it: A has the translations as known eigenvectors
+  std::vector<Coupling> couplings;  // sorted by free vertex
+  std::vector<double> spring;       // by free vertex [N/m]; empty when all handles are hard
+  bool free_floating = false;       // nothing holds it: A has the translations as known eigenvectors
 
   CholeskyFactor factor;  // of A over the free vertices
 

@@ -48,17 +48,19 @@ double quadratic_value(double weight, const double* point, const double* center)
 
 }  // namespace
 
-Change evaluate(const Model& model, Workspace& workspace, const Positions& point, AlignedVector<double>& energy, Positions* gradient,
-                const Positions* reference, const AlignedVector<double>* reference_energy) {
+Change evaluate(const Model& model, Workspace& workspace, const Positions& point, AlignedVector<double>& energy,
+                Positions* gradient, const Positions* reference, const AlignedVector<double>* reference_energy) {
   const Kernels& kernel = kernels();
   const int element_chunks = static_cast<int>(model.chunks.size());
   double* partial = workspace.partial.data();
   run_chunks(workspace, element_chunks, long(model.elements) * 4, [&](int c) {
     const Model::ChunkRange& range = model.chunks[c];
     const std::size_t first = std::size_t(range.first_block) * block_width;
-    partial[c] = kernel.elements(model.chunk(c), point.data(), reference_energy != nullptr ? reference_energy->data() + first : nullptr,
-                                 energy.data() + first, gradient != nullptr ? workspace.force.data() + 3 * std::size_t(range.first_vertex) : nullptr,
-                                 workspace.local.data() + std::size_t(c) * model.largest_chunk * 3);
+    partial[c] =
+        kernel.elements(model.chunk(c), point.data(),
+                        reference_energy != nullptr ? reference_energy->data() + first : nullptr, energy.data() + first,
+                        gradient != nullptr ? workspace.force.data() + 3 * std::size_t(range.first_vertex) : nullptr,
+                        workspace.local.data() + std::size_t(c) * model.largest_chunk * 3);
   });
   Change change{0, 0};
   for (int c = 0; c < element_chunks; ++c) change.value += partial[c];
@@ -77,7 +79,8 @@ Change evaluate(const Model& model, Workspace& workspace, const Positions& point
       value += r != nullptr ? quadratic_change(weight, p, r, y) : quadratic_value(weight, p, y);
       const double stiffness = springs ? model.spring[v] : 0;
       const double* t = springs ? workspace.target.data() + 3 * std::size_t(v) : nullptr;
-      if (stiffness > 0) value += r != nullptr ? quadratic_change(stiffness, p, r, t) : quadratic_value(stiffness, p, t);
+      if (stiffness > 0)
+        value += r != nullptr ? quadratic_change(stiffness, p, r, t) : quadratic_value(stiffness, p, t);
       if (gradient == nullptr) continue;
       double sum[3];
       for (int k = 0; k < 3; ++k) sum[k] = weight * (p[k] - y[k]);

@@ -1,5 +1,5 @@
-// g(x) of equation 3 at trial points: value differences without cancellation, gradients, in a fixed order of summation. Not here: where to
-// look next (lbfgs.h, step.h).
+// g(x) of equation 3 at trial points: value differences without cancellation, gradients, in a fixed order of summation.
+// Not here: where to look next (lbfgs.h, step.h).
 #pragma once
 
 #include "base/threads.h"
@@ -14,16 +14,16 @@ struct Workspace {
 
   Threads* threads = nullptr;  // may be null: one thread
 
-  Positions y;       // inertial prediction, n x 3 [m]
-  Positions target;  // of soft handles, by free vertex, n_free x 3 [m]; empty when there are none
-  Positions x, trial;                    // current and trial iterates, n x 3 [m]
-  Positions gradient, trial_gradient;    // n_free x 3 [N]
-  Positions direction;                   // n_free x 3 [m]
+  Positions y;                         // inertial prediction, n x 3 [m]
+  Positions target;                    // of soft handles, by free vertex, n_free x 3 [m]; empty when there are none
+  Positions x, trial;                  // current and trial iterates, n x 3 [m]
+  Positions gradient, trial_gradient;  // n_free x 3 [N]
+  Positions direction;                 // n_free x 3 [m]
   AlignedVector<double> energy, trial_energy;  // by lane [J]
   AlignedVector<double> force;                 // by slot, x 3 [N]
   AlignedVector<double> local;                 // positions by thread chunk, x 3
   AlignedVector<double> solve_scratch;
-  std::vector<double> partial;                 // of chunked sums
+  std::vector<double> partial;                        // of chunked sums
   std::vector<Positions> step_pairs, gradient_pairs;  // s and t of L-BFGS, a ring
   std::vector<double> products;                       // s_i . t_j, window x window
   StepReport report;
@@ -35,16 +35,14 @@ struct Workspace {
 
 // A point's place against another one.
 struct Change {
-  double value;   // g(point) - g(reference), or g(point) when there is no reference [J]
-  double slope;   // tr(grad(point)^T direction) where a gradient was asked for [J]
+  double value;  // g(point) - g(reference), or g(point) when there is no reference [J]
+  double slope;  // tr(grad(point)^T direction) where a gradient was asked for [J]
 };
 
-
-
-// Evaluates g at `point` (n x 3). With a reference (point and its energies by lane) the result is the difference, summed element by element and
-// vertex by vertex. Writes energies by lane, and the gradient when wanted.
-Change evaluate(const Model& model, Workspace& workspace, const Positions& point, AlignedVector<double>& energy, Positions* gradient,
-                const Positions* reference, const AlignedVector<double>* reference_energy);
+// Evaluates g at `point` (n x 3). With a reference (point and its energies by lane) the result is the difference,
+// summed element by element and vertex by vertex. Writes energies by lane, and the gradient when wanted.
+Change evaluate(const Model& model, Workspace& workspace, const Positions& point, AlignedVector<double>& energy,
+                Positions* gradient, const Positions* reference, const AlignedVector<double>* reference_energy);
 
 // Runs chunks on the workspace's threads when there is enough work to be worth waking them.
 template <class Body>

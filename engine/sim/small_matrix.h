@@ -1,6 +1,6 @@
-// 3 x 3 matrices whose entries may be SIMD registers (one element a lane) or plain doubles (the oracle in the tests), and the polar
-// decomposition that the stretch-based materials need. Included by the kernels and by tests; free of Eigen, so that it can be compiled
-// for several instruction sets in one program.
+// 3 x 3 matrices whose entries may be SIMD registers (one element a lane) or plain doubles (the oracle in the tests),
+// and the polar decomposition that the stretch-based materials need. Included by the kernels and by tests; free of
+// Eigen, so that it can be compiled for several instruction sets in one program.
 #pragma once
 
 #include <cmath>
@@ -66,7 +66,11 @@ template <class V>
 Symmetric3<V> symmetric_product(const Matrix3<V>& a, const Matrix3<V>& b) {
   const auto entry = [&](int i, int j) { return madd(a(0, i), b(0, j), madd(a(1, i), b(1, j), a(2, i) * b(2, j))); };
   const V half(0.5);
-  return {entry(0, 0), entry(1, 1), entry(2, 2), half * (entry(1, 2) + entry(2, 1)), half * (entry(0, 2) + entry(2, 0)),
+  return {entry(0, 0),
+          entry(1, 1),
+          entry(2, 2),
+          half * (entry(1, 2) + entry(2, 1)),
+          half * (entry(0, 2) + entry(2, 0)),
           half * (entry(0, 1) + entry(1, 0))};
 }
 
@@ -89,10 +93,11 @@ Matrix3<V> product(const Matrix3<V>& a, const Symmetric3<V>& s) {
   return p;
 }
 
-// The rotation R with det R = 1 that maximises tr(R^T F), by Jacobi rotations on the 4 x 4 matrix of its quaternion (Horn 1987, "Closed-form
-// solution of absolute orientation using unit quaternions"). Slow, accurate to a few eps for every F, and defined (some maximiser)
-// where the two smallest stretches cancel. The fallback of polar_rotation() and its oracle.
-inline void polar_rotation_jacobi(const double f[9], double r[9]) {
+// The rotation R with det R = 1 that maximises tr(R^T F), by Jacobi rotations on the 4 x 4 matrix of its quaternion
+// (Horn 1987, "Closed-form solution of absolute orientation using unit quaternions"). Slow, accurate to a few eps for
+// every F, and defined (some maximiser) where the two smallest stretches cancel. The fallback of polar_rotation() and
+// its oracle. Internal linkage: each instruction set has its own copy.
+static inline void polar_rotation_jacobi(const double f[9], double r[9]) {
   double scale = 0;
   for (int i = 0; i < 9; ++i) scale = std::fmax(scale, std::fabs(f[i]));
   double k[4][4] = {}, v[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
@@ -144,7 +149,8 @@ inline void polar_rotation_jacobi(const double f[9], double r[9]) {
   for (int i = 1; i < 4; ++i) {
     if (k[i][i] > k[best][best]) best = i;
   }
-  const double norm = std::sqrt(v[0][best] * v[0][best] + v[1][best] * v[1][best] + v[2][best] * v[2][best] + v[3][best] * v[3][best]);
+  const double norm =
+      std::sqrt(v[0][best] * v[0][best] + v[1][best] * v[1][best] + v[2][best] * v[2][best] + v[3][best] * v[3][best]);
   const double w = v[0][best] / norm, x = v[1][best] / norm, y = v[2][best] / norm, z = v[3][best] / norm;
   r[0] = 1 - 2 * (y * y + z * z);
   r[1] = 2 * (x * y - w * z);
@@ -159,10 +165,11 @@ inline void polar_rotation_jacobi(const double f[9], double r[9]) {
 
 // The same rotation in a handful of SIMD operations. Its trace product lambda = tr(R^T F) is the largest root of
 //   lambda^4 - 2 I lambda^2 - 8 J lambda + I^2 - 4 II = 0,   I = |F|^2, II = |cof F|^2, J = det F,
-// and R = d lambda / d F follows by implicit differentiation (Lin, Chitalu, Komura 2022, "Isotropic ARAP energy using Cauchy-Green
-// invariants"). The root is found by Newton from the upper bound sqrt(I + 2 sqrt(3 II)): from there the iteration falls monotonically.
-// The formula divides by 2 (s1+s2)(s1+s3)(s2+s3); lanes where that is small, or where something overflowed, take the Jacobi path.
-// Elsewhere R is within about 1e-12 of it (the root's own conditioning), and near rest within a few eps.
+// and R = d lambda / d F follows by implicit differentiation (Lin, Chitalu, Komura 2022, "Isotropic ARAP energy using
+// Cauchy-Green invariants"). The root is found by Newton from the upper bound sqrt(I + 2 sqrt(3 II)): from there the
+// iteration falls monotonically. The formula divides by 2 (s1+s2)(s1+s3)(s2+s3); lanes where that is small, or where
+// something overflowed, take the Jacobi path. Elsewhere R is within about 1e-12 of it (the root's own conditioning),
+// and near rest within a few eps.
 template <class T, class A>
 Matrix3<xsimd::batch<T, A>> polar_rotation(const Matrix3<xsimd::batch<T, A>>& f) {
   using V = xsimd::batch<T, A>;
@@ -194,7 +201,8 @@ Matrix3<xsimd::batch<T, A>> polar_rotation(const Matrix3<xsimd::batch<T, A>>& f)
   const V weight_cofactor = two * root * inverse;
   const V weight_fc = V(-2.0) * inverse;
   Matrix3<V> r;
-  for (int i = 0; i < 9; ++i) r.m[i] = madd(weight_f, f.m[i], madd(weight_cofactor, cofactors.m[i], weight_fc * fc.m[i]));
+  for (int i = 0; i < 9; ++i)
+    r.m[i] = madd(weight_f, f.m[i], madd(weight_cofactor, cofactors.m[i], weight_fc * fc.m[i]));
   if (xsimd::all(safe)) return r;
 
   alignas(64) T lanes_f[9][V::size], lanes_r[9][V::size], lanes_safe[V::size];

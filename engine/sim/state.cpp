@@ -13,9 +13,10 @@ Positions in_input_order(const Model& model, const Positions& internal) {
 }
 
 std::uint64_t state_hash(const Model& model, const State& state) {
-  const Positions x = in_input_order(model, state.x);
-  const Positions v = in_input_order(model, state.v);
-  return hash_bytes(v.data(), sizeof(double) * v.size(), hash_bytes(x.data(), sizeof(double) * x.size()));
+  Positions both(2 * model.vertices, 3);
+  both.topRows(model.vertices) = in_input_order(model, state.x);
+  both.bottomRows(model.vertices) = in_input_order(model, state.v);
+  return hash_bytes(both.data(), sizeof(double) * both.size());
 }
 
 const char* text_of(StopReason reason) {

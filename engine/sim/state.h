@@ -18,7 +18,7 @@ struct State {
 // The model at rest where it was built.
 State rest_state(const Model& model);
 
-// XXH64 of positions and velocities in the order of the input file.
+// XXH64 of all positions, then all velocities, as little-endian doubles in the order of the input file.
 std::uint64_t state_hash(const Model& model, const State& state);
 
 // Rows of the input file's order.
@@ -58,11 +58,12 @@ struct StepReport {
   double lbfgs_ms = 0;     // recursions
   double other_ms = 0;     // the rest; the four add up to step_ms
   int iterations = 0;
-  int line_search = 0;             // trial evaluations
-  std::vector<double> objective;   // g by iteration, the start first; reserved by the workspace [J]
-  double decrease = 0;             // g(start) - g(end), summed without cancellation [J]
-  double error_estimate = 0;       // of equation 12, from the decreases alone
-  double slope = 0;                // tr(grad^T d) of the last direction [J]
+  int line_search = 0;            // trial evaluations
+  std::vector<double> objective;  // g by iteration, the start first; reserved by the workspace [J]
+  double decrease = 0;            // g(start) - g(end), summed without cancellation [J]
+  double remaining_estimate = 0;  // g(end) - g*, continuing the decreases as they shrank [J]
+  double error_estimate = 0;      // of equation 12, from that
+  double slope = 0;               // tr(grad^T d) of the last direction [J]
   StopReason stop_reason = StopReason::iterations;
   bool failed = false;
   StepFailure failure;

@@ -20,8 +20,8 @@ void set_trial(const Model& model, Workspace& w, double alpha) {
   w.trial.topRows(model.free) = w.x.topRows(model.free) + alpha * w.direction;
 }
 
-// A direction too short to change the positions' last bits: nothing is left to gain. Also true of the round-off of a body at rest, which
-// must not be integrated into a drift.
+// A direction too short to change the positions' last bits: nothing is left to gain. Also true of the round-off of a
+// body at rest, which must not be integrated into a drift.
 bool below_resolution(const Model& model, const Workspace& w) {
   const double extent = w.x.topRows(model.free).cwiseAbs().maxCoeff();
   return w.direction.cwiseAbs().maxCoeff() <= 4 * round_off * std::max(extent, model.size);
@@ -30,20 +30,23 @@ bool below_resolution(const Model& model, const Workspace& w) {
 // Values below this are lost in the sums that they are differences of.
 double noise_of(double objective) { return 32 * round_off * std::abs(objective); }
 
-// Armijo's test; where the decrease drowns in round-off, its equivalent by slopes, which does not subtract large numbers
-// (Hager and Zhang 2005, "A new conjugate gradient method with guaranteed descent and an efficient line search", equation 4.1).
+// Armijo's test; where the decrease drowns in round-off, its equivalent by slopes, which does not subtract large
+// numbers (Hager and Zhang 2005, "A new conjugate gradient method with guaranteed descent and an efficient line
+// search", equation 4.1).
 bool decreases_by_slope(const Change& change, double slope, double armijo, double noise) {
   return change.value <= noise && change.slope <= (2 * armijo - 1) * slope;
 }
 
 // Tries alpha = 1, 1/2, ... Leaves the accepted point, its gradient and energies in the trial arrays.
-bool search_line(const Model& model, const SolverSettings& solver, Workspace& w, double slope, double objective, Change& change) {
+bool search_line(const Model& model, const SolverSettings& solver, Workspace& w, double slope, double objective,
+                 Change& change) {
   double alpha = 1;
   for (int halving = 0; halving <= most_halvings; ++halving, alpha /= 2) {
     set_trial(model, w, alpha);
     const double noise = noise_of(objective);
     const bool by_slope = -alpha * slope < noise / solver.armijo;
-    // The first trial nearly always succeeds: its gradient is the next iterate's. After a rejection the energy alone decides.
+    // The first trial nearly always succeeds: its gradient is the next iterate's. After a rejection the energy alone
+    // decides.
     const bool with_gradient = halving == 0 || by_slope;
     change = evaluate(model, w, w.trial, w.trial_energy, with_gradient ? &w.trial_gradient : nullptr, &w.x, &w.energy);
     ++w.report.line_search;
@@ -56,19 +59,24 @@ bool search_line(const Model& model, const SolverSettings& solver, Workspace& w,
   return false;
 }
 
-// What the remaining decreases would add up to if they went on as they did: equation 12 seen from inside. Decreases of quasi-Newton
-// iterations shrink unevenly, so the ratio is averaged over the last three.
-double estimate_error(const StepReport& report) {
+// What the remaining decreases would add up to if they went on as they did since objective[first]: the numerator of
+// equation 12 seen from inside [J]. Decreases of quasi-Newton iterations shrink unevenly, so the ratio is averaged over
+// the last three. Too few to tell: as much again as was gained.
+double estimate_remaining(const StepReport& report, std::size_t first) {
   const std::vector<double>& g = report.objective;
-  const std::size_t n = g.size();
-  if (n < 3 || report.decrease <= 0) return n < 2 ? 0 : 1;
-  const double last = g[n - 2] - g[n - 1];
-  const std::size_t back = std::min<std::size_t>(3, n - 2);
-  const double earlier = g[n - 2 - back] - g[n - 1 - back];
+  const std::size_t steps = g.size() - 1 - first;
+  if (steps < 2) return steps == 0 ? 0 : std::max(0.0, g[first] - g[first + 1]);
+  const double last = g[g.size() - 2] - g.back();
+  const std::size_t back = std::min<std::size_t>(3, steps - 1);
+  const double earlier = g[g.size() - 2 - back] - g[g.size() - 1 - back];
   if (last <= 0 || earlier <= 0) return 0;
   const double ratio = std::min(0.95, std::pow(last / earlier, 1.0 / static_cast<double>(back)));
-  const double left = last * ratio / (1 - ratio);
-  return left / (report.decrease + left);
+  return last * ratio / (1 - ratio);
+}
+
+// The share that is left of all that there was to gain from `start`.
+double as_error(double remaining, double gained) {
+  return remaining > 0 ? remaining / (std::max(gained, 0.0) + remaining) : 0;
 }
 
 int first_bad_vertex(const Model& model, const Positions& x) {
@@ -95,7 +103,8 @@ void fail(const Model& model, Workspace& w, const char* phase, const Positions& 
   w.report.failed = true;
   w.report.failure.phase = phase;
   w.report.failure.vertex = first_bad_vertex(model, x);
-  w.report.failure.what = std::isfinite(objective) ? "the objective has grown beyond all bounds" : "a number is no longer finite";
+  w.report.failure.what =
+      std::isfinite(objective) ? "the objective has grown beyond all bounds" : "a number is no longer finite";
 }
 
 struct Descent {
@@ -128,7 +137,8 @@ void begin_step(const Model& model, const FrameInputs& inputs, const State& stat
       w.x.row(v) = inputs.targets.row(i);
     }
   }
-  if (model.vertices > model.free) w.trial.bottomRows(model.vertices - model.free) = w.x.bottomRows(model.vertices - model.free);
+  if (model.vertices > model.free)
+    w.trial.bottomRows(model.vertices - model.free) = w.x.bottomRows(model.vertices - model.free);
 }
 
 namespace {
@@ -140,12 +150,13 @@ void evaluate_start(const Model& model, Workspace& w) {
   w.report.evaluate_ms += watch.elapsed_ms();
 }
 
-// The first iterate. The paper starts from y; with rows eliminated, y leaves the elements beside a handle torn by all that the handle did not
-// do freely (its keyed motion, and the fall that it did not take), often by more than their size. So the handles' departure from y is spread
-// into the body by the quadratic model that also gives the directions, A_ff d_f = -A_fh d_h: one solve. A squirrel's head held at its neck
-// then takes 1.00 trials an iteration instead of 2.4, and ends the frame with a tenth to a hundredth of the error.
-// Costs an evaluation more, because y stays the first iterate where it is the better one. Returns g(y), the handles at their targets, when the
-// first iterate is another one.
+// The first iterate. The paper starts from y; with rows eliminated, y leaves the elements beside a handle torn by all
+// that the handle did not do freely (its keyed motion, and the fall that it did not take), often by more than their
+// size. So the handles' departure from y is spread into the body by the quadratic model that also gives the directions,
+// A_ff d_f = -A_fh d_h: one solve. A squirrel's head held at its neck then takes 1.00 trials an iteration instead
+// of 2.4, and ends the frame with a tenth to a hundredth of the error. Costs an evaluation more, because y stays the
+// first iterate where it is the better one. Returns g(y), the handles at their targets, when the first iterate is
+// another one.
 std::optional<double> spread_handles(const Model& model, Workspace& w) {
   if (model.couplings.empty()) return std::nullopt;
   Positions& right = w.gradient;
@@ -177,8 +188,10 @@ void iterate(const Model& model, const SolverSettings& solver, Workspace& w, dou
   StepReport& report = w.report;
   Stopwatch watch;
   PairHistory history{solver.history, 0, -1};
+  const std::size_t first = report.objective.size() - 1;
   const double start = report.objective.back();
   double objective = start;
+  report.remaining_estimate = 0;
   if (!std::isfinite(objective)) return fail(model, w, "evaluate", w.x, objective);
 
   report.stop_reason = StopReason::iterations;
@@ -223,12 +236,12 @@ void iterate(const Model& model, const SolverSettings& solver, Workspace& w, dou
     w.gradient.swap(w.trial_gradient);
     w.energy.swap(w.trial_energy);
     report.lbfgs_ms += watch.lap_ms();
-    if (solver.target_error > 0 && estimate_error(report) < solver.target_error) {
+    report.remaining_estimate = estimate_remaining(report, first);
+    if (solver.target_error > 0 && as_error(report.remaining_estimate, report.decrease) < solver.target_error) {
       report.stop_reason = StopReason::target_error;
       break;
     }
   }
-  report.error_estimate = estimate_error(report);
 }
 
 }  // namespace
@@ -247,8 +260,8 @@ void clear(StepReport& report) {
   report.objective = std::move(kept);
 }
 
-// Where the body was, its handles moved; a body that nothing holds is also carried along with its centre of mass, which costs no elastic
-// energy and keeps its momentum.
+// Where the body was, its handles moved; a body that nothing holds is also carried along with its centre of mass, which
+// costs no elastic energy and keeps its momentum.
 void set_staying(const Model& model, const State& state, Workspace& w) {
   w.trial.topRows(model.free) = state.x.topRows(model.free);
   if (!model.free_floating) return;
@@ -258,16 +271,18 @@ void set_staying(const Model& model, const State& state, Workspace& w) {
   for (int v = 0; v < model.free; ++v) w.trial.row(v) += moved;
 }
 
-// The answer must not be worse than staying: g(x) <= g(q) bounds the energy of backward Euler (docs/method.md). When the iterations from y have
-// not come that far (elements turned inside out by a violent step), descend from there instead. Costs an evaluation only when the inertia
-// of staying, with an elastic energy that is never negative, cannot settle it.
+// The answer must not be worse than staying: g(x) <= g(q) bounds the energy of backward Euler (docs/method.md). When
+// the iterations from y have not come that far (elements turned inside out by a violent step), descend from there
+// instead. Costs an evaluation only when the inertia of staying, with an elastic energy that is never negative, cannot
+// settle it.
 void descend_from_staying(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
   StepReport& report = w.report;
   const double reached = report.objective.back();
   const double inverse_h2 = 1 / (model.time_step * model.time_step);
   set_staying(model, state, w);
   double inertia = 0;
-  for (int v = 0; v < model.free; ++v) inertia += 0.5 * inverse_h2 * model.mass[v] * (w.trial.row(v) - w.y.row(v)).squaredNorm();
+  for (int v = 0; v < model.free; ++v)
+    inertia += 0.5 * inverse_h2 * model.mass[v] * (w.trial.row(v) - w.y.row(v)).squaredNorm();
   if (reached <= inertia) return;
   const Change staying = evaluate(model, w, w.trial, w.trial_energy, nullptr, nullptr, nullptr);
   if (!(staying.value < reached - noise_of(reached))) return;
@@ -289,8 +304,9 @@ const StepReport& step(const Model& model, const FrameInputs& inputs, State& sta
   const std::optional<double> at_y = spread_handles(model, w);
   if (!at_y) evaluate_start(model, w);
   iterate(model, inputs.solver, w, 0);
-  if (at_y && !report.failed) report.error_estimate *= report.decrease / (report.decrease + *at_y - report.objective.front());
   if (!report.failed && inputs.solver.line_search != LineSearch::none) descend_from_staying(model, inputs, state, w);
+  const double above_start = at_y ? *at_y - report.objective.front() : 0;  // equation 12 counts from y
+  report.error_estimate = as_error(report.remaining_estimate, report.decrease + above_start);
   if (!report.failed && !w.x.allFinite()) fail(model, w, "step", w.x, std::numeric_limits<double>::quiet_NaN());
   if (!report.failed) {
     state.v = (w.x - state.x) / model.time_step;

@@ -5,15 +5,16 @@
 
 namespace supple {
 
-// Advances `state` by model.time_step. The state changes only if the step succeeds; the report (workspace.report) says how it went. Allocates
-// nothing once the workspace has seen the model. Unless the line search is off, g(new x) <= g(old x): staying is the last resort.
+// Advances `state` by model.time_step. The state changes only if the step succeeds; the report (workspace.report) says
+// how it went. Allocates nothing once the workspace has seen the model. Unless the line search is off, g(new x) <=
+// g(old x): staying is the last resort.
 const StepReport& step(const Model& model, const FrameInputs& inputs, State& state, Workspace& workspace);
 
 // The first part of step(): y, and the targets of handles in y's place, into the workspace. Also leaves x = y.
 void begin_step(const Model& model, const FrameInputs& inputs, const State& state, Workspace& workspace);
 
-// Minimises g from workspace.x; the report's decrease, slope and stop reason tell how far it came. Also stops once a direction promises less
-// than `enough` [J]. For step() and for references.
+// Minimises g from workspace.x; the report's decrease, slope and stop reason tell how far it came. Also stops once a
+// direction promises less than `enough` [J]. For step() and for references.
 void minimize(const Model& model, const SolverSettings& solver, Workspace& workspace, double enough = 0);
 
 }  // namespace supple

@@ -1,6 +1,6 @@
 // The program as a user meets it: exit statuses, messages, and the folder that a run leaves.
-#include <gtest/gtest.h>
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -22,7 +22,8 @@ struct Result {
 };
 
 // Runs the program in `folder`; with interrupt_after_frame >= 0 it gets SIGINT once that frame's picture exists.
-Result run(const std::filesystem::path& folder, const std::vector<std::string>& arguments, const std::filesystem::path& interrupt_when = {}) {
+Result run(const std::filesystem::path& folder, const std::vector<std::string>& arguments,
+           const std::filesystem::path& interrupt_when = {}) {
   const pid_t child = fork();
   if (child == 0) {
     std::filesystem::current_path(folder);
@@ -40,12 +41,14 @@ Result run(const std::filesystem::path& folder, const std::vector<std::string>& 
     kill(child, SIGINT);
   }
   waitpid(child, &status, 0);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), test::read_file(folder / "stdout.txt"), test::read_file(folder / "stderr.txt")};
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), test::read_file(folder / "stdout.txt"),
+          test::read_file(folder / "stderr.txt")};
 }
 
 // A head of 400 vertices, filmed small.
 void write_scene(const std::filesystem::path& path, const std::string& more = "") {
-  std::ofstream(path) << "frames = 6\n" << more << R"(
+  std::ofstream(path) << "frames = 6\n"
+                      << more << R"(
 [[body]]
 name = "head"
 shape = "shapes/squirrel.toml"
@@ -64,7 +67,9 @@ samples = 1
 )";
 }
 
-nlohmann::json profile_of(const std::filesystem::path& run_folder) { return nlohmann::json::parse(test::read_file(run_folder / "profile.json")); }
+nlohmann::json profile_of(const std::filesystem::path& run_folder) {
+  return nlohmann::json::parse(test::read_file(run_folder / "profile.json"));
+}
 
 std::vector<std::string> hashes_of(const std::filesystem::path& run_folder) {
   std::vector<std::string> hashes;
@@ -79,7 +84,8 @@ TEST(Program, LeavesAFolderThatExplainsItself) {
   const Result result = run(folder.path, {"render", "head.toml", "--error-every", "2"});
   ASSERT_EQ(result.status, 0) << result.err;
   const std::filesystem::path out = folder.path / "out" / "head";
-  for (int frame = 0; frame < 6; ++frame) EXPECT_EQ(read_png(out / "frames" / fmt::format("{:06}.png", frame)).width, 160);
+  for (int frame = 0; frame < 6; ++frame)
+    EXPECT_EQ(read_png(out / "frames" / fmt::format("{:06}.png", frame)).width, 160);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(out / "frames"), {}), 6);
   if (std::filesystem::exists(out / "video.mp4")) {
     EXPECT_EQ(count_video_frames(out / "video.mp4"), 6);
@@ -95,7 +101,8 @@ TEST(Program, LeavesAFolderThatExplainsItself) {
   const auto& body = profile["frames"][2]["bodies"][0];
   EXPECT_TRUE(body["error"].is_number());
   EXPECT_FALSE(profile["frames"][1]["bodies"][0].contains("error"));
-  const double phases = body["evaluate_ms"].get<double>() + body["solve_ms"].get<double>() + body["lbfgs_ms"].get<double>() + body["other_ms"].get<double>();
+  const double phases = body["evaluate_ms"].get<double>() + body["solve_ms"].get<double>() +
+                        body["lbfgs_ms"].get<double>() + body["other_ms"].get<double>();
   EXPECT_NEAR(phases, body["step_ms"].get<double>(), 0.01);
   EXPECT_EQ(std::filesystem::file_size(out / "motion" / "head.pc2") % 12, 32 % 12);
 }
@@ -119,7 +126,8 @@ TEST(Program, RefusesBadInputWithStatusTwoAndOneClearMessage) {
   const test::TemporaryFolder folder;
   write_scene(folder.path / "typo.toml", "frmes = 3\n");
   EXPECT_EQ(run(folder.path, {"render", "typo.toml"}).status, 2);
-  EXPECT_EQ(run(folder.path, {"check", "typo.toml"}).err, "typo.toml:2:1: unknown key 'frmes'; did you mean 'frames'?\n");
+  EXPECT_EQ(run(folder.path, {"check", "typo.toml"}).err,
+            "typo.toml:2:1: unknown key 'frmes'; did you mean 'frames'?\n");
   EXPECT_FALSE(std::filesystem::exists(folder.path / "out"));
   EXPECT_EQ(run(folder.path, {"render", "none.toml"}).err, "none.toml: no such file\n");
   EXPECT_EQ(run(folder.path, {"render"}).status, 2);
@@ -133,11 +141,13 @@ TEST(Program, RefusesBadInputWithStatusTwoAndOneClearMessage) {
 TEST(Program, KeepsTheFramesBeforeABodyThatFliesApart) {
   const test::TemporaryFolder folder;
   write_scene(folder.path / "wild.toml");
-  const Result result = run(folder.path, {"render", "wild.toml", "--no-video", "--frames", "200", "--set", "body.head.solver.line_search=none", "--set",
-                                          "body.head.material.mu=1e9", "--set", "gravity=[0,-2000,0]"});
+  const Result result = run(folder.path, {"render", "wild.toml", "--no-video", "--frames", "200", "--set",
+                                          "body.head.solver.line_search=none", "--set", "body.head.material.mu=1e9",
+                                          "--set", "gravity=[0,-2000,0]"});
   ASSERT_EQ(result.status, 1) << result.err;
   EXPECT_NE(result.err.find("supple: frame "), std::string::npos);
-  for (const char* word : {"body 'head'", "vertex ", "kept: "}) EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
+  for (const char* word : {"body 'head'", "vertex ", "kept: "})
+    EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
   const std::filesystem::path out = folder.path / "out" / "wild";
   const auto info = nlohmann::json::parse(test::read_file(out / "run.json"));
   EXPECT_TRUE(info["ended"].get<std::string>().starts_with("failed"));
@@ -150,7 +160,8 @@ TEST(Program, EndsAfterTheFrameInProgressWhenInterrupted) {
   const test::TemporaryFolder folder;
   write_scene(folder.path / "long.toml");
   const std::filesystem::path out = folder.path / "out" / "long";
-  const Result result = run(folder.path, {"render", "long.toml", "--frames", "100000", "--no-video"}, out / "frames" / "000003.png");
+  const Result result =
+      run(folder.path, {"render", "long.toml", "--frames", "100000", "--no-video"}, out / "frames" / "000003.png");
   EXPECT_EQ(result.status, 130) << result.err;
   const auto profile = profile_of(out);
   const std::size_t frames = profile["frames"].size();
@@ -163,7 +174,8 @@ TEST(Program, TakesThePapersSquirrelInThePlaceOfOurs) {
   const auto mesh = test::paper_mesh("squirrel_modified");
   if (!mesh) GTEST_SKIP() << "no SUPPLE_PAPER_MESHES: squirrel_modified";
   const test::TemporaryFolder folder;
-  const Result result = run(folder.path, {"render", "squirrel", "--no-images", "--frames", "3", "--set", "body.polynomial.mesh=" + mesh->string()});
+  const Result result = run(folder.path, {"render", "squirrel", "--no-images", "--frames", "3", "--set",
+                                          "body.polynomial.mesh=" + mesh->string()});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_NE(result.err.find("polynomial: 8395 vertices, 23645 elements"), std::string::npos) << result.err;
 }

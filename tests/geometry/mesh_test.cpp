@@ -28,8 +28,13 @@ TEST(Shape, PrimitivesAreExactDistancesOutsideTheirSurface) {
   // Walking a distance field by its own value lands on the surface, and its slope is 1.
   std::mt19937 random(2);
   std::uniform_real_distribution<double> uniform(-2, 2);
-  const Primitive primitives[] = {Sphere{0.7}, Capsule{Vec3(-0.3, 0, 0), Vec3(0.5, 0.2, 0), 0.3}, RoundCone{Vec3(0, -0.3, 0), Vec3(0.1, 0.6, 0), 0.4, 0.15},
-                                  Box{Vec3(0.4, 0.5, 0.3), 0.1}, Cylinder{0.5, 0.4, 0.05}, Torus{0.6, 0.2}, HalfSpace{Vec3(0.6, 0.8, 0), 0.1}};
+  const Primitive primitives[] = {Sphere{0.7},
+                                  Capsule{Vec3(-0.3, 0, 0), Vec3(0.5, 0.2, 0), 0.3},
+                                  RoundCone{Vec3(0, -0.3, 0), Vec3(0.1, 0.6, 0), 0.4, 0.15},
+                                  Box{Vec3(0.4, 0.5, 0.3), 0.1},
+                                  Cylinder{0.5, 0.4, 0.05},
+                                  Torus{0.6, 0.2},
+                                  HalfSpace{Vec3(0.6, 0.8, 0), 0.1}};
   for (const Primitive& primitive : primitives) {
     const Shape shape = shape_of(primitive);
     for (int sample = 0; sample < 300; ++sample) {
@@ -77,7 +82,8 @@ TEST(Tetrahedralize, HitsTheNumberOfVerticesWithGoodAnglesAndOneManifoldPiece) {
     EXPECT_NEAR(mesh.rest.rows(), wanted, 0.03 * wanted);
     expect_sound(mesh, 8);
   }
-  for (const Primitive& primitive : {Primitive(Sphere{1}), Primitive(Torus{1, 0.4}), Primitive(Box{Vec3(1, 0.5, 0.3), 0}), Primitive(Ellipsoid{Vec3(1, 0.6, 0.4)})}) {
+  for (const Primitive& primitive : {Primitive(Sphere{1}), Primitive(Torus{1, 0.4}),
+                                     Primitive(Box{Vec3(1, 0.5, 0.3), 0}), Primitive(Ellipsoid{Vec3(1, 0.6, 0.4)})}) {
     const TetMesh mesh = tetrahedralize(shape_of(primitive), 1500, "primitive");
     EXPECT_NEAR(mesh.rest.rows(), 1500, 45);
     expect_sound(mesh, 8);
@@ -139,16 +145,19 @@ TEST(MeshFile, RefusesBrokenFilesWithTheirLine) {
       {"", ":1: not a MEDIT mesh: it should begin with MeshVersionFormatted"},
       {"solid x\n", ":1: not a MEDIT mesh: it should begin with MeshVersionFormatted"},
       {head, ":3: the file has no Vertices or no Tetrahedra"},
-      {head + "Vertices\n999999999\n0 0 0 0\n", ":4: 999999999 vertices announced, but the file has room for at most 1"},
+      {head + "Vertices\n999999999\n0 0 0 0\n",
+       ":4: 999999999 vertices announced, but the file has room for at most 1"},
       {head + "Vertices\n-1\n", ":4: -1 vertices announced, but the file has room for at most 0"},
       {head + "Vertices\n1\n0 nan 0 0\n", ":5: a coordinate is not finite (nan)"},
       {head + "Vertices\n1\n0 zero 0 0\n", ":5: 'zero' is not a coordinate"},
       {head + "Vertices\n2\n0 0 0 0\n1 1", ":6: the file ends where a coordinate should stand"},
-      {head + points + "Tetrahedra\n1\n1 2 3 9 0\n", ":12: vertex 9 does not exist: there are 5 (vertices count from 1, and stand before the elements)"},
+      {head + points + "Tetrahedra\n1\n1 2 3 9 0\n",
+       ":12: vertex 9 does not exist: there are 5 (vertices count from 1, and stand before the elements)"},
       {head + points + "Tetrahedra\n1\n1 2 3 3 0\n", ":12: the element has no volume"},
       {head + points + "Tetrahedra\n2\n1 2 3 4 0\n2 3 4 1 0\n", ":13: the element repeats the one at line 12"},
       {head + points + "Tetrahedra\n2\n1 2 3 4 0\n2 3 4 5 0\n1 2 5 3 0\n", ":14: section '1' is not known"},
-      {head + points + "Tetrahedra\n2\n1 2 3 4 0\n2 4 3 5 0\n", ":13: 1 of 2 elements are turned inside out, the first here; all must be oriented alike"},
+      {head + points + "Tetrahedra\n2\n1 2 3 4 0\n2 4 3 5 0\n",
+       ":13: 1 of 2 elements are turned inside out, the first here; all must be oriented alike"},
       {head + "Quads\n1\n", ":3: section 'Quads' is not known"},
   };
   for (const auto& [text, message] : cases) {
@@ -167,7 +176,8 @@ TEST(MeshFile, RefusesBrokenFilesWithTheirLine) {
 TEST(MeshFile, TurnsConsistentlyReversedElementsAndDropsUnusedVerticesAndSaysSo) {
   const test::TemporaryFolder folder;
   const std::filesystem::path path = folder.path / "turned.mesh";
-  std::ofstream(path) << "MeshVersionFormatted 1\nDimension 3\nVertices 5\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n9 9 9 0\nTetrahedra 1\n1 3 2 4 0\nEnd\n";
+  std::ofstream(path) << "MeshVersionFormatted 1\nDimension 3\nVertices 5\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n9 9 9 "
+                         "0\nTetrahedra 1\n1 3 2 4 0\nEnd\n";
   const MeshFile read = read_mesh(path);
   EXPECT_EQ(read.notes.size(), 2u);
   EXPECT_EQ(read.mesh.rest.rows(), 4);
@@ -178,8 +188,14 @@ TEST(MeshFile, ReadsThePapersMeshes) {
   const struct {
     const char* name;
     int vertices, elements;
-  } meshes[] = {{"bunny", 6308, 26096}, {"ditto", 1454, 4140}, {"hippo", 2387, 8406}, {"longbar", 574, 1631},
-                {"longbar2", 3472, 10199}, {"sphere", 889, 1772}, {"squirrel_modified", 8395, 23645}, {"thin_sheet", 660, 1932}};
+  } meshes[] = {{"bunny", 6308, 26096},
+                {"ditto", 1454, 4140},
+                {"hippo", 2387, 8406},
+                {"longbar", 574, 1631},
+                {"longbar2", 3472, 10199},
+                {"sphere", 889, 1772},
+                {"squirrel_modified", 8395, 23645},
+                {"thin_sheet", 660, 1932}};
   for (const auto& expected : meshes) {
     const auto path = test::paper_mesh(expected.name);
     if (!path) GTEST_SKIP() << "no SUPPLE_PAPER_MESHES: " << expected.name;
@@ -194,7 +210,8 @@ TEST(Skin, LiesOnTheSurfaceAndFollowsItsElements) {
   const TetMesh mesh = tetrahedralize(head, 3000, "squirrel");
   const Skin skin = skin_of(head, 0.03);
   double furthest = 0;
-  for (Eigen::Index v = 0; v < skin.rest.points.rows(); ++v) furthest = std::max(furthest, std::abs(head.distance(skin.rest.points.row(v))));
+  for (Eigen::Index v = 0; v < skin.rest.points.rows(); ++v)
+    furthest = std::max(furthest, std::abs(head.distance(skin.rest.points.row(v))));
   EXPECT_LT(furthest, 0.004);
   // An affine motion of the mesh moves the skin by the same motion.
   const Embedding embedding = embed(skin.rest.points, mesh);
@@ -215,7 +232,8 @@ TEST(Skin, IsClosedAndOutward) {
   double volume = 0;
   for (Eigen::Index t = 0; t < ball.triangles.rows(); ++t) {
     for (int k = 0; k < 3; ++k) ++edges[{ball.triangles(t, k), ball.triangles(t, (k + 1) % 3)}];
-    const Vec3 a = ball.points.row(ball.triangles(t, 0)), b = ball.points.row(ball.triangles(t, 1)), c = ball.points.row(ball.triangles(t, 2));
+    const Vec3 a = ball.points.row(ball.triangles(t, 0)), b = ball.points.row(ball.triangles(t, 1)),
+               c = ball.points.row(ball.triangles(t, 2));
     volume += a.dot(b.cross(c)) / 6;
   }
   for (const auto& [edge, count] : edges) {

@@ -70,7 +70,8 @@ TEST(Profile, LeavesOutWhatWasNotUsedAndTheFirstFrame) {
   std::vector<FrameRow> rows(3, row);
   rows[1].step_ms = rows[2].step_ms = 2;
   const std::string json = profile_json(rows);
-  for (const char* absent : {"render_ms", "encode_ms", "\"error\"", "jiggle", "collide_ms"}) EXPECT_EQ(json.find(absent), std::string::npos) << absent;
+  for (const char* absent : {"render_ms", "encode_ms", "\"error\"", "jiggle", "collide_ms"})
+    EXPECT_EQ(json.find(absent), std::string::npos) << absent;
   EXPECT_EQ(summarize(rows)[0].rest.max, 2);
   EXPECT_EQ(summarize(rows)[0].first, 100);
   rows[0].bodies[0].error_measured = true;  // measured, and not to be had

@@ -1,6 +1,7 @@
-// Pictures against stored ones. A software rasteriser's rounding differs between machines and Mesa versions by a few levels along edges; a missing
-// shadow, a wrong colour or a body in the wrong place differs by far more over whole regions. So small pictures are compared by their mean
-// difference and by the share of pixels that are clearly off. A failing test leaves its candidate in the build folder.
+// Pictures against stored ones. A software rasteriser's rounding differs between machines and Mesa versions by a few
+// levels along edges; a missing shadow, a wrong colour or a body in the wrong place differs by far more over whole
+// regions. So small pictures are compared by their mean difference and by the share of pixels that are clearly off. A
+// failing test leaves its candidate in the build folder.
 #include <gtest/gtest.h>
 
 #include "app/draw_scene.h"
@@ -13,8 +14,8 @@
 namespace supple {
 namespace {
 
-constexpr double mean_allowed = 1.5;      // of 255
-constexpr double pixels_allowed = 0.01;   // share that differs by more than 24 in some channel
+constexpr double mean_allowed = 1.5;     // of 255
+constexpr double pixels_allowed = 0.01;  // share that differs by more than 24 in some channel
 
 Image rest_picture(const std::vector<std::string>& settings, GlChoice gl) {
   std::vector<std::string> all = {"output.width=320", "output.height=180", "look.labels=false"};

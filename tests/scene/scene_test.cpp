@@ -20,7 +20,8 @@ std::vector<std::string> problems_of(const std::string& text) {
   return list;
 }
 
-const std::string good_body = "[[body]]\nshape = \"shapes/squirrel.toml\"\nmaterial = { model = \"polynomial\", mu = 1e4 }\n";
+const std::string good_body =
+    "[[body]]\nshape = \"shapes/squirrel.toml\"\nmaterial = { model = \"polynomial\", mu = 1e4 }\n";
 
 TEST(SceneFile, ReportsEveryProblemAtOnceWithItsPlace) {
   const std::vector<std::string> list = problems_of(R"(frams = 10
@@ -52,8 +53,10 @@ keys = [ { t = 1 }, { t = 0.5 } ]
       "scene.toml:6:14: iterations = 0: must be a whole number, 1 to 10000",
       "scene.toml:7:10: armijo = -0.3: must be above 0 to 0.5",
       "scene.toml:8:15: line_search = 'armjo': must be armijo or none; did you mean 'armijo'?",
-      "scene.toml:10:9: shape = 'shapes/squirel.toml': no such file (looked for shapes/squirel.toml and " + (test::assets / "shapes/squirel.toml").string() + ")",
-      "scene.toml:11:22: model = 'polynomal': must be as-rigid-as-possible, polynomial, corotated or neo-hookean; did you mean 'polynomial'?",
+      "scene.toml:10:9: shape = 'shapes/squirel.toml': no such file (looked for shapes/squirel.toml and " +
+          (test::assets / "shapes/squirel.toml").string() + ")",
+      "scene.toml:11:22: model = 'polynomal': must be as-rigid-as-possible, polynomial, corotated or neo-hookean; did "
+      "you mean 'polynomial'?",
       "scene.toml:13:8: two bodies named 'body'",
       "scene.toml:15:41: mu = -1: must be above 0",
       "scene.toml:18:18: box = [ [ 0, 0, 0 ], [ 1, 1 ] ]: must be 2 lists of three numbers, all finite",
@@ -84,11 +87,14 @@ TEST(SceneFile, RefusesWhatIsNotTomlAndWhatIsTooLarge) {
 TEST(SceneFile, SettingsReachEveryValueByItsPath) {
   const auto scene_with = [](const std::vector<std::string>& settings) {
     const test::TemporaryFolder folder;
-    std::ofstream(folder.path / "s.toml") << good_body << "[[body.handles]]\nname = \"neck\"\nselect = { plane = { point = [0, 0.1, 0], normal = [0, -1, 0] } }\n";
+    std::ofstream(folder.path / "s.toml")
+        << good_body
+        << "[[body.handles]]\nname = \"neck\"\nselect = { plane = { point = [0, 0.1, 0], normal = [0, -1, 0] } }\n";
     return load_scene(folder.path / "s.toml", test::assets, settings);
   };
-  const SceneDef scene = scene_with({"frames=7", "body.body.material.mu=2.5e3", "solver.iterations=3", "body.body.solver.line_search=none",
-                                     "body.body.handles.neck.stiffness=12", "body.body.total_mass=4", "gravity=[0, -1, 0]", "title=a word"});
+  const SceneDef scene = scene_with({"frames=7", "body.body.material.mu=2.5e3", "solver.iterations=3",
+                                     "body.body.solver.line_search=none", "body.body.handles.neck.stiffness=12",
+                                     "body.body.total_mass=4", "gravity=[0, -1, 0]", "title=a word"});
   EXPECT_EQ(scene.frames, 7);
   EXPECT_EQ(std::get<Polynomial>(scene.bodies[0].material).mu, 2.5e3);
   EXPECT_EQ(scene.bodies[0].solver.iterations, 3);
@@ -106,8 +112,10 @@ TEST(SceneFile, SettingsReachEveryValueByItsPath) {
     return "accepted";
   };
   EXPECT_EQ(refused("frames"), "--set frames: should read path=value, such as solver.iterations=20");
-  EXPECT_EQ(refused("body.head.material.mu=1"), "--set body.head.material.mu=1: there is no body named 'head' (there is body)");
-  EXPECT_EQ(refused("solver.iteration=5"), "--set solver.iteration=5: unknown key 'iteration'; did you mean 'iterations'?");
+  EXPECT_EQ(refused("body.head.material.mu=1"),
+            "--set body.head.material.mu=1: there is no body named 'head' (there is body)");
+  EXPECT_EQ(refused("solver.iteration=5"),
+            "--set solver.iteration=5: unknown key 'iteration'; did you mean 'iterations'?");
   EXPECT_EQ(refused("fps=-3"), "--set fps=-3: fps = -3: must be 1 to 100000");
 }
 
@@ -124,7 +132,8 @@ select = { box = [[2, 2, 2], [3, 3, 3]] }
 [[body.handles]]
 name = "tail"
 select = { region = "tail" }
-)", "scene.toml", test::assets);
+)",
+                                "scene.toml", test::assets);
   const SceneDef scene = read_scene(config);
   config.finish();
   try {
@@ -133,7 +142,8 @@ select = { region = "tail" }
   } catch (const InputError& error) {
     EXPECT_EQ(std::string(error.what()),
               "scene.toml:5:1: body 'body' has no region 'tooth'; did you mean 'teeth'?\n"
-              "scene.toml:9:10: handle 'air' of body 'body' selects no vertex; boxes, spheres and planes are relative to the rest bounding box (0 to 1)\n"
+              "scene.toml:9:10: handle 'air' of body 'body' selects no vertex; boxes, spheres and planes are relative "
+              "to the rest bounding box (0 to 1)\n"
               "scene.toml:12:10: handle 'tail' of body 'body' selects no vertex: there is no region 'tail'");
   }
 }
@@ -149,7 +159,8 @@ TEST(Scenes, EverySceneThatShipsIsWithoutErrors) {
 }
 
 TEST(HandleMotion, PassesThroughItsKeysAndStandsStillOutside) {
-  HandleMotion motion{Vec3(1, 0, 0), Ease::smooth, {{1, Vec3(0, 0, 0), Vec3::Zero()}, {2, Vec3(0, 1, 0), Vec3(0, 90, 0)}}};
+  HandleMotion motion{
+      Vec3(1, 0, 0), Ease::smooth, {{1, Vec3(0, 0, 0), Vec3::Zero()}, {2, Vec3(0, 1, 0), Vec3(0, 90, 0)}}};
   EXPECT_TRUE(motion.at(0).isApprox(Eigen::Isometry3d::Identity()));
   const Eigen::Isometry3d end = motion.at(5);
   EXPECT_LT((end * Vec3(1, 0, 0) - Vec3(1, 1, 0)).norm(), 1e-12);  // the centre moves without turning
@@ -176,7 +187,9 @@ keys = [{{ t = 0 }}]
 [camera]
 [look]
 [output]
-)", model), "keys", test::assets);
+)",
+                                              model),
+                                  "keys", test::assets);
     (void)read_scene(config);
     keys.insert(keys.end(), config.documented().begin(), config.documented().end());
   }
@@ -195,7 +208,8 @@ torus = { radius = 1, tube = 0.5 }
 half_space = { normal = [0, 1, 0] }
 parts = []
 [[paint]]
-)", "keys", test::assets);
+)",
+                                "keys", test::assets);
   (void)read_shape(config.root());
   return config.documented();
 }
@@ -214,11 +228,13 @@ std::string table_of(const std::vector<DocumentedKey>& keys) {
 
 TEST(Documentation, ListsEveryKeyOfScenesAndShapesWithItsDefault) {
   const std::string page = test::read_file(test::source_folder / "docs" / "scene-format.md");
-  for (const auto& [name, table] : {std::pair<std::string, std::string>{"scene", table_of(all_keys())}, {"shape", table_of(shape_keys())}}) {
+  for (const auto& [name, table] :
+       {std::pair<std::string, std::string>{"scene", table_of(all_keys())}, {"shape", table_of(shape_keys())}}) {
     if (page.find(table) != std::string::npos) continue;
     const std::filesystem::path candidate = std::filesystem::path(SUPPLE_BUILD_FOLDER) / (name + "-keys.md");
     std::ofstream(candidate) << table;
-    ADD_FAILURE() << "docs/scene-format.md does not hold the " << name << " table as the code has it; it is in " << candidate;
+    ADD_FAILURE() << "docs/scene-format.md does not hold the " << name << " table as the code has it; it is in "
+                  << candidate;
   }
 }
 

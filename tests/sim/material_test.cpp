@@ -25,15 +25,24 @@ struct Kind {
   Vec3 (*stretches)(std::mt19937&);
 };
 
-double uniform(std::mt19937& random, double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
+double uniform(std::mt19937& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
 
 const Kind kinds[] = {
-    {"near rest", [](std::mt19937& r) { return Vec3(uniform(r, 0.99, 1.01), uniform(r, 0.99, 1.01), uniform(r, 0.99, 1.01)); }},
+    {"near rest",
+     [](std::mt19937& r) { return Vec3(uniform(r, 0.99, 1.01), uniform(r, 0.99, 1.01), uniform(r, 0.99, 1.01)); }},
     {"random", [](std::mt19937& r) { return Vec3(uniform(r, 0.3, 2), uniform(r, 0.3, 2), uniform(r, 0.3, 2)); }},
-    {"inverted", [](std::mt19937& r) { return Vec3(uniform(r, 0.8, 2), uniform(r, 0.8, 1.5), uniform(r, -0.6, -0.1)); }},
-    {"two equal stretches", [](std::mt19937& r) { const double s = uniform(r, 0.4, 1.6); return Vec3(s, s, uniform(r, 0.4, 1.6)); }},
+    {"inverted",
+     [](std::mt19937& r) { return Vec3(uniform(r, 0.8, 2), uniform(r, 0.8, 1.5), uniform(r, -0.6, -0.1)); }},
+    {"two equal stretches",
+     [](std::mt19937& r) {
+       const double s = uniform(r, 0.4, 1.6);
+       return Vec3(s, s, uniform(r, 0.4, 1.6));
+     }},
     {"three equal stretches", [](std::mt19937& r) { return Vec3(Vec3::Constant(uniform(r, 0.4, 1.6))); }},
-    {"nearly flat", [](std::mt19937& r) { return Vec3(uniform(r, 0.8, 1.5), uniform(r, 0.8, 1.5), uniform(r, -1e-3, 1e-3)); }},
+    {"nearly flat",
+     [](std::mt19937& r) { return Vec3(uniform(r, 0.8, 1.5), uniform(r, 0.8, 1.5), uniform(r, -1e-3, 1e-3)); }},
     {"huge", [](std::mt19937& r) { return Vec3(uniform(r, 20, 50), uniform(r, 20, 50), uniform(r, 20, 50)); }},
 };
 
@@ -84,10 +93,14 @@ TEST(Materials, StressIsTheDerivativeOfTheEnergyAtEveryKindOfDeformation) {
         double best = 1e300;
         for (const double h : {1e-3, 1e-4, 1e-5, 1e-6}) {
           const double step = h * std::max(1.0, 0.1 * f.norm());
-          const double difference = (density(material, f + step * direction, nullptr) - density(material, f - step * direction, nullptr)) / (2 * step);
+          const double difference =
+              (density(material, f + step * direction, nullptr) - density(material, f - step * direction, nullptr)) /
+              (2 * step);
           best = std::min(best, std::abs(difference - slope));
         }
-        EXPECT_LT(best, 1e-6 * std::max(stress.norm(), 1e-2 * 1e4)) << name_of(material) << ", " << kind.name << "\nF =\n" << f;
+        EXPECT_LT(best, 1e-6 * std::max(stress.norm(), 1e-2 * 1e4))
+            << name_of(material) << ", " << kind.name << "\nF =\n"
+            << f;
       }
     }
   }
@@ -102,12 +115,17 @@ TEST(Materials, EnergyIsTheValanisLandelSumOfItsStretches) {
     const double mu = 3, lambda = 5, j = s.prod();
     const auto sum = [&](auto a) { return a(s[0]) + a(s[1]) + a(s[2]); };
     const double pairs = s[0] * s[1] + s[1] * s[2] + s[2] * s[0];
-    EXPECT_NEAR(density(AsRigidAsPossible{mu}, f, nullptr), sum([&](double x) { return mu * (x - 1) * (x - 1); }), 1e-11);
+    EXPECT_NEAR(density(AsRigidAsPossible{mu}, f, nullptr), sum([&](double x) { return mu * (x - 1) * (x - 1); }),
+                1e-11);
     EXPECT_NEAR(density(Polynomial{mu}, f, nullptr), sum([&](double x) { return mu * std::pow(x - 1, 4); }), 1e-11);
-    EXPECT_NEAR(density(Corotated{mu, lambda}, f, nullptr),
-                sum([&](double x) { return mu * (x - 1) * (x - 1) + lambda / 2 * (x * x - 6 * x + 3); }) + lambda * pairs, 1e-11);
-    EXPECT_NEAR(density(NeoHookean{mu, lambda}, f, nullptr),
-                sum([&](double x) { return mu / 2 * (x * x - 1); }) - mu * std::log(j) + lambda / 2 * std::log(j) * std::log(j), 1e-11);
+    EXPECT_NEAR(
+        density(Corotated{mu, lambda}, f, nullptr),
+        sum([&](double x) { return mu * (x - 1) * (x - 1) + lambda / 2 * (x * x - 6 * x + 3); }) + lambda * pairs,
+        1e-11);
+    EXPECT_NEAR(
+        density(NeoHookean{mu, lambda}, f, nullptr),
+        sum([&](double x) { return mu / 2 * (x * x - 1); }) - mu * std::log(j) + lambda / 2 * std::log(j) * std::log(j),
+        1e-11);
   }
 }
 
@@ -252,7 +270,8 @@ TEST(Kernels, EveryVariantAgreesWithThePlainFormulas) {
       Positions found = Positions::Zero(model.vertices, 3);
       for (std::size_t c = 0; c < model.chunks.size(); ++c) {
         const ElementChunk chunk = model.chunk(static_cast<int>(c));
-        AlignedVector<double> values(chunk.blocks * block_width), local(chunk.vertices * 3), list_force(chunk.vertices * 3);
+        AlignedVector<double> values(chunk.blocks * block_width), local(chunk.vertices * 3),
+            list_force(chunk.vertices * 3);
         energy += variants[v]->elements(chunk, x.data(), nullptr, values.data(), list_force.data(), local.data());
         for (int i = 0; i < chunk.vertices; ++i) {
           for (int k = 0; k < 3; ++k) found(model.input_of[chunk.vertex[i]], k) += list_force[3 * i + k];

@@ -40,7 +40,8 @@ TEST(Objective, GradientIsTheDerivativeOfTheValueForEveryMaterialAndHandle) {
         ahead.topRows(model.free) += h * w.direction;
         behind.topRows(model.free) -= h * w.direction;
         const double difference = (evaluate(model, w, ahead, w.trial_energy, nullptr, nullptr, nullptr).value -
-                                   evaluate(model, w, behind, w.trial_energy, nullptr, nullptr, nullptr).value) / (2 * h);
+                                   evaluate(model, w, behind, w.trial_energy, nullptr, nullptr, nullptr).value) /
+                                  (2 * h);
         best = std::min(best, std::abs(difference - at.slope));
       }
       EXPECT_LT(best, 1e-6 * std::abs(at.slope)) << name_of(material);
@@ -54,7 +55,8 @@ TEST(Objective, GradientIsTheDerivativeOfTheValueForEveryMaterialAndHandle) {
   }
 }
 
-// One step of Projective Dynamics as Bouaziz et al. 2014 write it, for as-rigid-as-possible elements: rotations by SVD, then a dense solve.
+// One step of Projective Dynamics as Bouaziz et al. 2014 write it, for as-rigid-as-possible elements: rotations by SVD,
+// then a dense solve.
 Positions local_global(const BodyDescription& body, const Positions& y, Positions x, int iterations) {
   const int n = static_cast<int>(x.rows());
   const double h = body.time_step, mu = std::get<AsRigidAsPossible>(body.materials[0]).mu;
@@ -71,14 +73,17 @@ Positions local_global(const BodyDescription& body, const Positions& y, Position
   std::vector<Element> elements;
   for (Eigen::Index e = 0; e < body.mesh.tets.rows(); ++e) {
     Mat3 edges;
-    for (int k = 0; k < 3; ++k) edges.col(k) = (body.mesh.rest.row(body.mesh.tets(e, k + 1)) - body.mesh.rest.row(body.mesh.tets(e, 0))).transpose();
+    for (int k = 0; k < 3; ++k)
+      edges.col(k) =
+          (body.mesh.rest.row(body.mesh.tets(e, k + 1)) - body.mesh.rest.row(body.mesh.tets(e, 0))).transpose();
     Element element;
     element.gradient.bottomRows<3>() = edges.inverse();
     element.gradient.row(0) = -element.gradient.bottomRows<3>().colwise().sum();
     element.weight = 2 * mu * tet_volume(body.mesh, e);
     for (int a = 0; a < 4; ++a) {
       for (int b = 0; b < 4; ++b) {
-        system(body.mesh.tets(e, a), body.mesh.tets(e, b)) += element.weight * element.gradient.row(a).dot(element.gradient.row(b));
+        system(body.mesh.tets(e, a), body.mesh.tets(e, b)) +=
+            element.weight * element.gradient.row(a).dot(element.gradient.row(b));
       }
     }
     elements.push_back(element);
@@ -100,7 +105,9 @@ Positions local_global(const BodyDescription& body, const Positions& y, Position
       Mat3 sign = Mat3::Identity();
       sign(2, 2) = svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1;
       const Mat3 rotation = svd.matrixU() * sign * svd.matrixV().transpose();
-      for (int k = 0; k < 4; ++k) right.row(body.mesh.tets(e, k)) += elements[e].weight * (rotation * elements[e].gradient.row(k).transpose()).transpose();
+      for (int k = 0; k < 4; ++k)
+        right.row(body.mesh.tets(e, k)) +=
+            elements[e].weight * (rotation * elements[e].gradient.row(k).transpose()).transpose();
     }
     Eigen::MatrixXd reduced(free.size(), free.size()), reduced_right(free.size(), 3);
     for (std::size_t i = 0; i < free.size(); ++i) {
@@ -215,7 +222,8 @@ TEST(Step, ConvergesToAnErrorOf1e12WithoutStalling) {
       Workspace w, reference;
       const StepReport& report = step(model, inputs, state, w);
       ASSERT_FALSE(report.failed);
-      EXPECT_EQ(report.stop_reason, StopReason::round_off) << name_of(material) << ": " << text_of(report.stop_reason) << " after " << report.iterations;
+      EXPECT_EQ(report.stop_reason, StopReason::round_off)
+          << name_of(material) << ": " << text_of(report.stop_reason) << " after " << report.iterations;
       EXPECT_LT(step_error(model, inputs, before, state, reference).value_or(1), 1e-12) << name_of(material);
     }
   }
@@ -243,7 +251,8 @@ TEST(Step, IsNeverWorseThanStaying) {
 }
 
 TEST(Step, DoesNotDependOnTheNumberOfThreads) {
-  const Model model = build_model(bar(Polynomial{4e4}, Held::hard_end, Precision::single_precision, 8));  // 2,900 vertices: work is shared
+  const Model model = build_model(
+      bar(Polynomial{4e4}, Held::hard_end, Precision::single_precision, 8));  // 2,900 vertices: work is shared
   FrameInputs inputs = still_inputs(model);
   inputs.targets.col(2).array() += 0.02;
   std::vector<std::uint64_t> hashes;
@@ -348,14 +357,17 @@ TEST(Cholesky, SolvesInBothPrecisionsAsADenseSolverDoes) {
   for (int v = 0; v < exact.free; ++v) product.row(v) = exact.mass[v] / (exact.time_step * exact.time_step) * x.row(v);
   for (Eigen::Index e = 0; e < body.mesh.tets.rows(); ++e) {
     Mat3 edges;
-    for (int k = 0; k < 3; ++k) edges.col(k) = (body.mesh.rest.row(body.mesh.tets(e, k + 1)) - body.mesh.rest.row(body.mesh.tets(e, 0))).transpose();
+    for (int k = 0; k < 3; ++k)
+      edges.col(k) =
+          (body.mesh.rest.row(body.mesh.tets(e, k + 1)) - body.mesh.rest.row(body.mesh.tets(e, 0))).transpose();
     Eigen::Matrix<double, 4, 3> g;
     g.bottomRows<3>() = edges.inverse();
     g.row(0) = -g.bottomRows<3>().colwise().sum();
     const double weight = edges.determinant() / 6 * exact.stiffness[0];
     for (int a = 0; a < 4; ++a) {
       for (int c = 0; c < 4; ++c) {
-        product.row(exact.internal_of[body.mesh.tets(e, a)]) += weight * g.row(a).dot(g.row(c)) * x.row(exact.internal_of[body.mesh.tets(e, c)]);
+        product.row(exact.internal_of[body.mesh.tets(e, a)]) +=
+            weight * g.row(a).dot(g.row(c)) * x.row(exact.internal_of[body.mesh.tets(e, c)]);
       }
     }
   }

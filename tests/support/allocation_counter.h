@@ -1,4 +1,5 @@
-// Counts calls of operator new and malloc's C++ users in this process, for the tests that nothing is allocated in a step.
+// Counts calls of operator new and malloc's C++ users in this process, for the tests that nothing is allocated in a
+// step.
 #pragma once
 
 namespace supple::test {

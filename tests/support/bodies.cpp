@@ -17,7 +17,8 @@ std::optional<std::filesystem::path> paper_mesh(const std::string& name) {
     if (std::filesystem::exists(path)) return path;
   }
   const char* required = std::getenv("SUPPLE_REQUIRE_PAPER");
-  if (required != nullptr && std::string(required) == "1") ADD_FAILURE() << "the paper's mesh " << name << " is required and missing";
+  if (required != nullptr && std::string(required) == "1")
+    ADD_FAILURE() << "the paper's mesh " << name << " is required and missing";
   return std::nullopt;
 }
 
@@ -44,7 +45,8 @@ BodyDescription bar(const Material& material, Held held, Precision precision, in
 FrameInputs still_inputs(const Model& model) {
   FrameInputs inputs;
   inputs.targets.resize(model.handled.size(), 3);
-  for (std::size_t i = 0; i < model.handled.size(); ++i) inputs.targets.row(i) = model.rest.row(model.handled[i].vertex);
+  for (std::size_t i = 0; i < model.handled.size(); ++i)
+    inputs.targets.row(i) = model.rest.row(model.handled[i].vertex);
   return inputs;
 }
 

@@ -14,7 +14,8 @@ namespace supple::test {
 inline const std::filesystem::path source_folder = SUPPLE_SOURCE_FOLDER;
 inline const std::filesystem::path assets = source_folder / "assets";
 
-// The paper's mesh by name; the calling test is skipped by name when there is none (a failure with SUPPLE_REQUIRE_PAPER=1).
+// The paper's mesh by name; the calling test is skipped by name when there is none (a failure with
+// SUPPLE_REQUIRE_PAPER=1).
 std::optional<std::filesystem::path> paper_mesh(const std::string& name);
 
 // One of each material, with moduli of the same size.
@@ -22,7 +23,8 @@ std::vector<Material> all_materials();
 
 // A bar of 4 x 1 x 1 cells, 0.4 m long; its left end can be held.
 enum class Held { nothing, hard_end, spring_end };
-BodyDescription bar(const Material& material, Held held, Precision precision = Precision::double_precision, int cells = 1);
+BodyDescription bar(const Material& material, Held held, Precision precision = Precision::double_precision,
+                    int cells = 1);
 
 // Inputs for a body whose handles stay where they rest.
 FrameInputs still_inputs(const Model& model);

@@ -1,5 +1,5 @@
-// As-rigid-as-possible energy, the material of Projective Dynamics: Psi = mu |F - R|^2 = mu |S - 1|^2. With window 0 and full steps the
-// method of this program is then exactly the local/global iteration (Liu et al. 2017, section 3).
+// As-rigid-as-possible energy, the material of Projective Dynamics: Psi = mu |F - R|^2 = mu |S - 1|^2. With window 0
+// and full steps the method of this program is then exactly the local/global iteration (Liu et al. 2017, section 3).
 #pragma once
 
 #include <array>
@@ -14,7 +14,9 @@ struct AsRigidAsPossible {
   static constexpr Needs needs = Needs::stretch;
   double mu = 0;
 
-  static constexpr auto parameters() { return std::array{Parameter<AsRigidAsPossible>{"mu", "Pa", "stiffness", &AsRigidAsPossible::mu, false}}; }
+  static constexpr auto parameters() {
+    return std::array{Parameter<AsRigidAsPossible>{"mu", "Pa", "stiffness", &AsRigidAsPossible::mu, false}};
+  }
 
   // Energy per rest volume [J/m^3]; `slope` becomes dPsi/dS.
   template <class V>

@@ -25,8 +25,12 @@ struct Corotated {
     const Symmetric3<V> d{s.xx - one, s.yy - one, s.zz - one, s.yz, s.xz, s.xy};
     const V trace = d.xx + d.yy + d.zz;
     const V pressure = V(lambda) * trace;
-    slope = {madd(two_mu, d.xx, pressure), madd(two_mu, d.yy, pressure), madd(two_mu, d.zz, pressure),
-             two_mu * d.yz,                two_mu * d.xz,                two_mu * d.xy};
+    slope = {madd(two_mu, d.xx, pressure),
+             madd(two_mu, d.yy, pressure),
+             madd(two_mu, d.zz, pressure),
+             two_mu * d.yz,
+             two_mu * d.xz,
+             two_mu * d.xy};
     return madd(V(mu), squared_norm(d), V(0.5) * pressure * trace);
   }
 

@@ -1,6 +1,7 @@
-// Compressible Neo-Hookean material (Liu et al. 2017, equation 14): Psi = mu/2 (tr F^T F - 3) + c(J), c(J) = -mu log J + lambda/2 log^2 J.
-// Below J = 0.1 the whole of c continues as its second-order Taylor polynomial there: value, slope and curvature are continuous, and with the
-// stress written by the cofactor of F everything stays finite for flat and inverted elements. States above 0.1 are unaffected.
+// Compressible Neo-Hookean material (Liu et al. 2017, equation 14): Psi = mu/2 (tr F^T F - 3) + c(J), c(J) = -mu log J
+// + lambda/2 log^2 J. Below J = 0.1 the whole of c continues as its second-order Taylor polynomial there: value, slope
+// and curvature are continuous, and with the stress written by the cofactor of F everything stays finite for flat and
+// inverted elements. States above 0.1 are unaffected.
 #pragma once
 
 #include <array>
@@ -27,9 +28,10 @@ struct NeoHookean {
   struct Extension {
     double value, slope, curvature;
   };
-  Extension extension() const {
+  [[gnu::always_inline]] Extension extension() const {
     const double j = smallest_volume_ratio, log_j = std::log(j);
-    return {-mu * log_j + 0.5 * lambda * log_j * log_j, (lambda * log_j - mu) / j, (mu + lambda - lambda * log_j) / (j * j)};
+    return {-mu * log_j + 0.5 * lambda * log_j * log_j, (lambda * log_j - mu) / j,
+            (mu + lambda - lambda * log_j) / (j * j)};
   }
 
   template <class V>

@@ -1,4 +1,5 @@
-// What every material says of itself, so that scene files, stiffness fits, kernels and tests pick a new one up without being told.
+// What every material says of itself, so that scene files, stiffness fits, kernels and tests pick a new one up without
+// being told.
 #pragma once
 
 #include <string_view>

@@ -1,5 +1,5 @@
-// The paper's polynomial material: Psi = mu sum (s_i - 1)^4 = mu tr (S - 1)^4. Nothing at small strains, firm at large ones: it jiggles and
-// keeps its shape (Liu et al. 2017, section 4.1 and figure 2).
+// The paper's polynomial material: Psi = mu sum (s_i - 1)^4 = mu tr (S - 1)^4. Nothing at small strains, firm at large
+// ones: it jiggles and keeps its shape (Liu et al. 2017, section 4.1 and figure 2).
 #pragma once
 
 #include <array>
@@ -14,7 +14,9 @@ struct Polynomial {
   static constexpr Needs needs = Needs::stretch;
   double mu = 0;
 
-  static constexpr auto parameters() { return std::array{Parameter<Polynomial>{"mu", "Pa", "stiffness", &Polynomial::mu, false}}; }
+  static constexpr auto parameters() {
+    return std::array{Parameter<Polynomial>{"mu", "Pa", "stiffness", &Polynomial::mu, false}};
+  }
 
   // tr D^4 = |D^2|^2 for the symmetric D = S - 1, and d tr D^4 / dS = 4 D^3: no eigenvalues are needed.
   template <class V>

@@ -1,0 +1,76 @@
+#include "render/view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace supple {
+namespace {
+
+Eigen::Matrix4f perspective(double fov_deg, double aspect, double near, double far) {
+  const double f = 1 / std::tan(fov_deg * std::numbers::pi / 360);
+  Eigen::Matrix4f m = Eigen::Matrix4f::Zero();
+  m(0, 0) = static_cast<float>(f / aspect);
+  m(1, 1) = static_cast<float>(f);
+  m(2, 2) = static_cast<float>((far + near) / (near - far));
+  m(2, 3) = static_cast<float>(2 * far * near / (near - far));
+  m(3, 2) = -1;
+  return m;
+}
+
+}  // namespace
+
+Eigen::Matrix4f look_at(const Vec3& eye, const Vec3& target) {
+  const Vec3 back = (eye - target).normalized();
+  const Vec3 up = std::abs(back.y()) > 0.999 ? Vec3::UnitZ() : Vec3::UnitY();
+  const Vec3 right = up.cross(back).normalized();
+  Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
+  m.block<1, 3>(0, 0) = right.transpose();
+  m.block<1, 3>(1, 0) = back.cross(right).transpose();
+  m.block<1, 3>(2, 0) = back.transpose();
+  m.block<3, 1>(0, 3) = -m.block<3, 3>(0, 0) * eye;
+  return m.cast<float>();
+}
+
+Eigen::Matrix4f view_matrix(const Camera& camera, double aspect, const Vec3& center, double reach) {
+  const double distance = (camera.eye - center).norm();
+  const double near = std::max(0.02 * reach, distance - 2 * reach);
+  return perspective(camera.fov_deg, aspect, near, distance + 60 * reach) * look_at(camera.eye, camera.target);
+}
+
+Camera framing(const Bounds& box, double fov_deg, double margin, double aspect) {
+  Camera camera;
+  camera.fov_deg = fov_deg;
+  const double half = std::tan(fov_deg * std::numbers::pi / 360);
+  const Vec3 extent = box.extent();
+  const double across = margin * std::max(0.5 * extent.y(), 0.5 * extent.x() / aspect);
+  const double distance = across / half + 0.5 * extent.z();
+  camera.target = box.center() - Vec3(0, 0.06 * extent.y(), 0);
+  camera.eye = camera.target + distance * Vec3(0, 0.16, 1).normalized();
+  return camera;
+}
+
+void compute_normals(const std::vector<float>& positions, const std::vector<std::uint32_t>& triangles,
+                     std::vector<float>& normals) {
+  normals.assign(positions.size(), 0.0f);
+  for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) {
+    const float* a = &positions[3 * triangles[t]];
+    const float* b = &positions[3 * triangles[t + 1]];
+    const float* c = &positions[3 * triangles[t + 2]];
+    const float u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+    const float n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+    for (int corner = 0; corner < 3; ++corner) {
+      float* sum = &normals[3 * triangles[t + corner]];
+      for (int k = 0; k < 3; ++k) sum[k] += n[k];
+    }
+  }
+  for (std::size_t i = 0; i + 2 < normals.size(); i += 3) {
+    const float length =
+        std::sqrt(normals[i] * normals[i] + normals[i + 1] * normals[i + 1] + normals[i + 2] * normals[i + 2]);
+    if (length > 0) {
+      for (int k = 0; k < 3; ++k) normals[i + k] /= length;
+    }
+  }
+}
+
+}  // namespace supple
