@@ -339,6 +339,20 @@ TEST(Step, AllHandlesArriveAtTheirTargets) {
   }
 }
 
+TEST(Step, StartsWithTheHandlesDepartureSpreadIntoTheBody) {
+  // A jerk at the handle by a third of an element: y alone tears the elements beside it.
+  const Model model = build_model(bar(Corotated{1e4, 3e4}, Held::hard_end, Precision::single_precision, 3));
+  FrameInputs inputs = still_inputs(model);
+  inputs.targets.col(1).array() += 0.01;
+  State state = rest_state(model);
+  Workspace w;
+  w.prepare(model, inputs.solver);
+  begin_step(model, inputs, state, w);
+  const double at_y = evaluate(model, w, w.x, w.energy, nullptr, nullptr, nullptr).value;
+  const StepReport& report = step(model, inputs, state, w);
+  EXPECT_LT(report.objective.front(), 0.3 * at_y);
+}
+
 TEST(Cholesky, SolvesInBothPrecisionsAsADenseSolverDoes) {
   const BodyDescription body = bar(Corotated{1e5, 2e5}, Held::nothing, Precision::double_precision, 3);
   const Model exact = build_model(body);
