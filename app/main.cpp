@@ -2,6 +2,7 @@
 // interrupted.
 #include <fmt/format.h>
 
+#include <csignal>
 #include <cstdio>
 #include <new>
 
@@ -43,6 +44,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);  // who stops listening does not end a run
   try {
     return run(argc, argv);
   } catch (const supple::InputError& error) {

@@ -113,8 +113,13 @@ int render(const RenderOptions& options, const std::vector<std::string>& command
                : result.end == FilmEnd::interrupted ? "interrupted"
                                                     : "failed: " + result.message;
   info.video = result.video_written ? "video.mp4" : result.video_message;
-  folder.write_profile(profile_json(result.rows));
-  folder.write_info(info);
+  std::string unrecorded;  // what the disk refused; said after what went wrong first
+  try {
+    folder.write_info(info);
+    folder.write_profile(profile_json(result.rows));
+  } catch (const RunError& error) {
+    unrecorded = error.what();
+  }
   if (options.json) {
     print_json(result, folder);
   } else if (!options.quiet && !result.rows.empty()) {
@@ -124,6 +129,7 @@ int render(const RenderOptions& options, const std::vector<std::string>& command
     say(stderr, fmt::format("supple: {}\n  kept: {} whole frames in {}\n", result.message, result.rows.size(),
                             folder.path().string()));
   }
+  if (!unrecorded.empty()) say(stderr, fmt::format("supple: {}\n", unrecorded));
   if (result.video_failed) say(stderr, fmt::format("supple: {}\n", result.video_message));
   if (result.end == FilmEnd::interrupted) {
     say(stderr,
@@ -131,7 +137,7 @@ int render(const RenderOptions& options, const std::vector<std::string>& command
                     result.rows.size(), folder.path().string()));
     return 130;
   }
-  return result.end == FilmEnd::done && !result.video_failed ? 0 : 1;
+  return result.end == FilmEnd::done && !result.video_failed && unrecorded.empty() ? 0 : 1;
 }
 
 }  // namespace

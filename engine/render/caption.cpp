@@ -31,11 +31,11 @@ std::vector<char32_t> code_points(const std::string& text) {
 }
 
 struct Library {
-  FT_Library library = nullptr;
+  FT_Library freetype = nullptr;
   FT_Face face = nullptr;
   ~Library() {
     if (face != nullptr) FT_Done_Face(face);
-    if (library != nullptr) FT_Done_FreeType(library);
+    if (freetype != nullptr) FT_Done_FreeType(freetype);
   }
 };
 
@@ -43,7 +43,7 @@ struct Library {
 
 CaptionBitmap draw_caption(const std::string& font_file, const std::string& text, int pixels) {
   Library ft;
-  if (FT_Init_FreeType(&ft.library) != 0 || FT_New_Face(ft.library, font_file.c_str(), 0, &ft.face) != 0 ||
+  if (FT_Init_FreeType(&ft.freetype) != 0 || FT_New_Face(ft.freetype, font_file.c_str(), 0, &ft.face) != 0 ||
       FT_Set_Pixel_Sizes(ft.face, 0, pixels) != 0) {
     throw RunError(fmt::format("{}: not a usable font", font_file));
   }

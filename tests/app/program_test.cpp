@@ -170,6 +170,17 @@ TEST(Program, EndsAfterTheFrameInProgressWhenInterrupted) {
   EXPECT_NO_THROW(read_png(out / "frames" / fmt::format("{:06}.png", frames - 1)));
 }
 
+TEST(Program, FinishesARunWhoseListenerHasGone) {
+  const test::TemporaryFolder folder;
+  write_scene(folder.path / "head.toml");
+  const std::string command =
+      fmt::format("cd '{}' && '{}' render head.toml --no-images 2>&1 | true", folder.path.string(), SUPPLE_PROGRAM);
+  (void)!std::system(command.c_str());
+  const auto info = nlohmann::json::parse(test::read_file(folder.path / "out" / "head" / "run.json"));
+  EXPECT_EQ(info["ended"], "done");
+  EXPECT_EQ(hashes_of(folder.path / "out" / "head").size(), 6u);
+}
+
 TEST(Program, TakesThePapersSquirrelInThePlaceOfOurs) {
   const auto mesh = test::paper_mesh("squirrel_modified");
   if (!mesh) GTEST_SKIP() << "no SUPPLE_PAPER_MESHES: squirrel_modified";

@@ -117,6 +117,15 @@ TEST(Tetrahedralize, RefusesWhatCannotBeMeshed) {
   EXPECT_THROW(tetrahedralize(nothing, 500, "x"), InputError);
 }
 
+TEST(Tetrahedralize, RefusesAShapeInTwoPieces) {
+  Shape two = shape_of(Sphere{1});
+  ShapePart other;
+  other.primitive = Sphere{1};
+  other.to_local.translation() = Vec3(-3, 0, 0);
+  two.root.parts.push_back(other);
+  EXPECT_THROW(tetrahedralize(two, 1000, "x"), InputError);
+}
+
 TEST(BoxMesh, FillsTheBoxWithPositiveElements) {
   const TetMesh mesh = box_mesh(Vec3(4, 2, 1), Eigen::Vector3i(5, 4, 3));
   EXPECT_EQ(mesh.rest.rows(), 6 * 5 * 4);
@@ -158,6 +167,8 @@ TEST(MeshFile, RefusesBrokenFilesWithTheirLine) {
       {head + points + "Tetrahedra\n2\n1 2 3 4 0\n2 3 4 5 0\n1 2 5 3 0\n", ":14: section '1' is not known"},
       {head + points + "Tetrahedra\n2\n1 2 3 4 0\n2 4 3 5 0\n",
        ":13: 1 of 2 elements are turned inside out, the first here; all must be oriented alike"},
+      {head + points + "Tetrahedra 1\n1 2 3 4 0\nVertices 1\n0 0 0 0\n", ":12: a second Vertices section"},
+      {head + points + "Tetrahedra 1\n1 2 3 4 0\nTetrahedra 1\n1 2 3 5 0\n", ":12: a second Tetrahedra section"},
       {head + "Quads\n1\n", ":3: section 'Quads' is not known"},
   };
   for (const auto& [text, message] : cases) {

@@ -74,7 +74,8 @@ TEST(Profile, LeavesOutWhatWasNotUsedAndTheFirstFrame) {
     EXPECT_EQ(json.find(absent), std::string::npos) << absent;
   EXPECT_EQ(summarize(rows)[0].rest.max, 2);
   EXPECT_EQ(summarize(rows)[0].first, 100);
-  rows[0].bodies[0].error_measured = true;  // measured, and not to be had
+  EXPECT_EQ(summarize({rows[0]})[0].rest.total, 0);  // a film of one frame has no others
+  rows[0].bodies[0].error_measured = true;           // measured, and not to be had
   EXPECT_NE(profile_json(rows).find("\"error\": null"), std::string::npos);
 }
 

@@ -169,6 +169,32 @@ TEST(HandleMotion, PassesThroughItsKeysAndStandsStillOutside) {
   EXPECT_LT((motion.at(1.01).translation() - motion.at(1).translation()).norm(), 2e-2);  // starts without a jump
 }
 
+TEST(HandleMotion, TurnsAllTheWayRound) {
+  const HandleMotion motion{
+      Vec3::Zero(), Ease::linear, {{0, Vec3::Zero(), Vec3::Zero()}, {1, Vec3::Zero(), Vec3(0, 360, 0)}}};
+  EXPECT_LT((motion.at(0.5) * Vec3(1, 0, 0) - Vec3(-1, 0, 0)).norm(), 1e-12);
+}
+
+TEST(SceneFile, HandlesThatTogetherHoldEverythingAreRefused) {
+  Config config = Config::parse(good_body + R"([[body.handles]]
+name = "low"
+select = { box = [[0, 0, 0], [1, 0.5, 1]] }
+[[body.handles]]
+name = "high"
+select = { box = [[0, 0.4, 0], [1, 1, 1]] }
+)",
+                                "scene.toml", test::assets);
+  const SceneDef scene = read_scene(config);
+  config.finish();
+  try {
+    (void)assemble(scene);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "scene.toml:9:10: with handle 'high' every vertex of body 'body' is held: nothing is left to move");
+  }
+}
+
 // A scene and a shape that ask for every key there is.
 std::vector<DocumentedKey> all_keys() {
   std::vector<DocumentedKey> keys;
