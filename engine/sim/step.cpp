@@ -153,8 +153,8 @@ void evaluate_start(const Model& model, Workspace& w) {
 // The first iterate. The paper starts from y; with rows eliminated, y leaves the elements beside a handle torn by all
 // that the handle did not do freely (its keyed motion, and the fall that it did not take), often by more than their
 // size. So the handles' departure from y is spread into the body by the quadratic model that also gives the directions,
-// A_ff d_f = -A_fh d_h: one solve. A squirrel's head held at its neck then takes 1.00 trials an iteration instead
-// of 2.4, and ends the frame with a tenth to a hundredth of the error. Costs an evaluation more, because y stays the
+// A_ff d_f = -A_fh d_h: one solve. docs/results.md
+// says what was measured. Costs an evaluation more, because y stays the
 // first iterate where it is the better one. Returns g(y), the handles at their targets, when the first iterate is
 // another one.
 std::optional<double> spread_handles(const Model& model, Workspace& w) {
