@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "scene/assemble.h"
 #include "scene/scene_reader.h"
+#include "scene/warnings.h"
 
 namespace supple {
 namespace {
@@ -22,12 +23,9 @@ int check(const std::string& name, const std::vector<std::string>& settings) {
                   list.size() == 1 ? "" : "s", scene.frames, bodies.size(), bodies.size() == 1 ? "body" : "bodies"));
   for (const Body& body : bodies) {
     const TetMesh& mesh = body.description.mesh;
-    const double h = scene.time_step();
-    const double size = bounds_of(mesh.rest).diagonal();
-    say(stdout,
-        fmt::format("  {}: {} vertices, {} elements, k h^2 / (rho L^2) = {:.3g}\n", body.def.name, mesh.rest.rows(),
-                    mesh.tets.rows(),
-                    stiffness(body.def.material, body.def.fit) * h * h / (body.description.density * size * size)));
+    say(stdout, fmt::format("  {}: {} vertices, {} {}, k h^2 / (rho L^2) = {:.3g}\n", body.def.name, mesh.rest.rows(),
+                            body.def.cloth ? body.description.springs.size() : std::size_t(mesh.tets.rows()),
+                            body.def.cloth ? "springs" : "elements", crossing_number(body)));
   }
   return 0;
 }

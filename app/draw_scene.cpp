@@ -21,6 +21,9 @@ Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const s
     mesh.triangles.assign(skin.rest.triangles.data(), skin.rest.triangles.data() + skin.rest.triangles.size());
     mesh.occlusion = skin.occlusion;
     mesh.paint = skin.paint;
+    mesh.square = skin.square;
+    mesh.printed = bodies[b].def.pattern == Pattern::checks ? Printed::checks : Printed::grid;
+    mesh.two_sided = drawn[b].two_sided;
     mesh.color = drawn[b].color;
     for (const PaintLayer& layer : drawn[b].layers) mesh.layers.push_back({layer.color, layer.gloss, layer.soft});
     mesh.rest = bounds_of(bodies[b].description.mesh.rest);

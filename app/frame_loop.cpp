@@ -179,6 +179,8 @@ std::string advance(const SceneDef& scene, int frame, bool measure_error, Actor&
   for (int substep = 0; substep < scene.substeps; ++substep) {
     const double time = (static_cast<double>(frame) * scene.substeps + substep + 1) * scene.time_step();
     handle_targets(actor.model, actor.body, time, actor.inputs.targets);
+    if (actor.model.scheme.theta < 1)
+      handle_targets(actor.model, actor.body, time - 0.5 * scene.time_step(), actor.inputs.middle_targets);
     const bool last = substep + 1 == scene.substeps;
     const bool measure = measure_error && last;
     const State before = measure ? actor.state : State{};
@@ -190,7 +192,13 @@ std::string advance(const SceneDef& scene, int frame, bool measure_error, Actor&
       row.error = step_error(actor.model, actor.inputs, before, actor.state, actor.reference_workspace);
     }
   }
-  row.stretch = stretch(actor.model, actor.state.x);
+  const Deformation shape = deformation(actor.model, actor.state.x);
+  row.stretch = shape.stretch;
+  row.inverted = shape.inverted;
+  if (scene.output.energy) {
+    const Energies energy = energies(actor.model, actor.state, scene.gravity, actor.workspace);
+    row.energy = {energy.kinetic, energy.elastic, energy.gravitational};
+  }
   if (!actor.body.motions.empty()) {
     const double time = (frame + 1) / scene.fps;
     row.jiggle = jiggle(actor.model, actor.state.x, actor.body.motions.front().at(time));
@@ -232,8 +240,8 @@ FilmResult make_film(const SceneDef& scene, const std::vector<Body>& bodies, std
       actors.push_back(
           std::make_unique<Actor>(Actor{bodies[b],
                                         models[b],
-                                        rest_state(models[b]),
-                                        {scene.gravity, {}, bodies[b].def.solver},
+                                        start_state(models[b], bodies[b]),
+                                        {scene.gravity, {}, {}, bodies[b].def.solver.settings},
                                         {},
                                         {},
                                         PointCacheWriter(folder.motion(bodies[b].def.name), models[b].vertices)}));

@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "base/timing.h"
 #include "scene/scene_reader.h"
+#include "scene/warnings.h"
 #include "sim/kernels.h"
 
 namespace supple {
@@ -23,6 +24,7 @@ struct RenderOptions {
   int threads = 0;
   std::vector<std::string> set;
   int error_every = 0;
+  long long seed = -1;
   bool no_video = false, no_images = false, quiet = false, json = false;
   std::string gl = "auto";
 };
@@ -65,6 +67,7 @@ int render(const RenderOptions& options, const std::vector<std::string>& command
   info.scene_file = scene_file(options.scene).string();
   std::vector<std::string> settings = options.set;
   if (options.frames > 0) settings.push_back(fmt::format("frames={}", options.frames));
+  if (options.seed >= 0) settings.push_back(fmt::format("seed={}", options.seed));
   SceneDef scene = load_scene(info.scene_file, assets_folder(), settings, &info.scene_json);
   std::vector<Body> bodies = assemble(scene);
   if (!options.quiet) {
@@ -92,10 +95,11 @@ int render(const RenderOptions& options, const std::vector<std::string>& command
   info.threads = film.threads;
   for (const Body& body : bodies) {
     const TetMesh& mesh = body.description.mesh;
-    info.meshes.push_back({body.def.name, body.source, mesh_hash(mesh), int(mesh.rest.rows()), int(mesh.tets.rows())});
+    info.meshes.push_back({body.def.name, body.source, mesh_hash(mesh), int(mesh.rest.rows()),
+                           int(mesh.tets.rows() + body.description.springs.size())});
     if (!options.quiet)
-      say(stderr, fmt::format("{}: {} vertices, {} elements ({})\n", body.def.name, mesh.rest.rows(), mesh.tets.rows(),
-                              body.source));
+      say(stderr, fmt::format("{}: {} vertices, {} elements ({})\n", body.def.name, mesh.rest.rows(),
+                              mesh.tets.rows() + body.description.springs.size(), body.source));
   }
   info.ended = "running";
   folder.write_info(info);
@@ -156,6 +160,8 @@ void add_render(CLI::App& app, Action& action, const std::vector<std::string>& c
   verb->add_option("--set", options->set, "path=value over the scene's, such as solver.iterations=20; may be repeated")
       ->take_all()
       ->allow_extra_args(false);
+  verb->add_option("--seed", options->seed, "of random start states, over the scene's")
+      ->check(CLI::Range(0, 2000000000));
   verb->add_option("--error-every", options->error_every, "measure the error of equation 12 every N frames (slow)")
       ->check(CLI::Range(1, 1000000));
   verb->add_flag("--no-video", options->no_video, "frames only");

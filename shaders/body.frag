@@ -7,9 +7,11 @@ in vec3 world_normal;
 in float open_sky;
 in vec4 layer_low;
 in vec4 layer_high;
+in vec2 squares;
 uniform vec4 colors[9];  // linear colour and gloss; the first is the uncovered surface
 uniform vec4 soft[2];
 uniform int layers;
+uniform int printed;  // 0 nothing, 1 a grid, 2 checks
 out vec4 pixel;
 
 vec4 surface() {
@@ -22,13 +24,29 @@ vec4 surface() {
   return material;
 }
 
+// The printed pattern's factor on the colour, filtered over the pixel so that it neither flickers nor breaks into dots.
+float print() {
+  if (printed == 0) return 1.0;
+  vec2 pixel_size = max(fwidth(squares), vec2(1e-6));
+  if (printed == 1) {
+    const float half_line = 0.035;
+    vec2 away = abs(fract(squares - 0.5) - 0.5);
+    vec2 line = clamp((half_line + 0.5 * pixel_size - away) / pixel_size, 0.0, 1.0) * min(vec2(1.0), 2.0 * half_line / pixel_size + 0.3);
+    return 1.0 - 0.55 * max(line.x, line.y);
+  }
+  // A chequerboard as the product of two square waves, each integrated over the pixel (box filter).
+  vec2 low = 0.5 * (squares - 0.5 * pixel_size), high = 0.5 * (squares + 0.5 * pixel_size);
+  vec2 wave = (abs(fract(high) - 0.5) - abs(fract(low) - 0.5)) / (0.5 * pixel_size);
+  return 1.0 - 0.09 * (1.0 + wave.x * wave.y);
+}
+
 void main() {
   if (world.y < -1e-4) discard;  // under the ground, which is drawn on its own
   vec3 n = normalize(world_normal);
   vec3 v = normalize(eye - world);
   if (dot(n, v) < 0.0 && !gl_FrontFacing) n = -n;
   vec4 material = surface();
-  vec3 albedo = material.rgb;
+  vec3 albedo = material.rgb * print();
   float gloss = material.a;
 
   // A little wrap makes clay of plastic: light bleeds past the terminator, reddened by the material's own colour.

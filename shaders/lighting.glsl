@@ -5,6 +5,7 @@ uniform vec3 background;    // linear
 uniform vec3 ground_color;  // linear
 uniform mat4 light_matrix;
 uniform sampler2DShadow shadow_map;
+uniform float shadow_offset;    // along the normal [m]
 uniform float shadow_softness;  // radius of the penumbra, in the map's coordinates
 
 const vec3 key_color = vec3(2.35, 2.20, 1.98);
@@ -19,7 +20,7 @@ const vec2 taps[12] = vec2[12](vec2(0.2041, 0.0000), vec2(-0.2607, 0.2388), vec2
                                vec2(-0.8224, 0.3395), vec2(0.3964, -0.8472), vec2(0.2930, 0.9341));
 
 float shadow(vec3 position, vec3 normal) {
-  vec4 p = light_matrix * vec4(position + 0.004 * normal, 1.0);
+  vec4 p = light_matrix * vec4(position + shadow_offset * normal, 1.0);
   vec3 c = 0.5 * p.xyz + 0.5;
   if (any(lessThan(c, vec3(0.0))) || any(greaterThan(c, vec3(1.0)))) return 1.0;
   // Most points are fully lit or fully in shadow: four wide taps say so.

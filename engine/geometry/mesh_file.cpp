@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -91,8 +92,14 @@ std::string read_text(const std::filesystem::path& path) {
 }
 
 struct Lines {
-  int vertices = 0;
-  std::vector<int> tets;
+  std::vector<int> tets, triangles;
+};
+
+// A file as it stands, indices checked.
+struct Sections {
+  MeshFile file;
+  Triangles triangles;
+  Lines lines;
 };
 
 void check_duplicates(const TetMesh& mesh, const Lines& lines, const std::string& name) {
@@ -147,77 +154,143 @@ void drop_unused(MeshFile& file) {
   file.notes.push_back(fmt::format("{} vertices belong to no element, and have been left out", unused));
 }
 
-}  // namespace
+// Rows of `columns` vertex indices and a reference; row(i, indices, reference) takes each.
+template <class Row>
+void read_rows(Words& words, const char* what, int columns, Eigen::Index vertices, std::vector<int>& lines,
+               const Row& row) {
+  const Eigen::Index count = words.count(what, static_cast<std::size_t>(2 * columns + 2));
+  for (Eigen::Index i = 0; i < count; ++i) {
+    std::array<std::int32_t, 4> corner{};
+    for (int k = 0; k < columns; ++k) {
+      const auto v = words.number<long long>("a vertex of an element");
+      if (v < 1 || v > vertices) {
+        words.refuse(
+            fmt::format("vertex {} does not exist: there are {} (vertices count from 1, and stand before the elements)",
+                        v, vertices));
+      }
+      corner[static_cast<std::size_t>(k)] = static_cast<std::int32_t>(v - 1);
+    }
+    lines.push_back(words.line());
+    const auto reference = words.number<long long>("an element's reference");
+    if (reference < 0 || reference > 1'000'000)
+      words.refuse(fmt::format("reference {} is outside 0 to 1000000", reference));
+    row(i, count, corner, static_cast<int>(reference));
+  }
+}
 
-MeshFile read_mesh(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  Words words(read_text(path), name);
+// Sections that say nothing here: rows of integers, skipped whole.
+void skip_section(Words& words, std::string_view section) {
+  struct Skipped {
+    std::string_view name;
+    int integers;
+  };
+  constexpr Skipped skipped[] = {{"Edges", 3},         {"Corners", 1},          {"Ridges", 1}, {"RequiredVertices", 1},
+                                 {"RequiredEdges", 1}, {"RequiredTriangles", 1}};
+  const auto* known =
+      std::find_if(std::begin(skipped), std::end(skipped), [&](const Skipped& s) { return s.name == section; });
+  if (known == std::end(skipped)) words.refuse(fmt::format("section '{}' is not known", section.substr(0, 40)));
+  const Eigen::Index count = words.count(known->name, static_cast<std::size_t>(2 * known->integers));
+  for (Eigen::Index i = 0; i < count * known->integers; ++i) (void)words.number<long long>("an index");
+}
+
+Sections read_sections(Words& words) {
   if (words.next() != "MeshVersionFormatted")
     words.refuse("not a MEDIT mesh: it should begin with MeshVersionFormatted");
   const int version = words.number<int>("the version");
   if (version < 1 || version > 4)
     words.refuse(fmt::format("version {} of the format is not known (1 to 4 are)", version));
-
-  MeshFile file;
-  Lines lines;
-  bool ended = false;
-  while (!ended) {
+  Sections read;
+  TetMesh& mesh = read.file.mesh;
+  for (;;) {
     const std::string_view section = words.next();
-    if (section.empty() || section == "End") {
-      ended = true;
-    } else if (section == "Dimension") {
+    if (section.empty() || section == "End") return read;
+    if (section == "Dimension") {
       if (words.number<int>("the dimension") != 3) words.refuse("the dimension must be 3");
     } else if (section == "Vertices") {
-      if (file.mesh.rest.rows() > 0) words.refuse("a second Vertices section");
+      if (mesh.rest.rows() > 0) words.refuse("a second Vertices section");
       const Eigen::Index count = words.count("vertices", 8);
-      file.mesh.rest.resize(count, 3);
-      lines.vertices = words.line();
+      mesh.rest.resize(count, 3);
       for (Eigen::Index v = 0; v < count; ++v) {
-        for (int k = 0; k < 3; ++k) file.mesh.rest(v, k) = words.number<double>("a coordinate");
+        for (int k = 0; k < 3; ++k) mesh.rest(v, k) = words.number<double>("a coordinate");
         (void)words.number<long long>("a vertex's reference");
       }
     } else if (section == "Tetrahedra") {
-      if (file.mesh.tets.rows() > 0) words.refuse("a second Tetrahedra section");
-      const Eigen::Index count = words.count("elements", 10);
-      file.mesh.tets.resize(count, 4);
-      for (Eigen::Index e = 0; e < count; ++e) {
-        for (int k = 0; k < 4; ++k) {
-          const auto v = words.number<long long>("a vertex of an element");
-          if (v < 1 || v > file.mesh.rest.rows()) {
-            words.refuse(fmt::format(
-                "vertex {} does not exist: there are {} (vertices count from 1, and stand before the elements)", v,
-                file.mesh.rest.rows()));
-          }
-          file.mesh.tets(e, k) = static_cast<std::int32_t>(v - 1);
-        }
-        lines.tets.push_back(words.line());
-        const auto reference = words.number<long long>("an element's reference");
-        if (reference < 0 || reference > 1'000'000)
-          words.refuse(fmt::format("reference {} is outside 0 to 1000000", reference));
-        file.mesh.regions.push_back(static_cast<int>(reference));
-      }
+      if (mesh.tets.rows() > 0) words.refuse("a second Tetrahedra section");
+      read_rows(words, "elements", 4, mesh.rest.rows(), read.lines.tets,
+                [&](Eigen::Index i, Eigen::Index count, const auto& corner, int reference) {
+                  if (i == 0) mesh.tets.resize(count, 4);
+                  mesh.tets.row(i) << corner[0], corner[1], corner[2], corner[3];
+                  mesh.regions.push_back(reference);
+                });
+    } else if (section == "Triangles") {
+      if (read.triangles.rows() > 0) words.refuse("a second Triangles section");
+      read_rows(words, "triangles", 3, mesh.rest.rows(), read.lines.triangles,
+                [&](Eigen::Index i, Eigen::Index count, const auto& corner, int) {
+                  if (i == 0) read.triangles.resize(count, 3);
+                  read.triangles.row(i) << corner[0], corner[1], corner[2];
+                });
     } else {
-      // Sections that carry no volume: rows of integers, skipped whole.
-      struct Skipped {
-        std::string_view name;
-        int integers;
-      };
-      constexpr Skipped skipped[] = {
-          {"Triangles", 4},        {"Edges", 3},         {"Corners", 1},          {"Ridges", 1},
-          {"RequiredVertices", 1}, {"RequiredEdges", 1}, {"RequiredTriangles", 1}};
-      const auto* known =
-          std::find_if(std::begin(skipped), std::end(skipped), [&](const Skipped& s) { return s.name == section; });
-      if (known == std::end(skipped)) words.refuse(fmt::format("section '{}' is not known", section.substr(0, 40)));
-      const Eigen::Index count = words.count(known->name, static_cast<std::size_t>(2 * known->integers));
-      for (Eigen::Index i = 0; i < count * known->integers; ++i) (void)words.number<long long>("an index");
+      skip_section(words, section);
     }
   }
-  if (file.mesh.rest.rows() == 0 || file.mesh.tets.rows() == 0)
+}
+
+void check_triangles(const Sections& read, const std::string& name) {
+  std::vector<std::pair<std::array<std::int32_t, 3>, std::size_t>> keys;
+  const double edge = bounds_of(read.file.mesh.rest).diagonal();
+  for (Eigen::Index t = 0; t < read.triangles.rows(); ++t) {
+    const auto row = static_cast<std::size_t>(t);
+    const auto corner = [&](int k) -> Vec3 { return read.file.mesh.rest.row(read.triangles(t, k)); };
+    if (!((corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() > 1e-14 * edge * edge))
+      throw InputError({Problem{name, read.lines.triangles[row], 0, "the triangle has no area"}});
+    std::array<std::int32_t, 3> key{read.triangles(t, 0), read.triangles(t, 1), read.triangles(t, 2)};
+    std::sort(key.begin(), key.end());
+    keys.emplace_back(key, row);
+  }
+  std::sort(keys.begin(), keys.end());
+  for (std::size_t i = 1; i < keys.size(); ++i) {
+    if (keys[i].first != keys[i - 1].first) continue;
+    throw InputError(
+        {Problem{name, read.lines.triangles[keys[i].second], 0,
+                 fmt::format("the triangle repeats the one at line {}", read.lines.triangles[keys[i - 1].second])}});
+  }
+}
+
+}  // namespace
+
+MeshFile read_mesh(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  Words words(read_text(path), name);
+  Sections read = read_sections(words);
+  if (read.file.mesh.rest.rows() == 0 || read.file.mesh.tets.rows() == 0)
     words.refuse("the file has no Vertices or no Tetrahedra");
-  check_duplicates(file.mesh, lines, name);
-  orient(file, lines, name);
-  drop_unused(file);
-  return file;
+  check_duplicates(read.file.mesh, read.lines, name);
+  orient(read.file, read.lines, name);
+  drop_unused(read.file);
+  return std::move(read.file);
+}
+
+TriMesh read_surface(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  Words words(read_text(path), name);
+  const Sections read = read_sections(words);
+  if (read.triangles.rows() == 0) words.refuse("the file has no Triangles");
+  check_triangles(read, name);
+  TriMesh surface;
+  surface.triangles = read.triangles;
+  std::vector<std::int32_t> compact(static_cast<std::size_t>(read.file.mesh.rest.rows()), -1), used;
+  for (std::int32_t& v : surface.triangles.reshaped()) {
+    std::int32_t& place = compact[static_cast<std::size_t>(v)];
+    if (place < 0) {
+      place = static_cast<std::int32_t>(used.size());
+      used.push_back(v);
+    }
+    v = place;
+  }
+  surface.points.resize(static_cast<Eigen::Index>(used.size()), 3);
+  for (std::size_t i = 0; i < used.size(); ++i)
+    surface.points.row(static_cast<Eigen::Index>(i)) = read.file.mesh.rest.row(used[i]);
+  return surface;
 }
 
 void write_mesh(const std::filesystem::path& path, const TetMesh& mesh) {

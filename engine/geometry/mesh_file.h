@@ -21,6 +21,10 @@ struct MeshFile {
 // orientations.
 MeshFile read_mesh(const std::filesystem::path& path);
 
+// The Triangles of a file, for cloth; its elements are not looked at. Vertices that no triangle uses are left out.
+// Throws InputError: as above, triangles without area or listed twice.
+TriMesh read_surface(const std::filesystem::path& path);
+
 // Seventeen significant digits, so that reading gives the same doubles back. Throws RunError when the disk does.
 void write_mesh(const std::filesystem::path& path, const TetMesh& mesh);
 

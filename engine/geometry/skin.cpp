@@ -159,26 +159,6 @@ Skin skin_of(const Shape& shape, double cell) {
   return skin;
 }
 
-Skin skin_of_boundary(const TetMesh& mesh, std::vector<std::int32_t>& vertex_of) {
-  Skin skin;
-  skin.rest.triangles = boundary_faces(mesh.tets);
-  std::vector<std::int32_t> name(mesh.rest.rows(), -1);
-  vertex_of.clear();
-  for (std::int32_t& corner : skin.rest.triangles.reshaped()) {
-    if (name[corner] < 0) {
-      name[corner] = static_cast<std::int32_t>(vertex_of.size());
-      vertex_of.push_back(corner);
-    }
-    corner = name[corner];
-  }
-  skin.rest.points.resize(vertex_of.size(), 3);
-  for (std::size_t v = 0; v < vertex_of.size(); ++v) skin.rest.points.row(v) = mesh.rest.row(vertex_of[v]);
-  skin.occlusion.assign(vertex_of.size(), 1.0f);
-  skin.paint.resize(vertex_of.size());
-  for (auto& layers : skin.paint) layers.fill(1e3f);
-  return skin;
-}
-
 Embedding embed(const Positions& points, const TetMesh& mesh) {
   // Elements by grid cell, each in every cell that its box touches.
   const Bounds box = bounds_of(mesh.rest);

@@ -11,10 +11,14 @@ namespace supple {
 
 constexpr int max_paint_layers = 8;
 
+// What is printed on a body, in squares of one size, so that one sees how it is strained.
+enum class Pattern { none, grid, checks };
+
 struct Skin {
   TriMesh rest;                  // in the body's rest frame
   std::vector<float> occlusion;  // by vertex: share of the sky that the rest shape leaves open, 0 to 1
   std::vector<std::array<float, max_paint_layers>> paint;  // by vertex: signed distance to each colour layer [m]
+  std::vector<std::array<float, 2>> square;  // by vertex: place in the printed pattern, in squares; empty: none
 };
 
 // Contour with cells of the given size [m] (surface nets), its vertices moved onto the zero set.
@@ -23,8 +27,11 @@ TriMesh contour(const Shape& shape, double cell);
 // The contour with its layers' distances and the ambient occlusion of the rest shape.
 Skin skin_of(const Shape& shape, double cell);
 
-// The boundary of a mesh as a skin without layers; vertex_of gives each skin vertex's mesh vertex.
-Skin skin_of_boundary(const TetMesh& mesh, std::vector<std::int32_t>& vertex_of);
+// Triangles of a mesh's vertices as a skin without layers. Vertices where the surface has a crease become several, so
+// that edges look sharp; vertex_of gives each skin vertex's mesh vertex. square: edge of a printed pattern's squares
+// [m], laid along the two axes that the surface faces least; 0: none.
+Skin skin_of_surface(const Positions& points, const Triangles& triangles, double square,
+                     std::vector<std::int32_t>& vertex_of);
 
 // Points as fixed combinations of mesh vertices.
 struct Embedding {

@@ -31,6 +31,12 @@ Json json_of(const BodyRow& body) {
               {"error_estimate", body.error_estimate}};
   if (body.error_measured) row["error"] = body.error ? Json(*body.error) : Json(nullptr);
   row["stretch"] = body.stretch;
+  if (body.energy) {
+    row["kinetic_energy"] = (*body.energy)[0];
+    row["elastic_energy"] = (*body.energy)[1];
+    row["gravitational_energy"] = (*body.energy)[2];
+  }
+  if (body.inverted) row["inverted"] = *body.inverted;
   if (body.jiggle) row["jiggle"] = *body.jiggle;
   row["stop_reason"] = body.stop_reason;
   return row;

@@ -2,6 +2,7 @@
 // the numbers.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -17,9 +18,11 @@ struct BodyRow {
   double objective_start = 0, objective_end = 0;  // [J]
   double error_estimate = 0;
   bool error_measured = false;
-  std::optional<double> error;   // equation 12; null where the start is already the minimum to round-off
-  double stretch = 0;            // volume-weighted 99.9th percentile of the largest stretch
-  std::optional<double> jiggle;  // over size; only for bodies with a handle
+  std::optional<double> error;                  // equation 12; null where the start is already the minimum to round-off
+  double stretch = 0;                           // volume-weighted 99.9th percentile of the largest stretch
+  std::optional<std::array<double, 3>> energy;  // kinetic, elastic, gravitational [J]; only when the scene asks for it
+  std::optional<int> inverted;                  // tetrahedra inside out; only for solids
+  std::optional<double> jiggle;                 // over size; only for bodies with a handle
   std::string stop_reason;
 };
 

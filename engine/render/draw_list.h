@@ -16,15 +16,20 @@ struct PaintColor {
   double soft;   // width of the border, in the unit of DrawMesh::paint
 };
 
+enum class Printed { grid, checks };
+
 // A surface whose vertices move and whose other attributes stay.
 struct DrawMesh {
-  std::string label;                        // caption; empty: none
-  std::vector<std::uint32_t> triangles;     // vertex indices, three a triangle, anticlockwise from outside
-  std::vector<float> occlusion;             // by vertex: 1 open sky to 0 none
-  std::vector<std::array<float, 8>> paint;  // by vertex: signed distance to each layer, negative where it covers
-  Vec3 color;                               // sRGB of the uncovered surface
-  std::vector<PaintColor> layers;           // at most 8
-  Bounds rest;                              // where it starts: captions stand below it, cameras frame it [m]
+  std::string label;                         // caption; empty: none
+  std::vector<std::uint32_t> triangles;      // vertex indices, three a triangle, anticlockwise from outside
+  std::vector<float> occlusion;              // by vertex: 1 open sky to 0 none
+  std::vector<std::array<float, 8>> paint;   // by vertex: signed distance to each layer, negative where it covers
+  std::vector<std::array<float, 2>> square;  // by vertex: place in a printed pattern, in squares; empty: no pattern
+  Printed printed = Printed::grid;
+  bool two_sided = false;          // cloth, and bodies that may be inside out
+  Vec3 color;                      // sRGB of the uncovered surface
+  std::vector<PaintColor> layers;  // at most 8
+  Bounds rest;                     // where it starts: captions stand below it, cameras frame it [m]
 };
 
 struct Stage {

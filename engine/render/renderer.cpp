@@ -203,14 +203,18 @@ void Renderer::make_meshes() {
     for (std::size_t v = 0; v < buffers.vertices; ++v) {
       fixed.push_back(mesh.occlusion[v]);
       fixed.insert(fixed.end(), mesh.paint[v].begin(), mesh.paint[v].end());
+      const std::array<float, 2> square = mesh.square.empty() ? std::array<float, 2>{} : mesh.square[v];
+      fixed.insert(fixed.end(), square.begin(), square.end());
     }
     gl_.GenBuffers(1, &buffers.fixed);
     gl_.BindBuffer(GL_ARRAY_BUFFER, buffers.fixed);
     gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(fixed.size() * sizeof(float)), fixed.data(),
                    GL_STATIC_DRAW);
-    attribute(2, 1, 9 * sizeof(float), 0);
-    attribute(3, 4, 9 * sizeof(float), sizeof(float));
-    attribute(4, 4, 9 * sizeof(float), 5 * sizeof(float));
+    constexpr GLsizei stride = 11 * sizeof(float);
+    attribute(2, 1, stride, 0);
+    attribute(3, 4, stride, sizeof(float));
+    attribute(4, 4, stride, 5 * sizeof(float));
+    attribute(5, 2, stride, 9 * sizeof(float));
     gl_.GenBuffers(1, &buffers.indices);
     gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers.indices);
     gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.triangles.size() * sizeof(std::uint32_t)),
@@ -273,14 +277,21 @@ void Renderer::draw_shadow_map() {
   gl_.Clear(GL_DEPTH_BUFFER_BIT);
   gl_.Enable(GL_POLYGON_OFFSET_FILL);
   gl_.PolygonOffset(2.0f, 4.0f);
-  gl_.Enable(GL_CULL_FACE);  // bodies are closed: their far sides are hidden, and small triangles are what costs
   gl_.UseProgram(shadow_program_);
   gl_.UniformMatrix4fv(uniform(shadow_program_, "light_matrix"), 1, GL_FALSE, light_matrix_.data());
-  for (const MeshBuffers& mesh : meshes_) {
-    gl_.BindVertexArray(mesh.array);
-    gl_.DrawElements(GL_TRIANGLES, mesh.count, GL_UNSIGNED_INT, nullptr);
-  }
+  for (std::size_t m = 0; m < meshes_.size(); ++m) draw_mesh(m);
   gl_.Disable(GL_POLYGON_OFFSET_FILL);
+}
+
+void Renderer::draw_mesh(std::size_t m) {
+  // Closed bodies hide their far sides, and small triangles are what costs.
+  if (stage_.meshes[m].two_sided) {
+    gl_.Disable(GL_CULL_FACE);
+  } else {
+    gl_.Enable(GL_CULL_FACE);
+  }
+  gl_.BindVertexArray(meshes_[m].array);
+  gl_.DrawElements(GL_TRIANGLES, meshes_[m].count, GL_UNSIGNED_INT, nullptr);
 }
 
 void Renderer::set_lights(GLuint program, const Camera& camera) const {
@@ -295,6 +306,9 @@ void Renderer::set_lights(GLuint program, const Camera& camera) const {
   gl_.Uniform1f(uniform(program, "exposure"), static_cast<float>(stage_.exposure));
   gl_.Uniform1f(uniform(program, "shadow_softness"),
                 static_cast<float>(0.018 * largest_body_ / (0.5 * bounds_.diagonal() + 0.45 * largest_body_)));
+  // Along the normal, so that a surface does not shade itself: as far as a squirrel's head of 0.7 m needs, for its
+  // size.
+  gl_.Uniform1f(uniform(program, "shadow_offset"), static_cast<float>(0.0058 * largest_body_));
   gl_.UniformMatrix4fv(uniform(program, "light_matrix"), 1, GL_FALSE, light_matrix_.data());
   gl_.Uniform1i(uniform(program, "shadow_map"), 0);
   gl_.ActiveTexture(GL_TEXTURE0);
@@ -327,8 +341,8 @@ void Renderer::draw_bodies(const Camera& camera) {
     gl_.Uniform4fv(uniform(body_program_, "colors"), 9, colors);
     gl_.Uniform4fv(uniform(body_program_, "soft"), 2, soft);
     gl_.Uniform1i(uniform(body_program_, "layers"), static_cast<GLint>(mesh.layers.size()));
-    gl_.BindVertexArray(meshes_[m].array);
-    gl_.DrawElements(GL_TRIANGLES, meshes_[m].count, GL_UNSIGNED_INT, nullptr);
+    gl_.Uniform1i(uniform(body_program_, "printed"), mesh.square.empty() ? 0 : mesh.printed == Printed::grid ? 1 : 2);
+    draw_mesh(m);
   }
 
   gl_.Disable(GL_CULL_FACE);

@@ -49,6 +49,7 @@ class Renderer {
   void check_test_triangle();
   void upload(const DrawList& list);
   void draw_shadow_map();
+  void draw_mesh(std::size_t mesh);
   void draw_bodies(const Camera& camera);
   void draw_ground(const Camera& camera);
   void lay_bodies_over_ground();

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "base/text.h"
-#include "geometry/mesh_file.h"
-#include "geometry/tetrahedralize.h"
+#include "scene/body_mesh.h"
 #include "scene/rotation.h"
 #include "scene/shape_reader.h"
 
@@ -65,56 +63,21 @@ std::vector<std::int32_t> selected(const Selection& s, const TetMesh& mesh, cons
   return result;
 }
 
-struct Loaded {
-  TetMesh mesh;
-  std::vector<std::string> regions;  // names by tag
-  std::vector<std::string> notes;
-};
-
-// Meshes that several bodies share are read or made once.
-class MeshCache {
- public:
-  const Loaded& get(const SceneDef& scene, const BodyDef& def) {
-    const std::string key =
-        def.mesh.empty() ? fmt::format("{}#{}", def.shape.string(), def.vertices) : def.mesh.string();
-    const auto known = loaded_.find(key);
-    if (known != loaded_.end()) return known->second;
-    Loaded loaded;
-    if (def.mesh.empty()) {
-      const Shape shape = load_shape(def.shape, scene.assets);
-      loaded.mesh = tetrahedralize(shape, def.vertices, def.shape.string());
-      loaded.regions = shape.regions;
-    } else {
-      MeshFile file = read_mesh(def.mesh);
-      loaded.mesh = std::move(file.mesh);
-      loaded.notes = std::move(file.notes);
-      name_references(loaded);
-    }
-    return loaded_.emplace(key, std::move(loaded)).first->second;
-  }
-
- private:
-  // A file's element references become tags 0, 1, ...: reference 0 stays the untagged body.
-  static void name_references(Loaded& loaded) {
-    std::map<int, int> tag = {{0, 0}};
-    loaded.regions = {""};
-    for (int& region : loaded.mesh.regions) {
-      const auto [at, added] = tag.try_emplace(region, static_cast<int>(loaded.regions.size()));
-      if (added) loaded.regions.push_back(fmt::format("{}", region));
-      region = at->second;
-    }
-  }
-
-  std::map<std::string, Loaded> loaded_;
-};
-
 Problem at(const Problem& place, std::string message) {
   return {place.source, place.line, place.column, std::move(message)};
 }
 
 void add_regions(const BodyDef& def, const Loaded& loaded, BodyDescription& description,
                  std::vector<Problem>& problems) {
-  description.materials.assign(loaded.regions.size(), def.material);
+  // The fibres' direction turns with the body.
+  const Mat3 turn = rotation_from_degrees(def.turn_deg).toRotationMatrix();
+  const auto turned = [&turn](Fibre fibre) {
+    const Vec3 direction = turn * Vec3(fibre.direction[0], fibre.direction[1], fibre.direction[2]);
+    for (int i = 0; i < 3; ++i) fibre.direction[i] = direction[i];
+    return fibre;
+  };
+  description.materials.assign(loaded.regions.size(), def.substance.material);
+  description.fibres.assign(loaded.regions.size(), turned(def.substance.fibre));
   for (const RegionDef& region : def.regions) {
     const auto known = std::find(loaded.regions.begin(), loaded.regions.end(), region.name);
     if (known == loaded.regions.end()) {
@@ -129,8 +92,31 @@ void add_regions(const BodyDef& def, const Loaded& loaded, BodyDescription& desc
       }
       continue;
     }
-    description.materials[known - loaded.regions.begin()] = region.material;
+    description.materials[known - loaded.regions.begin()] = region.substance.material;
+    description.fibres[known - loaded.regions.begin()] = turned(region.substance.fibre);
   }
+}
+
+// Springs at their lengths in the world, and the mass of the cloth by vertex.
+void add_cloth(const BodyDef& def, const Loaded& loaded, Body& body) {
+  BodyDescription& description = body.description;
+  const ClothMesh& cloth = loaded.cloth;
+  const auto join = [&](const std::vector<VertexPair>& pairs, double stiffness) {
+    if (stiffness <= 0) return;
+    for (const auto& [from, to] : pairs) {
+      const double length = (description.mesh.rest.row(from) - description.mesh.rest.row(to)).norm();
+      description.springs.push_back({from, to, length, stiffness});
+    }
+  };
+  join(cloth.edges, def.cloth->stretch);
+  join(cloth.diagonals, def.cloth->shear);
+  join(cloth.bends, def.cloth->bend);
+  body.surface = cloth.surface.triangles;
+  description.point_mass = vertex_areas({description.mesh.rest, cloth.surface.triangles});
+  double area = 0;
+  for (const double share : description.point_mass) area += share;
+  const double density = def.total_mass ? *def.total_mass / area : def.body_density();
+  for (double& mass : description.point_mass) mass *= density;
 }
 
 void add_handles(Body& body, const Loaded& loaded, std::vector<Problem>& problems) {
@@ -199,17 +185,24 @@ std::vector<Body> assemble(const SceneDef& scene) {
       Body body;
       body.def = def;
       body.notes = loaded.notes;
-      body.source = (def.mesh.empty() ? def.shape : def.mesh).string();
+      body.source = loaded.source;
+      body.seed = scene.seed;
       body.description.name = def.name;
       body.description.mesh = loaded.mesh;
       body.placement = placement(def, loaded.mesh.rest);
       apply(body.placement, body.description.mesh.rest);
-      body.description.density = def.density.value_or(1000);
-      if (def.total_mass) body.description.density = *def.total_mass / quality(body.description.mesh).volume;
       body.description.time_step = scene.time_step();
-      body.description.fit = def.fit;
-      body.description.precision = def.precision;
-      add_regions(def, loaded, body.description, problems);
+      body.description.fit = def.solver.fit;
+      body.description.precision = def.solver.precision;
+      body.description.integrator = def.solver.integrator;
+      body.description.damping = def.solver.damping;
+      if (def.cloth) {
+        add_cloth(def, loaded, body);
+      } else {
+        body.description.density = def.body_density();
+        if (def.total_mass) body.description.density = *def.total_mass / quality(body.description.mesh).volume;
+        add_regions(def, loaded, body.description, problems);
+      }
       add_handles(body, loaded, problems);
       bodies.push_back(std::move(body));
     } catch (const InputError& error) {
@@ -226,11 +219,31 @@ std::vector<Body> assemble(const SceneDef& scene) {
   return bodies;
 }
 
+namespace {
+
+// Edge of the printed squares [m]; 0: nothing is printed.
+double square_of(const Body& body) {
+  if (body.def.pattern == Pattern::none) return 0;
+  if (body.def.pattern_size) return *body.def.pattern_size;
+  const Mat3 turn = rotation_from_degrees(body.def.turn_deg).toRotationMatrix();
+  Vec3 extent = bounds_of(body.description.mesh.rest * turn).extent();
+  std::sort(extent.begin(), extent.end());
+  return body.def.cloth ? extent[2] / 20 : extent[1] / 8;
+}
+
+}  // namespace
+
 DrawnBody drawn_body(const SceneDef& scene, const Body& body) {
   DrawnBody drawn;
   const TetMesh& placed = body.description.mesh;
-  if (!body.def.mesh.empty()) {
-    drawn.skin = skin_of_boundary(placed, drawn.vertex_of);
+  drawn.two_sided = body.def.cloth || !std::holds_alternative<AtRest>(body.def.start);
+  if (body.def.shape.empty()) {
+    const Triangles surface = body.def.cloth ? body.surface : boundary_faces(placed.tets);
+    // In the body's own directions, so that the print lies along its edges however it stands.
+    const Mat3 turn = rotation_from_degrees(body.def.turn_deg).toRotationMatrix();
+    drawn.skin = skin_of_surface(placed.rest * turn, surface, square_of(body), drawn.vertex_of);
+    for (std::size_t v = 0; v < drawn.vertex_of.size(); ++v)
+      drawn.skin.rest.points.row(v) = placed.rest.row(drawn.vertex_of[v]);
     drawn.color = body.def.color.value_or(Shape{}.color);
     return drawn;
   }
@@ -244,6 +257,20 @@ DrawnBody drawn_body(const SceneDef& scene, const Body& body) {
   return drawn;
 }
 
+State start_state(const Model& model, const Body& body) {
+  State state = rest_state(model);
+  const Positions start = start_positions(body.def.start, body.description.mesh.rest, body.seed, body.description.name);
+  for (int v = 0; v < model.vertices; ++v) {
+    state.x.row(v) = start.row(model.input_of[v]);
+    state.v.row(v) = body.def.velocity.transpose();
+  }
+  for (const Model::HandleVertex& held : model.handled) {
+    state.x.row(held.vertex) = model.rest.row(held.vertex);
+    state.v.row(held.vertex).setZero();
+  }
+  return state;
+}
+
 void handle_targets(const Model& model, const Body& body, double time, Positions& targets) {
   targets.resize(model.handled.size(), 3);
   std::vector<Eigen::Isometry3d> pose;
@@ -252,53 +279,6 @@ void handle_targets(const Model& model, const Body& body, double time, Positions
     const auto& [vertex, handle] = model.handled[i];
     targets.row(i) = (pose[handle] * Vec3(model.rest.row(vertex))).transpose();
   }
-}
-
-std::vector<Problem> warnings(const SceneDef& scene, const std::vector<Body>& bodies) {
-  std::vector<Problem> list;
-  const double h = scene.time_step();
-  for (const Body& body : bodies) {
-    const TetMesh& mesh = body.description.mesh;
-    const MeshQuality q = quality(mesh);
-    const Bounds box = bounds_of(mesh.rest);
-    if (q.smallest_volume < 1e-4) {
-      list.push_back(at(body.def.place, fmt::format("body '{}' has slivers: its smallest element has {:.1e} of the "
-                                                    "mean volume, its smallest dihedral angle is {:.2g} degrees",
-                                                    body.def.name, q.smallest_volume, q.smallest_dihedral)));
-    }
-    const double mass = body.description.density * q.volume;
-    for (std::size_t i = 0; i < body.description.handles.size(); ++i) {
-      const Handle& handle = body.description.handles[i];
-      if (handle.spring <= 0) continue;
-      const double sag = mass * scene.gravity.norm() / (handle.spring * static_cast<double>(handle.vertices.size()));
-      if (sag > 0.02 * box.diagonal()) {
-        list.push_back(at(body.def.handles[i].select.place,
-                          fmt::format("handle '{}' of body '{}' is soft for its load: the body's weight alone "
-                                      "stretches its springs by {:.2g} m ({:.0f} % of its size)",
-                                      handle.name, body.def.name, sag, 100 * sag / box.diagonal())));
-      }
-    }
-    // mu h^2 / (rho L^2): how many times per step a wave crosses the body, squared. Far above 1, ten iterations leave
-    // visible error.
-    const double k = stiffness(body.def.material, body.def.fit);
-    const double crossing = k * h * h / (body.description.density * box.diagonal() * box.diagonal());
-    if (crossing > 300 && body.def.solver.iterations <= 10) {
-      list.push_back(at(body.def.place, fmt::format("body '{}' is stiff for {} iterations a step: k h^2 / (rho L^2) = "
-                                                    "{:.3g}; more iterations or substeps make it sharper",
-                                                    body.def.name, body.def.solver.iterations, crossing)));
-    }
-    for (const Body& other : bodies) {
-      if (&other == &body) break;
-      const Bounds b = bounds_of(other.description.mesh.rest);
-      const bool apart = (box.lower.array() >= b.upper.array()).any() || (b.lower.array() >= box.upper.array()).any();
-      if (!apart)
-        list.push_back(
-            at(body.def.place,
-               fmt::format("bodies '{}' and '{}' overlap at the start; bodies do not collide with each other",
-                           other.def.name, body.def.name)));
-    }
-  }
-  return list;
 }
 
 }  // namespace supple

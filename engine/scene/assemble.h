@@ -24,6 +24,7 @@ struct DrawnBody {
   Skin skin;
   Embedding embedding;                  // when the skin is finer than the mesh
   std::vector<std::int32_t> vertex_of;  // when it is the boundary: mesh vertex by skin vertex
+  bool two_sided = false;
   Vec3 color;
   std::vector<PaintLayer> layers;  // colours only; their areas live in the skin
 };
@@ -33,7 +34,9 @@ struct Body {
   BodyDescription description;                              // the mesh as placed, and its handles
   std::vector<HandleMotion> motions;                        // by handle
   std::vector<std::string> notes;                           // what reading the mesh had to say
-  std::string source;                                       // the mesh or shape file
+  std::string source;                                       // the mesh or shape file, or what it is made of
+  Triangles surface;                                        // of cloth
+  std::uint64_t seed = 0;                                   // of its random start
   Eigen::Affine3d placement = Eigen::Affine3d::Identity();  // from the file's frame to the world: turned, scaled, moved
 };
 
@@ -44,10 +47,10 @@ std::vector<Body> assemble(const SceneDef& scene);
 // Only for pictures; separate because a run without images does not pay for it.
 DrawnBody drawn_body(const SceneDef& scene, const Body& body);
 
+// Where a body starts; handled vertices at rest.
+State start_state(const Model& model, const Body& body);
+
 // Targets of all handled vertices, by model.handled.
 void handle_targets(const Model& model, const Body& body, double time, Positions& targets);
-
-// What is legal and unwise in a scene, in words with a place.
-std::vector<Problem> warnings(const SceneDef& scene, const std::vector<Body>& bodies);
 
 }  // namespace supple

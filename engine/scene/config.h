@@ -114,6 +114,11 @@ class ConfigTable {
   std::optional<double> number_if_given(const Key& key, const Range& range) const;
   std::optional<Vec3> vector_if_given(const Key& key, const Range& range = Range::any()) const;
   std::vector<Vec3> vectors(const Key& key, std::size_t count) const;
+  // Two numbers, both in range.
+  Eigen::Vector2d pair(const Key& key, const Range& range) const;
+  // A list of pairs of finite numbers; empty when the key is absent or wrong.
+  std::vector<std::pair<double, double>> pairs(const Key& key, std::size_t least, std::size_t most) const;
+  bool is_text(const char* key) const;
   // A path that exists, found beside the file that names it or among the assets; empty when absent or wrong.
   std::filesystem::path file(const Key& key) const;
 

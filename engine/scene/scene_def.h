@@ -9,6 +9,8 @@
 
 #include "base/error.h"
 #include "geometry/shape.h"
+#include "geometry/skin.h"
+#include "scene/start_state.h"
 #include "sim/state.h"
 
 namespace supple {
@@ -41,33 +43,69 @@ struct HandleDef {
   std::vector<HandleKey> keys;
 };
 
+// What a part is made of.
+struct SubstanceDef {
+  Material material = Polynomial{1};
+  Fibre fibre;                          // its direction in the frame of the mesh or shape
+  std::optional<double> usual_density;  // of a preset [kg/m^3]
+};
+
 struct RegionDef {
   std::string name;
-  Material material;
+  SubstanceDef substance;
   Problem place;
+};
+
+// A box cut into equal cells.
+struct BoxDef {
+  Vec3 extent = Vec3::Ones();  // [m]
+  Eigen::Vector3i cells = Eigen::Vector3i::Ones();
+};
+
+// A grid of springs, or the triangles of a mesh file.
+struct ClothDef {
+  std::filesystem::path mesh;                        // empty: a grid
+  Eigen::Vector2d extent = Eigen::Vector2d::Ones();  // of the grid [m]
+  Eigen::Vector2i cells = Eigen::Vector2i::Constant(40);
+  double stretch = 0, shear = 0, bend = 0;  // stiffness of a spring [N/m]
+};
+
+// How a body is solved.
+struct SolverDef {
+  SolverSettings settings;
+  StretchInterval fit;
+  Precision precision = Precision::single_precision;
+  Integrator integrator = Integrator::backward_euler;
+  double damping = 0;  // beta [s]
 };
 
 struct BodyDef {
   std::string name;
   std::string label;
-  // One of the two. A mesh file's regions are named by their reference numbers.
+  // One of the four. A mesh file's regions are named by their reference numbers.
   std::filesystem::path shape;
   std::filesystem::path mesh;
+  std::optional<BoxDef> box;
+  std::optional<ClothDef> cloth;
   int vertices = 0;              // of the tetrahedra made from a shape
   std::optional<double> size;    // longest side; otherwise the file's units are metres [m]
   Vec3 position = Vec3::Zero();  // of the middle of the bounding box's bottom [m]
   Vec3 turn_deg = Vec3::Zero();
-  std::optional<double> density;     // [kg/m^3]
-  std::optional<double> total_mass;  // spread over the volume [kg]
-  Material material;
+  std::optional<double> density;     // [kg/m^3]; of cloth [kg/m^2]
+  std::optional<double> total_mass;  // spread over the volume, of cloth over the area [kg]
+  SubstanceDef substance;            // of solids
+  StartDef start;
+  Vec3 velocity = Vec3::Zero();  // at the start [m/s]
   std::vector<RegionDef> regions;
   std::vector<HandleDef> handles;
-  SolverSettings solver;
-  StretchInterval fit;
-  Precision precision = Precision::single_precision;
-  std::optional<Vec3> color;  // over the shape's own [sRGB]
-  double skin_cells = 0;      // cells of the drawn skin along the longest side
+  SolverDef solver;
+  Pattern pattern = Pattern::none;
+  std::optional<double> pattern_size;  // edge of its squares [m]
+  std::optional<Vec3> color;           // over the shape's own [sRGB]
+  double skin_cells = 0;               // cells of the drawn skin along the longest side
   Problem place;
+
+  double body_density() const { return density.value_or(substance.usual_density.value_or(cloth ? 0.2 : 1000)); }
 };
 
 struct CameraDef {
@@ -87,7 +125,8 @@ struct LookDef {
 struct OutputDef {
   int width = 1280;
   int height = 720;
-  int samples = 4;  // of antialiasing, a pixel
+  int samples = 4;      // of antialiasing, a pixel
+  bool energy = false;  // kinetic, elastic and gravitational, each frame
 };
 
 struct SceneDef {
@@ -97,6 +136,7 @@ struct SceneDef {
   double fps = 30;
   int substeps = 1;
   Vec3 gravity = Vec3(0, -9.81, 0);
+  std::uint64_t seed = 1;  // of random start states
   std::vector<BodyDef> bodies;
   CameraDef camera;
   LookDef look;

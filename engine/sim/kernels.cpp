@@ -24,30 +24,16 @@ double sum_in_order(const Lanes& v) {
   return sum;
 }
 
-template <class M>
-Lanes density_of(const M& material, const Matrix3<Lanes>& f, Matrix3<Lanes>& stress) {
-  if constexpr (M::needs == Needs::gradient) {
-    return material.density(f, stress);
-  } else {
-    const Matrix3<Lanes> r = polar_rotation(f);
-    Symmetric3<Lanes> slope;
-    const Lanes energy = material.density(symmetric_product(r, f), slope);
-    stress = product(r, slope);
-    return energy;
-  }
-}
-
-// F = (current edges) (rest edges)^-1 and the gradient -f = V P (rest edges)^-T, as in Sifakis and Barbic 2012, "FEM
-// simulation of 3D deformable solids", section 4.
-template <bool with_force, class M>
-double elements_of(const M& material, const ElementChunk& chunk, const double* previous, double* energy, double* force,
-                   const double* local) {
+template <bool with_force, class Formula>
+double run_blocks(const Formula& formula, const ElementChunk& chunk, const double* previous, double* energy,
+                  double* force, const double* local) {
+  constexpr int corners = Formula::corners, fields = Formula::fields;
   Lanes change(0.0);
   for (int block = 0; block < chunk.blocks; ++block) {
     for (int lane = 0; lane < block_width; lane += lanes) {
-      const std::uint16_t* corner = chunk.corner + (block * 4) * block_width + lane;
-      alignas(64) double gathered[12][lanes];
-      for (int k = 0; k < 4; ++k) {
+      const std::uint16_t* corner = chunk.corner + block * corners * block_width + lane;
+      alignas(64) double gathered[3 * corners][lanes];
+      for (int k = 0; k < corners; ++k) {
         for (int i = 0; i < lanes; ++i) {
           const double* p = local + 3 * corner[k * block_width + i];
           gathered[3 * k][i] = p[0];
@@ -55,36 +41,25 @@ double elements_of(const M& material, const ElementChunk& chunk, const double* p
           gathered[3 * k + 2][i] = p[2];
         }
       }
-      Lanes edge[3][3];  // [coordinate][edge]
-      for (int c = 0; c < 3; ++c) {
-        const Lanes origin = Lanes::load_aligned(gathered[c]);
-        for (int k = 0; k < 3; ++k) edge[c][k] = Lanes::load_aligned(gathered[3 * (k + 1) + c]) - origin;
+      Lanes x[corners][3], field[fields], gradient[corners - 1][3];
+      for (int k = 0; k < corners; ++k) {
+        for (int c = 0; c < 3; ++c) x[k][c] = Lanes::load_aligned(gathered[3 * k + c]);
       }
-      Lanes b[9];
-      for (int i = 0; i < 9; ++i) b[i] = Lanes::load_aligned(chunk.rest_inverse + (block * 9 + i) * block_width + lane);
-      Matrix3<Lanes> f;
-      for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) {
-          f(i, j) = madd(edge[i][0], b[j], madd(edge[i][1], b[3 + j], edge[i][2] * b[6 + j]));
-        }
-      }
-      Matrix3<Lanes> stress;
-      const Lanes volume = Lanes::load_aligned(chunk.volume + block * block_width + lane);
-      const Lanes value = volume * density_of(material, f, stress);
+      for (int i = 0; i < fields; ++i)
+        field[i] = Lanes::load_aligned(chunk.field + (block * fields + i) * block_width + lane);
+      const Lanes value = formula.energy(x, field, gradient);
       const long at = long(block) * block_width + lane;
       change += previous != nullptr ? value - Lanes::load_aligned(previous + at) : value;
       value.store_aligned(energy + at);
       if constexpr (with_force) {
-        alignas(64) double out[9][lanes];  // [3 * edge + coordinate]
-        for (int i = 0; i < 3; ++i) {
-          const Lanes p0 = volume * stress(i, 0), p1 = volume * stress(i, 1), p2 = volume * stress(i, 2);
-          for (int k = 0; k < 3; ++k)
-            madd(p0, b[3 * k], madd(p1, b[3 * k + 1], p2 * b[3 * k + 2])).store_aligned(out[3 * k + i]);
+        alignas(64) double out[3 * (corners - 1)][lanes];
+        for (int k = 0; k < corners - 1; ++k) {
+          for (int c = 0; c < 3; ++c) gradient[k][c].store_aligned(out[3 * k + c]);
         }
         for (int i = 0; i < lanes; ++i) {
           double* f0 = force + 3 * corner[i];
           double sum[3] = {0, 0, 0};
-          for (int k = 0; k < 3; ++k) {
+          for (int k = 0; k < corners - 1; ++k) {
             double* fk = force + 3 * corner[(k + 1) * block_width + i];
             for (int c = 0; c < 3; ++c) {
               const double value_c = out[3 * k + c][i];
@@ -100,6 +75,18 @@ double elements_of(const M& material, const ElementChunk& chunk, const double* p
   return sum_in_order(change);
 }
 
+// Calls run(formula) with the formula of a chunk.
+template <class Run>
+double dispatch(const ElementChunk& chunk, const Run& run) {
+  if (chunk.kind == ElementKind::spring) return run(SpringElement{});
+  return std::visit(
+      [&]<class M>(const M& material) {
+        return chunk.fibre != nullptr ? run(TetrahedronFormula<M, true>(material, chunk.fibre))
+                                      : run(TetrahedronFormula<M, false>(material, nullptr));
+      },
+      *chunk.material);
+}
+
 double elements(const ElementChunk& chunk, const double* x, const double* previous, double* energy, double* force,
                 double* local) {
   for (int v = 0; v < chunk.vertices; ++v) {
@@ -111,12 +98,10 @@ double elements(const ElementChunk& chunk, const double* x, const double* previo
   if (force != nullptr) {
     for (int i = 0; i < 3 * chunk.vertices; ++i) force[i] = 0;
   }
-  return std::visit(
-      [&](const auto& material) {
-        return force != nullptr ? elements_of<true>(material, chunk, previous, energy, force, local)
-                                : elements_of<false>(material, chunk, previous, energy, nullptr, local);
-      },
-      *chunk.material);
+  return dispatch(chunk, [&](const auto& formula) {
+    return force != nullptr ? run_blocks<true>(formula, chunk, previous, energy, force, local)
+                            : run_blocks<false>(formula, chunk, previous, energy, nullptr, local);
+  });
 }
 
 // Four right-hand sides side by side: x, y, z and a spare that keeps loads whole.

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "sim/elements/element.h"
 #include "sim/material.h"
 
 namespace supple {
@@ -12,16 +13,17 @@ namespace supple {
 // Elements are stored in blocks of this many, whatever the register width: field by field, one element a lane.
 constexpr int block_width = 8;
 
-// A run of blocks of one material with its own short list of vertices: small enough that its positions and forces stay
-// in the first-level cache, and the unit of work of a thread.
+// A run of blocks of one kind and material with its own short list of vertices: small enough that its positions and
+// forces stay in the first-level cache, and the unit of work of a thread.
 struct ElementChunk {
-  const Material* material;
+  ElementKind kind;
+  const Material* material;  // of tetrahedra
+  const Fibre* fibre;        // of tetrahedra; null: none
   int blocks;
   int vertices;                 // of the list
   const std::int32_t* vertex;   // the list: mesh vertices
-  const std::uint16_t* corner;  // blocks x 4 x block_width indices into the list
-  const double* rest_inverse;   // blocks x 9 x block_width: inverse of the rest edge matrix, row by row [1/m]
-  const double* volume;         // blocks x block_width; 0 in padding lanes [m^3]
+  const std::uint16_t* corner;  // blocks x corners x block_width indices into the list
+  const double* field;          // blocks x fields x block_width: what the kind needs to know of an element
 };
 
 struct Kernels {

@@ -37,7 +37,7 @@ void add_all(const Model& model, Workspace& workspace, const Pointers& a, const 
   });
 }
 
-// A body that nothing holds moves as a whole by exactly 1^T M z = h^2 1^T r, because L does not see translations;
+// A body that nothing holds moves as a whole by exactly 1^T M z = h^2/w 1^T r, because L does not see translations;
 // single precision only nearly does so, and would let the centre of mass drift.
 void restore_translation(const Model& model, const Positions& r, Positions& z) {
   Eigen::RowVector3d wanted = Eigen::RowVector3d::Zero(), found = Eigen::RowVector3d::Zero();
@@ -46,7 +46,7 @@ void restore_translation(const Model& model, const Positions& r, Positions& z) {
     found += model.mass[v] * z.row(v);
   }
   const double h = model.time_step;
-  const Eigen::RowVector3d shift = (h * h * wanted - found) / model.total_mass;
+  const Eigen::RowVector3d shift = (h * h / model.scheme.inertia * wanted - found) / model.total_mass;
   for (int v = 0; v < model.free; ++v) z.row(v) += shift;
 }
 

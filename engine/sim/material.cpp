@@ -1,12 +1,13 @@
 #include "sim/material.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace supple {
 namespace {
 
-constexpr int order = 24;  // nodes a panel; the panels end where a material's extension begins
+constexpr int order = 24;  // nodes a panel
 
 // Nodes and weights on [-1, 1] by Newton on the Legendre polynomial.
 struct GaussLegendre {
@@ -32,24 +33,66 @@ struct GaussLegendre {
   }
 };
 
+// Where the panels of the quadrature end: at the seams of the stress, so that each panel is smooth.
+std::vector<double> panel_ends(const Material& material, const StretchInterval& interval) {
+  std::vector<double> ends = std::visit(
+      [](const auto& m) -> std::vector<double> {
+        if constexpr (requires { m.seams(); }) return m.seams();
+        return {};
+      },
+      material);
+  std::erase_if(ends, [&](double s) { return s <= interval.start || s >= interval.end; });
+  ends.push_back(interval.end);
+  std::sort(ends.begin(), ends.end());
+  return ends;
+}
+
 }  // namespace
 
-double stiffness(const Material& material, const StretchInterval& interval) {
+bool may_be_negative(const Material& material) {
+  return std::visit(
+      [](const auto& m) {
+        return requires { m.may_be_negative; };
+      },
+      material);
+}
+
+double fitted_stiffness(const Material& material, const StretchInterval& interval) {
   static const GaussLegendre rule;
-  const auto moment = [&](double from, double to) {
+  const auto stress = [&](double s) { return std::visit([s](const auto& m) { return m.axial_stress(s); }, material); };
+  double numerator = 0, from = interval.start;
+  for (const double to : panel_ends(material, interval)) {
     double sum = 0;
     for (int i = 0; i < order; ++i) {
       const double s = 0.5 * (from + to) + 0.5 * (to - from) * rule.node[i];
-      sum += rule.weight[i] * (s - 1) * std::visit([s](const auto& m) { return m.axial_stress(s); }, material);
+      sum += rule.weight[i] * (s - 1) * stress(s);
     }
-    return 0.5 * (to - from) * sum;
-  };
-  const double kink = NeoHookean::smallest_volume_ratio;
-  const bool split = interval.start < kink && kink < interval.end;
-  const double numerator =
-      split ? moment(interval.start, kink) + moment(kink, interval.end) : moment(interval.start, interval.end);
+    numerator += 0.5 * (to - from) * sum;
+    from = to;
+  }
   const double a = interval.start - 1, b = interval.end - 1;
   return numerator / ((b * b * b - a * a * a) / 3);
+}
+
+SystemStiffness system_stiffness(const Material& material, const StretchInterval& interval) {
+  const auto demanded = std::visit(
+      [](const auto& m) -> std::optional<double> {
+        if constexpr (requires { m.system_stiffness(); }) return m.system_stiffness();
+        return std::nullopt;
+      },
+      material);
+  if (demanded) return {*demanded, false};
+  constexpr double floor = 1e-3;  // of the steepest secant of f through rest
+  constexpr int samples = 32;
+  double steepest = 0;
+  for (int i = 0; i <= samples; ++i) {
+    const double s = interval.start + (interval.end - interval.start) * i / samples;
+    if (std::abs(s - 1) < 1e-9) continue;
+    const double f = std::visit([s](const auto& m) { return m.axial_stress(s); }, material);
+    steepest = std::max(steepest, std::abs(f / (s - 1)));
+  }
+  const double fit = fitted_stiffness(material, interval);
+  return fit < floor * steepest ? SystemStiffness{floor * steepest, true} : SystemStiffness{fit, false};
 }
 
 }  // namespace supple

@@ -6,16 +6,26 @@
 
 #include "sim/materials/as_rigid_as_possible.h"
 #include "sim/materials/corotated.h"
+#include "sim/materials/fixed_corotated.h"
+#include "sim/materials/mooney_rivlin.h"
 #include "sim/materials/neo_hookean.h"
 #include "sim/materials/polynomial.h"
+#include "sim/materials/spline.h"
+#include "sim/materials/st_venant_kirchhoff.h"
+#include "sim/materials/stable_neo_hookean.h"
+#include "sim/materials/strain_limiting.h"
 
 namespace supple {
 
-using Material = std::variant<AsRigidAsPossible, Polynomial, Corotated, NeoHookean>;
+using Material = std::variant<AsRigidAsPossible, Polynomial, Corotated, StVenantKirchhoff, NeoHookean, MooneyRivlin,
+                              FixedCorotated, StableNeoHookean, Spline, StrainLimiting>;
 
 inline std::string_view name_of(const Material& material) {
   return std::visit([](const auto& m) { return m.name; }, material);
 }
+
+// Whether some deformation has less energy than rest.
+bool may_be_negative(const Material& material);
 
 // The stretch interval of equation 11.
 struct StretchInterval {
@@ -24,7 +34,15 @@ struct StretchInterval {
 };
 
 // k of equation 11: the slope of the line through rest that fits the axial stress f best over the interval, by
-// Gauss-Legendre quadrature. Can be zero or negative for materials that soften; Model puts a floor under it. [Pa]
-double stiffness(const Material& material, const StretchInterval& interval = {});
+// Gauss-Legendre quadrature. Can be zero or negative for materials that soften. [Pa]
+double fitted_stiffness(const Material& material, const StretchInterval& interval = {});
+
+// The k that M/h^2 + L is built with: the fit (or what the material demands instead), but not below the floor. A spline
+// that a user draws can soften so much that the fit is negative, and the matrix would not be positive definite.
+struct SystemStiffness {
+  double k = 0;          // [Pa]
+  bool floored = false;  // the fit was below a thousandth of the steepest secant of f
+};
+SystemStiffness system_stiffness(const Material& material, const StretchInterval& interval = {});
 
 }  // namespace supple

@@ -1,6 +1,7 @@
 #include "sim/measures.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -19,35 +20,81 @@ double largest_eigenvalue(const Mat3& c) {
   return mean + 2 * p * std::cos(std::acos(r) / 3);
 }
 
-}  // namespace
-
-double stretch(const Model& model, const Positions& x) {
-  std::vector<std::pair<double, double>> elements;  // stretch, volume
-  elements.reserve(model.elements);
-  double total = 0;
+// The elements of a chunk, one after the other: each calls visit(lane, corners' positions, fields).
+template <class Visit>
+void for_each_element(const Model& model, const Positions& x, const Visit& visit) {
   for (const Model::ChunkRange& range : model.chunks) {
     const std::int32_t* list = model.chunk_vertex.data() + range.first_vertex;
-    for (int lane = range.first_block * block_width; lane < (range.first_block + range.blocks) * block_width; ++lane) {
-      if (model.element_of_lane[lane] < 0) continue;
-      const std::size_t block = lane / block_width, place = lane % block_width;
-      const auto corner = [&](int k) -> Vec3 {
-        return x.row(list[model.corner[(block * 4 + k) * block_width + place]]);
-      };
-      Mat3 edges, inverse;
-      for (int k = 0; k < 3; ++k) edges.col(k) = corner(k + 1) - corner(0);
-      for (int i = 0; i < 9; ++i) inverse(i / 3, i % 3) = model.rest_inverse[(block * 9 + i) * block_width + place];
-      const Mat3 f = edges * inverse;
-      elements.emplace_back(std::sqrt(std::max(0.0, largest_eigenvalue(f.transpose() * f))), model.volume[lane]);
-      total += model.volume[lane];
+    const int corners = corners_of(range.kind), fields = fields_of(range.kind);
+    for (int place = 0; place < range.blocks * block_width; ++place) {
+      if (model.element_of_lane[range.first_block * block_width + place] < 0) continue;
+      const std::size_t block = place / block_width, lane = place % block_width;
+      std::array<Vec3, most_corners> corner;
+      std::array<double, most_fields> field{};
+      for (int k = 0; k < corners; ++k)
+        corner[k] = x.row(list[model.corner[range.first_corner + (block * corners + k) * block_width + lane]]);
+      for (int i = 0; i < fields; ++i)
+        field[i] = model.field[range.first_field + (block * fields + i) * block_width + lane];
+      visit(range.kind, corner, field);
     }
   }
-  std::sort(elements.begin(), elements.end());
-  double below = 0;
-  for (const auto& [value, volume] : elements) {
-    below += volume;
-    if (below >= 0.999 * total) return value;
+}
+
+Mat3 deformation_gradient(const std::array<Vec3, most_corners>& corner, const std::array<double, most_fields>& field) {
+  Mat3 edges, inverse;
+  for (int k = 0; k < 3; ++k) edges.col(k) = corner[k + 1] - corner[0];
+  for (int i = 0; i < 9; ++i) inverse(i / 3, i % 3) = field[i];
+  return edges * inverse;
+}
+
+}  // namespace
+
+Deformation deformation(const Model& model, const Positions& x) {
+  std::vector<std::pair<double, double>> stretches;  // stretch, weight
+  std::vector<double> inverted;                      // their volumes
+  stretches.reserve(model.elements);
+  double total = 0, volume = 0;
+  int solids = 0;
+  for_each_element(model, x, [&](ElementKind kind, const auto& corner, const auto& field) {
+    double stretch = 0, weight = 0;
+    if (kind == ElementKind::spring) {
+      weight = field[0];
+      stretch = weight > 0 ? (corner[1] - corner[0]).norm() / weight : 1;
+    } else {
+      const Mat3 f = deformation_gradient(corner, field);
+      weight = field[9];
+      stretch = std::sqrt(std::max(0.0, largest_eigenvalue(f.transpose() * f)));
+      if (f.determinant() < 0) inverted.push_back(weight);
+      volume += weight;
+      ++solids;
+    }
+    stretches.emplace_back(stretch, weight);
+    total += weight;
+  });
+  Deformation result;
+  if (solids > 0) {
+    const double least = 1e-6 * volume / solids;
+    result.inverted =
+        static_cast<int>(std::count_if(inverted.begin(), inverted.end(), [least](double v) { return v > least; }));
   }
-  return 1;
+  std::sort(stretches.begin(), stretches.end());
+  double below = 0;
+  for (const auto& [value, weight] : stretches) {
+    below += weight;
+    result.stretch = value;
+    if (below >= 0.999 * total) break;
+  }
+  return result;
+}
+
+Energies energies(const Model& model, const State& state, const Vec3& gravity, Workspace& w) {
+  Energies result;
+  for (int v = 0; v < model.free; ++v) {
+    result.kinetic += 0.5 * model.mass[v] * state.v.row(v).squaredNorm();
+    result.gravitational -= model.mass[v] * (state.x.row(v) - model.rest.row(v)).dot(gravity);
+  }
+  result.elastic = elastic_energy(model, w, state.x);
+  return result;
 }
 
 double jiggle(const Model& model, const Positions& x, const Eigen::Isometry3d& motion) {

@@ -1,8 +1,6 @@
 #include "sim/model.h"
 
-#include <Eigen/LU>
 #include <algorithm>
-#include <map>
 #include <numeric>
 
 #include "base/error.h"
@@ -13,46 +11,8 @@ namespace {
 constexpr int blocks_a_chunk =
     32;  // 256 elements and about 130 vertices: positions and forces fit the first-level cache
 
-// The least k, as a share of the largest Lame-like parameter: a material that softens over the whole interval fits k <=
-// 0, and A would not be positive definite.
-constexpr double stiffness_floor = 1e-3;
-
-double largest_parameter(const Material& material) {
-  return std::visit(
-      [](const auto& m) {
-        double largest = 0;
-        for (const auto& parameter : std::decay_t<decltype(m)>::parameters())
-          largest = std::max(largest, m.*parameter.value);
-        return largest;
-      },
-      material);
-}
-
-void fit_stiffness(Model& model, const StretchInterval& fit) {
-  for (const Material& material : model.materials) {
-    const double k = stiffness(material, fit);
-    const double least = stiffness_floor * largest_parameter(material);
-    model.stiffness.push_back(std::max(k, least));
-    model.floored.push_back(k < least);
-  }
-}
-
-// The constant gradients of the four shape functions, one row a corner [1/m].
-Eigen::Matrix<double, 4, 3> shape_gradients(const Mat3& rest_inverse) {
-  Eigen::Matrix<double, 4, 3> g;
-  g.bottomRows<3>() = rest_inverse;
-  g.row(0) = -rest_inverse.colwise().sum();
-  return g;
-}
-
-struct Element {
-  std::int32_t input;
-  std::array<std::int32_t, 4> corner;  // internal vertices
-  int material;
-};
-
-void number_vertices(Model& model, const BodyDescription& body, const std::vector<char>& held) {
-  const Tetrahedra& tets = body.mesh.tets;
+void number_vertices(Model& model, const BodyDescription& body, const std::vector<ElementRecord>& elements,
+                     const std::vector<char>& held) {
   std::vector<std::int32_t> compact(model.vertices, -1), free_input;
   for (std::int32_t v = 0; v < model.vertices; ++v) {
     if (held[v]) continue;
@@ -61,10 +21,10 @@ void number_vertices(Model& model, const BodyDescription& body, const std::vecto
   }
   model.free = static_cast<int>(free_input.size());
   std::vector<std::pair<std::int32_t, std::int32_t>> edges;
-  for (Eigen::Index e = 0; e < tets.rows(); ++e) {
-    for (int a = 0; a < 4; ++a) {
-      for (int b = a + 1; b < 4; ++b) {
-        const std::int32_t i = compact[tets(e, a)], j = compact[tets(e, b)];
+  for (const ElementRecord& element : elements) {
+    for (int a = 0; a < corners_of(element.kind); ++a) {
+      for (int b = a + 1; b < corners_of(element.kind); ++b) {
+        const std::int32_t i = compact[element.corner[a]], j = compact[element.corner[b]];
         if (i >= 0 && j >= 0) edges.emplace_back(i, j);
       }
     }
@@ -79,65 +39,71 @@ void number_vertices(Model& model, const BodyDescription& body, const std::vecto
   for (std::int32_t i = 0; i < model.vertices; ++i) model.rest.row(i) = body.mesh.rest.row(model.input_of[i]);
 }
 
-std::vector<Element> sorted_elements(const Model& model, const TetMesh& mesh) {
-  std::vector<Element> elements(mesh.tets.rows());
-  for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
-    Element& element = elements[e];
-    element.input = static_cast<std::int32_t>(e);
-    element.material = mesh.regions.empty() ? 0 : mesh.regions[e];
-    for (int k = 0; k < 4; ++k) element.corner[k] = model.internal_of[mesh.tets(e, k)];
+// Corners in the model's numbering, in the order in which they are packed: by kind and region, then by first vertex.
+void sort_elements(const Model& model, std::vector<ElementRecord>& elements) {
+  for (ElementRecord& element : elements) {
+    for (int k = 0; k < corners_of(element.kind); ++k) element.corner[k] = model.internal_of[element.corner[k]];
   }
-  const auto key = [](const Element& e) {
-    return std::tuple(e.material, *std::min_element(e.corner.begin(), e.corner.end()), e.input);
+  const auto key = [](const ElementRecord& e) {
+    const auto end = e.corner.begin() + corners_of(e.kind);
+    return std::tuple(e.kind, e.region, *std::min_element(e.corner.begin(), end), e.input);
   };
-  std::sort(elements.begin(), elements.end(), [&](const Element& a, const Element& b) { return key(a) < key(b); });
-  return elements;
+  std::sort(elements.begin(), elements.end(),
+            [&](const ElementRecord& a, const ElementRecord& b) { return key(a) < key(b); });
 }
 
-// Fills one lane. Padding repeats the chunk's first element without volume: finite, and worth nothing.
-void fill_lane(Model& model, int block, int lane, const Element& element, bool padding,
-               const std::vector<std::int32_t>& local) {
-  Mat3 edges;
-  for (int k = 0; k < 3; ++k)
-    edges.col(k) = (model.rest.row(element.corner[k + 1]) - model.rest.row(element.corner[0])).transpose();
-  const Mat3 inverse = edges.inverse();
-  const auto at = [&](int field, int fields) { return (std::size_t(block) * fields + field) * block_width + lane; };
-  for (int i = 0; i < 9; ++i) model.rest_inverse[at(i, 9)] = inverse(i / 3, i % 3);
-  for (int k = 0; k < 4; ++k) model.corner[at(k, 4)] = static_cast<std::uint16_t>(local[element.corner[k]]);
-  model.volume[at(0, 1)] = padding ? 0 : edges.determinant() / 6;
-  model.element_of_lane[at(0, 1)] = padding ? -1 : element.input;
+// The vertices of some elements, each once.
+std::vector<std::int32_t> vertices_of(const ElementRecord* begin, const ElementRecord* end) {
+  std::vector<std::int32_t> list;
+  for (const ElementRecord* e = begin; e != end; ++e)
+    list.insert(list.end(), e->corner.begin(), e->corner.begin() + corners_of(e->kind));
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+  return list;
 }
 
-void pack_elements(Model& model, const std::vector<Element>& elements) {
+// Packs elements of one kind and region into one chunk. Padding repeats the first element without its weight: finite,
+// and worth nothing. local: scratch by vertex.
+void pack_chunk(Model& model, const ElementRecord* begin, const ElementRecord* end, std::vector<std::int32_t>& local) {
+  const int corners = corners_of(begin->kind), fields = fields_of(begin->kind);
+  const auto count = static_cast<int>(end - begin);
+  const std::vector<std::int32_t> list = vertices_of(begin, end);
+  const int blocks = (count + block_width - 1) / block_width;
+  const Model::ChunkRange chunk{
+      begin->kind,      begin->region,       model.blocks,      blocks, int(model.chunk_vertex.size()),
+      int(list.size()), model.corner.size(), model.field.size()};
+  for (int i = 0; i < chunk.vertices; ++i) local[list[i]] = i;
+  model.chunk_vertex.insert(model.chunk_vertex.end(), list.begin(), list.end());
+  model.largest_chunk = std::max(model.largest_chunk, chunk.vertices);
+  model.blocks += blocks;
+  model.corner.resize(chunk.first_corner + std::size_t(blocks) * corners * block_width);
+  model.field.resize(chunk.first_field + std::size_t(blocks) * fields * block_width);
+  for (int place = 0; place < blocks * block_width; ++place) {
+    const bool padding = place >= count;
+    const ElementRecord& element = begin[padding ? 0 : place];
+    const std::size_t block = place / block_width, lane = place % block_width;
+    for (int k = 0; k < corners; ++k) {
+      model.corner[chunk.first_corner + (block * corners + k) * block_width + lane] =
+          static_cast<std::uint16_t>(local[element.corner[k]]);
+    }
+    for (int i = 0; i < fields; ++i) {
+      model.field[chunk.first_field + (block * fields + i) * block_width + lane] =
+          padding && i == fields - 1 ? 0 : element.field[i];
+    }
+    model.element_of_lane.push_back(padding ? -1 : element.input);
+  }
+  model.chunks.push_back(chunk);
+}
+
+void pack_elements(Model& model, const std::vector<ElementRecord>& elements) {
   model.elements = static_cast<int>(elements.size());
   std::vector<std::int32_t> local(model.vertices, -1);
   for (std::size_t begin = 0; begin < elements.size();) {
-    const int material = elements[begin].material;
     std::size_t end = begin;
-    while (end < elements.size() && elements[end].material == material && end - begin < blocks_a_chunk * block_width)
+    while (end < elements.size() && elements[end].kind == elements[begin].kind &&
+           elements[end].region == elements[begin].region && end - begin < blocks_a_chunk * block_width)
       ++end;
-    Model::ChunkRange chunk{model.blocks, int((end - begin + block_width - 1) / block_width),
-                            int(model.chunk_vertex.size()), 0, material};
-    std::vector<std::int32_t> list;
-    for (std::size_t e = begin; e < end; ++e)
-      list.insert(list.end(), elements[e].corner.begin(), elements[e].corner.end());
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-    chunk.vertices = static_cast<int>(list.size());
-    for (int i = 0; i < chunk.vertices; ++i) local[list[i]] = i;
-    model.chunk_vertex.insert(model.chunk_vertex.end(), list.begin(), list.end());
-    model.largest_chunk = std::max(model.largest_chunk, chunk.vertices);
-    model.blocks += chunk.blocks;
-    model.corner.resize(std::size_t(model.blocks) * 4 * block_width);
-    model.rest_inverse.resize(std::size_t(model.blocks) * 9 * block_width);
-    model.volume.resize(std::size_t(model.blocks) * block_width);
-    model.element_of_lane.resize(std::size_t(model.blocks) * block_width);
-    for (int lane = 0; lane < chunk.blocks * block_width; ++lane) {
-      const bool padding = begin + lane >= end;
-      fill_lane(model, chunk.first_block + lane / block_width, lane % block_width,
-                elements[padding ? begin : begin + lane], padding, local);
-    }
-    model.chunks.push_back(chunk);
+    pack_chunk(model, &elements[begin], elements.data() + end, local);
     begin = end;
   }
   std::vector<std::vector<std::int32_t>> slots(model.free);
@@ -152,31 +118,57 @@ void pack_elements(Model& model, const std::vector<Element>& elements) {
   }
 }
 
-// A = M/h^2 + sum_e V_e k_e G_e^T G_e + springs, over the free vertices (equation 8 of the paper with its k); what
-// couples them to held vertices goes to model.couplings.
-Eigen::SparseMatrix<double> system_matrix(Model& model, const std::vector<Element>& elements) {
+// L = sum_e V_e k_e G_e^T G_e (equation 8 of the paper with its k), over all vertices.
+Eigen::SparseMatrix<double> elastic_matrix(const Model& model, const std::vector<ElementRecord>& elements) {
   std::vector<Eigen::Triplet<double>> entries;
-  std::map<std::pair<std::int32_t, std::int32_t>, double> couplings;
-  entries.reserve(elements.size() * 10 + model.free);
-  const double h = model.time_step;
-  for (int v = 0; v < model.free; ++v)
-    entries.emplace_back(v, v, model.mass[v] / (h * h) + (model.spring.empty() ? 0.0 : model.spring[v]));
-  for (const Element& element : elements) {
-    Mat3 edges;
-    for (int k = 0; k < 3; ++k)
-      edges.col(k) = (model.rest.row(element.corner[k + 1]) - model.rest.row(element.corner[0])).transpose();
-    const Eigen::Matrix<double, 4, 3> g = shape_gradients(edges.inverse());
-    const double weight = edges.determinant() / 6 * model.stiffness[element.material];
-    for (int a = 0; a < 4; ++a) {
-      for (int b = 0; b < 4; ++b) {
-        const std::int32_t i = element.corner[a], j = element.corner[b];
-        const double value = weight * g.row(a).dot(g.row(b));
-        if (i >= j && i < model.free) entries.emplace_back(i, j, value);
-        if (i < model.free && j >= model.free) couplings[{i, j}] += value;
+  entries.reserve(elements.size() * 16);
+  for (const ElementRecord& element : elements) {
+    const bool solid = element.kind == ElementKind::tetrahedron;
+    const Fibre* fibre = solid && !model.fibres.empty() ? &model.fibres[element.region] : nullptr;
+    const double k = solid ? model.stiffness[element.region].k : 0;
+    for (const SystemTerm& term : system_terms(element, k, fibre)) {
+      for (int a = 0; a < corners_of(element.kind); ++a) {
+        for (int b = 0; b < corners_of(element.kind); ++b) {
+          double product = 0;
+          for (int i = 0; i < 3; ++i) product += term.row[a][i] * term.row[b][i];
+          entries.emplace_back(element.corner[a], element.corner[b], term.weight * product);
+        }
       }
     }
   }
-  for (const auto& [place, value] : couplings) model.couplings.push_back({place.first, place.second, value});
+  Eigen::SparseMatrix<double> matrix(model.vertices, model.vertices);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+// A over the free vertices, its lower triangle; what couples them to held vertices goes to model.couplings, and what
+// damping needs to model.damping.
+Eigen::SparseMatrix<double> system_matrix(Model& model, const std::vector<ElementRecord>& elements, double damping) {
+  const double h = model.time_step, drag = damping / h;
+  const double stiffness = model.scheme.energy * model.scheme.theta * model.scheme.theta + drag;
+  const Eigen::SparseMatrix<double> elastic = elastic_matrix(model, elements);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int v = 0; v < model.free; ++v) {
+    entries.emplace_back(
+        v, v,
+        model.scheme.inertia * model.mass[v] / (h * h) +
+            (model.spring.empty() ? 0.0
+                                  : model.scheme.energy * model.scheme.theta * model.scheme.theta * model.spring[v]));
+  }
+  if (damping > 0) model.damping.begin.push_back(0);
+  for (int column = 0; column < model.vertices; ++column) {
+    for (Eigen::SparseMatrix<double>::InnerIterator entry(elastic, column); entry; ++entry) {
+      const auto row = static_cast<std::int32_t>(entry.row());
+      if (row >= column && row < model.free) entries.emplace_back(row, column, stiffness * entry.value());
+      if (column < model.free && row >= model.free)
+        model.couplings.push_back({column, row, stiffness * entry.value()});  // L is symmetric
+      if (damping > 0) {
+        model.damping.column.push_back(row);
+        model.damping.value.push_back(drag * entry.value());
+      }
+    }
+    if (damping > 0) model.damping.begin.push_back(static_cast<std::int32_t>(model.damping.column.size()));
+  }
   Eigen::SparseMatrix<double> matrix(model.free, model.free);
   matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;
@@ -199,13 +191,15 @@ void place_handles(Model& model, const BodyDescription& body) {
 
 ElementChunk Model::chunk(int index) const {
   const ChunkRange& c = chunks[index];
-  return {&materials[c.material],
+  const bool solid = c.kind == ElementKind::tetrahedron;
+  return {c.kind,
+          solid ? &materials[c.region] : nullptr,
+          solid && !fibres.empty() && fibres[c.region].kappa > 0 ? &fibres[c.region] : nullptr,
           c.blocks,
           c.vertices,
           chunk_vertex.data() + c.first_vertex,
-          corner.data() + std::size_t(c.first_block) * 4 * block_width,
-          rest_inverse.data() + std::size_t(c.first_block) * 9 * block_width,
-          volume.data() + std::size_t(c.first_block) * block_width};
+          corner.data() + c.first_corner,
+          field.data() + c.first_field};
 }
 
 Model build_model(const BodyDescription& body) {
@@ -214,8 +208,16 @@ Model build_model(const BodyDescription& body) {
   model.vertices = static_cast<int>(body.mesh.rest.rows());
   model.time_step = body.time_step;
   model.size = bounds_of(body.mesh.rest).diagonal();
+  model.integrator = body.integrator;
+  model.scheme = scheme_of(body.integrator);
   model.materials = body.materials;
+  if (std::any_of(body.fibres.begin(), body.fibres.end(), [](const Fibre& f) { return f.kappa > 0; }))
+    model.fibres = body.fibres;
   for (const int region : body.mesh.regions) SUPPLE_CHECK(std::size_t(region), <, body.materials.size());
+  for (const Material& material : model.materials) {
+    model.stiffness.push_back(system_stiffness(material, body.fit));
+    model.energy_may_be_negative |= may_be_negative(material);
+  }
 
   std::vector<char> held(model.vertices, 0), taken(model.vertices, 0);
   for (const Handle& handle : body.handles) {
@@ -229,19 +231,20 @@ Model build_model(const BodyDescription& body) {
   }
   if (std::count(held.begin(), held.end(), 0) == 0)
     throw InputError(body.name, "every vertex is held: nothing is left to move");
-  fit_stiffness(model, body.fit);
-  number_vertices(model, body, held);
+  std::vector<ElementRecord> elements = element_records(body.mesh, body.springs);
+  number_vertices(model, body, elements, held);
   model.mass.assign(model.vertices, 0.0);
   for (Eigen::Index e = 0; e < body.mesh.tets.rows(); ++e) {
     const double quarter = body.density * tet_volume(body.mesh, e) / 4;
     for (int k = 0; k < 4; ++k) model.mass[model.internal_of[body.mesh.tets(e, k)]] += quarter;
   }
+  for (std::size_t v = 0; v < body.point_mass.size(); ++v) model.mass[model.internal_of[v]] += body.point_mass[v];
   model.total_mass = std::accumulate(model.mass.begin(), model.mass.begin() + model.free, 0.0);
   place_handles(model, body);
-  const std::vector<Element> elements = sorted_elements(model, body.mesh);
+  sort_elements(model, elements);
   pack_elements(model, elements);
   try {
-    model.factor = CholeskyFactor(system_matrix(model, elements), body.precision);
+    model.factor = CholeskyFactor(system_matrix(model, elements, body.damping), body.precision);
   } catch (const RunError& error) {
     throw RunError(fmt::format("body '{}': {}", body.name, error.what()));
   }

@@ -8,6 +8,7 @@
 
 #include "geometry/mesh.h"
 #include "sim/cholesky.h"
+#include "sim/elements/element_records.h"
 #include "sim/material.h"
 
 namespace supple {
@@ -19,14 +20,31 @@ struct Handle {
   double spring = 0;  // stiffness of each vertex's spring to its target [N/m]; 0: hard, the rows are eliminated
 };
 
+enum class Integrator { backward_euler, implicit_midpoint };
+
+// What a step minimises: w/(2 h^2) |x - y|^2_M + e E(theta x + (1 - theta) q), with y = q + h v + f h^2 M^-1 f_ext.
+// Backward Euler is equation 3; implicit midpoint evaluates forces halfway (Hairer, Lubich, Wanner 2006, "Geometric
+// numerical integration", section II.1).
+struct TimeScheme {
+  double inertia, energy, theta, force;  // w, e, theta, f
+};
+constexpr TimeScheme scheme_of(Integrator integrator) {
+  return integrator == Integrator::backward_euler ? TimeScheme{1, 1, 1, 1} : TimeScheme{2, 2, 0.5, 0.5};
+}
+
 // What a model is built from.
 struct BodyDescription {
   std::string name;
   TetMesh mesh;                     // in its place in the world at rest
   std::vector<Material> materials;  // by region tag of the elements
-  double density = 1000;            // [kg/m^3]
+  std::vector<Fibre> fibres;        // by region tag; empty: none
+  std::vector<Spring> springs;      // beside the tetrahedra or, for cloth, instead of them
+  double density = 1000;            // of the tetrahedra [kg/m^3]
+  std::vector<double> point_mass;   // by vertex, on top of the tetrahedra's [kg]; empty: none
   std::vector<Handle> handles;
-  double time_step = 1.0 / 30;                        // h [s]
+  double time_step = 1.0 / 30;  // h [s]
+  Integrator integrator = Integrator::backward_euler;
+  double damping = 0;                                 // beta of stiffness-proportional damping [s]
   StretchInterval fit;                                // equation 11
   Precision precision = Precision::single_precision;  // of the factor, hence of search directions
 };
@@ -43,20 +61,27 @@ struct Model {
   std::vector<std::int32_t> input_of;     // vertex of the input file by ours
   std::vector<std::int32_t> internal_of;  // ours by vertex of the input file
 
-  std::vector<Material> materials;  // by region
-  std::vector<double> stiffness;    // k by region, the floor applied [Pa]
-  std::vector<char> floored;        // by region: the fit was below the floor
+  Integrator integrator = Integrator::backward_euler;
+  TimeScheme scheme = scheme_of(Integrator::backward_euler);
+  bool energy_may_be_negative = false;
+
+  std::vector<Material> materials;         // by region
+  std::vector<Fibre> fibres;               // by region; empty: none
+  std::vector<SystemStiffness> stiffness;  // k by region
 
   // Elements, in blocks of block_width; layouts as in ElementChunk.
   int elements = 0;
   int blocks = 0;
-  std::vector<std::int32_t> element_of_lane;  // input's element by lane; -1 for padding
+  std::vector<std::int32_t> element_of_lane;  // input's element of the chunk's kind by lane; -1 for padding
   std::vector<std::uint16_t> corner;
-  AlignedVector<double> rest_inverse;
-  AlignedVector<double> volume;
+  AlignedVector<double> field;
   std::vector<std::int32_t> chunk_vertex;  // all chunks' lists, one behind the other
   struct ChunkRange {
-    int first_block, blocks, first_vertex, vertices, material;
+    ElementKind kind;
+    int region;
+    int first_block, blocks;
+    int first_vertex, vertices;  // in chunk_vertex
+    std::size_t first_corner, first_field;
   };
   std::vector<ChunkRange> chunks;
   int largest_chunk = 0;  // vertices
@@ -79,7 +104,15 @@ struct Model {
   std::vector<double> spring;       // by free vertex [N/m]; empty when all handles are hard
   bool free_floating = false;       // nothing holds it: A has the translations as known eigenvectors
 
-  CholeskyFactor factor;  // of A over the free vertices
+  // beta/h L over all vertices, by row; empty without damping. [N/m]
+  struct SparseRows {
+    std::vector<std::int32_t> begin;  // n + 1
+    std::vector<std::int32_t> column;
+    std::vector<double> value;
+  };
+  SparseRows damping;
+
+  CholeskyFactor factor;  // of A = w M/h^2 + (e theta^2 + beta/h) L + springs of handles, over the free vertices
 
   ElementChunk chunk(int index) const;
 };

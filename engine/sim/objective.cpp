@@ -13,6 +13,8 @@ void Workspace::prepare(const Model& model, const SolverSettings& solver) {
   y.resize(model.vertices, 3);
   x.resize(model.vertices, 3);
   trial.resize(model.vertices, 3);
+  q.resize(needs_start(model) ? model.vertices : 0, 3);
+  middle.resize(model.scheme.theta < 1 ? model.vertices : 0, 3);
   if (!model.spring.empty()) target.resize(model.free, 3);
   gradient.resize(model.free, 3);
   trial_gradient.resize(model.free, 3);
@@ -46,47 +48,121 @@ double quadratic_value(double weight, const double* point, const double* center)
   return 0.5 * weight * sum;
 }
 
+// One vertex' share of w M/h^2, handles' springs and damping.
+struct VertexTerms {
+  const Model& model;
+  const Workspace& w;
+  const double* point;
+  const double* reference;  // or null
+  double inertia;           // w / h^2 [1/s^2]
+  bool springs, damped;
+
+  // Row v of beta/h L (p - q).
+  void drag(int v, const double* p, double (&sum)[3]) const {
+    for (double& s : sum) s = 0;
+    for (std::int32_t k = model.damping.begin[v]; k < model.damping.begin[v + 1]; ++k) {
+      const std::size_t at = 3 * std::size_t(model.damping.column[k]);
+      for (int c = 0; c < 3; ++c) sum[c] += model.damping.value[k] * (p[at + c] - w.q.data()[at + c]);
+    }
+  }
+
+  // Adds the gradient; returns the value, or its difference from the reference's.
+  double add(int v, double (&gradient)[3]) const {
+    const std::size_t at = 3 * std::size_t(v);
+    const double *p = point + at, *y = w.y.data() + at, *r = reference != nullptr ? reference + at : nullptr;
+    const double weight = model.mass[v] * inertia;
+    double value = r != nullptr ? quadratic_change(weight, p, r, y) : quadratic_value(weight, p, y);
+    for (int c = 0; c < 3; ++c) gradient[c] = weight * (p[c] - y[c]);
+    if (springs && model.spring[v] > 0) value += add_spring(v, gradient);
+    if (damped) value += add_drag(v, gradient);
+    return value;
+  }
+
+ private:
+  double add_spring(int v, double (&gradient)[3]) const {
+    const std::size_t at = 3 * std::size_t(v);
+    const double theta = model.scheme.theta, *t = w.target.data() + at;
+    const auto evaluated = [&](const double* x, double(&result)[3]) {
+      for (int c = 0; c < 3; ++c)
+        result[c] = theta < 1 ? theta * x[at + c] + (1 - theta) * w.q.data()[at + c] : x[at + c];
+    };
+    double p[3], r[3];
+    evaluated(point, p);
+    for (int c = 0; c < 3; ++c) gradient[c] += model.spring[v] * (p[c] - t[c]);
+    const double weight = model.scheme.energy * model.spring[v];
+    if (reference == nullptr) return quadratic_value(weight, p, t);
+    evaluated(reference, r);
+    return quadratic_change(weight, p, r, t);
+  }
+
+  // 1/2 (p-q)^T D (p-q), or 1/2 (p-r)^T D (p-q + r-q) for the difference: held vertices, where p = r, drop out of it.
+  double add_drag(int v, double (&gradient)[3]) const {
+    const std::size_t at = 3 * std::size_t(v);
+    double of_point[3], of_reference[3], value = 0;
+    drag(v, point, of_point);
+    if (reference != nullptr) drag(v, reference, of_reference);
+    for (int c = 0; c < 3; ++c) {
+      gradient[c] += of_point[c];
+      value += reference != nullptr ? (point[at + c] - reference[at + c]) * (of_point[c] + of_reference[c])
+                                    : (point[at + c] - w.q.data()[at + c]) * of_point[c];
+    }
+    return 0.5 * value;
+  }
+};
+
+// Energies and forces of all elements; returns e times the sum of energies, or of their differences.
+double evaluate_elements(const Model& model, Workspace& workspace, const Positions& point,
+                         AlignedVector<double>& energy, bool with_force,
+                         const AlignedVector<double>* reference_energy) {
+  const Kernels& kernel = kernels();
+  const int chunks = static_cast<int>(model.chunks.size());
+  double* partial = workspace.partial.data();
+  run_chunks(workspace, chunks, long(model.elements) * 4, [&](int c) {
+    const Model::ChunkRange& range = model.chunks[c];
+    const std::size_t first = std::size_t(range.first_block) * block_width;
+    partial[c] = kernel.elements(
+        model.chunk(c), point.data(), reference_energy != nullptr ? reference_energy->data() + first : nullptr,
+        energy.data() + first, with_force ? workspace.force.data() + 3 * std::size_t(range.first_vertex) : nullptr,
+        workspace.local.data() + std::size_t(c) * model.largest_chunk * 3);
+  });
+  double sum = 0;
+  for (int c = 0; c < chunks; ++c) sum += partial[c];
+  return model.scheme.energy * sum;
+}
+
 }  // namespace
+
+double elastic_energy(const Model& model, Workspace& workspace, const Positions& x) {
+  return evaluate_elements(model, workspace, x, workspace.trial_energy, false, nullptr) / model.scheme.energy;
+}
+
+bool needs_start(const Model& model) { return model.scheme.theta < 1 || !model.damping.begin.empty(); }
 
 Change evaluate(const Model& model, Workspace& workspace, const Positions& point, AlignedVector<double>& energy,
                 Positions* gradient, const Positions* reference, const AlignedVector<double>* reference_energy) {
-  const Kernels& kernel = kernels();
-  const int element_chunks = static_cast<int>(model.chunks.size());
-  double* partial = workspace.partial.data();
-  run_chunks(workspace, element_chunks, long(model.elements) * 4, [&](int c) {
-    const Model::ChunkRange& range = model.chunks[c];
-    const std::size_t first = std::size_t(range.first_block) * block_width;
-    partial[c] =
-        kernel.elements(model.chunk(c), point.data(),
-                        reference_energy != nullptr ? reference_energy->data() + first : nullptr, energy.data() + first,
-                        gradient != nullptr ? workspace.force.data() + 3 * std::size_t(range.first_vertex) : nullptr,
-                        workspace.local.data() + std::size_t(c) * model.largest_chunk * 3);
-  });
-  Change change{0, 0};
-  for (int c = 0; c < element_chunks; ++c) change.value += partial[c];
+  const double theta = model.scheme.theta;
+  if (theta < 1) workspace.middle = theta * point + (1 - theta) * workspace.q;
+  Change change{evaluate_elements(model, workspace, theta < 1 ? workspace.middle : point, energy, gradient != nullptr,
+                                  reference_energy),
+                0};
 
   const int chunks = vertex_chunks(model);
-  const double inverse_h2 = 1 / (model.time_step * model.time_step);
-  const bool springs = !model.spring.empty();
+  const VertexTerms terms{model,
+                          workspace,
+                          point.data(),
+                          reference != nullptr ? reference->data() : nullptr,
+                          model.scheme.inertia / (model.time_step * model.time_step),
+                          !model.spring.empty(),
+                          !model.damping.begin.empty()};
+  double* partial = workspace.partial.data();
   run_chunks(workspace, chunks, long(model.free) * (gradient != nullptr ? 6 : 2), [&](int c) {
     double value = 0, slope = 0;
     const int end = std::min(model.free, (c + 1) * vertices_a_chunk);
     for (int v = c * vertices_a_chunk; v < end; ++v) {
-      const double* p = point.data() + 3 * std::size_t(v);
-      const double* y = workspace.y.data() + 3 * std::size_t(v);
-      const double weight = model.mass[v] * inverse_h2;
-      const double* r = reference != nullptr ? reference->data() + 3 * std::size_t(v) : nullptr;
-      value += r != nullptr ? quadratic_change(weight, p, r, y) : quadratic_value(weight, p, y);
-      const double stiffness = springs ? model.spring[v] : 0;
-      const double* t = springs ? workspace.target.data() + 3 * std::size_t(v) : nullptr;
-      if (stiffness > 0)
-        value += r != nullptr ? quadratic_change(stiffness, p, r, t) : quadratic_value(stiffness, p, t);
-      if (gradient == nullptr) continue;
       double sum[3];
-      for (int k = 0; k < 3; ++k) sum[k] = weight * (p[k] - y[k]);
-      if (stiffness > 0) {
-        for (int k = 0; k < 3; ++k) sum[k] += stiffness * (p[k] - t[k]);
-      }
+      value += terms.add(v, sum);
+      if (gradient == nullptr) continue;
+      // Elastic forces as they are: e theta = 1 for both integrators.
       for (std::int32_t s = model.slot_begin[v]; s < model.slot_begin[v + 1]; ++s) {
         const double* f = workspace.force.data() + 3 * std::size_t(model.slots[s]);
         for (int k = 0; k < 3; ++k) sum[k] += f[k];
@@ -104,6 +180,13 @@ Change evaluate(const Model& model, Workspace& workspace, const Positions& point
   for (int c = 0; c < chunks; ++c) {
     change.value += partial[2 * c];
     change.slope += partial[2 * c + 1];
+  }
+  if (terms.damped && reference == nullptr) {  // what held vertices add to the value
+    for (int v = model.free; v < model.vertices; ++v) {
+      double of_point[3];
+      terms.drag(v, point.data(), of_point);
+      for (int k = 0; k < 3; ++k) change.value += 0.5 * (point(v, k) - workspace.q(v, k)) * of_point[k];
+    }
   }
   return change;
 }

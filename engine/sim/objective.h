@@ -1,5 +1,5 @@
-// g(x) of equation 3 at trial points: value differences without cancellation, gradients, in a fixed order of summation.
-// Not here: where to look next (lbfgs.h, step.h).
+// g(x) of equation 3, or of another integrator or with damping, at trial points: value differences without
+// cancellation, gradients, in a fixed order of summation. Not here: where to look next (lbfgs.h, step.h).
 #pragma once
 
 #include "base/threads.h"
@@ -15,6 +15,8 @@ struct Workspace {
   Threads* threads = nullptr;  // may be null: one thread
 
   Positions y;                         // inertial prediction, n x 3 [m]
+  Positions q;                         // where the step starts, n x 3 [m]; empty unless the model needs it
+  Positions middle;                    // where forces are evaluated, n x 3 [m]; empty unless that is not the iterate
   Positions target;                    // of soft handles, by free vertex, n_free x 3 [m]; empty when there are none
   Positions x, trial;                  // current and trial iterates, n x 3 [m]
   Positions gradient, trial_gradient;  // n_free x 3 [N]
@@ -33,6 +35,12 @@ struct Workspace {
   int window_ = -1;
 };
 
+static_assert(scheme_of(Integrator::backward_euler).energy * scheme_of(Integrator::backward_euler).theta == 1 &&
+              scheme_of(Integrator::implicit_midpoint).energy * scheme_of(Integrator::implicit_midpoint).theta == 1);
+
+// Whether g depends on where the step starts other than through y.
+bool needs_start(const Model& model);
+
 // A point's place against another one.
 struct Change {
   double value;  // g(point) - g(reference), or g(point) when there is no reference [J]
@@ -43,6 +51,9 @@ struct Change {
 // summed element by element and vertex by vertex. Writes energies by lane, and the gradient when wanted.
 Change evaluate(const Model& model, Workspace& workspace, const Positions& point, AlignedVector<double>& energy,
                 Positions* gradient, const Positions* reference, const AlignedVector<double>* reference_energy);
+
+// E(x) of all elements [J]. Overwrites the workspace's trial energies.
+double elastic_energy(const Model& model, Workspace& workspace, const Positions& x);
 
 // Runs chunks on the workspace's threads when there is enough work to be worth waking them.
 template <class Body>

@@ -15,6 +15,20 @@ xsimd::batch<T, A> madd(const xsimd::batch<T, A>& a, const xsimd::batch<T, A>& b
 }
 inline double madd(double a, double b, double c) { return a * b + c; }
 
+// yes where the condition holds, lane by lane
+template <class T, class A>
+xsimd::batch<T, A> choose(const xsimd::batch_bool<T, A>& condition, const xsimd::batch<T, A>& yes,
+                          const xsimd::batch<T, A>& no) {
+  return xsimd::select(condition, yes, no);
+}
+inline double choose(bool condition, double yes, double no) { return condition ? yes : no; }
+
+template <class T, class A>
+bool some(const xsimd::batch_bool<T, A>& condition) {
+  return xsimd::any(condition);
+}
+inline bool some(bool condition) { return condition; }
+
 template <class V>
 struct Matrix3 {
   V m[9];  // row by row
@@ -54,6 +68,19 @@ Matrix3<V> cofactor(const Matrix3<V>& a) {
     }
   }
   return c;
+}
+
+template <class V>
+Symmetric3<V> cofactor(const Symmetric3<V>& a) {
+  const V zero(0.0);
+  return {madd(a.yy, a.zz, zero - a.yz * a.yz), madd(a.xx, a.zz, zero - a.xz * a.xz),
+          madd(a.xx, a.yy, zero - a.xy * a.xy), madd(a.xy, a.xz, zero - a.xx * a.yz),
+          madd(a.xy, a.yz, zero - a.yy * a.xz), madd(a.xz, a.yz, zero - a.zz * a.xy)};
+}
+
+template <class V>
+V determinant(const Symmetric3<V>& a, const Symmetric3<V>& cofactors) {
+  return madd(a.xx, cofactors.xx, madd(a.xy, cofactors.xy, a.xz * cofactors.xz));
 }
 
 template <class V>

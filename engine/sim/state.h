@@ -39,6 +39,7 @@ struct SolverSettings {
 struct FrameInputs {
   Vec3 gravity = Vec3(0, -9.81, 0);  // [m/s^2]
   Positions targets;                 // at the end of the step, by Model::handled [m]
+  Positions middle_targets;          // at its middle; only for implicit midpoint [m]
   SolverSettings solver;
 };
 

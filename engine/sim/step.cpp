@@ -127,12 +127,13 @@ Descent next_direction(const Model& model, Workspace& w, PairHistory& history) {
 
 void begin_step(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
   const double h = model.time_step;
-  w.y = (state.x + h * state.v).rowwise() + (h * h * inputs.gravity).transpose();
+  w.y = (state.x + h * state.v).rowwise() + (model.scheme.force * h * h * inputs.gravity).transpose();
+  if (needs_start(model)) w.q = state.x;
   w.x = w.y;
   for (std::size_t i = 0; i < model.handled.size(); ++i) {
     const std::int32_t v = model.handled[i].vertex;
     if (v < model.free) {
-      w.target.row(v) = inputs.targets.row(i);
+      w.target.row(v) = model.scheme.theta < 1 ? inputs.middle_targets.row(i) : inputs.targets.row(i);
     } else {
       w.x.row(v) = inputs.targets.row(i);
     }
@@ -273,17 +274,17 @@ void set_staying(const Model& model, const State& state, Workspace& w) {
 
 // The answer must not be worse than staying: g(x) <= g(q) bounds the energy of backward Euler (docs/method.md). When
 // the iterations from y have not come that far (elements turned inside out by a violent step), descend from there
-// instead. Costs an evaluation only when the inertia of staying, with an elastic energy that is never negative, cannot
-// settle it.
+// instead. Costs an evaluation only when the inertia of staying cannot settle it, or when the elastic energy may be
+// negative.
 void descend_from_staying(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
   StepReport& report = w.report;
   const double reached = report.objective.back();
-  const double inverse_h2 = 1 / (model.time_step * model.time_step);
+  const double inverse_h2 = model.scheme.inertia / (model.time_step * model.time_step);
   set_staying(model, state, w);
   double inertia = 0;
   for (int v = 0; v < model.free; ++v)
     inertia += 0.5 * inverse_h2 * model.mass[v] * (w.trial.row(v) - w.y.row(v)).squaredNorm();
-  if (reached <= inertia) return;
+  if (reached <= inertia && !model.energy_may_be_negative) return;
   const Change staying = evaluate(model, w, w.trial, w.trial_energy, nullptr, nullptr, nullptr);
   if (!(staying.value < reached - noise_of(reached))) return;
   w.x.swap(w.trial);
@@ -291,6 +292,18 @@ void descend_from_staying(const Model& model, const FrameInputs& inputs, const S
   const int iterations = report.iterations;
   minimize(model, inputs.solver, w);
   report.iterations += iterations;
+}
+
+// Backward Euler: (x - q)/h. Midpoint: the velocity whose mean with the old one is that; held vertices just follow.
+void set_velocity(const Model& model, const Workspace& w, State& state) {
+  const double h = model.time_step;
+  if (model.integrator == Integrator::backward_euler) {
+    state.v = (w.x - state.x) / h;
+    return;
+  }
+  const int held = model.vertices - model.free;
+  state.v.topRows(model.free) = 2 / h * (w.x - state.x).topRows(model.free) - state.v.topRows(model.free);
+  state.v.bottomRows(held) = (w.x - state.x).bottomRows(held) / h;
 }
 
 }  // namespace
@@ -309,7 +322,7 @@ const StepReport& step(const Model& model, const FrameInputs& inputs, State& sta
   report.error_estimate = as_error(report.remaining_estimate, report.decrease + above_start);
   if (!report.failed && !w.x.allFinite()) fail(model, w, "step", w.x, std::numeric_limits<double>::quiet_NaN());
   if (!report.failed) {
-    state.v = (w.x - state.x) / model.time_step;
+    set_velocity(model, w, state);
     state.x = w.x;
     state.time += model.time_step;
   }

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <fstream>
 
+#include "base/text.h"
 #include "scene/assemble.h"
 #include "scene/scene_reader.h"
 #include "scene/shape_reader.h"
+#include "scene/warnings.h"
 #include "support/bodies.h"
 
 namespace supple {
@@ -55,8 +57,8 @@ keys = [ { t = 1 }, { t = 0.5 } ]
       "scene.toml:8:15: line_search = 'armjo': must be armijo or none; did you mean 'armijo'?",
       "scene.toml:10:9: shape = 'shapes/squirel.toml': no such file (looked for shapes/squirel.toml and " +
           (test::assets / "shapes/squirel.toml").string() + ")",
-      "scene.toml:11:22: model = 'polynomal': must be as-rigid-as-possible, polynomial, corotated or neo-hookean; did "
-      "you mean 'polynomial'?",
+      "scene.toml:11:22: model = 'polynomal': must be " + word_list(test::model_names()) +
+          "; did you mean 'polynomial'?",
       "scene.toml:13:8: two bodies named 'body'",
       "scene.toml:15:41: mu = -1: must be above 0",
       "scene.toml:18:18: box = [ [ 0, 0, 0 ], [ 1, 1 ] ]: must be 2 lists of three numbers, all finite",
@@ -96,9 +98,9 @@ TEST(SceneFile, SettingsReachEveryValueByItsPath) {
                                      "body.body.solver.line_search=none", "body.body.handles.neck.stiffness=12",
                                      "body.body.total_mass=4", "gravity=[0, -1, 0]", "title=a word"});
   EXPECT_EQ(scene.frames, 7);
-  EXPECT_EQ(std::get<Polynomial>(scene.bodies[0].material).mu, 2.5e3);
-  EXPECT_EQ(scene.bodies[0].solver.iterations, 3);
-  EXPECT_EQ(scene.bodies[0].solver.line_search, LineSearch::none);
+  EXPECT_EQ(std::get<Polynomial>(scene.bodies[0].substance.material).mu, 2.5e3);
+  EXPECT_EQ(scene.bodies[0].solver.settings.iterations, 3);
+  EXPECT_EQ(scene.bodies[0].solver.settings.line_search, LineSearch::none);
   EXPECT_EQ(scene.bodies[0].handles[0].spring, 12);
   EXPECT_EQ(scene.bodies[0].total_mass, 4);
   EXPECT_EQ(scene.gravity.y(), -1);
@@ -195,26 +197,39 @@ select = { box = [[0, 0.4, 0], [1, 1, 1]] }
   }
 }
 
-// A scene and a shape that ask for every key there is.
+// A scene and a shape that ask for every key there is: each model by its own parameters, and by Young's modulus.
 std::vector<DocumentedKey> all_keys() {
   std::vector<DocumentedKey> keys;
-  for (const char* model : {"as-rigid-as-possible", "polynomial", "corotated", "neo-hookean"}) {
+  std::vector<std::string> materials = {"{ model = \"neo-hookean\", young = 1, poisson = 0 }",
+                                        "{ model = \"spline\", preset = \"A\", mu = 1 }"};
+  for (const std::string& model : test::model_names()) materials.push_back("{ model = \"" + model + "\" }");
+  for (const std::string& material : materials) {
     Config config = Config::parse(fmt::format(R"([solver]
 [[body]]
 shape = "shapes/squirrel.toml"
-material = {{ model = "{0}", mu = 1, lambda = 1 }}
+box = {{}}
+material = {0}
+fibre = {{ kappa = 1 }}
+start = {{ stretch = [1, 1, 1], turn_deg = [0, 0, 0], twist_deg = 0, random = [1, 1, 1], flatten = "plane" }}
 [body.solver]
 [body.regions.NAME]
-material = {{ model = "{0}", mu = 1, lambda = 1 }}
+material = {0}
 [[body.handles]]
 name = "a"
 select = {{ region = "x", box = [[0, 0, 0], [1, 1, 1]], sphere = {{ center = [0, 0, 0], radius = 1 }}, plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }} }}
 keys = [{{ t = 0 }}]
+[[body]]
+name = "cloth"
+cloth = {{ stretch = 1 }}
+[[body]]
+name = "preset"
+box = {{}}
+material = "jelly"
 [camera]
 [look]
 [output]
 )",
-                                              model),
+                                              material),
                                   "keys", test::assets);
     (void)read_scene(config);
     keys.insert(keys.end(), config.documented().begin(), config.documented().end());

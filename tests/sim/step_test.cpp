@@ -377,7 +377,7 @@ TEST(Cholesky, SolvesInBothPrecisionsAsADenseSolverDoes) {
     Eigen::Matrix<double, 4, 3> g;
     g.bottomRows<3>() = edges.inverse();
     g.row(0) = -g.bottomRows<3>().colwise().sum();
-    const double weight = edges.determinant() / 6 * exact.stiffness[0];
+    const double weight = edges.determinant() / 6 * exact.stiffness[0].k;
     for (int a = 0; a < 4; ++a) {
       for (int c = 0; c < 4; ++c) {
         product.row(exact.internal_of[body.mesh.tets(e, a)]) +=

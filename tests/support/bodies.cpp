@@ -23,8 +23,28 @@ std::optional<std::filesystem::path> paper_mesh(const std::string& name) {
 }
 
 std::vector<Material> all_materials() {
-  return {AsRigidAsPossible{1e4}, Polynomial{4e4}, Corotated{1e4, 3e4}, NeoHookean{1e4, 3e4}};
+  const Lame lame{1e4, 3e4};
+  return {AsRigidAsPossible{1e4},
+          Polynomial{4e4},
+          Corotated{1e4, 3e4},
+          StVenantKirchhoff{1e4, 3e4},
+          NeoHookean{1e4, 3e4},
+          MooneyRivlin{8e3, 2e3, 2.6e4},
+          FixedCorotated{1e4, 3e4},
+          StableNeoHookean{1e4, 4e4},
+          Spline::preset_a(lame),
+          Spline::preset_b(lame),
+          StrainLimiting{1e4, 0.9, 1.1, 1e4, 0.7, 1.3}};
 }
+
+namespace {
+template <std::size_t... I>
+std::vector<std::string> names_of(std::index_sequence<I...>) {
+  return {std::string(std::variant_alternative_t<I, Material>::name)...};
+}
+}  // namespace
+
+std::vector<std::string> model_names() { return names_of(std::make_index_sequence<std::variant_size_v<Material>>()); }
 
 BodyDescription bar(const Material& material, Held held, Precision precision, int cells) {
   BodyDescription body;

@@ -21,6 +21,9 @@ std::optional<std::filesystem::path> paper_mesh(const std::string& name);
 // One of each material, with moduli of the same size.
 std::vector<Material> all_materials();
 
+// Of all materials, as scene files spell them.
+std::vector<std::string> model_names();
+
 // A bar of 4 x 1 x 1 cells, 0.4 m long; its left end can be held.
 enum class Held { nothing, hard_end, spring_end };
 BodyDescription bar(const Material& material, Held held, Precision precision = Precision::double_precision,

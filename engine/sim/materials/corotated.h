@@ -18,6 +18,7 @@ struct Corotated {
     return std::array{Parameter<Corotated>{"mu", "Pa", "shear modulus", &Corotated::mu, false},
                       Parameter<Corotated>{"lambda", "Pa", "first Lame parameter", &Corotated::lambda, true}};
   }
+  static Corotated from(const Lame& lame) { return {lame.mu, lame.lambda}; }
 
   template <class V>
   V density(const Symmetric3<V>& s, Symmetric3<V>& slope) const {

@@ -1,15 +1,24 @@
 // What every material says of itself, so that scene files, stiffness fits, kernels and tests pick a new one up without
-// being told.
+// being told. Optional members of a material, each used where it exists:
+//   static M from(const Lame&)          from Young's modulus and Poisson's ratio
+//   const char* problem() const         what is wrong with parameters that are each in range, or null
+//   std::vector<double> seams() const   stretches where the axial stress changes its formula
+//   double system_stiffness() const     k in M/h^2 + L where equation 11 is not meant
+//   static constexpr bool may_be_negative  energies below that of rest exist
+//   static constexpr auto curves()      functions given by control points, as parameters() are numbers
 #pragma once
 
+#include <optional>
 #include <string_view>
+#include <vector>
 
 namespace supple {
 
 // What a formula is written in; nobody pays for a decomposition that the formula does not use.
 enum class Needs {
-  gradient,  // F alone: density(F, P)
-  stretch,   // S of the polar decomposition F = R S: density(S, dPsi/dS), and P = R dPsi/dS
+  gradient,         // F alone: density(F, P)
+  stretch,          // S of the polar decomposition F = R S: density(S, dPsi/dS), and P = R dPsi/dS
+  singular_values,  // s of F = U diag(s) V^T: density(s, dPsi/ds), and P = U diag(dPsi/ds) V^T
 };
 
 // One number of a material as a scene file gives it.
@@ -20,6 +29,16 @@ struct Parameter {
   const char* meaning;
   double M::*value;
   bool may_be_zero;
+  std::optional<double> fallback = std::nullopt;  // when the file does not give it; otherwise 0 where that is allowed
+};
+
+// Lame's parameters of small strains.
+struct Lame {
+  double mu, lambda;  // [Pa]
+  // From Young's modulus [Pa] and Poisson's ratio (below 0.5).
+  static Lame from_young(double young, double poisson) {
+    return {young / (2 * (1 + poisson)), young * poisson / ((1 + poisson) * (1 - 2 * poisson))};
+  }
 };
 
 }  // namespace supple

@@ -1,0 +1,227 @@
+#include "scene/body_reader.h"
+
+#include <set>
+
+#include "scene/material_reader.h"
+
+namespace supple {
+SolverDef read_solver(const ConfigTable& table, const SolverDef& defaults) {
+  SolverDef solver = defaults;
+  SolverSettings& s = solver.settings;
+  StretchInterval& fit = solver.fit;
+  Precision& precision = solver.precision;
+  (void)table.choice({"method", "", "how a step is solved"}, "quasi-newton", {"quasi-newton"});
+  s.iterations = table.integer({"iterations", "", "quasi-Newton iterations a step, at most"}, s.iterations,
+                               Range::between(1, 10000));
+  s.history =
+      table.integer({"history", "", "window m of L-BFGS; 0 is plain quasi-Newton"}, s.history, Range::between(0, 100));
+  const std::string search =
+      table.choice({"line_search", "", "how a step length is accepted; none takes every full step"},
+                   s.line_search == LineSearch::armijo ? "armijo" : "none", {"armijo", "none"});
+  s.line_search = search == "armijo" ? LineSearch::armijo : LineSearch::none;
+  s.armijo = table.number({"armijo", "", "gamma of the sufficient decrease"}, s.armijo, Range::above(0, 0.5));
+  s.target_error =
+      table.number({"target_error", "", "stop once the solver's own error estimate is below; 0 does all iterations"},
+                   s.target_error, Range::between(0, 1));
+  const Vec3 interval = {fit.start, fit.end, 0};
+  fit.start = table.number({"fit_from", "", "start of the stretch interval of equation 11"}, interval.x(),
+                           Range::between(0.01, 0.999));
+  fit.end = table.number({"fit_to", "", "end of the stretch interval of equation 11"}, interval.y(),
+                         Range::between(1.001, 10));
+  const std::string digits = table.choice(
+      {"factor", "", "precision of the factor of M/h^2 + L, hence of directions; energies are always double"},
+      precision == Precision::single_precision ? "single" : "double", {"single", "double"});
+  precision = digits == "single" ? Precision::single_precision : Precision::double_precision;
+  const std::string integrator = table.choice(
+      {"integrator", "", "backward Euler damps and is stable; implicit midpoint keeps energy and may fail"},
+      solver.integrator == Integrator::backward_euler ? "backward-euler" : "implicit-midpoint",
+      {"backward-euler", "implicit-midpoint"});
+  solver.integrator = integrator == "backward-euler" ? Integrator::backward_euler : Integrator::implicit_midpoint;
+  solver.damping =
+      table.number({"damping", "s", "beta of stiffness-proportional damping; also slows turning as a whole"},
+                   solver.damping, Range::at_least(0));
+  return solver;
+}
+
+namespace {
+
+Selection read_selection(const ConfigTable& handle) {
+  Selection s;
+  s.place = handle.place("select", "");
+  const auto table =
+      handle.table({"select", "", "which vertices, by exactly one of region, box, sphere, plane"}, "required");
+  if (!table) {
+    if (!handle.has("select"))
+      handle.complain("'select' is missing: such as select = { box = [[0, 0, 0], [1, 0.1, 1]] }");
+    return s;
+  }
+  int given = 0;
+  if (table->has("region")) {
+    ++given;
+    s.kind = Selection::Kind::region;
+    s.region = table->text({"region", "", "all vertices of elements with this tag"}, std::nullopt);
+  }
+  if (table->has("box")) {
+    ++given;
+    s.kind = Selection::Kind::box;
+    const std::vector<Vec3> corners =
+        table->vectors({"box", "", "lower and upper corner, relative to the rest bounding box (0 to 1)"}, 2);
+    if (corners.size() == 2) {
+      s.lower = corners[0];
+      s.upper = corners[1];
+      if ((s.lower.array() > s.upper.array()).any())
+        table->complain("box", "box: the first corner must be the lower one");
+    }
+  }
+  if (const auto sphere = table->table({"sphere", "", "vertices in a ball"})) {
+    ++given;
+    s.kind = Selection::Kind::sphere;
+    s.center = sphere->vector({"center", "", "relative to the rest bounding box (0 to 1)"}, std::nullopt);
+    s.radius = sphere->number({"radius", "", "relative to the longest side"}, std::nullopt, Range::positive());
+  }
+  if (const auto plane = table->table({"plane", "", "vertices on one side of a plane"})) {
+    ++given;
+    s.kind = Selection::Kind::plane;
+    s.center = plane->vector({"point", "", "relative to the rest bounding box (0 to 1)"}, std::nullopt);
+    s.normal = plane->vector({"normal", "", "points to the side that is picked"}, std::nullopt);
+    if (s.normal.norm() < 1e-9) plane->complain("normal", "normal: must not be zero");
+  }
+  if (given != 1) table->complain("a selection is one of region, box, sphere or plane");
+  return s;
+}
+
+HandleDef read_handle(const ConfigTable& table) {
+  HandleDef handle;
+  handle.name = table.text({"name", "", "addresses the handle in --set and in messages"}, std::nullopt);
+  handle.select = read_selection(table);
+  handle.spring =
+      table
+          .number_or_word({"stiffness", "N/m",
+                           "of each vertex's spring to its target; hard vertices are eliminated and follow exactly"},
+                          "hard", Range::positive())
+          .value_or(0);
+  handle.ease = table.choice({"ease", "", "how keys are joined"}, "smooth", {"smooth", "linear"}) == "smooth"
+                    ? Ease::smooth
+                    : Ease::linear;
+  double last = -1;
+  for (const ConfigTable& row :
+       table.tables({"keys", "", "the motion; before the first key and after the last it stands still"})) {
+    HandleKey key;
+    key.time = row.number({"t", "s", "when"}, std::nullopt, Range::at_least(0));
+    key.move = row.vector({"move", "m", "displacement from rest"}, Vec3(0, 0, 0));
+    key.turn_deg =
+        row.vector({"turn_deg", "degrees", "rotation about the handle's centre: x, then y, then z"}, Vec3(0, 0, 0));
+    if (key.time <= last)
+      row.complain(
+          "t", fmt::format("t = {:g}: keys must stand in order of time (the one before is at {:g})", key.time, last));
+    last = key.time;
+    handle.keys.push_back(key);
+  }
+  return handle;
+}
+
+Eigen::Vector3i read_cells(const ConfigTable& table, const Key& key, const Vec3& fallback) {
+  const Vec3 cells = table.vector(key, fallback, Range::between(1, 1000));
+  if (cells != cells.array().round().matrix())
+    table.complain(key.name, fmt::format("{}: must be whole numbers", key.name));
+  return cells.cast<int>();
+}
+
+std::optional<BoxDef> read_box(const ConfigTable& body) {
+  const auto table = body.table({"box", "", "a box cut into equal cells of six tetrahedra"});
+  if (!table) return std::nullopt;
+  BoxDef box;
+  box.extent = table->vector({"extent", "m", "the three edges"}, std::nullopt, Range::above(0, 1e6));
+  box.cells = read_cells(*table, {"cells", "", "along each edge"}, Vec3(8, 8, 8));
+  return box;
+}
+
+std::optional<ClothDef> read_cloth(const ConfigTable& body) {
+  const auto table = body.table({"cloth", "", "springs along the edges of a grid, or of a mesh's triangles"});
+  if (!table) return std::nullopt;
+  ClothDef cloth;
+  cloth.mesh = table->file({"mesh", "", "the triangles of a MEDIT .mesh; without it a grid in the plane z = 0"});
+  if (cloth.mesh.empty()) {
+    cloth.extent = table->pair({"extent", "m", "width and height of the grid"}, Range::above(0, 1e6));
+    const Eigen::Vector2d cells =
+        table->pair({"cells", "", "of the grid, along its width and its height"}, Range::between(1, 2000));
+    if (cells != cells.array().round().matrix()) table->complain("cells", "cells: must be whole numbers");
+    cloth.cells = cells.cast<int>();
+  }
+  cloth.stretch =
+      table->number({"stretch", "N/m", "stiffness of the springs along edges"}, std::nullopt, Range::positive());
+  cloth.shear = table->number({"shear", "N/m", "of a grid's diagonals; the default is that of its edges"},
+                              cloth.stretch, Range::at_least(0));
+  cloth.bend = table->number({"bend", "N/m", "of the springs that skip a vertex"}, 0.0, Range::at_least(0));
+  return cloth;
+}
+
+void read_substances(const ConfigTable& table, BodyDef& body) {
+  body.substance = read_substance(table);
+  const auto regions = table.table({"regions", "", "materials of tagged parts, by the name of the tag"});
+  if (!regions) return;
+  for (const std::string& name : regions->keys()) {
+    const auto region = regions->table({name.c_str(), "", "a tagged part"});
+    if (region) body.regions.push_back({name, read_substance(*region), regions->place(name.c_str(), "")});
+  }
+}
+
+}  // namespace
+
+BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
+  BodyDef body;
+  body.place = table.place(nullptr, "");
+  body.name = table.text({"name", "", "addresses the body in --set and in reports"}, "body");
+  if (body.name.empty() || body.name.find_first_of("./\\ \t\n") != std::string::npos) {
+    table.complain("name", fmt::format("name = '{}': must be a word without spaces, dots and slashes", body.name));
+  }
+  body.label = table.text({"label", "", "caption in the film; the default is the name"}, body.name);
+  body.shape = table.file({"shape", "", "a shape file, to be meshed here"});
+  body.mesh = table.file({"mesh", "", "a tetrahedral mesh (MEDIT .mesh)"});
+  body.box = read_box(table);
+  body.cloth = read_cloth(table);
+  if (table.has("shape") + table.has("mesh") + table.has("box") + table.has("cloth") != 1)
+    table.complain("a body needs exactly one of 'shape', 'mesh', 'box' and 'cloth'");
+  body.vertices = table.integer({"vertices", "", "of the tetrahedra made from a shape (within 3 %)"}, 4000,
+                                Range::between(50, 500000));
+  body.size = table.number_if_given({"size", "m", "longest side; without it the file's units are metres"},
+                                    Range::above(0, 1e6));
+  body.position = table.vector({"position", "m", "of the middle of the bounding box's bottom"}, Vec3(0, 0, 0));
+  body.turn_deg =
+      table.vector({"turn_deg", "degrees", "rotation about x, then y, then z, before it is placed"}, Vec3(0, 0, 0));
+  body.density = table.number_if_given(
+      {"density", "kg/m^3", "mass by volume; of cloth by area [kg/m^2]; the preset's, 1000, or 0.2 for cloth"},
+      Range::positive());
+  body.total_mass = table.number_if_given({"total_mass", "kg", "spread evenly over the volume, or the area of cloth"},
+                                          Range::positive());
+  if (body.density && body.total_mass) table.complain("total_mass", "a body has a density or a total_mass, not both");
+  if (!body.cloth) read_substances(table, body);
+  body.start = read_start(table);
+  body.velocity = table.vector({"velocity", "m/s", "at the start"}, Vec3(0, 0, 0));
+  std::set<std::string> names;
+  for (const ConfigTable& row : table.tables({"handles", "", "vertices that follow a motion from outside"})) {
+    body.handles.push_back(read_handle(row));
+    if (!names.insert(body.handles.back().name).second)
+      row.complain("name", fmt::format("two handles named '{}'", body.handles.back().name));
+  }
+  body.solver = defaults;
+  if (const auto solver = table.table({"solver", "", "this body's own, over the scene's"}))
+    body.solver = read_solver(*solver, defaults);
+  const std::string pattern = table.choice(
+      {"pattern", "",
+       "printed on the body, as fine as its cells: shows how it is strained; a box has a grid, cloth checks"},
+      body.box     ? "grid"
+      : body.cloth ? "checks"
+                   : "none",
+      {"none", "grid", "checks"});
+  body.pattern = pattern == "grid" ? Pattern::grid : pattern == "checks" ? Pattern::checks : Pattern::none;
+  body.pattern_size = table.number_if_given(
+      {"pattern_size", "m", "edge of its squares; an eighth of the middle side, of cloth a twentieth of the longest"},
+      Range::positive());
+  body.color = table.vector_if_given({"color", "sRGB", "over the shape's own"}, Range::between(0, 1));
+  body.skin_cells = table.number({"skin_cells", "", "cells of the drawn skin along the longest side of a shape"}, 72,
+                                 Range::between(8, 400));
+  return body;
+}
+
+}  // namespace supple

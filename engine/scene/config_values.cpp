@@ -1,0 +1,273 @@
+// The typed questions that a ConfigTable answers.
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "base/text.h"
+#include "scene/config_content.h"
+
+namespace supple {
+namespace {
+
+std::string shown(const toml::node& node) {
+  if (node.is_table()) return "a table";
+  std::string text;
+  if (const auto number = node.value_exact<double>()) {
+    text = fmt::format("{}", *number);
+  } else if (const auto word = node.value_exact<std::string>()) {
+    text = fmt::format("'{}'", *word);
+  } else {
+    std::ostringstream out;
+    if (node.is_array()) out << *node.as_array();
+    if (!node.is_array()) {
+      node.visit([&out](const auto& value) {
+        if constexpr (toml::is_value<decltype(value)>) out << value;
+      });
+    }
+    text = out.str();
+  }
+  return text.size() > 60 ? text.substr(0, 57) + "..." : text;
+}
+
+std::string number_text(double value) { return fmt::format("{:g}", value); }
+
+}  // namespace
+
+std::string Range::text() const {
+  const bool below = std::isfinite(lowest), above = std::isfinite(highest);
+  if (below && above)
+    return fmt::format("{}{} to {}", open_below ? "above " : "", number_text(lowest), number_text(highest));
+  if (below) return fmt::format("{} {}", open_below ? "above" : "at least", number_text(lowest));
+  if (above) return fmt::format("at most {}", number_text(highest));
+  return "any number";
+}
+
+void ConfigTable::wrong(const Key& key, const toml::node& node, const std::string& allowed) const {
+  config_->complain(&node, fmt::format("{} = {}: must be {}", key.name, shown(node), allowed));
+}
+
+double ConfigTable::number(const Key& key, std::optional<double> fallback, const Range& range) const {
+  const toml::node* node = find(key, "number", fallback ? number_text(*fallback) : "required", range.text());
+  const double instead = fallback.value_or(range.contains(1) ? 1 : range.lowest);
+  if (node == nullptr) {
+    if (!fallback) complain(fmt::format("'{}' is missing: {} ({})", key.name, key.meaning, range.text()));
+    return instead;
+  }
+  const std::optional<double> value = node->is_number() ? node->value<double>() : std::nullopt;
+  if (!value || !std::isfinite(*value) || !range.contains(*value)) {
+    wrong(key, *node, value && !std::isfinite(*value) ? "finite" : range.text());
+    return instead;
+  }
+  return *value;
+}
+
+std::optional<double> ConfigTable::number_if_given(const Key& key, const Range& range) const {
+  if (find(key, "number", "none", range.text()) == nullptr) return std::nullopt;
+  return number(key, std::nullopt, range);
+}
+
+std::optional<Vec3> ConfigTable::vector_if_given(const Key& key, const Range& range) const {
+  if (find(key, "three numbers", "none", "three numbers") == nullptr) return std::nullopt;
+  return vector(key, std::nullopt, range);
+}
+
+int ConfigTable::integer(const Key& key, std::optional<int> fallback, const Range& range) const {
+  const toml::node* node =
+      find(key, "whole number", fallback ? fmt::format("{}", *fallback) : "required", range.text());
+  const int instead = fallback.value_or(1);
+  if (node == nullptr) {
+    if (!fallback) complain(fmt::format("'{}' is missing: {} ({})", key.name, key.meaning, range.text()));
+    return instead;
+  }
+  const std::optional<std::int64_t> value = node->is_integer() ? node->value<std::int64_t>() : std::nullopt;
+  if (!value || !range.contains(static_cast<double>(*value)) || std::abs(static_cast<double>(*value)) > 2e9) {
+    wrong(key, *node, fmt::format("a whole number, {}", range.text()));
+    return instead;
+  }
+  return static_cast<int>(*value);
+}
+
+bool ConfigTable::boolean(const Key& key, bool fallback) const {
+  const toml::node* node = find(key, "true or false", fallback ? "true" : "false", "true or false");
+  if (node == nullptr) return fallback;
+  if (const auto value = node->value_exact<bool>()) return *value;
+  wrong(key, *node, "true or false");
+  return fallback;
+}
+
+std::string ConfigTable::text(const Key& key, std::optional<std::string> fallback) const {
+  const toml::node* node = find(key, "text", fallback ? fmt::format("\"{}\"", *fallback) : "required", "text");
+  if (node == nullptr) {
+    if (!fallback) complain(fmt::format("'{}' is missing: {}", key.name, key.meaning));
+    return fallback.value_or("");
+  }
+  if (const auto value = node->value_exact<std::string>()) return *value;
+  wrong(key, *node, "text");
+  return fallback.value_or("");
+}
+
+std::string ConfigTable::choice(const Key& key, std::optional<std::string> fallback,
+                                const std::vector<std::string>& allowed) const {
+  const toml::node* node =
+      find(key, "word", fallback ? fmt::format("\"{}\"", *fallback) : "required", word_list(allowed));
+  const std::string instead = fallback.value_or(allowed.front());
+  if (node == nullptr) {
+    if (!fallback) complain(fmt::format("'{}' is missing: {} ({})", key.name, key.meaning, word_list(allowed)));
+    return instead;
+  }
+  const auto value = node->value_exact<std::string>();
+  if (value && std::find(allowed.begin(), allowed.end(), *value) != allowed.end()) return *value;
+  const std::string nearest = value ? nearest_word(*value, allowed) : "";
+  wrong(key, *node,
+        nearest.empty() ? word_list(allowed) : fmt::format("{}; did you mean '{}'?", word_list(allowed), nearest));
+  return instead;
+}
+
+namespace {
+
+template <int size>
+std::optional<Eigen::Matrix<double, size, 1>> as_vector(const toml::node& node) {
+  const toml::array* list = node.as_array();
+  if (list == nullptr || list->size() != size) return std::nullopt;
+  Eigen::Matrix<double, size, 1> value;
+  for (int k = 0; k < size; ++k) {
+    const toml::node& element = (*list)[std::size_t(k)];
+    const std::optional<double> x = element.is_number() ? element.value<double>() : std::nullopt;
+    if (!x || !std::isfinite(*x)) return std::nullopt;
+    value[k] = *x;
+  }
+  return value;
+}
+
+}  // namespace
+
+Vec3 ConfigTable::vector(const Key& key, std::optional<Vec3> fallback, const Range& range) const {
+  const auto form = [](const Vec3& v) { return fmt::format("[{:g}, {:g}, {:g}]", v.x(), v.y(), v.z()); };
+  const std::string allowed = "three numbers" + (range.text() == "any number" ? "" : ", each " + range.text());
+  const toml::node* node = find(key, "three numbers", fallback ? form(*fallback) : "required", allowed);
+  const Vec3 instead = fallback.value_or(Vec3::Ones());
+  if (node == nullptr) {
+    if (!fallback) complain(fmt::format("'{}' is missing: {} ({})", key.name, key.meaning, allowed));
+    return instead;
+  }
+  const std::optional<Vec3> value = as_vector<3>(*node);
+  const auto fits = [&range](const Vec3& v) {
+    return range.contains(v.x()) && range.contains(v.y()) && range.contains(v.z());
+  };
+  if (value && fits(*value)) return *value;
+  wrong(key, *node, value ? allowed : "a list of " + allowed + ", all finite");
+  return instead;
+}
+
+std::vector<Vec3> ConfigTable::vectors(const Key& key, std::size_t count) const {
+  const std::string allowed = fmt::format("{} lists of three numbers", count);
+  const toml::node* node = find(key, "list of points", "required", allowed);
+  if (node == nullptr) {
+    complain(fmt::format("'{}' is missing: {} ({})", key.name, key.meaning, allowed));
+    return {};
+  }
+  std::vector<Vec3> values;
+  if (const toml::array* list = node->as_array()) {
+    for (const toml::node& element : *list) {
+      if (const auto value = as_vector<3>(element)) values.push_back(*value);
+    }
+    if (values.size() == count && list->size() == count) return values;
+  }
+  wrong(key, *node, allowed + ", all finite");
+  return {};
+}
+
+Eigen::Vector2d ConfigTable::pair(const Key& key, const Range& range) const {
+  const std::string allowed = "two numbers, each " + range.text();
+  const toml::node* node = find(key, "two numbers", "required", allowed);
+  const Eigen::Vector2d instead = Eigen::Vector2d::Ones();
+  if (node == nullptr) {
+    complain(fmt::format("'{}' is missing: {} ({})", key.name, key.meaning, allowed));
+    return instead;
+  }
+  const std::optional<Eigen::Vector2d> value = as_vector<2>(*node);
+  if (value && range.contains(value->x()) && range.contains(value->y())) return *value;
+  wrong(key, *node, "a list of " + allowed);
+  return instead;
+}
+
+std::vector<std::pair<double, double>> ConfigTable::pairs(const Key& key, std::size_t least, std::size_t most) const {
+  const std::string allowed = fmt::format("{} to {} lists of two numbers", least, most);
+  const toml::node* node = find(key, "list of pairs", "none", allowed);
+  std::vector<std::pair<double, double>> values;
+  if (node == nullptr) return values;
+  if (const toml::array* list = node->as_array(); list != nullptr && list->size() >= least && list->size() <= most) {
+    for (const toml::node& element : *list) {
+      if (const auto value = as_vector<2>(element)) values.emplace_back(value->x(), value->y());
+    }
+    if (values.size() == list->size()) return values;
+  }
+  wrong(key, *node, allowed + ", all finite");
+  return {};
+}
+
+bool ConfigTable::is_text(const char* key) const {
+  const toml::node* node = table_->get(key);
+  return node != nullptr && node->is_string();
+}
+
+std::filesystem::path ConfigTable::file(const Key& key) const {
+  const toml::node* node = find(key, "file", "none", "a path, beside the file that names it or among the assets");
+  if (node == nullptr) return {};
+  const auto value = node->value_exact<std::string>();
+  if (!value || value->empty()) {
+    wrong(key, *node, "a path");
+    return {};
+  }
+  const bool from_option = node->source().path && node->source().path->starts_with(set_option);
+  const std::filesystem::path beside = (from_option ? std::filesystem::path() : config_->content_->folder) / *value;
+  const std::filesystem::path asset = config_->content_->assets / *value;
+  std::error_code error;
+  if (std::filesystem::exists(beside, error)) return beside;
+  if (std::filesystem::exists(asset, error)) return asset;
+  config_->complain(node, fmt::format("{} = '{}': no such file (looked for {} and {})", key.name, *value,
+                                      beside.string(), asset.string()));
+  return {};
+}
+
+std::optional<ConfigTable> ConfigTable::table(const Key& key, const char* fallback) const {
+  const toml::node* node = find(key, "table", fallback, "a table");
+  if (node == nullptr) return std::nullopt;
+  if (const toml::table* inner = node->as_table()) {
+    return ConfigTable(config_, inner, path_.empty() ? key.name : path_ + "." + key.name);
+  }
+  wrong(key, *node, "a table");
+  return std::nullopt;
+}
+
+std::vector<ConfigTable> ConfigTable::tables(const Key& key) const {
+  const toml::node* node = find(key, "list of tables", "none", "a list of tables");
+  std::vector<ConfigTable> result;
+  if (node == nullptr) return result;
+  const toml::array* list = node->as_array();
+  if (list == nullptr) {
+    wrong(key, *node, fmt::format("a list of tables ([[{}]])", key.name));
+    return result;
+  }
+  for (const toml::node& element : *list) {
+    if (const toml::table* inner = element.as_table()) {
+      result.push_back(
+          ConfigTable(config_, inner, (path_.empty() ? key.name : path_ + "." + key.name) + std::string("[]")));
+    } else {
+      wrong(key, element, "a list of tables");
+    }
+  }
+  return result;
+}
+
+std::optional<double> ConfigTable::number_or_word(const Key& key, const char* word, const Range& range) const {
+  const std::string allowed = fmt::format("\"{}\" or {}", word, range.text());
+  const toml::node* node = find(key, "number or word", fmt::format("\"{}\"", word), allowed);
+  if (node == nullptr || node->value_exact<std::string>() == word) return std::nullopt;
+  const std::optional<double> value = node->is_number() ? node->value<double>() : std::nullopt;
+  if (value && std::isfinite(*value) && range.contains(*value)) return value;
+  wrong(key, *node, allowed);
+  return std::nullopt;
+}
+
+}  // namespace supple

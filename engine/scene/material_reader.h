@@ -1,0 +1,12 @@
+// Materials as scene files give them: a preset's name, or a table with the model and its parameters.
+#pragma once
+
+#include "scene/config.h"
+#include "scene/scene_def.h"
+
+namespace supple {
+
+// Reads `material` (and `fibre`) of a body or a region.
+SubstanceDef read_substance(const ConfigTable& owner);
+
+}  // namespace supple

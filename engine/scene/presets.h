@@ -1,0 +1,37 @@
+// Materials by everyday names, so that a first scene just works: real units, soft enough for thirty steps a second.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "sim/elements/tetrahedron.h"
+#include "sim/material.h"
+
+namespace supple {
+
+struct MaterialPreset {
+  const char* name;
+  const char* meaning;
+  double young, poisson;  // [Pa]
+  double density;         // where the body does not give one [kg/m^3]
+  double fibre;           // kappa along the body's y axis; 0: none [Pa]
+  bool neo_hookean;       // else corotated
+
+  Material material() const {
+    const Lame lame = Lame::from_young(young, poisson);
+    return neo_hookean ? Material(NeoHookean::from(lame)) : Material(Corotated::from(lame));
+  }
+};
+
+// Moduli of the order that tables of engineering materials give for table jelly, a soft silicone rubber, muscle at rest
+// and balsa (whose true fibre modulus is ten times higher, more than ten iterations a step resolve). Poisson's ratio
+// stays where linear tetrahedra do not lock.
+inline constexpr std::array material_presets = {
+    MaterialPreset{"jelly", "table jelly: wobbles under its own weight", 1e4, 0.4, 1050, 0, true},
+    MaterialPreset{"rubber", "soft rubber: springy, keeps its shape", 1e6, 0.45, 1100, 0, true},
+    MaterialPreset{"flesh", "muscle at rest", 4e4, 0.45, 1060, 0, true},
+    MaterialPreset{"wood", "balsa-like: stiff along the body's y axis, softer across", 2e7, 0.3, 160, 2e8, false},
+};
+
+}  // namespace supple

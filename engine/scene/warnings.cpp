@@ -1,0 +1,74 @@
+#include "scene/warnings.h"
+
+#include <numeric>
+
+#include "geometry/cloth.h"
+
+namespace supple {
+namespace {
+
+Problem at(const Problem& place, std::string message) {
+  return {place.source, place.line, place.column, std::move(message)};
+}
+
+}  // namespace
+
+double crossing_number(const Body& body) {
+  const double h = body.description.time_step, size = bounds_of(body.description.mesh.rest).diagonal();
+  double stiffness =
+      system_stiffness(body.def.substance.material, body.def.solver.fit).k + body.def.substance.fibre.kappa;
+  double density = body.description.density;
+  if (body.def.cloth) {  // a sheet: tension by width over mass by area
+    const std::vector<double>& points = body.description.point_mass;
+    const std::vector<double> areas = vertex_areas({body.description.mesh.rest, body.surface});
+    stiffness = body.def.cloth->stretch;
+    density = std::accumulate(points.begin(), points.end(), 0.0) / std::accumulate(areas.begin(), areas.end(), 0.0);
+  }
+  return stiffness * h * h / (density * size * size);
+}
+
+std::vector<Problem> warnings(const SceneDef& scene, const std::vector<Body>& bodies) {
+  std::vector<Problem> list;
+  for (const Body& body : bodies) {
+    const TetMesh& mesh = body.description.mesh;
+    const MeshQuality q = quality(mesh);
+    const Bounds box = bounds_of(mesh.rest);
+    if (!body.def.cloth && q.smallest_volume < 1e-4) {
+      list.push_back(at(body.def.place, fmt::format("body '{}' has slivers: its smallest element has {:.1e} of the "
+                                                    "mean volume, its smallest dihedral angle is {:.2g} degrees",
+                                                    body.def.name, q.smallest_volume, q.smallest_dihedral)));
+    }
+    const std::vector<double>& points = body.description.point_mass;
+    const double mass = body.description.density * q.volume + std::accumulate(points.begin(), points.end(), 0.0);
+    for (std::size_t i = 0; i < body.description.handles.size(); ++i) {
+      const Handle& handle = body.description.handles[i];
+      if (handle.spring <= 0) continue;
+      const double sag = mass * scene.gravity.norm() / (handle.spring * static_cast<double>(handle.vertices.size()));
+      if (sag > 0.02 * box.diagonal()) {
+        list.push_back(at(body.def.handles[i].select.place,
+                          fmt::format("handle '{}' of body '{}' is soft for its load: the body's weight alone "
+                                      "stretches its springs by {:.2g} m ({:.0f} % of its size)",
+                                      handle.name, body.def.name, sag, 100 * sag / box.diagonal())));
+      }
+    }
+    const double crossing = crossing_number(body);
+    if (crossing > 300 && body.def.solver.settings.iterations <= 10) {
+      list.push_back(at(body.def.place, fmt::format("body '{}' is stiff for {} iterations a step: k h^2 / (rho L^2) = "
+                                                    "{:.3g}; more iterations or substeps make it sharper",
+                                                    body.def.name, body.def.solver.settings.iterations, crossing)));
+    }
+    for (const Body& other : bodies) {
+      if (&other == &body) break;
+      const Bounds b = bounds_of(other.description.mesh.rest);
+      const bool apart = (box.lower.array() >= b.upper.array()).any() || (b.lower.array() >= box.upper.array()).any();
+      if (!apart)
+        list.push_back(
+            at(body.def.place,
+               fmt::format("bodies '{}' and '{}' overlap at the start; bodies do not collide with each other",
+                           other.def.name, body.def.name)));
+    }
+  }
+  return list;
+}
+
+}  // namespace supple

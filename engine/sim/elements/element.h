@@ -1,0 +1,23 @@
+// The closed set of element kinds. A new one is a header in elements/ (corners, fields, energy with its derivative), an
+// entry here, its case in dispatch() of kernels.cpp, and its rows of L in element_records.cpp.
+#pragma once
+
+#include "sim/elements/spring.h"
+#include "sim/elements/tetrahedron.h"
+
+namespace supple {
+
+enum class ElementKind { tetrahedron, spring };
+
+constexpr int most_corners = 4;
+constexpr int most_fields = 10;
+
+// The last field of every kind is the element's weight: padding lanes have 0 there.
+constexpr int corners_of(ElementKind kind) {
+  return kind == ElementKind::tetrahedron ? Tetrahedron::corners : SpringElement::corners;
+}
+constexpr int fields_of(ElementKind kind) {
+  return kind == ElementKind::tetrahedron ? Tetrahedron::fields : SpringElement::fields;
+}
+
+}  // namespace supple

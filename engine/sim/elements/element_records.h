@@ -1,0 +1,39 @@
+// A body's elements before they are packed into SIMD blocks: what the model's builder sorts, packs and adds up into L.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "base/types.h"
+#include "geometry/mesh.h"
+#include "sim/elements/element.h"
+
+namespace supple {
+
+struct Spring {
+  std::int32_t from, to;  // vertices of the mesh, in its own numbering
+  double length;          // at rest [m]
+  double stiffness;       // [N/m]
+};
+
+struct ElementRecord {
+  ElementKind kind;
+  int region;          // of tetrahedra
+  std::int32_t input;  // index among the input's elements of this kind
+  std::array<std::int32_t, most_corners> corner{};
+  std::array<double, most_fields> field{};
+};
+
+// Tetrahedra first, then springs; corners in the mesh's numbering.
+std::vector<ElementRecord> element_records(const TetMesh& mesh, const std::vector<Spring>& springs);
+
+// What an element adds to L = sum_e G_e^T (weight) G_e: rows of G_e^T, one a corner, and their weight [N/m].
+struct SystemTerm {
+  std::array<std::array<double, 3>, most_corners> row{};
+  double weight;
+};
+
+// k: of the element's material [Pa]; fibre: null when there is none. At most two terms.
+std::vector<SystemTerm> system_terms(const ElementRecord& element, double k, const Fibre* fibre);
+
+}  // namespace supple

@@ -1,0 +1,28 @@
+// Springs between two vertices, of which mass-spring cloth is made: k/2 (|x_i - x_j| - r)^2 (Liu, Bargteil, O'Brien,
+// Kavan 2013, "Fast simulation of mass-spring systems").
+#pragma once
+
+#include "sim/small_matrix.h"
+
+namespace supple {
+
+struct SpringElement {
+  static constexpr int corners = 2;
+  static constexpr int fields = 2;  // rest length r [m], stiffness k [N/m]
+
+  // Energy [J]; force becomes dE/dx of corner 1 (that of corner 0 is its negative) [N]. Ends that coincide have no
+  // direction; the force is then zero.
+  template <class V>
+  V energy(const V (&x)[2][3], const V (&field)[fields], V (&force)[1][3]) const {
+    using std::sqrt;
+    const V d[3] = {x[1][0] - x[0][0], x[1][1] - x[0][1], x[1][2] - x[0][2]};
+    const V length = sqrt(madd(d[0], d[0], madd(d[1], d[1], d[2] * d[2])));
+    const auto defined = length > V(1e-150);
+    const V excess = length - field[0], stiffness = field[1];
+    const V tension = choose(defined, stiffness * excess / choose(defined, length, V(1.0)), V(0.0));
+    for (int c = 0; c < 3; ++c) force[0][c] = tension * d[c];
+    return V(0.5) * stiffness * excess * excess;
+  }
+};
+
+}  // namespace supple

@@ -1,0 +1,115 @@
+// Linear tetrahedra of any material, with fibres on top where a scene has them. Not here: which material an element has
+// (kernels.cpp dispatches once a chunk).
+#pragma once
+
+#include "sim/materials/parameters.h"
+#include "sim/svd.h"
+
+namespace supple {
+
+// Fibres along one direction of the rest shape, added to any material: kappa/2 (|F d| - 1)^2 (Liu et al. 2017, section
+// 4.4). [J/m^3]
+struct Fibre {
+  double kappa = 0;                 // [Pa]; 0: none
+  double direction[3] = {0, 1, 0};  // unit vector of the rest shape
+};
+
+struct Tetrahedron {
+  static constexpr int corners = 4;
+  static constexpr int fields = 10;  // inverse of the rest edge matrix, row by row [1/m], then the rest volume [m^3]
+
+  static void fill(const double (&rest)[4][3], double (&field)[fields]) {
+    Matrix3<double> edges;
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) edges(i, k) = rest[k + 1][i] - rest[0][i];
+    }
+    const Matrix3<double> cofactors = cofactor(edges);
+    const double determ = determinant(edges, cofactors);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) field[3 * i + j] = cofactors(j, i) / determ;
+    }
+    field[9] = determ / 6;
+  }
+
+  // Gradients of the four shape functions, the transpose of G_e. [1/m]
+  static void shape_gradients(const double (&field)[fields], double (&gradient)[4][3]) {
+    for (int j = 0; j < 3; ++j) {
+      gradient[0][j] = 0;
+      for (int k = 0; k < 3; ++k) {
+        gradient[k + 1][j] = field[3 * k + j];
+        gradient[0][j] -= field[3 * k + j];
+      }
+    }
+  }
+};
+
+// Energy density and first Piola-Kirchhoff stress of a material at F, by what it needs.
+template <class M, class V>
+V density_of(const M& material, const Matrix3<V>& f, Matrix3<V>& stress) {
+  if constexpr (M::needs == Needs::gradient) {
+    return material.density(f, stress);
+  } else if constexpr (M::needs == Needs::stretch) {
+    const Matrix3<V> r = polar_rotation(f);
+    Symmetric3<V> slope;
+    const V energy = material.density(symmetric_product(r, f), slope);
+    stress = product(r, slope);
+    return energy;
+  } else {
+    const Svd3<V> decomposed = svd(f);
+    V slope[3];
+    const V energy = material.density(decomposed.s, slope);
+    stress = recomposed(decomposed, slope);
+    return energy;
+  }
+}
+
+// Adds the fibres' stress and returns their density. Where F d = 0 its direction is not defined; the force is then
+// zero.
+template <class V>
+V add_fibre(const Fibre& fibre, const Matrix3<V>& f, Matrix3<V>& stress) {
+  using std::sqrt;
+  const V d[3] = {V(fibre.direction[0]), V(fibre.direction[1]), V(fibre.direction[2])};
+  V along[3];
+  for (int i = 0; i < 3; ++i) along[i] = madd(f(i, 0), d[0], madd(f(i, 1), d[1], f(i, 2) * d[2]));
+  const V length = sqrt(madd(along[0], along[0], madd(along[1], along[1], along[2] * along[2])));
+  const auto defined = length > V(1e-150);
+  const V excess = length - V(1.0), kappa(fibre.kappa);
+  const V tension = choose(defined, kappa * excess / choose(defined, length, V(1.0)), V(0.0));
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) stress(i, j) = madd(tension * along[i], d[j], stress(i, j));
+  }
+  return V(0.5) * kappa * excess * excess;
+}
+
+template <class M, bool with_fibre>
+struct TetrahedronFormula : Tetrahedron {
+  const M& material;
+  const Fibre* fibre;
+
+  TetrahedronFormula(const M& m, const Fibre* along) : material(m), fibre(along) {}
+
+  // Energy [J]; force becomes dE/dx of corners 1 to 3 (that of corner 0 is minus their sum) [N]. F = (current edges)
+  // (rest edges)^-1 and the gradient V P (rest edges)^-T, as in Sifakis and Barbic 2012, "FEM simulation of 3D
+  // deformable solids", section 4.
+  template <class V>
+  V energy(const V (&x)[4][3], const V (&field)[fields], V (&force)[3][3]) const {
+    Matrix3<V> f;
+    for (int i = 0; i < 3; ++i) {
+      const V edge[3] = {x[1][i] - x[0][i], x[2][i] - x[0][i], x[3][i] - x[0][i]};
+      for (int j = 0; j < 3; ++j)
+        f(i, j) = madd(edge[0], field[j], madd(edge[1], field[3 + j], edge[2] * field[6 + j]));
+    }
+    Matrix3<V> stress;
+    V density = density_of(material, f, stress);
+    if constexpr (with_fibre) density = density + add_fibre(*fibre, f, stress);
+    const V volume = field[9];
+    for (int i = 0; i < 3; ++i) {
+      const V p0 = volume * stress(i, 0), p1 = volume * stress(i, 1), p2 = volume * stress(i, 2);
+      for (int k = 0; k < 3; ++k)
+        force[k][i] = madd(p0, field[3 * k], madd(p1, field[3 * k + 1], p2 * field[3 * k + 2]));
+    }
+    return volume * density;
+  }
+};
+
+}  // namespace supple

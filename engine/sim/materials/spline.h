@@ -1,0 +1,106 @@
+// Materials designed by curves (Xu, Sin, Zhu, Barbic 2015, "Nonlinear material design using principal stretches"): a',
+// b' and c' of the Valanis-Landel form are cubic splines through control points. A curve that is not given is zero and
+// costs nothing. Presets A and B of the paper's figure 6: Neo-Hookean with more resistance to compression, or to
+// tension.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "sim/materials/log_volume.h"
+#include "sim/materials/parameters.h"
+#include "sim/materials/valanis_landel.h"
+
+namespace supple {
+
+struct ControlPoint {
+  double at;     // stretch, product of two, or volume ratio
+  double value;  // derivative of the energy there [Pa]
+};
+
+// A natural cubic spline: twice continuously differentiable, straight beyond its first and last point. Stands for the
+// derivative of an energy that is zero at 1.
+class SplineCurve {
+ public:
+  static constexpr int most_points = 24;
+
+  SplineCurve() = default;
+  // Points in ascending order, two at least.
+  explicit SplineCurve(std::vector<ControlPoint> points);
+
+  bool empty() const { return points_.empty(); }
+  const std::vector<ControlPoint>& points() const { return points_; }
+
+  // The integral of the curve from 1 to x; `slope` becomes the curve itself.
+  template <class V>
+  V value(const V& x, V& slope) const {
+    Chosen<V> piece{V(points_.front().at), V(pieces_[0].c[0]), V(pieces_[0].c[1]), V(0.0), V(0.0),
+                    V(pieces_[0].energy)};
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const Piece& next = pieces_[i + 1];
+      const auto inside = x >= V(points_[i].at);
+      piece = {choose(inside, V(points_[i].at), piece.from), choose(inside, V(next.c[0]), piece.c0),
+               choose(inside, V(next.c[1]), piece.c1),       choose(inside, V(next.c[2]), piece.c2),
+               choose(inside, V(next.c[3]), piece.c3),       choose(inside, V(next.energy), piece.energy)};
+    }
+    const V t = x - piece.from;
+    slope = madd(t, madd(t, madd(t, piece.c3, piece.c2), piece.c1), piece.c0);
+    return madd(t, madd(t, madd(t, madd(t, V(0.25) * piece.c3, V(1.0 / 3) * piece.c2), V(0.5) * piece.c1), piece.c0),
+                piece.energy);
+  }
+
+ private:
+  // The curve c0 + c1 t + c2 t^2 + c3 t^3 from a point on, and its integral up to there. The first piece lies before
+  // the first point and counts t from it too.
+  struct Piece {
+    std::array<double, 4> c;
+    double energy;
+  };
+  template <class V>
+  struct Chosen {
+    V from, c0, c1, c2, c3, energy;
+  };
+  std::vector<ControlPoint> points_;
+  std::vector<Piece> pieces_;  // points + 1
+};
+
+template <class M>
+struct Curve {
+  const char* name;
+  const char* meaning;
+  SplineCurve M::*value;
+};
+
+struct Spline {
+  static constexpr std::string_view name = "spline";
+  static constexpr Needs needs = Needs::singular_values;
+  static constexpr bool may_be_negative = true;
+  SplineCurve a, b, c;
+
+  static constexpr std::array<Parameter<Spline>, 0> parameters() { return {}; }
+  static constexpr auto curves() {
+    return std::array{
+        Curve<Spline>{"a", "control points [stretch, a'] of the curve over a stretch", &Spline::a},
+        Curve<Spline>{"b", "control points [product, b'] of the curve over products of two stretches", &Spline::b},
+        Curve<Spline>{"c", "control points [J, c'] of the curve over the volume ratio", &Spline::c}};
+  }
+  // The presets, sampled at control points.
+  static Spline preset_a(const Lame& lame);
+  static Spline preset_b(const Lame& lame);
+  const char* problem() const;
+
+  template <class V>
+  V density(const V (&s)[3], V (&slope)[3]) const {
+    // Dispatched outside of lanes: a curve that is absent is not evaluated.
+    const NoTerm none;
+    if (b.empty() && c.empty()) return valanis_landel(a, none, none, s, slope);
+    if (b.empty()) return valanis_landel(a, none, c, s, slope);
+    if (c.empty()) return valanis_landel(a, b, none, s, slope);
+    return valanis_landel(a, b, c, s, slope);
+  }
+
+  double axial_stress(double s) const;
+  std::vector<double> seams() const;
+};
+
+}  // namespace supple
