@@ -230,8 +230,10 @@ void Renderer::make_labels() {
   gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
   for (const DrawMesh& mesh : stage_.meshes) {
     if (mesh.label.empty()) continue;
+    // On the ground: what hangs in the air moves below where it starts.
     const CaptionBitmap bitmap = draw_caption(stage_.font, mesh.label, pixels);
-    Label label{0, bitmap.width, bitmap.height, Vec3(mesh.rest.center().x(), mesh.rest.lower.y(), mesh.rest.upper.z())};
+    Label label{0, bitmap.width, bitmap.height,
+                Vec3(mesh.rest.center().x(), std::min(mesh.rest.lower.y(), 0.0), mesh.rest.upper.z())};
     gl_.GenTextures(1, &label.texture);
     gl_.BindTexture(GL_TEXTURE_2D, label.texture);
     gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, bitmap.width, bitmap.height, 0, GL_RED, GL_UNSIGNED_BYTE,

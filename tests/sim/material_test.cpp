@@ -210,18 +210,7 @@ TEST(Polar, JacobiRotationMaximisesTheTraceAsTheSvdDoes) {
   }
 }
 
-TEST(Stiffness, FollowsEquationElevenInClosedForm) {
-  // f = 4 mu (s-1)^3: 12 integral 4 mu (s-1)^4 = 0.6 mu; linear stresses give their own slope.
-  EXPECT_NEAR(fitted_stiffness(Polynomial{7}), 0.6 * 7, 1e-12);
-  EXPECT_NEAR(fitted_stiffness(AsRigidAsPossible{7}), 2 * 7, 1e-12);
-  EXPECT_NEAR(fitted_stiffness(Corotated{7, 11}), 2 * 7 + 11, 1e-12);
-  // f = mu (s - 1/s) + lambda log(s)/s; integrals of (s-1)(s-1/s) and (s-1) log(s)/s over [1/2, 3/2].
-  const auto over = [](auto primitive) { return primitive(1.5) - primitive(0.5); };
-  const double by_mu = 12 * over([](double s) { return s * s * s / 3 - s * s / 2 - s + std::log(s); });
-  const double by_lambda = 12 * over([](double s) { return s * std::log(s) - s - std::log(s) * std::log(s) / 2; });
-  EXPECT_NEAR(fitted_stiffness(NeoHookean{3, 0}), 3 * by_mu, 1e-12);
-  EXPECT_NEAR(fitted_stiffness(NeoHookean{3, 5}), 3 * by_mu + 5 * by_lambda, 1e-12);
-  // An interval that reaches into the extension is integrated in two smooth parts.
+TEST(Stiffness, IsIntegratedInSmoothPartsWhereAMaterialIsContinued) {
   double sum = 0;
   const int cells = 200000;
   for (int i = 0; i < cells; ++i) {

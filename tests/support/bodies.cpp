@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "geometry/cloth.h"
 #include "geometry/tetrahedralize.h"
 
 namespace supple::test {
@@ -59,6 +60,21 @@ BodyDescription bar(const Material& material, Held held, Precision precision, in
     }
     body.handles.push_back(end);
   }
+  return body;
+}
+
+BodyDescription spring_net(int cells) {
+  const ClothMesh cloth = cloth_grid({0.4, 0.4}, {cells, cells});
+  BodyDescription body;
+  body.name = "net";
+  body.mesh.rest = cloth.surface.points;
+  body.mesh.tets.resize(0, 4);
+  body.precision = Precision::double_precision;
+  for (const auto* pairs : {&cloth.edges, &cloth.diagonals, &cloth.bends}) {
+    for (const auto& [from, to] : *pairs)
+      body.springs.push_back({from, to, (body.mesh.rest.row(from) - body.mesh.rest.row(to)).norm(), 50});
+  }
+  body.point_mass = vertex_areas(cloth.surface);
   return body;
 }
 

@@ -29,6 +29,9 @@ enum class Held { nothing, hard_end, spring_end };
 BodyDescription bar(const Material& material, Held held, Precision precision = Precision::double_precision,
                     int cells = 1);
 
+// A free square of cells x cells springs, 0.4 m wide, in the plane z = 0.
+BodyDescription spring_net(int cells);
+
 // Inputs for a body whose handles stay where they rest.
 FrameInputs still_inputs(const Model& model);
 
