@@ -228,7 +228,7 @@ double square_of(const Body& body) {
   const Mat3 turn = rotation_from_degrees(body.def.turn_deg).toRotationMatrix();
   Vec3 extent = bounds_of(body.description.mesh.rest * turn).extent();
   std::sort(extent.begin(), extent.end());
-  return body.def.cloth ? extent[2] / 20 : extent[1] / 8;
+  return body.def.cloth ? extent[2] / 20 : extent[1] / 6;
 }
 
 }  // namespace

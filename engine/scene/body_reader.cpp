@@ -216,7 +216,7 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
       {"none", "grid", "checks"});
   body.pattern = pattern == "grid" ? Pattern::grid : pattern == "checks" ? Pattern::checks : Pattern::none;
   body.pattern_size = table.number_if_given(
-      {"pattern_size", "m", "edge of its squares; an eighth of the middle side, of cloth a twentieth of the longest"},
+      {"pattern_size", "m", "edge of its squares; a sixth of the middle side, of cloth a twentieth of the longest"},
       Range::positive());
   body.color = table.vector_if_given({"color", "sRGB", "over the shape's own"}, Range::between(0, 1));
   body.skin_cells = table.number({"skin_cells", "", "cells of the drawn skin along the longest side of a shape"}, 72,

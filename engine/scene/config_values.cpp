@@ -225,8 +225,9 @@ std::filesystem::path ConfigTable::file(const Key& key) const {
   std::error_code error;
   if (std::filesystem::exists(beside, error)) return beside;
   if (std::filesystem::exists(asset, error)) return asset;
-  config_->complain(node, fmt::format("{} = '{}': no such file (looked for {} and {})", key.name, *value,
-                                      beside.string(), asset.string()));
+  const std::string places =
+      beside == asset ? beside.string() : fmt::format("{} and {}", beside.string(), asset.string());
+  config_->complain(node, fmt::format("{} = '{}': no such file (looked for {})", key.name, *value, places));
   return {};
 }
 

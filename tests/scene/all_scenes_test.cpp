@@ -1,0 +1,105 @@
+// Every scene that ships: it steps, no step ends worse than staying, and the same bits come out for any number of
+// threads. SUPPLE_SCENE_FRAMES sets how many frames are run (4 without it).
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <set>
+
+#include "scene/assemble.h"
+#include "scene/scene_reader.h"
+#include "scene/warnings.h"
+#include "support/bodies.h"
+
+namespace supple {
+namespace {
+
+int frames_to_run() {
+  const char* wanted = std::getenv("SUPPLE_SCENE_FRAMES");
+  return wanted != nullptr ? std::atoi(wanted) : 4;
+}
+
+std::vector<std::filesystem::path> scenes() {
+  std::vector<std::filesystem::path> list;
+  for (const auto& entry : std::filesystem::directory_iterator(test::assets / "scenes")) list.push_back(entry.path());
+  std::sort(list.begin(), list.end());
+  return list;
+}
+
+struct Film {
+  SceneDef scene;
+  std::vector<Body> bodies;
+  std::vector<Model> models;
+
+  explicit Film(const std::filesystem::path& path) : scene(load_scene(path, test::assets, {})), bodies(assemble(scene)) {
+    for (const Body& body : bodies) models.push_back(build_model(body.description));
+  }
+
+  // Calls visit(body, frame, state before, inputs, state after) after each step.
+  template <class Visit>
+  void play(int thread_count, int frames, const Visit& visit) const {
+    Threads threads(thread_count);
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      FrameInputs inputs{scene.gravity, {}, {}, bodies[b].def.solver.settings};
+      State state = start_state(models[b], bodies[b]);
+      Workspace w;
+      w.threads = &threads;
+      for (int number = 0; number < frames * scene.substeps; ++number) {
+        const double h = scene.time_step(), time = (number + 1) * h;
+        handle_targets(models[b], bodies[b], time, inputs.targets);
+        handle_targets(models[b], bodies[b], time - 0.5 * h, inputs.middle_targets);
+        const State before = state;
+        const StepReport& report = step(models[b], inputs, state, w);
+        ASSERT_FALSE(report.failed) << bodies[b].def.name << " step " << number << ": " << report.failure.what;
+        visit(b, number, before, inputs, state);
+      }
+    }
+  }
+};
+
+TEST(Scenes, NoStepOfAnySceneIsWorseThanStaying) {
+  for (const std::filesystem::path& path : scenes()) {
+    const Film run(path);
+    EXPECT_FALSE(run.scene.title.empty()) << path;
+    std::vector<Workspace> probes(run.bodies.size());
+    run.play(2, frames_to_run(),
+             [&](std::size_t b, int number, const State& before, const FrameInputs& inputs, const State& after) {
+               const Model& model = run.models[b];
+               Workspace& probe = probes[b];
+               probe.prepare(model, inputs.solver);
+               begin_step(model, inputs, before, probe);
+               probe.x.topRows(model.free) = before.x.topRows(model.free);
+               const double staying = evaluate(model, probe, probe.x, probe.energy, nullptr, nullptr, nullptr).value;
+               Positions reached = after.x;
+               const double change =
+                   evaluate(model, probe, reached, probe.trial_energy, nullptr, &probe.x, &probe.energy).value;
+               EXPECT_LE(change, 1e-12 * std::abs(staying))
+                   << path.stem() << ", " << run.bodies[b].def.name << ", step " << number;
+             });
+  }
+}
+
+TEST(Scenes, GiveTheSameBitsForAnyNumberOfThreads) {
+  for (const std::filesystem::path& path : scenes()) {
+    const Film run(path);
+    std::set<std::vector<std::uint64_t>> runs;
+    for (const int threads : {1, 2, 4}) {
+      std::vector<std::uint64_t> hashes;
+      run.play(threads, frames_to_run(), [&](std::size_t b, int, const State&, const FrameInputs&, const State& after) {
+        hashes.push_back(state_hash(run.models[b], after));
+      });
+      runs.insert(hashes);
+    }
+    EXPECT_EQ(runs.size(), 1u) << path.stem();
+  }
+}
+
+TEST(Scenes, HaveNothingToWarnOf) {
+  for (const std::filesystem::path& path : scenes()) {
+    const SceneDef scene = load_scene(path, test::assets, {});
+    for (const Problem& warning : warnings(scene, assemble(scene)))
+      ADD_FAILURE() << path.stem() << ": " << warning.text();
+  }
+}
+
+}  // namespace
+}  // namespace supple

@@ -1,0 +1,242 @@
+// Implicit midpoint, stiffness-proportional damping, springs and fibres: objectives that are derivatives of each other,
+// and the physics they are chosen for.
+#include <gtest/gtest.h>
+
+#include "sim/measures.h"
+#include "support/bodies.h"
+
+namespace supple {
+namespace {
+
+using test::bar;
+using test::Held;
+using test::still_inputs;
+
+FrameInputs with_middle(FrameInputs inputs) {
+  inputs.middle_targets = inputs.targets;
+  inputs.middle_targets.array() += 0.003;
+  return inputs;
+}
+
+std::vector<BodyDescription> all_objectives() {
+  std::vector<BodyDescription> list;
+  for (const Integrator integrator : {Integrator::backward_euler, Integrator::implicit_midpoint}) {
+    for (const double damping : {0.0, 0.02}) {
+      for (const Held held : {Held::nothing, Held::hard_end, Held::spring_end}) {
+        BodyDescription body = bar(NeoHookean{1e4, 3e4}, held);
+        body.fibres = {Fibre{2e4, {0.6, 0.8, 0}}};
+        body.integrator = integrator;
+        body.damping = damping;
+        list.push_back(body);
+      }
+      list.push_back(test::spring_net(5));
+      list.back().integrator = integrator;
+      list.back().damping = damping;
+    }
+  }
+  return list;
+}
+
+TEST(Integrators, GradientAndDifferencesAgreeForEveryObjective) {
+  for (const BodyDescription& body : all_objectives()) {
+    const Model model = build_model(body);
+    Workspace w;
+    FrameInputs inputs = with_middle(still_inputs(model));
+    inputs.targets.array() += 0.01;
+    w.prepare(model, inputs.solver);
+    State state = rest_state(model);
+    state.x = test::shaken(model.rest, 0.01, 3);
+    state.v = test::shaken(Positions::Zero(model.vertices, 3), 1, 5);
+    begin_step(model, inputs, state, w);
+    w.x.topRows(model.free) = test::shaken(model.rest, 0.02, 4).topRows(model.free);
+    w.direction = test::shaken(Positions::Zero(model.free, 3), 1, 6);
+    const Change at = evaluate(model, w, w.x, w.energy, &w.gradient, nullptr, nullptr);
+    double best = 1e300;
+    for (const double h : {1e-4, 1e-5, 1e-6, 1e-7}) {
+      Positions ahead = w.x, behind = w.x;
+      ahead.topRows(model.free) += h * w.direction;
+      behind.topRows(model.free) -= h * w.direction;
+      const double difference = (evaluate(model, w, ahead, w.trial_energy, nullptr, nullptr, nullptr).value -
+                                 evaluate(model, w, behind, w.trial_energy, nullptr, nullptr, nullptr).value) /
+                                (2 * h);
+      best = std::min(best, std::abs(difference - at.slope));
+    }
+    EXPECT_LT(best, 1e-6 * std::abs(at.slope)) << body.name << ' ' << body.damping;
+    w.trial = w.x;
+    w.trial.topRows(model.free) += 1e-3 * w.direction;
+    const double change = evaluate(model, w, w.trial, w.trial_energy, nullptr, &w.x, &w.energy).value;
+    const double value = evaluate(model, w, w.trial, w.trial_energy, nullptr, nullptr, nullptr).value;
+    EXPECT_NEAR(change, value - at.value, 1e-11 * std::abs(value)) << body.name << ' ' << body.damping;
+  }
+}
+
+// The matrix of the model must be the second derivative of g where g is quadratic: for fibres and springs that are
+// linear at rest, along their own direction.
+TEST(Integrators, TheSystemMatrixIsTheHessianOfTheQuadraticPart) {
+  for (const Integrator integrator : {Integrator::backward_euler, Integrator::implicit_midpoint}) {
+    // As-rigid-as-possible with k = 2 mu: near rest, for a deformation without rotation, g is quadratic with A.
+    BodyDescription body = bar(AsRigidAsPossible{1e4}, Held::spring_end);
+    body.integrator = integrator;
+    body.damping = 0.01;
+    const Model model = build_model(body);
+    Workspace w;
+    FrameInputs inputs = still_inputs(model);
+    inputs.middle_targets = inputs.targets;
+    inputs.gravity.setZero();
+    w.prepare(model, inputs.solver);
+    State state = rest_state(model);
+    begin_step(model, inputs, state, w);
+    // A uniform stretch, symmetric, so that R stays the identity everywhere.
+    const double strain = 1e-4;
+    w.x = model.rest;
+    w.x.col(0) *= 1 + strain;
+    w.x.col(1) *= 1 - 0.5 * strain;
+    evaluate(model, w, w.x, w.energy, &w.gradient, nullptr, nullptr);
+    Positions solved(model.free, 3);
+    model.factor.solve(w.gradient.data(), solved.data(), w.solve_scratch.data());
+    EXPECT_LT((solved - (w.x - model.rest).topRows(model.free)).norm(), 1e-6 * (w.x - model.rest).norm());
+  }
+}
+
+State swinging(const Model& model, FrameInputs inputs, int frames, double* largest_energy = nullptr) {
+  State state = rest_state(model);
+  state.v.col(1) = 2 * model.rest.col(0);
+  inputs.middle_targets = inputs.targets;
+  inputs.gravity.setZero();
+  Workspace w;
+  for (int frame = 0; frame < frames; ++frame) {
+    step(model, inputs, state, w);
+    if (largest_energy != nullptr)
+      *largest_energy = std::max(*largest_energy, energies(model, state, inputs.gravity, w).total());
+  }
+  return state;
+}
+
+double energy_after(const BodyDescription& body, int frames) {
+  const Model model = build_model(body);
+  FrameInputs inputs = still_inputs(model);
+  inputs.solver.iterations = 100;
+  const State state = swinging(model, inputs, frames);
+  Workspace w;
+  w.prepare(model, inputs.solver);
+  return energies(model, state, Vec3::Zero(), w).total();
+}
+
+TEST(Integrators, MidpointKeepsTheEnergyThatBackwardEulerAndDampingLose) {
+  BodyDescription body = bar(Corotated{2e4, 2e4}, Held::hard_end, Precision::double_precision, 2);
+  const Model model = build_model(body);
+  double start = 0;
+  for (int v = 0; v < model.free; ++v) start += 0.5 * model.mass[v] * std::pow(2 * model.rest(v, 0), 2);
+  const double euler = energy_after(body, 60);
+  body.integrator = Integrator::implicit_midpoint;
+  const double midpoint = energy_after(body, 60);
+  body.damping = 0.02;
+  const double damped_midpoint = energy_after(body, 60);
+  body.integrator = Integrator::backward_euler;
+  const double damped_euler = energy_after(body, 60);
+  EXPECT_NEAR(midpoint / start, 1, 0.15);
+  EXPECT_LT(euler, 0.6 * start);
+  EXPECT_LT(damped_midpoint, 0.5 * midpoint);
+  EXPECT_LT(damped_euler, euler);
+}
+
+TEST(Integrators, MidpointIsOfSecondOrderAndBackwardEulerOfFirst) {
+  const auto end_position = [](Integrator integrator, int steps) {
+    BodyDescription body = bar(Corotated{2e4, 2e4}, Held::hard_end);
+    body.integrator = integrator;
+    body.time_step = 0.08 / steps;
+    const Model model = build_model(body);
+    FrameInputs inputs = still_inputs(model);
+    inputs.solver.iterations = 300;
+    return swinging(model, inputs, steps).x;
+  };
+  const Positions exact = end_position(Integrator::implicit_midpoint, 512);
+  const auto order = [&](Integrator integrator) {
+    const double coarse = (end_position(integrator, 32) - exact).norm(),
+                 fine = (end_position(integrator, 64) - exact).norm();
+    return std::log2(coarse / fine);
+  };
+  EXPECT_NEAR(order(Integrator::backward_euler), 1, 0.25);
+  EXPECT_NEAR(order(Integrator::implicit_midpoint), 2, 0.25);
+}
+
+TEST(Integrators, BothFallFreelyAndKeepMomentum) {
+  for (const double damping : {0.0, 0.05}) {
+    BodyDescription body = bar(NeoHookean{1e4, 3e4}, Held::nothing, Precision::single_precision, 2);
+    body.integrator = Integrator::implicit_midpoint;
+    body.damping = damping;
+    const Model model = build_model(body);
+    const FrameInputs inputs = still_inputs(model);
+    State state = rest_state(model);
+    Workspace w;
+    const int frames = 30;
+    for (int frame = 0; frame < frames; ++frame) step(model, inputs, state, w);
+    // Midpoint is exact under constant acceleration.
+    const double t = model.time_step * frames, fall = -0.5 * 9.81 * t * t;
+    EXPECT_LT((state.x.col(1).array() - model.rest.col(1).array() - fall).abs().maxCoeff(), 1e-9);
+    EXPECT_LT((state.v.col(1).array() + 9.81 * t).abs().maxCoeff(), 1e-9);
+  }
+}
+
+TEST(Integrators, EveryStepOfEveryObjectiveIsNoWorseThanStaying) {
+  for (const BodyDescription& body : all_objectives()) {
+    const Model model = build_model(body);
+    FrameInputs inputs = still_inputs(model);
+    inputs.middle_targets = inputs.targets;
+    inputs.solver.iterations = 1;  // too few on purpose
+    State state = rest_state(model);
+    state.x.topRows(model.free) = test::shaken(model.rest, 0.05, 3).topRows(model.free);
+    Workspace w, probe;
+    probe.prepare(model, inputs.solver);
+    for (int frame = 0; frame < 40; ++frame) {
+      begin_step(model, inputs, state, probe);
+      probe.x.topRows(model.free) = state.x.topRows(model.free);
+      const double staying = evaluate(model, probe, probe.x, probe.energy, nullptr, nullptr, nullptr).value;
+      step(model, inputs, state, w);
+      probe.x.topRows(model.free) = state.x.topRows(model.free);
+      const double reached = evaluate(model, probe, probe.x, probe.energy, nullptr, nullptr, nullptr).value;
+      EXPECT_LE(reached, staying + 1e-12 * std::abs(staying)) << body.name << " frame " << frame;
+    }
+  }
+}
+
+TEST(Springs, PullByTheirElongationAndAreWholeInTheSystemMatrix) {
+  // Two masses, one held: x'' = -k/m (x - r). At equilibrium under gravity the spring is longer by m g / k.
+  BodyDescription body;
+  body.name = "pendulum";
+  body.mesh.rest.resize(2, 3);
+  body.mesh.rest << 0, 0, 0, 0, -1, 0;
+  body.mesh.tets.resize(0, 4);
+  body.springs = {{0, 1, 1.0, 40.0}};
+  body.point_mass = {1, 2};
+  body.handles = {Handle{"top", {0}, 0}};
+  body.precision = Precision::double_precision;
+  body.time_step = 1;
+  const Model model = build_model(body);
+  FrameInputs inputs = still_inputs(model);
+  inputs.solver.iterations = 50;
+  State state = rest_state(model);
+  Workspace w;
+  for (int frame = 0; frame < 200; ++frame) step(model, inputs, state, w);
+  EXPECT_NEAR(in_input_order(model, state.x)(1, 1), -1 - 2 * 9.81 / 40, 1e-9);
+}
+
+TEST(Fibres, StiffenTheirDirectionAndNoOther) {
+  const auto sag = [](const Vec3& direction) {
+    BodyDescription body = bar(Corotated{1e4, 1e4}, Held::hard_end, Precision::double_precision, 2);
+    body.fibres = {Fibre{4e5, {direction.x(), direction.y(), direction.z()}}};
+    const Model model = build_model(body);
+    FrameInputs inputs = still_inputs(model);
+    inputs.gravity = Vec3(40, 0, 0);  // along the bar
+    inputs.solver.iterations = 50;
+    State state = rest_state(model);
+    Workspace w;
+    for (int frame = 0; frame < 200; ++frame) step(model, inputs, state, w);
+    return (state.x - model.rest).col(0).maxCoeff();
+  };
+  const double along = sag(Vec3::UnitX()), across = sag(Vec3::UnitY());
+  EXPECT_LT(along, 0.2 * across);
+}
+
+}  // namespace
+}  // namespace supple
