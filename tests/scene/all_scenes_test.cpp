@@ -8,6 +8,7 @@
 #include "scene/assemble.h"
 #include "scene/scene_reader.h"
 #include "scene/warnings.h"
+#include "sim/measures.h"
 #include "support/bodies.h"
 
 namespace supple {
@@ -30,7 +31,8 @@ struct Film {
   std::vector<Body> bodies;
   std::vector<Model> models;
 
-  explicit Film(const std::filesystem::path& path) : scene(load_scene(path, test::assets, {})), bodies(assemble(scene)) {
+  explicit Film(const std::filesystem::path& path)
+      : scene(load_scene(path, test::assets, {})), bodies(assemble(scene)) {
     for (const Body& body : bodies) models.push_back(build_model(body.description));
   }
 
@@ -90,6 +92,26 @@ TEST(Scenes, GiveTheSameBitsForAnyNumberOfThreads) {
       runs.insert(hashes);
     }
     EXPECT_EQ(runs.size(), 1u) << path.stem();
+  }
+}
+
+TEST(Scenes, TheHippoIsWholeAgainAfterTenSecondsFromRandomPositions) {
+  for (const int seed : {1, 2}) {
+    const SceneDef scene =
+        load_scene(test::assets / "scenes" / "hippo.toml", test::assets, {fmt::format("seed={}", seed)});
+    const Body body = assemble(scene).front();
+    const Model model = build_model(body.description);
+    FrameInputs inputs{scene.gravity, {}, {}, body.def.solver.settings};
+    inputs.targets.resize(0, 3);
+    State state = start_state(model, body);
+    EXPECT_GT(deformation(model, state.x).inverted.value_or(0), model.elements / 3);
+    Threads threads(2);
+    Workspace w;
+    w.threads = &threads;
+    for (int frame = 0; frame < 300; ++frame) ASSERT_FALSE(step(model, inputs, state, w).failed);
+    const Deformation end = deformation(model, state.x);
+    EXPECT_EQ(end.inverted, 0) << "seed " << seed;
+    EXPECT_LT(end.stretch, 1.2) << "seed " << seed;
   }
 }
 
