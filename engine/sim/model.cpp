@@ -147,6 +147,7 @@ Eigen::SparseMatrix<double> system_matrix(Model& model, const std::vector<Elemen
   const double h = model.time_step, drag = damping / h;
   const double stiffness = model.scheme.energy * model.scheme.theta * model.scheme.theta + drag;
   const Eigen::SparseMatrix<double> elastic = elastic_matrix(model, elements);
+  model.mean_stiffness = elastic.diagonal().sum() / static_cast<double>(elements.size());
   std::vector<Eigen::Triplet<double>> entries;
   for (int v = 0; v < model.free; ++v) {
     entries.emplace_back(

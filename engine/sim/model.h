@@ -64,6 +64,7 @@ struct Model {
   Integrator integrator = Integrator::backward_euler;
   TimeScheme scheme = scheme_of(Integrator::backward_euler);
   bool energy_may_be_negative = false;
+  double mean_stiffness = 0;  // trace of L over the number of elements [N/m]
 
   std::vector<Material> materials;         // by region
   std::vector<Fibre> fibres;               // by region; empty: none

@@ -20,15 +20,23 @@ void set_trial(const Model& model, Workspace& w, double alpha) {
   w.trial.topRows(model.free) = w.x.topRows(model.free) + alpha * w.direction;
 }
 
+// The largest coordinate: what positions are rounded against.
+double extent_of(const Model& model, const Workspace& w) { return w.x.topRows(model.free).cwiseAbs().maxCoeff(); }
+
 // A direction too short to change the positions' last bits: nothing is left to gain. Also true of the round-off of a
 // body at rest, which must not be integrated into a drift.
 bool below_resolution(const Model& model, const Workspace& w) {
-  const double extent = w.x.topRows(model.free).cwiseAbs().maxCoeff();
+  const double extent = extent_of(model, w);
   return w.direction.cwiseAbs().maxCoeff() <= 4 * round_off * std::max(extent, model.size);
 }
 
-// Values below this are lost in the sums that they are differences of.
-double noise_of(double objective) { return 32 * round_off * std::abs(objective); }
+// What round-off hides in a difference of objectives. Sums lose some eps of the objective itself. More is lost before:
+// a position's last bit, eps times its distance from the origin, strains an element by that over its edge, and the
+// stress works on it; over all elements, at random, that is the square root of their energy times their mean stiffness.
+double noise_of(const Model& model, double objective, double extent) {
+  return round_off *
+         (32 * std::abs(objective) + 4 * extent * std::sqrt(2 * std::abs(objective) * model.mean_stiffness));
+}
 
 // Armijo's test; where the decrease drowns in round-off, its equivalent by slopes, which does not subtract large
 // numbers (Hager and Zhang 2005, "A new conjugate gradient method with guaranteed descent and an efficient line
@@ -37,13 +45,19 @@ bool decreases_by_slope(const Change& change, double slope, double armijo, doubl
   return change.value <= noise && change.slope <= (2 * armijo - 1) * slope;
 }
 
+enum class Search {
+  found,
+  failed,
+  exhausted,  // what the direction promises is below what the gradient's own round-off decides
+};
+
 // Tries alpha = 1, 1/2, ... Leaves the accepted point, its gradient and energies in the trial arrays.
-bool search_line(const Model& model, const SolverSettings& solver, Workspace& w, double slope, double objective,
-                 Change& change) {
+Search search_line(const Model& model, const SolverSettings& solver, Workspace& w, double slope, double objective,
+                   Change& change) {
+  const double noise = noise_of(model, objective, extent_of(model, w));
   double alpha = 1;
   for (int halving = 0; halving <= most_halvings; ++halving, alpha /= 2) {
     set_trial(model, w, alpha);
-    const double noise = noise_of(objective);
     const bool by_slope = -alpha * slope < noise / solver.armijo;
     // The first trial nearly always succeeds: its gradient is the next iterate's. After a rejection the energy alone
     // decides.
@@ -52,11 +66,16 @@ bool search_line(const Model& model, const SolverSettings& solver, Workspace& w,
     ++w.report.line_search;
     const bool accepted = by_slope ? decreases_by_slope(change, slope, solver.armijo, noise)
                                    : change.value <= solver.armijo * alpha * slope;
-    if (!accepted || !std::isfinite(change.value)) continue;
+    if (!accepted || !std::isfinite(change.value)) {
+      // Where slopes drown too, shorter steps only repeat the noise. A thousandth of it is next to nothing of a
+      // distance.
+      if (by_slope && -slope < 1e-3 * noise) return Search::exhausted;
+      continue;
+    }
     if (!with_gradient) change = evaluate(model, w, w.trial, w.trial_energy, &w.trial_gradient, &w.x, &w.energy);
-    return true;
+    return Search::found;
   }
-  return false;
+  return Search::failed;
 }
 
 // What the remaining decreases would add up to if they went on as they did since objective[first]: the numerator of
@@ -212,17 +231,17 @@ void iterate(const Model& model, const SolverSettings& solver, Workspace& w, dou
       change = evaluate(model, w, w.trial, w.trial_energy, &w.trial_gradient, &w.x, &w.energy);
       ++report.line_search;
     } else {
-      bool found = search_line(model, solver, w, descent.slope, objective, change);
+      Search search = search_line(model, solver, w, descent.slope, objective, change);
       report.evaluate_ms += watch.lap_ms();
-      if (!found && history.count > 0) {
+      if (search == Search::failed && history.count > 0) {
         history.clear();
         const Descent plain = next_direction(model, w, history);
         report.slope = plain.slope;
         watch.lap_ms();
-        found = !plain.done && search_line(model, solver, w, plain.slope, objective, change);
+        search = plain.done ? Search::exhausted : search_line(model, solver, w, plain.slope, objective, change);
       }
-      if (!found) {
-        report.stop_reason = StopReason::line_search_failed;
+      if (search != Search::found) {
+        report.stop_reason = search == Search::exhausted ? StopReason::round_off : StopReason::line_search_failed;
         break;
       }
     }
@@ -286,7 +305,7 @@ void descend_from_staying(const Model& model, const FrameInputs& inputs, const S
     inertia += 0.5 * inverse_h2 * model.mass[v] * (w.trial.row(v) - w.y.row(v)).squaredNorm();
   if (reached <= inertia && !model.energy_may_be_negative) return;
   const Change staying = evaluate(model, w, w.trial, w.trial_energy, nullptr, nullptr, nullptr);
-  if (!(staying.value < reached - noise_of(reached))) return;
+  if (!(staying.value < reached - noise_of(model, reached, extent_of(model, w)))) return;
   w.x.swap(w.trial);
   report.decrease += reached - staying.value;
   const int iterations = report.iterations;

@@ -9,7 +9,7 @@
 #include "scene/scene_reader.h"
 #include "scene/warnings.h"
 #include "sim/measures.h"
-#include "support/bodies.h"
+#include "support/film.h"
 
 namespace supple {
 namespace {
@@ -26,41 +26,11 @@ std::vector<std::filesystem::path> scenes() {
   return list;
 }
 
-struct Film {
-  SceneDef scene;
-  std::vector<Body> bodies;
-  std::vector<Model> models;
-
-  explicit Film(const std::filesystem::path& path)
-      : scene(load_scene(path, test::assets, {})), bodies(assemble(scene)) {
-    for (const Body& body : bodies) models.push_back(build_model(body.description));
-  }
-
-  // Calls visit(body, frame, state before, inputs, state after) after each step.
-  template <class Visit>
-  void play(int thread_count, int frames, const Visit& visit) const {
-    Threads threads(thread_count);
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-      FrameInputs inputs{scene.gravity, {}, {}, bodies[b].def.solver.settings};
-      State state = start_state(models[b], bodies[b]);
-      Workspace w;
-      w.threads = &threads;
-      for (int number = 0; number < frames * scene.substeps; ++number) {
-        const double h = scene.time_step(), time = (number + 1) * h;
-        handle_targets(models[b], bodies[b], time, inputs.targets);
-        handle_targets(models[b], bodies[b], time - 0.5 * h, inputs.middle_targets);
-        const State before = state;
-        const StepReport& report = step(models[b], inputs, state, w);
-        ASSERT_FALSE(report.failed) << bodies[b].def.name << " step " << number << ": " << report.failure.what;
-        visit(b, number, before, inputs, state);
-      }
-    }
-  }
-};
+using test::Film;
 
 TEST(Scenes, NoStepOfAnySceneIsWorseThanStaying) {
   for (const std::filesystem::path& path : scenes()) {
-    const Film run(path);
+    const Film run(path, {});
     EXPECT_FALSE(run.scene.title.empty()) << path;
     std::vector<Workspace> probes(run.bodies.size());
     run.play(2, frames_to_run(),
@@ -82,7 +52,7 @@ TEST(Scenes, NoStepOfAnySceneIsWorseThanStaying) {
 
 TEST(Scenes, GiveTheSameBitsForAnyNumberOfThreads) {
   for (const std::filesystem::path& path : scenes()) {
-    const Film run(path);
+    const Film run(path, {});
     std::set<std::vector<std::uint64_t>> runs;
     for (const int threads : {1, 2, 4}) {
       std::vector<std::uint64_t> hashes;

@@ -1,0 +1,44 @@
+// A scene played without pictures.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "scene/assemble.h"
+#include "scene/scene_reader.h"
+#include "support/bodies.h"
+
+namespace supple::test {
+
+struct Film {
+  SceneDef scene;
+  std::vector<Body> bodies;
+  std::vector<Model> models;
+
+  Film(const std::filesystem::path& path, const std::vector<std::string>& settings)
+      : scene(load_scene(path, test::assets, settings)), bodies(assemble(scene)) {
+    for (const Body& body : bodies) models.push_back(build_model(body.description));
+  }
+
+  // Calls visit(body, frame, state before, inputs, state after) after each step.
+  template <class Visit>
+  void play(int thread_count, int frames, const Visit& visit) const {
+    Threads threads(thread_count);
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      FrameInputs inputs{scene.gravity, {}, {}, bodies[b].def.solver.settings};
+      State state = start_state(models[b], bodies[b]);
+      Workspace w;
+      w.threads = &threads;
+      for (int number = 0; number < frames * scene.substeps; ++number) {
+        const double h = scene.time_step(), time = (number + 1) * h;
+        handle_targets(models[b], bodies[b], time, inputs.targets);
+        handle_targets(models[b], bodies[b], time - 0.5 * h, inputs.middle_targets);
+        const State before = state;
+        const StepReport& report = step(models[b], inputs, state, w);
+        ASSERT_FALSE(report.failed) << bodies[b].def.name << " step " << number << ": " << report.failure.what;
+        visit(b, number, before, inputs, state);
+      }
+    }
+  }
+};
+
+}  // namespace supple::test
