@@ -14,8 +14,8 @@ plot "build/release/energies.csv" skip 1 using 1:2 with lines lw 2 lc "#d9822b" 
   "" skip 1 using 1:4 with lines lw 2 lc "#59a14f" title "midpoint, 100 iterations", \
   "" skip 1 using 1:5 with lines lw 2 dt 2 lc "#333333" title "midpoint, 4 substeps", \
   "" skip 1 using 1:6 with lines lw 2 lc "#4c78a8" title "midpoint, damped"
-set yrange [-10:120]
-set key bottom right
+set yrange [-10:150]
+set key top left
 set title "Midpoint with too few iterations"
 plot "build/release/energies.csv" skip 1 using 1:3 with lines lw 2 lc "#b03a2e" title "midpoint, 10 iterations", \
   "" skip 1 using 1:2 with lines lw 2 lc "#d9822b" title "backward Euler, 10 iterations"

@@ -10,8 +10,8 @@ set key bottom right
 set xrange [0.3:1.7]
 set yrange [-8:8]
 set title "Spline materials (figure 6), mu = lambda"
-plot "build/release/stress-curves.csv" skip 1 using 1:2 with lines lw 2 lc "#9a9a9a" title "Neo-Hookean", \
-  "" skip 1 using 1:3 with lines lw 2 lc "#d9822b" title "spline A", "" skip 1 using 1:4 with lines lw 2 lc "#4c78a8" title "spline B"
+plot "build/release/stress-curves.csv" skip 1 using 1:3 with lines lw 2 lc "#d9822b" title "spline A", \
+  "" skip 1 using 1:4 with lines lw 2 lc "#4c78a8" title "spline B", "" skip 1 using 1:2 with lines lw 2 dt 2 lc "#333333" title "Neo-Hookean"
 set yrange [-2:2]
 set title "Polynomial and two strain limits (figure 11)"
 plot "build/release/stress-curves.csv" skip 1 using 1:5 with lines lw 2 lc "#d9822b" title "polynomial", \
