@@ -29,9 +29,16 @@ struct RenderOptions {
   std::string gl = "auto";
 };
 
-std::string mesh_hash(const TetMesh& mesh) {
-  const std::uint64_t points = hash_bytes(mesh.rest.data(), sizeof(double) * mesh.rest.size());
-  return hash_text_form(hash_bytes(mesh.tets.data(), sizeof(std::int32_t) * mesh.tets.size(), points));
+// Of the points, elements and springs of a body.
+std::string mesh_hash(const Body& body) {
+  const TetMesh& mesh = body.description.mesh;
+  std::uint64_t hash = hash_bytes(mesh.rest.data(), sizeof(double) * mesh.rest.size());
+  hash = hash_bytes(mesh.tets.data(), sizeof(std::int32_t) * mesh.tets.size(), hash);
+  for (const Spring& spring : body.description.springs) {
+    const std::int32_t ends[] = {spring.from, spring.to};
+    hash = hash_bytes(ends, sizeof ends, hash);
+  }
+  return hash_text_form(hash);
 }
 
 void print_result(const FilmResult& result, const RunFolder& folder, const SceneDef& scene) {
@@ -95,7 +102,7 @@ int render(const RenderOptions& options, const std::vector<std::string>& command
   info.threads = film.threads;
   for (const Body& body : bodies) {
     const TetMesh& mesh = body.description.mesh;
-    info.meshes.push_back({body.def.name, body.source, mesh_hash(mesh), int(mesh.rest.rows()),
+    info.meshes.push_back({body.def.name, body.source, mesh_hash(body), int(mesh.rest.rows()),
                            int(mesh.tets.rows() + body.description.springs.size())});
     if (!options.quiet)
       say(stderr, fmt::format("{}: {} vertices, {} elements ({})\n", body.def.name, mesh.rest.rows(),

@@ -1,7 +1,6 @@
 #include "baselines/reference.h"
 
 #include <cmath>
-#include <limits>
 
 namespace supple {
 
@@ -27,7 +26,7 @@ std::optional<double> step_error(const Model& model, const FrameInputs& inputs, 
   minimize(model, solver, workspace, digits * std::abs(gained));
   const double remaining = workspace.report.decrease;
   const double whole = gained + remaining;
-  const double noise = 64 * std::numeric_limits<double>::epsilon() * std::abs(at_start);
+  const double noise = 2 * noise_of(model, at_start, before.x.cwiseAbs().maxCoeff());
   if (!(whole > noise)) return std::nullopt;
   return remaining / whole;
 }

@@ -17,7 +17,7 @@ TetMesh box_mesh(const Vec3& extent, const Eigen::Vector3i& cells) {
   }
   // Kuhn's six tetrahedra: one for each order in which the three axes can be walked from the low to the high corner.
   constexpr int walks[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
-  mesh.tets.resize(6 * cells.prod(), 4);
+  mesh.tets.resize(6 * cells.cast<Eigen::Index>().prod(), 4);
   Eigen::Index row = 0;
   for (int k = 0; k < cells.z(); ++k) {
     for (int j = 0; j < cells.y(); ++j) {

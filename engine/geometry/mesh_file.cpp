@@ -184,7 +184,8 @@ void skip_section(Words& words, std::string_view section) {
     std::string_view name;
     int integers;
   };
-  constexpr Skipped skipped[] = {{"Edges", 3},         {"Corners", 1},          {"Ridges", 1}, {"RequiredVertices", 1},
+  constexpr Skipped skipped[] = {{"Triangles", 4},     {"Tetrahedra", 5},       {"Edges", 3},
+                                 {"Corners", 1},       {"Ridges", 1},           {"RequiredVertices", 1},
                                  {"RequiredEdges", 1}, {"RequiredTriangles", 1}};
   const auto* known =
       std::find_if(std::begin(skipped), std::end(skipped), [&](const Skipped& s) { return s.name == section; });
@@ -193,7 +194,9 @@ void skip_section(Words& words, std::string_view section) {
   for (Eigen::Index i = 0; i < count * known->integers; ++i) (void)words.number<long long>("an index");
 }
 
-Sections read_sections(Words& words) {
+enum class Wanted { tetrahedra, triangles };
+
+Sections read_sections(Words& words, Wanted wanted) {
   if (words.next() != "MeshVersionFormatted")
     words.refuse("not a MEDIT mesh: it should begin with MeshVersionFormatted");
   const int version = words.number<int>("the version");
@@ -214,7 +217,7 @@ Sections read_sections(Words& words) {
         for (int k = 0; k < 3; ++k) mesh.rest(v, k) = words.number<double>("a coordinate");
         (void)words.number<long long>("a vertex's reference");
       }
-    } else if (section == "Tetrahedra") {
+    } else if (section == "Tetrahedra" && wanted == Wanted::tetrahedra) {
       if (mesh.tets.rows() > 0) words.refuse("a second Tetrahedra section");
       read_rows(words, "elements", 4, mesh.rest.rows(), read.lines.tets,
                 [&](Eigen::Index i, Eigen::Index count, const auto& corner, int reference) {
@@ -222,7 +225,7 @@ Sections read_sections(Words& words) {
                   mesh.tets.row(i) << corner[0], corner[1], corner[2], corner[3];
                   mesh.regions.push_back(reference);
                 });
-    } else if (section == "Triangles") {
+    } else if (section == "Triangles" && wanted == Wanted::triangles) {
       if (read.triangles.rows() > 0) words.refuse("a second Triangles section");
       read_rows(words, "triangles", 3, mesh.rest.rows(), read.lines.triangles,
                 [&](Eigen::Index i, Eigen::Index count, const auto& corner, int) {
@@ -261,7 +264,7 @@ void check_triangles(const Sections& read, const std::string& name) {
 MeshFile read_mesh(const std::filesystem::path& path) {
   const std::string name = path.string();
   Words words(read_text(path), name);
-  Sections read = read_sections(words);
+  Sections read = read_sections(words, Wanted::tetrahedra);
   if (read.file.mesh.rest.rows() == 0 || read.file.mesh.tets.rows() == 0)
     words.refuse("the file has no Vertices or no Tetrahedra");
   check_duplicates(read.file.mesh, read.lines, name);
@@ -273,7 +276,7 @@ MeshFile read_mesh(const std::filesystem::path& path) {
 TriMesh read_surface(const std::filesystem::path& path) {
   const std::string name = path.string();
   Words words(read_text(path), name);
-  const Sections read = read_sections(words);
+  const Sections read = read_sections(words, Wanted::triangles);
   if (read.triangles.rows() == 0) words.refuse("the file has no Triangles");
   check_triangles(read, name);
   TriMesh surface;

@@ -68,7 +68,7 @@ Problem at(const Problem& place, std::string message) {
 }
 
 void add_regions(const BodyDef& def, const Loaded& loaded, BodyDescription& description,
-                 std::vector<Problem>& problems) {
+                 std::vector<std::string>& notes, std::vector<Problem>& problems) {
   // The fibres' direction turns with the body.
   const Mat3 turn = rotation_from_degrees(def.turn_deg).toRotationMatrix();
   const auto turned = [&turn](Fibre fibre) {
@@ -84,9 +84,11 @@ void add_regions(const BodyDef& def, const Loaded& loaded, BodyDescription& desc
       const std::vector<std::string> names(loaded.regions.begin() + 1, loaded.regions.end());
       const std::string nearest = nearest_word(region.name, names);
       // A body made of another mesh than the scene was written for has no teeth to be stiff: that is said, not refused.
-      if (def.mesh.empty()) {
+      if (!def.mesh.empty()) {
+        notes.push_back(fmt::format("there is no region '{}'; its material is not used", region.name));
+      } else {
         problems.push_back(at(region.place, fmt::format("body '{}' has no region '{}'; {}", def.name, region.name,
-                                                        names.empty()     ? "its shape has no tags"
+                                                        names.empty()     ? "it has no tags"
                                                         : nearest.empty() ? "there is " + word_list(names)
                                                                           : "did you mean '" + nearest + "'?")));
       }
@@ -201,7 +203,11 @@ std::vector<Body> assemble(const SceneDef& scene) {
       } else {
         body.description.density = def.body_density();
         if (def.total_mass) body.description.density = *def.total_mass / quality(body.description.mesh).volume;
-        add_regions(def, loaded, body.description, problems);
+        add_regions(def, loaded, body.description, body.notes, problems);
+      }
+      if (def.pattern_size && *def.pattern_size < 1e-3 * bounds_of(body.description.mesh.rest).diagonal()) {
+        problems.push_back(
+            at(def.place, fmt::format("pattern_size of body '{}' is below a thousandth of its size", def.name)));
       }
       add_handles(body, loaded, problems);
       bodies.push_back(std::move(body));

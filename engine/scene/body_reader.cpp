@@ -120,6 +120,8 @@ HandleDef read_handle(const ConfigTable& table) {
   return handle;
 }
 
+constexpr double most_vertices = 500000;  // of a body
+
 Eigen::Vector3i read_cells(const ConfigTable& table, const Key& key, const Vec3& fallback) {
   const Vec3 cells = table.vector(key, fallback, Range::between(1, 1000));
   if (cells != cells.array().round().matrix())
@@ -132,7 +134,10 @@ std::optional<BoxDef> read_box(const ConfigTable& body) {
   if (!table) return std::nullopt;
   BoxDef box;
   box.extent = table->vector({"extent", "m", "the three edges"}, std::nullopt, Range::above(0, 1e6));
-  box.cells = read_cells(*table, {"cells", "", "along each edge"}, Vec3(8, 8, 8));
+  box.cells = read_cells(*table, {"cells", "", "along each edge; at most 500000 vertices in all"}, Vec3(8, 8, 8));
+  const double vertices = (box.cells.cast<double>().array() + 1).prod();
+  if (vertices > most_vertices)
+    table->complain("cells", fmt::format("cells: would make {:.0f} vertices; at most {:.0f}", vertices, most_vertices));
   return box;
 }
 
@@ -146,14 +151,44 @@ std::optional<ClothDef> read_cloth(const ConfigTable& body) {
     const Eigen::Vector2d cells =
         table->pair({"cells", "", "of the grid, along its width and its height"}, Range::between(1, 2000));
     if (cells != cells.array().round().matrix()) table->complain("cells", "cells: must be whole numbers");
+    const double vertices = (cells.array() + 1).prod();
+    if (vertices > most_vertices)
+      table->complain("cells",
+                      fmt::format("cells: would make {:.0f} vertices; at most {:.0f}", vertices, most_vertices));
     cloth.cells = cells.cast<int>();
   }
   cloth.stretch =
       table->number({"stretch", "N/m", "stiffness of the springs along edges"}, std::nullopt, Range::positive());
-  cloth.shear = table->number({"shear", "N/m", "of a grid's diagonals; the default is that of its edges"},
-                              cloth.stretch, Range::at_least(0));
+  if (cloth.mesh.empty()) {
+    cloth.shear = table->number({"shear", "N/m", "of a grid's diagonals; the default is that of its edges"},
+                                cloth.stretch, Range::at_least(0));
+  } else {
+    for (const char* key : {"extent", "cells", "shear"}) {
+      if (table->has(key))
+        table->complain(key, fmt::format("{}: of a grid; the triangles of a mesh have their own", key));
+    }
+  }
   cloth.bend = table->number({"bend", "N/m", "of the springs that skip a vertex"}, 0.0, Range::at_least(0));
   return cloth;
+}
+
+// What is printed where nothing else is said: a grid on boxes, checks on cloth.
+Pattern read_pattern(const ConfigTable& table, const BodyDef& body) {
+  const std::string pattern =
+      table.choice({"pattern", "",
+                    "printed squares that show how it is strained; usual: a grid on boxes, checks on cloth, else none"},
+                   "usual", {"usual", "none", "grid", "checks"});
+  if (!body.shape.empty() && (pattern == "grid" || pattern == "checks"))
+    table.complain("pattern", "pattern: shapes have layers of paint instead");
+  if (pattern == "usual") return body.box ? Pattern::grid : body.cloth ? Pattern::checks : Pattern::none;
+  return pattern == "grid" ? Pattern::grid : pattern == "checks" ? Pattern::checks : Pattern::none;
+}
+
+void refuse_substances(const ConfigTable& table) {
+  for (const char* key : {"material", "fibre", "regions"}) {
+    if (table.has(key))
+      table.complain(key, fmt::format("{}: not of cloth, which has stretch, shear and bend in its table instead", key));
+  }
 }
 
 void read_substances(const ConfigTable& table, BodyDef& body) {
@@ -195,7 +230,11 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
   body.total_mass = table.number_if_given({"total_mass", "kg", "spread evenly over the volume, or the area of cloth"},
                                           Range::positive());
   if (body.density && body.total_mass) table.complain("total_mass", "a body has a density or a total_mass, not both");
-  if (!body.cloth) read_substances(table, body);
+  if (body.cloth) {
+    refuse_substances(table);
+  } else {
+    read_substances(table, body);
+  }
   body.start = read_start(table);
   body.velocity = table.vector({"velocity", "m/s", "at the start"}, Vec3(0, 0, 0));
   std::set<std::string> names;
@@ -207,14 +246,7 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
   body.solver = defaults;
   if (const auto solver = table.table({"solver", "", "this body's own, over the scene's"}))
     body.solver = read_solver(*solver, defaults);
-  const std::string pattern = table.choice(
-      {"pattern", "",
-       "printed on the body, as fine as its cells: shows how it is strained; a box has a grid, cloth checks"},
-      body.box     ? "grid"
-      : body.cloth ? "checks"
-                   : "none",
-      {"none", "grid", "checks"});
-  body.pattern = pattern == "grid" ? Pattern::grid : pattern == "checks" ? Pattern::checks : Pattern::none;
+  body.pattern = read_pattern(table, body);
   body.pattern_size = table.number_if_given(
       {"pattern_size", "m", "edge of its squares; a sixth of the middle side, of cloth a twentieth of the longest"},
       Range::positive());

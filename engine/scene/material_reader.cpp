@@ -21,16 +21,22 @@ std::optional<Lame> read_lame(const ConfigTable& table) {
   const auto young = table.number_if_given(
       {"young", "Pa", "Young's modulus at small strains, with poisson in the place of the model's parameters"},
       Range::positive());
-  if (!young) return std::nullopt;
-  // At 0.5 lambda is infinite; above 0.495 nothing here resolves it.
+  if (!young) {
+    if (table.has("poisson"))
+      table.complain("poisson", "poisson: only together with young, in the place of the model's parameters");
+    return std::nullopt;
+  }
+  // At 0.5 lambda is infinite; above 0.495 nothing here resolves it. Below 0 lambda is negative, and some energies have
+  // no lower bound.
   return Lame::from_young(
-      *young, table.number({"poisson", "", "Poisson's ratio, with young"}, std::nullopt, Range::between(-0.95, 0.495)));
+      *young, table.number({"poisson", "", "Poisson's ratio, with young"}, std::nullopt, Range::between(0, 0.495)));
 }
 
 SplineCurve read_curve(const ConfigTable& table, const Key& key) {
   std::vector<ControlPoint> points;
   for (const auto& [at, value] : table.pairs(key, 2, SplineCurve::most_points)) {
-    if (!points.empty() && at <= points.back().at) {
+    // Nearer than a millionth, slopes lose their digits.
+    if (!points.empty() && at < points.back().at + 1e-6) {
       table.complain(key.name, fmt::format("{}: control points must stand in ascending order ({:g} follows {:g})",
                                            key.name, at, points.back().at));
       return {};
@@ -91,6 +97,16 @@ M read_parameters(const ConfigTable& table) {
   return read;
 }
 
+// Whether nothing required is missing, so that a complaint about the values makes sense.
+template <class M>
+bool all_given(const ConfigTable& table) {
+  if (table.has("young")) return true;
+  for (const auto& p : M::parameters()) {
+    if (!p.fallback && !p.may_be_zero && !table.has(p.name)) return false;
+  }
+  return true;
+}
+
 template <class M>
 bool read_model(const ConfigTable& table, std::string_view model, Material& material) {
   if (M::name != model) return false;
@@ -101,7 +117,8 @@ bool read_model(const ConfigTable& table, std::string_view model, Material& mate
     read = read_parameters<M>(table);
   }
   if constexpr (requires { read.problem(); }) {
-    if (const char* problem = read.problem()) table.complain(problem);
+    const char* problem = read.problem();
+    if (problem != nullptr && all_given<M>(table)) table.complain(problem);
   }
   material = read;
   return true;

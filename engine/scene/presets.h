@@ -16,22 +16,25 @@ struct MaterialPreset {
   double young, poisson;  // [Pa]
   double density;         // where the body does not give one [kg/m^3]
   double fibre;           // kappa along the body's y axis; 0: none [Pa]
-  bool neo_hookean;       // else corotated
+  Material (*law)(const Lame&);
 
-  Material material() const {
-    const Lame lame = Lame::from_young(young, poisson);
-    return neo_hookean ? Material(NeoHookean::from(lame)) : Material(Corotated::from(lame));
-  }
+  Material material() const { return law(Lame::from_young(young, poisson)); }
 };
+
+template <class M>
+Material law_of(const Lame& lame) {
+  return M::from(lame);
+}
 
 // Moduli of the order that tables of engineering materials give for table jelly, a soft silicone rubber, muscle at rest
 // and balsa (whose true fibre modulus is ten times higher, more than ten iterations a step resolve). Poisson's ratio
 // stays where linear tetrahedra do not lock.
 inline constexpr std::array material_presets = {
-    MaterialPreset{"jelly", "table jelly: wobbles under its own weight", 1e4, 0.4, 1050, 0, true},
-    MaterialPreset{"rubber", "soft rubber: springy, keeps its shape", 1e6, 0.45, 1100, 0, true},
-    MaterialPreset{"flesh", "muscle at rest", 4e4, 0.45, 1060, 0, true},
-    MaterialPreset{"wood", "balsa-like: stiff along the body's y axis, softer across", 2e7, 0.3, 160, 2e8, false},
+    MaterialPreset{"jelly", "table jelly: wobbles under its own weight", 1e4, 0.4, 1050, 0, law_of<NeoHookean>},
+    MaterialPreset{"rubber", "soft rubber: springy, keeps its shape", 1e6, 0.45, 1100, 0, law_of<NeoHookean>},
+    MaterialPreset{"flesh", "muscle at rest", 4e4, 0.45, 1060, 0, law_of<NeoHookean>},
+    MaterialPreset{"wood", "balsa-like: stiff along the body's y axis, softer across", 2e7, 0.3, 160, 2e8,
+                   law_of<Corotated>},
 };
 
 }  // namespace supple

@@ -11,6 +11,32 @@ Problem at(const Problem& place, std::string message) {
   return {place.source, place.line, place.column, std::move(message)};
 }
 
+// Laws in F alone and springs have no force across a body that is flat in two directions: it would stay so.
+bool stays_flat(const Body& body) {
+  const auto* flat = std::get_if<Flattened>(&body.def.start);
+  if (flat == nullptr || flat->kept.sum() > 1.5) return false;
+  return body.def.cloth ||
+         std::visit([](const auto& m) { return m.needs == Needs::gradient; }, body.def.substance.material);
+}
+
+void warn_of_substance(const Body& body, std::vector<Problem>& list) {
+  for (const Material& material : body.description.materials) {
+    if (system_stiffness(material, body.def.solver.fit).floored) {
+      list.push_back(
+          at(body.def.place,
+             fmt::format("a material of body '{}' ({}) softens so much that its stiffness fit is not positive; "
+                         "the solver works with a thousandth of its steepest slope instead",
+                         body.def.name, name_of(material))));
+    }
+  }
+  if (stays_flat(body)) {
+    list.push_back(
+        at(body.def.place, fmt::format("body '{}' starts as a line or a point, and its material has no force across "
+                                       "those: it will not recover",
+                                       body.def.name)));
+  }
+}
+
 }  // namespace
 
 double crossing_number(const Body& body) {
@@ -57,6 +83,7 @@ std::vector<Problem> warnings(const SceneDef& scene, const std::vector<Body>& bo
                                                     "{:.3g}; more iterations or substeps make it sharper",
                                                     body.def.name, body.def.solver.settings.iterations, crossing)));
     }
+    warn_of_substance(body, list);
     for (const Body& other : bodies) {
       if (&other == &body) break;
       const Bounds b = bounds_of(other.description.mesh.rest);

@@ -52,7 +52,8 @@ std::vector<double> panel_ends(const Material& material, const StretchInterval& 
 bool may_be_negative(const Material& material) {
   return std::visit(
       [](const auto& m) {
-        return requires { m.may_be_negative; };
+        if constexpr (requires { m.may_be_negative(); }) return m.may_be_negative();
+        return false;
       },
       material);
 }

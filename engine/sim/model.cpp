@@ -215,6 +215,9 @@ Model build_model(const BodyDescription& body) {
   if (std::any_of(body.fibres.begin(), body.fibres.end(), [](const Fibre& f) { return f.kappa > 0; }))
     model.fibres = body.fibres;
   for (const int region : body.mesh.regions) SUPPLE_CHECK(std::size_t(region), <, body.materials.size());
+  if (!body.point_mass.empty()) SUPPLE_CHECK(body.point_mass.size(), ==, std::size_t(model.vertices));
+  for (const Spring& spring : body.springs) SUPPLE_CHECK(std::max(spring.from, spring.to), <, model.vertices);
+  if (!model.fibres.empty()) SUPPLE_CHECK(model.fibres.size(), ==, body.materials.size());
   for (const Material& material : model.materials) {
     model.stiffness.push_back(system_stiffness(material, body.fit));
     model.energy_may_be_negative |= may_be_negative(material);

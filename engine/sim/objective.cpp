@@ -1,6 +1,8 @@
 #include "sim/objective.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace supple {
 
@@ -131,6 +133,14 @@ double evaluate_elements(const Model& model, Workspace& workspace, const Positio
 }
 
 }  // namespace
+
+// What round-off hides in a difference of objectives. Sums lose some eps of the objective itself. More is lost before:
+// a position's last bit, eps times its distance from the origin, strains an element by that over its edge, and the
+// stress works on it; over all elements, at random, that is the square root of their energy times their mean stiffness.
+double noise_of(const Model& model, double objective, double extent) {
+  return std::numeric_limits<double>::epsilon() *
+         (32 * std::abs(objective) + 4 * extent * std::sqrt(2 * std::abs(objective) * model.mean_stiffness));
+}
 
 double elastic_energy(const Model& model, Workspace& workspace, const Positions& x) {
   return evaluate_elements(model, workspace, x, workspace.trial_energy, false, nullptr) / model.scheme.energy;

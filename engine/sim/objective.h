@@ -52,6 +52,9 @@ struct Change {
 Change evaluate(const Model& model, Workspace& workspace, const Positions& point, AlignedVector<double>& energy,
                 Positions* gradient, const Positions* reference, const AlignedVector<double>* reference_energy);
 
+// The round-off of differences of g at a point with this objective and largest coordinate [J].
+double noise_of(const Model& model, double objective, double extent);
+
 // E(x) of all elements [J]. Overwrites the workspace's trial energies.
 double elastic_energy(const Model& model, Workspace& workspace, const Positions& x);
 

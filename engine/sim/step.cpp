@@ -30,14 +30,6 @@ bool below_resolution(const Model& model, const Workspace& w) {
   return w.direction.cwiseAbs().maxCoeff() <= 4 * round_off * std::max(extent, model.size);
 }
 
-// What round-off hides in a difference of objectives. Sums lose some eps of the objective itself. More is lost before:
-// a position's last bit, eps times its distance from the origin, strains an element by that over its edge, and the
-// stress works on it; over all elements, at random, that is the square root of their energy times their mean stiffness.
-double noise_of(const Model& model, double objective, double extent) {
-  return round_off *
-         (32 * std::abs(objective) + 4 * extent * std::sqrt(2 * std::abs(objective) * model.mean_stiffness));
-}
-
 // Armijo's test; where the decrease drowns in round-off, its equivalent by slopes, which does not subtract large
 // numbers (Hager and Zhang 2005, "A new conjugate gradient method with guaranteed descent and an efficient line
 // search", equation 4.1).
@@ -291,10 +283,10 @@ void set_staying(const Model& model, const State& state, Workspace& w) {
   for (int v = 0; v < model.free; ++v) w.trial.row(v) += moved;
 }
 
-// The answer must not be worse than staying: g(x) <= g(q) bounds the energy of backward Euler (docs/method.md). When
-// the iterations from y have not come that far (elements turned inside out by a violent step), descend from there
-// instead. Costs an evaluation only when the inertia of staying cannot settle it, or when the elastic energy may be
-// negative.
+// The answer must not be worse than staying: g(x) <= g(q) bounds the energy of backward Euler (docs/method.md), not
+// that of midpoint, where staying also turns the velocity round. When the iterations from y have not come that far
+// (elements turned inside out by a violent step), descend from there instead. Costs an evaluation only when the inertia
+// of staying cannot settle it, or when the elastic energy may be negative.
 void descend_from_staying(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
   StepReport& report = w.report;
   const double reached = report.objective.back();

@@ -10,6 +10,7 @@
 #include "scene/assemble.h"
 #include "scene/presets.h"
 #include "scene/scene_reader.h"
+#include "scene/warnings.h"
 #include "support/bodies.h"
 
 namespace supple {
@@ -82,7 +83,7 @@ TEST(Substances, AreRefusedWithWordsThatSayWhatIsAllowed) {
   const std::pair<std::string, std::string> cases[] = {
       {"material = \"steel\"", "scene.toml:3:12: material = 'steel': must be jelly, rubber, flesh or wood"},
       {"material = { model = \"neo-hookean\", young = 1e4, poisson = 0.5 }",
-       "scene.toml:3:60: poisson = 0.5: must be -0.95 to 0.495"},
+       "scene.toml:3:60: poisson = 0.5: must be 0 to 0.495"},
       {"material = { model = \"neo-hookean\", young = 1e4, poisson = 0.3, mu = 2 }",
        "scene.toml:3:70: mu: not together with young and poisson, which say the same"},
       {"material = { model = \"polynomial\", young = 1e4, mu = 2 }",
@@ -98,6 +99,8 @@ TEST(Substances, AreRefusedWithWordsThatSayWhatIsAllowed) {
        "scene.toml:3:36: a: control points must stand in ascending order (0.5 follows 1)"},
       {"material = { model = \"spline\" }",
        "scene.toml:3:12: 'a' is missing: control points of the curve over a stretch, or preset = \"A\""},
+      {"material = { model = \"neo-hookean\", mu = 1, poisson = 0.3 }",
+       "scene.toml:3:55: poisson: only together with young, in the place of the model's parameters"},
       {"material = \"jelly\"\nfibre = { kappa = 1, direction = [0, 0, 0] }",
        "scene.toml:4:34: direction: must not be zero"},
       {"material = \"jelly\"\nstart = { stretch = [1, 2, 1], flatten = \"line\" }",
@@ -115,9 +118,34 @@ TEST(Substances, AreRefusedWithWordsThatSayWhatIsAllowed) {
     EXPECT_NE(std::find(found.begin(), found.end(), message), found.end())
         << "missing: " << message << "\nfound: " << (found.empty() ? "nothing" : found.front());
   }
-  const std::vector<std::string> cloth =
-      problems_of("[[body]]\ncloth = { stretch = 1, extent = [1, 1], cells = [2.5, 4] }\n");
-  EXPECT_EQ(cloth, std::vector<std::string>{"scene.toml:2:49: cells: must be whole numbers"});
+  const std::pair<std::string, std::string> cloths[] = {
+      {"cloth = { stretch = 1, extent = [1, 1], cells = [2.5, 4] }", "scene.toml:2:49: cells: must be whole numbers"},
+      {"cloth = { stretch = 1, extent = [1, 1], cells = [999, 999] }",
+       "scene.toml:2:49: cells: would make 1000000 vertices; at most 500000"},
+      {"cloth = { stretch = 1, extent = [1, 1], cells = [4, 4] }\nmaterial = \"jelly\"",
+       "scene.toml:3:12: material: not of cloth, which has stretch, shear and bend in its table instead"},
+      {"box = { extent = [1, 1, 1], cells = [900, 900, 900] }\nmaterial = \"jelly\"",
+       "scene.toml:2:37: cells: would make 731432701 vertices; at most 500000"},
+  };
+  for (const auto& [text, message] : cloths) {
+    const std::vector<std::string> found = problems_of("[[body]]\n" + text + "\n");
+    EXPECT_NE(std::find(found.begin(), found.end(), message), found.end())
+        << "missing: " << message << "\nfound: " << (found.empty() ? "nothing" : found.front());
+  }
+}
+
+TEST(Substances, SoftenedFitsAndBodiesThatStayFlatAreWarnedOf) {
+  const auto warning = [](const std::string& text) {
+    const SceneDef scene = scene_of(box_body(text));
+    const std::vector<Problem> list = warnings(scene, assemble(scene));
+    return list.empty() ? std::string("nothing") : list.front().message;
+  };
+  EXPECT_NE(warning("material = { model = \"spline\", a = [[0.5, 2], [1, 0], [1.5, -2]] }\n").find("softens"),
+            std::string::npos);
+  EXPECT_NE(warning("material = \"jelly\"\nstart = { flatten = \"point\" }\n").find("will not recover"),
+            std::string::npos);
+  EXPECT_EQ(warning("material = \"jelly\"\nstart = { flatten = \"plane\" }\n"), "nothing");
+  EXPECT_EQ(warning("material = { model = \"corotated\", mu = 1e4 }\nstart = { flatten = \"line\" }\n"), "nothing");
 }
 
 TEST(Fibres, TurnWithTheirBodyAndDifferByRegion) {

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <functional>
 #include <iostream>
+#include <set>
 
 #include "sim/elements/element.h"
 #include "support/bodies.h"
@@ -192,6 +193,9 @@ std::string table_of(const std::vector<Row>& rows) {
 }
 
 TEST(Derivatives, ForcesOfEveryElementAreTheDerivativesOfItsEnergyAndBalance) {
+  std::set<std::size_t> models;
+  for (const Material& material : test::all_materials()) models.insert(material.index());
+  EXPECT_EQ(models.size(), std::variant_size_v<Material>) << "a material is missing from all_materials()";
   std::vector<Row> rows;
   for (const Subject& subject : subjects()) rows.push_back(measure(subject));
   const std::string page = test::read_file(test::source_folder / "docs" / "derivatives.md");

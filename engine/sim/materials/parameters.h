@@ -4,7 +4,7 @@
 //   const char* problem() const         what is wrong with parameters that are each in range, or null
 //   std::vector<double> seams() const   stretches where the axial stress changes its formula
 //   double system_stiffness() const     k in M/h^2 + L where equation 11 is not meant
-//   static constexpr bool may_be_negative  energies below that of rest exist
+//   bool may_be_negative() const        whether energies below that of rest exist; no without it
 //   static constexpr auto curves()      functions given by control points, as parameters() are numbers
 #pragma once
 

@@ -83,7 +83,7 @@ const char* Spline::problem() const {
   for (const SplineCurve* curve : {&a, &b, &c}) {
     for (const ControlPoint& point : curve->points()) largest = std::max(largest, std::abs(point.value));
   }
-  return std::abs(axial_stress(1)) > 1e-6 * largest
+  return !(std::abs(axial_stress(1)) <= 1e-6 * largest)
              ? "the curves leave a stress at rest: a'(1) + 2 b'(1) + c'(1) must be 0 (give a control point at 1)"
              : nullptr;
 }

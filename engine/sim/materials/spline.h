@@ -74,7 +74,6 @@ struct Curve {
 struct Spline {
   static constexpr std::string_view name = "spline";
   static constexpr Needs needs = Needs::singular_values;
-  static constexpr bool may_be_negative = true;
   SplineCurve a, b, c;
 
   static constexpr std::array<Parameter<Spline>, 0> parameters() { return {}; }
@@ -88,6 +87,7 @@ struct Spline {
   static Spline preset_a(const Lame& lame);
   static Spline preset_b(const Lame& lame);
   const char* problem() const;
+  bool may_be_negative() const { return true; }  // nobody knows what will be drawn
 
   template <class V>
   V density(const V (&s)[3], V (&slope)[3]) const {

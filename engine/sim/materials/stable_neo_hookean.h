@@ -13,7 +13,6 @@ namespace supple {
 struct StableNeoHookean {
   static constexpr std::string_view name = "stable-neo-hookean";
   static constexpr Needs needs = Needs::gradient;
-  static constexpr bool may_be_negative = true;  // when lambda is hardly above mu/3
   double mu = 0;
   double lambda = 0;
 
@@ -24,6 +23,7 @@ struct StableNeoHookean {
                                     &StableNeoHookean::lambda, false}};
   }
   static StableNeoHookean from(const Lame& lame) { return {lame.mu, lame.lambda + lame.mu}; }
+  bool may_be_negative() const { return lambda < mu; }  // least at F = 0: (lambda - mu)/2
   // Uniform stretching at rest has the curvature 3 lambda - mu.
   const char* problem() const {
     return 3 * lambda <= mu ? "lambda must be above mu/3: below, the rest shape of stable-neo-hookean is not stable"
