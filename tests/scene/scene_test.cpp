@@ -10,17 +10,12 @@
 #include "scene/shape_reader.h"
 #include "scene/warnings.h"
 #include "support/bodies.h"
+#include "support/scene_text.h"
 
 namespace supple {
 namespace {
 
-std::vector<std::string> problems_of(const std::string& text) {
-  Config config = Config::parse(text, "scene.toml", test::assets);
-  (void)read_scene(config);
-  std::vector<std::string> list;
-  for (const Problem& problem : config.take_problems()) list.push_back(problem.text());
-  return list;
-}
+using test::problems_of;
 
 const std::string good_body =
     "[[body]]\nshape = \"shapes/squirrel.toml\"\nmaterial = { model = \"polynomial\", mu = 1e4 }\n";

@@ -12,24 +12,13 @@
 #include "scene/scene_reader.h"
 #include "scene/warnings.h"
 #include "support/bodies.h"
+#include "support/scene_text.h"
 
 namespace supple {
 namespace {
 
-std::vector<std::string> problems_of(const std::string& text) {
-  Config config = Config::parse(text, "scene.toml", test::assets);
-  (void)read_scene(config);
-  std::vector<std::string> list;
-  for (const Problem& problem : config.take_problems()) list.push_back(problem.text());
-  return list;
-}
-
-SceneDef scene_of(const std::string& text) {
-  Config config = Config::parse(text, "scene.toml", test::assets);
-  SceneDef scene = read_scene(config);
-  config.finish();
-  return scene;
-}
+using test::problems_of;
+using test::scene_of;
 
 std::string box_body(const std::string& rest) {
   return "[[body]]\nbox = { extent = [2, 1, 1], cells = [4, 2, 2] }\n" + rest;

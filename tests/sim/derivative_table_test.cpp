@@ -12,40 +12,14 @@
 
 #include "sim/elements/element.h"
 #include "support/bodies.h"
+#include "support/deformations.h"
 
 namespace supple {
 namespace {
 
-double uniform(std::mt19937& random, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(random);
-}
-
-Mat3 random_rotation(std::mt19937& random) {
-  std::normal_distribution<double> normal;
-  return Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random))
-      .normalized()
-      .toRotationMatrix();
-}
-
-struct Stretches {
-  const char* name;
-  Vec3 (*draw)(std::mt19937&);
-};
-
-const Stretches kinds[] = {
-    {"random", [](std::mt19937& r) { return Vec3(uniform(r, 0.3, 2), uniform(r, 0.3, 2), uniform(r, 0.3, 2)); }},
-    {"inverted",
-     [](std::mt19937& r) { return Vec3(uniform(r, 0.8, 2), uniform(r, 0.8, 1.5), uniform(r, -0.6, -0.1)); }},
-    {"two equal",
-     [](std::mt19937& r) {
-       const double s = uniform(r, 0.4, 1.6);
-       return Vec3(s, s, uniform(r, 0.4, 1.6));
-     }},
-    {"three equal", [](std::mt19937& r) { return Vec3(Vec3::Constant(uniform(r, 0.4, 1.6))); }},
-    {"small",
-     [](std::mt19937& r) { return Vec3(uniform(r, 0.01, 0.05), uniform(r, 0.01, 0.05), uniform(r, 0.01, 0.05)); }},
-    {"huge", [](std::mt19937& r) { return Vec3(uniform(r, 20, 50), uniform(r, 20, 50), uniform(r, 20, 50)); }},
-};
+using test::kinds;
+using test::random_rotation;
+using test::uniform;
 
 // An element: its energy, and its force on all corners, at a deformation gradient applied to its rest shape.
 using Corners = Eigen::Matrix<double, Eigen::Dynamic, 3>;
@@ -148,10 +122,10 @@ struct Row {
 Row measure(const Subject& subject) {
   Row row{subject.element, subject.material, {}};
   std::mt19937 random(17);
-  for (const Stretches& kind : kinds) {
+  for (const test::Kind& kind : kinds) {
     double worst = 0;
     for (int sample = 0; sample < 60; ++sample) {
-      const Mat3 f = random_rotation(random) * kind.draw(random).asDiagonal() * random_rotation(random);
+      const Mat3 f = test::deformation(kind, random);
       const Corners x = subject.rest * f.transpose();
       worst = std::max(worst, difference_error(subject, x, random));
       Corners force;
@@ -180,7 +154,7 @@ Row measure(const Subject& subject) {
 
 std::string table_of(const std::vector<Row>& rows) {
   std::string table = "| element | material |";
-  for (const Stretches& kind : kinds) table += fmt::format(" {} |", kind.name);
+  for (const test::Kind& kind : kinds) table += fmt::format(" {} |", kind.name);
   table += " rigid motion | net force | net torque |\n|---|---|";
   for (std::size_t i = 0; i < std::size(kinds) + 3; ++i) table += "---|";
   table += '\n';

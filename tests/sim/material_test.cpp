@@ -8,47 +8,17 @@
 
 #include "sim/elements/tetrahedron.h"
 #include "support/bodies.h"
+#include "support/deformations.h"
 
 namespace supple {
 namespace {
 
 using test::all_materials;
-
-Mat3 random_rotation(std::mt19937& random) {
-  std::normal_distribution<double> normal;
-  Eigen::Quaterniond q(normal(random), normal(random), normal(random), normal(random));
-  return q.normalized().toRotationMatrix();
-}
-
-struct Kind {
-  const char* name;
-  Vec3 (*stretches)(std::mt19937&);
-};
-
-double uniform(std::mt19937& random, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(random);
-}
-
-const Kind kinds[] = {
-    {"near rest",
-     [](std::mt19937& r) { return Vec3(uniform(r, 0.99, 1.01), uniform(r, 0.99, 1.01), uniform(r, 0.99, 1.01)); }},
-    {"random", [](std::mt19937& r) { return Vec3(uniform(r, 0.3, 2), uniform(r, 0.3, 2), uniform(r, 0.3, 2)); }},
-    {"inverted",
-     [](std::mt19937& r) { return Vec3(uniform(r, 0.8, 2), uniform(r, 0.8, 1.5), uniform(r, -0.6, -0.1)); }},
-    {"two equal stretches",
-     [](std::mt19937& r) {
-       const double s = uniform(r, 0.4, 1.6);
-       return Vec3(s, s, uniform(r, 0.4, 1.6));
-     }},
-    {"three equal stretches", [](std::mt19937& r) { return Vec3(Vec3::Constant(uniform(r, 0.4, 1.6))); }},
-    {"nearly flat",
-     [](std::mt19937& r) { return Vec3(uniform(r, 0.8, 1.5), uniform(r, 0.8, 1.5), uniform(r, -1e-3, 1e-3)); }},
-    {"huge", [](std::mt19937& r) { return Vec3(uniform(r, 20, 50), uniform(r, 20, 50), uniform(r, 20, 50)); }},
-};
-
-Mat3 deformation(const Kind& kind, std::mt19937& random) {
-  return random_rotation(random) * kind.stretches(random).asDiagonal() * random_rotation(random);
-}
+using test::deformation;
+using test::Kind;
+using test::kinds;
+using test::random_rotation;
+using test::uniform;
 
 Matrix3<double> plain(const Mat3& f) {
   Matrix3<double> m;
@@ -68,34 +38,6 @@ double density(const Material& material, const Mat3& f, Mat3* stress) {
         return energy;
       },
       material);
-}
-
-TEST(Materials, StressIsTheDerivativeOfTheEnergyAtEveryKindOfDeformation) {
-  std::mt19937 random(7);
-  for (const Material& material : all_materials()) {
-    for (const Kind& kind : kinds) {
-      for (int sample = 0; sample < 40; ++sample) {
-        const Mat3 f = deformation(kind, random);
-        Mat3 direction = Mat3::Random();
-        direction /= direction.norm();
-        Mat3 stress;
-        density(material, f, &stress);
-        const double slope = stress.cwiseProduct(direction).sum();
-        // The best of several steps: a large one sees curvature, a small one round-off.
-        double best = 1e300;
-        for (const double h : {1e-3, 1e-4, 1e-5, 1e-6}) {
-          const double step = h * std::max(1.0, 0.1 * f.norm());
-          const double difference =
-              (density(material, f + step * direction, nullptr) - density(material, f - step * direction, nullptr)) /
-              (2 * step);
-          best = std::min(best, std::abs(difference - slope));
-        }
-        EXPECT_LT(best, 1e-6 * std::max(stress.norm(), 1e-2 * 1e4))
-            << name_of(material) << ", " << kind.name << "\nF =\n"
-            << f;
-      }
-    }
-  }
 }
 
 TEST(Materials, EnergyIsTheValanisLandelSumOfItsStretches) {
