@@ -21,11 +21,13 @@ double linear_of(double srgb) { return srgb <= 0.04045 ? srgb / 12.92 : std::pow
 
 Vec3 linear_of(const Vec3& srgb) { return {linear_of(srgb.x()), linear_of(srgb.y()), linear_of(srgb.z())}; }
 
+// With the ground below what hangs in the air, where its shadow falls.
 Bounds stage_bounds(const Stage& stage) {
   Bounds box;
   for (const DrawMesh& mesh : stage.meshes) {
     box.include(mesh.rest.lower);
     box.include(mesh.rest.upper);
+    box.include(Vec3(mesh.rest.lower.x(), std::min(0.0, mesh.rest.lower.y()), mesh.rest.lower.z()));
   }
   return box;
 }
