@@ -4,6 +4,7 @@
 
 #include "sim/measures.h"
 #include "support/bodies.h"
+#include "support/objective_derivative.h"
 
 namespace supple {
 namespace {
@@ -11,12 +12,6 @@ namespace {
 using test::bar;
 using test::Held;
 using test::still_inputs;
-
-FrameInputs with_middle(FrameInputs inputs) {
-  inputs.middle_targets = inputs.targets;
-  inputs.middle_targets.array() += 0.003;
-  return inputs;
-}
 
 std::vector<BodyDescription> all_objectives() {
   std::vector<BodyDescription> list;
@@ -38,36 +33,8 @@ std::vector<BodyDescription> all_objectives() {
 }
 
 TEST(Integrators, GradientAndDifferencesAgreeForEveryObjective) {
-  for (const BodyDescription& body : all_objectives()) {
-    const Model model = build_model(body);
-    Workspace w;
-    FrameInputs inputs = with_middle(still_inputs(model));
-    inputs.targets.array() += 0.01;
-    w.prepare(model, inputs.solver);
-    State state = rest_state(model);
-    state.x = test::shaken(model.rest, 0.01, 3);
-    state.v = test::shaken(Positions::Zero(model.vertices, 3), 1, 5);
-    begin_step(model, inputs, state, w);
-    w.x.topRows(model.free) = test::shaken(model.rest, 0.02, 4).topRows(model.free);
-    w.direction = test::shaken(Positions::Zero(model.free, 3), 1, 6);
-    const Change at = evaluate(model, w, w.x, w.energy, &w.gradient, nullptr, nullptr);
-    double best = 1e300;
-    for (const double h : {1e-4, 1e-5, 1e-6, 1e-7}) {
-      Positions ahead = w.x, behind = w.x;
-      ahead.topRows(model.free) += h * w.direction;
-      behind.topRows(model.free) -= h * w.direction;
-      const double difference = (evaluate(model, w, ahead, w.trial_energy, nullptr, nullptr, nullptr).value -
-                                 evaluate(model, w, behind, w.trial_energy, nullptr, nullptr, nullptr).value) /
-                                (2 * h);
-      best = std::min(best, std::abs(difference - at.slope));
-    }
-    EXPECT_LT(best, 1e-6 * std::abs(at.slope)) << body.name << ' ' << body.damping;
-    w.trial = w.x;
-    w.trial.topRows(model.free) += 1e-3 * w.direction;
-    const double change = evaluate(model, w, w.trial, w.trial_energy, nullptr, &w.x, &w.energy).value;
-    const double value = evaluate(model, w, w.trial, w.trial_energy, nullptr, nullptr, nullptr).value;
-    EXPECT_NEAR(change, value - at.value, 1e-11 * std::abs(value)) << body.name << ' ' << body.damping;
-  }
+  for (const BodyDescription& body : all_objectives())
+    test::expect_derivative_of_objective(body, body.name + (body.damping > 0 ? ", damped" : ""));
 }
 
 // The matrix of the model must be the second derivative of g where g is quadratic.

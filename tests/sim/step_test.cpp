@@ -12,6 +12,7 @@
 #include "geometry/tetrahedralize.h"
 #include "support/allocation_counter.h"
 #include "support/bodies.h"
+#include "support/objective_derivative.h"
 
 namespace supple {
 namespace {
@@ -22,36 +23,8 @@ using test::still_inputs;
 
 TEST(Objective, GradientIsTheDerivativeOfTheValueForEveryMaterialAndHandle) {
   for (const Material& material : test::all_materials()) {
-    for (const Held held : {Held::nothing, Held::hard_end, Held::spring_end}) {
-      const Model model = build_model(bar(material, held));
-      Workspace w;
-      FrameInputs inputs = still_inputs(model);
-      w.prepare(model, inputs.solver);
-      State state = rest_state(model);
-      state.v = test::shaken(Positions::Zero(model.vertices, 3), 1, 5);
-      inputs.targets.array() += 0.01;
-      begin_step(model, inputs, state, w);
-      w.x.topRows(model.free) = test::shaken(model.rest, 0.02, 4).topRows(model.free);
-      w.direction = test::shaken(Positions::Zero(model.free, 3), 1, 6);
-      const Change at = evaluate(model, w, w.x, w.energy, &w.gradient, nullptr, nullptr);
-      double best = 1e300;
-      for (const double h : {1e-4, 1e-5, 1e-6, 1e-7}) {
-        Positions ahead = w.x, behind = w.x;
-        ahead.topRows(model.free) += h * w.direction;
-        behind.topRows(model.free) -= h * w.direction;
-        const double difference = (evaluate(model, w, ahead, w.trial_energy, nullptr, nullptr, nullptr).value -
-                                   evaluate(model, w, behind, w.trial_energy, nullptr, nullptr, nullptr).value) /
-                                  (2 * h);
-        best = std::min(best, std::abs(difference - at.slope));
-      }
-      EXPECT_LT(best, 1e-6 * std::abs(at.slope)) << name_of(material);
-      // A difference with a reference is the difference of the values.
-      w.trial = w.x;
-      w.trial.topRows(model.free) += 1e-3 * w.direction;
-      const double change = evaluate(model, w, w.trial, w.trial_energy, nullptr, &w.x, &w.energy).value;
-      const double value = evaluate(model, w, w.trial, w.trial_energy, nullptr, nullptr, nullptr).value;
-      EXPECT_NEAR(change, value - at.value, 1e-11 * std::abs(value)) << name_of(material);
-    }
+    for (const Held held : {Held::nothing, Held::hard_end, Held::spring_end})
+      test::expect_derivative_of_objective(bar(material, held), std::string(name_of(material)));
   }
 }
 
