@@ -10,6 +10,7 @@
 #include "scene/warnings.h"
 #include "sim/measures.h"
 #include "support/film.h"
+#include "support/objective_checks.h"
 
 namespace supple {
 namespace {
@@ -32,18 +33,10 @@ TEST(Scenes, NoStepOfAnySceneIsWorseThanStaying) {
   for (const std::filesystem::path& path : scenes()) {
     const Film run(path, {});
     EXPECT_FALSE(run.scene.title.empty()) << path;
-    std::vector<Workspace> probes(run.bodies.size());
     run.play(2, frames_to_run(),
              [&](std::size_t b, int number, const State& before, const FrameInputs& inputs, const State& after) {
                const Model& model = run.models[b];
-               Workspace& probe = probes[b];
-               probe.prepare(model, inputs.solver);
-               begin_step(model, inputs, before, probe);
-               probe.x.topRows(model.free) = before.x.topRows(model.free);
-               const double staying = evaluate(model, probe, probe.x, probe.energy, nullptr, nullptr, nullptr).value;
-               Positions reached = after.x;
-               const double change =
-                   evaluate(model, probe, reached, probe.trial_energy, nullptr, &probe.x, &probe.energy).value;
+               const auto [staying, change] = test::against_staying(model, inputs, before, after);
                EXPECT_LE(change, noise_of(model, staying, model.size + before.x.cwiseAbs().maxCoeff()))
                    << path.stem() << ", " << run.bodies[b].def.name << ", step " << number;
              });

@@ -1,4 +1,4 @@
-#include "support/objective_derivative.h"
+#include "support/objective_checks.h"
 
 #include <gtest/gtest.h>
 
@@ -33,6 +33,15 @@ void expect_derivative_of_objective(const BodyDescription& body, const std::stri
   const double value = value_at(1e-3);
   const double change = evaluate(model, w, w.trial, w.trial_energy, nullptr, &w.x, &w.energy).value;
   EXPECT_NEAR(change, value - at.value, 1e-11 * std::abs(value)) << name;
+}
+
+AgainstStaying against_staying(const Model& model, const FrameInputs& inputs, const State& before, const State& after) {
+  Workspace w;
+  w.prepare(model, inputs.solver);
+  begin_step(model, inputs, before, w);
+  w.x.topRows(model.free) = before.x.topRows(model.free);
+  const double staying = evaluate(model, w, w.x, w.energy, nullptr, nullptr, nullptr).value;
+  return {staying, evaluate(model, w, after.x, w.trial_energy, nullptr, &w.x, &w.energy).value};
 }
 
 }  // namespace supple::test
