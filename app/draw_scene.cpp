@@ -4,8 +4,59 @@
 
 namespace supple {
 
+namespace {
+
+constexpr double collider_gloss = 0.35;
+
+Vec3 collider_color(const ColliderDef& def) {
+  const bool painted = !def.shape.paint.empty() || def.shape.color != Shape{}.color;
+  return def.color.value_or(painted ? def.shape.color : Vec3(0.56, 0.64, 0.71));
+}
+
+// What a mesh and its skin have in common, whoever moves it.
+DrawMesh mesh_of(const Skin& skin, const std::vector<PaintLayer>& layers) {
+  DrawMesh mesh;
+  mesh.triangles.assign(skin.rest.triangles.data(), skin.rest.triangles.data() + skin.rest.triangles.size());
+  mesh.occlusion = skin.occlusion;
+  mesh.paint = skin.paint;
+  mesh.square = skin.square;
+  for (const PaintLayer& layer : layers) mesh.layers.push_back({layer.color, layer.gloss, layer.soft});
+  return mesh;
+}
+
+std::vector<float> as_floats(const Positions& points) {
+  std::vector<float> result(points.size());
+  for (Eigen::Index i = 0; i < points.size(); ++i) result[i] = static_cast<float>(points.data()[i]);
+  return result;
+}
+
+Positions at_pose(const Positions& points, const Eigen::Isometry3d& pose) {
+  return (points * pose.linear().transpose()).rowwise() + pose.translation().transpose();
+}
+
+}  // namespace
+
+std::vector<Skin> drawn_set(const std::vector<Obstacle>& obstacles, const std::vector<Body>& bodies) {
+  Bounds around;
+  for (const Body& body : bodies) {
+    const Bounds box = bounds_of(body.description.mesh.rest);
+    around.include(box.lower);
+    around.include(box.upper);
+  }
+  std::vector<Skin> film_set;
+  for (const Obstacle& obstacle : obstacles) film_set.push_back(drawn_obstacle(obstacle, around));
+  return film_set;
+}
+
+void add_set(const std::vector<Obstacle>& obstacles, const std::vector<Skin>& film_set, double time, DrawList& list) {
+  for (std::size_t c = 0; c < obstacles.size(); ++c) {
+    if (film_set[c].rest.points.rows() > 0)
+      list.positions.push_back(as_floats(at_pose(film_set[c].rest.points, obstacles[c].pose(time))));
+  }
+}
+
 Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const std::vector<DrawnBody>& drawn,
-                 const std::string& font) {
+                 const std::vector<Obstacle>& obstacles, const std::vector<Skin>& film_set, const std::string& font) {
   Stage stage;
   stage.width = scene.output.width;
   stage.height = scene.output.height;
@@ -16,17 +67,22 @@ Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const s
   if (scene.look.show_labels) stage.font = font;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const Skin& skin = drawn[b].skin;
-    DrawMesh mesh;
+    DrawMesh mesh = mesh_of(skin, drawn[b].layers);
     mesh.label = bodies[b].def.label;
-    mesh.triangles.assign(skin.rest.triangles.data(), skin.rest.triangles.data() + skin.rest.triangles.size());
-    mesh.occlusion = skin.occlusion;
-    mesh.paint = skin.paint;
-    mesh.square = skin.square;
     mesh.printed = bodies[b].def.pattern == Pattern::checks ? Printed::checks : Printed::grid;
     mesh.two_sided = drawn[b].two_sided;
     mesh.color = drawn[b].color;
-    for (const PaintLayer& layer : drawn[b].layers) mesh.layers.push_back({layer.color, layer.gloss, layer.soft});
     mesh.rest = bounds_of(bodies[b].description.mesh.rest);
+    stage.meshes.push_back(std::move(mesh));
+  }
+  for (std::size_t c = 0; c < obstacles.size(); ++c) {
+    const Skin& skin = film_set[c];
+    if (skin.rest.points.rows() == 0) continue;
+    DrawMesh mesh = mesh_of(skin, obstacles[c].def.shape.paint);
+    mesh.color = collider_color(obstacles[c].def);
+    mesh.gloss = collider_gloss;
+    mesh.rest = bounds_of(at_pose(skin.rest.points, obstacles[c].pose(0)));
+    mesh.framed = obstacles[c].def.shape.bounds().diagonal() < 1e6;
     stage.meshes.push_back(std::move(mesh));
   }
   return stage;
@@ -35,6 +91,7 @@ Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const s
 Camera make_camera(const SceneDef& scene, const Stage& stage) {
   Bounds box;
   for (const DrawMesh& mesh : stage.meshes) {
+    if (!mesh.framed) continue;
     box.include(mesh.rest.lower);
     box.include(mesh.rest.upper);
   }
@@ -54,9 +111,7 @@ std::vector<float> skin_positions(const DrawnBody& drawn, const Model& model, co
     points.resize(drawn.vertex_of.size(), 3);
     for (std::size_t v = 0; v < drawn.vertex_of.size(); ++v) points.row(v) = mesh.row(drawn.vertex_of[v]);
   }
-  std::vector<float> result(points.size());
-  for (Eigen::Index i = 0; i < points.size(); ++i) result[i] = static_cast<float>(points.data()[i]);
-  return result;
+  return as_floats(points);
 }
 
 }  // namespace supple

@@ -3,11 +3,19 @@
 
 #include "render/draw_list.h"
 #include "scene/assemble.h"
+#include "scene/obstacle.h"
 
 namespace supple {
 
+// What is drawn of each collider; empty where nothing is.
+std::vector<Skin> drawn_set(const std::vector<Obstacle>& obstacles, const std::vector<Body>& bodies);
+
+// Bodies, then colliders that are drawn.
 Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const std::vector<DrawnBody>& drawn,
-                 const std::string& font);
+                 const std::vector<Obstacle>& obstacles, const std::vector<Skin>& film_set, const std::string& font);
+
+// Adds the colliders' positions at a time to a list that has the bodies'.
+void add_set(const std::vector<Obstacle>& obstacles, const std::vector<Skin>& film_set, double time, DrawList& list);
 
 // The scene's camera, or one that frames all bodies and the motion of their handles.
 Camera make_camera(const SceneDef& scene, const Stage& stage);

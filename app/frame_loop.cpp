@@ -8,6 +8,7 @@
 #include <mutex>
 #include <thread>
 
+#include "app/actor.h"
 #include "app/draw_scene.h"
 #include "base/console.h"
 #include "base/error.h"
@@ -15,13 +16,10 @@
 #include "base/queue.h"
 #include "base/text.h"
 #include "base/timing.h"
-#include "baselines/reference.h"
 #include "output/png_file.h"
-#include "output/point_cache.h"
+#include "output/pose_table.h"
 #include "output/video.h"
 #include "render/renderer.h"
-#include "sim/measures.h"
-#include "sim/step.h"
 
 namespace supple {
 namespace {
@@ -144,68 +142,6 @@ class Progress {
   Stopwatch watch_;
 };
 
-// A body on its way through the film.
-struct Actor {
-  const Body& body;
-  const Model& model;
-  State state;
-  FrameInputs inputs;
-  Workspace workspace, reference_workspace;
-  PointCacheWriter motion;
-};
-
-void add_up(BodyRow& row, const StepReport& report) {
-  row.step_ms += report.step_ms;
-  row.evaluate_ms += report.evaluate_ms;
-  row.solve_ms += report.solve_ms;
-  row.lbfgs_ms += report.lbfgs_ms;
-  row.other_ms += report.other_ms;
-  row.iterations += report.iterations;
-  row.line_search += report.line_search;
-  row.objective_start = report.objective.empty() ? 0 : report.objective.front();
-  row.objective_end = report.objective.empty() ? 0 : report.objective.back();
-  row.error_estimate = report.error_estimate;
-  row.stop_reason = text_of(report.stop_reason);
-}
-
-std::string failure_text(int frame, const Actor& actor, const StepFailure& failure) {
-  return fmt::format("frame {}: body '{}' failed while in '{}': {} (vertex {} is furthest out)", frame,
-                     actor.body.def.name, failure.phase, failure.what, failure.vertex + 1);
-}
-
-// One frame's steps of one body. A message when the solver failed.
-std::string advance(const SceneDef& scene, int frame, bool measure_error, Actor& actor, BodyRow& row) {
-  row.name = actor.body.def.name;
-  for (int substep = 0; substep < scene.substeps; ++substep) {
-    const double time = (static_cast<double>(frame) * scene.substeps + substep + 1) * scene.time_step();
-    handle_targets(actor.model, actor.body, time, actor.inputs.targets);
-    if (actor.model.scheme.theta < 1)
-      handle_targets(actor.model, actor.body, time - 0.5 * scene.time_step(), actor.inputs.middle_targets);
-    const bool last = substep + 1 == scene.substeps;
-    const bool measure = measure_error && last;
-    const State before = measure ? actor.state : State{};
-    const StepReport& report = step(actor.model, actor.inputs, actor.state, actor.workspace);
-    add_up(row, report);
-    if (report.failed) return failure_text(frame, actor, report.failure);
-    if (measure) {
-      row.error_measured = true;
-      row.error = step_error(actor.model, actor.inputs, before, actor.state, actor.reference_workspace);
-    }
-  }
-  const Deformation shape = deformation(actor.model, actor.state.x);
-  row.stretch = shape.stretch;
-  row.inverted = shape.inverted;
-  if (scene.output.energy) {
-    const Energies energy = energies(actor.model, actor.state, scene.gravity, actor.workspace);
-    row.energy = {energy.kinetic, energy.elastic, energy.gravitational};
-  }
-  if (!actor.body.motions.empty()) {
-    const double time = (frame + 1) / scene.fps;
-    row.jiggle = jiggle(actor.model, actor.state.x, actor.body.motions.front().at(time));
-  }
-  return "";
-}
-
 }  // namespace
 
 bool interrupted() { return interrupt_count > 0; }
@@ -218,11 +154,12 @@ void catch_interrupts() {
 }
 
 FilmResult make_film(const SceneDef& scene, const std::vector<Body>& bodies, std::vector<Model>& models,
-                     const RunFolder& folder, const FilmOptions& options) {
+                     const CollisionSet& set, const RunFolder& folder, const FilmOptions& options) {
   FilmResult result;
   const Stopwatch setup;
   Threads threads(options.threads);
   std::vector<DrawnBody> drawn;
+  std::vector<Skin> film_set;  // of colliders
   std::optional<Pictures> pictures;
   std::vector<FrameRow> rows;
   Progress progress(scene.frames, options.quiet);
@@ -231,23 +168,16 @@ FilmResult make_film(const SceneDef& scene, const std::vector<Body>& bodies, std
     Camera camera;
     if (options.images) {
       for (const Body& body : bodies) drawn.push_back(drawn_body(scene, body));
-      const Stage stage = make_stage(scene, bodies, drawn, options.font);
+      film_set = drawn_set(set.obstacles, bodies);
+      const Stage stage = make_stage(scene, bodies, drawn, set.obstacles, film_set, options.font);
       camera = make_camera(scene, stage);
       pictures.emplace(stage, options, folder);
     }
     std::vector<std::unique_ptr<Actor>> actors;
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-      actors.push_back(
-          std::make_unique<Actor>(Actor{bodies[b],
-                                        models[b],
-                                        start_state(models[b], bodies[b]),
-                                        {scene.gravity, {}, {}, bodies[b].def.solver.settings},
-                                        {},
-                                        {},
-                                        PointCacheWriter(folder.motion(bodies[b].def.name), models[b].vertices)}));
-      actors.back()->workspace.threads = &threads;
-      actors.back()->reference_workspace.threads = &threads;
-    }
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      actors.push_back(std::make_unique<Actor>(scene, bodies[b], models[b], set, folder, threads));
+    std::optional<PoseTableWriter> poses;
+    if (!set.obstacles.empty()) poses.emplace(folder.colliders());
     result.setup_ms = setup.elapsed_ms();
     loop.lap_ms();
     for (int frame = 0; frame < scene.frames; ++frame) {
@@ -262,10 +192,10 @@ FilmResult make_film(const SceneDef& scene, const std::vector<Body>& bodies, std
       std::vector<std::uint64_t> hashes;
       for (const auto& actor : actors) {
         row.bodies.emplace_back();
-        result.message = advance(scene, frame, measure_error, *actor, row.bodies.back());
+        result.message = actor->advance(frame, measure_error, row.bodies.back());
         if (!result.message.empty()) break;
         row.step_ms += row.bodies.back().step_ms;
-        hashes.push_back(state_hash(actor->model, actor->state));
+        hashes.push_back(state_hash(actor->model(), actor->state()));
       }
       if (!result.message.empty()) {
         result.end = FilmEnd::failed;
@@ -278,11 +208,13 @@ FilmResult make_film(const SceneDef& scene, const std::vector<Body>& bodies, std
         const Stopwatch watch;
         DrawList list{camera, {}};
         for (std::size_t b = 0; b < actors.size(); ++b)
-          list.positions.push_back(skin_positions(drawn[b], actors[b]->model, actors[b]->state));
+          list.positions.push_back(skin_positions(drawn[b], actors[b]->model(), actors[b]->state()));
+        add_set(set.obstacles, film_set, row.time_s, list);
         row.draw_ms = watch.elapsed_ms();
         if (!pictures->put(frame, std::move(list))) break;
       }
-      for (const auto& actor : actors) actor->motion.add(in_input_order(actor->model, actor->state.x));
+      for (const auto& actor : actors) actor->save_motion();
+      for (const Obstacle& obstacle : set.obstacles) poses->add(frame, obstacle.def.name, obstacle.pose(row.time_s));
       rows.push_back(std::move(row));
       progress.show(frame + 1);
     }

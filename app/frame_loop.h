@@ -10,6 +10,7 @@
 #include "output/run_folder.h"
 #include "render/gl_context.h"
 #include "scene/assemble.h"
+#include "scene/obstacle.h"
 
 namespace supple {
 
@@ -40,7 +41,7 @@ struct FilmResult {
 
 // Runs a scene into a folder. Whatever happens, the frames before it are whole, and rows tells of them.
 FilmResult make_film(const SceneDef& scene, const std::vector<Body>& bodies, std::vector<Model>& models,
-                     const RunFolder& folder, const FilmOptions& options);
+                     const CollisionSet& set, const RunFolder& folder, const FilmOptions& options);
 
 // True once SIGINT or SIGTERM asked the run to end after the frame in progress.
 bool interrupted();

@@ -113,7 +113,7 @@ int render(const RenderOptions& options, const std::vector<std::string>& command
 
   catch_interrupts();
   const double before_film = setup.elapsed_ms();
-  FilmResult result = make_film(scene, bodies, models, folder, film);
+  FilmResult result = make_film(scene, bodies, models, collision_set(scene), folder, film);
   result.setup_ms += before_film;
 
   info.gl_backend = result.gl_backend;

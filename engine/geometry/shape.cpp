@@ -68,18 +68,11 @@ double primitive_distance(const HalfSpace& h, const Vec3& p) { return h.normal.d
 
 double primitive_distance(const ShapeGroup& group, const Vec3& p) { return distance(group, p); }
 
-// Quadratic polynomial smooth minimum: lowers both fields by at most blend / 4 where they are equal.
-double smooth_min(double a, double b, double blend) {
-  if (blend <= 0) return std::min(a, b);
-  const double h = std::max(blend - std::abs(a - b), 0.0) / blend;
-  return std::min(a, b) - 0.25 * blend * h * h;
-}
-
 double combined(double field, double part, const ShapePart& how) {
   switch (how.combine) {
-    case Combine::add: return smooth_min(field, part, how.blend);
-    case Combine::cut: return -smooth_min(-field, part, how.blend);
-    case Combine::intersect: return -smooth_min(-field, -part, how.blend);
+    case Combine::add: return smooth_min(field, part, how.blend).value;
+    case Combine::cut: return -smooth_min(-field, part, how.blend).value;
+    case Combine::intersect: return -smooth_min(-field, -part, how.blend).value;
   }
   return field;
 }
@@ -183,11 +176,18 @@ void find_region(const ShapeGroup& group, const Vec3& point, int inherited, Near
 
 }  // namespace
 
+Melted smooth_min(double a, double b, double blend) {
+  if (blend <= 0) return {std::min(a, b), b < a ? 1.0 : 0.0};
+  const double h = std::max(blend - std::abs(a - b), 0.0) / blend;
+  return {std::min(a, b) - 0.25 * blend * h * h, b < a ? 1 - 0.5 * h : 0.5 * h};
+}
+
+double distance(const Primitive& primitive, const Vec3& point) {
+  return std::visit([&point](const auto& shape) { return primitive_distance(shape, point); }, primitive);
+}
+
 double ShapePart::distance(const Vec3& point) const {
-  const auto local = [this](const Vec3& p) {
-    const Vec3 q = to_local * p / scale;
-    return scale * std::visit([&q](const auto& shape) { return primitive_distance(shape, q); }, primitive);
-  };
+  const auto local = [this](const Vec3& p) { return scale * supple::distance(primitive, to_local * p / scale); };
   const double here = local(point);
   return mirror_x ? std::min(here, local(Vec3(-point.x(), point.y(), point.z()))) : here;
 }

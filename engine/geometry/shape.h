@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "base/types.h"
+#include "geometry/surface_point.h"
 
 namespace supple {
 
@@ -66,6 +66,16 @@ struct ShapePart {
   double distance(const Vec3& point) const;
 };
 
+double distance(const Primitive& primitive, const Vec3& point);
+
+// Of two fields that melt into each other: the smaller one, lowered by at most blend / 4 where they are equal (a
+// quadratic polynomial smooth minimum), and the share of b in its gradient.
+struct Melted {
+  double value;
+  double share;
+};
+Melted smooth_min(double a, double b, double blend);
+
 // A layer of colour on the drawn skin: where a field is negative. Never part of the geometry.
 struct PaintLayer {
   std::string name;
@@ -84,6 +94,14 @@ struct Shape {
   double distance(const Vec3& point) const;
   Vec3 gradient(const Vec3& point, double step) const;  // central differences over +-step
   Bounds bounds() const;                                // conservative; unbounded shapes give an extent above 1e6
+
+  // The surface's closest point. Exact for single primitives other than the ellipsoid; elsewhere a point of the
+  // surface whose normal leads to `point`, found by iteration from the field: the closest one where the depth is below
+  // the surface's radius of curvature.
+  SurfacePoint closest(const Vec3& point) const;
+
+  // The distance to the surface is at least this times |distance(point)|: 1 but for ellipsoids.
+  double certainty() const;
 
   // The tag of the last tagged part that holds the point; outside all parts, that of the nearest one.
   int region(const Vec3& point) const;

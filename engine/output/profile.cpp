@@ -30,6 +30,13 @@ Json json_of(const BodyRow& body) {
               {"objective_end", body.objective_end},
               {"error_estimate", body.error_estimate}};
   if (body.error_measured) row["error"] = body.error ? Json(*body.error) : Json(nullptr);
+  if (body.contact) {
+    row["collide_ms"] = rounded_ms(body.contact->collide_ms);
+    row["contacts"] = body.contact->contacts;
+    row["contact_changes"] = body.contact->changes;
+    row["contact_cycles"] = body.contact->cycles;
+    row["penetration"] = body.contact->penetration;
+  }
   row["stretch"] = body.stretch;
   if (body.energy) {
     row["kinetic_energy"] = (*body.energy)[0];
@@ -136,6 +143,8 @@ std::string profile_table(const std::vector<FrameRow>& rows) {
     measured |= std::any_of(row.bodies.begin(), row.bodies.end(), [](const BodyRow& b) { return b.error_measured; });
   text += fmt::format("\n  {:<14}{:>9}{:>9}{:>12}{:>10}{:>10}{:>12}", "body", "step ms", "p95", "trials/it", "stretch",
                       "jiggle", "error est.");
+  const bool touching = rows.front().bodies.empty() ? false : rows.front().bodies.front().contact.has_value();
+  if (touching) text += fmt::format("{:>12}{:>10}{:>13}", "collide ms", "contacts", "penetration");
   text += measured ? fmt::format("{:>11}{:>10}{:>10}\n", "error mean", "p95", "worst") : "\n";
   for (std::size_t b = 0; b < rows.front().bodies.size(); ++b) {
     const Distribution step =
@@ -153,6 +162,15 @@ std::string profile_table(const std::vector<FrameRow>& rows) {
     text += fmt::format("  {:<14}{:>9.2f}{:>9.2f}{:>12.3f}{:>10.3f}{:>10}{:>12.1e}", rows.front().bodies[b].name,
                         step.p50, step.p95, iterations > 0 ? trials / iterations : 0.0, stretch.max,
                         jiggles.empty() ? "-" : fmt::format("{:.3f}", distribution_of(jiggles).max), estimate.mean);
+    if (touching) {
+      const Distribution collide =
+          distribution_of(of_body(rows, b, [](const BodyRow& r) { return std::optional(r.contact->collide_ms); }));
+      const Distribution contacts = distribution_of(
+          of_body(rows, b, [](const BodyRow& r) { return std::optional<double>(r.contact->contacts); }));
+      const Distribution deepest =
+          distribution_of(of_body(rows, b, [](const BodyRow& r) { return std::optional(r.contact->penetration); }));
+      text += fmt::format("{:>12.2f}{:>10.0f}{:>13.1e}", collide.p50, contacts.max, deepest.max);
+    }
     if (measured) {
       const Distribution error = distribution_of(of_body(rows, b, [](const BodyRow& r) { return r.error; }));
       text += fmt::format("{:>11.1e}{:>10.1e}{:>10.1e}", error.mean, error.p95, error.max);

@@ -11,6 +11,15 @@
 
 namespace supple {
 
+// Contact with colliders; absent where a scene has none.
+struct ContactRow {
+  double collide_ms = 0;
+  int contacts = 0;        // vertices in contact at the end of the frame
+  int changes = 0;         // that came or went, over the frame's iterations
+  int cycles = 0;          // iterations that brought the set of the one before last back
+  double penetration = 0;  // the deepest point of the surface, over size
+};
+
 struct BodyRow {
   std::string name;
   double step_ms = 0, evaluate_ms = 0, solve_ms = 0, lbfgs_ms = 0, other_ms = 0;
@@ -23,6 +32,7 @@ struct BodyRow {
   std::optional<std::array<double, 3>> energy;  // kinetic, elastic, gravitational [J]; only when the scene asks for it
   std::optional<int> inverted;                  // tetrahedra inside out; only for solids
   std::optional<double> jiggle;                 // over size; only for bodies with a handle
+  std::optional<ContactRow> contact;
   std::string stop_reason;
 };
 

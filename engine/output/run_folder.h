@@ -34,6 +34,7 @@ class RunFolder {
   std::filesystem::path frames() const { return path_ / "frames"; }
   std::filesystem::path frame(int index) const;
   std::filesystem::path motion(const std::string& body) const { return path_ / "motion" / (body + ".pc2"); }
+  std::filesystem::path colliders() const { return path_ / "motion" / "colliders.csv"; }
   std::filesystem::path video() const { return path_ / "video.mp4"; }
 
   void write_info(const RunInfo& info) const;

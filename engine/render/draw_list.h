@@ -28,8 +28,10 @@ struct DrawMesh {
   Printed printed = Printed::grid;
   bool two_sided = false;          // cloth, and bodies that may be inside out
   Vec3 color;                      // sRGB of the uncovered surface
+  double gloss = 0.25;             // of the uncovered surface
   std::vector<PaintColor> layers;  // at most 8
   Bounds rest;                     // where it starts: captions stand below it, cameras frame it [m]
+  bool framed = true;              // lights, shadows and cameras care about it: not of planes without end
 };
 
 struct Stage {

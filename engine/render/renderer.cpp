@@ -25,6 +25,7 @@ Vec3 linear_of(const Vec3& srgb) { return {linear_of(srgb.x()), linear_of(srgb.y
 Bounds stage_bounds(const Stage& stage) {
   Bounds box;
   for (const DrawMesh& mesh : stage.meshes) {
+    if (!mesh.framed) continue;
     box.include(mesh.rest.lower);
     box.include(mesh.rest.upper);
     box.include(Vec3(mesh.rest.lower.x(), std::min(0.0, mesh.rest.lower.y()), mesh.rest.lower.z()));
@@ -34,7 +35,8 @@ Bounds stage_bounds(const Stage& stage) {
 
 double largest_of(const Stage& stage) {
   double largest = 1e-6;
-  for (const DrawMesh& mesh : stage.meshes) largest = std::max(largest, mesh.rest.diagonal());
+  for (const DrawMesh& mesh : stage.meshes)
+    if (mesh.framed) largest = std::max(largest, mesh.rest.diagonal());
   return largest;
 }
 
@@ -337,7 +339,7 @@ void Renderer::draw_bodies(const Camera& camera) {
       for (int k = 0; k < 3; ++k) colors[4 * slot + k] = static_cast<float>(linear[k]);
       colors[4 * slot + 3] = static_cast<float>(gloss);
     };
-    put(0, mesh.color, 0.25);
+    put(0, mesh.color, mesh.gloss);
     for (std::size_t layer = 0; layer < mesh.layers.size() && layer < 8; ++layer) {
       put(layer + 1, mesh.layers[layer].color, mesh.layers[layer].gloss);
       soft[layer] = static_cast<float>(mesh.layers[layer].soft);

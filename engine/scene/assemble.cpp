@@ -143,7 +143,7 @@ void add_handles(Body& body, const Loaded& loaded, std::vector<Problem>& problem
                             fmt::format("with handle '{}' every vertex of body '{}' is held: nothing is left to move",
                                         def.name, body.def.name)));
     }
-    HandleMotion motion{Vec3::Zero(), def.ease, def.keys};
+    KeyedMotion motion{Vec3::Zero(), def.ease, def.keys};
     Bounds box;
     for (const std::int32_t v : handle.vertices) box.include(body.description.mesh.rest.row(v).transpose());
     if (!box.empty()) motion.center = box.center();
@@ -153,29 +153,6 @@ void add_handles(Body& body, const Loaded& loaded, std::vector<Problem>& problem
 }
 
 }  // namespace
-
-Eigen::Isometry3d HandleMotion::at(double time) const {
-  Vec3 move = Vec3::Zero();
-  Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
-  if (!keys.empty()) {
-    const auto after = std::find_if(keys.begin(), keys.end(), [time](const HandleKey& key) { return key.time > time; });
-    if (after == keys.begin() || after == keys.end()) {
-      const HandleKey& key = after == keys.end() ? keys.back() : keys.front();
-      move = key.move;
-      turn = rotation_from_degrees(key.turn_deg);
-    } else {
-      const HandleKey& before = *(after - 1);
-      double s = (time - before.time) / (after->time - before.time);
-      if (ease == Ease::smooth) s = s * s * (3 - 2 * s);
-      move = before.move + s * (after->move - before.move);
-      // Angles are joined, not rotations: a turn by 360 degrees is a full turn.
-      turn = rotation_from_degrees(before.turn_deg + s * (after->turn_deg - before.turn_deg));
-    }
-  }
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translate(center + move).rotate(turn).translate(-center);
-  return pose;
-}
 
 std::vector<Body> assemble(const SceneDef& scene) {
   std::vector<Body> bodies;
@@ -280,7 +257,7 @@ State start_state(const Model& model, const Body& body) {
 void handle_targets(const Model& model, const Body& body, double time, Positions& targets) {
   targets.resize(model.handled.size(), 3);
   std::vector<Eigen::Isometry3d> pose;
-  for (const HandleMotion& motion : body.motions) pose.push_back(motion.at(time));
+  for (const KeyedMotion& motion : body.motions) pose.push_back(motion.at(time));
   for (std::size_t i = 0; i < model.handled.size(); ++i) {
     const auto& [vertex, handle] = model.handled[i];
     targets.row(i) = (pose[handle] * Vec3(model.rest.row(vertex))).transpose();

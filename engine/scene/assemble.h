@@ -2,22 +2,11 @@
 // prepared.
 #pragma once
 
-#include <Eigen/Geometry>
-
 #include "geometry/skin.h"
+#include "scene/keyed_motion.h"
 #include "scene/scene_def.h"
 
 namespace supple {
-
-// A handle's motion: where each of its vertices is at a time.
-struct HandleMotion {
-  Vec3 center = Vec3::Zero();  // of its vertices at rest [m]
-  Ease ease = Ease::smooth;
-  std::vector<HandleKey> keys;
-
-  // The rigid motion from rest at a time.
-  Eigen::Isometry3d at(double time) const;
-};
 
 // What is drawn of a body: a skin carried by its elements, or (vertex_of) the mesh's own boundary.
 struct DrawnBody {
@@ -32,7 +21,7 @@ struct DrawnBody {
 struct Body {
   BodyDef def;
   BodyDescription description;                              // the mesh as placed, and its handles
-  std::vector<HandleMotion> motions;                        // by handle
+  std::vector<KeyedMotion> motions;                         // by handle
   std::vector<std::string> notes;                           // what reading the mesh had to say
   std::string source;                                       // the mesh or shape file, or what it is made of
   Triangles surface;                                        // of cloth

@@ -1,10 +1,39 @@
 #include "scene/body_reader.h"
 
+#include <algorithm>
 #include <set>
 
 #include "scene/material_reader.h"
 
 namespace supple {
+namespace {
+
+void read_contact(const ConfigTable& table, ContactSettings& contact) {
+  contact.stiffness = table.number({"stiffness", "", "k_c of a touching vertex, over m / h^2"}, contact.stiffness,
+                                   Range::above(0, 1e8));
+  contact.push_out =
+      table.number({"push_out", "1/s", "fastest way out of a deep overlap, in the body's sizes a second"},
+                   contact.push_out, Range::positive());
+  contact.stick = table.number({"stick", "1/s", "slip above which friction is whole, in the body's sizes a second"},
+                               contact.stick, Range::positive());
+  const std::vector<std::string> histories = {"frozen", "current", "dropped"};
+  contact.history = static_cast<ContactHistory>(
+      std::find(histories.begin(), histories.end(),
+                table.choice({"history", "",
+                              "L-BFGS pairs across a change of contacts: both gradients with the planes of "
+                              "their iteration, the contacts in force now, or no pair"},
+                             histories[static_cast<int>(contact.history)], histories)) -
+      histories.begin());
+  const std::vector<std::string> directions = {"ignored", "diagonal", "low-rank"};
+  contact.direction = static_cast<ContactDirection>(
+      std::find(directions.begin(), directions.end(),
+                table.choice({"direction", "", "what search directions make of contacts"},
+                             directions[static_cast<int>(contact.direction)], directions)) -
+      directions.begin());
+}
+
+}  // namespace
+
 SolverDef read_solver(const ConfigTable& table, const SolverDef& defaults) {
   SolverDef solver = defaults;
   SolverSettings& s = solver.settings;
@@ -28,6 +57,7 @@ SolverDef read_solver(const ConfigTable& table, const SolverDef& defaults) {
                            Range::between(0.01, 0.999));
   fit.end = table.number({"fit_to", "", "end of the stretch interval of equation 11"}, interval.y(),
                          Range::between(1.001, 10));
+  if (const auto contact = table.table({"contact", "", "with colliders"})) read_contact(*contact, s.contact);
   const std::string digits = table.choice(
       {"factor", "", "precision of the factor of M/h^2 + L, hence of directions; energies are always double"},
       precision == Precision::single_precision ? "single" : "double", {"single", "double"});
@@ -41,6 +71,27 @@ SolverDef read_solver(const ConfigTable& table, const SolverDef& defaults) {
       table.number({"damping", "s", "beta of stiffness-proportional damping; also slows turning as a whole"},
                    solver.damping, Range::at_least(0));
   return solver;
+}
+
+Ease read_ease(const ConfigTable& table) {
+  return table.choice({"ease", "", "how keys are joined"}, "smooth", {"smooth", "linear"}) == "smooth" ? Ease::smooth
+                                                                                                       : Ease::linear;
+}
+
+std::vector<MotionKey> read_keys(const ConfigTable& table, const char* turn) {
+  std::vector<MotionKey> keys;
+  for (const ConfigTable& row :
+       table.tables({"keys", "", "the motion; before the first key and after the last it stands still"})) {
+    MotionKey key;
+    key.time = row.number({"t", "s", "when"}, std::nullopt, Range::at_least(0));
+    key.move = row.vector({"move", "m", "displacement from rest"}, Vec3(0, 0, 0));
+    key.turn_deg = row.vector({"turn_deg", "degrees", turn}, Vec3(0, 0, 0));
+    if (!keys.empty() && key.time <= keys.back().time)
+      row.complain("t", fmt::format("t = {:g}: keys must stand in order of time (the one before is at {:g})", key.time,
+                                    keys.back().time));
+    keys.push_back(key);
+  }
+  return keys;
 }
 
 namespace {
@@ -100,23 +151,8 @@ HandleDef read_handle(const ConfigTable& table) {
                            "of each vertex's spring to its target; hard vertices are eliminated and follow exactly"},
                           "hard", Range::positive())
           .value_or(0);
-  handle.ease = table.choice({"ease", "", "how keys are joined"}, "smooth", {"smooth", "linear"}) == "smooth"
-                    ? Ease::smooth
-                    : Ease::linear;
-  double last = -1;
-  for (const ConfigTable& row :
-       table.tables({"keys", "", "the motion; before the first key and after the last it stands still"})) {
-    HandleKey key;
-    key.time = row.number({"t", "s", "when"}, std::nullopt, Range::at_least(0));
-    key.move = row.vector({"move", "m", "displacement from rest"}, Vec3(0, 0, 0));
-    key.turn_deg =
-        row.vector({"turn_deg", "degrees", "rotation about the handle's centre: x, then y, then z"}, Vec3(0, 0, 0));
-    if (key.time <= last)
-      row.complain(
-          "t", fmt::format("t = {:g}: keys must stand in order of time (the one before is at {:g})", key.time, last));
-    last = key.time;
-    handle.keys.push_back(key);
-  }
+  handle.ease = read_ease(table);
+  handle.keys = read_keys(table, "rotation about the handle's centre: x, then y, then z");
   return handle;
 }
 

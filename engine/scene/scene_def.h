@@ -27,10 +27,10 @@ struct Selection {
   Problem place;                                    // where it stands, for messages that come when the mesh is known
 };
 
-struct HandleKey {
+struct MotionKey {
   double time = 0;               // [s]
   Vec3 move = Vec3::Zero();      // from rest [m]
-  Vec3 turn_deg = Vec3::Zero();  // about the handle's centre
+  Vec3 turn_deg = Vec3::Zero();  // about the handle's centre, or the collider's origin
 };
 
 enum class Ease { smooth, linear };
@@ -40,7 +40,7 @@ struct HandleDef {
   Selection select;
   double spring = 0;  // 0: hard [N/m]
   Ease ease = Ease::smooth;
-  std::vector<HandleKey> keys;
+  std::vector<MotionKey> keys;
 };
 
 // What a part is made of.
@@ -108,6 +108,21 @@ struct BodyDef {
   double body_density() const { return density.value_or(substance.usual_density.value_or(cloth ? 0.2 : 1000)); }
 };
 
+// A rigid obstacle. Its shape is in its own frame.
+struct ColliderDef {
+  std::string name;
+  Shape shape;
+  Vec3 position = Vec3::Zero();  // of its origin [m]
+  Vec3 turn_deg = Vec3::Zero();
+  double friction = 0;
+  double thickness = 0;  // [m]
+  Ease ease = Ease::smooth;
+  std::vector<MotionKey> keys;
+  bool visible = true;
+  std::optional<Vec3> color;  // [sRGB]
+  Problem place;
+};
+
 struct CameraDef {
   std::optional<Vec3> position;  // [m]; without it the camera frames all bodies
   std::optional<Vec3> target;
@@ -138,6 +153,7 @@ struct SceneDef {
   Vec3 gravity = Vec3(0, -9.81, 0);
   std::uint64_t seed = 1;  // of random start states
   std::vector<BodyDef> bodies;
+  std::vector<ColliderDef> colliders;
   CameraDef camera;
   LookDef look;
   OutputDef output;

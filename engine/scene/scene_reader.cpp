@@ -4,6 +4,7 @@
 #include <set>
 
 #include "scene/body_reader.h"
+#include "scene/collider_reader.h"
 
 namespace supple {
 
@@ -33,6 +34,12 @@ SceneDef read_scene(Config& config) {
     scene.bodies.push_back(read_body(table, defaults));
     if (!names.insert(scene.bodies.back().name).second)
       table.complain("name", fmt::format("two bodies named '{}'", scene.bodies.back().name));
+  }
+  std::set<std::string> colliders;
+  for (const ConfigTable& table : root.tables({"collider", "", "rigid, and in the way"})) {
+    scene.colliders.push_back(read_collider(table));
+    if (!colliders.insert(scene.colliders.back().name).second)
+      table.complain("name", fmt::format("two colliders named '{}'", scene.colliders.back().name));
   }
   if (scene.bodies.empty()) root.complain("a scene needs at least one [[body]]");
 

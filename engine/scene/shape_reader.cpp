@@ -143,6 +143,12 @@ Shape read_shape(const ConfigTable& table) {
   return shape;
 }
 
+Shape read_single_part(const ConfigTable& table) {
+  Shape shape;
+  shape.root.parts.push_back(read_part(table, shape.regions, 0));
+  return shape;
+}
+
 Shape load_shape(const std::filesystem::path& path, const std::filesystem::path& assets) {
   Config config = Config::load(path, assets);
   Shape shape = read_shape(config.root());

@@ -9,6 +9,9 @@ namespace supple {
 // Reads a shape file's root table (lists `part` and `paint`). Problems are recorded in the table's Config.
 Shape read_shape(const ConfigTable& table);
 
+// Reads a table that is one part, such as { sphere = { radius = 1 } }.
+Shape read_single_part(const ConfigTable& table);
+
 // Loads and reads a shape file; throws InputError with all problems.
 Shape load_shape(const std::filesystem::path& path, const std::filesystem::path& assets);
 

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/timing.h"
+#include "sim/contact_direction.h"
 
 namespace supple {
 namespace {
@@ -37,22 +38,10 @@ void add_all(const Model& model, Workspace& workspace, const Pointers& a, const 
   });
 }
 
-// A body that nothing holds moves as a whole by exactly 1^T M z = h^2/w 1^T r, because L does not see translations;
-// single precision only nearly does so, and would let the centre of mass drift.
-void restore_translation(const Model& model, const Positions& r, Positions& z) {
-  Eigen::RowVector3d wanted = Eigen::RowVector3d::Zero(), found = Eigen::RowVector3d::Zero();
-  for (int v = 0; v < model.free; ++v) {
-    wanted += r.row(v);
-    found += model.mass[v] * z.row(v);
-  }
-  const double h = model.time_step;
-  const Eigen::RowVector3d shift = (h * h / model.scheme.inertia * wanted - found) / model.total_mass;
-  for (int v = 0; v < model.free; ++v) z.row(v) += shift;
-}
-
 }  // namespace
 
-double search_direction(const Model& model, Workspace& workspace, const PairHistory& history) {
+double search_direction(const Model& model, const ContactSettings& contact, Workspace& workspace,
+                        const PairHistory& history) {
   Stopwatch watch;
   const int count = history.count;
   Pointers s{}, t{};
@@ -81,8 +70,7 @@ double search_direction(const Model& model, Workspace& workspace, const PairHist
   workspace.report.lbfgs_ms += watch.lap_ms();
 
   Positions& z = workspace.trial_gradient;  // free until the next trial
-  model.factor.solve(r.data(), z.data(), workspace.solve_scratch.data());
-  if (model.free_floating) restore_translation(model, r, z);
+  apply_inverse(model, workspace, contact, r, z);
   r = z;
   workspace.report.solve_ms += watch.lap_ms();
 

@@ -19,7 +19,8 @@ struct PairHistory {
 
 // workspace.direction = -H grad with H the L-BFGS approximation of the inverse Hessian; returns tr(grad^T d). Adds the
 // milliseconds of the solve and of the rest to the report.
-double search_direction(const Model& model, Workspace& workspace, const PairHistory& history);
+double search_direction(const Model& model, const ContactSettings& contact, Workspace& workspace,
+                        const PairHistory& history);
 
 // Keeps s = trial - x and t = trial_gradient - gradient as the newest pair when tr(s^T t) is safely positive.
 void remember_pair(const Model& model, Workspace& workspace, PairHistory& history);

@@ -105,4 +105,32 @@ double jiggle(const Model& model, const Positions& x, const Eigen::Isometry3d& m
   return std::sqrt(furthest2) / model.size;
 }
 
+double penetration(const std::vector<Collider>& colliders, const std::vector<ColliderMotion>& motions,
+                   const Positions& x, const Triangles& triangles) {
+  double deepest = 0;
+  for (std::size_t c = 0; c < colliders.size(); ++c) {
+    const Shape& shape = colliders[c].shape;
+    const Eigen::Isometry3d to_local = motions[c].end.inverse();
+    const double certainty = shape.certainty();
+    for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+      Vec3 corner[3];
+      for (int k = 0; k < 3; ++k) corner[k] = to_local * Vec3(x.row(triangles(t, k)));
+      const Vec3 center = (corner[0] + corner[1] + corner[2]) / 3;
+      double reach = 0;
+      for (const Vec3& p : corner) reach = std::max(reach, (p - center).norm());
+      const double at_center = shape.distance(center);
+      if (certainty * at_center > reach) continue;
+      const auto look = [&](const Vec3& p) {
+        if (shape.distance(p) < -deepest) deepest = std::max(deepest, -shape.closest(p).distance);
+      };
+      look(center);
+      for (int k = 0; k < 3; ++k) {
+        look(corner[k]);
+        look(0.5 * (corner[k] + corner[(k + 1) % 3]));
+      }
+    }
+  }
+  return deepest;
+}
+
 }  // namespace supple

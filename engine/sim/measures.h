@@ -24,6 +24,11 @@ struct Energies {
 // Springs of soft handles are not counted. Evaluates all elements; workspace: scratch that knows the model.
 Energies energies(const Model& model, const State& state, const Vec3& gravity, Workspace& workspace);
 
+// The deepest point of a surface below a collider's own (its thickness does not count): vertices, edge midpoints and
+// face centres [m]; 0 when none. triangles: vertices by row of x.
+double penetration(const std::vector<Collider>& colliders, const std::vector<ColliderMotion>& motions,
+                   const Positions& x, const Triangles& triangles);
+
 // The largest distance between a position and the rest position under `motion` (the handle's), over the body's size.
 double jiggle(const Model& model, const Positions& x, const Eigen::Isometry3d& motion);
 

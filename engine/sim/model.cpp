@@ -248,7 +248,10 @@ Model build_model(const BodyDescription& body) {
   sort_elements(model, elements);
   pack_elements(model, elements);
   try {
-    model.factor = CholeskyFactor(system_matrix(model, elements, body.damping), body.precision);
+    const Eigen::SparseMatrix<double> system = system_matrix(model, elements, body.damping);
+    const Eigen::VectorXd diagonal = system.diagonal();
+    model.diagonal.assign(diagonal.begin(), diagonal.end());
+    model.factor = CholeskyFactor(system, body.precision);
   } catch (const RunError& error) {
     throw RunError(fmt::format("body '{}': {}", body.name, error.what()));
   }

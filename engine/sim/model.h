@@ -113,7 +113,8 @@ struct Model {
   };
   SparseRows damping;
 
-  CholeskyFactor factor;  // of A = w M/h^2 + (e theta^2 + beta/h) L + springs of handles, over the free vertices
+  std::vector<double> diagonal;  // of A, by free vertex [N/m]
+  CholeskyFactor factor;         // of A = w M/h^2 + (e theta^2 + beta/h) L + springs of handles, over the free vertices
 
   ElementChunk chunk(int index) const;
 };

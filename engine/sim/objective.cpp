@@ -198,6 +198,12 @@ Change evaluate(const Model& model, Workspace& workspace, const Positions& point
       for (int k = 0; k < 3; ++k) change.value += 0.5 * (point(v, k) - workspace.q(v, k)) * of_point[k];
     }
   }
+  if (!workspace.contact.found.empty()) {
+    const ContactChange contacts = add_contacts(workspace.contact.found, workspace.contact.stick_length, point,
+                                                reference, workspace.direction, gradient);
+    change.value += contacts.value;
+    change.slope += contacts.slope;
+  }
   return change;
 }
 

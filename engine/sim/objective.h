@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/threads.h"
+#include "sim/contact_direction.h"
 #include "sim/state.h"
 
 namespace supple {
@@ -28,6 +29,9 @@ struct Workspace {
   std::vector<double> partial;                        // of chunked sums
   std::vector<Positions> step_pairs, gradient_pairs;  // s and t of L-BFGS, a ring
   std::vector<double> products;                       // s_i . t_j, window x window
+  ContactWork contact;
+  ContactCorrection correction;
+  Positions correction_scratch, correction_back;  // n_free x 3; empty until a contact is made
   StepReport report;
 
  private:

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/model.h"
+#include "sim/contact.h"
 
 namespace supple {
 
@@ -33,6 +33,7 @@ struct SolverSettings {
   LineSearch line_search = LineSearch::armijo;
   double armijo = 0.3;      // gamma
   double target_error = 0;  // stop when the error estimate falls below; 0: do all iterations
+  ContactSettings contact;
 };
 
 // All that comes from outside for one step of one body.
@@ -41,6 +42,8 @@ struct FrameInputs {
   Positions targets;                 // at the end of the step, by Model::handled [m]
   Positions middle_targets;          // at its middle; only for implicit midpoint [m]
   SolverSettings solver;
+  const std::vector<Collider>* colliders = nullptr;   // null or empty: nothing to touch, and nothing is paid for it
+  std::vector<ColliderMotion> collider_motions = {};  // of each over the step
 };
 
 enum class StopReason { iterations, round_off, target_error, line_search_failed };
@@ -57,7 +60,8 @@ struct StepReport {
   double evaluate_ms = 0;  // energies and gradients
   double solve_ms = 0;     // A d = r
   double lbfgs_ms = 0;     // recursions
-  double other_ms = 0;     // the rest; the four add up to step_ms
+  double collide_ms = 0;   // finding contacts; 0 without colliders
+  double other_ms = 0;     // the rest; the five add up to step_ms
   int iterations = 0;
   int line_search = 0;            // trial evaluations
   std::vector<double> objective;  // g by iteration, the start first; reserved by the workspace [J]
@@ -66,6 +70,8 @@ struct StepReport {
   double error_estimate = 0;      // of equation 12, from that
   double slope = 0;               // tr(grad^T d) of the last direction [J]
   StopReason stop_reason = StopReason::iterations;
+  ContactCounts contacts;
+  Vec3 contact_force = Vec3::Zero();  // of all colliders on the body, at the end of the step [N]
   bool failed = false;
   StepFailure failure;
 };

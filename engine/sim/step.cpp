@@ -13,7 +13,18 @@ namespace supple {
 namespace {
 
 constexpr int most_halvings = 30;
+constexpr double deepest_start = 0.02;  // overlap that a first iterate may have, over the body's size
 constexpr double round_off = std::numeric_limits<double>::epsilon();
+
+bool has_colliders(const FrameInputs& inputs) { return inputs.colliders != nullptr && !inputs.colliders->empty(); }
+
+void find_contacts_timed(const Model& model, const FrameInputs& inputs, const Positions& x, Workspace& w) {
+  const Stopwatch watch;
+  find_contacts(model, inputs, x, w);
+  const double ms = watch.elapsed_ms();
+  w.report.collide_ms += ms;
+  w.report.evaluate_ms -= ms;  // whose stopwatch is running
+}
 
 // x + alpha d for the free vertices; handled ones stay at their targets.
 void set_trial(const Model& model, Workspace& w, double alpha) {
@@ -43,9 +54,22 @@ enum class Search {
   exhausted,  // what the direction promises is below what the gradient's own round-off decides
 };
 
-// Tries alpha = 1, 1/2, ... Leaves the accepted point, its gradient and energies in the trial arrays.
-Search search_line(const Model& model, const SolverSettings& solver, Workspace& w, double slope, double objective,
+// Contacts at a trial point that the planes of the search accepted: kept unless they make it worse than where the
+// search began, which it could not see. Friction, whose normal forces are lagged, has no say in that.
+bool contacts_accept(const Model& model, const FrameInputs& inputs, Workspace& w, double change, double noise) {
+  if (!has_colliders(inputs)) return true;
+  find_contacts_timed(model, inputs, w.trial, w);
+  const double jump = contact_energy(w.contact.found, w.trial) - contact_energy(w.contact.earlier, w.trial);
+  if (jump <= 0 || change + jump <= noise) return true;
+  w.contact.found.swap(w.contact.earlier);
+  return false;
+}
+
+// Tries alpha = 1, 1/2, ... Leaves the accepted point, its gradient and energies in the trial arrays, with the planes
+// of the search; the contacts found there wait in w.contact.found.
+Search search_line(const Model& model, const FrameInputs& inputs, Workspace& w, double slope, double objective,
                    Change& change) {
+  const SolverSettings& solver = inputs.solver;
   const double noise = noise_of(model, objective, extent_of(model, w));
   double alpha = 1;
   for (int halving = 0; halving <= most_halvings; ++halving, alpha /= 2) {
@@ -65,6 +89,7 @@ Search search_line(const Model& model, const SolverSettings& solver, Workspace& 
       continue;
     }
     if (!with_gradient) change = evaluate(model, w, w.trial, w.trial_energy, &w.trial_gradient, &w.x, &w.energy);
+    if (!contacts_accept(model, inputs, w, change.value, noise)) continue;
     return Search::found;
   }
   return Search::failed;
@@ -124,9 +149,9 @@ struct Descent {
 };
 
 // A direction that leads downhill: L-BFGS, or the plain quasi-Newton one when that fails.
-Descent next_direction(const Model& model, Workspace& w, PairHistory& history) {
+Descent next_direction(const Model& model, const SolverSettings& solver, Workspace& w, PairHistory& history) {
   for (;;) {
-    const double slope = search_direction(model, w, history);
+    const double slope = search_direction(model, solver.contact, w, history);
     if (below_resolution(model, w)) return {true, slope};
     if (slope < 0) return {false, slope};
     if (history.count == 0) return {true, slope};
@@ -140,6 +165,12 @@ void begin_step(const Model& model, const FrameInputs& inputs, const State& stat
   const double h = model.time_step;
   w.y = (state.x + h * state.v).rowwise() + (model.scheme.force * h * h * inputs.gravity).transpose();
   if (needs_start(model)) w.q = state.x;
+  w.contact.found.clear();
+  if (has_colliders(inputs)) {
+    const Stopwatch watch;
+    begin_contacts(model, inputs, state.x, w);
+    w.report.collide_ms += watch.elapsed_ms();
+  }
   w.x = w.y;
   for (std::size_t i = 0; i < model.handled.size(); ++i) {
     const std::int32_t v = model.handled[i].vertex;
@@ -156,8 +187,12 @@ void begin_step(const Model& model, const FrameInputs& inputs, const State& stat
 namespace {
 
 // g, its gradient and energies at x, as the report's next objective.
-void evaluate_start(const Model& model, Workspace& w) {
+void evaluate_start(const Model& model, const FrameInputs& inputs, Workspace& w) {
   const Stopwatch watch;
+  if (has_colliders(inputs)) {
+    find_contacts_timed(model, inputs, w.x, w);
+    keep_contacts(w.contact);
+  }
   w.report.objective.push_back(evaluate(model, w, w.x, w.energy, &w.gradient, nullptr, nullptr).value);
   w.report.evaluate_ms += watch.elapsed_ms();
 }
@@ -169,7 +204,7 @@ void evaluate_start(const Model& model, Workspace& w) {
 // says what was measured. Costs an evaluation more, because y stays the
 // first iterate where it is the better one. Returns g(y), the handles at their targets, when the first iterate is
 // another one.
-std::optional<double> spread_handles(const Model& model, Workspace& w) {
+std::optional<double> spread_handles(const Model& model, const FrameInputs& inputs, Workspace& w) {
   if (model.couplings.empty()) return std::nullopt;
   Positions& right = w.gradient;
   right.setZero();
@@ -180,11 +215,12 @@ std::optional<double> spread_handles(const Model& model, Workspace& w) {
   Stopwatch watch;
   model.factor.solve(right.data(), w.direction.data(), w.solve_scratch.data());
   w.report.solve_ms += watch.lap_ms();
+  if (has_colliders(inputs)) find_contacts_timed(model, inputs, w.x, w);
   const double at_y = evaluate(model, w, w.x, w.energy, nullptr, nullptr, nullptr).value;
   w.report.evaluate_ms += watch.lap_ms();
   set_trial(model, w, 1);
   w.x.swap(w.trial);
-  evaluate_start(model, w);
+  evaluate_start(model, inputs, w);
   if (w.report.objective.back() <= at_y) return at_y;
   w.x.swap(w.trial);
   w.report.objective.clear();
@@ -195,8 +231,20 @@ std::optional<double> spread_handles(const Model& model, Workspace& w) {
 
 namespace {
 
+// The contacts found at the trial point take the place of those that the search went by: in the gradient there, and in
+// the objective by what is returned.
+double take_contacts(Workspace& w) {
+  ContactWork& work = w.contact;
+  double jump = 0;
+  jump -= add_contacts(work.earlier, work.stick_length, w.trial, nullptr, w.direction, &w.trial_gradient, -1).value;
+  jump += add_contacts(work.found, work.stick_length, w.trial, nullptr, w.direction, &w.trial_gradient).value;
+  keep_contacts(work);
+  return jump;
+}
+
 // The iterations of algorithm 1 from x, whose evaluation is at hand.
-void iterate(const Model& model, const SolverSettings& solver, Workspace& w, double enough) {
+void iterate(const Model& model, const FrameInputs& inputs, Workspace& w, double enough) {
+  const SolverSettings& solver = inputs.solver;
   StepReport& report = w.report;
   Stopwatch watch;
   PairHistory history{solver.history, 0, -1};
@@ -209,7 +257,7 @@ void iterate(const Model& model, const SolverSettings& solver, Workspace& w, dou
   report.stop_reason = StopReason::iterations;
   for (report.iterations = 0; report.iterations < solver.iterations;) {
     watch.lap_ms();
-    const Descent descent = next_direction(model, w, history);
+    const Descent descent = next_direction(model, solver, w, history);
     report.slope = descent.slope;
     if (!std::isfinite(descent.slope)) return fail(model, w, "solve", w.x, descent.slope);
     if (descent.done || -descent.slope <= enough) {
@@ -222,15 +270,16 @@ void iterate(const Model& model, const SolverSettings& solver, Workspace& w, dou
       set_trial(model, w, 1);
       change = evaluate(model, w, w.trial, w.trial_energy, &w.trial_gradient, &w.x, &w.energy);
       ++report.line_search;
+      if (has_colliders(inputs)) find_contacts_timed(model, inputs, w.trial, w);
     } else {
-      Search search = search_line(model, solver, w, descent.slope, objective, change);
+      Search search = search_line(model, inputs, w, descent.slope, objective, change);
       report.evaluate_ms += watch.lap_ms();
       if (search == Search::failed && history.count > 0) {
         history.clear();
-        const Descent plain = next_direction(model, w, history);
+        const Descent plain = next_direction(model, solver, w, history);
         report.slope = plain.slope;
         watch.lap_ms();
-        search = plain.done ? Search::exhausted : search_line(model, solver, w, plain.slope, objective, change);
+        search = plain.done ? Search::exhausted : search_line(model, inputs, w, plain.slope, objective, change);
       }
       if (search != Search::found) {
         report.stop_reason = search == Search::exhausted ? StopReason::round_off : StopReason::line_search_failed;
@@ -238,12 +287,13 @@ void iterate(const Model& model, const SolverSettings& solver, Workspace& w, dou
       }
     }
     report.evaluate_ms += watch.lap_ms();
+    remember_pair(model, w, history);
+    if (has_colliders(inputs)) change.value += take_contacts(w);
     objective += change.value;
     ++report.iterations;
     report.objective.push_back(objective);
     report.decrease -= change.value;
     if (absurd(model, objective, start)) return fail(model, w, "line search", w.trial, objective);
-    remember_pair(model, w, history);
     w.x.swap(w.trial);
     w.gradient.swap(w.trial_gradient);
     w.energy.swap(w.trial_energy);
@@ -258,9 +308,9 @@ void iterate(const Model& model, const SolverSettings& solver, Workspace& w, dou
 
 }  // namespace
 
-void minimize(const Model& model, const SolverSettings& solver, Workspace& w, double enough) {
-  evaluate_start(model, w);
-  iterate(model, solver, w, enough);
+void minimize(const Model& model, const FrameInputs& inputs, Workspace& w, double enough) {
+  evaluate_start(model, inputs, w);
+  iterate(model, inputs, w, enough);
 }
 
 namespace {
@@ -270,6 +320,17 @@ void clear(StepReport& report) {
   std::vector<double> kept = std::move(report.objective);
   report = StepReport{};
   report.objective = std::move(kept);
+}
+
+// A first iterate far below a surface would start from torn or inverted elements, or beyond the collider. So the body
+// goes only as far as the first impact and a little further. Returns whether it was stopped.
+bool stop_at_impact(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
+  if (!has_colliders(inputs)) return false;
+  const Stopwatch watch;
+  const double way = free_way(model, inputs, w.x, deepest_start * model.size, w);
+  if (way < 1) w.x.topRows(model.free) = state.x.topRows(model.free) + way * (w.x - state.x).topRows(model.free);
+  w.report.collide_ms += watch.elapsed_ms();
+  return way < 1;
 }
 
 // Where the body was, its handles moved; a body that nothing holds is also carried along with its centre of mass, which
@@ -296,12 +357,16 @@ void descend_from_staying(const Model& model, const FrameInputs& inputs, const S
   for (int v = 0; v < model.free; ++v)
     inertia += 0.5 * inverse_h2 * model.mass[v] * (w.trial.row(v) - w.y.row(v)).squaredNorm();
   if (reached <= inertia && !model.energy_may_be_negative) return;
+  if (has_colliders(inputs)) find_contacts_timed(model, inputs, w.trial, w);
   const Change staying = evaluate(model, w, w.trial, w.trial_energy, nullptr, nullptr, nullptr);
-  if (!(staying.value < reached - noise_of(model, reached, extent_of(model, w)))) return;
+  if (!(staying.value < reached - noise_of(model, reached, extent_of(model, w)))) {
+    if (has_colliders(inputs)) w.contact.found.swap(w.contact.earlier);
+    return;
+  }
   w.x.swap(w.trial);
   report.decrease += reached - staying.value;
   const int iterations = report.iterations;
-  minimize(model, inputs.solver, w);
+  minimize(model, inputs, w);
   report.iterations += iterations;
 }
 
@@ -319,17 +384,31 @@ void set_velocity(const Model& model, const Workspace& w, State& state) {
 
 }  // namespace
 
+namespace {
+
+void report_contacts(Workspace& w) {
+  w.report.contacts = w.contact.counts;
+  Positions& force = w.trial_gradient;
+  force.setZero();
+  add_contacts(w.contact.found, w.contact.stick_length, w.x, nullptr, w.direction, &force, -1);
+  w.report.contact_force = force.colwise().sum().transpose();
+}
+
+}  // namespace
+
 const StepReport& step(const Model& model, const FrameInputs& inputs, State& state, Workspace& w) {
   Stopwatch whole;
   w.prepare(model, inputs.solver);
   StepReport& report = w.report;
   clear(report);
   begin_step(model, inputs, state, w);
-  const std::optional<double> at_y = spread_handles(model, w);
-  if (!at_y) evaluate_start(model, w);
-  iterate(model, inputs.solver, w, 0);
+  const std::optional<double> at_y = spread_handles(model, inputs, w);
+  const bool stopped = stop_at_impact(model, inputs, state, w);
+  if (stopped) report.objective.clear();
+  if (stopped || !at_y) evaluate_start(model, inputs, w);
+  iterate(model, inputs, w, 0);
   if (!report.failed && inputs.solver.line_search != LineSearch::none) descend_from_staying(model, inputs, state, w);
-  const double above_start = at_y ? *at_y - report.objective.front() : 0;  // equation 12 counts from y
+  const double above_start = at_y && !stopped ? *at_y - report.objective.front() : 0;  // equation 12 counts from y
   report.error_estimate = as_error(report.remaining_estimate, report.decrease + above_start);
   if (!report.failed && !w.x.allFinite()) fail(model, w, "step", w.x, std::numeric_limits<double>::quiet_NaN());
   if (!report.failed) {
@@ -337,8 +416,9 @@ const StepReport& step(const Model& model, const FrameInputs& inputs, State& sta
     state.x = w.x;
     state.time += model.time_step;
   }
+  if (has_colliders(inputs)) report_contacts(w);
   report.step_ms = whole.elapsed_ms();
-  report.other_ms = report.step_ms - report.evaluate_ms - report.solve_ms - report.lbfgs_ms;
+  report.other_ms = report.step_ms - report.evaluate_ms - report.solve_ms - report.lbfgs_ms - report.collide_ms;
   return report;
 }
 

@@ -15,6 +15,6 @@ void begin_step(const Model& model, const FrameInputs& inputs, const State& stat
 
 // Minimises g from workspace.x; the report's decrease, slope and stop reason tell how far it came. Also stops once a
 // direction promises less than `enough` [J]. For step() and for references.
-void minimize(const Model& model, const SolverSettings& solver, Workspace& workspace, double enough = 0);
+void minimize(const Model& model, const FrameInputs& inputs, Workspace& workspace, double enough = 0);
 
 }  // namespace supple

@@ -29,7 +29,7 @@ Image rest_picture(const std::vector<std::string>& settings, GlChoice gl) {
     const Model model = build_model(body.description);
     list.positions.push_back(skin_positions(drawn.back(), model, rest_state(model)));
   }
-  const Stage stage = make_stage(scene, bodies, drawn, "");
+  const Stage stage = make_stage(scene, bodies, drawn, {}, {}, "");
   list.camera = make_camera(scene, stage);
   Renderer renderer(stage, gl, test::source_folder / "shaders");
   return renderer.draw(list);

@@ -155,8 +155,8 @@ TEST(Scenes, EverySceneThatShipsIsWithoutErrors) {
   EXPECT_GE(count, 2);
 }
 
-TEST(HandleMotion, PassesThroughItsKeysAndStandsStillOutside) {
-  HandleMotion motion{
+TEST(KeyedMotion, PassesThroughItsKeysAndStandsStillOutside) {
+  KeyedMotion motion{
       Vec3(1, 0, 0), Ease::smooth, {{1, Vec3(0, 0, 0), Vec3::Zero()}, {2, Vec3(0, 1, 0), Vec3(0, 90, 0)}}};
   EXPECT_TRUE(motion.at(0).isApprox(Eigen::Isometry3d::Identity()));
   const Eigen::Isometry3d end = motion.at(5);
@@ -166,8 +166,8 @@ TEST(HandleMotion, PassesThroughItsKeysAndStandsStillOutside) {
   EXPECT_LT((motion.at(1.01).translation() - motion.at(1).translation()).norm(), 2e-2);  // starts without a jump
 }
 
-TEST(HandleMotion, TurnsAllTheWayRound) {
-  const HandleMotion motion{
+TEST(KeyedMotion, TurnsAllTheWayRound) {
+  const KeyedMotion motion{
       Vec3::Zero(), Ease::linear, {{0, Vec3::Zero(), Vec3::Zero()}, {1, Vec3::Zero(), Vec3(0, 360, 0)}}};
   EXPECT_LT((motion.at(0.5) * Vec3(1, 0, 0) - Vec3(-1, 0, 0)).norm(), 1e-12);
 }

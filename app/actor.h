@@ -1,0 +1,44 @@
+// A body on its way through a film: its state, what it is driven by, and what is recorded of it.
+#pragma once
+
+#include "base/threads.h"
+#include "output/point_cache.h"
+#include "output/profile.h"
+#include "output/run_folder.h"
+#include "scene/assemble.h"
+#include "scene/obstacle.h"
+#include "sim/objective.h"
+
+namespace supple {
+
+class Actor {
+ public:
+  // All that is passed must outlive the actor.
+  Actor(const SceneDef& scene, const Body& body, const Model& model, const CollisionSet& set, const RunFolder& folder,
+        Threads& threads);
+
+  const Model& model() const { return model_; }
+  const State& state() const { return state_; }
+
+  // One frame's steps. Returns a message when the solver failed.
+  std::string advance(int frame, bool measure_error, BodyRow& row);
+
+  // Appends the frame to motion/.
+  void save_motion();
+
+ private:
+  void set_inputs(double from, double to);
+  void measure(int frame, BodyRow& row);
+
+  const SceneDef& scene_;
+  const Body& body_;
+  const Model& model_;
+  const CollisionSet& set_;
+  Triangles surface_;  // in the model's order; only with colliders
+  State state_;
+  FrameInputs inputs_;
+  Workspace workspace_, reference_workspace_;
+  PointCacheWriter motion_;
+};
+
+}  // namespace supple

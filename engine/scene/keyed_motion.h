@@ -1,0 +1,20 @@
+// Rigid motions given by keys.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "scene/scene_def.h"
+
+namespace supple {
+
+// Where what stands still in the scene file is at a time.
+struct KeyedMotion {
+  Vec3 center = Vec3::Zero();  // what keys turn about [m]
+  Ease ease = Ease::smooth;
+  std::vector<MotionKey> keys;
+
+  // The rigid motion from rest at a time [s].
+  Eigen::Isometry3d at(double time) const;
+};
+
+}  // namespace supple

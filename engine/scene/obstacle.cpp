@@ -1,0 +1,95 @@
+#include "scene/obstacle.h"
+
+#include "scene/rotation.h"
+
+namespace supple {
+namespace {
+
+const HalfSpace* half_space(const Obstacle& obstacle) {
+  const std::vector<ShapePart>& parts = obstacle.def.shape.root.parts;
+  return parts.size() == 1 ? std::get_if<HalfSpace>(&parts.front().primitive) : nullptr;
+}
+
+// The plane of a half space in the collider's frame: its unit normal, and a point on it.
+std::pair<Vec3, Vec3> plane_of(const Obstacle& obstacle, const HalfSpace& half) {
+  const ShapePart& part = obstacle.def.shape.root.parts.front();
+  const Eigen::Isometry3d to_parent = part.to_local.inverse();
+  return {to_parent.linear() * half.normal, to_parent * Vec3(part.scale * half.offset * half.normal)};
+}
+
+Skin square_of(const Vec3& normal, const Vec3& center, double half_edge) {
+  constexpr int cells = 8;  // so that occlusion has somewhere to live
+  const Vec3 side = normal.cross(std::abs(normal.z()) < 0.9 ? Vec3::UnitZ() : Vec3::UnitX()).normalized();
+  const Vec3 up = normal.cross(side);
+  Skin skin;
+  skin.rest.points.resize((cells + 1) * (cells + 1), 3);
+  skin.rest.triangles.resize(2 * cells * cells, 3);
+  for (int j = 0; j <= cells; ++j) {
+    for (int i = 0; i <= cells; ++i) {
+      const double s = 2.0 * i / cells - 1, t = 2.0 * j / cells - 1;
+      skin.rest.points.row(j * (cells + 1) + i) = (center + half_edge * (s * side + t * up)).transpose();
+    }
+  }
+  int row = 0;
+  for (int j = 0; j < cells; ++j) {
+    for (int i = 0; i < cells; ++i) {
+      const int a = j * (cells + 1) + i, b = a + 1, c = a + cells + 1, d = c + 1;
+      skin.rest.triangles.row(row++) << a, b, d;
+      skin.rest.triangles.row(row++) << a, d, c;
+    }
+  }
+  skin.occlusion.assign(skin.rest.points.rows(), 1.0f);
+  skin.paint.resize(skin.rest.points.rows());
+  return skin;
+}
+
+}  // namespace
+
+CollisionSet collision_set(const SceneDef& scene) {
+  CollisionSet set;
+  for (const ColliderDef& def : scene.colliders) {
+    Obstacle obstacle;
+    obstacle.def = def;
+    obstacle.motion = {def.position, def.ease, def.keys};
+    obstacle.rest.translate(def.position).rotate(rotation_from_degrees(def.turn_deg));
+    set.obstacles.push_back(std::move(obstacle));
+    set.colliders.push_back({def.name, def.shape, def.thickness, def.friction});
+  }
+  return set;
+}
+
+void collider_motions(const std::vector<Obstacle>& obstacles, double from, double to,
+                      std::vector<ColliderMotion>& motions) {
+  motions.clear();
+  for (const Obstacle& obstacle : obstacles) motions.push_back({obstacle.pose(from), obstacle.pose(to)});
+}
+
+bool is_ground(const Obstacle& obstacle) {
+  const HalfSpace* half = half_space(obstacle);
+  if (half == nullptr || !obstacle.def.keys.empty()) return false;
+  const auto [normal, point] = plane_of(obstacle, *half);
+  return (obstacle.rest.linear() * normal).isApprox(Vec3::UnitY(), 1e-9) &&
+         std::abs((obstacle.rest * point).y()) < 1e-9;
+}
+
+Skin drawn_obstacle(const Obstacle& obstacle, const Bounds& around) {
+  if (!obstacle.def.visible || is_ground(obstacle)) return {};
+  if (const HalfSpace* half = half_space(obstacle)) {
+    const auto [normal, point] = plane_of(obstacle, *half);
+    const Vec3 middle = obstacle.rest.inverse() * around.center();
+    return square_of(normal, middle - (middle - point).dot(normal) * normal, 1.5 * around.diagonal());
+  }
+  const Shape& shape = obstacle.def.shape;
+  constexpr double cells = 96;  // along the longest side
+  const Skin skin = skin_of(shape, shape.bounds().extent().maxCoeff() / cells);
+  // Vertices at creases once for each side, so that a box has edges.
+  std::vector<std::int32_t> vertex_of;
+  Skin creased = skin_of_surface(skin.rest.points, skin.rest.triangles, 0, vertex_of);
+  for (std::size_t v = 0; v < vertex_of.size(); ++v) {
+    creased.occlusion[v] = skin.occlusion[vertex_of[v]];
+    creased.paint[v] = skin.paint[vertex_of[v]];
+  }
+  return creased;
+}
+
+}  // namespace supple

@@ -1,0 +1,37 @@
+// Colliders ready for the solver and for the film.
+#pragma once
+
+#include "geometry/skin.h"
+#include "scene/keyed_motion.h"
+#include "sim/contact.h"
+
+namespace supple {
+
+struct Obstacle {
+  ColliderDef def;
+  KeyedMotion motion;
+  Eigen::Isometry3d rest = Eigen::Isometry3d::Identity();  // from its frame to the world before any key
+
+  // From its frame to the world at a time [s].
+  Eigen::Isometry3d pose(double time) const { return motion.at(time) * rest; }
+};
+
+// All that bodies can run into.
+struct CollisionSet {
+  std::vector<Obstacle> obstacles;
+  std::vector<Collider> colliders;  // the same, as the solver wants them
+};
+CollisionSet collision_set(const SceneDef& scene);
+
+// Their motions over one step.
+void collider_motions(const std::vector<Obstacle>& obstacles, double from, double to,
+                      std::vector<ColliderMotion>& motions);
+
+// What is drawn of it, in its own frame. A half space is a square that reaches well beyond `around` (in the world);
+// empty when it is the ground that every film has.
+Skin drawn_obstacle(const Obstacle& obstacle, const Bounds& around);
+
+// The half space y < 0, at rest.
+bool is_ground(const Obstacle& obstacle);
+
+}  // namespace supple
