@@ -28,7 +28,10 @@ void solve(const Model& model, Workspace& w, const Positions& r, Positions& z) {
   if (model.free_floating) restore_translation(model, r, z);
 }
 
-void collect(const Model& model, const Workspace& w, std::vector<StiffDirection>& stiff) {
+}  // namespace
+
+void stiff_directions(const Model& model, Workspace& w) {
+  std::vector<StiffDirection>& stiff = w.correction.wanted;
   stiff.clear();
   for (const Contact& contact : w.contact.found) {
     if (contact.depth <= 0) continue;
@@ -43,20 +46,22 @@ void collect(const Model& model, const Workspace& w, std::vector<StiffDirection>
   }
 }
 
+namespace {
+
 // A vertex with several stiff directions that are not at right angles goes through its projections in turn, and back in
 // the opposite order.
 void apply_diagonal(const Model& model, Workspace& w, Positions& r, Positions& z) {
   ContactCorrection& c = w.correction;
-  c.answer.resize(static_cast<Eigen::Index>(c.stiff.size()));
-  for (std::size_t i = 0; i < c.stiff.size(); ++i) {
-    const StiffDirection& s = c.stiff[i];
+  c.answer.resize(static_cast<Eigen::Index>(c.wanted.size()));
+  for (std::size_t i = 0; i < c.wanted.size(); ++i) {
+    const StiffDirection& s = c.wanted[i];
     const double part = r.row(s.vertex).dot(s.axis);
     r.row(s.vertex) -= part * s.axis.transpose();
     c.answer[static_cast<Eigen::Index>(i)] = static_cast<float>(part / (model.diagonal[s.vertex] + s.stiffness));
   }
   solve(model, w, r, z);
-  for (std::size_t i = c.stiff.size(); i-- > 0;) {
-    const StiffDirection& s = c.stiff[i];
+  for (std::size_t i = c.wanted.size(); i-- > 0;) {
+    const StiffDirection& s = c.wanted[i];
     z.row(s.vertex) += (c.answer[static_cast<Eigen::Index>(i)] - z.row(s.vertex).dot(s.axis)) * s.axis.transpose();
   }
 }
@@ -89,70 +94,122 @@ void learn_columns(const Model& model, Workspace& w, Positions& r, Positions& z)
   }
 }
 
+float capacitance_entry(const ContactCorrection& c, const StiffDirection& a, const StiffDirection& b) {
+  const std::int32_t row = c.column_of[a.vertex], column = c.column_of[b.vertex];
+  return static_cast<float>(a.axis.dot(b.axis)) * c.inverse[std::max(row, column)][std::min(row, column)];
+}
+
+// Appends the directions from `first` on to the Cholesky factor of the capacitance; c.stiff and c.lower agree up to
+// there. False when it is not positive definite.
+bool extend_factor(ContactCorrection& c, Eigen::Index first) {
+  const auto n = static_cast<Eigen::Index>(c.stiff.size()), more = n - first;
+  if (c.lower.rows() < n) {
+    Eigen::MatrixXf larger = Eigen::MatrixXf::Zero(n + n / 2, n + n / 2);
+    larger.topLeftCorner(first, first) = c.lower.topLeftCorner(first, first);
+    c.lower.swap(larger);
+  }
+  auto below = c.lower.block(first, 0, more, first);
+  auto corner = c.lower.block(first, first, more, more);
+  for (Eigen::Index i = 0; i < more; ++i) {
+    for (Eigen::Index j = 0; j < first; ++j) below(i, j) = capacitance_entry(c, c.stiff[first + i], c.stiff[j]);
+    for (Eigen::Index j = 0; j <= i; ++j) corner(i, j) = capacitance_entry(c, c.stiff[first + i], c.stiff[first + j]);
+    corner(i, i) += static_cast<float>(1 / c.stiff[first + i].stiffness);
+  }
+  if (first > 0) {
+    c.lower.topLeftCorner(first, first)
+        .transpose()
+        .triangularView<Eigen::Upper>()
+        .solveInPlace<Eigen::OnTheRight>(below);
+    corner.selfadjointView<Eigen::Lower>().rankUpdate(below, -1);
+  }
+  Eigen::LLT<Eigen::Ref<Eigen::MatrixXf>> factor(corner);
+  return factor.info() == Eigen::Success;
+}
+
+// z -= A^-1 N S^-1 e with e given in c.answer.
+void subtract_answer(const Model& model, Workspace& w, Positions& z) {
+  ContactCorrection& c = w.correction;
+  const auto n = static_cast<Eigen::Index>(c.stiff.size());
+  const auto lower = c.lower.topLeftCorner(n, n).triangularView<Eigen::Lower>();
+  lower.solveInPlace(c.answer);
+  lower.transpose().solveInPlace(c.answer);
+  c.push.setZero(model.free, 3);
+  c.back.resize(model.free, 3);
+  for (Eigen::Index i = 0; i < n; ++i) c.push.row(c.stiff[i].vertex) += c.answer[i] * c.stiff[i].axis.transpose();
+  solve(model, w, c.push, c.back);
+  z -= c.back;
+}
+
 // Whether the factor at hand was made for the same stiff directions, or nearly: the correction need not be exact.
-bool still_good(const ContactCorrection& c) {
-  if (c.stiff.size() != c.factored.size()) return false;
-  for (std::size_t i = 0; i < c.stiff.size(); ++i) {
-    const StiffDirection &a = c.stiff[i], &b = c.factored[i];
+bool still_good(const ContactCorrection& c, const std::vector<StiffDirection>& wanted) {
+  if (c.stiff.size() != wanted.size()) return false;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const StiffDirection &a = c.stiff[i], &b = wanted[i];
     if (a.vertex != b.vertex || a.axis.dot(b.axis) < 0.999 || std::abs(a.stiffness - b.stiffness) > 0.1 * a.stiffness)
       return false;
   }
   return true;
 }
 
-bool factor_capacitance(ContactCorrection& c) {
-  const auto n = static_cast<Eigen::Index>(c.stiff.size());
-  c.dense.resize(n, n);
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const StiffDirection& b = c.stiff[j];
-    const std::int32_t column = c.column_of[b.vertex];
-    for (Eigen::Index i = j; i < n; ++i) {
-      const StiffDirection& a = c.stiff[i];
-      const std::int32_t row = c.column_of[a.vertex];
-      c.dense(i, j) = static_cast<float>(a.axis.dot(b.axis)) * c.inverse[std::max(row, column)][std::min(row, column)];
-    }
-    c.dense(j, j) += static_cast<float>(1 / b.stiffness);
-  }
-  c.capacitance.compute(c.dense);
-  c.factored = c.stiff;
-  return c.capacitance.info() == Eigen::Success;
-}
-
 bool apply_low_rank(const Model& model, Workspace& w, const Positions& r, Positions& z) {
   ContactCorrection& c = w.correction;
-  if (!still_good(c)) {
-    Positions& scratch = w.correction_scratch;
-    scratch.resize(model.free, 3);
-    learn_columns(model, w, scratch, z);
-    if (!factor_capacitance(c)) {
-      c.factored.clear();
+  if (!still_good(c, c.wanted)) {
+    c.stiff = c.wanted;
+    c.push.resize(model.free, 3);
+    learn_columns(model, w, c.push, z);
+    if (!extend_factor(c, 0)) {
+      c.stiff.clear();
       return false;
     }
   }
   solve(model, w, r, z);
-  const auto n = static_cast<Eigen::Index>(c.factored.size());
-  c.answer.resize(n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    c.answer[i] = static_cast<float>(z.row(c.factored[i].vertex).dot(c.factored[i].axis));
-  c.capacitance.solveInPlace(c.answer);
-  Positions& push = w.correction_scratch;
-  push.setZero(model.free, 3);
-  for (Eigen::Index i = 0; i < n; ++i) push.row(c.factored[i].vertex) += c.answer[i] * c.factored[i].axis.transpose();
-  Positions& back = w.correction_back;
-  back.resize(model.free, 3);
-  solve(model, w, push, back);
-  z -= back;
+  c.answer.resize(static_cast<Eigen::Index>(c.stiff.size()));
+  for (Eigen::Index i = 0; i < c.answer.size(); ++i)
+    c.answer[i] = static_cast<float>(z.row(c.stiff[i].vertex).dot(c.stiff[i].axis));
+  subtract_answer(model, w, z);
   return true;
 }
 
 }  // namespace
 
+void foresee_contacts(const Model& model, const ContactSettings& settings, Workspace& w) {
+  ContactCorrection& c = w.correction;
+  if (settings.direction != ContactDirection::low_rank || w.contact.found.empty()) return;
+  if (c.wanted.size() > most_low_rank) return;
+  if (c.wanted.empty()) c.stiff.clear();
+  c.entered.assign(c.stiff.size(), 0.0f);
+  for (int pass = 0; pass < 3; ++pass) {
+    const std::size_t first = c.stiff.size();
+    for (const Contact& contact : w.contact.found) {
+      if (contact.depth > 0) continue;
+      const double gap = contact.normal.dot(w.x.row(contact.vertex) + w.direction.row(contact.vertex)) - contact.offset;
+      if (gap >= 0 || c.stiff.size() >= most_low_rank) continue;
+      if (pass > 0 && std::find_if(c.stiff.begin(), c.stiff.end(), [&](const StiffDirection& s) {
+                        return s.vertex == contact.vertex && s.axis == contact.normal;
+                      }) != c.stiff.end())
+        continue;
+      c.stiff.push_back({contact.vertex, contact.normal, 2 * contact.stiffness});
+      c.entered.push_back(static_cast<float>(gap));
+    }
+    if (c.stiff.size() == first) return;
+    c.push.resize(model.free, 3);
+    c.back.resize(model.free, 3);
+    learn_columns(model, w, c.push, c.back);
+    if (!extend_factor(c, static_cast<Eigen::Index>(first))) {
+      c.stiff.clear();
+      return;
+    }
+    c.answer = Eigen::Map<const Eigen::VectorXf>(c.entered.data(), static_cast<Eigen::Index>(c.entered.size()));
+    std::fill(c.entered.begin(), c.entered.end(), 0.0f);
+    subtract_answer(model, w, w.direction);
+  }
+}
+
 void apply_inverse(const Model& model, Workspace& w, const ContactSettings& settings, Positions& r, Positions& z) {
   ContactCorrection& c = w.correction;
   if (w.contact.found.empty() || settings.direction == ContactDirection::ignored) return solve(model, w, r, z);
-  collect(model, w, c.stiff);
-  if (c.stiff.empty()) return solve(model, w, r, z);
-  const bool dense = settings.direction == ContactDirection::low_rank && c.stiff.size() <= most_low_rank;
+  if (c.wanted.empty()) return solve(model, w, r, z);
+  const bool dense = settings.direction == ContactDirection::low_rank && c.wanted.size() <= most_low_rank;
   if (!dense || !apply_low_rank(model, w, r, z)) apply_diagonal(model, w, r, z);
 }
 

@@ -28,18 +28,28 @@ struct StiffDirection {
 
 // Scratch of the corrections, empty until a contact is made.
 struct ContactCorrection {
-  std::vector<StiffDirection> stiff;        // in force
-  std::vector<StiffDirection> factored;     // that `capacitance` was made for
+  std::vector<StiffDirection> wanted;       // of the contacts in force
+  std::vector<StiffDirection> stiff;        // that the factor was made for
   std::vector<std::int32_t> column_of;      // by vertex: place among the touched ones; -1: never touched
   std::vector<std::int32_t> touched;        // vertices
   std::vector<std::vector<float>> inverse;  // A^-1 between touched vertices, by row up to the diagonal [m/N]
-  Eigen::LLT<Eigen::MatrixXf> capacitance;  // of K^-1 + N^T A^-1 N
-  Eigen::MatrixXf dense;
+  Eigen::MatrixXf lower;                    // Cholesky factor of the capacitance K^-1 + N^T A^-1 N
   Eigen::VectorXf answer;
+  std::vector<double> along, products;  // of L-BFGS steps: by stiff direction and pair; by pair and pair
+  std::vector<float> entered;           // depth by stiff direction that a direction would make [m]
+  Positions push, back;                 // n_free x 3
 };
 
-// z = H r for the contacts in force. Overwrites r.
+// The stiff directions of the contacts in force at workspace.x, into workspace.correction.wanted.
+void stiff_directions(const Model& model, Workspace& workspace);
+
+// z = H r for these. Overwrites r.
 void apply_inverse(const Model& model, Workspace& workspace, const ContactSettings& settings, Positions& r,
                    Positions& z);
+
+// Bends workspace.direction where it would lead through planes that are near and not yet touched: the quadratic model
+// with their energies, which the full step would meet, is minimised anew. Without this most full steps are rejected
+// once a contact patch grows.
+void foresee_contacts(const Model& model, const ContactSettings& settings, Workspace& workspace);
 
 }  // namespace supple

@@ -38,6 +38,66 @@ void add_all(const Model& model, Workspace& workspace, const Pointers& a, const 
   });
 }
 
+// The contacts' share of all pairs, t_i += K s_i, when that is kept apart (ContactHistory::current).
+class ContactPairs {
+ public:
+  ContactPairs(const Model& model, const ContactSettings& settings, Workspace& w, const Pointers& s, int count)
+      : correction_(w.correction), count_(count) {
+    correction_.products.resize(std::size_t(count) * count);
+    stiff_directions(model, w);
+    const std::vector<StiffDirection>& stiff = correction_.wanted;
+    if (settings.history != ContactHistory::current || count == 0) count_ = 0;
+    if (count_ == 0 || stiff.empty()) {
+      count_ = 0;
+      return;
+    }
+    correction_.along.resize(stiff.size() * count);
+    for (std::size_t k = 0; k < stiff.size(); ++k) {
+      for (int i = 0; i < count; ++i) {
+        const double* moved = s[i] + 3 * std::size_t(stiff[k].vertex);
+        correction_.along[k * count + i] =
+            moved[0] * stiff[k].axis.x() + moved[1] * stiff[k].axis.y() + moved[2] * stiff[k].axis.z();
+      }
+    }
+    for (int i = 0; i < count; ++i) {
+      for (int j = 0; j < count; ++j) {
+        double sum = 0;
+        for (std::size_t k = 0; k < stiff.size(); ++k)
+          sum += stiff[k].stiffness * correction_.along[k * count + i] * correction_.along[k * count + j];
+        products_[i * count + j] = sum;
+      }
+    }
+  }
+
+  // s_i . K s_j
+  double product(int i, int j) const { return count_ > 0 ? products_[i * count_ + j] : 0; }
+
+  // r += sum factor_i K s_i
+  void add(const double* factors, Positions& r) const {
+    for (std::size_t k = 0; count_ > 0 && k < correction_.wanted.size(); ++k) {
+      const StiffDirection& stiff = correction_.wanted[k];
+      double sum = 0;
+      for (int i = 0; i < count_; ++i) sum += factors[i] * correction_.along[k * count_ + i];
+      r.row(stiff.vertex) += stiff.stiffness * sum * stiff.axis.transpose();
+    }
+  }
+
+  // K s_i . z
+  double dot(int i, const Positions& z) const {
+    double sum = 0;
+    for (std::size_t k = 0; count_ > 0 && k < correction_.wanted.size(); ++k) {
+      const StiffDirection& stiff = correction_.wanted[k];
+      sum += stiff.stiffness * correction_.along[k * count_ + i] * z.row(stiff.vertex).dot(stiff.axis);
+    }
+    return sum;
+  }
+
+ private:
+  ContactCorrection& correction_;
+  int count_;
+  std::vector<double>& products_ = correction_.products;
+};
+
 }  // namespace
 
 double search_direction(const Model& model, const ContactSettings& contact, Workspace& workspace,
@@ -49,9 +109,10 @@ double search_direction(const Model& model, const ContactSettings& contact, Work
     s[i] = workspace.step_pairs[history.place(i)].data();
     t[i] = workspace.gradient_pairs[history.place(i)].data();
   }
+  const ContactPairs contacts(model, contact, workspace, s, count);
   // s_i . t_j of the i-th and j-th newest pairs
   const auto product = [&](int i, int j) {
-    return workspace.products[history.place(i) * history.window + history.place(j)];
+    return workspace.products[history.place(i) * history.window + history.place(j)] + contacts.product(i, j);
   };
 
   // The recursion's inner products change as r and z do; with the products of the pairs among themselves at hand, one
@@ -67,6 +128,7 @@ double search_direction(const Model& model, const ContactSettings& contact, Work
     factor[i] = -alpha[i];
   }
   add_all(model, workspace, t, factor.data(), count, r.data());
+  contacts.add(factor.data(), r);
   workspace.report.lbfgs_ms += watch.lap_ms();
 
   Positions& z = workspace.trial_gradient;  // free until the next trial
@@ -75,6 +137,7 @@ double search_direction(const Model& model, const ContactSettings& contact, Work
   workspace.report.solve_ms += watch.lap_ms();
 
   dot_all(model, workspace, t, count, r.data(), against.data());
+  for (int i = 0; i < count; ++i) against[i] += contacts.dot(i, r);
   for (int i = count - 1; i >= 0; --i) {
     double beta = against[i];
     for (int j = count - 1; j > i; --j) beta += factor[j] * product(j, i);
@@ -82,6 +145,9 @@ double search_direction(const Model& model, const ContactSettings& contact, Work
   }
   add_all(model, workspace, s, factor.data(), count, r.data());
   r = -r;
+  workspace.report.lbfgs_ms += watch.lap_ms();
+  foresee_contacts(model, contact, workspace);
+  workspace.report.solve_ms += watch.lap_ms();
   double slope = 0;
   Pointers gradient{workspace.gradient.data()};
   dot_all(model, workspace, gradient, 1, r.data(), &slope);
@@ -89,13 +155,19 @@ double search_direction(const Model& model, const ContactSettings& contact, Work
   return slope;
 }
 
-void remember_pair(const Model& model, Workspace& workspace, PairHistory& history) {
+void remember_pair(const Model& model, const ContactSettings& contact, Workspace& workspace, PairHistory& history) {
   if (history.window == 0) return;
   const int next = (history.newest + 1) % history.window;
   Positions& s = workspace.step_pairs[next];
   Positions& t = workspace.gradient_pairs[next];
   s = workspace.trial.topRows(model.free) - workspace.x.topRows(model.free);
   t = workspace.trial_gradient - workspace.gradient;
+  if (contact.history == ContactHistory::current && !workspace.contact.earlier.empty()) {
+    // Both gradients have the planes that the search went by.
+    const ContactWork& work = workspace.contact;
+    add_contacts(work.earlier, work.stick_length, workspace.trial, nullptr, workspace.direction, &t, -1);
+    add_contacts(work.earlier, work.stick_length, workspace.x, nullptr, workspace.direction, &t);
+  }
 
   Pointers other{s.data(), t.data()};
   double of_t[2];  // s.t and t.t

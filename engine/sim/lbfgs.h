@@ -23,6 +23,6 @@ double search_direction(const Model& model, const ContactSettings& contact, Work
                         const PairHistory& history);
 
 // Keeps s = trial - x and t = trial_gradient - gradient as the newest pair when tr(s^T t) is safely positive.
-void remember_pair(const Model& model, Workspace& workspace, PairHistory& history);
+void remember_pair(const Model& model, const ContactSettings& contact, Workspace& workspace, PairHistory& history);
 
 }  // namespace supple

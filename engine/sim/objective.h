@@ -31,7 +31,6 @@ struct Workspace {
   std::vector<double> products;                       // s_i . t_j, window x window
   ContactWork contact;
   ContactCorrection correction;
-  Positions correction_scratch, correction_back;  // n_free x 3; empty until a contact is made
   StepReport report;
 
  private:

@@ -287,8 +287,12 @@ void iterate(const Model& model, const FrameInputs& inputs, Workspace& w, double
       }
     }
     report.evaluate_ms += watch.lap_ms();
-    remember_pair(model, w, history);
-    if (has_colliders(inputs)) change.value += take_contacts(w);
+    remember_pair(model, solver.contact, w, history);
+    if (has_colliders(inputs)) {
+      const int changes = w.contact.counts.changes;
+      change.value += take_contacts(w);
+      if (solver.contact.history == ContactHistory::dropped && w.contact.counts.changes != changes) history.clear();
+    }
     objective += change.value;
     ++report.iterations;
     report.objective.push_back(objective);
