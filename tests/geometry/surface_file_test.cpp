@@ -131,6 +131,13 @@ TEST(ClosedSurface, KeepsCavitiesAndUnitesWhatIsTurnedAlike) {
   EXPECT_NEAR(volume(test::inside_out(shell)), 1 - 0.125, 1e-12);
   EXPECT_NEAR(volume(test::inside_out(core)), 1 - 0.125 + 0.008, 1e-12);
   EXPECT_EQ(notes.size(), 2u);
+  // What most of a component's triangles say counts, not the first.
+  TriMesh first_turned = shell;
+  std::swap(first_turned.triangles(0, 1), first_turned.triangles(0, 2));
+  EXPECT_NEAR(volume(first_turned), 1 - 0.125, 1e-12);
+  // In the box of a ring, yet outside of it: no cavity.
+  const TriMesh ring = test::torus_surface(1, 0.4, 20, 10), ball_in_ring = test::inside_out(scaled(0.1));
+  EXPECT_NEAR(volume(test::together(ring, ball_in_ring)), volume(ring) + 0.001, 1e-12);
   // A solid inside a solid, a solid beside one, and one that only overlaps: all outward.
   EXPECT_NEAR(volume(test::together(ball, scaled(0.5))), 1.125, 1e-12);
   EXPECT_NEAR(volume(test::together(ball, test::moved(test::inside_out(scaled(0.5)), Vec3(3, 0, 0)))), 1.125, 1e-12);

@@ -91,6 +91,28 @@ TEST(TriangleSolid, FindsTheClosestPointThatBruteForceFinds) {
   }
 }
 
+// Corners that nearly lie on one line, askew in space: round-off moves the plain version's foot along the needle.
+TEST(TriangleSolid, FindsPointsOfNeedlesOnThem) {
+  Points points(11);
+  for (int i = 0; i < 2000; ++i) {
+    TriMesh needle{Positions(3, 3), Triangles{{0, 1, 2}}};
+    const Vec3 a = points.in_box(Vec3::Ones()), b = points.in_box(Vec3::Ones());
+    needle.points << a.transpose(), b.transpose(), (0.4 * a + 0.6 * b + 1e-9 * points.in_box(Vec3::Ones())).transpose();
+    const TriangleSolid solid(needle);
+    const Vec3 p = (needle.points.row(0) + needle.points.row(1) + needle.points.row(2)).transpose() / 3;
+    EXPECT_LT(std::abs(solid.closest(p).distance), 1e-11) << i;
+  }
+}
+
+TEST(TriangleSolid, FindsTheClosestPointFromVeryFarAway) {
+  const TriangleSolid box(test::box_surface(Vec3(1, 2, 3)));
+  for (const double far : {1e3, 1e14, 1e100, 1e160, 1.7e308}) {
+    EXPECT_EQ(box.closest(Vec3(0, far, 0)).point.y(), 2) << far;
+    EXPECT_EQ(box.closest(Vec3(-far, 0, 0)).point.x(), -1) << far;
+    EXPECT_EQ(box.closest(Vec3(0, far, -far)).point.tail<2>(), Eigen::Vector2d(2, -3)) << far;
+  }
+}
+
 TEST(TriangleSolid, HasTheSignsOfSphereTorusAndBox) {
   const TriangleSolid ball(test::sphere_surface(1, 60, 30)), ring(test::torus_surface(1, 0.4, 80, 40));
   const Vec3 half(1, 0.5, 0.25);
@@ -187,6 +209,25 @@ TEST(TriangleSolid, HolesFlipNoSignBeyondTheirNeighbourhood) {
     EXPECT_LT(solid.closest(0.97 * holes[0]).distance, 0);
     EXPECT_GT(solid.closest(1.03 * holes[0]).distance, 0);
   }
+}
+
+TEST(TriangleSolid, InTheMouthOfAHoleTheSignIsThatOfTheWindingNumber) {
+  TriMesh mesh = test::sphere_surface(1, 20, 10);
+  std::vector<Eigen::Index> kept;  // all but a bent patch
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
+    if ((mesh.points.row(mesh.triangles(t, 0)) - Eigen::RowVector3d(1, 0, 0)).norm() > 0.4) kept.push_back(t);
+  mesh.triangles = Triangles(mesh.triangles(kept, Eigen::all));
+  const TriangleSolid solid(mesh);
+  Points points(12);
+  int inside = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const Vec3 p = Vec3(0.9, 0, 0) + points.in_box(Vec3(0.1, 0.3, 0.3));
+    const double winding = solid.winding_number(p);
+    if (std::abs(winding - 0.5) < 0.05) continue;
+    EXPECT_EQ(solid.closest(p).distance<0, winding> 0.5) << p.transpose() << ", " << winding;
+    inside += winding > 0.5;
+  }
+  EXPECT_GT(inside, 2000);
 }
 
 TEST(TriangleSolid, NormalsAreUnitVectorsEverywhere) {
