@@ -45,6 +45,7 @@ class Stream {
   template <class T>
   void take(T* values, std::size_t count) {
     if (count > rest_.size() / sizeof(T)) refuse();
+    if (count == 0) return;  // an empty array has no address to copy to
     std::memcpy(values, rest_.data(), count * sizeof(T));
     rest_.remove_prefix(count * sizeof(T));
   }
