@@ -28,6 +28,7 @@ const std::vector<std::pair<std::regex, std::regex>> cages = {
     {std::regex("(GL|EGL)/.*"), std::regex("engine/render/.*")},
     {std::regex("ft2build\\.h"), std::regex("engine/render/caption\\.cpp")},
     {std::regex("toml\\+\\+/.*"), std::regex("engine/scene/config(_values\\.cpp|_content\\.h|\\.cpp)")},
+    {std::regex("assimp/.*"), std::regex("engine/geometry/assimp_reader\\.cpp")},
     {std::regex("xxhash\\.h"), std::regex("engine/base/hash\\.cpp")},
 };
 

@@ -1,0 +1,114 @@
+// The program supple-read-surface: reads one file through assimp and writes its triangles to standard output
+// (surface_stream.h). It is a program of its own because assimp may crash or never end on a broken file.
+#include <sys/prctl.h>
+#include <sys/resource.h>
+
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <assimp/Importer.hpp>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "geometry/surface_stream.h"
+
+namespace {
+
+namespace stream = supple::surface_stream;
+
+struct Soup {
+  std::vector<double> positions;
+  std::vector<std::int32_t> indices;
+};
+
+void limit(decltype(RLIMIT_AS) resource, rlim_t soft, rlim_t hard) {
+  const rlimit value{soft, hard};
+  ::setrlimit(resource, &value);
+}
+
+// Broken files can send assimp round in circles, so the time goes by the size; a sound file needs a tenth of this.
+rlim_t seconds_for(const char* path) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  return error ? 3 : rlim_t(std::min<std::uintmax_t>(3 + (size >> 19), 60));
+}
+
+void limit_this_process(const char* path) {
+  // The address sanitizer reserves terabytes of addresses.
+#ifndef __SANITIZE_ADDRESS__
+  limit(RLIMIT_AS, rlim_t(2) << 30, rlim_t(2) << 30);
+#endif
+  limit(RLIMIT_CPU, seconds_for(path), seconds_for(path) + 1);
+  limit(RLIMIT_CORE, 0, 0);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+}
+
+int refuse(std::string reason) {
+  reason = reason.substr(0, reason.find('\n')).substr(0, 200);
+  for (char& c : reason)
+    if (c < ' ' || c > '~') c = '?';
+  std::fwrite(stream::refused, 1, sizeof stream::refused, stdout);
+  std::fwrite(reason.data(), 1, reason.size(), stdout);
+  return std::fflush(stdout) == 0 ? 0 : 1;
+}
+
+// Empty when all is well.
+std::string append(const aiMesh& mesh, Soup& soup) {
+  const auto first = std::int64_t(soup.positions.size() / 3);
+  if (first + std::int64_t(mesh.mNumVertices) > stream::most_vertices) return "it has more than 15 million vertices";
+  for (unsigned v = 0; v < mesh.mNumVertices; ++v)
+    for (unsigned k = 0; k < 3; ++k) soup.positions.push_back(mesh.mVertices[v][k]);
+  for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+    const aiFace& face = mesh.mFaces[f];
+    if (face.mNumIndices != 3) continue;
+    if (std::int64_t(soup.indices.size() / 3) >= stream::most_triangles) return "it has more than 5 million triangles";
+    for (unsigned k = 0; k < 3; ++k) {
+      if (face.mIndices[k] >= mesh.mNumVertices) return "a triangle names a vertex that does not exist";
+      soup.indices.push_back(std::int32_t(first + face.mIndices[k]));
+    }
+  }
+  return "";
+}
+
+template <class T>
+void write(const T* values, std::size_t count) {
+  std::fwrite(values, sizeof(T), count, stdout);
+}
+
+int read(const char* path) {
+  Assimp::Importer importer;
+  const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_PreTransformVertices);
+  if (scene == nullptr) return refuse(importer.GetErrorString());
+  Soup soup;
+  for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
+    const std::string problem = append(*scene->mMeshes[m], soup);
+    if (!problem.empty()) return refuse(problem);
+  }
+  const std::int64_t counts[] = {std::int64_t(soup.positions.size() / 3), std::int64_t(soup.indices.size() / 3)};
+  write(stream::accepted, sizeof stream::accepted);
+  write(counts, 2);
+  write(soup.positions.data(), soup.positions.size());
+  write(soup.indices.data(), soup.indices.size());
+  return std::fflush(stdout) == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  if (count != 2) {
+    std::fputs("usage: supple-read-surface FILE\n", stderr);
+    return 2;
+  }
+  limit_this_process(arguments[1]);
+  try {
+    return read(arguments[1]);
+  } catch (const std::exception& error) {
+    return refuse(error.what());
+  }
+}

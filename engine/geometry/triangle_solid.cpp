@@ -1,0 +1,430 @@
+#include "geometry/triangle_solid.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include "base/error.h"
+
+namespace supple {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// The tree is balanced, so that 2^31 triangles make 15 levels; each leaves at most three siblings behind.
+constexpr int stack_size = 64;
+
+template <class L>
+auto dot(const L& a, const L& b) {
+  return (a.x * b.x + a.y * b.y + a.z * b.z).eval();
+}
+
+template <class L>
+void set(L& lanes, int k, const Vec3& value) {
+  lanes.x[k] = value.x();
+  lanes.y[k] = value.y();
+  lanes.z[k] = value.z();
+}
+
+template <class L>
+Vec3 get(const L& lanes, int k) {
+  return Vec3(lanes.x[k], lanes.y[k], lanes.z[k]);
+}
+
+double half_area(const Bounds& box) {
+  const Vec3 e = box.extent();
+  return e.x() * e.y() + e.y() * e.z() + e.z() * e.x();
+}
+
+// The edges, as their triangles run through them, that no neighbour runs through the other way.
+std::vector<std::pair<std::int32_t, std::int32_t>> open_edges(const Triangles& triangles) {
+  struct Edge {
+    std::int32_t low, high;
+    int turn;  // 1 from low to high
+    bool operator<(const Edge& other) const { return std::tie(low, high) < std::tie(other.low, other.high); }
+  };
+  std::vector<Edge> edges;
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t from = triangles(t, k), to = triangles(t, (k + 1) % 3);
+      edges.push_back({std::min(from, to), std::max(from, to), from < to ? 1 : -1});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  std::vector<std::pair<std::int32_t, std::int32_t>> open;
+  for (std::size_t i = 0; i < edges.size();) {
+    const Edge edge = edges[i];
+    int turns = 0;
+    for (; i < edges.size() && !(edge < edges[i]); ++i) turns += edges[i].turn;
+    for (; turns > 0; --turns) open.emplace_back(edge.low, edge.high);
+    for (; turns < 0; ++turns) open.emplace_back(edge.high, edge.low);
+  }
+  return open;
+}
+
+// Signed solid angle over 4 pi: Van Oosterom and Strackee, The solid angle of a plane triangle, 1983, equation 8.
+double winding_of_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double la = a.norm(), lb = b.norm(), lc = c.norm();
+  const double y = a.dot(b.cross(c));
+  const double x = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+  return std::atan2(y, x) / (2 * std::numbers::pi);
+}
+
+}  // namespace
+
+// Splits at the middle, along the axis that leaves the two smallest boxes, into counts that fill the leaves.
+class TriangleSolid::Builder {
+ public:
+  explicit Builder(TriangleSolid& solid) : solid_(solid), order_(std::size_t(solid.surface_.triangles.rows())) {
+    std::iota(order_.begin(), order_.end(), 0);
+    centroids_.resize(std::ssize(order_), 3);
+    for (Eigen::Index t = 0; t < centroids_.rows(); ++t)
+      centroids_.row(t) = ((solid.corner(t, 0) + solid.corner(t, 1) + solid.corner(t, 2)) / 3).transpose();
+  }
+
+  void build() { add_node(order_); }
+
+ private:
+  using Part = std::span<std::int32_t>;
+
+  Bounds box_of(Part part) const {
+    Bounds box;
+    for (const std::int32_t t : part)
+      for (int k = 0; k < 3; ++k) box.include(solid_.corner(t, k));
+    return box;
+  }
+
+  void divide(Part part, std::size_t middle, int axis) const {
+    std::nth_element(part.begin(), part.begin() + std::ptrdiff_t(middle), part.end(),
+                     [&](std::int32_t s, std::int32_t t) {
+                       return std::pair(centroids_(s, axis), s) < std::pair(centroids_(t, axis), t);
+                     });
+  }
+
+  std::pair<Part, Part> split(Part part) const {
+    const std::size_t middle = (part.size() / 2 + width - 1) / width * width;
+    int best = 0;
+    double cost = infinity;
+    for (int axis = 0; axis < 3; ++axis) {
+      divide(part, middle, axis);
+      const double sum = half_area(box_of(part.first(middle))) + half_area(box_of(part.subspan(middle)));
+      if (sum < cost) {
+        cost = sum;
+        best = axis;
+      }
+    }
+    divide(part, middle, best);
+    return {part.first(middle), part.subspan(middle)};
+  }
+
+  std::int32_t add_leaf(Part part) {
+    Leaf leaf;
+    leaf.count = int(part.size());
+    for (int k = 0; k < width; ++k) {
+      const std::int32_t t = part[k < leaf.count ? std::size_t(k) : 0];
+      const Vec3 a = solid_.corner(t, 0), b = solid_.corner(t, 1), c = solid_.corner(t, 2);
+      leaf.triangle[std::size_t(k)] = t;
+      set(leaf.a, k, a);
+      set(leaf.ab, k, b - a);
+      set(leaf.ac, k, c - a);
+      // An edge without length has one point, whatever its parameter.
+      const auto inverse = [](const Vec3& e) { return e.squaredNorm() > 0 ? 1 / e.squaredNorm() : 0.0; };
+      leaf.inverse_ab[k] = inverse(b - a);
+      leaf.inverse_ac[k] = inverse(c - a);
+      leaf.inverse_bc[k] = inverse(c - b);
+      leaf.bc_start[k] = (c - b).dot(b - a);
+      const Vec3 n = (b - a).cross(c - a);
+      set(leaf.to_v, k, (c - a).cross(n) * inverse(n));
+      set(leaf.to_w, k, n.cross(b - a) * inverse(n));
+    }
+    solid_.leaves_.push_back(leaf);
+    return ~std::int32_t(solid_.leaves_.size() - 1);
+  }
+
+  std::int32_t add_node(Part part) {
+    const std::size_t index = solid_.nodes_.size();
+    solid_.nodes_.emplace_back();
+    solid_.dipoles_.emplace_back();
+    std::array<Part, width> parts{part};
+    int count = 1;
+    while (count < width) {  // the largest part is split again
+      Part& largest = *std::max_element(parts.begin(), parts.begin() + count,
+                                        [](const Part& l, const Part& r) { return l.size() < r.size(); });
+      if (largest.size() <= std::size_t(width)) break;
+      std::tie(largest, parts[std::size_t(count++)]) = split(largest);
+    }
+    Node node;
+    Dipoles dipoles;
+    for (int k = 0; k < width; ++k) {
+      const Part own = k < count ? parts[std::size_t(k)] : Part();
+      const Bounds box = box_of(own);
+      set(node.lower, k, box.lower);
+      set(node.upper, k, box.upper);
+      summarise(own, k, dipoles);
+      node.child[std::size_t(k)] = own.empty() ? 0 : own.size() <= std::size_t(width) ? add_leaf(own) : add_node(own);
+    }
+    solid_.nodes_[index] = node;
+    solid_.dipoles_[index] = dipoles;
+    return std::int32_t(index);
+  }
+
+  // The leading term of Barill, Dickson, Schmidt, Levin, Jacobson, Fast winding numbers for soups and clouds, 2018,
+  // section 3.
+  void summarise(Part part, int lane, Dipoles& dipoles) const {
+    Vec3 sum = Vec3::Zero(), area = Vec3::Zero();
+    double weight = 0;
+    for (const std::int32_t t : part) {
+      const Vec3 own =
+          0.5 * (solid_.corner(t, 1) - solid_.corner(t, 0)).cross(solid_.corner(t, 2) - solid_.corner(t, 0));
+      area += own;
+      sum += own.norm() * centroids_.row(t).transpose();
+      weight += own.norm();
+    }
+    const Vec3 center = weight > 0 ? Vec3(sum / weight) : solid_.bounds_.center();
+    double radius = 0;
+    for (const std::int32_t t : part)
+      for (int k = 0; k < 3; ++k) radius = std::max(radius, (solid_.corner(t, k) - center).norm());
+    set(dipoles.center, lane, center);
+    set(dipoles.area, lane, area);
+    dipoles.radius[lane] = radius;
+  }
+
+  TriangleSolid& solid_;
+  std::vector<std::int32_t> order_;
+  Positions centroids_;
+};
+
+TriangleSolid::TriangleSolid(TriMesh surface) : surface_(std::move(surface)), bounds_(bounds_of(surface_.points)) {
+  SUPPLE_CHECK(surface_.triangles.rows(), >, 0);
+  // 1e-11 leaves the direction of (p - t) four good digits: both carry the round-off of the coordinates.
+  on_surface_ = 1e-11 * std::max(bounds_.lower.cwiseAbs().maxCoeff(), bounds_.upper.cwiseAbs().maxCoeff());
+  close_holes();
+  normals_.resize(surface_.triangles.rows(), 3);
+  for (Eigen::Index t = 0; t < normals_.rows(); ++t) {
+    const Vec3 n = (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0));
+    const double length = n.stableNorm();
+    normals_.row(t) = length > 0 ? Eigen::RowVector3d((n / length).transpose()) : Eigen::RowVector3d::UnitY();
+  }
+  Builder(*this).build();
+}
+
+// Any one apex will do: open edges form closed lines, so that their triangles' other sides cancel.
+void TriangleSolid::close_holes() {
+  const auto open = open_edges(surface_.triangles);
+  Vec3 apex = Vec3::Zero();
+  for (const auto& [from, to] : open) apex += surface_.points.row(from).transpose() / double(open.size());
+  for (const auto& [from, to] : open) lids_.push_back({surface_.points.row(to), surface_.points.row(from), apex});
+}
+
+// Ericson, Real-Time Collision Detection, 2005, section 5.1.5, for four triangles at once. Instead of choosing a region
+// first, the three edges and, where it lies within, the foot on the plane are all tried: every candidate is a point of
+// the triangle, so that round-off in a sliver's plane can't make it look nearer than it is.
+void TriangleSolid::nearest_in_leaf(const Vec3& p, std::int32_t index, Nearest& best) const {
+  const Leaf& leaf = leaves_[std::size_t(index)];
+  const Lanes3 ap{p.x() - leaf.a.x, p.y() - leaf.a.y, p.z() - leaf.a.z};
+  const auto offset = [&](const Lanes& s, const Lanes& t) {
+    return Lanes3{ap.x - s * leaf.ab.x - t * leaf.ac.x, ap.y - s * leaf.ab.y - t * leaf.ac.y,
+                  ap.z - s * leaf.ab.z - t * leaf.ac.z};
+  };
+  const auto squared_length = [](const Lanes3& d) { return dot(d, d); };
+  const Lanes d1 = dot(leaf.ab, ap), d2 = dot(leaf.ac, ap), along_bc = d2 - d1 - leaf.bc_start;
+
+  Lanes v = (d1 * leaf.inverse_ab).max(0).min(1), w = Lanes::Zero();
+  Lanes squared = squared_length(offset(v, w));
+  const auto consider = [&](const Lanes& s, const Lanes& t, const Lanes& other, const auto& better) {
+    v = better.select(s, v);
+    w = better.select(t, w);
+    squared = better.select(other, squared);
+  };
+  const auto consider_edge = [&](const Lanes& s, const Lanes& t) {
+    const Lanes other = squared_length(offset(s, t));
+    consider(s, t, other, (other < squared).eval());
+  };
+  consider_edge(Lanes::Zero(), (d2 * leaf.inverse_ac).max(0).min(1));
+  const Lanes of_c = (along_bc * leaf.inverse_bc).max(0).min(1);
+  consider_edge(1 - of_c, of_c);
+  // The foot on the plane, and once more for what round-off left, which in slivers is much.
+  Lanes s = dot(leaf.to_v, ap), t = dot(leaf.to_w, ap);
+  const Lanes3 rest = offset(s, t);
+  s += dot(leaf.to_v, rest);
+  t += dot(leaf.to_w, rest);
+  const Lanes other = squared_length(offset(s, t));
+  consider(s, t, other, (other < squared && s >= 0 && t >= 0 && s + t <= 1).eval());
+
+  for (int k = 0; k < leaf.count; ++k)
+    if (squared[k] < best.squared) best = {squared[k], index, k, v[k], w[k]};
+}
+
+// Branch and bound, nearer child first.
+TriangleSolid::Nearest TriangleSolid::nearest(const Vec3& p) const {
+  struct Entry {
+    double squared;
+    std::int32_t node;
+  };
+  std::array<Entry, stack_size> stack;
+  int top = 0;
+  stack[std::size_t(top++)] = {0, 0};
+  Nearest best{infinity, 0, 0, 0, 0};
+  while (top > 0) {
+    const Entry entry = stack[std::size_t(--top)];
+    if (!(entry.squared < best.squared)) continue;
+    if (entry.node < 0) {
+      nearest_in_leaf(p, ~entry.node, best);
+      continue;
+    }
+    const Node& node = nodes_[std::size_t(entry.node)];
+    const Lanes x = (node.lower.x - p.x()).max(p.x() - node.upper.x).max(0);
+    const Lanes y = (node.lower.y - p.y()).max(p.y() - node.upper.y).max(0);
+    const Lanes z = (node.lower.z - p.z()).max(p.z() - node.upper.z).max(0);
+    const Lanes squared = x * x + y * y + z * z;
+    const int first = top;
+    for (int k = 0; k < width; ++k) {
+      if (!(squared[k] < best.squared)) continue;
+      int place = top++;  // furthest below
+      for (; place > first && stack[std::size_t(place - 1)].squared < squared[k]; --place)
+        stack[std::size_t(place)] = stack[std::size_t(place - 1)];
+      stack[std::size_t(place)] = {squared[k], node.child[std::size_t(k)]};
+    }
+  }
+  return best;
+}
+
+double TriangleSolid::winding_number(const Vec3& p) const {
+  // A part counts as far beyond twice its radius: section 3.2 of the same paper.
+  constexpr double far = 2;
+  // Below round-off, and where squares would overflow.
+  if ((p - bounds_.center()).cwiseAbs().maxCoeff() > 1e12 * (bounds_.diagonal() + on_surface_)) return 0;
+  std::array<std::int32_t, stack_size> stack;
+  int top = 0;
+  stack[std::size_t(top++)] = 0;
+  double sum = 0;
+  while (top > 0) {
+    const std::int32_t index = stack[std::size_t(--top)];
+    if (index < 0) {
+      const Leaf& leaf = leaves_[std::size_t(~index)];
+      for (int k = 0; k < leaf.count; ++k) {
+        const Eigen::Index t = leaf.triangle[std::size_t(k)];
+        sum += winding_of_triangle(corner(t, 0) - p, corner(t, 1) - p, corner(t, 2) - p);
+      }
+      continue;
+    }
+    const Node& node = nodes_[std::size_t(index)];
+    const Dipoles& dipoles = dipoles_[std::size_t(index)];
+    const Lanes3 d{dipoles.center.x - p.x(), dipoles.center.y - p.y(), dipoles.center.z - p.z()};
+    const Lanes squared = dot(d, d);
+    const Lanes reach = far * dipoles.radius;
+    const Lanes seen = dot(dipoles.area, d) / (squared * squared.sqrt() * (4 * std::numbers::pi));
+    for (int k = 0; k < width; ++k) {
+      if (node.lower.x[k] > node.upper.x[k]) continue;  // no child
+      if (squared[k] > reach[k] * reach[k]) {
+        sum += seen[k];
+      } else {
+        stack[std::size_t(top++)] = node.child[std::size_t(k)];
+      }
+    }
+  }
+  return sum;
+}
+
+// How the triangle meets the ray from p: +1 where the ray leaves through it, -1 where it enters, 0 where it passes by.
+// Projected along the ray, the triangle winds around p by the sum over its edges of what crosses the level of p beyond
+// p. That side is computed from the edge's lower to its upper end, the same for both neighbours, so that round-off
+// can't let a ray slip between two triangles or count both.
+int TriangleSolid::crossing(const Vec3& p, const Corners& corners, int axis, int direction) {
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  int turns = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3& from = corners[std::size_t(k)];
+    const Vec3& to = corners[std::size_t((k + 1) % 3)];
+    const bool upward = to[v] >= p[v];
+    if ((from[v] >= p[v]) == upward) continue;
+    const Vec3& low = upward ? from : to;
+    const Vec3& high = upward ? to : from;
+    bool beyond = low[u] > p[u];
+    if (beyond != (high[u] > p[u]))
+      beyond = (high[u] - low[u]) * (p[v] - low[v]) > (p[u] - low[u]) * (high[v] - low[v]);
+    if (beyond) turns += upward ? 1 : -1;
+  }
+  if (turns == 0) return 0;
+  const auto ahead = [&](const Vec3& q) { return direction * (q[axis] - p[axis]) > 0; };
+  const int count = int(ahead(corners[0])) + int(ahead(corners[1])) + int(ahead(corners[2]));
+  if (count == 0) return 0;
+  if (count < 3) {
+    const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    if (!(direction * turns * normal.dot(p - corners[0]) < 0)) return 0;
+  }
+  return direction * turns;
+}
+
+// The winding number of a point in the box, once the holes have their lids, which is a whole number: signed crossings
+// of the axis-parallel ray to the nearest side of the box.
+int TriangleSolid::crossings(const Vec3& p) const {
+  int axis = 0, direction = 1;
+  double shortest = infinity;
+  for (int k = 0; k < 3; ++k) {
+    for (const int sign : {1, -1}) {
+      const double length = sign > 0 ? bounds_.upper[k] - p[k] : p[k] - bounds_.lower[k];
+      if (length < shortest) {
+        shortest = length;
+        axis = k;
+        direction = sign;
+      }
+    }
+  }
+  Vec3 lower = p, upper = p;  // the ray
+  (direction > 0 ? upper : lower)[axis] = direction * infinity;
+  std::array<std::int32_t, stack_size> stack;
+  int top = 0;
+  stack[std::size_t(top++)] = 0;
+  int sum = 0;
+  for (const Corners& lid : lids_) sum += crossing(p, lid, axis, direction);
+  while (top > 0) {
+    const std::int32_t index = stack[std::size_t(--top)];
+    if (index < 0) {
+      const Leaf& leaf = leaves_[std::size_t(~index)];
+      for (int k = 0; k < leaf.count; ++k) sum += crossing(p, corners(leaf.triangle[std::size_t(k)]), axis, direction);
+      continue;
+    }
+    const Node& node = nodes_[std::size_t(index)];
+    const auto met = (node.lower.x <= upper.x() && node.upper.x >= lower.x() && node.lower.y <= upper.y() &&
+                      node.upper.y >= lower.y() && node.lower.z <= upper.z() && node.upper.z >= lower.z())
+                         .eval();
+    for (int k = 0; k < width; ++k)
+      if (met[k]) stack[std::size_t(top++)] = node.child[std::size_t(k)];
+  }
+  return sum;
+}
+
+bool TriangleSolid::inside(const Vec3& p) const {
+  if ((p.array() < bounds_.lower.array()).any() || (p.array() > bounds_.upper.array()).any()) return false;
+  // Lids cost their time at every query; past this many the tree is faster.
+  constexpr std::size_t most_lids = 32;
+  if (lids_.size() > most_lids) return winding_number(p) > 0.5;
+  double of_lids = 0;
+  for (const Corners& lid : lids_) of_lids += winding_of_triangle(lid[0] - p, lid[1] - p, lid[2] - p);
+  return crossings(p) - of_lids > 0.5;
+}
+
+SurfacePoint TriangleSolid::closest(const Vec3& p) const {
+  // From very far away all points of the surface are equally far in round-off, and squares overflow: look from nearer.
+  const Vec3 from_center = p - bounds_.center();
+  const double far = 1e12 * (bounds_.diagonal() + on_surface_), away = from_center.cwiseAbs().maxCoeff();
+  const Nearest found = nearest(away > far ? Vec3(bounds_.center() + from_center / away * far) : p);
+  const Leaf& leaf = leaves_[std::size_t(found.leaf)];
+  const Vec3 point = get(leaf.a, found.lane) + found.v * get(leaf.ab, found.lane) + found.w * get(leaf.ac, found.lane);
+  const Vec3 offset = p - point;
+  const double largest = offset.cwiseAbs().maxCoeff(), sign = inside(p) ? -1 : 1;
+  if (largest <= on_surface_)
+    return {point, normals_.row(leaf.triangle[std::size_t(found.lane)]), sign * offset.norm()};
+  const Vec3 direction = offset / largest;  // its square neither overflows nor vanishes
+  const double length = direction.norm();
+  return {point, sign / length * direction, sign * length * largest};
+}
+
+}  // namespace supple

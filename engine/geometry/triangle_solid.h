@@ -1,0 +1,90 @@
+// The solid inside a closed triangle surface: closest points and signed distances, for colliding and as a shape. Not
+// here: files, and the checks that make a surface closed (surface_file.h); small holes are tolerated. The sign is that
+// of the generalised winding number (Jacobson, Kavan, Sorkine-Hornung, Robust inside-outside segmentation using
+// generalized winding numbers, 2013): inside where it exceeds 1/2, so that overlapping parts are a union.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "geometry/mesh.h"
+
+namespace supple {
+
+struct SurfacePoint {
+  Vec3 point;       // closest point of the surface [m]
+  Vec3 normal;      // unit, from inside to outside: along the line to the query, or the face's where the query is on it
+  double distance;  // negative inside [m]
+};
+
+// Constant after construction; queries may run on any number of threads and give the same bits on each.
+class TriangleSolid {
+ public:
+  // Expects triangles with area, oriented outward, whose coordinates are within +-1e50 (closed_surface sees to that).
+  explicit TriangleSolid(TriMesh surface);
+
+  // For any finite point. The distance is exact up to round-off of the surface's coordinates.
+  SurfacePoint closest(const Vec3& p) const;
+
+  // Near parts exactly, far ones as dipoles; accurate to about 0.1.
+  double winding_number(const Vec3& p) const;
+
+  const Bounds& bounds() const { return bounds_; }
+  const TriMesh& surface() const { return surface_; }
+
+ private:
+  // A tree with four children a node and up to four triangles a leaf, one a vector lane.
+  static constexpr int width = 4;
+  using Lanes = Eigen::Array<double, width, 1>;
+  struct Lanes3 {
+    Lanes x, y, z;
+  };
+  struct Node {
+    Lanes3 lower, upper;                    // boxes of the children; empty where there is no child [m]
+    std::array<std::int32_t, width> child;  // a node, or a leaf as its complement
+  };
+  struct Dipoles {  // the children seen from afar
+    Lanes3 center;  // mean of the triangles, weighted by area [m]
+    Lanes3 area;    // sum of their area vectors [m^2]
+    Lanes radius;   // no corner is further from the centre [m]
+  };
+  struct Leaf {
+    Lanes3 a, ab, ac;                          // a corner, and the edges from it [m]
+    Lanes inverse_ab, inverse_ac, inverse_bc;  // 1 / squared length [1/m^2]
+    Lanes bc_start;                            // bc . ab [m^2]
+    Lanes3 to_v, to_w;                         // v and w of a point's foot on the plane, by their dot product [1/m]
+    std::array<std::int32_t, width> triangle;  // a short leaf repeats its first
+    int count;
+  };
+  struct Nearest {  // a + v ab + w ac of a leaf's lane
+    double squared;
+    std::int32_t leaf;
+    int lane;
+    double v, w;
+  };
+  using Corners = std::array<Vec3, 3>;
+  class Builder;
+
+  Vec3 corner(Eigen::Index triangle, int k) const { return surface_.points.row(surface_.triangles(triangle, k)); }
+  Corners corners(Eigen::Index triangle) const {
+    return {corner(triangle, 0), corner(triangle, 1), corner(triangle, 2)};
+  }
+  void nearest_in_leaf(const Vec3& p, std::int32_t leaf, Nearest& best) const;
+  Nearest nearest(const Vec3& p) const;
+  void close_holes();
+  bool inside(const Vec3& p) const;
+  int crossings(const Vec3& p) const;
+  static int crossing(const Vec3& p, const Corners& corners, int axis, int direction);
+
+  TriMesh surface_;
+  Bounds bounds_;
+  double on_surface_ = 0;      // nearer than this, a query has no direction of its own [m]
+  std::vector<Corners> lids_;  // triangles that would close the holes: only the sign knows them
+  std::vector<Node> nodes_;
+  std::vector<Dipoles> dipoles_;  // of nodes_
+  std::vector<Leaf> leaves_;
+  Positions normals_;  // of triangles, unit
+};
+
+}  // namespace supple
