@@ -45,7 +45,9 @@ int make_mesh(const std::string& input, const std::string& output, int vertices)
   } else if (path.extension() == ".toml") {
     mesh = tetrahedralize(load_shape(path, assets_folder()), vertices, path.string());
   } else {
-    throw InputError(input, "should be a shape (.toml) or a tetrahedral mesh (.mesh)");
+    const Shape shape = load_surface(path);
+    for (const std::string& note : shape.notes) say(stdout, fmt::format("note: {}\n", note));
+    mesh = tetrahedralize(shape, vertices, path.string());
   }
   write_mesh(output, mesh);
   describe(mesh);
@@ -61,9 +63,12 @@ void add_mesh(CLI::App& app, Action& action) {
     int vertices = 4000;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("mesh", "Make tetrahedra of a shape, or check and rewrite a mesh.");
+  CLI::App* verb =
+      app.add_subcommand("mesh", "Make tetrahedra of a shape or a closed surface, or check and rewrite a mesh.");
   verb->footer("Example: supple mesh squirrel -o squirrel.mesh --vertices 8395");
-  verb->add_option("INPUT", options->input, "shape file (.toml), the name of a shape that ships, or a .mesh file")
+  verb->add_option("INPUT", options->input,
+                   "shape file (.toml), the name of a shape that ships, a closed surface (OBJ, PLY, STL, glTF, OFF), "
+                   "or a .mesh file")
       ->required();
   verb->add_option("-o,--output", options->output, "MEDIT .mesh file to write")->required();
   verb->add_option("--vertices", options->vertices, "wanted (within 3 %)")->check(CLI::Range(50, 500000));

@@ -9,6 +9,9 @@ namespace {
 
 constexpr double far_away = 1e9;
 
+// std::hypot guards against overflow that cannot happen here, and takes several times as long.
+double length(double x, double y) { return std::sqrt(x * x + y * y); }
+
 // The primitives' distances: Quilez, "Distance functions" (iquilezles.org/articles/distfunctions).
 double primitive_distance(const Sphere& s, const Vec3& p) { return p.norm() - s.radius; }
 
@@ -55,16 +58,18 @@ double primitive_distance(const Box& b, const Vec3& p) {
 }
 
 double primitive_distance(const Cylinder& c, const Vec3& p) {
-  const double radial = std::hypot(p.x(), p.z()) - (c.radius - c.round);
+  const double radial = length(p.x(), p.z()) - (c.radius - c.round);
   const double axial = std::abs(p.y()) - (c.half_height - c.round);
-  return std::hypot(std::max(radial, 0.0), std::max(axial, 0.0)) + std::min(std::max(radial, axial), 0.0) - c.round;
+  return length(std::max(radial, 0.0), std::max(axial, 0.0)) + std::min(std::max(radial, axial), 0.0) - c.round;
 }
 
 double primitive_distance(const Torus& t, const Vec3& p) {
-  return std::hypot(std::hypot(p.x(), p.z()) - t.radius, p.y()) - t.tube;
+  return length(length(p.x(), p.z()) - t.radius, p.y()) - t.tube;
 }
 
 double primitive_distance(const HalfSpace& h, const Vec3& p) { return h.normal.dot(p) - h.offset; }
+
+double primitive_distance(const ClosedSurface& s, const Vec3& p) { return s.solid->closest(p).distance; }
 
 double primitive_distance(const ShapeGroup& group, const Vec3& p) { return distance(group, p); }
 
@@ -111,6 +116,7 @@ Bounds primitive_bounds(const Primitive& primitive) {
       return box_around(Vec3::Zero(), Vec3(t.radius + t.tube, t.tube, t.radius + t.tube));
     }
     Bounds operator()(const HalfSpace&) const { return box_around(Vec3::Zero(), Vec3::Constant(far_away)); }
+    Bounds operator()(const ClosedSurface& s) const { return s.solid->bounds(); }
     Bounds operator()(const ShapeGroup& g) const { return bounds_of_group(g); }
   };
   return std::visit(Visitor{}, primitive);

@@ -5,12 +5,13 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
-#include "geometry/surface_point.h"
+#include "geometry/triangle_solid.h"
 
 namespace supple {
 
@@ -43,12 +44,17 @@ struct HalfSpace {  // the side that the unit normal points away from
   double offset;
 };
 
+struct ClosedSurface {  // triangles from a file
+  std::shared_ptr<const TriangleSolid> solid;
+};
+
 struct ShapePart;
 struct ShapeGroup {
   std::vector<ShapePart> parts;
 };
 
-using Primitive = std::variant<Sphere, Ellipsoid, Capsule, RoundCone, Box, Cylinder, Torus, HalfSpace, ShapeGroup>;
+using Primitive =
+    std::variant<Sphere, Ellipsoid, Capsule, RoundCone, Box, Cylinder, Torus, HalfSpace, ClosedSurface, ShapeGroup>;
 
 enum class Combine { add, cut, intersect };
 
@@ -90,6 +96,7 @@ struct Shape {
   std::vector<std::string> regions = {""};  // names by tag; the first is untagged
   Vec3 color = Vec3(0.8, 0.6, 0.4);         // sRGB of what no layer covers
   std::vector<PaintLayer> paint;            // later layers lie over earlier ones
+  std::vector<std::string> notes;           // what reading its files had to say
 
   double distance(const Vec3& point) const;
   Vec3 gradient(const Vec3& point, double step) const;  // central differences over +-step
@@ -102,6 +109,9 @@ struct Shape {
 
   // The distance to the surface is at least this times |distance(point)|: 1 but for ellipsoids.
   double certainty() const;
+
+  // Nothing shorter than twice this goes through, but across edges; 0 where that is not known.
+  double half_thickness() const;
 
   // The tag of the last tagged part that holds the point; outside all parts, that of the nearest one.
   int region(const Vec3& point) const;

@@ -64,7 +64,7 @@ Vec3 gradient_of(const Box& b, const Vec3& p) {
 Vec3 gradient_of(const Cylinder& c, const Vec3& p) {
   const Vec3 outward = unit(Vec3(p.x(), 0, p.z()), Vec3::UnitX());
   const Vec3 up = std::copysign(1.0, p.y()) * Vec3::UnitY();
-  const double radial = std::hypot(p.x(), p.z()) - (c.radius - c.round);
+  const double radial = std::sqrt(p.x() * p.x() + p.z() * p.z()) - (c.radius - c.round);
   const double axial = std::abs(p.y()) - (c.half_height - c.round);
   if (std::max(radial, axial) > 0) return unit(std::max(radial, 0.0) * outward + std::max(axial, 0.0) * up);
   return radial > axial ? outward : up;
@@ -76,9 +76,14 @@ Vec3 gradient_of(const Torus& t, const Vec3& p) {
 }
 
 Vec3 gradient_of(const HalfSpace& h, const Vec3&) { return h.normal; }
+Vec3 gradient_of(const ClosedSurface& s, const Vec3& p) { return s.solid->closest(p).normal; }
 Vec3 gradient_of(const ShapeGroup& group, const Vec3& p) { return slope_of(group, p).gradient; }
 
 Slope slope_of(const ShapePart& part, const Vec3& p) {
+  if (const auto* surface = std::get_if<ClosedSurface>(&part.primitive); surface != nullptr && !part.mirror_x) {
+    const SurfacePoint at = surface->solid->closest(part.to_local * p / part.scale);  // one question for both
+    return {part.scale * at.distance, part.to_local.linear().transpose() * at.normal};
+  }
   const auto local = [&part](const Vec3& point) { return Vec3(part.to_local * point / part.scale); };
   const auto mirrored = [](const Vec3& v) { return Vec3(-v.x(), v.y(), v.z()); };
   Vec3 here = local(p);
@@ -132,8 +137,37 @@ double certainty_of(const ShapeGroup& group) {
   return least;
 }
 
+// Half the thickness of a solid at its thinnest, 0 where that is not known.
+double half_thickness(const Primitive& primitive);
+
+double thinnest_of(const ShapeGroup& group) {
+  double least = 1e300;
+  for (const ShapePart& part : group.parts) {
+    if (part.combine != Combine::add) return 0;
+    least = std::min(least, part.scale * half_thickness(part.primitive));
+  }
+  return least;
+}
+
+double half_thickness(const Primitive& primitive) {
+  struct Visitor {
+    double operator()(const Sphere& s) const { return s.radius; }
+    double operator()(const Ellipsoid& e) const { return e.radii.minCoeff(); }
+    double operator()(const Capsule& c) const { return c.radius; }
+    double operator()(const RoundCone& c) const { return std::min(c.from_radius, c.to_radius); }
+    double operator()(const Box& b) const { return b.half.minCoeff(); }
+    double operator()(const Cylinder& c) const { return std::min(c.radius, c.half_height); }
+    double operator()(const Torus& t) const { return t.tube; }
+    double operator()(const HalfSpace&) const { return 1e300; }
+    double operator()(const ClosedSurface&) const { return 0; }
+    double operator()(const ShapeGroup& g) const { return thinnest_of(g); }
+  };
+  return std::visit(Visitor{}, primitive);
+}
+
 }  // namespace
 
+double Shape::half_thickness() const { return thinnest_of(root); }
 double Shape::certainty() const { return certainty_of(root); }
 
 SurfacePoint Shape::closest(const Vec3& point) const {

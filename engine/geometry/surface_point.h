@@ -7,7 +7,7 @@ namespace supple {
 
 struct SurfacePoint {
   Vec3 point;       // the surface's closest point [m]
-  Vec3 normal;      // outward, of unit length
+  Vec3 normal;      // of unit length, from inside to outside
   double distance;  // to it, negative inside [m]
 };
 

@@ -9,14 +9,9 @@
 #include <vector>
 
 #include "geometry/mesh.h"
+#include "geometry/surface_point.h"
 
 namespace supple {
-
-struct SurfacePoint {
-  Vec3 point;       // closest point of the surface [m]
-  Vec3 normal;      // unit, from inside to outside: along the line to the query, or the face's where the query is on it
-  double distance;  // negative inside [m]
-};
 
 // Constant after construction; queries may run on any number of threads and give the same bits on each.
 class TriangleSolid {

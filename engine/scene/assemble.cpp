@@ -166,6 +166,7 @@ std::vector<Body> assemble(const SceneDef& scene) {
       body.notes = loaded.notes;
       body.source = loaded.source;
       body.seed = scene.seed;
+      body.skin = loaded.skin;
       body.description.name = def.name;
       body.description.mesh = loaded.mesh;
       body.placement = placement(def, loaded.mesh.rest);
@@ -220,6 +221,14 @@ DrawnBody drawn_body(const SceneDef& scene, const Body& body) {
   DrawnBody drawn;
   const TetMesh& placed = body.description.mesh;
   drawn.two_sided = body.def.cloth || !std::holds_alternative<AtRest>(body.def.start);
+  if (!body.def.surface.empty()) {
+    std::vector<std::int32_t> vertex_of;
+    drawn.skin = skin_of_surface(body.skin.points, body.skin.triangles, square_of(body), vertex_of);
+    apply(body.placement, drawn.skin.rest.points);
+    drawn.embedding = embed(drawn.skin.rest.points, placed);
+    drawn.color = body.def.color.value_or(Shape{}.color);
+    return drawn;
+  }
   if (body.def.shape.empty()) {
     const Triangles surface = body.def.cloth ? body.surface : boundary_faces(placed.tets);
     // In the body's own directions, so that the print lies along its edges however it stands.

@@ -25,6 +25,7 @@ struct Body {
   std::vector<std::string> notes;                           // what reading the mesh had to say
   std::string source;                                       // the mesh or shape file, or what it is made of
   Triangles surface;                                        // of cloth
+  TriMesh skin;                                             // of a body made from a surface, in the file's frame
   std::uint64_t seed = 0;                                   // of its random start
   Eigen::Affine3d placement = Eigen::Affine3d::Identity();  // from the file's frame to the world: turned, scaled, moved
 };

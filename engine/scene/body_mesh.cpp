@@ -18,11 +18,11 @@ Loaded loaded_cloth(const ClothDef& def) {
 }
 
 Loaded loaded_box(const BoxDef& def) {
-  return {box_mesh(def.extent, def.cells),
-          {""},
-          {},
-          fmt::format("a box of {} x {} x {} cells", def.cells.x(), def.cells.y(), def.cells.z()),
-          {}};
+  Loaded loaded;
+  loaded.mesh = box_mesh(def.extent, def.cells);
+  loaded.regions = {""};
+  loaded.source = fmt::format("a box of {} x {} x {} cells", def.cells.x(), def.cells.y(), def.cells.z());
+  return loaded;
 }
 
 // A file's element references become tags 0, 1, ...: reference 0 stays the untagged body.
@@ -39,7 +39,8 @@ void name_references(Loaded& loaded) {
 }  // namespace
 
 const Loaded& MeshCache::get(const SceneDef& scene, const BodyDef& def) {
-  std::string key = !def.mesh.empty() ? def.mesh.string() : fmt::format("{}#{}", def.shape.string(), def.vertices);
+  std::string key = !def.mesh.empty() ? def.mesh.string()
+                                      : fmt::format("{}{}#{}", def.shape.string(), def.surface.string(), def.vertices);
   if (def.box || def.cloth) key = "body " + def.name;
   const auto known = loaded_.find(key);
   if (known != loaded_.end()) return known->second;
@@ -49,10 +50,13 @@ const Loaded& MeshCache::get(const SceneDef& scene, const BodyDef& def) {
   } else if (def.box) {
     loaded = loaded_box(*def.box);
   } else if (def.mesh.empty()) {
-    loaded.source = def.shape.string();
-    const Shape shape = load_shape(def.shape, scene.assets);
-    loaded.mesh = tetrahedralize(shape, def.vertices, def.shape.string());
+    loaded.source = def.surface.empty() ? def.shape.string() : def.surface.string();
+    const Shape shape = def.surface.empty() ? load_shape(def.shape, scene.assets) : load_surface(def.surface);
+    loaded.mesh = tetrahedralize(shape, def.vertices, loaded.source);
     loaded.regions = shape.regions;
+    loaded.notes = shape.notes;
+    if (!def.surface.empty())
+      loaded.skin = std::get<ClosedSurface>(shape.root.parts.front().primitive).solid->surface();
   } else {
     loaded.source = def.mesh.string();
     MeshFile file = read_mesh(def.mesh);

@@ -14,6 +14,7 @@ struct Loaded {
   std::vector<std::string> notes;
   std::string source;
   ClothMesh cloth;
+  TriMesh skin;  // of a body made from a surface, as it was read
 };
 
 // Meshes that several bodies share are read or made once.

@@ -248,12 +248,13 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
   }
   body.label = table.text({"label", "", "caption in the film; the default is the name"}, body.name);
   body.shape = table.file({"shape", "", "a shape file, to be meshed here"});
+  body.surface = table.file({"surface", "", "a closed surface (OBJ, PLY, STL, glTF, OFF), to be meshed here"});
   body.mesh = table.file({"mesh", "", "a tetrahedral mesh (MEDIT .mesh)"});
   body.box = read_box(table);
   body.cloth = read_cloth(table);
-  if (table.has("shape") + table.has("mesh") + table.has("box") + table.has("cloth") != 1)
-    table.complain("a body needs exactly one of 'shape', 'mesh', 'box' and 'cloth'");
-  body.vertices = table.integer({"vertices", "", "of the tetrahedra made from a shape (within 3 %)"}, 4000,
+  if (table.has("shape") + table.has("surface") + table.has("mesh") + table.has("box") + table.has("cloth") != 1)
+    table.complain("a body needs exactly one of 'shape', 'surface', 'mesh', 'box' and 'cloth'");
+  body.vertices = table.integer({"vertices", "", "of the tetrahedra made from a shape or a surface (within 3 %)"}, 4000,
                                 Range::between(50, 500000));
   body.size = table.number_if_given({"size", "m", "longest side; without it the file's units are metres"},
                                     Range::above(0, 1e6));

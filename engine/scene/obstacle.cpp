@@ -5,9 +5,11 @@
 namespace supple {
 namespace {
 
-const HalfSpace* half_space(const Obstacle& obstacle) {
+// What the collider is, if it is that one primitive and nothing else.
+template <class Kind>
+const Kind* lone(const Obstacle& obstacle) {
   const std::vector<ShapePart>& parts = obstacle.def.shape.root.parts;
-  return parts.size() == 1 ? std::get_if<HalfSpace>(&parts.front().primitive) : nullptr;
+  return parts.size() == 1 && !parts.front().mirror_x ? std::get_if<Kind>(&parts.front().primitive) : nullptr;
 }
 
 // The plane of a half space in the collider's frame: its unit normal, and a point on it.
@@ -65,7 +67,7 @@ void collider_motions(const std::vector<Obstacle>& obstacles, double from, doubl
 }
 
 bool is_ground(const Obstacle& obstacle) {
-  const HalfSpace* half = half_space(obstacle);
+  const HalfSpace* half = lone<HalfSpace>(obstacle);
   if (half == nullptr || !obstacle.def.keys.empty()) return false;
   const auto [normal, point] = plane_of(obstacle, *half);
   return (obstacle.rest.linear() * normal).isApprox(Vec3::UnitY(), 1e-9) &&
@@ -74,16 +76,23 @@ bool is_ground(const Obstacle& obstacle) {
 
 Skin drawn_obstacle(const Obstacle& obstacle, const Bounds& around) {
   if (!obstacle.def.visible || is_ground(obstacle)) return {};
-  if (const HalfSpace* half = half_space(obstacle)) {
+  if (const HalfSpace* half = lone<HalfSpace>(obstacle)) {
     const auto [normal, point] = plane_of(obstacle, *half);
     const Vec3 middle = obstacle.rest.inverse() * around.center();
     return square_of(normal, middle - (middle - point).dot(normal) * normal, 1.5 * around.diagonal());
   }
   const Shape& shape = obstacle.def.shape;
+  std::vector<std::int32_t> vertex_of;
+  if (const auto* surface = lone<ClosedSurface>(obstacle)) {
+    const ShapePart& part = shape.root.parts.front();
+    const Eigen::Affine3d to_parent = Eigen::Affine3d(part.to_local.inverse()) * Eigen::Scaling(part.scale);
+    Positions points = surface->solid->surface().points;
+    for (Eigen::Index v = 0; v < points.rows(); ++v) points.row(v) = (to_parent * Vec3(points.row(v))).transpose();
+    return skin_of_surface(points, surface->solid->surface().triangles, 0, vertex_of);
+  }
   constexpr double cells = 96;  // along the longest side
   const Skin skin = skin_of(shape, shape.bounds().extent().maxCoeff() / cells);
   // Vertices at creases once for each side, so that a box has edges.
-  std::vector<std::int32_t> vertex_of;
   Skin creased = skin_of_surface(skin.rest.points, skin.rest.triangles, 0, vertex_of);
   for (std::size_t v = 0; v < vertex_of.size(); ++v) {
     creased.occlusion[v] = skin.occlusion[vertex_of[v]];

@@ -82,8 +82,9 @@ struct SolverDef {
 struct BodyDef {
   std::string name;
   std::string label;
-  // One of the four. A mesh file's regions are named by their reference numbers.
+  // One of the five. A mesh file's regions are named by their reference numbers.
   std::filesystem::path shape;
+  std::filesystem::path surface;
   std::filesystem::path mesh;
   std::optional<BoxDef> box;
   std::optional<ClothDef> cloth;

@@ -9,7 +9,7 @@
 namespace supple {
 
 const std::vector<std::set<std::string>>& exclusive_keys() {
-  static const std::vector<std::set<std::string>> groups = {{"shape", "mesh", "box", "cloth"},
+  static const std::vector<std::set<std::string>> groups = {{"shape", "surface", "mesh", "box", "cloth"},
                                                             {"density", "total_mass"}};
   return groups;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "geometry/surface_file.h"
 #include "scene/rotation.h"
 
 namespace supple {
@@ -11,11 +12,11 @@ namespace {
 constexpr int deepest_group = 8;
 
 const std::vector<std::string> primitive_names = {"sphere",   "ellipsoid", "capsule",    "round_cone", "box",
-                                                  "cylinder", "torus",     "half_space", "parts"};
+                                                  "cylinder", "torus",     "half_space", "surface",    "parts"};
 
 const Range lengths = Range::above(0, 1e6);
 
-ShapeGroup read_parts(const ConfigTable& table, const Key& key, std::vector<std::string>& regions, int depth);
+ShapeGroup read_parts(const ConfigTable& table, const Key& key, Shape& shape, int depth);
 
 double read_round(const ConfigTable& table, double largest) {
   const double round =
@@ -25,7 +26,7 @@ double read_round(const ConfigTable& table, double largest) {
   return std::min(round, largest);
 }
 
-std::optional<Primitive> read_primitive(const ConfigTable& part, std::vector<std::string>& regions, int depth) {
+std::optional<Primitive> read_primitive(const ConfigTable& part, Shape& shape, int depth) {
   std::optional<Primitive> result;
   if (const auto t = part.table({"sphere", "", "a ball around the origin"})) {
     result = Sphere{t->number({"radius", "m", "radius"}, std::nullopt, lengths)};
@@ -66,17 +67,27 @@ std::optional<Primitive> read_primitive(const ConfigTable& part, std::vector<std
         normal.normalized(),
         t->number({"offset", "m", "distance of the plane from the origin along the normal"}, 0.0, Range::any())};
   }
+  if (part.has("surface")) {
+    const std::filesystem::path file = part.file({"surface", "", "a closed surface: OBJ, PLY, STL, glTF, OFF"});
+    if (!file.empty()) {
+      try {
+        result = ClosedSurface{std::make_shared<TriangleSolid>(read_closed_surface(file, &shape.notes))};
+      } catch (const InputError& error) {
+        for (const Problem& problem : error.problems()) part.config().complain(problem);
+      }
+    }
+  }
   if (part.has("parts")) {
     if (depth >= deepest_group) {
       part.complain("parts", fmt::format("parts inside parts more than {} deep", deepest_group));
     } else {
-      result = read_parts(part, {"parts", "", "a group: parts combined among themselves first"}, regions, depth + 1);
+      result = read_parts(part, {"parts", "", "a group: parts combined among themselves first"}, shape, depth + 1);
     }
   }
   return result;
 }
 
-ShapePart read_part(const ConfigTable& table, std::vector<std::string>& regions, int depth) {
+ShapePart read_part(const ConfigTable& table, Shape& shape, int depth) {
   ShapePart part;
   part.primitive = Sphere{1};
   std::vector<std::string> given;
@@ -89,7 +100,7 @@ ShapePart read_part(const ConfigTable& table, std::vector<std::string>& regions,
     table.complain(given.empty() ? fmt::format("a part needs one of {}", all)
                                  : fmt::format("a part is one thing, not both '{}' and '{}'", given[0], given[1]));
   }
-  if (const auto primitive = read_primitive(table, regions, depth)) part.primitive = *primitive;
+  if (const auto primitive = read_primitive(table, shape, depth)) part.primitive = *primitive;
 
   const Vec3 position = table.vector({"position", "m", "where the part's origin lies"}, Vec3(0, 0, 0));
   const Vec3 turn = table.vector({"turn_deg", "degrees", "rotation about x, then y, then z"}, Vec3(0, 0, 0));
@@ -105,15 +116,15 @@ ShapePart read_part(const ConfigTable& table, std::vector<std::string>& regions,
   part.blend =
       table.number({"blend", "m", "width over which the surfaces melt into each other"}, 0.0, Range::at_least(0));
   const std::string region = table.text({"region", "", "tag of the elements inside"}, "");
-  const auto known = std::find(regions.begin(), regions.end(), region);
-  part.region = static_cast<int>(known - regions.begin());
-  if (known == regions.end()) regions.push_back(region);
+  const auto known = std::find(shape.regions.begin(), shape.regions.end(), region);
+  part.region = static_cast<int>(known - shape.regions.begin());
+  if (known == shape.regions.end()) shape.regions.push_back(region);
   return part;
 }
 
-ShapeGroup read_parts(const ConfigTable& table, const Key& key, std::vector<std::string>& regions, int depth) {
+ShapeGroup read_parts(const ConfigTable& table, const Key& key, Shape& shape, int depth) {
   ShapeGroup group;
-  for (const ConfigTable& part : table.tables(key)) group.parts.push_back(read_part(part, regions, depth));
+  for (const ConfigTable& part : table.tables(key)) group.parts.push_back(read_part(part, shape, depth));
   return group;
 }
 
@@ -126,7 +137,7 @@ Vec3 read_color(const ConfigTable& table, const Vec3& fallback) {
 Shape read_shape(const ConfigTable& table) {
   Shape shape;
   shape.color = read_color(table, shape.color);
-  shape.root = read_parts(table, {"part", "", "combined in the order of the file"}, shape.regions, 0);
+  shape.root = read_parts(table, {"part", "", "combined in the order of the file"}, shape, 0);
   if (shape.root.parts.empty()) table.complain("a shape needs at least one [[part]]");
   for (const ConfigTable& layer :
        table.tables({"paint", "", "layers of colour on the drawn skin; later ones lie on top"})) {
@@ -135,7 +146,7 @@ Shape read_shape(const ConfigTable& table) {
     paint.color = read_color(layer, Vec3(0.2, 0.2, 0.2));
     paint.gloss = layer.number({"gloss", "", "0 matt to 1 wet"}, 0.2, Range::between(0, 1));
     paint.soft = layer.number({"soft", "m", "width of the layer's border"}, 0.0, Range::at_least(0));
-    std::vector<std::string> unused = {""};
+    Shape unused;
     paint.area = read_parts(layer, {"part", "", "where the colour is"}, unused, 0);
     shape.paint.push_back(std::move(paint));
   }
@@ -145,7 +156,15 @@ Shape read_shape(const ConfigTable& table) {
 
 Shape read_single_part(const ConfigTable& table) {
   Shape shape;
-  shape.root.parts.push_back(read_part(table, shape.regions, 0));
+  shape.root.parts.push_back(read_part(table, shape, 0));
+  return shape;
+}
+
+Shape load_surface(const std::filesystem::path& path) {
+  Shape shape;
+  ShapePart part;
+  part.primitive = ClosedSurface{std::make_shared<TriangleSolid>(read_closed_surface(path, &shape.notes))};
+  shape.root.parts.push_back(std::move(part));
   return shape;
 }
 

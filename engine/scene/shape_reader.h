@@ -12,6 +12,9 @@ Shape read_shape(const ConfigTable& table);
 // Reads a table that is one part, such as { sphere = { radius = 1 } }.
 Shape read_single_part(const ConfigTable& table);
 
+// The solid inside a closed surface's file (OBJ, PLY, STL, glTF, OFF). Throws InputError.
+Shape load_surface(const std::filesystem::path& path);
+
 // Loads and reads a shape file; throws InputError with all problems.
 Shape load_shape(const std::filesystem::path& path, const std::filesystem::path& assets);
 

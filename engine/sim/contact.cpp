@@ -22,12 +22,12 @@ int groups_of(const Model& model) { return (model.free + group_size - 1) / group
 // collider stands still.
 class View {
  public:
-  View(const Collider& collider, const ColliderMotion& motion, double certainty)
+  View(const Collider& collider, const ColliderMotion& motion, const ColliderTraits& traits)
       : collider_(collider),
         end_(motion.end),
         to_start_(motion.start.inverse()),
         to_end_(motion.end.inverse()),
-        certainty_(certainty) {}
+        traits_(traits) {}
 
   Vec3 at_start(const Vec3& world) const { return to_start_ * world; }
   Vec3 at_end(const Vec3& world) const { return to_end_ * world; }
@@ -44,7 +44,10 @@ class View {
   }
 
   // A point that is at least this far from the layer can go that far unharmed.
-  double clear(double distance) const { return distance > 0 ? certainty_ * distance : 0; }
+  double clear(double distance) const { return distance > 0 ? traits_.certainty * distance : 0; }
+
+  // Whether a way is too short to lead through.
+  bool short_way(double way) const { return way < traits_.half_thickness; }
 
   // How far along from a (outside) to b the layer is met; nothing when it is not. Steps of the distance itself never
   // overshoot (Hart 1996, "Sphere tracing").
@@ -63,7 +66,7 @@ class View {
  private:
   const Collider& collider_;
   Eigen::Isometry3d end_, to_start_, to_end_;
-  double certainty_;
+  ColliderTraits traits_;
 };
 
 // Where a vertex entered, or was when the step started inside.
@@ -84,6 +87,7 @@ std::optional<Entry> entry(const View& view, const Vec3& a, const Vec3& b, doubl
 // then the one that it entered by. Nothing when there is none within `reach`.
 std::optional<SurfacePoint> holding(const View& view, const Vec3& a, const Vec3& b, double field_at_a, double reach) {
   const SurfacePoint here = view.closest(b);
+  if (view.short_way((b - a).norm())) return here.distance < reach ? std::optional(here) : std::nullopt;
   // Straight onto the side that is closest: the usual case, which needs no ray.
   if (here.distance < 0 && field_at_a > 0 && (a - here.point).dot(here.normal) >= 0) return here;
   const std::optional<Entry> entered = entry(view, a, b, field_at_a);
@@ -107,7 +111,7 @@ struct Search {
   const Positions& x;
   ContactWork& work;
 
-  View view(std::size_t c) const { return View((*inputs.colliders)[c], inputs.collider_motions[c], work.certainty[c]); }
+  View view(std::size_t c) const { return View((*inputs.colliders)[c], inputs.collider_motions[c], work.traits[c]); }
 
   // Signed distance of vertex v at the start of the step, asked once.
   double start_field(const View& view, std::size_t c, int v, const Vec3& a) const {
@@ -205,9 +209,10 @@ void begin_contacts(const Model& model, const FrameInputs& inputs, const Positio
   work.collider_move.resize(colliders * groups);
   work.group_move.resize(groups);
   work.by_chunk.resize((groups + groups_a_chunk - 1) / groups_a_chunk);
-  if (work.certainty.size() != colliders) {
-    work.certainty.clear();
-    for (const Collider& collider : *inputs.colliders) work.certainty.push_back(collider.shape.certainty());
+  if (work.traits.size() != colliders) {
+    work.traits.clear();
+    for (const Collider& collider : *inputs.colliders)
+      work.traits.push_back({collider.shape.certainty(), collider.shape.half_thickness()});
   }
   for (int group = 0; group < groups; ++group) {
     const int first = group * group_size, count = std::min(model.free - first, group_size);
@@ -216,8 +221,9 @@ void begin_contacts(const Model& model, const FrameInputs& inputs, const Positio
         (work.start.middleRows(first, count).rowwise() - center.transpose()).rowwise().squaredNorm().maxCoeff());
     for (std::size_t c = 0; c < colliders; ++c) {
       const ColliderMotion& motion = inputs.collider_motions[c];
-      const View view((*inputs.colliders)[c], motion, work.certainty[c]);
-      work.group_distance[c * groups + group] = view.distance(view.at_start(center)) - radius / work.certainty[c];
+      const View view((*inputs.colliders)[c], motion, work.traits[c]);
+      work.group_distance[c * groups + group] =
+          view.distance(view.at_start(center)) - radius / work.traits[c].certainty;
       // A point at `radius` from the centre moves as the centre does, and turns about it.
       const double turn = Eigen::AngleAxisd(motion.end.linear() * motion.start.linear().transpose()).angle();
       work.collider_move[c * groups + group] = (view.carried(center) - center).norm() + turn * radius;

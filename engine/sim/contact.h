@@ -75,6 +75,12 @@ struct ContactCounts {
   int cycles = 0;    // iterations that brought the set of the one before last back
 };
 
+// What a search asks of a shape once.
+struct ColliderTraits {
+  double certainty;       // Shape::certainty
+  double half_thickness;  // Shape::half_thickness [m]
+};
+
 // Scratch of contact; empty while there are no colliders.
 struct ContactWork {
   std::vector<Contact> found;    // by collider and vertex
@@ -84,7 +90,7 @@ struct ContactWork {
   std::vector<double> group_distance;  // least distance of a group's vertices at the start, colliders x groups [m]
   std::vector<double> group_move;      // largest of a group's vertices, start to iterate [m]
   std::vector<double> collider_move;   // of the collider's own points near a group, colliders x groups [m]
-  std::vector<double> certainty;       // Shape::certainty by collider
+  std::vector<ColliderTraits> traits;  // by collider
   Positions start;                     // q of the free vertices [m]
   double stick_length = 0;             // friction is whole above this slip in a step [m]
   std::uint64_t set_before = 0, set_now = 0;
