@@ -151,10 +151,21 @@ bool still_good(const ContactCorrection& c, const std::vector<StiffDirection>& w
   return true;
 }
 
+// At most most_low_rank of the wanted: where there are more, every n-th stands for its neighbours, n times as stiff.
+void thin_out(const std::vector<StiffDirection>& wanted, std::vector<StiffDirection>& chosen) {
+  const std::size_t stride = (wanted.size() + most_low_rank - 1) / most_low_rank;
+  chosen.clear();
+  for (std::size_t i = 0; i < wanted.size(); i += stride) {
+    chosen.push_back(wanted[i]);
+    chosen.back().stiffness *= static_cast<double>(stride);
+  }
+}
+
 bool apply_low_rank(const Model& model, Workspace& w, const Positions& r, Positions& z) {
   ContactCorrection& c = w.correction;
-  if (!still_good(c, c.wanted)) {
-    c.stiff = c.wanted;
+  thin_out(c.wanted, c.chosen);
+  if (!still_good(c, c.chosen)) {
+    c.stiff = c.chosen;
     c.push.resize(model.free, 3);
     learn_columns(model, w, c.push, z);
     if (!extend_factor(c, 0)) {
@@ -209,8 +220,8 @@ void apply_inverse(const Model& model, Workspace& w, const ContactSettings& sett
   ContactCorrection& c = w.correction;
   if (w.contact.found.empty() || settings.direction == ContactDirection::ignored) return solve(model, w, r, z);
   if (c.wanted.empty()) return solve(model, w, r, z);
-  const bool dense = settings.direction == ContactDirection::low_rank && c.wanted.size() <= most_low_rank;
-  if (!dense || !apply_low_rank(model, w, r, z)) apply_diagonal(model, w, r, z);
+  if (settings.direction == ContactDirection::diagonal) return apply_diagonal(model, w, r, z);
+  if (!apply_low_rank(model, w, r, z)) solve(model, w, r, z);
 }
 
 }  // namespace supple

@@ -29,6 +29,7 @@ struct StiffDirection {
 // Scratch of the corrections, empty until a contact is made.
 struct ContactCorrection {
   std::vector<StiffDirection> wanted;       // of the contacts in force
+  std::vector<StiffDirection> chosen;       // of these
   std::vector<StiffDirection> stiff;        // that the factor was made for
   std::vector<std::int32_t> column_of;      // by vertex: place among the touched ones; -1: never touched
   std::vector<std::int32_t> touched;        // vertices
