@@ -83,6 +83,9 @@ std::optional<Entry> entry(const View& view, const Vec3& a, const Vec3& b, doubl
   return Entry{view.closest(a + *way * (b - a)), *way};
 }
 
+// Two sides of a wall, not of an edge.
+bool opposite(const Vec3& a, const Vec3& b) { return a.dot(b) < -0.5; }
+
 // The surface that holds a vertex which went from a to b: the closest one, unless it went through to another side;
 // then the one that it entered by. Nothing when there is none within `reach`.
 std::optional<SurfacePoint> holding(const View& view, const Vec3& a, const Vec3& b, double field_at_a, double reach) {
@@ -92,11 +95,11 @@ std::optional<SurfacePoint> holding(const View& view, const Vec3& a, const Vec3&
   if (here.distance < 0 && field_at_a > 0 && (a - here.point).dot(here.normal) >= 0) return here;
   const std::optional<Entry> entered = entry(view, a, b, field_at_a);
   if (!entered) return here.distance < reach ? std::optional(here) : std::nullopt;
-  if (here.distance < 0) return here.normal.dot(entered->surface.normal) > 0 ? here : entered->surface;
+  if (here.distance < 0) return opposite(here.normal, entered->surface.normal) ? entered->surface : here;
   // Outside again. A way that cuts a corner is let pass; one that leaves on the far side is not.
   const std::optional<double> back = view.meets(b, a, here.distance);
   const SurfacePoint left = back ? view.closest(b + *back * (a - b)) : here;
-  if (left.normal.dot(entered->surface.normal) < 0) return entered->surface;
+  if (opposite(left.normal, entered->surface.normal)) return entered->surface;
   return here.distance < reach ? std::optional(here) : std::nullopt;
 }
 
@@ -145,6 +148,14 @@ void measure_moves(const Model& model, const Positions& x, ContactWork& work) {
     for (int v = group * group_size; v < end; ++v) most = std::max(most, (x.row(v) - work.start.row(v)).squaredNorm());
     work.group_move[group] = std::sqrt(most);
   }
+}
+
+// The normal force that friction goes by, the same through a step (Li et al. 2020, section 5.3, lag it too): what the
+// vertex pressed with when the step began, or, where it only now arrives, what stops it alone. The overlap of an
+// iterate would say a force that is many times too large.
+double lagged_force(const Contact& contact, double depth_before, double depth_unhindered, double mass_over_h2) {
+  if (depth_before > 0) return 2 * contact.stiffness * depth_before;
+  return mass_over_h2 * std::max(0.0, depth_unhindered);
 }
 
 // XXH64 of who touches what.
@@ -236,7 +247,6 @@ void find_contacts(const Model& model, const FrameInputs& inputs, const Position
   const ContactSettings& settings = inputs.solver.contact;
   const double h = model.time_step, unit_stiffness = settings.stiffness / (h * h);
   const double push_out = settings.push_out * model.size * h;
-  const bool first = work.set_now == 0;
   work.earlier.swap(work.found);
   work.found.clear();
   measure_moves(model, x, work);
@@ -255,9 +265,9 @@ void find_contacts(const Model& model, const FrameInputs& inputs, const Position
       contact.depth = std::max(0.0, contact.offset - contact.normal.dot(x.row(v)));
       if (friction > 0) {
         contact.origin = view.carried(work.start.row(v));
-        // At first x is only a guess: what the vertex pressed with when the step began tells more.
-        const double depth = first ? std::clamp(-field, 0.0, push_out) : contact.depth;
-        contact.friction = friction * 2 * contact.stiffness * depth;
+        contact.friction =
+            friction * lagged_force(contact, std::clamp(-field, 0.0, push_out),
+                                    contact.offset - contact.normal.dot(workspace.y.row(v)), model.mass[v] / (h * h));
       }
       list.push_back(contact);
     };

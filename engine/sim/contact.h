@@ -101,8 +101,7 @@ struct ContactWork {
 void begin_contacts(const Model& model, const FrameInputs& inputs, const Positions& q, Workspace& workspace);
 
 // Finds the contacts of the vertices at x, on their way from q, into workspace.contact.found; what was there goes to
-// workspace.contact.earlier. The normal forces that
-// friction goes by are taken from x, the first time from q.
+// workspace.contact.earlier.
 void find_contacts(const Model& model, const FrameInputs& inputs, const Positions& x, Workspace& workspace);
 
 // How much of the way from q to x the body can go before a vertex is deeper than `allowed` below a surface that it

@@ -34,11 +34,11 @@ void stiff_directions(const Model& model, Workspace& w) {
   std::vector<StiffDirection>& stiff = w.correction.wanted;
   stiff.clear();
   for (const Contact& contact : w.contact.found) {
-    if (contact.depth <= 0) continue;
-    stiff.push_back({contact.vertex, contact.normal, 2 * contact.stiffness});
-    if (contact.friction <= 0) continue;
+    if (contact.depth > 0) stiff.push_back({contact.vertex, contact.normal, 2 * contact.stiffness});
+    if (contact.friction <= 0) continue;  // it is lagged: a vertex may have left and still be rubbed
     const double along = friction_stiffness(contact, w.x, w.contact.stick_length);
-    if (along < model.diagonal[contact.vertex]) continue;  // A outweighs it
+    // Even where the elements around it are stiffer, together they hold a body that would slide as a whole.
+    if (along < model.mass[contact.vertex] / (model.time_step * model.time_step)) continue;
     const Vec3 n = contact.normal;
     const Vec3 side = n.cross(std::abs(n.y()) < 0.7 ? Vec3::UnitY() : Vec3::UnitX()).normalized();
     stiff.push_back({contact.vertex, side, along});

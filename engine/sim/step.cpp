@@ -13,7 +13,8 @@ namespace supple {
 namespace {
 
 constexpr int most_halvings = 30;
-constexpr double deepest_start = 0.02;  // overlap that a first iterate may have, over the body's size
+constexpr int most_refusals = 5;        // of trial points for the contacts found there
+constexpr double deepest_start = 0.004;  // overlap that a first iterate may have, over the body's size
 constexpr double round_off = std::numeric_limits<double>::epsilon();
 
 bool has_colliders(const FrameInputs& inputs) { return inputs.colliders != nullptr && !inputs.colliders->empty(); }
@@ -60,9 +61,7 @@ bool contacts_accept(const Model& model, const FrameInputs& inputs, Workspace& w
   if (!has_colliders(inputs)) return true;
   find_contacts_timed(model, inputs, w.trial, w);
   const double jump = contact_energy(w.contact.found, w.trial) - contact_energy(w.contact.earlier, w.trial);
-  if (jump <= 0 || change + jump <= noise) return true;
-  w.contact.found.swap(w.contact.earlier);
-  return false;
+  return jump <= 0 || change + jump <= noise;
 }
 
 // Tries alpha = 1, 1/2, ... Leaves the accepted point, its gradient and energies in the trial arrays, with the planes
@@ -72,6 +71,7 @@ Search search_line(const Model& model, const FrameInputs& inputs, Workspace& w, 
   const SolverSettings& solver = inputs.solver;
   const double noise = noise_of(model, objective, extent_of(model, w));
   double alpha = 1;
+  int refused = 0;
   for (int halving = 0; halving <= most_halvings; ++halving, alpha /= 2) {
     set_trial(model, w, alpha);
     const bool by_slope = -alpha * slope < noise / solver.armijo;
@@ -89,7 +89,12 @@ Search search_line(const Model& model, const FrameInputs& inputs, Workspace& w, 
       continue;
     }
     if (!with_gradient) change = evaluate(model, w, w.trial, w.trial_energy, &w.trial_gradient, &w.x, &w.energy);
-    if (!contacts_accept(model, inputs, w, change.value, noise)) continue;
+    // A shorter step helps against contacts that the planes did not foresee, not where the energy itself jumps (a
+    // vertex that goes round an edge).
+    if (!contacts_accept(model, inputs, w, change.value, noise) && ++refused < most_refusals) {
+      w.contact.found.swap(w.contact.earlier);
+      continue;
+    }
     return Search::found;
   }
   return Search::failed;
