@@ -4,19 +4,6 @@
 
 namespace supple {
 
-namespace {
-
-// Energy of the contacts found at x, which are forgotten again [J].
-double contacts_at(const Model& model, const FrameInputs& inputs, const Positions& x, Workspace& workspace) {
-  if (inputs.colliders == nullptr) return 0;
-  find_contacts(model, inputs, x, workspace);
-  const double energy = contact_energy(workspace.contact.found, x);
-  workspace.contact.found.clear();
-  return energy;
-}
-
-}  // namespace
-
 std::optional<double> step_error(const Model& model, const FrameInputs& inputs, const State& before, const State& after,
                                  Workspace& workspace) {
   FrameInputs thorough = inputs;
@@ -30,13 +17,13 @@ std::optional<double> step_error(const Model& model, const FrameInputs& inputs, 
   begin_step(model, thorough, before, workspace);
   // g(y) - g(x_k), summed as a difference; y with its handles at their targets, whatever the solver started from. Each
   // point has the contacts that are found there.
-  const double contacts_at_start = contacts_at(model, thorough, workspace.x, workspace);
+  const double contacts_at_start = contact_energy_at(model, thorough, workspace.x, workspace);
   const double at_start = evaluate(model, workspace, workspace.x, workspace.energy, nullptr, nullptr, nullptr).value;
   workspace.trial.topRows(model.free) = after.x.topRows(model.free);
   double gained =
       -evaluate(model, workspace, workspace.trial, workspace.trial_energy, nullptr, &workspace.x, &workspace.energy)
            .value;
-  gained += contacts_at_start - contacts_at(model, thorough, workspace.trial, workspace);
+  gained += contacts_at_start - contact_energy_at(model, thorough, workspace.trial, workspace);
 
   workspace.x.swap(workspace.trial);
   // A direction's slope bounds what it can still gain to within a small factor; this is far below the digits that

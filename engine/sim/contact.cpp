@@ -332,6 +332,21 @@ double contact_energy(const std::vector<Contact>& contacts, const Positions& poi
   return sum;
 }
 
+void add_normal_forces(const std::vector<Contact>& contacts, const Positions& point, double sign, Positions& force) {
+  for (const Contact& contact : contacts) {
+    const double below = std::min(0.0, contact.normal.dot(point.row(contact.vertex)) - contact.offset);
+    force.row(contact.vertex) -= sign * 2 * contact.stiffness * below * contact.normal.transpose();
+  }
+}
+
+double contact_energy_at(const Model& model, const FrameInputs& inputs, const Positions& x, Workspace& workspace) {
+  if (inputs.colliders == nullptr || inputs.colliders->empty()) return 0;
+  find_contacts(model, inputs, x, workspace);
+  const double energy = contact_energy(workspace.contact.found, x);
+  workspace.contact.found.clear();
+  return energy;
+}
+
 ContactChange add_contacts(const std::vector<Contact>& contacts, double stick_length, const Positions& point,
                            const Positions* reference, const Positions& direction, Positions* gradient, double sign) {
   ContactChange change;

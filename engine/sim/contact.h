@@ -37,7 +37,7 @@ struct ColliderMotion {
 // What becomes of L-BFGS' pairs when the contacts change. One gradient belongs to the old planes, the other to the new.
 enum class ContactHistory {
   frozen,   // both gradients with the planes of the iteration that made the pair
-  current,  // the inertial and elastic part of t, and 2 k_c n n^T s for each contact that is in force now
+  current,  // the rest of t, and 2 k_c n n^T s for each contact that is in force now
   dropped,  // no pair across a change of the set
 };
 
@@ -117,6 +117,12 @@ double friction_stiffness(const Contact& contact, const Positions& x, double sti
 
 // Normal forces' part of the energy [J].
 double contact_energy(const std::vector<Contact>& contacts, const Positions& point);
+
+// force += sign times the normal forces at a point [N].
+void add_normal_forces(const std::vector<Contact>& contacts, const Positions& point, double sign, Positions& force);
+
+// Of the contacts found anew at x, after begin_contacts; leaves none behind [J].
+double contact_energy_at(const Model& model, const FrameInputs& inputs, const Positions& x, Workspace& workspace);
 
 // Energy of the contacts at a point, friction included, or its difference from a reference's; adds `sign` times their
 // gradient when wanted.

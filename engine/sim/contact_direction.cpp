@@ -35,6 +35,9 @@ void stiff_directions(const Model& model, Workspace& w) {
   stiff.clear();
   for (const Contact& contact : w.contact.found) {
     if (contact.depth > 0) stiff.push_back({contact.vertex, contact.normal, 2 * contact.stiffness});
+  }
+  w.correction.normals = stiff.size();
+  for (const Contact& contact : w.contact.found) {
     if (contact.friction <= 0) continue;  // it is lagged: a vertex may have left and still be rubbed
     const double along = friction_stiffness(contact, w.x, w.contact.stick_length);
     // Even where the elements around it are stiffer, together they hold a body that would slide as a whole.

@@ -28,7 +28,8 @@ struct StiffDirection {
 
 // Scratch of the corrections, empty until a contact is made.
 struct ContactCorrection {
-  std::vector<StiffDirection> wanted;       // of the contacts in force
+  std::vector<StiffDirection> wanted;       // of the contacts in force: normals, then tangents
+  std::size_t normals = 0;                  // how many of these are normals
   std::vector<StiffDirection> chosen;       // of these
   std::vector<StiffDirection> stiff;        // that the factor was made for
   std::vector<std::int32_t> column_of;      // by vertex: place among the touched ones; -1: never touched

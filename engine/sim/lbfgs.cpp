@@ -38,43 +38,35 @@ void add_all(const Model& model, Workspace& workspace, const Pointers& a, const 
   });
 }
 
-// The contacts' share of all pairs, t_i += K s_i, when that is kept apart (ContactHistory::current).
+// The share of normal forces in all pairs, t_i += K s_i, when that is kept apart (ContactHistory::current). Friction is
+// not in it: its stiffness falls as it slides, and pairs tell how.
 class ContactPairs {
  public:
   ContactPairs(const Model& model, const ContactSettings& settings, Workspace& w, const Pointers& s, int count)
-      : correction_(w.correction), count_(count) {
-    correction_.products.resize(std::size_t(count) * count);
+      : correction_(w.correction) {
     stiff_directions(model, w);
-    const std::vector<StiffDirection>& stiff = correction_.wanted;
-    if (settings.history != ContactHistory::current || count == 0) count_ = 0;
-    if (count_ == 0 || stiff.empty()) {
-      count_ = 0;
-      return;
-    }
-    correction_.along.resize(stiff.size() * count);
-    for (std::size_t k = 0; k < stiff.size(); ++k) {
+    if (settings.history != ContactHistory::current || count == 0 || correction_.normals == 0) return;
+    count_ = count;
+    normals_ = correction_.normals;
+    correction_.along.resize(normals_ * count);
+    correction_.products.assign(std::size_t(count) * count, 0.0);
+    for (std::size_t k = 0; k < normals_; ++k) {
+      const StiffDirection& stiff = correction_.wanted[k];
+      double* along = &correction_.along[k * count];
+      for (int i = 0; i < count; ++i)
+        along[i] = Eigen::Map<const Vec3>(s[i] + 3 * std::size_t(stiff.vertex)).dot(stiff.axis);
       for (int i = 0; i < count; ++i) {
-        const double* moved = s[i] + 3 * std::size_t(stiff[k].vertex);
-        correction_.along[k * count + i] =
-            moved[0] * stiff[k].axis.x() + moved[1] * stiff[k].axis.y() + moved[2] * stiff[k].axis.z();
-      }
-    }
-    for (int i = 0; i < count; ++i) {
-      for (int j = 0; j < count; ++j) {
-        double sum = 0;
-        for (std::size_t k = 0; k < stiff.size(); ++k)
-          sum += stiff[k].stiffness * correction_.along[k * count + i] * correction_.along[k * count + j];
-        products_[i * count + j] = sum;
+        for (int j = 0; j < count; ++j) correction_.products[i * count + j] += stiff.stiffness * along[i] * along[j];
       }
     }
   }
 
   // s_i . K s_j
-  double product(int i, int j) const { return count_ > 0 ? products_[i * count_ + j] : 0; }
+  double product(int i, int j) const { return count_ > 0 ? correction_.products[i * count_ + j] : 0; }
 
   // r += sum factor_i K s_i
   void add(const double* factors, Positions& r) const {
-    for (std::size_t k = 0; count_ > 0 && k < correction_.wanted.size(); ++k) {
+    for (std::size_t k = 0; k < normals_; ++k) {
       const StiffDirection& stiff = correction_.wanted[k];
       double sum = 0;
       for (int i = 0; i < count_; ++i) sum += factors[i] * correction_.along[k * count_ + i];
@@ -85,7 +77,7 @@ class ContactPairs {
   // K s_i . z
   double dot(int i, const Positions& z) const {
     double sum = 0;
-    for (std::size_t k = 0; count_ > 0 && k < correction_.wanted.size(); ++k) {
+    for (std::size_t k = 0; k < normals_; ++k) {
       const StiffDirection& stiff = correction_.wanted[k];
       sum += stiff.stiffness * correction_.along[k * count_ + i] * z.row(stiff.vertex).dot(stiff.axis);
     }
@@ -94,8 +86,8 @@ class ContactPairs {
 
  private:
   ContactCorrection& correction_;
-  int count_;
-  std::vector<double>& products_ = correction_.products;
+  int count_ = 0;
+  std::size_t normals_ = 0;
 };
 
 }  // namespace
@@ -164,9 +156,8 @@ void remember_pair(const Model& model, const ContactSettings& contact, Workspace
   t = workspace.trial_gradient - workspace.gradient;
   if (contact.history == ContactHistory::current && !workspace.contact.earlier.empty()) {
     // Both gradients have the planes that the search went by.
-    const ContactWork& work = workspace.contact;
-    add_contacts(work.earlier, work.stick_length, workspace.trial, nullptr, workspace.direction, &t, -1);
-    add_contacts(work.earlier, work.stick_length, workspace.x, nullptr, workspace.direction, &t);
+    add_normal_forces(workspace.contact.earlier, workspace.trial, 1, t);
+    add_normal_forces(workspace.contact.earlier, workspace.x, -1, t);
   }
 
   Pointers other{s.data(), t.data()};

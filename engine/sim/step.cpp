@@ -13,7 +13,7 @@ namespace supple {
 namespace {
 
 constexpr int most_halvings = 30;
-constexpr int most_refusals = 5;        // of trial points for the contacts found there
+constexpr int most_refusals = 5;         // of trial points for the contacts found there
 constexpr double deepest_start = 0.004;  // overlap that a first iterate may have, over the body's size
 constexpr double round_off = std::numeric_limits<double>::epsilon();
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/assemble.h"
+#include "scene/obstacle.h"
 #include "scene/scene_reader.h"
 #include "support/bodies.h"
 
@@ -13,9 +14,10 @@ struct Film {
   SceneDef scene;
   std::vector<Body> bodies;
   std::vector<Model> models;
+  CollisionSet set;
 
   Film(const std::filesystem::path& path, const std::vector<std::string>& settings)
-      : scene(load_scene(path, test::assets, settings)), bodies(assemble(scene)) {
+      : scene(load_scene(path, test::assets, settings)), bodies(assemble(scene)), set(collision_set(scene)) {
     for (const Body& body : bodies) models.push_back(build_model(body.description));
   }
 
@@ -24,7 +26,7 @@ struct Film {
   void play(int thread_count, int frames, const Visit& visit) const {
     Threads threads(thread_count);
     for (std::size_t b = 0; b < bodies.size(); ++b) {
-      FrameInputs inputs{scene.gravity, {}, {}, bodies[b].def.solver.settings};
+      FrameInputs inputs{scene.gravity, {}, {}, bodies[b].def.solver.settings, &set.colliders};
       State state = start_state(models[b], bodies[b]);
       Workspace w;
       w.threads = &threads;
@@ -32,6 +34,7 @@ struct Film {
         const double h = scene.time_step(), time = (number + 1) * h;
         handle_targets(models[b], bodies[b], time, inputs.targets);
         handle_targets(models[b], bodies[b], time - 0.5 * h, inputs.middle_targets);
+        collider_motions(set.obstacles, time - h, time, inputs.collider_motions);
         const State before = state;
         const StepReport& report = step(models[b], inputs, state, w);
         ASSERT_FALSE(report.failed) << bodies[b].def.name << " step " << number << ": " << report.failure.what;

@@ -40,8 +40,10 @@ AgainstStaying against_staying(const Model& model, const FrameInputs& inputs, co
   w.prepare(model, inputs.solver);
   begin_step(model, inputs, before, w);
   w.x.topRows(model.free) = before.x.topRows(model.free);
-  const double staying = evaluate(model, w, w.x, w.energy, nullptr, nullptr, nullptr).value;
-  return {staying, evaluate(model, w, after.x, w.trial_energy, nullptr, &w.x, &w.energy).value};
+  const double contacts = contact_energy_at(model, inputs, w.x, w);
+  const double staying = evaluate(model, w, w.x, w.energy, nullptr, nullptr, nullptr).value + contacts;
+  const double change = evaluate(model, w, after.x, w.trial_energy, nullptr, &w.x, &w.energy).value;
+  return {staying, change + contact_energy_at(model, inputs, after.x, w) - contacts};
 }
 
 }  // namespace supple::test

@@ -1,0 +1,351 @@
+// Contact with rigid colliders: energies and their derivatives, directions, momentum, tunnelling, overlaps, rest,
+// friction.
+#include "sim/contact.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+
+#include "geometry/tetrahedralize.h"
+#include "sim/step.h"
+#include "support/bodies.h"
+
+namespace supple {
+namespace {
+
+using test::bar;
+using test::Held;
+using test::shaken;
+
+Shape shape_of(const Primitive& primitive) {
+  Shape shape;
+  shape.root.parts.push_back({primitive});
+  return shape;
+}
+
+const Shape ground = shape_of(HalfSpace{Vec3::UnitY(), 0});
+
+Eigen::Isometry3d moved_to(const Vec3& place) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() = place;
+  return pose;
+}
+
+// A cube of n cells a side, 0.2 m, its middle at the origin.
+BodyDescription cube(int cells, const Material& material = Corotated{3e4, 6e4}) {
+  BodyDescription body;
+  body.name = "cube";
+  body.mesh = box_mesh(Vec3(0.2, 0.2, 0.2), Eigen::Vector3i::Constant(cells));
+  body.mesh.rest.rowwise() -= Eigen::RowVector3d(0.1, 0.1, 0.1);
+  body.materials = {material};
+  body.precision = Precision::double_precision;
+  return body;
+}
+
+// A body among colliders.
+struct Play {
+  Model model;
+  std::vector<Collider> colliders;
+  FrameInputs inputs;
+  State state;
+  Workspace w;
+
+  Play(const BodyDescription& body, std::vector<Collider> all, const Vec3& place = Vec3::Zero())
+      : model(build_model(body)), colliders(std::move(all)), state(rest_state(model)) {
+    inputs = test::still_inputs(model);
+    inputs.colliders = &colliders;
+    inputs.collider_motions.resize(colliders.size());
+    state.x.rowwise() += place.transpose();
+  }
+  const StepReport& advance() {
+    const StepReport& report = step(model, inputs, state, w);
+    EXPECT_FALSE(report.failed) << report.failure.what;
+    return report;
+  }
+  Vec3 center() const { return state.x.colwise().mean().transpose(); }
+  double fastest() const { return state.v.rowwise().norm().maxCoeff(); }
+  double deepest(std::size_t collider) const {
+    double deepest = 0;
+    for (int v = 0; v < model.vertices; ++v) {
+      const Vec3 local = inputs.collider_motions[collider].end.inverse() * Vec3(state.x.row(v));
+      deepest = std::max(deepest, -colliders[collider].shape.distance(local));
+    }
+    return deepest;
+  }
+};
+
+TEST(Contact, GradientIsTheDerivativeOfTheEnergyWithPlanesAsTheyStand) {
+  Play play(cube(2), {{"ball", shape_of(Sphere{0.3}), 0.01, 0.4}}, Vec3(0, 0.36, 0));
+  play.state.v.rowwise() = Eigen::RowVector3d(2, -1.5, 1);
+  play.w.prepare(play.model, play.inputs.solver);
+  begin_step(play.model, play.inputs, play.state, play.w);
+  find_contacts(play.model, play.inputs, play.w.x, play.w);
+  const std::vector<Contact>& found = play.w.contact.found;
+  EXPECT_GT(std::count_if(found.begin(), found.end(), [](const Contact& c) { return c.depth > 0; }), 3);
+  EXPECT_GT(std::count_if(found.begin(), found.end(), [](const Contact& c) { return c.friction > 0; }), 3);
+  const double stick = play.w.contact.stick_length;
+  Positions& x = play.w.x;
+  Positions gradient = Positions::Zero(play.model.free, 3);
+  const Positions direction = shaken(Positions::Zero(play.model.free, 3), 1, 6);
+  const ContactChange at = add_contacts(found, stick, x, nullptr, direction, &gradient);
+  EXPECT_NEAR(at.slope, (gradient.array() * direction.array()).sum(), 1e-12 * std::abs(at.slope));
+  double best = 1e300;
+  for (const double h : {1e-6, 1e-7, 1e-8}) {
+    const Positions forward = x + h * direction, backward = x - h * direction;
+    const double slope = add_contacts(found, stick, forward, &backward, direction, nullptr).value / (2 * h);
+    best = std::min(best, std::abs(slope - at.slope));
+  }
+  EXPECT_LT(best, 1e-6 * std::abs(at.slope));
+}
+
+// With the planes found anew at each point: what the reference minimises is what the planes' gradient belongs to.
+TEST(Contact, PlanesGiveTheDerivativeOfTheEnergyFoundAnew) {
+  Shape blend = shape_of(Sphere{0.2});
+  blend.root.parts.push_back({Capsule{Vec3(0, 0, 0), Vec3(0.3, 0, 0), 0.1}});
+  blend.root.parts.back().blend = 0.1;
+  const std::vector<std::pair<std::string, Shape>> shapes = {{"half space", shape_of(HalfSpace{Vec3(0, 1, 0), 0.19})},
+                                                             {"sphere", shape_of(Sphere{0.2})},
+                                                             {"ellipsoid", shape_of(Ellipsoid{Vec3(0.3, 0.2, 0.25)})},
+                                                             {"box", shape_of(Box{Vec3(0.3, 0.2, 0.3), 0.02})},
+                                                             {"cylinder", shape_of(Cylinder{0.3, 0.2, 0.02})},
+                                                             {"torus", shape_of(Torus{0.1, 0.2})},
+                                                             {"blend", blend}};
+  for (const auto& [name, shape] : shapes) {
+    Play play(cube(2), {{name, shape}}, Vec3(0.02, 0.305, 0.01));
+    play.state.v.rowwise() = Eigen::RowVector3d(0.1, -0.9, 0.05);
+    play.w.prepare(play.model, play.inputs.solver);
+    begin_step(play.model, play.inputs, play.state, play.w);
+    const Positions x = play.w.x, direction = shaken(Positions::Zero(play.model.free, 3), 1, 6);
+    find_contacts(play.model, play.inputs, x, play.w);
+    Positions gradient = Positions::Zero(play.model.free, 3);
+    const double slope = add_contacts(play.w.contact.found, 1, x, nullptr, direction, &gradient).slope;
+    ASSERT_NE(slope, 0) << name;
+    double best = 1e300;
+    for (const double h : {1e-6, 1e-7}) {
+      const double forward = contact_energy_at(play.model, play.inputs, x + h * direction, play.w);
+      const double backward = contact_energy_at(play.model, play.inputs, x - h * direction, play.w);
+      best = std::min(best, std::abs((forward - backward) / (2 * h) - slope));
+    }
+    EXPECT_LT(best, 1e-5 * std::abs(slope)) << name;
+  }
+}
+
+// (A + K)^-1 by the Woodbury identity against a dense inverse of A + K.
+TEST(Contact, LowRankDirectionsSolveTheSystemWithContacts) {
+  Play play(bar(Corotated{1e4, 3e4}, Held::hard_end), {{"ground", ground, 0, 0.5}}, Vec3(0, 0.001, 0));
+  play.state.v.rowwise() = Eigen::RowVector3d(0.3, -0.5, 0);
+  play.w.prepare(play.model, play.inputs.solver);
+  begin_step(play.model, play.inputs, play.state, play.w);
+  find_contacts(play.model, play.inputs, play.w.x, play.w);
+  stiff_directions(play.model, play.w);
+  ASSERT_GT(play.w.correction.wanted.size(), 8u);
+  const int n = play.model.free;
+  Eigen::MatrixXd inverse(3 * n, 3 * n);  // of A
+  Positions r(n, 3), z(n, 3);
+  for (int column = 0; column < 3 * n; ++column) {
+    r.setZero();
+    r.data()[column] = 1;
+    play.model.factor.solve(r.data(), z.data(), play.w.solve_scratch.data());
+    inverse.col(column) = Eigen::Map<Eigen::VectorXd>(z.data(), 3 * n);
+  }
+  Eigen::MatrixXd system = inverse.inverse();
+  for (const StiffDirection& stiff : play.w.correction.wanted)
+    system.block<3, 3>(3 * stiff.vertex, 3 * stiff.vertex) += stiff.stiffness * stiff.axis * stiff.axis.transpose();
+  r = shaken(Positions::Zero(n, 3), 1, 2);
+  const Eigen::VectorXd wanted = system.ldlt().solve(Eigen::Map<Eigen::VectorXd>(r.data(), 3 * n));
+  ContactSettings settings;
+  apply_inverse(play.model, play.w, settings, r, z);
+  // Single precision in the small system; double around it.
+  EXPECT_LT((Eigen::Map<Eigen::VectorXd>(z.data(), 3 * n) - wanted).norm(), 1e-4 * wanted.norm());
+}
+
+TEST(Contact, MomentumChangesByTheImpulsesOfGravityAndContacts) {
+  for (const int iterations : {300, 4}) {
+    Play play(cube(3), {{"ball", shape_of(Sphere{0.5}), 0, 0.3}}, Vec3(0.05, 0.61, 0));
+    play.state.v.rowwise() = Eigen::RowVector3d(0.3, -1, 0.1);
+    play.inputs.solver.iterations = iterations;
+    const double h = play.model.time_step;
+    for (int frame = 0; frame < 5; ++frame) {
+      const auto momentum = [&] {
+        Vec3 sum = Vec3::Zero();
+        for (int v = 0; v < play.model.vertices; ++v) sum += play.model.mass[v] * Vec3(play.state.v.row(v));
+        return sum;
+      };
+      const Vec3 before = momentum();
+      const StepReport& report = play.advance();
+      EXPECT_GT(report.contacts.touching, 0) << frame;
+      const Vec3 left = play.w.gradient.colwise().sum().transpose();  // of a minimum: zero
+      const Vec3 impulse = h * (play.model.total_mass * play.inputs.gravity + report.contact_force);
+      const double scale = before.norm() + impulse.norm();
+      EXPECT_LT((momentum() - before - impulse - h * left).norm(), 1e-9 * scale) << frame;
+      if (iterations == 300) {
+        EXPECT_LT((momentum() - before - impulse).norm(), 1e-9 * scale) << frame;
+      }
+    }
+  }
+}
+
+TEST(Contact, NothingGoesThroughAtAnySpeedUpToItsSizeAStep) {
+  const double size = 0.2 * std::sqrt(3.0), fastest = size * 30;
+  struct Obstacle {
+    std::string name;
+    Shape shape;
+    double top;  // its surface's height on the y axis
+  };
+  const std::vector<Obstacle> obstacles = {
+      {"plane", ground, 0},
+      {"box", shape_of(Box{Vec3(1, 0.2, 1), 0}), 0.2},
+      {"sphere", shape_of(Sphere{0.5}), 0.5},
+      {"torus, onto its tube", shape_of(Torus{0.5, 0.2}), 0.2},
+      {"plate of a hundredth", shape_of(Box{Vec3(1, 0.005 * size, 1), 0}), 0.005 * size}};
+  for (const Obstacle& obstacle : obstacles) {
+    for (const double speed : {1.0, 2.0, 5.0, fastest}) {
+      const double x = obstacle.name.starts_with("torus") ? 0.5 : 0.0;
+      Play play(cube(3), {{obstacle.name, obstacle.shape}}, Vec3(x, obstacle.top + 0.13, 0.02));
+      play.state.v.col(1).setConstant(-speed);
+      double deepest = 0;
+      for (int frame = 0; frame < 8; ++frame) {
+        play.advance();
+        deepest = std::max(deepest, play.deepest(0));
+        if (!obstacle.name.starts_with("plate") && obstacle.name != "box") continue;
+        // Below the middle of a plate is through.
+        EXPECT_GT(play.state.x.col(1).minCoeff(), 0) << obstacle.name << " at " << speed << " m/s, frame " << frame;
+      }
+      EXPECT_LT(deepest, 0.02 * size) << obstacle.name << " at " << speed << " m/s";
+      if (!obstacle.name.starts_with("torus")) {  // off whose tube it slides
+        EXPECT_GT(play.center().y(), obstacle.top) << obstacle.name << " at " << speed << " m/s";
+      }
+      RecordProperty(obstacle.name + fmt::format(" {:.3g}", speed), fmt::format("{:.2e}", deepest / size));
+    }
+  }
+}
+
+// The collider comes to the body, thin and fast.
+TEST(Contact, APlateThatMovesFastIsNotLetThrough) {
+  Play play(cube(3), {{"plate", shape_of(Box{Vec3(1, 0.002, 1), 0})}});
+  play.inputs.gravity.setZero();
+  double height = -0.15;
+  for (int frame = 0; frame < 6; ++frame) {
+    play.inputs.collider_motions[0] = {moved_to(Vec3(0, height, 0)), moved_to(Vec3(0, height + 0.3, 0))};
+    height += 0.3;
+    play.advance();
+    EXPECT_GT(play.state.x.col(1).minCoeff(), height) << frame;
+  }
+}
+
+TEST(Contact, ColliderThatTurnsCarriesWhatStandsOnIt) {
+  Play play(cube(2), {{"disc", shape_of(Cylinder{1, 0.05, 0}), 0, 1.0}}, Vec3(0.5, 0.1501, 0));
+  play.inputs.solver.iterations = 30;
+  const double turn = 0.02;  // a step
+  for (int frame = 0; frame < 40; ++frame) {
+    play.inputs.collider_motions[0].start = Eigen::AngleAxisd(turn * frame, Vec3::UnitY());
+    play.inputs.collider_motions[0].end = Eigen::AngleAxisd(turn * (frame + 1), Vec3::UnitY());
+    play.advance();
+  }
+  const Vec3 at = play.center();
+  EXPECT_NEAR(std::atan2(-at.z(), at.x()), 40 * turn, 0.06);
+  EXPECT_NEAR(std::hypot(at.x(), at.z()), 0.5, 0.02);
+}
+
+TEST(Contact, OverlapsArePushedOutNoFasterThanAllowed) {
+  const std::vector<std::pair<std::string, Shape>> shapes = {
+      {"plane", ground},
+      {"sphere", shape_of(Sphere{0.5})},
+      {"box", shape_of(Box{Vec3(0.6, 0.3, 0.6), 0.02})},
+      {"capsule", shape_of(Capsule{Vec3(-0.5, 0, 0), Vec3(0.5, 0, 0), 0.3})},
+      {"cylinder", shape_of(Cylinder{0.6, 0.3, 0})},
+      {"torus", shape_of(Torus{0.5, 0.3})}};
+  for (const auto& [name, shape] : shapes) {
+    const double x = name == "torus" ? 0.5 : 0,
+                 top = shape.distance(Vec3(x, 10, 0)) > 9 ? 10 - shape.distance(Vec3(x, 10, 0)) : 0;
+    for (const double sunk : {0.1, 0.22}) {  // half and wholly inside
+      Play play(cube(3), {{name, shape}}, Vec3(x, top + 0.1 - sunk, 0.01));
+      play.inputs.gravity.setZero();
+      double fastest = 0;
+      int frames = 0;
+      while (play.deepest(0) > 1e-3 * play.model.size && frames < 150) {
+        const Positions before = play.state.x;
+        play.advance();
+        fastest = std::max(fastest, (play.state.x - before).rowwise().norm().maxCoeff() / play.model.time_step);
+        ++frames;
+      }
+      ASSERT_TRUE(play.state.x.allFinite());
+      EXPECT_LT(play.deepest(0), 0.01 * play.model.size) << name << ", sunk by " << sunk;
+      // What is pushed also swings; a few times the limit is not an explosion.
+      EXPECT_LT(fastest, 4 * play.inputs.solver.contact.push_out * play.model.size) << name << ", sunk by " << sunk;
+    }
+  }
+}
+
+TEST(Contact, ABodyAtRestStaysAtRestForAMinute) {
+  Play play(cube(3), {{"ground", ground, 0, 0.5}}, Vec3(0, 0.1, 0));
+  for (int frame = 0; frame < 300; ++frame) play.advance();
+  const Vec3 settled = play.center();
+  double fastest = 0;
+  int changes = 0;
+  for (int frame = 300; frame < 1800; ++frame) {
+    const StepReport& report = play.advance();
+    fastest = std::max(fastest, play.fastest());
+    if (frame >= 1770) changes += report.contacts.changes;
+  }
+  EXPECT_LT(fastest, 1e-4 * play.model.size);
+  EXPECT_LT((play.center() - settled).norm(), 1e-4 * play.model.size);
+  EXPECT_EQ(changes, 0);
+}
+
+TEST(Contact, FrictionHoldsOrSlidesAsCoulombSays) {
+  const double angle = 20 * 3.14159265358979 / 180, g = 9.81;
+  const Vec3 normal(0, std::cos(angle), std::sin(angle)), down(0, -std::sin(angle), std::cos(angle));
+  for (const double friction : {0.0, 0.2, 0.3, 0.45}) {
+    BodyDescription body = cube(3, Corotated{3e5, 6e5});
+    body.mesh.rest = body.mesh.rest * Eigen::AngleAxisd(angle, Vec3::UnitX()).toRotationMatrix().transpose();
+    Play play(body, {{"slope", shape_of(HalfSpace{normal, 0}), 0, friction}}, 0.1 * normal);
+    for (int frame = 0; frame < 15; ++frame) play.advance();
+    const double start = play.center().dot(down), speed = (play.state.v.colwise().mean() * down)(0);
+    for (int frame = 0; frame < 45; ++frame) play.advance();
+    const double time = 1.5, acceleration = ((play.state.v.colwise().mean() * down)(0) - speed) / time;
+    const double expected = g * (std::sin(angle) - friction * std::cos(angle));
+    if (expected > 0) {
+      EXPECT_NEAR(acceleration, expected, 0.05 * g * std::sin(angle)) << friction;
+    } else {
+      EXPECT_LT(std::abs(play.center().dot(down) - start),
+                2 * time * play.inputs.solver.contact.stick * play.model.size)
+          << friction;
+    }
+  }
+}
+
+TEST(Contact, SameBitsWhateverTheWorkspaceDidBefore) {
+  const auto hashes = [](Play& play, int frames) {
+    std::vector<std::uint64_t> list;
+    for (int frame = 0; frame < frames; ++frame) {
+      play.advance();
+      list.push_back(state_hash(play.model, play.state));
+    }
+    return list;
+  };
+  const std::vector<Collider> colliders = {{"ball", shape_of(Sphere{0.3}), 0, 0.3}, {"ground", ground}};
+  Play fresh(cube(4), colliders, Vec3(0.1, 0.42, 0));
+  const auto expected = hashes(fresh, 20);
+  fresh.state = rest_state(fresh.model);  // the same workspace, which now knows what it touched
+  fresh.state.x.rowwise() += Eigen::RowVector3d(0.1, 0.42, 0);
+  EXPECT_EQ(hashes(fresh, 20), expected);
+  Play threaded(cube(4), colliders, Vec3(0.1, 0.42, 0));
+  Threads threads(3);
+  threaded.w.threads = &threads;
+  EXPECT_EQ(hashes(threaded, 20), expected);
+}
+
+TEST(Contact, CostsNothingWithoutColliders) {
+  Play play(cube(2), {});
+  play.inputs.colliders = nullptr;
+  play.inputs.collider_motions.clear();
+  const StepReport& report = play.advance();
+  EXPECT_EQ(report.collide_ms, 0);
+  EXPECT_TRUE(play.w.contact.clearance.empty());
+  EXPECT_TRUE(play.w.correction.touched.empty());
+}
+
+}  // namespace
+}  // namespace supple
