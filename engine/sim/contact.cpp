@@ -342,7 +342,8 @@ void add_normal_forces(const std::vector<Contact>& contacts, const Positions& po
 double contact_energy_at(const Model& model, const FrameInputs& inputs, const Positions& x, Workspace& workspace) {
   if (inputs.colliders == nullptr || inputs.colliders->empty()) return 0;
   find_contacts(model, inputs, x, workspace);
-  const double energy = contact_energy(workspace.contact.found, x);
+  const ContactWork& work = workspace.contact;
+  const double energy = add_contacts(work.found, work.stick_length, x, nullptr, workspace.direction, nullptr).value;
   workspace.contact.found.clear();
   return energy;
 }

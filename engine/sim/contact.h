@@ -121,7 +121,7 @@ double contact_energy(const std::vector<Contact>& contacts, const Positions& poi
 // force += sign times the normal forces at a point [N].
 void add_normal_forces(const std::vector<Contact>& contacts, const Positions& point, double sign, Positions& force);
 
-// Of the contacts found anew at x, after begin_contacts; leaves none behind [J].
+// Energy, friction included, of the contacts found anew at x, after begin_contacts; leaves none behind [J].
 double contact_energy_at(const Model& model, const FrameInputs& inputs, const Positions& x, Workspace& workspace);
 
 // Energy of the contacts at a point, friction included, or its difference from a reference's; adds `sign` times their
