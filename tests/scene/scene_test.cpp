@@ -200,6 +200,7 @@ std::vector<DocumentedKey> all_keys() {
   for (const std::string& model : test::model_names()) materials.push_back("{ model = \"" + model + "\" }");
   for (const std::string& material : materials) {
     Config config = Config::parse(fmt::format(R"([solver]
+[solver.contact]
 [[body]]
 shape = "shapes/squirrel.toml"
 box = {{}}
@@ -220,6 +221,12 @@ cloth = {{ stretch = 1 }}
 name = "preset"
 box = {{}}
 material = "jelly"
+[[body]]
+name = "surface"
+surface = "surfaces/stairs.obj"
+[[collider]]
+shape = {{}}
+keys = [{{ t = 0 }}]
 [camera]
 [look]
 [output]
@@ -242,6 +249,7 @@ box = { extent = [1, 1, 1] }
 cylinder = { radius = 1, height = 1 }
 torus = { radius = 1, tube = 0.5 }
 half_space = { normal = [0, 1, 0] }
+surface = "surfaces/stairs.obj"
 parts = []
 [[paint]]
 )",
@@ -256,6 +264,7 @@ std::string table_of(const std::vector<DocumentedKey>& keys) {
   for (const DocumentedKey& key : keys) {
     // A region's material, a body's solver: documented once, where they first stand.
     if (key.path.find("regions.") != std::string::npos && !key.path.ends_with("regions.NAME")) continue;
+    if (key.path.starts_with("collider[].shape.")) continue;  // a part, as the table of shapes has it
     if (key.path.starts_with("body[].solver.") || !seen.insert(key.path + key.type).second) continue;
     table += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.path, key.fallback, key.allowed, key.unit, key.meaning);
   }
