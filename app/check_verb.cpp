@@ -16,6 +16,10 @@ int check(const std::string& name, const std::vector<std::string>& settings) {
   for (const Body& body : bodies) {
     for (const std::string& note : body.notes) say(stdout, fmt::format("note: {}: {}\n", body.source, note));
   }
+  for (const ColliderDef& collider : scene.colliders) {
+    for (const std::string& note : collider.shape.notes)
+      say(stdout, fmt::format("note: collider '{}': {}\n", collider.name, note));
+  }
   const std::vector<Problem> list = warnings(scene, bodies);
   for (const Problem& warning : list) say(stdout, fmt::format("warning: {}\n", warning.text()));
   say(stdout,

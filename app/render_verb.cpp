@@ -82,6 +82,10 @@ int render(const RenderOptions& options, const std::vector<std::string>& command
     for (const Body& body : bodies) {
       for (const std::string& note : body.notes) say(stderr, fmt::format("note: {}: {}\n", body.source, note));
     }
+    for (const ColliderDef& collider : scene.colliders) {
+      for (const std::string& note : collider.shape.notes)
+        say(stderr, fmt::format("note: collider '{}': {}\n", collider.name, note));
+    }
   }
   std::vector<Model> models;
   for (const Body& body : bodies) models.push_back(build_model(body.description));

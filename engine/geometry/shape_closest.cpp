@@ -127,11 +127,16 @@ bool exact(const ShapeGroup& group) {
 }
 
 double certainty_of(const ShapeGroup& group) {
+  const bool blended =
+      std::any_of(group.parts.begin(), group.parts.end(), [](const ShapePart& part) { return part.blend > 0; });
   double least = 1;
   for (const ShapePart& part : group.parts) {
-    // Between (k0 - 1) r_min and (k0 - 1) r_max, with k0 as in the ellipsoid's distance.
-    if (const auto* e = std::get_if<Ellipsoid>(&part.primitive))
-      least = std::min(least, e->radii.minCoeff() / e->radii.maxCoeff());
+    // Between (k0 - 1) r_min and (k0 - 1) r_max, with k0 as in the ellipsoid's distance. In a blend what counts is how
+    // fast the field changes, which is up to (r_max / r_min)^2.
+    if (const auto* e = std::get_if<Ellipsoid>(&part.primitive)) {
+      const double ratio = e->radii.minCoeff() / e->radii.maxCoeff();
+      least = std::min(least, blended ? ratio * ratio : ratio);
+    }
     if (const auto* inner = std::get_if<ShapeGroup>(&part.primitive)) least = std::min(least, certainty_of(*inner));
   }
   return least;

@@ -32,8 +32,9 @@ ColliderDef read_collider(const ConfigTable& table) {
   ColliderDef collider;
   collider.place = table.place(nullptr, "");
   collider.name = table.text({"name", "", "addresses the collider in --set and in reports"}, "collider");
-  if (collider.name.empty() || collider.name.find_first_of("./\\ \t\n") != std::string::npos)
-    table.complain("name", fmt::format("name = '{}': must be a word without spaces, dots and slashes", collider.name));
+  if (collider.name.empty() || collider.name.find_first_of("./\\ \t\n,\"") != std::string::npos)
+    table.complain("name", fmt::format("name = '{}': must be a word without spaces, dots, commas, quotes and slashes",
+                                       collider.name));
   collider.shape = read_collider_shape(table);
   collider.position = table.vector({"position", "m", "of the shape's origin"}, Vec3(0, 0, 0));
   collider.turn_deg = table.vector({"turn_deg", "degrees", "rotation about x, then y, then z"}, Vec3(0, 0, 0));

@@ -87,6 +87,12 @@ std::optional<Primitive> read_primitive(const ConfigTable& part, Shape& shape, i
   return result;
 }
 
+// There is nothing yet that a first part could be cut from.
+void need_solid(const ConfigTable& table, const ShapePart& first) {
+  if (first.combine != Combine::add)
+    table.complain("op", "op: the first part must be added; there is nothing to cut or intersect yet");
+}
+
 ShapePart read_part(const ConfigTable& table, Shape& shape, int depth) {
   ShapePart part;
   part.primitive = Sphere{1};
@@ -124,7 +130,10 @@ ShapePart read_part(const ConfigTable& table, Shape& shape, int depth) {
 
 ShapeGroup read_parts(const ConfigTable& table, const Key& key, Shape& shape, int depth) {
   ShapeGroup group;
-  for (const ConfigTable& part : table.tables(key)) group.parts.push_back(read_part(part, shape, depth));
+  for (const ConfigTable& part : table.tables(key)) {
+    group.parts.push_back(read_part(part, shape, depth));
+    if (group.parts.size() == 1) need_solid(part, group.parts.front());
+  }
   return group;
 }
 
@@ -157,6 +166,7 @@ Shape read_shape(const ConfigTable& table) {
 Shape read_single_part(const ConfigTable& table) {
   Shape shape;
   shape.root.parts.push_back(read_part(table, shape, 0));
+  need_solid(table, shape.root.parts.front());
   return shape;
 }
 

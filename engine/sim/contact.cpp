@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "sim/contact_direction.h"
 #include "sim/objective.h"
 
 namespace supple {
@@ -44,7 +45,9 @@ class View {
   }
 
   // A point that is at least this far from the layer can go that far unharmed.
-  double clear(double distance) const { return distance > 0 ? traits_.certainty * distance : 0; }
+  double clear(double distance) const {
+    return std::max(0.0, traits_.certainty * (distance + collider_.thickness) - collider_.thickness);
+  }
 
   // Whether a way is too short to lead through.
   bool short_way(double way) const { return way < traits_.half_thickness; }
@@ -90,7 +93,8 @@ bool opposite(const Vec3& a, const Vec3& b) { return a.dot(b) < -0.5; }
 // then the one that it entered by. Nothing when there is none within `reach`.
 std::optional<SurfacePoint> holding(const View& view, const Vec3& a, const Vec3& b, double field_at_a, double reach) {
   const SurfacePoint here = view.closest(b);
-  if (view.short_way((b - a).norm())) return here.distance < reach ? std::optional(here) : std::nullopt;
+  if (view.short_way((b - a).norm() + std::max(0.0, -field_at_a)))
+    return here.distance < reach ? std::optional(here) : std::nullopt;
   // Straight onto the side that is closest: the usual case, which needs no ray.
   if (here.distance < 0 && field_at_a > 0 && (a - here.point).dot(here.normal) >= 0) return here;
   const std::optional<Entry> entered = entry(view, a, b, field_at_a);
@@ -151,11 +155,11 @@ void measure_moves(const Model& model, const Positions& x, ContactWork& work) {
 }
 
 // The normal force that friction goes by, the same through a step (Li et al. 2020, section 5.3, lag it too): what the
-// vertex pressed with when the step began, or, where it only now arrives, what stops it alone. The overlap of an
-// iterate would say a force that is many times too large.
+// vertex pressed with when the step began, or, where it arrives or comes out of a deep overlap, what stops it alone.
+// The overlap of an iterate would say a force that is many times too large.
 double lagged_force(const Contact& contact, double depth_before, double depth_unhindered, double mass_over_h2) {
   if (depth_before > 0) return 2 * contact.stiffness * depth_before;
-  return mass_over_h2 * std::max(0.0, depth_unhindered);
+  return contact.depth > 0 ? mass_over_h2 * std::max(0.0, depth_unhindered) : 0;
 }
 
 // XXH64 of who touches what.
@@ -220,11 +224,10 @@ void begin_contacts(const Model& model, const FrameInputs& inputs, const Positio
   work.collider_move.resize(colliders * groups);
   work.group_move.resize(groups);
   work.by_chunk.resize((groups + groups_a_chunk - 1) / groups_a_chunk);
-  if (work.traits.size() != colliders) {
-    work.traits.clear();
-    for (const Collider& collider : *inputs.colliders)
-      work.traits.push_back({collider.shape.certainty(), collider.shape.half_thickness()});
-  }
+  work.traits.clear();
+  for (const Collider& collider : *inputs.colliders)
+    work.traits.push_back({collider.shape.certainty(), collider.shape.half_thickness()});
+  forget_factor(model, workspace.correction);
   for (int group = 0; group < groups; ++group) {
     const int first = group * group_size, count = std::min(model.free - first, group_size);
     const Vec3 center = work.start.middleRows(first, count).colwise().mean().transpose();
@@ -260,19 +263,21 @@ void find_contacts(const Model& model, const FrameInputs& inputs, const Position
       if (!surface) return;
       Contact contact{v, static_cast<std::int32_t>(c),   view.end().linear() * surface->normal,
                       0, unit_stiffness * model.mass[v], 0};
-      const double allowed = std::max(0.0, -field - push_out);  // depth that this step need not undo
+      // Depth that this step need not undo.
+      const double allowed = field < -push_out ? std::max(0.0, -view.closest(a).distance - push_out) : 0;
       contact.offset = contact.normal.dot(view.end() * surface->point) - allowed;
       contact.depth = std::max(0.0, contact.offset - contact.normal.dot(x.row(v)));
       if (friction > 0) {
         contact.origin = view.carried(work.start.row(v));
-        contact.friction =
-            friction * lagged_force(contact, std::clamp(-field, 0.0, push_out),
-                                    contact.offset - contact.normal.dot(workspace.y.row(v)), model.mass[v] / (h * h));
+        contact.friction = friction * lagged_force(contact, allowed > 0 ? 0 : -field,
+                                                   contact.offset - contact.normal.dot(workspace.y.row(v)),
+                                                   model.scheme.inertia * model.mass[v] / (h * h));
       }
       list.push_back(contact);
     };
     const int chunks = static_cast<int>(work.by_chunk.size());
-    run_chunks(workspace, chunks, long(model.free), [&](int chunk) {
+    const long questions = long(model.free) * (work.traits[c].half_thickness > 0 ? 1 : 50);  // rays, triangles
+    run_chunks(workspace, chunks, questions, [&](int chunk) {
       std::vector<Contact>& list = work.by_chunk[chunk];
       list.clear();
       for (int group = chunk * groups_a_chunk; group < std::min(groups, (chunk + 1) * groups_a_chunk); ++group) {

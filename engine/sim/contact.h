@@ -34,7 +34,8 @@ struct ColliderMotion {
   Eigen::Isometry3d end = Eigen::Isometry3d::Identity();
 };
 
-// What becomes of L-BFGS' pairs when the contacts change. One gradient belongs to the old planes, the other to the new.
+// What becomes of L-BFGS' pairs when the contacts change: the planes of the iteration that made a pair are not those in
+// force later.
 enum class ContactHistory {
   frozen,   // both gradients with the planes of the iteration that made the pair
   current,  // the rest of t, and 2 k_c n n^T s for each contact that is in force now

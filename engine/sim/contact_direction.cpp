@@ -8,6 +8,7 @@
 namespace supple {
 namespace {
 
+constexpr std::size_t most_remembered = std::size_t(1) << 26;  // numbers of A^-1 that outlive a step: 256 MB
 constexpr std::size_t most_low_rank = 600;  // stiff directions; a dense factorisation of more costs more than it gains
 
 // A body that nothing holds moves as a whole by exactly 1^T M z = h^2/w 1^T r, because L does not see translations;
@@ -41,7 +42,7 @@ void stiff_directions(const Model& model, Workspace& w) {
     if (contact.friction <= 0) continue;  // it is lagged: a vertex may have left and still be rubbed
     const double along = friction_stiffness(contact, w.x, w.contact.stick_length);
     // Even where the elements around it are stiffer, together they hold a body that would slide as a whole.
-    if (along < model.mass[contact.vertex] / (model.time_step * model.time_step)) continue;
+    if (along < model.scheme.inertia * model.mass[contact.vertex] / (model.time_step * model.time_step)) continue;
     const Vec3 n = contact.normal;
     const Vec3 side = n.cross(std::abs(n.y()) < 0.7 ? Vec3::UnitY() : Vec3::UnitX()).normalized();
     stiff.push_back({contact.vertex, side, along});
@@ -69,37 +70,29 @@ void apply_diagonal(const Model& model, Workspace& w, Positions& r, Positions& z
   }
 }
 
-// Makes sure that A^-1 is known between all vertices of the list. Three columns a solve; r and z are scratch.
+// Makes sure that the columns of A^-1 of all vertices of the list are known. Three a solve; r and z are scratch.
 void learn_columns(const Model& model, Workspace& w, Positions& r, Positions& z) {
   ContactCorrection& c = w.correction;
-  if (c.column_of.size() != std::size_t(model.free)) {
-    c.column_of.assign(model.free, -1);
-    c.touched.clear();
-    c.inverse.clear();
-  }
-  const std::size_t first = c.touched.size();
+  if (c.column_of.empty()) c.column_of.assign(model.free, -1);
+  std::vector<std::int32_t> fresh;
   for (const StiffDirection& s : c.stiff) {
     if (c.column_of[s.vertex] >= 0) continue;
-    c.column_of[s.vertex] = static_cast<std::int32_t>(c.touched.size());
-    c.touched.push_back(s.vertex);
+    c.column_of[s.vertex] = static_cast<std::int32_t>(c.inverse.size() + fresh.size());
+    fresh.push_back(s.vertex);
   }
-  for (std::size_t at = first; at < c.touched.size(); at += 3) {
-    const std::size_t count = std::min<std::size_t>(3, c.touched.size() - at);
+  for (std::size_t at = 0; at < fresh.size(); at += 3) {
+    const std::size_t count = std::min<std::size_t>(3, fresh.size() - at);
     r.setZero();
-    for (std::size_t k = 0; k < count; ++k) r(c.touched[at + k], static_cast<Eigen::Index>(k)) = 1;
+    for (std::size_t k = 0; k < count; ++k) r(fresh[at + k], static_cast<Eigen::Index>(k)) = 1;
     model.factor.solve(r.data(), z.data(), w.solve_scratch.data());
-    for (std::size_t k = 0; k < count; ++k) {
-      std::vector<float> row(at + k + 1);
-      for (std::size_t j = 0; j <= at + k; ++j)
-        row[j] = static_cast<float>(z(c.touched[j], static_cast<Eigen::Index>(k)));
-      c.inverse.push_back(std::move(row));
-    }
+    for (std::size_t k = 0; k < count; ++k) c.inverse.emplace_back(z.col(static_cast<Eigen::Index>(k)).cast<float>());
   }
 }
 
+// Of the two entries that should be equal always the same one, whichever vertex was touched first.
 float capacitance_entry(const ContactCorrection& c, const StiffDirection& a, const StiffDirection& b) {
-  const std::int32_t row = c.column_of[a.vertex], column = c.column_of[b.vertex];
-  return static_cast<float>(a.axis.dot(b.axis)) * c.inverse[std::max(row, column)][std::min(row, column)];
+  const auto [low, high] = std::minmax(a.vertex, b.vertex);
+  return static_cast<float>(a.axis.dot(b.axis)) * c.inverse[c.column_of[high]][low];
 }
 
 // Appends the directions from `first` on to the Cholesky factor of the capacitance; c.stiff and c.lower agree up to
@@ -186,10 +179,17 @@ bool apply_low_rank(const Model& model, Workspace& w, const Positions& r, Positi
 
 }  // namespace
 
-void foresee_contacts(const Model& model, const ContactSettings& settings, Workspace& w) {
+void forget_factor(const Model& model, ContactCorrection& c) {
+  c.stiff.clear();
+  if (c.inverse.size() * std::size_t(model.free) <= most_remembered) return;
+  c.inverse.clear();
+  c.column_of.clear();
+}
+
+bool foresee_contacts(const Model& model, const ContactSettings& settings, Workspace& w) {
   ContactCorrection& c = w.correction;
-  if (settings.direction != ContactDirection::low_rank || w.contact.found.empty()) return;
-  if (c.wanted.size() > most_low_rank) return;
+  if (settings.direction != ContactDirection::low_rank || w.contact.found.empty()) return false;
+  if (c.wanted.size() > most_low_rank) return false;
   if (c.wanted.empty()) c.stiff.clear();
   c.entered.assign(c.stiff.size(), 0.0f);
   for (int pass = 0; pass < 3; ++pass) {
@@ -205,18 +205,20 @@ void foresee_contacts(const Model& model, const ContactSettings& settings, Works
       c.stiff.push_back({contact.vertex, contact.normal, 2 * contact.stiffness});
       c.entered.push_back(static_cast<float>(gap));
     }
-    if (c.stiff.size() == first) return;
+    if (c.stiff.size() == first) return pass > 0;
+    if (pass == 0) c.unbent = w.direction;
     c.push.resize(model.free, 3);
     c.back.resize(model.free, 3);
     learn_columns(model, w, c.push, c.back);
     if (!extend_factor(c, static_cast<Eigen::Index>(first))) {
       c.stiff.clear();
-      return;
+      return pass > 0;
     }
     c.answer = Eigen::Map<const Eigen::VectorXf>(c.entered.data(), static_cast<Eigen::Index>(c.entered.size()));
     std::fill(c.entered.begin(), c.entered.end(), 0.0f);
     subtract_answer(model, w, w.direction);
   }
+  return true;
 }
 
 void apply_inverse(const Model& model, Workspace& w, const ContactSettings& settings, Positions& r, Positions& z) {

@@ -138,11 +138,15 @@ double search_direction(const Model& model, const ContactSettings& contact, Work
   add_all(model, workspace, s, factor.data(), count, r.data());
   r = -r;
   workspace.report.lbfgs_ms += watch.lap_ms();
-  foresee_contacts(model, contact, workspace);
+  const bool bent = foresee_contacts(model, contact, workspace);
   workspace.report.solve_ms += watch.lap_ms();
   double slope = 0;
   Pointers gradient{workspace.gradient.data()};
   dot_all(model, workspace, gradient, 1, r.data(), &slope);
+  if (bent && !(slope < 0)) {
+    r = workspace.correction.unbent;
+    dot_all(model, workspace, gradient, 1, r.data(), &slope);
+  }
   workspace.report.lbfgs_ms += watch.lap_ms();
   return slope;
 }

@@ -17,12 +17,14 @@ struct PairHistory {
   void clear() { count = 0; }
 };
 
-// workspace.direction = -H grad with H the L-BFGS approximation of the inverse Hessian; returns tr(grad^T d). Adds the
+// workspace.direction = -H grad with H the L-BFGS approximation of the inverse Hessian, bent where it would cross
+// contact planes (contact_direction.h); returns tr(grad^T d). Adds the
 // milliseconds of the solve and of the rest to the report.
 double search_direction(const Model& model, const ContactSettings& contact, Workspace& workspace,
                         const PairHistory& history);
 
-// Keeps s = trial - x and t = trial_gradient - gradient as the newest pair when tr(s^T t) is safely positive.
+// Keeps s = trial - x and t = trial_gradient - gradient (without the normal forces of contacts, when their stiffness is
+// added anew each time) as the newest pair when tr(s^T t) is safely positive.
 void remember_pair(const Model& model, const ContactSettings& contact, Workspace& workspace, PairHistory& history);
 
 }  // namespace supple

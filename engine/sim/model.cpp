@@ -1,6 +1,7 @@
 #include "sim/model.h"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 
 #include "base/error.h"
@@ -204,7 +205,9 @@ ElementChunk Model::chunk(int index) const {
 }
 
 Model build_model(const BodyDescription& body) {
+  static std::atomic<std::uint64_t> builds{0};
   Model model;
+  model.id = ++builds;
   model.name = body.name;
   model.vertices = static_cast<int>(body.mesh.rest.rows());
   model.time_step = body.time_step;

@@ -50,6 +50,7 @@ struct BodyDescription {
 };
 
 struct Model {
+  std::uint64_t id = 0;  // of this build, so that whoever remembers something of a model knows it again
   std::string name;
   int vertices = 0;  // n
   int free = 0;      // vertices that the solver moves: 0 .. free-1

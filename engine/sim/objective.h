@@ -34,7 +34,7 @@ struct Workspace {
   StepReport report;
 
  private:
-  const Model* prepared_for_ = nullptr;
+  std::uint64_t prepared_for_ = 0;  // Model::id
   int window_ = -1;
 };
 

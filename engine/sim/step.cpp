@@ -171,6 +171,7 @@ void begin_step(const Model& model, const FrameInputs& inputs, const State& stat
   w.y = (state.x + h * state.v).rowwise() + (model.scheme.force * h * h * inputs.gravity).transpose();
   if (needs_start(model)) w.q = state.x;
   w.contact.found.clear();
+  w.contact.earlier.clear();
   if (has_colliders(inputs)) {
     const Stopwatch watch;
     begin_contacts(model, inputs, state.x, w);
@@ -344,9 +345,9 @@ bool stop_at_impact(const Model& model, const FrameInputs& inputs, const State& 
 
 // Where the body was, its handles moved; a body that nothing holds is also carried along with its centre of mass, which
 // costs no elastic energy and keeps its momentum.
-void set_staying(const Model& model, const State& state, Workspace& w) {
+void set_staying(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
   w.trial.topRows(model.free) = state.x.topRows(model.free);
-  if (!model.free_floating) return;
+  if (!model.free_floating || has_colliders(inputs)) return;  // it might be carried into a collider
   Eigen::RowVector3d moved = Eigen::RowVector3d::Zero();
   for (int v = 0; v < model.free; ++v) moved += model.mass[v] * (w.y.row(v) - state.x.row(v));
   moved /= model.total_mass;
@@ -361,13 +362,15 @@ void descend_from_staying(const Model& model, const FrameInputs& inputs, const S
   StepReport& report = w.report;
   const double reached = report.objective.back();
   const double inverse_h2 = model.scheme.inertia / (model.time_step * model.time_step);
-  set_staying(model, state, w);
+  set_staying(model, inputs, state, w);
   double inertia = 0;
   for (int v = 0; v < model.free; ++v)
     inertia += 0.5 * inverse_h2 * model.mass[v] * (w.trial.row(v) - w.y.row(v)).squaredNorm();
   if (reached <= inertia && !model.energy_may_be_negative) return;
+  const Stopwatch watch;
   if (has_colliders(inputs)) find_contacts_timed(model, inputs, w.trial, w);
   const Change staying = evaluate(model, w, w.trial, w.trial_energy, nullptr, nullptr, nullptr);
+  report.evaluate_ms += watch.elapsed_ms();
   if (!(staying.value < reached - noise_of(model, reached, extent_of(model, w)))) {
     if (has_colliders(inputs)) w.contact.found.swap(w.contact.earlier);
     return;
@@ -413,7 +416,11 @@ const StepReport& step(const Model& model, const FrameInputs& inputs, State& sta
   begin_step(model, inputs, state, w);
   const std::optional<double> at_y = spread_handles(model, inputs, w);
   const bool stopped = stop_at_impact(model, inputs, state, w);
-  if (stopped) report.objective.clear();
+  if (stopped) {
+    report.objective.clear();
+    w.contact.counts = {};
+    w.contact.set_before = w.contact.set_now = 0;
+  }
   if (stopped || !at_y) evaluate_start(model, inputs, w);
   iterate(model, inputs, w, 0);
   if (!report.failed && inputs.solver.line_search != LineSearch::none) descend_from_staying(model, inputs, state, w);

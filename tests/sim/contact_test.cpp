@@ -347,7 +347,7 @@ TEST(Contact, CostsNothingWithoutColliders) {
   const StepReport& report = play.advance();
   EXPECT_EQ(report.collide_ms, 0);
   EXPECT_TRUE(play.w.contact.clearance.empty());
-  EXPECT_TRUE(play.w.correction.touched.empty());
+  EXPECT_TRUE(play.w.correction.inverse.empty());
 }
 
 }  // namespace
