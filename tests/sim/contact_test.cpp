@@ -329,12 +329,19 @@ TEST(Contact, SameBitsWhateverTheWorkspaceDidBefore) {
     return list;
   };
   const std::vector<Collider> colliders = {{"ball", shape_of(Sphere{0.3}), 0, 0.3}, {"ground", ground}};
-  Play fresh(cube(4), colliders, Vec3(0.1, 0.42, 0));
+  BodyDescription body = cube(4);
+  body.precision = Precision::single_precision;
+  Play fresh(body, colliders, Vec3(0.1, 0.42, 0));
   const auto expected = hashes(fresh, 20);
   fresh.state = rest_state(fresh.model);  // the same workspace, which now knows what it touched
   fresh.state.x.rowwise() += Eigen::RowVector3d(0.1, 0.42, 0);
   EXPECT_EQ(hashes(fresh, 20), expected);
-  Play threaded(cube(4), colliders, Vec3(0.1, 0.42, 0));
+  // From a snapshot in the middle of contact.
+  Play snapshot(body, colliders);
+  snapshot.state = fresh.state;
+  EXPECT_GT(fresh.w.contact.counts.touching, 0);
+  EXPECT_EQ(hashes(snapshot, 5), hashes(fresh, 5));
+  Play threaded(body, colliders, Vec3(0.1, 0.42, 0));
   Threads threads(3);
   threaded.w.threads = &threads;
   EXPECT_EQ(hashes(threaded, 20), expected);
