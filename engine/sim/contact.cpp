@@ -322,10 +322,27 @@ double free_way(const Model& model, const FrameInputs& inputs, const Positions& 
   return least;
 }
 
+namespace {
+
+// How far a vertex has slid along its plane since the step began.
+Vec3 slip(const Contact& contact, const Vec3& x) {
+  const Vec3 moved = x - contact.origin;
+  return moved - moved.dot(contact.normal) * contact.normal;
+}
+
+}  // namespace
+
+double friction_energy(const std::vector<Contact>& contacts, double stick_length, const Positions& point) {
+  double sum = 0;
+  for (const Contact& contact : contacts) {
+    if (contact.friction > 0)
+      sum += contact.friction * friction_potential(slip(contact, point.row(contact.vertex)).norm(), stick_length);
+  }
+  return sum;
+}
+
 double friction_stiffness(const Contact& contact, const Positions& x, double stick_length) {
-  const Vec3 moved = Vec3(x.row(contact.vertex)) - contact.origin;
-  const double u = (moved - moved.dot(contact.normal) * contact.normal).norm();
-  return contact.friction * friction_slope_over_u(u, stick_length);
+  return contact.friction * friction_slope_over_u(slip(contact, x.row(contact.vertex)).norm(), stick_length);
 }
 
 double contact_energy(const std::vector<Contact>& contacts, const Positions& point) {
@@ -365,16 +382,12 @@ ContactChange add_contacts(const std::vector<Contact>& contacts, double stick_le
     change.value += contact.stiffness * (below - below_before) * (below + below_before);
     Vec3 slope = 2 * contact.stiffness * below * contact.normal;
     if (contact.friction > 0) {
-      const auto along = [&contact](const Vec3& x) {
-        const Vec3 moved = x - contact.origin;
-        return Vec3(moved - moved.dot(contact.normal) * contact.normal);
-      };
-      const Vec3 slid = along(p);
+      const Vec3 slid = slip(contact, p);
       const double u = slid.norm();
       change.value += contact.friction * friction_potential(u, stick_length);
       if (reference != nullptr)
         change.value -=
-            contact.friction * friction_potential(along(reference->row(contact.vertex)).norm(), stick_length);
+            contact.friction * friction_potential(slip(contact, reference->row(contact.vertex)).norm(), stick_length);
       slope += contact.friction * friction_slope_over_u(u, stick_length) * slid;
     }
     if (gradient == nullptr) continue;

@@ -113,6 +113,9 @@ double free_way(const Model& model, const FrameInputs& inputs, const Positions& 
 // Counts what changed since the last contacts that were kept.
 void keep_contacts(ContactWork& work);
 
+// Friction's part of the energy [J].
+double friction_energy(const std::vector<Contact>& contacts, double stick_length, const Positions& point);
+
 // Stiffness of friction along the plane at x [N/m].
 double friction_stiffness(const Contact& contact, const Positions& x, double stick_length);
 

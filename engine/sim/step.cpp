@@ -357,10 +357,12 @@ void set_staying(const Model& model, const FrameInputs& inputs, const State& sta
 // The answer must not be worse than staying: g(x) <= g(q) bounds the energy of backward Euler (docs/method.md), not
 // that of midpoint, where staying also turns the velocity round. When the iterations from y have not come that far
 // (elements turned inside out by a violent step), descend from there instead. Costs an evaluation only when the inertia
-// of staying cannot settle it, or when the elastic energy may be negative.
+// of staying cannot settle it, or when the elastic energy may be negative. Friction only takes energy, so its
+// potential, which staying has none of, does not count.
 void descend_from_staying(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
   StepReport& report = w.report;
-  const double reached = report.objective.back();
+  const double rubbed = friction_energy(w.contact.found, w.contact.stick_length, w.x);
+  const double reached = report.objective.back() - rubbed;
   const double inverse_h2 = model.scheme.inertia / (model.time_step * model.time_step);
   set_staying(model, inputs, state, w);
   double inertia = 0;
@@ -369,14 +371,15 @@ void descend_from_staying(const Model& model, const FrameInputs& inputs, const S
   if (reached <= inertia && !model.energy_may_be_negative) return;
   const Stopwatch watch;
   if (has_colliders(inputs)) find_contacts_timed(model, inputs, w.trial, w);
-  const Change staying = evaluate(model, w, w.trial, w.trial_energy, nullptr, nullptr, nullptr);
+  Change staying = evaluate(model, w, w.trial, w.trial_energy, nullptr, nullptr, nullptr);
+  staying.value -= friction_energy(w.contact.found, w.contact.stick_length, w.trial);
   report.evaluate_ms += watch.elapsed_ms();
   if (!(staying.value < reached - noise_of(model, reached, extent_of(model, w)))) {
     if (has_colliders(inputs)) w.contact.found.swap(w.contact.earlier);
     return;
   }
   w.x.swap(w.trial);
-  report.decrease += reached - staying.value;
+  report.decrease += reached + rubbed - staying.value;
   const int iterations = report.iterations;
   minimize(model, inputs, w);
   report.iterations += iterations;
