@@ -9,6 +9,7 @@
 #include <random>
 
 #include "geometry/shape.h"
+#include "geometry/skin.h"
 #include "support/surfaces.h"
 
 namespace supple {
@@ -313,12 +314,37 @@ TEST(ShapeClosest, CertaintyTimesTheFieldNeverExceedsTheDistanceToAnEllipsoid) {
   }
 }
 
+TEST(ShapeClosest, CertaintyTimesTheFieldNeverExceedsTheDistanceToWhatIsMadeOfEllipsoids) {
+  const Ellipsoid needle{Vec3(1, 0.2, 0.2)}, disc{Vec3(0.8, 0.8, 0.2)};
+  const ShapeGroup group = {{part_of(needle)}};
+  const NamedShape shapes[] = {
+      {"united", shape_of({part_of(needle), moved(part_of(disc), Vec3(0.5, 0.4, 0))})},
+      {"melted", shape_of({part_of(needle), moved(part_of(disc, Combine::add, 0.3), Vec3(0.5, 0.4, 0))})},
+      {"melted groups", shape_of({part_of(group), moved(part_of(Sphere{0.3}, Combine::add, 0.4), Vec3(1.2, 0.1, 0))})},
+      {"cut with a blend", shape_of({part_of(Sphere{0.8}), moved(part_of(disc, Combine::cut, 0.3), Vec3(0, 0, 0.7))})}};
+  for (const auto& [name, shape] : shapes) {
+    const Positions surface = contour(shape, 0.03).points;
+    std::mt19937 random(9);
+    double worst = 0;
+    for (int i = 0; i < 3000; ++i) {
+      const Vec3 p = random_in(random, Vec3::Constant(i % 2 ? 1.2 : 4));
+      const double sampled_distance = distance_by_brute_force(surface, p);
+      if (sampled_distance < 0.05) continue;  // the samples are 0.03 apart
+      worst = std::max(worst, std::abs(shape.distance(p)) * shape.certainty() / sampled_distance);
+    }
+    EXPECT_LT(worst, 1) << name;
+    EXPECT_GT(worst, 0.02) << name;
+  }
+}
+
 TEST(ShapeClosest, CertaintyIsThatOfTheLeastCertainPart) {
   for (const auto& [name, shape] : exact_shapes()) EXPECT_EQ(shape.certainty(), 1) << name;
-  const ShapeGroup inner = {{part_of(Sphere{1}), part_of(Ellipsoid{Vec3(1, 0.5, 0.8)}, Combine::cut)}};
+  const Ellipsoid egg{Vec3(1, 0.5, 0.8)};
+  const ShapeGroup inner = {{part_of(Sphere{1}), part_of(egg, Combine::cut)}};
   ShapePart small = part_of(inner);
   small.scale = 0.1;
   EXPECT_EQ(shape_of({part_of(Ellipsoid{Vec3(2, 1.5, 2)}), small}).certainty(), 0.5);
+  EXPECT_EQ(shape_of({part_of(Sphere{1}), part_of(egg, Combine::add, 0.1)}).certainty(), 0.25);
   EXPECT_EQ(shape_of({part_of(Sphere{1}), part_of(Box{Vec3::Ones(), 0}, Combine::add, 0.2)}).certainty(), 1);
 }
 

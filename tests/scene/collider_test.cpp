@@ -118,8 +118,13 @@ TEST(ColliderFile, EachProblemIsSaidOnceWithItsPlace) {
       problems_with("[[collider]]\nshape = \"shapes/squirel.toml\"\n"),
       Messages{"scene.toml:5:9: shape = 'shapes/squirel.toml': no such file (looked for shapes/squirel.toml and " +
                (test::assets / "shapes/squirel.toml").string() + ")"});
-  EXPECT_EQ(problems_with("[[collider]]\nname = \"a b\"\n" + ball),
-            Messages{"scene.toml:5:8: name = 'a b': must be a word without spaces, dots and slashes"});
+  for (const char* name : {"a b", "a.b", "a,b", "a/b", ""})
+    EXPECT_EQ(problems_with(fmt::format("[[collider]]\nname = \"{}\"\n{}", name, ball)),
+              Messages{fmt::format("scene.toml:5:8: name = '{}': must be a word without spaces, dots, commas, quotes "
+                                   "and slashes",
+                                   name)});
+  EXPECT_EQ(problems_with("[[collider]]\nshape = { sphere = { radius = 1 }, op = \"cut\" }\n"),
+            Messages{"scene.toml:5:41: op: the first part must be added; there is nothing to cut or intersect yet"});
   EXPECT_EQ(problems_with("[[collider]]\n" + ball + "friction = -0.1\n"),
             Messages{"scene.toml:6:12: friction = -0.1: must be 0 to 100"});
   EXPECT_EQ(problems_with("[[collider]]\n" + ball + "thickness = -1\n"),
