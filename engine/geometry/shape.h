@@ -102,9 +102,10 @@ struct Shape {
   Vec3 gradient(const Vec3& point, double step) const;  // central differences over +-step
   Bounds bounds() const;                                // conservative; unbounded shapes give an extent above 1e6
 
-  // The surface's closest point. Exact for single primitives other than the ellipsoid; elsewhere a point of the
-  // surface whose normal leads to `point`, found by iteration from the field: the closest one where the depth is below
-  // the surface's radius of curvature.
+  // The surface's closest point. Exact for single primitives; elsewhere a point of the surface whose normal leads to
+  // `point` (but at edges), found by iteration from the field: the closest one where the depth is below the surface's
+  // radius of curvature. Where the field's slope leads to no surface, as between parts that are cut off from each
+  // other, the distance and normal are the field's.
   SurfacePoint closest(const Vec3& point) const;
 
   // The distance to the surface is at least this times |distance(point)|: 1 but for ellipsoids.

@@ -1,6 +1,7 @@
 // Gradients of a shape's field, and its closest points.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "geometry/shape.h"
 
@@ -23,18 +24,37 @@ Vec3 across(const Vec3& axis) {
   return unit(axis.cross(std::abs(axis.x()) < std::abs(axis.y()) ? Vec3::UnitX() : Vec3::UnitY()), Vec3::UnitX());
 }
 
+// The direction from an axis through the origin to p; any one across it where p is on the axis but for round-off, whose
+// direction means nothing.
+Vec3 off_axis(const Vec3& p, const Vec3& axis) {
+  const Vec3 along = unit(axis);
+  const Vec3 radial = p - p.dot(along) * along;
+  return radial.norm() > 1e-14 * p.norm() ? unit(radial - radial.dot(along) * along, across(axis)) : across(axis);
+}
+
 Slope slope_of(const ShapeGroup& group, const Vec3& p);
 
-// Gradients of the primitives' distances, unit vectors. The ellipsoid's is right on its surface, which is where the
-// iteration for its closest point ends.
+// Gradients of the primitives' distances: unit vectors, of the ellipsoid only on its surface.
 Vec3 gradient_of(const Sphere&, const Vec3& p) { return unit(p); }
-Vec3 gradient_of(const Ellipsoid& e, const Vec3& p) { return unit(p.cwiseQuotient(e.radii.cwiseProduct(e.radii))); }
+
+Vec3 gradient_of(const Ellipsoid& e, const Vec3& p) {
+  const Vec3 squares = e.radii.cwiseProduct(e.radii);
+  const double k0 = p.cwiseQuotient(e.radii).norm(), k1 = p.cwiseQuotient(squares).norm();
+  Eigen::Index thin;
+  const double thinnest = e.radii.minCoeff(&thin);
+  if (k1 < 1e-300) return Vec3::Unit(thin);
+  const Vec3 of_k0 = p.cwiseQuotient(squares) / k0;
+  if (k0 < 1 && k0 * thinnest < k1) return thinnest * of_k0;  // where its distance is cut off
+  const Vec3 of_k1 = p.cwiseQuotient(squares.cwiseProduct(squares)) / k1;
+  return ((2 * k0 - 1) * of_k0 - k0 * (k0 - 1) / k1 * of_k1) / k1;
+}
 
 Vec3 gradient_of(const Capsule& c, const Vec3& p) {
   const Vec3 axis = c.to - c.from;
-  const double length2 = axis.squaredNorm();
-  const double along = length2 > 0 ? std::clamp((p - c.from).dot(axis) / length2, 0.0, 1.0) : 0.0;
-  return unit(p - c.from - along * axis, across(axis));
+  const double along = (p - c.from).dot(axis);
+  if (along <= 0) return unit(p - c.from, across(axis));
+  if (along > axis.squaredNorm()) return unit(p - c.to);
+  return off_axis(p - c.from, axis);
 }
 
 // The distance is the smallest |p - c(s)| - r(s) over the balls s in [0, 1] between the ends; the gradient points away
@@ -48,8 +68,11 @@ Vec3 gradient_of(const RoundCone& c, const Vec3& p) {
   const double along = from_p.dot(axis) / length;
   const double radial = (from_p - along / length * axis).norm();
   const double lean = narrowing / length;  // sine of the cone's half angle
-  const double s = std::clamp((along - radial * lean / std::sqrt(1 - lean * lean)) / length, 0.0, 1.0);
-  return unit(from_p - s * axis, across(axis));
+  const double flat = std::sqrt(1 - lean * lean);
+  const double s = (along - radial * lean / flat) / length;
+  if (s < 0) return unit(from_p);
+  if (s > 1) return unit(p - c.to);
+  return unit(flat * off_axis(from_p, axis) + lean / length * axis);
 }
 
 Vec3 gradient_of(const Box& b, const Vec3& p) {
@@ -72,7 +95,8 @@ Vec3 gradient_of(const Cylinder& c, const Vec3& p) {
 
 Vec3 gradient_of(const Torus& t, const Vec3& p) {
   const Vec3 outward = unit(Vec3(p.x(), 0, p.z()), Vec3::UnitX());
-  return unit(p - t.radius * outward);
+  const double radial = std::sqrt(p.x() * p.x() + p.z() * p.z()) - t.radius;
+  return unit(radial * outward + p.y() * Vec3::UnitY());
 }
 
 Vec3 gradient_of(const HalfSpace& h, const Vec3&) { return h.normal; }
@@ -104,10 +128,8 @@ Slope slope_of(const ShapePart& part, const Vec3& p) {
 }
 
 Slope slope_of(const ShapeGroup& group, const Vec3& p) {
-  if (group.parts.empty()) return {1e9, Vec3::UnitY()};
-  Slope slope = slope_of(group.parts.front(), p);
-  for (std::size_t i = 1; i < group.parts.size(); ++i) {
-    const ShapePart& how = group.parts[i];
+  Slope slope = {1e9, Vec3::UnitY()};  // of nothing, as in distance()
+  for (const ShapePart& how : group.parts) {
     const Slope part = slope_of(how, p);
     const double field_sign = how.combine == Combine::add ? 1 : -1;       // of the field so far in the minimum
     const double part_sign = how.combine == Combine::intersect ? -1 : 1;  // of the part
@@ -118,12 +140,65 @@ Slope slope_of(const ShapeGroup& group, const Vec3& p) {
   return slope;
 }
 
-// Whether |field| is the distance to the surface everywhere: one primitive, and not an ellipsoid.
-bool exact(const ShapeGroup& group) {
-  if (group.parts.size() != 1 || group.parts.front().mirror_x) return false;
+// Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid" (2013): the closest point is
+// r_i^2 p_i / (r_i^2 - r_min^2 + s), where s > 0 puts it on the surface. Newton's method on 1 / |q| finds s from below
+// without stepping over it.
+SurfacePoint closest_of(const Ellipsoid& e, const Vec3& p) {
+  const Vec3 squares = e.radii.cwiseProduct(e.radii);
+  const Vec3 y = (p.array().abs() < 1e-150).select(0, p.array().abs());  // products with it don't vanish
+  Eigen::Index thin;
+  const Vec3 above = squares.array() - squares.minCoeff(&thin);  // r_i^2 - r_min^2
+  double s = (e.radii.cwiseProduct(y) - above).maxCoeff();       // one coordinate alone is on the surface
+  Vec3 q = Vec3::Zero();                                         // the closest point over the radii
+  constexpr int most_steps = 50;
+  for (int step = 0; step < most_steps; ++step) {
+    double slope = 0;
+    for (int i = 0; i < 3; ++i) {
+      q[i] = y[i] > 0 ? e.radii[i] * y[i] / (above[i] + s) : 0.0;
+      if (y[i] > 0) slope += q[i] * q[i] / (above[i] + s);
+    }
+    const double size = q.norm();
+    if (size <= 1 || slope <= 0) break;
+    const double next = s + size * size / slope * (size - 1);
+    if (next <= s) break;
+    s = next;
+  }
+  // In the middle of the thinnest axis, too deep for the others: as far above as below.
+  if (y[thin] <= 0 && q.squaredNorm() < 1) q[thin] = std::sqrt(1 - q.squaredNorm());
+  q = unit(q);
+  Vec3 point, normal;
+  for (int i = 0; i < 3; ++i) {
+    point[i] = std::copysign(e.radii[i] * q[i], p[i]);
+    normal[i] = std::copysign(q[i] / e.radii[i], p[i]);
+  }
+  const double sign = p.cwiseQuotient(e.radii).norm() < 1 ? -1 : 1;
+  return {point, unit(normal), sign * (p - point).norm()};
+}
+
+template <class Kind>
+SurfacePoint closest_of(const Kind& primitive, const Vec3& p) {
+  const double field = distance(primitive, p);
+  const Vec3 normal = gradient_of(primitive, p);
+  return {p - field * normal, normal, field};
+}
+SurfacePoint closest_of(const ClosedSurface& s, const Vec3& p) { return s.solid->closest(p); }
+
+// Of one primitive and nothing else: exact.
+std::optional<SurfacePoint> closest_of_one(const ShapeGroup& group, const Vec3& p) {
+  if (group.parts.size() != 1) return std::nullopt;
   const ShapePart& part = group.parts.front();
-  if (const auto* inner = std::get_if<ShapeGroup>(&part.primitive)) return exact(*inner);
-  return !std::holds_alternative<Ellipsoid>(part.primitive);
+  if (part.mirror_x || part.combine != Combine::add) return std::nullopt;
+  const Vec3 local = part.to_local * p / part.scale;
+  std::optional<SurfacePoint> found;
+  if (const auto* inner = std::get_if<ShapeGroup>(&part.primitive)) {
+    found = closest_of_one(*inner, local);
+  } else {
+    found = std::visit([&local](const auto& shape) { return closest_of(shape, local); }, part.primitive);
+  }
+  if (!found) return std::nullopt;
+  const Vec3 normal = part.to_local.linear().transpose() * found->normal;
+  return SurfacePoint{p - part.scale * (part.to_local.linear().transpose() * (local - found->point)), normal,
+                      part.scale * found->distance};
 }
 
 double certainty_of(const ShapeGroup& group) {
@@ -170,35 +245,62 @@ double half_thickness(const Primitive& primitive) {
   return std::visit(Visitor{}, primitive);
 }
 
+// Newton's steps to the zero set; whether they got there.
+bool land(const ShapeGroup& root, Vec3& t, Slope& slope) {
+  constexpr int most_steps = 50;
+  for (int step = 0; step < most_steps; ++step) {
+    if (std::abs(slope.distance) <= 1e-15 * t.norm()) return true;
+    t -= slope.distance / std::max(slope.gradient.squaredNorm(), 0.01) * slope.gradient;
+    slope = slope_of(root, t);
+  }
+  return std::abs(slope.distance) <= 1e-12 * t.norm();
+}
+
+// The part of a way in the tangent plane.
+Vec3 side_of(const Vec3& way, const Slope& slope) {
+  const Vec3 normal = unit(slope.gradient);
+  return way - way.dot(normal) * normal;
+}
+
 }  // namespace
 
 double Shape::half_thickness() const { return thinnest_of(root); }
 double Shape::certainty() const { return certainty_of(root); }
 
 SurfacePoint Shape::closest(const Vec3& point) const {
-  Slope slope = slope_of(root, point);
-  Vec3 normal = unit(slope.gradient);
-  if (exact(root)) return {point - slope.distance * normal, normal, slope.distance};
-  const double sign = slope.distance < 0 ? -1 : 1;
-  constexpr int most_steps = 12;
-  Vec3 t = point;
-  double last_side = 1e300;
-  for (int step = 0; step < most_steps; ++step) {
-    // Newton's step to the zero set; then along the tangent plane until the normal leads to the point.
-    t -= slope.distance / std::max(slope.gradient.squaredNorm(), 0.01) * slope.gradient;
-    slope = slope_of(root, t);
-    normal = unit(slope.gradient);
-    const Vec3 back = point - t;
-    const Vec3 side = back - back.dot(normal) * normal;
-    const double off = side.norm() + std::abs(slope.distance);
-    if (off <= 1e-9 * back.norm() || off <= 1e-12 || side.norm() >= last_side || step + 1 == most_steps) break;
-    last_side = side.norm();
-    t += side;
-    slope = slope_of(root, t);
+  if (const auto found = closest_of_one(root, point)) return *found;
+  const Slope at_point = slope_of(root, point);
+  const double sign = at_point.distance < 0 ? -1 : 1;
+  Vec3 t = point - at_point.distance * at_point.gradient;
+  Slope slope = slope_of(root, t);
+  // The field nowhere rises faster than the distance: a point of the surface as far away as it says is the closest.
+  const double round_off = 1e-14 * (point.norm() + t.norm());
+  if (std::abs(slope.distance) <= round_off && std::abs(at_point.gradient.squaredNorm() - 1) < 1e-12)
+    return {t, at_point.gradient, at_point.distance};
+  t = point;
+  slope = at_point;
+  if (!land(root, t, slope)) {  // no surface in sight: as the field has it
+    const Vec3 normal = unit(at_point.gradient);
+    return {point - at_point.distance * normal, normal, at_point.distance};
   }
-  for (int step = 0; step < 3; ++step) {
-    t -= slope.distance / std::max(slope.gradient.squaredNorm(), 0.01) * slope.gradient;
-    slope = slope_of(root, t);
+  // Along the tangent plane until the normal leads to the point. A step that leads further away, as from beyond the
+  // surface's radius of curvature or over an edge, is made shorter; the others' lengths are those of Barzilai and
+  // Borwein, "Two-point step size gradient methods" (1988).
+  constexpr int most_steps = 40;
+  double length = 1;
+  for (int step = 0; step < most_steps; ++step) {
+    const Vec3 side = side_of(point - t, slope);
+    if (side.norm() <= 1e-10 * (point - t).norm() || side.norm() <= round_off) break;
+    Vec3 next = t + length * side;
+    Slope there = slope_of(root, next);
+    if (!land(root, next, there) || (point - next).norm() > (point - t).norm()) {
+      length *= 0.25;
+      continue;
+    }
+    const double turned = (next - t).dot(side - side_of(point - next, there));
+    length = turned > 0 ? std::clamp((next - t).squaredNorm() / turned, 1e-3, 10.0) : 1;
+    t = next;
+    slope = there;
   }
   return {t, unit(slope.gradient), sign * (point - t).norm()};
 }

@@ -1,9 +1,6 @@
 // The program as a user meets it: exit statuses, messages, and the folder that a run leaves.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -12,38 +9,14 @@
 #include "output/png_file.h"
 #include "output/video.h"
 #include "support/bodies.h"
+#include "support/program.h"
 
 namespace supple {
 namespace {
 
-struct Result {
-  int status;
-  std::string out, err;
-};
-
-// Runs the program in `folder`; with interrupt_after_frame >= 0 it gets SIGINT once that frame's picture exists.
-Result run(const std::filesystem::path& folder, const std::vector<std::string>& arguments,
-           const std::filesystem::path& interrupt_when = {}) {
-  const pid_t child = fork();
-  if (child == 0) {
-    std::filesystem::current_path(folder);
-    (void)!freopen("stdout.txt", "w", stdout);
-    (void)!freopen("stderr.txt", "w", stderr);
-    std::vector<char*> words = {const_cast<char*>(SUPPLE_PROGRAM)};
-    for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
-    words.push_back(nullptr);
-    execv(words[0], words.data());
-    _exit(127);
-  }
-  int status = 0;
-  if (!interrupt_when.empty()) {
-    while (!std::filesystem::exists(interrupt_when) && waitpid(child, &status, WNOHANG) == 0) usleep(2000);
-    kill(child, SIGINT);
-  }
-  waitpid(child, &status, 0);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), test::read_file(folder / "stdout.txt"),
-          test::read_file(folder / "stderr.txt")};
-}
+using test::profile_of;
+using test::Result;
+using test::run;
 
 // A head of 400 vertices, filmed small.
 void write_scene(const std::filesystem::path& path, const std::string& more = "") {
@@ -65,10 +38,6 @@ width = 160
 height = 90
 samples = 1
 )";
-}
-
-nlohmann::json profile_of(const std::filesystem::path& run_folder) {
-  return nlohmann::json::parse(test::read_file(run_folder / "profile.json"));
 }
 
 std::vector<std::string> hashes_of(const std::filesystem::path& run_folder) {

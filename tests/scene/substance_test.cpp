@@ -97,7 +97,7 @@ TEST(Substances, AreRefusedWithWordsThatSayWhatIsAllowed) {
       {"material = \"jelly\"\nstart = { flaten = \"line\" }",
        "scene.toml:4:11: unknown key 'flaten'; did you mean 'flatten'?"},
       {"material = \"jelly\"\nshape = \"shapes/squirrel.toml\"",
-       "scene.toml:1:1: a body needs exactly one of 'shape', 'mesh', 'box' and 'cloth'"},
+       "scene.toml:1:1: a body needs exactly one of 'shape', 'surface', 'mesh', 'box' and 'cloth'"},
       {"",
        "scene.toml:1:1: 'material' is missing: such as material = \"rubber\", or { model = \"neo-hookean\", mu = 1e5, "
        "lambda = 4e5 }"},
