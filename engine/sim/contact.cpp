@@ -154,12 +154,14 @@ void measure_moves(const Model& model, const Positions& x, ContactWork& work) {
   }
 }
 
-// The normal force that friction goes by, the same through a step (Li et al. 2020, section 5.3, lag it too): what the
-// vertex pressed with when the step began, or, where it arrives or comes out of a deep overlap, what stops it alone.
-// The overlap of an iterate would say a force that is many times too large.
+// The normal force that friction goes by (Li et al. 2020, section 5.3, lag it too): what the vertex pressed with when
+// the step began, or, where it arrives or comes out of a deep overlap, no more than stops it alone. The overlap of an
+// iterate would say a force that is many times too large, so it only takes friction away, smoothly, from a vertex that
+// is leaving: with a jump at the surface vertices come and go without end.
 double lagged_force(const Contact& contact, double depth_before, double depth_unhindered, double mass_over_h2) {
-  if (depth_before > 0) return 2 * contact.stiffness * depth_before;
-  return contact.depth > 0 ? mass_over_h2 * std::max(0.0, depth_unhindered) : 0;
+  const double pressing = 2 * contact.stiffness * contact.depth;
+  if (depth_before > 0) return 2 * std::min(contact.stiffness * depth_before, pressing);
+  return std::min(mass_over_h2 * std::max(0.0, depth_unhindered), pressing);
 }
 
 // XXH64 of who touches what.

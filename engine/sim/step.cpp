@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "base/timing.h"
@@ -13,24 +12,8 @@ namespace supple {
 namespace {
 
 constexpr int most_halvings = 30;
-constexpr int most_refusals = 5;         // of trial points for the contacts found there
-constexpr double deepest_start = 0.004;  // overlap that a first iterate may have, over the body's size
+constexpr int most_refusals = 5;  // of trial points for the contacts found there
 constexpr double round_off = std::numeric_limits<double>::epsilon();
-
-bool has_colliders(const FrameInputs& inputs) { return inputs.colliders != nullptr && !inputs.colliders->empty(); }
-
-void find_contacts_timed(const Model& model, const FrameInputs& inputs, const Positions& x, Workspace& w) {
-  const Stopwatch watch;
-  find_contacts(model, inputs, x, w);
-  const double ms = watch.elapsed_ms();
-  w.report.collide_ms += ms;
-  w.report.evaluate_ms -= ms;  // whose stopwatch is running
-}
-
-// x + alpha d for the free vertices; handled ones stay at their targets.
-void set_trial(const Model& model, Workspace& w, double alpha) {
-  w.trial.topRows(model.free) = w.x.topRows(model.free) + alpha * w.direction;
-}
 
 // The largest coordinate: what positions are rounded against.
 double extent_of(const Model& model, const Workspace& w) { return w.x.topRows(model.free).cwiseAbs().maxCoeff(); }
@@ -164,79 +147,6 @@ Descent next_direction(const Model& model, const SolverSettings& solver, Workspa
   }
 }
 
-}  // namespace
-
-void begin_step(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
-  const double h = model.time_step;
-  w.y = (state.x + h * state.v).rowwise() + (model.scheme.force * h * h * inputs.gravity).transpose();
-  if (needs_start(model)) w.q = state.x;
-  w.contact.found.clear();
-  w.contact.earlier.clear();
-  if (has_colliders(inputs)) {
-    const Stopwatch watch;
-    begin_contacts(model, inputs, state.x, w);
-    w.report.collide_ms += watch.elapsed_ms();
-  }
-  w.x = w.y;
-  for (std::size_t i = 0; i < model.handled.size(); ++i) {
-    const std::int32_t v = model.handled[i].vertex;
-    if (v < model.free) {
-      w.target.row(v) = model.scheme.theta < 1 ? inputs.middle_targets.row(i) : inputs.targets.row(i);
-    } else {
-      w.x.row(v) = inputs.targets.row(i);
-    }
-  }
-  if (model.vertices > model.free)
-    w.trial.bottomRows(model.vertices - model.free) = w.x.bottomRows(model.vertices - model.free);
-}
-
-namespace {
-
-// g, its gradient and energies at x, as the report's next objective.
-void evaluate_start(const Model& model, const FrameInputs& inputs, Workspace& w) {
-  const Stopwatch watch;
-  if (has_colliders(inputs)) {
-    find_contacts_timed(model, inputs, w.x, w);
-    keep_contacts(w.contact);
-  }
-  w.report.objective.push_back(evaluate(model, w, w.x, w.energy, &w.gradient, nullptr, nullptr).value);
-  w.report.evaluate_ms += watch.elapsed_ms();
-}
-
-// The first iterate. The paper starts from y; with rows eliminated, y leaves the elements beside a handle torn by all
-// that the handle did not do freely (its keyed motion, and the fall that it did not take), often by more than their
-// size. So the handles' departure from y is spread into the body by the quadratic model that also gives the directions,
-// A_ff d_f = -A_fh d_h: one solve. docs/results.md
-// says what was measured. Costs an evaluation more, because y stays the
-// first iterate where it is the better one. Returns g(y), the handles at their targets, when the first iterate is
-// another one.
-std::optional<double> spread_handles(const Model& model, const FrameInputs& inputs, Workspace& w) {
-  if (model.couplings.empty()) return std::nullopt;
-  Positions& right = w.gradient;
-  right.setZero();
-  for (const Model::Coupling& entry : model.couplings) {
-    right.row(entry.free) -= entry.value * (w.x.row(entry.held) - w.y.row(entry.held));
-  }
-  if (right.isZero(0)) return std::nullopt;
-  Stopwatch watch;
-  model.factor.solve(right.data(), w.direction.data(), w.solve_scratch.data());
-  w.report.solve_ms += watch.lap_ms();
-  if (has_colliders(inputs)) find_contacts_timed(model, inputs, w.x, w);
-  const double at_y = evaluate(model, w, w.x, w.energy, nullptr, nullptr, nullptr).value;
-  w.report.evaluate_ms += watch.lap_ms();
-  set_trial(model, w, 1);
-  w.x.swap(w.trial);
-  evaluate_start(model, inputs, w);
-  if (w.report.objective.back() <= at_y) return at_y;
-  w.x.swap(w.trial);
-  w.report.objective.clear();
-  return std::nullopt;
-}
-
-}  // namespace
-
-namespace {
-
 // The contacts found at the trial point take the place of those that the search went by: in the gradient there, and in
 // the objective by what is returned.
 double take_contacts(Workspace& w) {
@@ -332,17 +242,6 @@ void clear(StepReport& report) {
   report.objective = std::move(kept);
 }
 
-// A first iterate far below a surface would start from torn or inverted elements, or beyond the collider. So the body
-// goes only as far as the first impact and a little further. Returns whether it was stopped.
-bool stop_at_impact(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
-  if (!has_colliders(inputs)) return false;
-  const Stopwatch watch;
-  const double way = free_way(model, inputs, w.x, deepest_start * model.size, w);
-  if (way < 1) w.x.topRows(model.free) = state.x.topRows(model.free) + way * (w.x - state.x).topRows(model.free);
-  w.report.collide_ms += watch.elapsed_ms();
-  return way < 1;
-}
-
 // Where the body was, its handles moved; a body that nothing holds is also carried along with its centre of mass, which
 // costs no elastic energy and keeps its momentum.
 void set_staying(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
@@ -397,10 +296,6 @@ void set_velocity(const Model& model, const Workspace& w, State& state) {
   state.v.bottomRows(held) = (w.x - state.x).bottomRows(held) / h;
 }
 
-}  // namespace
-
-namespace {
-
 void report_contacts(Workspace& w) {
   w.report.contacts = w.contact.counts;
   Positions& force = w.trial_gradient;
@@ -417,17 +312,9 @@ const StepReport& step(const Model& model, const FrameInputs& inputs, State& sta
   StepReport& report = w.report;
   clear(report);
   begin_step(model, inputs, state, w);
-  const std::optional<double> at_y = spread_handles(model, inputs, w);
-  const bool stopped = stop_at_impact(model, inputs, state, w);
-  if (stopped) {
-    report.objective.clear();
-    w.contact.counts = {};
-    w.contact.set_before = w.contact.set_now = 0;
-  }
-  if (stopped || !at_y) evaluate_start(model, inputs, w);
+  const double above_start = set_first_iterate(model, inputs, state, w);
   iterate(model, inputs, w, 0);
   if (!report.failed && inputs.solver.line_search != LineSearch::none) descend_from_staying(model, inputs, state, w);
-  const double above_start = at_y && !stopped ? *at_y - report.objective.front() : 0;  // equation 12 counts from y
   report.error_estimate = as_error(report.remaining_estimate, report.decrease + above_start);
   if (!report.failed && !w.x.allFinite()) fail(model, w, "step", w.x, std::numeric_limits<double>::quiet_NaN());
   if (!report.failed) {

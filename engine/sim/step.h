@@ -1,7 +1,7 @@
 // One time step by quasi-Newton iterations with line search (Liu et al. 2017, algorithms 1 and 2).
 #pragma once
 
-#include "sim/objective.h"
+#include "sim/first_iterate.h"
 
 namespace supple {
 
@@ -9,9 +9,6 @@ namespace supple {
 // how it went. Allocates nothing once the workspace has seen the model. Unless the line search is off, g(new x) <=
 // g(old x): staying is the last resort.
 const StepReport& step(const Model& model, const FrameInputs& inputs, State& state, Workspace& workspace);
-
-// The first part of step(): y, and the targets of handles in y's place, into the workspace. Also leaves x = y.
-void begin_step(const Model& model, const FrameInputs& inputs, const State& state, Workspace& workspace);
 
 // Minimises g from workspace.x; the report's decrease, slope and stop reason tell how far it came. Also stops once a
 // direction promises less than `enough` [J]. For step() and for references.

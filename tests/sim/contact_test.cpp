@@ -8,8 +8,10 @@
 #include <Eigen/Dense>
 
 #include "geometry/tetrahedralize.h"
+#include "geometry/triangle_solid.h"
 #include "sim/step.h"
 #include "support/bodies.h"
+#include "support/surfaces.h"
 
 namespace supple {
 namespace {
@@ -255,7 +257,8 @@ TEST(Contact, OverlapsArePushedOutNoFasterThanAllowed) {
       {"box", shape_of(Box{Vec3(0.6, 0.3, 0.6), 0.02})},
       {"capsule", shape_of(Capsule{Vec3(-0.5, 0, 0), Vec3(0.5, 0, 0), 0.3})},
       {"cylinder", shape_of(Cylinder{0.6, 0.3, 0})},
-      {"torus", shape_of(Torus{0.5, 0.3})}};
+      {"torus", shape_of(Torus{0.5, 0.3})},
+      {"triangles", shape_of(ClosedSurface{std::make_shared<TriangleSolid>(test::sphere_surface(0.5, 20, 14))})}};
   for (const auto& [name, shape] : shapes) {
     const double x = name == "torus" ? 0.5 : 0,
                  top = shape.distance(Vec3(x, 10, 0)) > 9 ? 10 - shape.distance(Vec3(x, 10, 0)) : 0;
