@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "baselines/make_rule.h"
 #include "baselines/reference.h"
 #include "sim/measures.h"
 #include "sim/step.h"
@@ -51,7 +52,8 @@ Actor::Actor(const SceneDef& scene, const Body& body, const Model& model, const 
       state_(start_state(model, body)),
       motion_(folder.motion(body.def.name), model.vertices) {
   inputs_.gravity = scene.gravity;
-  inputs_.solver = body.def.solver.settings;
+  inputs_.solver = settings_of(body.def.solver.method, body.def.solver.settings);
+  rule_ = make_rule(body.def.solver.method, model);
   inputs_.colliders = &set.colliders;
   if (!set.colliders.empty()) surface_ = touching_surface(body, model);
   workspace_.threads = &threads;
@@ -72,7 +74,7 @@ std::string Actor::advance(int frame, bool measure_error, BodyRow& row) {
     set_inputs(done * scene_.time_step(), (done + 1) * scene_.time_step());
     const bool measured = measure_error && substep + 1 == scene_.substeps;
     const State before = measured ? state_ : State{};
-    const StepReport& report = step(model_, inputs_, state_, workspace_);
+    const StepReport& report = step(model_, inputs_, state_, workspace_, *rule_);
     add_up(row, report);
     if (report.failed) return failure_text(frame, body_.def.name, report.failure);
     if (measured) {

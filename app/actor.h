@@ -7,7 +7,7 @@
 #include "output/run_folder.h"
 #include "scene/assemble.h"
 #include "scene/obstacle.h"
-#include "sim/objective.h"
+#include "sim/search_rule.h"
 
 namespace supple {
 
@@ -37,6 +37,7 @@ class Actor {
   Triangles surface_;  // in the model's order; only with colliders
   State state_;
   FrameInputs inputs_;
+  std::unique_ptr<SearchRule> rule_;
   Workspace workspace_, reference_workspace_;
   PointCacheWriter motion_;
 };

@@ -39,15 +39,25 @@ SolverDef read_solver(const ConfigTable& table, const SolverDef& defaults) {
   SolverSettings& s = solver.settings;
   StretchInterval& fit = solver.fit;
   Precision& precision = solver.precision;
-  (void)table.choice({"method", "", "how a step is solved"}, "quasi-newton", {"quasi-newton"});
+  std::vector<std::string> names;
+  for (const MethodInfo& method : methods) names.emplace_back(method.name);
+  solver.method =
+      methods[std::find(names.begin(), names.end(),
+                        table.choice({"method", "", "how a step is solved; all but quasi-newton are for comparison"},
+                                     std::string(info_of(solver.method).name), names)) -
+              names.begin()]
+          .method;
   s.iterations = table.integer({"iterations", "", "quasi-Newton iterations a step, at most"}, s.iterations,
                                Range::between(1, 10000));
   s.history =
       table.integer({"history", "", "window m of L-BFGS; 0 is plain quasi-Newton"}, s.history, Range::between(0, 100));
   const std::string search =
       table.choice({"line_search", "", "how a step length is accepted; none takes every full step"},
-                   s.line_search == LineSearch::armijo ? "armijo" : "none", {"armijo", "none"});
-  s.line_search = search == "armijo" ? LineSearch::armijo : LineSearch::none;
+                   s.line_search == LineSearch::armijo  ? "armijo"
+                   : s.line_search == LineSearch::wolfe ? "wolfe"
+                                                        : "none",
+                   {"armijo", "wolfe", "none"});
+  s.line_search = search == "armijo" ? LineSearch::armijo : search == "wolfe" ? LineSearch::wolfe : LineSearch::none;
   s.armijo = table.number({"armijo", "", "gamma of the sufficient decrease"}, s.armijo, Range::above(0, 0.5));
   s.target_error =
       table.number({"target_error", "", "stop once the solver's own error estimate is below; 0 does all iterations"},

@@ -11,6 +11,7 @@
 #include "geometry/shape.h"
 #include "geometry/skin.h"
 #include "scene/start_state.h"
+#include "sim/method.h"
 #include "sim/state.h"
 
 namespace supple {
@@ -72,6 +73,7 @@ struct ClothDef {
 
 // How a body is solved.
 struct SolverDef {
+  Method method = Method::quasi_newton;
   SolverSettings settings;
   StretchInterval fit;
   Precision precision = Precision::single_precision;

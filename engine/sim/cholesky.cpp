@@ -233,4 +233,60 @@ void CholeskyFactor::solve(const double* b, double* x, double* scratch) const {
   }
 }
 
+struct ChangingFactor::Parts {
+  Cholmod cholmod;
+  cholmod_factor* factor = nullptr;
+  cholmod_dense *solution = nullptr, *y = nullptr, *e = nullptr;  // kept from solve to solve
+  Parts() {
+    cholmod.common.supernodal = CHOLMOD_SUPERNODAL;
+    cholmod.common.method[0].ordering = CHOLMOD_NATURAL;
+    cholmod.common.postorder = 1;
+  }
+  ~Parts() {
+    cholmod_free_dense(&solution, &cholmod.common);
+    cholmod_free_dense(&y, &cholmod.common);
+    cholmod_free_dense(&e, &cholmod.common);
+    cholmod_free_factor(&factor, &cholmod.common);
+  }
+  Parts(const Parts&) = delete;
+  Parts& operator=(const Parts&) = delete;
+};
+
+ChangingFactor::ChangingFactor() = default;
+ChangingFactor::~ChangingFactor() = default;
+ChangingFactor::ChangingFactor(ChangingFactor&&) noexcept = default;
+ChangingFactor& ChangingFactor::operator=(ChangingFactor&&) noexcept = default;
+
+void ChangingFactor::analyze(const Eigen::SparseMatrix<double>& matrix) {
+  parts_ = std::make_unique<Parts>();
+  cholmod_sparse view = view_of(matrix, CHOLMOD_REAL);
+  parts_->factor = cholmod_analyze(&view, &parts_->cholmod.common);
+  if (parts_->factor == nullptr) throw RunError("a matrix could not be analysed: out of memory");
+}
+
+bool ChangingFactor::factorize(const Eigen::SparseMatrix<double>& matrix) {
+  cholmod_sparse view = view_of(matrix, CHOLMOD_REAL);
+  if (!cholmod_factorize(&view, parts_->factor, &parts_->cholmod.common))
+    throw RunError("a matrix could not be factored: out of memory");
+  return parts_->cholmod.common.status != CHOLMOD_NOT_POSDEF && parts_->factor->minor == parts_->factor->n;
+}
+
+void ChangingFactor::solve(const double* b, double* x) {
+  cholmod_dense right{};
+  right.nrow = right.nzmax = right.d = parts_->factor->n;
+  right.ncol = 1;
+  right.x = const_cast<double*>(b);
+  right.xtype = CHOLMOD_REAL;
+  right.dtype = CHOLMOD_DOUBLE;
+  Parts& p = *parts_;
+  if (!cholmod_solve2(CHOLMOD_A, p.factor, &right, nullptr, &p.solution, nullptr, &p.y, &p.e, &p.cholmod.common))
+    throw RunError("a linear system could not be solved: out of memory");
+  const double* found = static_cast<const double*>(p.solution->x);
+  std::copy(found, found + p.factor->n, x);
+}
+
+std::int64_t ChangingFactor::stored_numbers() const {
+  return parts_ && parts_->factor ? static_cast<std::int64_t>(parts_->factor->xsize) : 0;
+}
+
 }  // namespace supple

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <Eigen/SparseCore>
@@ -46,6 +47,29 @@ class CholeskyFactor {
   std::vector<std::int64_t> first_row_, first_value_;
   AlignedVector<float> single_;
   AlignedVector<double> double_;
+};
+
+// A factor that is made anew for each matrix of one pattern: for Newton's method and others whose matrix changes. The
+// pattern is analysed once; numbers by CHOLMOD's supernodal code and its BLAS (one thread), whose last bits depend on
+// the BLAS.
+class ChangingFactor {
+ public:
+  ChangingFactor();
+  ~ChangingFactor();
+  ChangingFactor(ChangingFactor&&) noexcept;
+  ChangingFactor& operator=(ChangingFactor&&) noexcept;
+
+  // Lower triangle; what stands above the diagonal is ignored. Unknowns come in an order of little fill already.
+  void analyze(const Eigen::SparseMatrix<double>& matrix);
+  // False when the matrix is not positive definite; the factor then cannot be used.
+  bool factorize(const Eigen::SparseMatrix<double>& matrix);
+  // x = A^-1 b
+  void solve(const double* b, double* x);
+  std::int64_t stored_numbers() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace supple

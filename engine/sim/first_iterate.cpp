@@ -26,6 +26,7 @@ void set_trial(const Model& model, Workspace& w, double alpha) {
 void begin_step(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
   const double h = model.time_step;
   w.y = (state.x + h * state.v).rowwise() + (model.scheme.force * h * h * inputs.gravity).transpose();
+  w.start = &state.x;
   if (needs_start(model)) w.q = state.x;
   w.contact.found.clear();
   w.contact.earlier.clear();

@@ -4,6 +4,8 @@
 
 #include <xsimd/xsimd.hpp>
 
+#include "sim/elements/tetrahedron_stiffness.h"
+
 #if defined(__FMA__) || defined(__AVX__)
 #include <immintrin.h>
 #endif
@@ -101,6 +103,39 @@ double elements(const ElementChunk& chunk, const double* x, const double* previo
   return dispatch(chunk, [&](const auto& formula) {
     return force != nullptr ? run_blocks<true>(formula, chunk, previous, energy, force, local)
                             : run_blocks<false>(formula, chunk, previous, energy, nullptr, local);
+  });
+}
+
+void stiffness(const ElementChunk& chunk, const double* x, bool project, double* out) {
+  dispatch(chunk, [&]<class Formula>(const Formula& formula) {
+    constexpr int corners = Formula::corners, fields = Formula::fields;
+    constexpr int numbers = packed_size(3 * (corners - 1));
+    for (int block = 0; block < chunk.blocks; ++block) {
+      for (int lane = 0; lane < block_width; lane += lanes) {
+        alignas(64) double gathered[3 * corners][lanes];
+        for (int k = 0; k < corners; ++k) {
+          for (int i = 0; i < lanes; ++i) {
+            const int at = (block * corners + k) * block_width + lane + i;
+            const double* p = x + 3 * long(chunk.vertex[chunk.corner[at]]);
+            for (int c = 0; c < 3; ++c) gathered[3 * k + c][i] = p[c];
+          }
+        }
+        Lanes place[corners][3], field[fields], packed[numbers];
+        for (int k = 0; k < corners; ++k) {
+          for (int c = 0; c < 3; ++c) place[k][c] = Lanes::load_aligned(gathered[3 * k + c]);
+        }
+        for (int i = 0; i < fields; ++i)
+          field[i] = Lanes::load_aligned(chunk.field + (block * fields + i) * block_width + lane);
+        formula.stiffness(place, field, project, packed);
+        alignas(64) double numbers_of[lanes];
+        for (int n = 0; n < numbers; ++n) {
+          packed[n].store_aligned(numbers_of);
+          for (int i = 0; i < lanes; ++i)
+            out[(std::size_t(block) * block_width + lane + i) * numbers + n] = numbers_of[i];
+        }
+      }
+    }
+    return 0.0;
   });
 }
 
@@ -224,6 +259,6 @@ void add_scaled(const double* const* a, const double* c, int count, double* r, l
 
 extern const Kernels SUPPLE_TABLE(SUPPLE_VARIANT);
 const Kernels SUPPLE_TABLE(SUPPLE_VARIANT) = {
-    SUPPLE_TEXT(SUPPLE_VARIANT), elements, solve<float>, solve<double>, dots, add_scaled};
+    SUPPLE_TEXT(SUPPLE_VARIANT), elements, stiffness, solve<float>, solve<double>, dots, add_scaled};
 
 }  // namespace supple

@@ -35,6 +35,11 @@ struct Kernels {
   double (*elements)(const ElementChunk& chunk, const double* x, const double* previous, double* energy, double* force,
                      double* local);
 
+  // Second derivatives of each element's energy, or the nearest positive semi-definite ones: by lane, the packed lower
+  // triangle over the coordinates of all corners but the first (stiffness_numbers of them), whose rows follow from
+  // translations. [N/m]
+  void (*stiffness)(const ElementChunk& chunk, const double* x, bool project, double* out);
+
   // Solves L L^T x = b in place for four interleaved right-hand sides (n x 4), by panels of up to panel_width columns.
   void (*solve_float)(const struct PanelsView& panels, float* x);
   void (*solve_double)(const struct PanelsView& panels, double* x);
@@ -44,6 +49,8 @@ struct Kernels {
   // r += sum_i c_i a_i over [begin, end)
   void (*add_scaled)(const double* const* a, const double* c, int count, double* r, long begin, long end);
 };
+
+constexpr int stiffness_numbers(ElementKind kind) { return kind == ElementKind::tetrahedron ? 45 : 6; }
 
 constexpr int panel_width = 8;
 

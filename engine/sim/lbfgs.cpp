@@ -92,8 +92,8 @@ class ContactPairs {
 
 }  // namespace
 
-double search_direction(const Model& model, const ContactSettings& contact, Workspace& workspace,
-                        const PairHistory& history) {
+double search_direction(const Model& model, const FrameInputs& inputs, Workspace& workspace, const PairHistory& history,
+                        InitialInverse& initial) {
   Stopwatch watch;
   const int count = history.count;
   Pointers s{}, t{};
@@ -101,7 +101,7 @@ double search_direction(const Model& model, const ContactSettings& contact, Work
     s[i] = workspace.step_pairs[history.place(i)].data();
     t[i] = workspace.gradient_pairs[history.place(i)].data();
   }
-  const ContactPairs contacts(model, contact, workspace, s, count);
+  const ContactPairs contacts(model, inputs.solver.contact, workspace, s, count);
   // s_i . t_j of the i-th and j-th newest pairs
   const auto product = [&](int i, int j) {
     return workspace.products[history.place(i) * history.window + history.place(j)] + contacts.product(i, j);
@@ -124,7 +124,7 @@ double search_direction(const Model& model, const ContactSettings& contact, Work
   workspace.report.lbfgs_ms += watch.lap_ms();
 
   Positions& z = workspace.trial_gradient;  // free until the next trial
-  apply_inverse(model, workspace, contact, r, z);
+  initial.apply(model, inputs, workspace, r, z);
   r = z;
   workspace.report.solve_ms += watch.lap_ms();
 
@@ -138,7 +138,7 @@ double search_direction(const Model& model, const ContactSettings& contact, Work
   add_all(model, workspace, s, factor.data(), count, r.data());
   r = -r;
   workspace.report.lbfgs_ms += watch.lap_ms();
-  const bool bent = foresee_contacts(model, contact, workspace);
+  const bool bent = initial.bend(model, inputs, workspace);
   workspace.report.solve_ms += watch.lap_ms();
   double slope = 0;
   Pointers gradient{workspace.gradient.data()};

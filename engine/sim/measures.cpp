@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "sim/element_view.h"
+
 namespace supple {
 namespace {
 
@@ -20,33 +22,6 @@ double largest_eigenvalue(const Mat3& c) {
   return mean + 2 * p * std::cos(std::acos(r) / 3);
 }
 
-// The elements of a chunk, one after the other: each calls visit(lane, corners' positions, fields).
-template <class Visit>
-void for_each_element(const Model& model, const Positions& x, const Visit& visit) {
-  for (const Model::ChunkRange& range : model.chunks) {
-    const std::int32_t* list = model.chunk_vertex.data() + range.first_vertex;
-    const int corners = corners_of(range.kind), fields = fields_of(range.kind);
-    for (int place = 0; place < range.blocks * block_width; ++place) {
-      if (model.element_of_lane[range.first_block * block_width + place] < 0) continue;
-      const std::size_t block = place / block_width, lane = place % block_width;
-      std::array<Vec3, most_corners> corner;
-      std::array<double, most_fields> field{};
-      for (int k = 0; k < corners; ++k)
-        corner[k] = x.row(list[model.corner[range.first_corner + (block * corners + k) * block_width + lane]]);
-      for (int i = 0; i < fields; ++i)
-        field[i] = model.field[range.first_field + (block * fields + i) * block_width + lane];
-      visit(range.kind, corner, field);
-    }
-  }
-}
-
-Mat3 deformation_gradient(const std::array<Vec3, most_corners>& corner, const std::array<double, most_fields>& field) {
-  Mat3 edges, inverse;
-  for (int k = 0; k < 3; ++k) edges.col(k) = corner[k + 1] - corner[0];
-  for (int i = 0; i < 9; ++i) inverse(i / 3, i % 3) = field[i];
-  return edges * inverse;
-}
-
 }  // namespace
 
 Deformation deformation(const Model& model, const Positions& x) {
@@ -55,14 +30,14 @@ Deformation deformation(const Model& model, const Positions& x) {
   stretches.reserve(model.elements);
   double total = 0, volume = 0;
   int solids = 0;
-  for_each_element(model, x, [&](ElementKind kind, const auto& corner, const auto& field) {
+  for_each_element(model, [&](const ElementView& element) {
     double stretch = 0, weight = 0;
-    if (kind == ElementKind::spring) {
-      weight = field[0];
-      stretch = weight > 0 ? (corner[1] - corner[0]).norm() / weight : 1;
+    if (element.kind == ElementKind::spring) {
+      weight = element.field[0];
+      stretch = weight > 0 ? (x.row(element.corner[1]) - x.row(element.corner[0])).norm() / weight : 1;
     } else {
-      const Mat3 f = deformation_gradient(corner, field);
-      weight = field[9];
+      const Mat3 f = deformation_gradient(x, element);
+      weight = element.field[9];
       stretch = std::sqrt(std::max(0.0, largest_eigenvalue(f.transpose() * f)));
       if (f.determinant() < 0) inverted.push_back(weight);
       volume += weight;

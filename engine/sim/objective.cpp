@@ -9,6 +9,7 @@ namespace supple {
 void Workspace::prepare(const Model& model, const SolverSettings& solver) {
   const std::size_t most_values = 2 * (std::size_t(solver.iterations) + 1);  // a step may descend twice
   if (report.objective.capacity() < most_values) report.objective.reserve(most_values);
+  if (report.history.capacity() < most_values) report.history.reserve(most_values);
   if (prepared_for_ == model.id && window_ >= solver.history) return;
   if (prepared_for_ != model.id) correction = {};
   prepared_for_ = model.id;

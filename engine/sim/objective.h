@@ -3,6 +3,7 @@
 #pragma once
 
 #include "base/threads.h"
+#include "base/timing.h"
 #include "sim/contact_direction.h"
 #include "sim/state.h"
 
@@ -16,7 +17,8 @@ struct Workspace {
   Threads* threads = nullptr;  // may be null: one thread
 
   Positions y;                         // inertial prediction, n x 3 [m]
-  Positions q;                         // where the step starts, n x 3 [m]; empty unless the model needs it
+  const Positions* start = nullptr;    // where the step starts, the caller's, n x 3 [m]
+  Positions q;                         // a copy of it, n x 3 [m]; empty unless the model needs it
   Positions middle;                    // where forces are evaluated, n x 3 [m]; empty unless that is not the iterate
   Positions target;                    // of soft handles, by free vertex, n_free x 3 [m]; empty when there are none
   Positions x, trial;                  // current and trial iterates, n x 3 [m]
@@ -32,6 +34,7 @@ struct Workspace {
   ContactWork contact;
   ContactCorrection correction;
   StepReport report;
+  Stopwatch since_entry;  // of the step
 
  private:
   std::uint64_t prepared_for_ = 0;  // Model::id

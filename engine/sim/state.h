@@ -24,7 +24,7 @@ std::uint64_t state_hash(const Model& model, const State& state);
 // Rows of the input file's order.
 Positions in_input_order(const Model& model, const Positions& internal);
 
-enum class LineSearch { armijo, none };
+enum class LineSearch { armijo, wolfe, none };
 
 // Settings that may change between steps.
 struct SolverSettings {
@@ -55,6 +55,17 @@ struct StepFailure {
   std::string what;  // "the position is not finite"
 };
 
+// One iteration, for who looks closer.
+struct IterationRecord {
+  double elapsed_ms = 0;     // since the step was entered
+  double decrease = 0;       // of g [J]
+  double alpha = 1;          // step length
+  struct Full {              // of the full step, alpha = 1
+    bool decreases = true;   // as Armijo's test asks
+    double slope_ratio = 0;  // slope there over slope at the iterate
+  } full;
+};
+
 struct StepReport {
   double step_ms = 0;      // entry to return
   double evaluate_ms = 0;  // energies and gradients
@@ -63,12 +74,13 @@ struct StepReport {
   double collide_ms = 0;   // finding contacts; 0 without colliders
   double other_ms = 0;     // the rest; the five add up to step_ms
   int iterations = 0;
-  int line_search = 0;            // trial evaluations
-  std::vector<double> objective;  // g by iteration, the start first; reserved by the workspace [J]
-  double decrease = 0;            // g(start) - g(end), summed without cancellation [J]
-  double remaining_estimate = 0;  // g(end) - g*, continuing the decreases as they shrank [J]
-  double error_estimate = 0;      // of equation 12, from that
-  double slope = 0;               // tr(grad^T d) of the last direction [J]
+  int line_search = 0;                   // trial evaluations
+  std::vector<double> objective;         // g by iteration, the start first; reserved by the workspace [J]
+  std::vector<IterationRecord> history;  // by iteration
+  double decrease = 0;                   // g(start) - g(end), summed without cancellation [J]
+  double remaining_estimate = 0;         // g(end) - g*, continuing the decreases as they shrank [J]
+  double error_estimate = 0;             // of equation 12, from that
+  double slope = 0;                      // tr(grad^T d) of the last direction [J]
   StopReason stop_reason = StopReason::iterations;
   ContactCounts contacts;
   Vec3 contact_force = Vec3::Zero();  // of all colliders on the body, at the end of the step [N]

@@ -7,81 +7,10 @@
 
 #include "base/timing.h"
 #include "sim/lbfgs.h"
+#include "sim/line_search.h"
 
 namespace supple {
 namespace {
-
-constexpr int most_halvings = 30;
-constexpr int most_refusals = 5;  // of trial points for the contacts found there
-constexpr double round_off = std::numeric_limits<double>::epsilon();
-
-// The largest coordinate: what positions are rounded against.
-double extent_of(const Model& model, const Workspace& w) { return w.x.topRows(model.free).cwiseAbs().maxCoeff(); }
-
-// A direction too short to change the positions' last bits: nothing is left to gain. Also true of the round-off of a
-// body at rest, which must not be integrated into a drift.
-bool below_resolution(const Model& model, const Workspace& w) {
-  const double extent = extent_of(model, w);
-  return w.direction.cwiseAbs().maxCoeff() <= 4 * round_off * std::max(extent, model.size);
-}
-
-// Armijo's test; where the decrease drowns in round-off, its equivalent by slopes, which does not subtract large
-// numbers (Hager and Zhang 2005, "A new conjugate gradient method with guaranteed descent and an efficient line
-// search", equation 4.1).
-bool decreases_by_slope(const Change& change, double slope, double armijo, double noise) {
-  return change.value <= noise && change.slope <= (2 * armijo - 1) * slope;
-}
-
-enum class Search {
-  found,
-  failed,
-  exhausted,  // what the direction promises is below what the gradient's own round-off decides
-};
-
-// Contacts at a trial point that the planes of the search accepted: kept unless they make it worse than where the
-// search began, which it could not see. Friction, whose normal forces are lagged, has no say in that.
-bool contacts_accept(const Model& model, const FrameInputs& inputs, Workspace& w, double change, double noise) {
-  if (!has_colliders(inputs)) return true;
-  find_contacts_timed(model, inputs, w.trial, w);
-  const double jump = contact_energy(w.contact.found, w.trial) - contact_energy(w.contact.earlier, w.trial);
-  return jump <= 0 || change + jump <= noise;
-}
-
-// Tries alpha = 1, 1/2, ... Leaves the accepted point, its gradient and energies in the trial arrays, with the planes
-// of the search; the contacts found there wait in w.contact.found.
-Search search_line(const Model& model, const FrameInputs& inputs, Workspace& w, double slope, double objective,
-                   Change& change) {
-  const SolverSettings& solver = inputs.solver;
-  const double noise = noise_of(model, objective, extent_of(model, w));
-  double alpha = 1;
-  int refused = 0;
-  for (int halving = 0; halving <= most_halvings; ++halving, alpha /= 2) {
-    set_trial(model, w, alpha);
-    const bool by_slope = -alpha * slope < noise / solver.armijo;
-    // The first trial nearly always succeeds: its gradient is the next iterate's. After a rejection the energy alone
-    // decides.
-    const bool with_gradient = halving == 0 || by_slope;
-    change = evaluate(model, w, w.trial, w.trial_energy, with_gradient ? &w.trial_gradient : nullptr, &w.x, &w.energy);
-    ++w.report.line_search;
-    const bool accepted = by_slope ? decreases_by_slope(change, slope, solver.armijo, noise)
-                                   : change.value <= solver.armijo * alpha * slope;
-    if (!accepted || !std::isfinite(change.value)) {
-      // Where slopes drown too, shorter steps only repeat the noise. A thousandth of it is next to nothing of a
-      // distance.
-      if (by_slope && -slope < 1e-3 * noise) return Search::exhausted;
-      continue;
-    }
-    if (!with_gradient) change = evaluate(model, w, w.trial, w.trial_energy, &w.trial_gradient, &w.x, &w.energy);
-    // A shorter step helps against contacts that the planes did not foresee, not where the energy itself jumps (a
-    // vertex that goes round an edge).
-    if (!contacts_accept(model, inputs, w, change.value, noise) && ++refused < most_refusals) {
-      w.contact.found.swap(w.contact.earlier);
-      continue;
-    }
-    return Search::found;
-  }
-  return Search::failed;
-}
 
 // What the remaining decreases would add up to if they went on as they did since objective[first]: the numerator of
 // equation 12 seen from inside [J]. Decreases of quasi-Newton iterations shrink unevenly, so the ratio is averaged over
@@ -136,14 +65,13 @@ struct Descent {
   double slope = 0;
 };
 
-// A direction that leads downhill: L-BFGS, or the plain quasi-Newton one when that fails.
-Descent next_direction(const Model& model, const SolverSettings& solver, Workspace& w, PairHistory& history) {
+// A direction that leads downhill: what the rule says, or what it says once it has forgotten what it learned.
+Descent next_direction(const Model& model, const FrameInputs& inputs, Workspace& w, SearchRule& rule) {
   for (;;) {
-    const double slope = search_direction(model, solver.contact, w, history);
+    const double slope = rule.direction(model, inputs, w);
     if (below_resolution(model, w)) return {true, slope};
     if (slope < 0) return {false, slope};
-    if (history.count == 0) return {true, slope};
-    history.clear();
+    if (!std::isfinite(slope) || !rule.forget()) return {true, slope};
   }
 }
 
@@ -159,21 +87,21 @@ double take_contacts(Workspace& w) {
 }
 
 // The iterations of algorithm 1 from x, whose evaluation is at hand.
-void iterate(const Model& model, const FrameInputs& inputs, Workspace& w, double enough) {
+void iterate(const Model& model, const FrameInputs& inputs, Workspace& w, SearchRule& rule, double enough) {
   const SolverSettings& solver = inputs.solver;
   StepReport& report = w.report;
   Stopwatch watch;
-  PairHistory history{solver.history, 0, -1};
   const std::size_t first = report.objective.size() - 1;
   const double start = report.objective.back();
   double objective = start;
   report.remaining_estimate = 0;
   if (!std::isfinite(objective)) return fail(model, w, "evaluate", w.x, objective);
+  rule.begin(model, inputs, w);
 
   report.stop_reason = StopReason::iterations;
   for (report.iterations = 0; report.iterations < solver.iterations;) {
     watch.lap_ms();
-    const Descent descent = next_direction(model, solver, w, history);
+    const Descent descent = next_direction(model, inputs, w, rule);
     report.slope = descent.slope;
     if (!std::isfinite(descent.slope)) return fail(model, w, "solve", w.x, descent.slope);
     if (descent.done || -descent.slope <= enough) {
@@ -182,20 +110,20 @@ void iterate(const Model& model, const FrameInputs& inputs, Workspace& w, double
     }
     watch.lap_ms();
     Change change{};
+    IterationRecord record;
     if (solver.line_search == LineSearch::none) {
       set_trial(model, w, 1);
       change = evaluate(model, w, w.trial, w.trial_energy, &w.trial_gradient, &w.x, &w.energy);
       ++report.line_search;
       if (has_colliders(inputs)) find_contacts_timed(model, inputs, w.trial, w);
     } else {
-      Search search = search_line(model, inputs, w, descent.slope, objective, change);
+      Search search = search_line(model, inputs, w, descent.slope, objective, change, record);
       report.evaluate_ms += watch.lap_ms();
-      if (search == Search::failed && history.count > 0) {
-        history.clear();
-        const Descent plain = next_direction(model, solver, w, history);
+      if (search == Search::failed && rule.forget()) {
+        const Descent plain = next_direction(model, inputs, w, rule);
         report.slope = plain.slope;
         watch.lap_ms();
-        search = plain.done ? Search::exhausted : search_line(model, inputs, w, plain.slope, objective, change);
+        search = plain.done ? Search::exhausted : search_line(model, inputs, w, plain.slope, objective, change, record);
       }
       if (search != Search::found) {
         report.stop_reason = search == Search::exhausted ? StopReason::round_off : StopReason::line_search_failed;
@@ -203,11 +131,11 @@ void iterate(const Model& model, const FrameInputs& inputs, Workspace& w, double
       }
     }
     report.evaluate_ms += watch.lap_ms();
-    remember_pair(model, solver.contact, w, history);
+    rule.accepted(model, inputs, w);
     if (has_colliders(inputs)) {
       const int changes = w.contact.counts.changes;
       change.value += take_contacts(w);
-      if (solver.contact.history == ContactHistory::dropped && w.contact.counts.changes != changes) history.clear();
+      if (w.contact.counts.changes != changes) rule.contacts_changed(inputs);
     }
     objective += change.value;
     ++report.iterations;
@@ -217,6 +145,9 @@ void iterate(const Model& model, const FrameInputs& inputs, Workspace& w, double
     w.x.swap(w.trial);
     w.gradient.swap(w.trial_gradient);
     w.energy.swap(w.trial_energy);
+    record.decrease = -change.value;
+    record.elapsed_ms = w.since_entry.elapsed_ms();
+    report.history.push_back(record);
     report.lbfgs_ms += watch.lap_ms();
     report.remaining_estimate = estimate_remaining(report, first);
     if (solver.target_error > 0 && as_error(report.remaining_estimate, report.decrease) < solver.target_error) {
@@ -229,17 +160,26 @@ void iterate(const Model& model, const FrameInputs& inputs, Workspace& w, double
 }  // namespace
 
 void minimize(const Model& model, const FrameInputs& inputs, Workspace& w, double enough) {
+  SystemInverse system;
+  LbfgsRule rule(system);
+  minimize(model, inputs, w, rule, enough);
+}
+
+void minimize(const Model& model, const FrameInputs& inputs, Workspace& w, SearchRule& rule, double enough) {
   evaluate_start(model, inputs, w);
-  iterate(model, inputs, w, enough);
+  iterate(model, inputs, w, rule, enough);
 }
 
 namespace {
 
 void clear(StepReport& report) {
   report.objective.clear();
-  std::vector<double> kept = std::move(report.objective);
+  report.history.clear();
+  std::vector<double> objective = std::move(report.objective);
+  std::vector<IterationRecord> history = std::move(report.history);
   report = StepReport{};
-  report.objective = std::move(kept);
+  report.objective = std::move(objective);
+  report.history = std::move(history);
 }
 
 // Where the body was, its handles moved; a body that nothing holds is also carried along with its centre of mass, which
@@ -258,7 +198,8 @@ void set_staying(const Model& model, const FrameInputs& inputs, const State& sta
 // (elements turned inside out by a violent step), descend from there instead. Costs an evaluation only when the inertia
 // of staying cannot settle it, or when the elastic energy may be negative. Friction only takes energy, so its
 // potential, which staying has none of, does not count.
-void descend_from_staying(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
+void descend_from_staying(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w,
+                          SearchRule& rule) {
   StepReport& report = w.report;
   const double rubbed = friction_energy(w.contact.found, w.contact.stick_length, w.x);
   const double reached = report.objective.back() - rubbed;
@@ -280,7 +221,7 @@ void descend_from_staying(const Model& model, const FrameInputs& inputs, const S
   w.x.swap(w.trial);
   report.decrease += reached + rubbed - staying.value;
   const int iterations = report.iterations;
-  minimize(model, inputs, w);
+  minimize(model, inputs, w, rule);
   report.iterations += iterations;
 }
 
@@ -307,14 +248,21 @@ void report_contacts(Workspace& w) {
 }  // namespace
 
 const StepReport& step(const Model& model, const FrameInputs& inputs, State& state, Workspace& w) {
-  Stopwatch whole;
+  SystemInverse system;
+  LbfgsRule rule(system);
+  return step(model, inputs, state, w, rule);
+}
+
+const StepReport& step(const Model& model, const FrameInputs& inputs, State& state, Workspace& w, SearchRule& rule) {
+  w.since_entry = Stopwatch();
   w.prepare(model, inputs.solver);
   StepReport& report = w.report;
   clear(report);
   begin_step(model, inputs, state, w);
   const double above_start = set_first_iterate(model, inputs, state, w);
-  iterate(model, inputs, w, 0);
-  if (!report.failed && inputs.solver.line_search != LineSearch::none) descend_from_staying(model, inputs, state, w);
+  iterate(model, inputs, w, rule, 0);
+  if (!report.failed && inputs.solver.line_search != LineSearch::none)
+    descend_from_staying(model, inputs, state, w, rule);
   report.error_estimate = as_error(report.remaining_estimate, report.decrease + above_start);
   if (!report.failed && !w.x.allFinite()) fail(model, w, "step", w.x, std::numeric_limits<double>::quiet_NaN());
   if (!report.failed) {
@@ -323,7 +271,7 @@ const StepReport& step(const Model& model, const FrameInputs& inputs, State& sta
     state.time += model.time_step;
   }
   if (has_colliders(inputs)) report_contacts(w);
-  report.step_ms = whole.elapsed_ms();
+  report.step_ms = w.since_entry.elapsed_ms();
   report.other_ms = report.step_ms - report.evaluate_ms - report.solve_ms - report.lbfgs_ms - report.collide_ms;
   return report;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim/first_iterate.h"
+#include "sim/search_rule.h"
 
 namespace supple {
 
@@ -10,8 +11,14 @@ namespace supple {
 // g(old x): staying is the last resort.
 const StepReport& step(const Model& model, const FrameInputs& inputs, State& state, Workspace& workspace);
 
+// The same with another rule for directions. A rule belongs to one body; it may remember what it likes from step to
+// step.
+const StepReport& step(const Model& model, const FrameInputs& inputs, State& state, Workspace& workspace,
+                       SearchRule& rule);
+
 // Minimises g from workspace.x; the report's decrease, slope and stop reason tell how far it came. Also stops once a
 // direction promises less than `enough` [J]. For step() and for references.
 void minimize(const Model& model, const FrameInputs& inputs, Workspace& workspace, double enough = 0);
+void minimize(const Model& model, const FrameInputs& inputs, Workspace& workspace, SearchRule& rule, double enough = 0);
 
 }  // namespace supple

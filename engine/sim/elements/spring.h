@@ -23,6 +23,23 @@ struct SpringElement {
     for (int c = 0; c < 3; ++c) force[0][c] = tension * d[c];
     return V(0.5) * stiffness * excess * excess;
   }
+
+  // d^2 E / dx^2 of corner 1 (3 x 3, packed), or the nearest positive semi-definite matrix:
+  // k ((1 - r/l)(1 - n n^T) + n n^T). [N/m]
+  template <class V>
+  void stiffness(const V (&x)[2][3], const V (&field)[fields], bool project, V (&out)[6]) const {
+    using std::max;
+    using std::sqrt;
+    const V d[3] = {x[1][0] - x[0][0], x[1][1] - x[0][1], x[1][2] - x[0][2]};
+    const V length = max(sqrt(madd(d[0], d[0], madd(d[1], d[1], d[2] * d[2]))), V(1e-8) * field[0]);
+    V across = V(1.0) - field[0] / choose(length > V(0.0), length, V(1.0));
+    if (project) across = max(across, V(0.0));
+    const V squared = choose(length > V(0.0), length * length, V(1.0));
+    for (int i = 0, at = 0; i < 3; ++i) {
+      for (int j = 0; j <= i; ++j, ++at)
+        out[at] = field[1] * madd(V(1.0) - across, d[i] * d[j] / squared, i == j ? across : V(0.0));
+    }
+  }
 };
 
 }  // namespace supple

@@ -110,6 +110,10 @@ struct TetrahedronFormula : Tetrahedron {
     }
     return volume * density;
   }
+
+  // tetrahedron_stiffness.h
+  template <class V>
+  void stiffness(const V (&x)[4][3], const V (&field)[fields], bool project, V (&out)[45]) const;
 };
 
 }  // namespace supple

@@ -1,0 +1,46 @@
+// Preconditioned conjugate gradients from zero (Saad 2003, "Iterative methods for sparse linear systems", algorithm
+// 9.1).
+#pragma once
+
+#include <Eigen/Core>
+
+namespace supple {
+
+struct CgScratch {
+  Eigen::VectorXd residual, precond, search, product;
+};
+
+// x = about H^-1 b after at most `iterations`, or once |r| <= tolerance |b|. Where p^T H p <= 0 is met, stops with what
+// there is, or with the preconditioned b when that is nothing yet (Gast et al. 2015, "Optimization integrator for
+// large time steps", section 4). multiply(v, result), precondition(r, z) on Eigen vectors.
+template <class Multiply, class Precondition>
+int conjugate_gradients(const Eigen::VectorXd& b, Eigen::VectorXd& x, int iterations, double tolerance,
+                        const Multiply& multiply, const Precondition& precondition, CgScratch& s) {
+  x.setZero(b.size());
+  s.residual = b;
+  s.precond.resize(b.size());
+  s.product.resize(b.size());
+  precondition(s.residual, s.precond);
+  s.search = s.precond;
+  double rho = s.residual.dot(s.precond);
+  const double enough = tolerance * b.norm();
+  for (int i = 0; i < iterations; ++i) {
+    multiply(s.search, s.product);
+    const double curvature = s.search.dot(s.product);
+    if (!(curvature > 0)) {
+      if (i == 0) x = s.precond;
+      return i;
+    }
+    const double alpha = rho / curvature;
+    x += alpha * s.search;
+    s.residual -= alpha * s.product;
+    if (s.residual.norm() <= enough) return i + 1;
+    precondition(s.residual, s.precond);
+    const double next = s.residual.dot(s.precond);
+    s.search = s.precond + next / rho * s.search;
+    rho = next;
+  }
+  return iterations;
+}
+
+}  // namespace supple

@@ -1,0 +1,60 @@
+// The Hessian of g over the free vertices, 3n x 3n, of which Newton's method and several initial Hessians are made; and
+// A = M/h^2 + L as a matrix, for those that solve it otherwise. Patterns and places are found once a model.
+#pragma once
+
+#include <Eigen/SparseCore>
+
+#include "sim/objective.h"
+
+namespace supple {
+
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
+// Element matrices: the packed lower triangle of each lane (kernels.h), chunks behind each other.
+struct ElementMatrices {
+  AlignedVector<double> numbers;
+  std::vector<std::size_t> first;  // by chunk
+};
+
+// Second derivatives of the elements' energies at x, or the nearest positive semi-definite ones [N/m].
+void element_matrices(const Model& model, Workspace& workspace, const Positions& x, bool project, ElementMatrices& out);
+
+class HessianMatrix {
+ public:
+  explicit HessianMatrix(const Model& model);
+
+  // Lower triangle, entries 3 i + c.
+  const SparseMatrix& matrix() const { return matrix_; }
+
+  // Sums up: w M/h^2, handles' springs and damping always, element matrices as given, and the contacts in force at x,
+  // friction with the stiffness of its secant.
+  void assemble(const Model& model, const ElementMatrices& elements, const ContactWork& contacts, const Positions& x);
+
+  // d^2 g at workspace.x with the contacts found there; with `project` each element's is projected first.
+  void assemble(const Model& model, Workspace& workspace, bool project);
+
+  // result = H v, both of 3 n_free numbers.
+  void multiply(const double* v, double* result) const;
+
+  // Adds to the diagonal [N/m].
+  void shift(double amount);
+
+ private:
+  double* block(std::int32_t row, std::int32_t column);  // 3 x 3 by columns of stride_[column]
+
+  SparseMatrix matrix_;
+  std::vector<std::int32_t> block_begin_, block_row_;  // by block column
+  struct Place {
+    std::int32_t row, column;  // corners of the element; row >= column in the matrix after `swapped`
+    std::int64_t at;           // of the block's first number; -1: a corner is held
+    bool swapped;
+  };
+  std::vector<Place> places_;             // pairs of corners of each lane, in the order of pairs
+  std::vector<std::size_t> first_place_;  // by chunk
+  ElementMatrices scratch_;
+};
+
+// A over the free vertices, all of it (both triangles) [N/m].
+SparseMatrix system_matrix_of(const Model& model);
+
+}  // namespace supple

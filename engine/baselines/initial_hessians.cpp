@@ -1,0 +1,226 @@
+#include "baselines/initial_hessians.h"
+
+#include <Eigen/SVD>
+
+#include "sim/element_view.h"
+
+namespace supple {
+namespace {
+
+Eigen::Map<Eigen::VectorXd> vector_of(Positions& p) { return {p.data(), p.size()}; }
+
+// The rotation of a polar decomposition, det R = 1.
+Mat3 rotation_of(const Mat3& f) {
+  const Eigen::JacobiSVD<Mat3> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Mat3 u = svd.matrixU();
+  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;
+  return u * svd.matrixV().transpose();
+}
+
+// Of the elements around each free vertex, weighted by volume.
+void vertex_rotations(const Model& model, const Positions& x, std::vector<Mat3>& rotation) {
+  rotation.assign(model.free, Mat3::Zero());
+  for_each_element(model, [&](const ElementView& element) {
+    if (element.kind != ElementKind::tetrahedron) return;
+    const Mat3 weighted = element.field[9] * deformation_gradient(x, element);
+    for (const std::int32_t v : element.corner) {
+      if (v < model.free) rotation[v] += weighted;
+    }
+  });
+  for (Mat3& r : rotation) r = r.isZero(0) ? Mat3(Mat3::Identity()) : rotation_of(r);
+}
+
+// r_i <- R_i r_i, or R_i^T r_i.
+void turn(const std::vector<Mat3>& rotation, bool back, Positions& r) {
+  for (std::size_t v = 0; v < rotation.size(); ++v) {
+    const Vec3 row = r.row(static_cast<Eigen::Index>(v));
+    r.row(static_cast<Eigen::Index>(v)) =
+        (back ? Vec3(rotation[v].transpose() * row) : Vec3(rotation[v] * row)).transpose();
+  }
+}
+
+void factorize(HessianMatrix& hessian, ChangingFactor& factor) {
+  double shift = 1e-10 * hessian.matrix().diagonal().mean();
+  while (!factor.factorize(hessian.matrix())) {
+    hessian.shift(shift);
+    shift *= 100;
+  }
+}
+
+HessianMatrix rest_hessian(const Model& model) {
+  HessianMatrix hessian(model);
+  ElementMatrices elements;
+  Workspace scratch;
+  element_matrices(model, scratch, model.rest, true, elements);
+  hessian.assemble(model, elements, {}, model.rest);
+  return hessian;
+}
+
+}  // namespace
+
+void IdentityInverse::accepted(const Model& model, const FrameInputs&, Workspace& w) {
+  const auto s = w.trial.topRows(model.free) - w.x.topRows(model.free);
+  const auto t = w.trial_gradient - w.gradient;
+  const double st = s.cwiseProduct(t).sum(), tt = t.squaredNorm();
+  if (st > 1e-10 * std::sqrt(s.squaredNorm() * tt)) scale_ = st / tt;
+}
+
+void IdentityInverse::apply(const Model& model, const FrameInputs&, Workspace&, Positions& r, Positions& z) {
+  if (scale_ > 0) {
+    z = scale_ * r;
+    return;
+  }
+  const double h2 = model.time_step * model.time_step / model.scheme.inertia;
+  for (int v = 0; v < model.free; ++v) z.row(v) = h2 / model.mass[v] * r.row(v);
+}
+
+RestInverse::RestInverse(const Model& model) {
+  HessianMatrix hessian = rest_hessian(model);
+  factor_.analyze(hessian.matrix());
+  factorize(hessian, factor_);
+}
+
+void RestInverse::apply(const Model&, const FrameInputs&, Workspace&, Positions& r, Positions& z) {
+  factor_.solve(r.data(), z.data());
+}
+
+void WarpedInverse::begin(const Model& model, const FrameInputs&, Workspace& w) {
+  vertex_rotations(model, w.x, rotation_);
+}
+
+void WarpedInverse::apply(const Model& model, const FrameInputs& inputs, Workspace& w, Positions& r, Positions& z) {
+  turn(rotation_, true, r);
+  RestInverse::apply(model, inputs, w, r, z);
+  turn(rotation_, false, z);
+}
+
+FrameInverse::FrameInverse(const Model& model) : hessian_(model) { factor_.analyze(hessian_.matrix()); }
+
+void FrameInverse::begin(const Model& model, const FrameInputs&, Workspace& w) {
+  hessian_.assemble(model, w, true);
+  factorize(hessian_, factor_);
+}
+
+void FrameInverse::apply(const Model&, const FrameInputs&, Workspace&, Positions& r, Positions& z) {
+  factor_.solve(r.data(), z.data());
+}
+
+FrameCgInverse::FrameCgInverse(const Model& model, Preconditioner preconditioner, int iterations)
+    : preconditioner_(preconditioner), iterations_(iterations), hessian_(model) {
+  incomplete_.compute(preconditioner == Preconditioner::rest ? rest_hessian(model).matrix() : system_matrix_of(model));
+}
+
+void FrameCgInverse::begin(const Model& model, const FrameInputs&, Workspace& w) { hessian_.assemble(model, w, true); }
+
+void FrameCgInverse::apply(const Model& model, const FrameInputs&, Workspace&, Positions& r, Positions& z) {
+  right_ = vector_of(r);
+  conjugate_gradients(
+      right_, solution_, iterations_, 0,
+      [&](const Eigen::VectorXd& v, Eigen::VectorXd& result) { hessian_.multiply(v.data(), result.data()); },
+      [&](const Eigen::VectorXd& b, Eigen::VectorXd& x) {
+        if (preconditioner_ == Preconditioner::rest) {
+          x = incomplete_.solve(b);
+          return;
+        }
+        const Eigen::Map<const Positions> from(b.data(), model.free, 3);
+        Eigen::Map<Positions> to(x.data(), model.free, 3);
+        for (int c = 0; c < 3; ++c) to.col(c) = incomplete_.solve(Eigen::VectorXd(from.col(c)));
+      },
+      scratch_);
+  vector_of(z) = solution_;
+}
+
+SystemCgInverse::SystemCgInverse(const Model& model, int iterations)
+    : iterations_(iterations), matrix_(system_matrix_of(model)), inverse_diagonal_(3 * model.free) {
+  const Eigen::VectorXd diagonal = matrix_.diagonal();
+  for (int v = 0; v < model.free; ++v) inverse_diagonal_.segment<3>(3 * v).setConstant(1 / diagonal[v]);
+}
+
+void SystemCgInverse::apply(const Model& model, const FrameInputs&, Workspace&, Positions& r, Positions& z) {
+  right_ = vector_of(r);
+  conjugate_gradients(
+      right_, solution_, iterations_, 0,
+      [&](const Eigen::VectorXd& v, Eigen::VectorXd& result) {
+        Eigen::Map<Positions>(result.data(), model.free, 3).noalias() =
+            matrix_ * Eigen::Map<const Positions>(v.data(), model.free, 3);
+      },
+      [&](const Eigen::VectorXd& b, Eigen::VectorXd& x) { x = inverse_diagonal_.cwiseProduct(b); }, scratch_);
+  vector_of(z) = solution_;
+}
+
+HechtInverse::HechtInverse(const Model& model) : hessian_(model) {
+  Workspace scratch;
+  element_matrices(model, scratch, model.rest, true, rest_);
+  turned_ = rest_;
+  factor_.analyze(hessian_.matrix());
+}
+
+void HechtInverse::begin(const Model& model, const FrameInputs&, Workspace& w) {
+  vertex_rotations(model, *w.start, now_);
+  if (steps_++ % 2 == 0) {
+    factored_ = now_;
+    std::size_t chunk = 0;
+    for_each_element(model, [&](const ElementView& element) {
+      if (element.kind != ElementKind::tetrahedron) return;
+      while (element.lane >= (model.chunks[chunk].first_block + model.chunks[chunk].blocks) * block_width) ++chunk;
+      const std::size_t at =
+          rest_.first[chunk] + std::size_t(element.lane - model.chunks[chunk].first_block * block_width) *
+                                   stiffness_numbers(ElementKind::tetrahedron);
+      const double* from = &rest_.numbers[at];
+      double* to = &turned_.numbers[at];
+      const auto index = [](int i, int j) { return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i; };
+      const Mat3 rotation = rotation_of(deformation_gradient(*w.start, element));
+      for (int a = 0; a < 3; ++a) {
+        for (int b = 0; b <= a; ++b) {
+          Mat3 block;
+          for (int i = 0; i < 3; ++i) {
+            for (int j = 0; j < 3; ++j) block(i, j) = from[index(3 * a + i, 3 * b + j)];
+          }
+          block = rotation * block * rotation.transpose();
+          for (int i = 0; i < 3; ++i) {
+            for (int j = 0; j < (a == b ? i + 1 : 3); ++j) to[index(3 * a + i, 3 * b + j)] = block(i, j);
+          }
+        }
+      }
+    });
+    hessian_.assemble(model, turned_, w.contact, w.x);
+    factorize(hessian_, factor_);
+  }
+  warp_.resize(now_.size());
+  for (std::size_t v = 0; v < now_.size(); ++v) warp_[v] = now_[v] * factored_[v].transpose();
+}
+
+void HechtInverse::apply(const Model&, const FrameInputs&, Workspace&, Positions& r, Positions& z) {
+  turn(warp_, true, r);
+  factor_.solve(r.data(), z.data());
+  turn(warp_, false, z);
+}
+
+ContactMatrixInverse::ContactMatrixInverse(const Model& model)
+    : system_(system_matrix_of(model).triangularView<Eigen::Lower>()), stiffness_(model.free, 0.0) {
+  matrix_ = system_;
+  factor_.analyze(matrix_);
+}
+
+void ContactMatrixInverse::apply(const Model& model, const FrameInputs&, Workspace& w, Positions& r, Positions& z) {
+  std::fill(stiffness_.begin(), stiffness_.end(), 0.0);
+  for (const Contact& contact : w.contact.found) {
+    if (contact.depth > 0) stiffness_[contact.vertex] += 2 * contact.stiffness;
+  }
+  if (stiffness_ != factored_) {
+    matrix_ = system_;
+    for (int v = 0; v < model.free; ++v) {
+      if (stiffness_[v] > 0) matrix_.coeffRef(v, v) += stiffness_[v];
+    }
+    factor_.factorize(matrix_);
+    factored_ = stiffness_;
+  }
+  solution_.resize(model.free);
+  for (int c = 0; c < 3; ++c) {
+    right_ = r.col(c);
+    factor_.solve(right_.data(), solution_.data());
+    z.col(c) = solution_;
+  }
+}
+
+}  // namespace supple

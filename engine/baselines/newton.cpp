@@ -1,0 +1,66 @@
+#include "baselines/newton.h"
+
+#include "base/timing.h"
+
+namespace supple {
+namespace {
+
+double slope_of(const Model& model, const Workspace& w) {
+  return (w.gradient.topRows(model.free).array() * w.direction.topRows(model.free).array()).sum();
+}
+
+}  // namespace
+
+NewtonRule::NewtonRule(const Model& model, Definite definite) : definite_(definite), hessian_(model) {
+  factor_.analyze(hessian_.matrix());
+}
+
+double NewtonRule::direction(const Model& model, const FrameInputs&, Workspace& w) {
+  const Stopwatch watch;
+  hessian_.assemble(model, w, definite_ == Definite::projected);
+  if (definite_ == Definite::projected) {
+    // Positive definite but for round-off; a shift of that size then mends it.
+    double shift = 1e-10 * hessian_.matrix().diagonal().mean();
+    while (!factor_.factorize(hessian_.matrix())) {
+      hessian_.shift(shift);
+      shift *= 100;
+    }
+  } else {
+    // Nocedal and Wright 2006, algorithm 3.3; the next iteration tries half of what this one needed.
+    const double least = 1e-3 * hessian_.matrix().diagonal().cwiseAbs().mean();
+    double shift = shift_ / 2 < least ? 0 : shift_ / 2, added = 0;
+    for (;;) {
+      hessian_.shift(shift - added);
+      added = shift;
+      if (factor_.factorize(hessian_.matrix())) break;
+      shift = std::max(2 * shift, least);
+    }
+    shift_ = shift;
+  }
+  factor_.solve(w.gradient.data(), w.direction.data());
+  w.direction = -w.direction;
+  w.report.solve_ms += watch.elapsed_ms();
+  return slope_of(model, w);
+}
+
+NewtonCgRule::NewtonCgRule(const Model& model, bool project, int iterations, double tolerance)
+    : project_(project), iterations_(iterations), tolerance_(tolerance), hessian_(model) {}
+
+double NewtonCgRule::direction(const Model& model, const FrameInputs&, Workspace& w) {
+  const Stopwatch watch;
+  hessian_.assemble(model, w, project_);
+  const Eigen::Index count = 3 * model.free;
+  right_ = -Eigen::Map<const Eigen::VectorXd>(w.gradient.data(), count);
+  diagonal_ = hessian_.matrix().diagonal();
+  // An unprojected diagonal may be negative; its size is what scales.
+  diagonal_ = diagonal_.cwiseAbs().cwiseMax(1e-12 * diagonal_.cwiseAbs().maxCoeff());
+  conjugate_gradients(
+      right_, solution_, iterations_, tolerance_,
+      [&](const Eigen::VectorXd& v, Eigen::VectorXd& result) { hessian_.multiply(v.data(), result.data()); },
+      [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) { z = r.cwiseQuotient(diagonal_); }, scratch_);
+  Eigen::Map<Eigen::VectorXd>(w.direction.data(), count) = solution_;
+  w.report.solve_ms += watch.elapsed_ms();
+  return slope_of(model, w);
+}
+
+}  // namespace supple

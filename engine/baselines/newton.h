@@ -1,0 +1,43 @@
+// Newton's method and its kin: the Hessian anew in each iteration.
+#pragma once
+
+#include "baselines/conjugate_gradients.h"
+#include "baselines/hessian.h"
+#include "sim/search_rule.h"
+
+namespace supple {
+
+enum class Definite {
+  projected,  // each element's Hessian to the nearest positive semi-definite one (Teran et al. 2005)
+  shifted,    // a multiple of the identity added until Cholesky succeeds (Martin et al. 2011)
+};
+
+// By supernodal Cholesky; the pattern is analysed once.
+class NewtonRule final : public SearchRule {
+ public:
+  NewtonRule(const Model& model, Definite definite);
+  double direction(const Model& model, const FrameInputs& inputs, Workspace& workspace) override;
+
+ private:
+  Definite definite_;
+  HessianMatrix hessian_;
+  ChangingFactor factor_;
+  double shift_ = 0;
+};
+
+// By conjugate gradients with a Jacobi preconditioner; unprojected, they stop at indefiniteness.
+class NewtonCgRule final : public SearchRule {
+ public:
+  NewtonCgRule(const Model& model, bool project, int iterations, double tolerance);
+  double direction(const Model& model, const FrameInputs& inputs, Workspace& workspace) override;
+
+ private:
+  bool project_;
+  int iterations_;
+  double tolerance_;
+  HessianMatrix hessian_;
+  CgScratch scratch_;
+  Eigen::VectorXd right_, solution_, diagonal_;
+};
+
+}  // namespace supple

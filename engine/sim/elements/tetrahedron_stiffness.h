@@ -1,0 +1,188 @@
+// Second derivatives of a tetrahedron's energy, for Newton's method. In the basis of the singular vectors of F the
+// Hessian of an isotropic density falls apart into a 3 x 3 matrix over the stretches and, for each pair of axes, a flip
+// and a twist (Smith, de Goes, Kim 2019, "Analytic eigensystems for isotropic distortion energies", section 4), so the
+// nearest positive semi-definite matrix (Teran et al. 2005) costs three clamped numbers and a 3 x 3 eigenproblem.
+// Derivatives of the material with respect to stretches come from its own formula (dual.h).
+#pragma once
+
+#include "sim/dual.h"
+#include "sim/elements/tetrahedron.h"
+
+namespace supple {
+
+// Packed lower triangle of a symmetric matrix.
+constexpr int packed_index(int row, int column) { return row * (row + 1) / 2 + column; }
+constexpr int packed_size(int rows) { return rows * (rows + 1) / 2; }
+
+// First and second derivatives of a density with respect to the stretches.
+template <class V>
+struct StretchDerivatives {
+  V slope[3];      // [Pa]
+  V second[3][3];  // [Pa]
+};
+
+template <class M, class V>
+StretchDerivatives<V> stretch_derivatives(const M& material, const V (&s)[3]) {
+  using D = Dual<V>;
+  const D x[3] = {D::variable(s[0], 0), D::variable(s[1], 1), D::variable(s[2], 2)};
+  D slope[3];
+  if constexpr (M::needs == Needs::gradient) {
+    Matrix3<D> f, stress;
+    for (int i = 0; i < 3; ++i) f(i, i) = x[i];
+    material.density(f, stress);
+    for (int i = 0; i < 3; ++i) slope[i] = stress(i, i);
+  } else if constexpr (M::needs == Needs::stretch) {
+    Symmetric3<D> at, stress;
+    at.xx = x[0];
+    at.yy = x[1];
+    at.zz = x[2];
+    material.density(at, stress);
+    slope[0] = stress.xx;
+    slope[1] = stress.yy;
+    slope[2] = stress.zz;
+  } else {
+    material.density(x, slope);
+  }
+  StretchDerivatives<V> result;
+  for (int i = 0; i < 3; ++i) {
+    result.slope[i] = slope[i].value;
+    for (int j = 0; j < 3; ++j) result.second[i][j] = V(0.5) * (slope[i].d[j] + slope[j].d[i]);
+  }
+  return result;
+}
+
+namespace stiffness_detail {
+
+// The nearest positive semi-definite matrix, (H + |H|) / 2 with |H| = V |S| V^T from H = U S V^T.
+template <class V>
+void clamp_eigenvalues(V (&h)[3][3]) {
+  using std::abs;
+  Matrix3<V> matrix;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) matrix(i, j) = h[i][j];
+  }
+  const Svd3<V> parts = svd(matrix);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      V sum = h[i][j];
+      for (int k = 0; k < 3; ++k) sum = madd(parts.v(i, k) * abs(parts.s[k]), parts.v(j, k), sum);
+      h[i][j] = V(0.5) * sum;
+    }
+  }
+}
+
+// out += factor b b^T, packed.
+template <int n, class V>
+void add_outer(const V& factor, const V (&b)[n], V* out) {
+  for (int i = 0; i < n; ++i) {
+    const V scaled = factor * b[i];
+    for (int j = 0; j <= i; ++j) out[packed_index(i, j)] = madd(scaled, b[j], out[packed_index(i, j)]);
+  }
+}
+
+}  // namespace stiffness_detail
+
+// d^2 E / dx^2 of corners 1 to 3 (9 x 9, packed; corner 0 follows from translations), or the nearest positive
+// semi-definite matrix; fibres, too, by their own. Where two stretches cancel (s_i + s_j = 0) a formula in stretches
+// has a kink; the twist is then held at what 1e-8 beside it has. [N/m]
+template <bool with_fibre, class M, class V>
+void tetrahedron_stiffness(const M& material, const Fibre* fibre, const V (&x)[4][3],
+                           const V (&field)[Tetrahedron::fields], bool project, V (&out)[packed_size(9)]) {
+  using std::abs;
+  using std::max;
+  using std::sqrt;
+  using stiffness_detail::add_outer;
+  const V zero(0.0), one(1.0), half(0.5), volume = field[9];
+  Matrix3<V> f;
+  for (int i = 0; i < 3; ++i) {
+    const V edge[3] = {x[1][i] - x[0][i], x[2][i] - x[0][i], x[3][i] - x[0][i]};
+    for (int j = 0; j < 3; ++j) f(i, j) = madd(edge[0], field[j], madd(edge[1], field[3 + j], edge[2] * field[6 + j]));
+  }
+  const Svd3<V> parts = svd(f);
+  StretchDerivatives<V> at = stretch_derivatives(material, parts.s);
+
+  // w(k, p): the rest gradient of corner k+1 along the p-th right singular vector.
+  Matrix3<V> w;
+  for (int k = 0; k < 3; ++k) {
+    for (int p = 0; p < 3; ++p)
+      w(k, p) =
+          madd(field[3 * k], parts.v(0, p), madd(field[3 * k + 1], parts.v(1, p), field[3 * k + 2] * parts.v(2, p)));
+  }
+  for (V& value : out) value = zero;
+  const auto mode = [&](int p, int q, V(&b)[9]) {  // of u_p v_q^T
+    for (int k = 0; k < 3; ++k) {
+      for (int i = 0; i < 3; ++i) b[3 * k + i] = parts.u(i, p) * w(k, q);
+    }
+  };
+  // Flips and twists of each pair.
+  for (int p = 0; p < 3; ++p) {
+    const int q = (p + 1) % 3;
+    const V difference = parts.s[p] - parts.s[q], sum = parts.s[p] + parts.s[q];
+    const V straight = half * (at.second[p][p] + at.second[q][q]), cross = at.second[p][q];
+    const V small = V(1e-5) * max(one, abs(parts.s[0]));
+    const auto equal = abs(difference) < small;
+    V flip = choose(equal, straight - cross, (at.slope[p] - at.slope[q]) / choose(equal, one, difference));
+    const auto opposite = abs(sum) < small;
+    V twist;
+    if constexpr (M::needs == Needs::gradient) {  // smooth in F
+      twist = choose(opposite, straight + cross, (at.slope[p] + at.slope[q]) / choose(opposite, one, sum));
+    } else {
+      const V least = choose(sum < zero, V(-1e-8), V(1e-8));
+      twist = (at.slope[p] + at.slope[q]) / choose(abs(sum) < V(1e-8), least, sum);
+    }
+    if (project) {
+      flip = max(flip, zero);
+      twist = max(twist, zero);
+    }
+    V a[9], b[9], plus[9], minus[9];
+    mode(p, q, a);
+    mode(q, p, b);
+    for (int i = 0; i < 9; ++i) {
+      plus[i] = a[i] + b[i];
+      minus[i] = a[i] - b[i];
+    }
+    add_outer(half * volume * flip, plus, out);
+    add_outer(half * volume * twist, minus, out);
+  }
+  // Stretches.
+  if (project) stiffness_detail::clamp_eigenvalues(at.second);
+  V stretch[3][9];
+  for (int p = 0; p < 3; ++p) mode(p, p, stretch[p]);
+  for (int i = 0; i < 9; ++i) {
+    V along[3];
+    for (int p = 0; p < 3; ++p)
+      along[p] = volume * madd(at.second[p][0], stretch[0][i],
+                               madd(at.second[p][1], stretch[1][i], at.second[p][2] * stretch[2][i]));
+    for (int j = 0; j <= i; ++j) {
+      V& entry = out[packed_index(i, j)];
+      entry = madd(along[0], stretch[0][j], madd(along[1], stretch[1][j], madd(along[2], stretch[2][j], entry)));
+    }
+  }
+  if constexpr (with_fibre) {
+    // kappa ((1 - 1/l)(1 - n n^T) + n n^T) with l = |F d|, n = F d / l
+    const V d[3] = {V(fibre->direction[0]), V(fibre->direction[1]), V(fibre->direction[2])};
+    V n[3], c[3];
+    for (int i = 0; i < 3; ++i) n[i] = madd(f(i, 0), d[0], madd(f(i, 1), d[1], f(i, 2) * d[2]));
+    for (int k = 0; k < 3; ++k) c[k] = madd(field[3 * k], d[0], madd(field[3 * k + 1], d[1], field[3 * k + 2] * d[2]));
+    const V length = max(sqrt(madd(n[0], n[0], madd(n[1], n[1], n[2] * n[2]))), V(1e-8));
+    V across = one - one / length;
+    if (project) across = max(across, zero);
+    for (int i = 0; i < 9; ++i) {
+      for (int j = 0; j <= i; ++j) {
+        const V nn = n[i % 3] * n[j % 3] / (length * length);
+        const V part = madd(one - across, nn, i % 3 == j % 3 ? across : zero);
+        V& entry = out[packed_index(i, j)];
+        entry = madd(V(fibre->kappa) * volume * c[i / 3], c[j / 3] * part, entry);
+      }
+    }
+  }
+}
+
+template <class M, bool with_fibre>
+template <class V>
+void TetrahedronFormula<M, with_fibre>::stiffness(const V (&x)[4][3], const V (&field)[fields], bool project,
+                                                  V (&out)[45]) const {
+  tetrahedron_stiffness<with_fibre>(material, fibre, x, field, project, out);
+}
+
+}  // namespace supple

@@ -1,0 +1,266 @@
+// Second derivatives: elements and the assembled matrix against differences of the gradient, projections against a
+// dense eigenvalue clamp, and the directions that are made of them.
+#include "baselines/hessian.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+
+#include "baselines/make_rule.h"
+#include "sim/element_view.h"
+#include "support/bodies.h"
+#include "support/deformations.h"
+
+namespace supple {
+namespace {
+
+using test::Held;
+
+Eigen::MatrixXd full(const SparseMatrix& lower) {
+  Eigen::MatrixXd dense = Eigen::MatrixXd(lower).selfadjointView<Eigen::Lower>();
+  return dense;
+}
+
+// The Hessian of g by central differences of its gradient, in steps of `step`.
+Eigen::MatrixXd by_differences(const Model& model, Workspace& w, double step) {
+  const int count = 3 * model.free;
+  Eigen::MatrixXd hessian(count, count);
+  const Positions x = w.x;
+  Positions plus(model.free, 3), minus(model.free, 3);
+  for (int i = 0; i < count; ++i) {
+    w.trial = x;
+    w.trial.data()[i] += step;
+    evaluate(model, w, w.trial, w.trial_energy, &plus, nullptr, nullptr);
+    w.trial.data()[i] -= 2 * step;
+    evaluate(model, w, w.trial, w.trial_energy, &minus, nullptr, nullptr);
+    const Positions difference = (plus - minus) / (2 * step);
+    hessian.col(i) = Eigen::Map<const Eigen::VectorXd>(difference.data(), count);
+  }
+  return 0.5 * (hessian + hessian.transpose());
+}
+
+// One tetrahedron, its first vertex held, at a given deformation gradient.
+struct OneTetrahedron {
+  explicit OneTetrahedron(const Material& material, const Fibre& fibre = {}) {
+    BodyDescription body;
+    body.name = "tetrahedron";
+    body.mesh.rest.resize(4, 3);
+    body.mesh.rest << 0.1, 0.2, -0.1, 1.1, 0.3, 0, 0.2, 1.1, 0.1, 0, 0.1, 0.9;
+    body.mesh.tets.resize(1, 4);
+    body.mesh.tets << 0, 1, 2, 3;
+    body.materials = {material};
+    if (fibre.kappa > 0) body.fibres = {fibre};
+    body.density = 1e-6;  // inertia must not hide what the element does
+    body.time_step = 1;
+    body.handles = {{"corner", {0}, 0}};
+    model = build_model(body);
+    w.prepare(model, {});
+    begin_step(model, test::still_inputs(model), rest_state(model), w);
+  }
+  void deform(const Mat3& f) {
+    const Vec3 corner = model.rest.row(3);
+    for (int v = 0; v < 4; ++v) w.x.row(v) = (corner + f * (Vec3(model.rest.row(v)) - corner)).transpose();
+  }
+  Model model;
+  Workspace w;
+};
+
+// A difference over a kink of a formula says nothing; seams of materials are measure zero, cancelling stretches are not
+// met by these kinds.
+TEST(Hessian, OfEveryMaterialIsTheDerivativeOfItsGradient) {
+  std::mt19937 random(1);
+  for (const Material& material : test::all_materials()) {
+    for (const bool fibres : {false, true}) {
+      OneTetrahedron subject(material, fibres ? Fibre{3e3, {0.6, 0, 0.8}} : Fibre{});
+      HessianMatrix hessian(subject.model);
+      double worst = 0;
+      for (const test::Kind& kind : test::kinds) {
+        if (std::string(kind.name) == "small" || std::string(kind.name) == "huge") continue;
+        for (int i = 0; i < 20; ++i) {
+          subject.deform(test::deformation(kind, random));
+          hessian.assemble(subject.model, subject.w, false);
+          const Eigen::MatrixXd exact = full(hessian.matrix());
+          const Eigen::MatrixXd found = by_differences(subject.model, subject.w, 1e-6);
+          const double finer = (found - by_differences(subject.model, subject.w, 3e-6)).norm();
+          if (finer > 1e-5 * found.norm()) continue;  // a seam of the material lies within the step
+          const double error = (exact - found).norm() / found.norm();
+          worst = std::max(worst, error);
+          EXPECT_LT(error, 1e-5) << name_of(material) << (fibres ? " with fibres, " : ", ") << kind.name;
+        }
+      }
+      fmt::print("{:22} {} worst {:.1e}\n", name_of(material), fibres ? "with fibres" : "           ", worst);
+    }
+  }
+}
+
+TEST(Hessian, ProjectionIsTheNearestPositiveSemidefiniteMatrix) {
+  std::mt19937 random(2);
+  for (const Material& material : test::all_materials()) {
+    OneTetrahedron subject(material);
+    // The clamp is of the density's Hessian over F: with rest edges along the axes, F's entries are the corners' own.
+    BodyDescription unit;
+    unit.name = "unit";
+    unit.mesh.rest.resize(4, 3);
+    unit.mesh.rest << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
+    unit.mesh.tets.resize(1, 4);
+    unit.mesh.tets << 0, 1, 2, 3;
+    unit.materials = {material};
+    unit.density = 1e-6;
+    unit.time_step = 1;
+    unit.handles = {{"corner", {0}, 0}};
+    const Model model = build_model(unit);
+    Workspace w;
+    w.prepare(model, {});
+    ElementMatrices raw, projected;
+    const auto dense = [](const ElementMatrices& m) {
+      Eigen::MatrixXd matrix(9, 9);
+      for (int i = 0; i < 9; ++i) {
+        for (int j = 0; j <= i; ++j) matrix(i, j) = matrix(j, i) = m.numbers[i * (i + 1) / 2 + j];
+      }
+      return matrix;
+    };
+    for (const test::Kind& kind : test::kinds) {
+      for (int i = 0; i < 20; ++i) {
+        const Mat3 f = test::deformation(kind, random);
+        Positions x(4, 3);
+        for (int v = 0; v < 4; ++v) x.row(v) = (f * Vec3(model.rest.row(v))).transpose();
+        element_matrices(model, w, x, false, raw);
+        element_matrices(model, w, x, true, projected);
+        const Eigen::MatrixXd matrix = dense(raw);
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix);
+        const Eigen::MatrixXd clamped =
+            eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() * eigen.eigenvectors().transpose();
+        EXPECT_LE((clamped - dense(projected)).norm(), 1e-9 * matrix.norm()) << name_of(material) << ", " << kind.name;
+      }
+    }
+  }
+}
+
+TEST(Hessian, OfAWholeBodyIsTheDerivativeOfItsGradient) {
+  for (const Held held : {Held::nothing, Held::hard_end, Held::spring_end}) {
+    for (const Integrator integrator : {Integrator::backward_euler, Integrator::implicit_midpoint}) {
+      BodyDescription body = test::bar(NeoHookean{1e4, 2e4}, held);
+      body.integrator = integrator;
+      body.damping = 0.01;
+      body.fibres = {{2e4, {1, 0, 0}}};
+      const Model model = build_model(body);
+      Workspace w;
+      w.prepare(model, {});
+      const State state = rest_state(model);
+      FrameInputs inputs = test::still_inputs(model);
+      inputs.middle_targets = inputs.targets;
+      begin_step(model, inputs, state, w);
+      w.x.topRows(model.free) = test::shaken(w.x, 0.01, 3).topRows(model.free);
+      HessianMatrix hessian(model);
+      hessian.assemble(model, w, false);
+      const Eigen::MatrixXd found = by_differences(model, w, 1e-6);
+      EXPECT_LT((full(hessian.matrix()) - found).norm(), 1e-6 * found.norm());
+      Eigen::VectorXd v = Eigen::VectorXd::Random(3 * model.free), product(3 * model.free);
+      hessian.multiply(v.data(), product.data());
+      EXPECT_LT((product - full(hessian.matrix()) * v).norm(), 1e-12 * product.norm());
+    }
+  }
+}
+
+TEST(Hessian, OfSpringsAndContactsIsTheDerivativeOfTheGradient) {
+  const Model model = build_model(test::spring_net(4));
+  Workspace w;
+  w.prepare(model, {});
+  const State state = rest_state(model);
+  const FrameInputs inputs = test::still_inputs(model);
+  begin_step(model, inputs, state, w);
+  w.x = test::shaken(w.x, 0.02, 5);
+  w.contact.stick_length = 1e-3;
+  for (int v = 0; v < 5; ++v) {
+    Contact contact{v, 0, Vec3(0.6, 0, 0.8), 0, 1e3, 0.01};
+    contact.offset = contact.normal.dot(w.x.row(v)) + 0.01;  // in it
+    w.contact.found.push_back(contact);
+  }
+  HessianMatrix hessian(model);
+  hessian.assemble(model, w, false);
+  const Eigen::MatrixXd found = by_differences(model, w, 1e-7);
+  EXPECT_LT((full(hessian.matrix()) - found).norm(), 1e-6 * found.norm());
+  hessian.assemble(model, w, true);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(full(hessian.matrix()));
+  EXPECT_GT(eigen.eigenvalues()[0], 0);
+}
+
+TEST(Hessian, SystemMatrixIsWhatTheModelHasFactored) {
+  for (const Held held : {Held::nothing, Held::hard_end, Held::spring_end}) {
+    BodyDescription body = test::bar(Corotated{1e4, 2e4}, held);
+    body.damping = 0.02;
+    body.fibres = {{2e4, {0, 1, 0}}};
+    const Model model = build_model(body);
+    const SparseMatrix a = system_matrix_of(model);
+    const Positions b = Positions::Random(model.free, 3);
+    Positions x(model.free, 3);
+    std::vector<double> scratch(4 * model.free);
+    model.factor.solve(b.data(), x.data(), scratch.data());
+    EXPECT_LT((a * x - b).norm(), 1e-12 * b.norm());
+    for (int v = 0; v < model.free; ++v) EXPECT_NEAR(a.coeff(v, v), model.diagonal[v], 1e-9 * model.diagonal[v]);
+  }
+}
+
+// Every method, given time, comes to where ours comes, or says that it fell behind.
+TEST(Methods, AllReachTheMinimumOfOneStep) {
+  const Model model = build_model(test::bar(NeoHookean{2e4, 4e4}, Held::hard_end, Precision::double_precision, 2));
+  FrameInputs inputs = test::still_inputs(model);
+  inputs.solver.iterations = 2000;
+  State before = rest_state(model);
+  before.x.topRows(model.free) = test::shaken(before.x, 0.01, 7).topRows(model.free);
+  before.v.topRows(model.free).setConstant(0.5);
+  State solved = before;
+  Workspace w;
+  const double lowest = step(model, inputs, solved, w).objective.back();
+  for (const MethodInfo& info : methods) {
+    const auto rule = make_rule(info.method, model);
+    FrameInputs own = inputs;
+    own.solver = settings_of(info.method, own.solver);
+    own.solver.line_search = LineSearch::armijo;
+    State after = before;
+    Workspace scratch;
+    const StepReport& report = step(model, own, after, scratch, *rule);
+    ASSERT_FALSE(report.failed) << info.name;
+    EXPECT_NEAR(report.objective.back(), lowest, 1e-9 * (report.objective.front() - lowest)) << info.name;
+    EXPECT_LT((after.x - solved.x).cwiseAbs().maxCoeff(), 1e-6 * model.size) << info.name;
+    fmt::print("{:24} {:5} iterations, {:5} trials\n", info.name, report.iterations, report.line_search);
+  }
+}
+
+TEST(Methods, NewtonConvergesQuadratically) {
+  const Model model = build_model(test::bar(NeoHookean{2e4, 4e4}, Held::hard_end, Precision::double_precision, 2));
+  FrameInputs inputs = test::still_inputs(model);
+  inputs.solver = settings_of(Method::newton, inputs.solver);
+  inputs.solver.iterations = 30;
+  State state = rest_state(model);
+  state.v.topRows(model.free).setConstant(0.3);
+  Workspace w;
+  const auto rule = make_rule(Method::newton, model);
+  const StepReport& report = step(model, inputs, state, w, *rule);
+  EXPECT_LE(report.iterations, 9);
+  EXPECT_EQ(report.stop_reason, StopReason::round_off);
+}
+
+// Nocedal and Wright 2006, equations 3.7.
+TEST(LineSearch, WolfeStepsSatisfyBothConditions) {
+  const Model model = build_model(test::bar(NeoHookean{2e4, 4e4}, Held::hard_end, Precision::double_precision, 2));
+  FrameInputs inputs = test::still_inputs(model);
+  inputs.solver.line_search = LineSearch::wolfe;
+  inputs.solver.iterations = 12;
+  State state = rest_state(model);
+  state.v.topRows(model.free) = test::shaken(state.v, 3, 9).topRows(model.free);
+  Workspace w;
+  const StepReport& report = step(model, inputs, state, w);
+  ASSERT_GT(report.iterations, 5);
+  for (std::size_t k = 1; k < report.objective.size(); ++k) EXPECT_LT(report.objective[k], report.objective[k - 1]);
+  for (const IterationRecord& record : report.history) {
+    EXPECT_GT(record.alpha, 0);
+    const bool full_step_does = record.full.decreases && std::abs(record.full.slope_ratio) <= 0.9;
+    EXPECT_TRUE(!full_step_does || record.alpha == 1);
+    EXPECT_TRUE(record.full.decreases || record.alpha < 1);
+  }
+}
+
+}  // namespace
+}  // namespace supple
