@@ -1,0 +1,47 @@
+#include "output/markup.h"
+
+#include <algorithm>
+
+namespace supple {
+
+std::string markup_text(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&': result += "&amp;"; break;
+      case '<': result += "&lt;"; break;
+      case '>': result += "&gt;"; break;
+      case '"': result += "&quot;"; break;
+      case '\'': result += "&#39;"; break;
+      default: result += static_cast<unsigned char>(c) < 32 && c != '\t' && c != '\n' ? ' ' : c;
+    }
+  }
+  return result;
+}
+
+std::string with_id_prefix(std::string_view markup, const std::string& prefix) {
+  constexpr std::string_view places[] = {" id=\"", " id='", "href=\"#", "href='#", "url(#"};
+  std::string result;
+  bool in_tag = false;
+  for (std::size_t i = 0; i < markup.size();) {
+    if (markup[i] == '<') in_tag = true;
+    if (markup[i] == '>') in_tag = false;
+    const auto* place = std::find_if(std::begin(places), std::end(places),
+                                     [&](std::string_view p) { return in_tag && markup.substr(i, p.size()) == p; });
+    if (place == std::end(places)) {
+      result += markup[i++];
+    } else {
+      result += *place;
+      result += prefix;
+      i += place->size();
+    }
+  }
+  return result;
+}
+
+std::size_t count_signs(std::string_view text) {
+  return std::size_t(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+}  // namespace supple
