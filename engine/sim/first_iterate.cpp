@@ -23,9 +23,13 @@ void set_trial(const Model& model, Workspace& w, double alpha) {
   w.trial.topRows(model.free) = w.x.topRows(model.free) + alpha * w.direction;
 }
 
-void begin_step(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
+void inertial_prediction(const Model& model, const FrameInputs& inputs, const State& state, Positions& y) {
   const double h = model.time_step;
-  w.y = (state.x + h * state.v).rowwise() + (model.scheme.force * h * h * inputs.gravity).transpose();
+  y = (state.x + h * state.v).rowwise() + (model.scheme.force * h * h * inputs.gravity).transpose();
+}
+
+void begin_step(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
+  inertial_prediction(model, inputs, state, w.y);
   w.start = &state.x;
   if (needs_start(model)) w.q = state.x;
   w.contact.found.clear();

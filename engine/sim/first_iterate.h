@@ -9,6 +9,9 @@ inline bool has_colliders(const FrameInputs& inputs) {
   return inputs.colliders != nullptr && !inputs.colliders->empty();
 }
 
+// y = q + h v + f h^2 M^-1 f_ext of every vertex, in the model's order [m].
+void inertial_prediction(const Model& model, const FrameInputs& inputs, const State& state, Positions& y);
+
 // The first part of step(): y, and the targets of handles in y's place, into the workspace. Also leaves x = y.
 void begin_step(const Model& model, const FrameInputs& inputs, const State& state, Workspace& workspace);
 

@@ -1,0 +1,36 @@
+#include "sim/step_problem.h"
+
+#include "base/error.h"
+#include "sim/first_iterate.h"
+
+namespace supple {
+
+StepProblem problem_of(const BodyDescription& body, const Model& model, const FrameInputs& inputs, const State& state) {
+  SUPPLE_CHECK(body.mesh.rest.rows(), ==, model.vertices);
+  SUPPLE_CHECK(inputs.targets.rows(), ==, Eigen::Index(model.handled.size()));
+  StepProblem problem;
+  problem.body = body;
+  for (const SystemStiffness& stiffness : model.stiffness) problem.stiffness.push_back(stiffness.k);
+  problem.mass.resize(model.vertices);
+  for (int i = 0; i < model.vertices; ++i) problem.mass[model.input_of[i]] = model.mass[i];
+  problem.time = state.time;
+  problem.gravity = inputs.gravity;
+  Positions y;
+  inertial_prediction(model, inputs, state, y);
+  problem.q = in_input_order(model, state.x);
+  problem.v = in_input_order(model, state.v);
+  problem.y = in_input_order(model, y);
+  problem.hash = state_hash(model, state);
+  problem.solver = inputs.solver;
+  for (const Model::HandleVertex& held : model.handled)
+    problem.handled.push_back({model.input_of[held.vertex], body.handles[held.handle].spring});
+  problem.targets = inputs.targets;
+  if (model.scheme.theta < 1) problem.middle_targets = inputs.middle_targets;
+  for (std::size_t c = 0; has_colliders(inputs) && c < inputs.colliders->size(); ++c) {
+    const Collider& collider = (*inputs.colliders)[c];
+    problem.colliders.push_back({collider.name, collider.thickness, collider.friction, inputs.collider_motions[c]});
+  }
+  return problem;
+}
+
+}  // namespace supple
