@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "app/state_file.h"
 #include "baselines/make_rule.h"
 #include "baselines/reference.h"
 #include "sim/measures.h"
@@ -49,6 +50,7 @@ Actor::Actor(const SceneDef& scene, const Body& body, const Model& model, const 
       body_(body),
       model_(model),
       set_(set),
+      folder_(folder),
       state_(start_state(model, body)),
       motion_(folder.motion(body.def.name), model.vertices) {
   inputs_.gravity = scene.gravity;
@@ -60,7 +62,9 @@ Actor::Actor(const SceneDef& scene, const Body& body, const Model& model, const 
   reference_workspace_.threads = &threads;
 }
 
-void Actor::set_inputs(double from, double to) {
+void Actor::set_inputs(int frame, int substep) {
+  const double done = static_cast<double>(frame) * scene_.substeps + substep;
+  const double from = done * scene_.time_step(), to = (done + 1) * scene_.time_step();
   handle_targets(model_, body_, to, inputs_.targets);
   if (model_.scheme.theta < 1) handle_targets(model_, body_, 0.5 * (from + to), inputs_.middle_targets);
   collider_motions(set_.obstacles, from, to, inputs_.collider_motions);
@@ -70,8 +74,7 @@ std::string Actor::advance(int frame, bool measure_error, BodyRow& row) {
   row.name = body_.def.name;
   if (!set_.colliders.empty()) row.contact.emplace();
   for (int substep = 0; substep < scene_.substeps; ++substep) {
-    const double done = static_cast<double>(frame) * scene_.substeps + substep;
-    set_inputs(done * scene_.time_step(), (done + 1) * scene_.time_step());
+    set_inputs(frame, substep);
     const bool measured = measure_error && substep + 1 == scene_.substeps;
     const State before = measured ? state_ : State{};
     const StepReport& report = step(model_, inputs_, state_, workspace_, *rule_);
@@ -103,5 +106,11 @@ void Actor::measure(int frame, BodyRow& row) {
 }
 
 void Actor::save_motion() { motion_.add(in_input_order(model_, state_.x)); }
+
+void Actor::save_state(int frame) {
+  set_inputs(frame, 0);
+  write_state(folder_.state(body_.def.name, frame), {scene_.name, scene_.title, frame, frame * scene_.substeps},
+              problem_of(body_.description, model_, inputs_, state_));
+}
 
 }  // namespace supple

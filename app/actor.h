@@ -26,14 +26,18 @@ class Actor {
   // Appends the frame to motion/.
   void save_motion();
 
+  // The problem of a frame's first step, which has not been made yet, into the folder of states. Changes no result.
+  void save_state(int frame);
+
  private:
-  void set_inputs(double from, double to);
+  void set_inputs(int frame, int substep);
   void measure(int frame, BodyRow& row);
 
   const SceneDef& scene_;
   const Body& body_;
   const Model& model_;
   const CollisionSet& set_;
+  const RunFolder& folder_;
   Triangles surface_;  // in the model's order; only with colliders
   State state_;
   FrameInputs inputs_;

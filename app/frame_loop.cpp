@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <exception>
 #include <mutex>
@@ -189,8 +190,10 @@ FilmResult make_film(const SceneDef& scene, const std::vector<Body>& bodies, std
       row.frame = frame;
       row.time_s = (frame + 1) / scene.fps;
       const bool measure_error = options.error_every > 0 && frame % options.error_every == 0;
+      const bool save_states = std::ranges::find(options.save_states, frame) != options.save_states.end();
       std::vector<std::uint64_t> hashes;
       for (const auto& actor : actors) {
+        if (save_states) actor->save_state(frame);
         row.bodies.emplace_back();
         result.message = actor->advance(frame, measure_error, row.bodies.back());
         if (!result.message.empty()) break;

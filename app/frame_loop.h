@@ -16,7 +16,8 @@ namespace supple {
 
 struct FilmOptions {
   int threads = 1;
-  int error_every = 0;  // measure equation 12 every so many frames; 0: never
+  int error_every = 0;           // measure equation 12 every so many frames; 0: never
+  std::vector<int> save_states;  // frames before which the bodies' states are written
   bool images = true;
   bool video = true;
   GlChoice gl = GlChoice::automatic;

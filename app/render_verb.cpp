@@ -24,6 +24,7 @@ struct RenderOptions {
   int threads = 0;
   std::vector<std::string> set;
   int error_every = 0;
+  std::vector<int> save_states;
   long long seed = -1;
   bool no_video = false, no_images = false, quiet = false, json = false;
   std::string gl = "auto";
@@ -76,6 +77,14 @@ int render(const RenderOptions& options, const std::vector<std::string>& command
   if (options.frames > 0) settings.push_back(fmt::format("frames={}", options.frames));
   if (options.seed >= 0) settings.push_back(fmt::format("seed={}", options.seed));
   SceneDef scene = load_scene(info.scene_file, assets_folder(), settings, &info.scene_json);
+  for (const int frame : options.save_states) {
+    if (frame >= scene.frames) {
+      throw InputError(fmt::format("--save-state {}", frame),
+                       scene.frames == 1
+                           ? std::string("the film has one frame, 0")
+                           : fmt::format("the film has {} frames, 0 to {}", scene.frames, scene.frames - 1));
+    }
+  }
   std::vector<Body> bodies = assemble(scene);
   if (!options.quiet) {
     for (const Problem& warning : warnings(scene, bodies)) say(stderr, fmt::format("warning: {}\n", warning.text()));
@@ -95,6 +104,7 @@ int render(const RenderOptions& options, const std::vector<std::string>& command
   FilmOptions film;
   film.threads = options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
   film.error_every = options.error_every;
+  film.save_states = options.save_states;
   film.images = !options.no_images;
   film.video = !options.no_video;
   film.gl = options.gl == "egl" ? GlChoice::egl : options.gl == "osmesa" ? GlChoice::osmesa : GlChoice::automatic;
@@ -162,7 +172,7 @@ void add_render(CLI::App& app, Action& action, const std::vector<std::string>& c
   CLI::App* verb = app.add_subcommand("render", "Simulate a scene and film it.");
   verb->footer(
       "Example: supple render squirrel --frames 60 --set body.polynomial.material.mu=6e4\n"
-      "Leaves frames/, video.mp4, motion/, profile.json and run.json in out/NAME.");
+      "Leaves frames/, video.mp4, motion/, profile.json and run.json in out/NAME, and states/ if asked.");
   verb->add_option("SCENE", options->scene, "scene file, or the name of one that ships (supple list)")->required();
   verb->add_option("--out", options->out, "folder for the results [out/NAME]");
   verb->add_option("--frames", options->frames, "length of the film, over the scene's")->check(CLI::Range(1, 1000000));
@@ -175,6 +185,12 @@ void add_render(CLI::App& app, Action& action, const std::vector<std::string>& c
       ->check(CLI::Range(0, 2000000000));
   verb->add_option("--error-every", options->error_every, "measure the error of equation 12 every N frames (slow)")
       ->check(CLI::Range(1, 1000000));
+  verb->add_option("--save-state", options->save_states,
+                   "frames, such as 10,20: each body's state and problem before it, in states/BODY-NNNNNN/")
+      ->delimiter(',')
+      ->take_all()
+      ->allow_extra_args(false)
+      ->check(CLI::Range(0, 999999));
   verb->add_flag("--no-video", options->no_video, "frames only");
   verb->add_flag("--no-images", options->no_images, "simulate only");
   verb->add_option("--gl", options->gl, "auto, osmesa or egl")->check(CLI::IsMember({"auto", "osmesa", "egl"}));

@@ -35,7 +35,7 @@ RunFolder::RunFolder(const std::filesystem::path& path) : path_(path) {
                        "holds files that no run left there (no run.json); choose another folder or empty it");
     }
   }
-  for (const char* part : {"frames", "motion"}) std::filesystem::remove_all(path / part, error);
+  for (const char* part : {"frames", "motion", "states"}) std::filesystem::remove_all(path / part, error);
   for (const char* part : {"video.mp4", "profile.json"}) std::filesystem::remove(path / part, error);
   for (const char* part : {"frames", "motion"}) {
     std::filesystem::create_directories(path / part, error);
@@ -45,6 +45,10 @@ RunFolder::RunFolder(const std::filesystem::path& path) : path_(path) {
 }
 
 std::filesystem::path RunFolder::frame(int index) const { return frames() / fmt::format("{:06}.png", index); }
+
+std::filesystem::path RunFolder::state(const std::string& body, int frame) const {
+  return path_ / "states" / fmt::format("{}-{:06}", body, frame);
+}
 
 void RunFolder::write_info(const RunInfo& info) const {
   nlohmann::ordered_json json;

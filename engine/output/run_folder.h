@@ -1,4 +1,4 @@
-// The folder that a run leaves behind: run.json, frames/, video.mp4, motion/, profile.json.
+// The folder that a run leaves behind: run.json, frames/, video.mp4, motion/, profile.json, and states/ if asked.
 #pragma once
 
 #include <filesystem>
@@ -35,6 +35,7 @@ class RunFolder {
   std::filesystem::path frame(int index) const;
   std::filesystem::path motion(const std::string& body) const { return path_ / "motion" / (body + ".pc2"); }
   std::filesystem::path colliders() const { return path_ / "motion" / "colliders.csv"; }
+  std::filesystem::path state(const std::string& body, int frame) const;  // a folder
   std::filesystem::path video() const { return path_ / "video.mp4"; }
 
   void write_info(const RunInfo& info) const;
