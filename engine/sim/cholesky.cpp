@@ -1,6 +1,7 @@
 #include "sim/cholesky.h"
 
 #include <cholmod.h>
+#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -264,7 +265,20 @@ void ChangingFactor::analyze(const Eigen::SparseMatrix<double>& matrix) {
   if (parts_->factor == nullptr) throw RunError("a matrix could not be analysed: out of memory");
 }
 
+namespace {
+
+// CHOLMOD's supernodal code opens OpenMP's parallel regions for small loops, whose spinning threads cost more than the
+// whole factorisation where cores are shared. No region of this thread becomes active any more.
+void forbid_openmp_threads() {
+  using SetLevels = void (*)(int);
+  static const auto set_levels = reinterpret_cast<SetLevels>(dlsym(RTLD_DEFAULT, "omp_set_max_active_levels"));
+  if (set_levels != nullptr) set_levels(0);
+}
+
+}  // namespace
+
 bool ChangingFactor::factorize(const Eigen::SparseMatrix<double>& matrix) {
+  forbid_openmp_threads();
   cholmod_sparse view = view_of(matrix, CHOLMOD_REAL);
   if (!cholmod_factorize(&view, parts_->factor, &parts_->cholmod.common))
     throw RunError("a matrix could not be factored: out of memory");
@@ -272,6 +286,7 @@ bool ChangingFactor::factorize(const Eigen::SparseMatrix<double>& matrix) {
 }
 
 void ChangingFactor::solve(const double* b, double* x) {
+  forbid_openmp_threads();
   cholmod_dense right{};
   right.nrow = right.nzmax = right.d = parts_->factor->n;
   right.ncol = 1;
