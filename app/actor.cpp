@@ -82,7 +82,8 @@ std::string Actor::advance(int frame, bool measure_error, BodyRow& row) {
     if (report.failed) return failure_text(frame, body_.def.name, report.failure);
     if (measured) {
       row.error_measured = true;
-      row.error = step_error(model_, inputs_, before, state_, reference_workspace_);
+      if (!reference_) reference_.emplace(model_);
+      row.error = reference_->step_error(model_, inputs_, before, state_, reference_workspace_);
     }
   }
   measure(frame, row);

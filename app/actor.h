@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/threads.h"
+#include "baselines/reference.h"
 #include "output/point_cache.h"
 #include "output/profile.h"
 #include "output/run_folder.h"
@@ -43,6 +44,7 @@ class Actor {
   FrameInputs inputs_;
   std::unique_ptr<SearchRule> rule_;
   Workspace workspace_, reference_workspace_;
+  std::optional<Reference> reference_;  // once an error is asked for
   PointCacheWriter motion_;
 };
 

@@ -2,39 +2,82 @@
 
 #include <cmath>
 
+#include "baselines/newton.h"
+
 namespace supple {
+namespace {
 
-std::optional<double> step_error(const Model& model, const FrameInputs& inputs, const State& before, const State& after,
-                                 Workspace& workspace) {
-  FrameInputs thorough = inputs;
-  thorough.solver = SolverSettings{};
-  thorough.solver.iterations = 5000;
-  thorough.solver.history = 20;
-  thorough.solver.contact = inputs.solver.contact;
-  thorough.solver.contact.direction = ContactDirection::low_rank;
-  workspace.prepare(model, thorough.solver);
-  workspace.report = StepReport{};
-  begin_step(model, thorough, before, workspace);
-  // g(y) - g(x_k), summed as a difference; y with its handles at their targets, whatever the solver started from. Each
-  // point has the contacts that are found there.
-  const double contacts_at_start = contact_energy_at(model, thorough, workspace.x, workspace);
-  const double at_start = evaluate(model, workspace, workspace.x, workspace.energy, nullptr, nullptr, nullptr).value;
-  workspace.trial.topRows(model.free) = after.x.topRows(model.free);
-  double gained =
-      -evaluate(model, workspace, workspace.trial, workspace.trial_energy, nullptr, &workspace.x, &workspace.energy)
-           .value;
-  gained += contacts_at_start - contact_energy_at(model, thorough, workspace.trial, workspace);
+constexpr int newton_iterations = 100;
+constexpr int check_iterations = 300;  // of L-BFGS behind it
+constexpr int slow_iterations = 5000;  // of L-BFGS where Newton's line search gives up (a crease of the contact set)
+// A direction's slope bounds what it can still gain to within a small factor; this is far below the digits that anybody
+// reads.
+constexpr double digits = 1e-12;
 
-  workspace.x.swap(workspace.trial);
-  // A direction's slope bounds what it can still gain to within a small factor; this is far below the digits that
-  // anybody reads.
-  constexpr double digits = 1e-11;
-  minimize(model, thorough, workspace, digits * std::abs(gained));
-  const double remaining = workspace.report.decrease;
-  const double whole = gained + remaining;
-  const double noise = 2 * noise_of(model, at_start, before.x.cwiseAbs().maxCoeff());
-  if (!(whole > noise)) return std::nullopt;
-  return remaining / whole;
+FrameInputs thorough(const FrameInputs& inputs, int iterations, int history) {
+  FrameInputs result = inputs;
+  result.solver = SolverSettings{};
+  result.solver.iterations = iterations;
+  result.solver.history = history;
+  result.solver.contact = inputs.solver.contact;
+  result.solver.contact.direction = ContactDirection::low_rank;
+  return result;
+}
+
+}  // namespace
+
+struct Reference::Parts {
+  explicit Parts(const Model& model) : newton(model, Definite::projected), hessian(model) {
+    factor.analyze(hessian.matrix());
+  }
+  NewtonRule newton;
+  HessianMatrix hessian;
+  ChangingFactor factor;
+};
+
+Reference::Reference(const Model& model) : parts_(std::make_unique<Parts>(model)) {}
+Reference::~Reference() = default;
+
+double gained(const Model& model, const FrameInputs& inputs, const State& before, const Positions& x, Workspace& w) {
+  w.prepare(model, inputs.solver);
+  begin_step(model, inputs, before, w);
+  // Summed as a difference; y with its handles at their targets, whatever the solver started from.
+  const double contacts_at_start = contact_energy_at(model, inputs, w.x, w);
+  evaluate(model, w, w.x, w.energy, nullptr, nullptr, nullptr);
+  w.trial.topRows(model.free) = x.topRows(model.free);
+  const double change = evaluate(model, w, w.trial, w.trial_energy, nullptr, &w.x, &w.energy).value;
+  const double contacts = contacts_at_start - contact_energy_at(model, inputs, w.trial, w);
+  w.x.swap(w.trial);
+  return contacts - change;
+}
+
+Minimum Reference::minimum(const Model& model, const FrameInputs& inputs, const State& before, const Positions& x,
+                           Workspace& w) {
+  const FrameInputs by_newton = thorough(inputs, newton_iterations, 0);
+  const FrameInputs by_lbfgs = thorough(inputs, check_iterations, 20);
+  w.prepare(model, by_lbfgs.solver);
+  w.report = StepReport{};
+  Minimum result;
+  const double reached = gained(model, by_newton, before, x, w);
+  const double enough = digits * std::abs(reached);
+  minimize(model, by_newton, w, parts_->newton, enough);
+  const bool gave_up = w.report.stop_reason == StopReason::line_search_failed;
+  minimize(model, gave_up ? thorough(inputs, slow_iterations, 20) : by_lbfgs, w, enough);
+  result.below_end = w.report.decrease;
+  result.below_y = reached + result.below_end;
+  result.x = w.x;
+  parts_->hessian.assemble(model, w, false);
+  result.positive_definite = parts_->factor.factorize(parts_->hessian.matrix());
+  return result;
+}
+
+std::optional<double> Reference::step_error(const Model& model, const FrameInputs& inputs, const State& before,
+                                            const State& after, Workspace& w) {
+  const Minimum lowest = minimum(model, inputs, before, after.x, w);
+  const double start = evaluate(model, w, w.y, w.trial_energy, nullptr, nullptr, nullptr).value;
+  const double noise = 2 * noise_of(model, start, before.x.cwiseAbs().maxCoeff());
+  if (!(lowest.below_y > noise)) return std::nullopt;
+  return lowest.below_end / lowest.below_y;
 }
 
 }  // namespace supple

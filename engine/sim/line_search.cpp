@@ -47,9 +47,9 @@ Search backtrack(const Model& model, const FrameInputs& inputs, Workspace& w, do
     change = evaluate(model, w, w.trial, w.trial_energy, with_gradient ? &w.trial_gradient : nullptr, &w.x, &w.energy);
     ++w.report.line_search;
     record.alpha = alpha;
-    if (halving == 0) record.full = {change.value <= solver.armijo * slope, change.slope / slope};
     const bool accepted = by_slope ? decreases_by_slope(change, slope, solver.armijo, noise)
                                    : change.value <= solver.armijo * alpha * slope;
+    if (halving == 0) record.full = {accepted, change.slope / slope};
     if (!accepted || !std::isfinite(change.value)) {
       // Where slopes drown too, shorter steps only repeat the noise. A thousandth of it is next to nothing of a
       // distance.

@@ -73,6 +73,7 @@ struct StepReport {
   double lbfgs_ms = 0;     // recursions
   double collide_ms = 0;   // finding contacts; 0 without colliders
   double other_ms = 0;     // the rest; the five add up to step_ms
+  double start_ms = 0;     // until the first iterate was evaluated
   int iterations = 0;
   int line_search = 0;                   // trial evaluations
   std::vector<double> objective;         // g by iteration, the start first; reserved by the workspace [J]

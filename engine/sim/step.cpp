@@ -260,6 +260,7 @@ const StepReport& step(const Model& model, const FrameInputs& inputs, State& sta
   clear(report);
   begin_step(model, inputs, state, w);
   const double above_start = set_first_iterate(model, inputs, state, w);
+  report.start_ms = w.since_entry.elapsed_ms();
   iterate(model, inputs, w, rule, 0);
   if (!report.failed && inputs.solver.line_search != LineSearch::none)
     descend_from_staying(model, inputs, state, w, rule);

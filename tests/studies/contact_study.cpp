@@ -64,6 +64,7 @@ int main(int count, char** arguments) {
   Threads threads(2);
   Workspace usual, trial, reference;
   for (Workspace* w : {&usual, &trial, &reference}) w->threads = &threads;
+  Reference lowest(model);
   int states = 0;
   for (int frame = 0; frame < std::atoi(arguments[5]); ++frame) {
     const double h = scene.time_step();
@@ -82,7 +83,8 @@ int main(int count, char** arguments) {
       variant.failed += varied_report.failed || varied_report.stop_reason == StopReason::line_search_failed;
       variant.trials.push_back(varied_report.line_search);
       variant.ms.push_back(varied_report.step_ms);
-      if (const auto error = step_error(model, varied, before, after, reference)) variant.error.push_back(*error);
+      if (const auto error = lowest.step_error(model, varied, before, after, reference))
+        variant.error.push_back(*error);
       variant.depth.push_back(penetration(set.colliders, inputs.collider_motions, after.x, surface) / model.size);
     }
   }

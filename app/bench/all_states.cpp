@@ -1,0 +1,298 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "app/bench/bench.h"
+#include "app/verbs.h"
+#include "scene/scene_reader.h"
+
+namespace supple {
+namespace {
+
+constexpr int most_vertices = 4000;  // of subjects where every method runs to the end
+
+// Every body of every scene that ships, the smaller ones first.
+std::vector<SubjectChoice> everything() {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(assets_folder() / "scenes"))
+    files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  std::vector<SubjectChoice> choices;
+  for (const auto& file : files) {
+    if (file.extension() != ".toml") continue;
+    for (const BodyDef& body : load_scene(file, assets_folder(), {}).bodies)
+      choices.push_back({file.stem().string(), body.name});
+  }
+  return choices;
+}
+
+struct Entrant {
+  Contestant contestant;
+  std::vector<std::vector<double>> times = {};  // by tolerance, by state; infinity: not reached [ms]
+  int failed = 0;
+};
+
+std::vector<Entrant> entrants() {
+  return {{{"ours", Method::quasi_newton, 200}},
+          {{"Projective Dynamics", Method::projective_dynamics, 300}},
+          {{"Chebyshev", Method::chebyshev, 300}},
+          {{"Newton", Method::newton, 20}},
+          {{"Newton, shifted", Method::newton_shifted, 30}},
+          {{"Newton, 5 CG", Method::newton_cg5, 100}},
+          {{"Newton, 15 CG", Method::newton_cg15, 60}},
+          {{"Gast et al.", Method::gast, 30}},
+          {{"ours, 15 CG", Method::quasi_newton_cg15, 100}},
+          {{"identity", Method::lbfgs_identity, 300}},
+          {{"rest pose", Method::lbfgs_rest, 200}},
+          {{"rest pose, warped", Method::lbfgs_warped, 200}},
+          {{"frame's start", Method::lbfgs_frame, 60}},
+          {{"15 CG, ichol of ours", Method::lbfgs_frame_cg15_ours, 60}}};
+}
+
+constexpr double tolerances[] = {1e-1, 1e-2, 1e-3, 1e-4, 1e-6};
+
+ReportPlot profile_plot(const std::vector<Entrant>& list, std::size_t t, std::size_t states) {
+  ReportPlot plot{fmt::format("profile-{}", t), fmt::format("Share of states solved to {:g}", tolerances[t])};
+  plot.x_label = "time over the fastest method's";
+  plot.y_label = "share of states";
+  plot.log_x = true;
+  plot.log_y = false;
+  plot.style = ReportPlot::Style::steps;
+  plot.x_min = 1;
+  plot.x_max = 100;
+  plot.y_min = 0;
+  plot.y_max = 1;
+  for (const Entrant& entrant : list) {
+    std::vector<double> ratios;
+    for (std::size_t s = 0; s < states; ++s) {
+      double fastest = std::numeric_limits<double>::infinity();
+      for (const Entrant& other : list) fastest = std::min(fastest, other.times[t][s]);
+      if (std::isfinite(entrant.times[t][s])) ratios.push_back(entrant.times[t][s] / fastest);
+    }
+    std::sort(ratios.begin(), ratios.end());
+    PlotSeries curve{entrant.contestant.label};
+    curve.thick = entrant.contestant.label == "ours";
+    curve.x.push_back(1);
+    curve.y.push_back(0);
+    for (std::size_t k = 0; k < ratios.size(); ++k) {
+      curve.x.push_back(ratios[k]);
+      curve.y.push_back(static_cast<double>(k + 1) / static_cast<double>(states));
+    }
+    curve.x.push_back(100);
+    curve.y.push_back(
+        static_cast<double>(std::count_if(ratios.begin(), ratios.end(), [](double r) { return r <= 100; })) /
+        static_cast<double>(states));
+    plot.series.push_back(std::move(curve));
+  }
+  return plot;
+}
+
+ReportTable profile_table(const std::vector<Entrant>& list, std::size_t states) {
+  ReportTable table{"profiles", "States solved, and how often fastest"};
+  table.note =
+      "Solved within the iterations that the method was given: that many of all states, and in how many of them "
+      "no other method was faster.";
+  table.columns = {"method", "iterations at most"};
+  for (const double tolerance : tolerances) {
+    table.columns.push_back(fmt::format("solved to {:g}", tolerance));
+    table.columns.push_back(fmt::format("fastest to {:g}", tolerance));
+  }
+  table.columns.emplace_back("states");
+  table.columns.emplace_back("runs that failed");
+  for (const Entrant& entrant : list) {
+    std::vector<std::string> row = {entrant.contestant.label, std::to_string(entrant.contestant.iterations)};
+    for (std::size_t t = 0; t < std::size(tolerances); ++t) {
+      int solved = 0, first = 0;
+      for (std::size_t s = 0; s < states; ++s) {
+        const double own = entrant.times[t][s];
+        if (!std::isfinite(own)) continue;
+        ++solved;
+        first += std::none_of(list.begin(), list.end(), [&](const Entrant& o) { return o.times[t][s] < own; });
+      }
+      row.push_back(std::to_string(solved));
+      row.push_back(std::to_string(first));
+    }
+    row.push_back(std::to_string(states));
+    row.push_back(std::to_string(entrant.failed));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+}  // namespace
+
+ReportSection bench_profiles(const BenchSetting& setting) {
+  std::vector<Entrant> list = entrants();
+  for (Entrant& entrant : list) entrant.times.resize(std::size(tolerances));
+  ReportTable raw{"profiles-states", "Every state: time to each tolerance"};
+  raw.columns = {"scene",
+                 "body",
+                 "frame",
+                 "state hash",
+                 "method",
+                 "time to 1e-1 [ms]",
+                 "time to 1e-2 [ms]",
+                 "time to 1e-3 [ms]",
+                 "time to 1e-4 [ms]",
+                 "time to 1e-6 [ms]",
+                 "last error",
+                 "minimum confirmed"};
+  std::size_t states_in_all = 0;
+  int bodies = 0, unsure = 0;
+  for (const SubjectChoice& choice : everything()) {
+    const Subject subject(choice);
+    if (subject.model.vertices > most_vertices) continue;
+    ++bodies;
+    Contest contest(subject, *setting.threads);
+    const std::vector<BenchState> states = setting.states_of(subject, {6, 18, 30, 42, 54, 66, 78});
+    const RuleSettings chebyshev = trained_chebyshev(contest, states.front());
+    std::vector<Contestant> contestants;
+    for (const Entrant& entrant : list) {
+      contestants.push_back(entrant.contestant);
+      contestants.back().rule = chebyshev;
+    }
+    for (const BenchState& state : states) {
+      const std::vector<Outcome> outcomes = contest.run(state, contestants, 1, 200);
+      const Minimum lowest = contest.reference(state, outcomes);
+      const double scale = subject.model.total_mass * std::pow(subject.model.size / subject.model.time_step, 2);
+      if (!(lowest.below_y > 1e-12 * scale)) continue;  // at rest: nothing to solve
+      ++states_in_all;
+      unsure += !lowest.positive_definite;
+      for (std::size_t m = 0; m < list.size(); ++m) {
+        std::vector<std::string> row = {choice.scene, choice.body, std::to_string(state.frame),
+                                        fmt::format("{:016x}", state.hash), outcomes[m].label};
+        for (std::size_t t = 0; t < std::size(tolerances); ++t) {
+          list[m].times[t].push_back(time_to(outcomes[m], lowest.below_y, tolerances[t]));
+          row.push_back(number_text(list[m].times[t].back()));
+        }
+        list[m].failed += outcomes[m].failed;
+        const std::vector<double> errors = errors_of(outcomes[m], lowest.below_y);
+        row.push_back(number_text(errors.empty() ? std::nan("") : errors.back()));
+        row.emplace_back(lowest.positive_definite ? "yes" : "no");
+        raw.rows.push_back(std::move(row));
+      }
+    }
+  }
+  ReportSection section{"profiles", "All methods on all states"};
+  section.text = fmt::format(
+      "{} states of {} bodies of up to {} vertices, from all scenes that ship. Performance profiles: for each method "
+      "the "
+      "share of states that it solves within so many times the fastest method's time. The Hessian at the reference, "
+      "nothing projected, has no Cholesky factor in {} of the states (springs or elements under compression, edges of "
+      "contacts).",
+      states_in_all, bodies, most_vertices, unsure);
+  section.tables.push_back(profile_table(list, states_in_all));
+  for (std::size_t t = 0; t < std::size(tolerances); ++t) section.plots.push_back(profile_plot(list, t, states_in_all));
+  write_csv(raw, setting.out);  // too long for the page
+  section.text += " The times of every state are in profiles-states.csv.";
+  return section;
+}
+
+ReportSection bench_scenes(const BenchSetting& setting) {
+  ReportSection section{"scenes", "Error against milliseconds, scene by scene"};
+  section.text = "One state a scene, our meshes; thick is ours.";
+  const std::vector<std::pair<SubjectChoice, int>> picks = {
+      {{"thin-sheet", "sheet"}, 30},   {{"spline-spheres", "a"}, 30}, {{"spline-spheres", "b"}, 30},
+      {{"shaking-bar", "bar"}, 40},    {{"blob", "blob"}, 20},        {{"hippo", "hippo"}, 10},
+      {{"twisting-bar", "bar"}, 90},   {{"cloth", "lbfgs"}, 30},      {{"bunny-torus", "bunny"}, 72},
+      {{"squirrel", "polynomial"}, 35}};
+  ReportTable table{"scenes", "Time to an error"};
+  table.columns = {"scene",        "body",         "frame",        "vertices",     "method",           "to 1e-1 [ms]",
+                   "to 1e-2 [ms]", "to 1e-3 [ms]", "to 1e-4 [ms]", "to 1e-6 [ms]", "minimum confirmed"};
+  for (const auto& [choice, frame] : picks) {
+    const Subject subject(choice);
+    Contest contest(subject, *setting.threads);
+    const BenchState state = setting.states_of(subject, {frame}).front();
+    std::vector<Contestant> contestants = {{"ours", Method::quasi_newton, 100},
+                                           {"Projective Dynamics", Method::projective_dynamics, 100},
+                                           {"Chebyshev", Method::chebyshev, 100},
+                                           {"Newton", Method::newton, 12},
+                                           {"Newton, 15 CG", Method::newton_cg15, 40}};
+    contestants[2].rule = trained_chebyshev(contest, state);
+    const std::vector<Outcome> outcomes = contest.run(state, contestants, 2, 2000);
+    const Minimum lowest = contest.reference(state, outcomes);
+    ReportPlot plot{fmt::format("scene-{}-{}", choice.scene, choice.body),
+                    fmt::format("{}, {} ({})", choice.scene, choice.body, subject.size_text())};
+    plot.x_label = "time [ms]";
+    plot.y_label = "error (equation 12)";
+    plot.log_x = true;
+    plot.y_min = 1e-10;
+    plot.y_max = 2;
+    for (const Outcome& outcome : outcomes) {
+      const std::vector<double> errors = errors_of(outcome, lowest.below_y);
+      PlotSeries curve{outcome.label, outcome.ms, errors};
+      curve.thick = outcome.label == "ours";
+      plot.series.push_back(std::move(curve));
+      std::vector<std::string> row = {choice.scene, choice.body, std::to_string(frame),
+                                      std::to_string(subject.model.vertices), outcome.label};
+      for (const double tolerance : tolerances) row.push_back(number_text(time_to(outcome, lowest.below_y, tolerance)));
+      row.emplace_back(lowest.positive_definite ? "yes" : "no");
+      table.rows.push_back(std::move(row));
+    }
+    section.plots.push_back(std::move(plot));
+  }
+  section.tables.push_back(std::move(table));
+  return section;
+}
+
+ReportSection bench_minima(const BenchSetting& setting) {
+  ReportSection section{"minima", "Whether solvers that converge find the same minimum"};
+  ReportTable table{"minima", "20 states"};
+  table.columns = {"scene",
+                   "body",
+                   "frame",
+                   "method",
+                   "iterations",
+                   "ends",
+                   "furthest vertex [of the size]",
+                   "objective above the lowest [of g(y) - g*]",
+                   "verdict"};
+  const std::vector<SubjectChoice> picks = {{"blob", "blob"},
+                                            {"shaking-bar", "bar"},
+                                            {"spline-spheres", "a"},
+                                            {"spline-spheres", "b"},
+                                            {"thin-sheet", "sheet"}};
+  const std::vector<Contestant> contestants = {{"ours", Method::quasi_newton, 5000, 20},
+                                               {"Newton", Method::newton, 200},
+                                               {"Newton, shifted", Method::newton_shifted, 400},
+                                               {"Newton, 15 CG", Method::newton_cg15, 2000},
+                                               {"Gast et al.", Method::gast, 400},
+                                               {"frame's start", Method::lbfgs_frame, 1000, 20}};
+  int same = 0, other = 0, unfinished = 0;
+  for (const SubjectChoice& choice : picks) {
+    const Subject subject(choice);
+    Contest contest(subject, *setting.threads);
+    for (const BenchState& state : setting.states_of(subject, {15, 30, 45, 60})) {
+      const std::vector<Outcome> outcomes = contest.run(state, contestants, 0);
+      const Minimum lowest = contest.reference(state, outcomes);
+      for (const Outcome& outcome : outcomes) {
+        const double away = (outcome.x - lowest.x).rowwise().norm().maxCoeff() / subject.model.size;
+        const double above = (lowest.below_y - outcome.gained.back()) / lowest.below_y;
+        const bool equal = away < 1e-8;
+        const bool elsewhere =
+            !equal && outcome.iterations < contestants[&outcome - outcomes.data()].iterations && away > 1e-5;
+        same += equal;
+        other += elsewhere;
+        unfinished += !equal && !elsewhere;
+        table.rows.push_back({choice.scene, choice.body, std::to_string(state.frame), outcome.label,
+                              std::to_string(outcome.iterations), outcome.failed ? "failed" : "whole",
+                              number_text(away), number_text(above),
+                              equal       ? "same"
+                              : elsewhere ? "another minimum"
+                                          : "not there yet"});
+      }
+    }
+  }
+  section.text = fmt::format(
+      "Each method ran until round-off or its last iteration. Of {} runs {} ended within 1e-8 of the body's size of "
+      "the "
+      "reference, {} in another minimum or at a crease, {} were not there yet.",
+      same + other + unfinished, same, other, unfinished);
+  section.tables.push_back(std::move(table));
+  return section;
+}
+
+}  // namespace supple

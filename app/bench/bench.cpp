@@ -1,0 +1,141 @@
+#include "app/bench/bench.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "app/bench/section_file.h"
+#include "app/frame_loop.h"
+#include "base/console.h"
+#include "base/error.h"
+#include "base/text.h"
+#include "output/run_folder.h"
+#include "sim/kernels.h"
+
+namespace supple {
+
+std::optional<SubjectChoice> BenchSetting::with_paper_mesh(const SubjectChoice& choice, const std::string& mesh) const {
+  if (!paper_meshes) return std::nullopt;
+  SubjectChoice changed = choice;
+  changed.settings.push_back(fmt::format("body.{}.mesh={}", choice.body, (*paper_meshes / mesh).string()));
+  return changed;
+}
+
+Summary summary_of(std::vector<double> values) {
+  Summary summary;
+  if (values.empty()) return summary;
+  std::sort(values.begin(), values.end());
+  for (const double v : values) summary.mean += v / static_cast<double>(values.size());
+  summary.worst = values.back();
+  const auto rank = static_cast<std::size_t>(std::ceil(0.95 * static_cast<double>(values.size())));
+  summary.p95 = values[std::max<std::size_t>(rank, 1) - 1];
+  return summary;
+}
+
+const std::vector<Benchmark>& benchmarks() {
+  static const std::vector<Benchmark> list = {
+      {"table1", "time and error by scene, beside the paper's", 3, bench_table1},
+      {"table2", "condition numbers and figure 9, a cube in two poses", 0.3, bench_table2},
+      {"figure7", "L-BFGS, Chebyshev, Newton", 0.3, bench_figure7},
+      {"figure8", "initial Hessians", 0.3, bench_figure8},
+      {"figure10", "a bar shaken hard", 0.5, bench_figure10},
+      {"figure13", "window of L-BFGS", 0.3, bench_figure13},
+      {"figure14", "step lengths of two line searches", 0.2, bench_figure14},
+      {"figure15", "the interval of equation 11", 0.3, bench_figure15},
+      {"figure16", "direct solves and conjugate gradients", 0.4, bench_figure16},
+      {"figure17", "preconditioners", 0.3, bench_figure17},
+      {"scenes", "error against milliseconds, scene by scene", 1.5, bench_scenes},
+      {"profiles", "performance profiles of all methods on all states", 8, bench_profiles},
+      {"minima", "whether converged solvers agree", 1, bench_minima},
+      {"sweeps", "stiffness, Poisson's ratio, resolution", 1.5, bench_sweeps},
+      {"substeps", "substeps instead of iterations", 1, bench_substeps},
+      {"hanging", "the tip of a hanging bar by method", 0.5, bench_hanging},
+      {"ablation", "from the published settings to ours", 0.3, bench_ablation},
+      {"contact", "contact three ways", 0.5, bench_contact},
+  };
+  return list;
+}
+
+namespace {
+
+std::string processor() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  }
+  return "unknown";
+}
+
+// What a finished section must have been made with to be kept.
+std::string fingerprint(const BenchSetting& setting) {
+  return fmt::format("{}; {}; {}; {} threads; {}; paper meshes: {}", program_version(), build_flags(), kernels().name,
+                     setting.threads->count(), processor(), setting.paper_meshes ? "yes" : "no");
+}
+
+ReportPage page_of(const BenchSetting& setting, std::vector<ReportSection> sections) {
+  ReportPage page;
+  page.title = "Speed against error";
+  page.lead =
+      "Quasi-Newton steps after Liu, Bouaziz and Kavan 2017, and what they are compared with, on the same states in "
+      "one "
+      "program. The paper's numbers stand beside ours. All methods share first iterate, line search and contacts; "
+      "constant factorisations and patterns are made outside of what is timed.";
+  page.facts = {{"processor", processor()},
+                {"program", program_version()},
+                {"build", build_flags()},
+                {"kernels", kernels().name},
+                {"threads of the solver", std::to_string(setting.threads->count())},
+                {"paper's meshes", setting.paper_meshes ? "yes, where a table or figure says so" : "not given"}};
+  page.sections = std::move(sections);
+  return page;
+}
+
+}  // namespace
+
+int run_benchmarks(const std::vector<std::string>& names, const BenchSetting& setting, bool fresh, bool quiet) {
+  std::filesystem::create_directories(setting.out / "sections");
+  const std::string made_with = fingerprint(setting);
+  std::vector<ReportSection> sections;
+  double left = 0, expected = 0, spent = 0;
+  const auto wanted = [&](const Benchmark& b) { return std::find(names.begin(), names.end(), b.name) != names.end(); };
+  for (const Benchmark& b : benchmarks()) left += wanted(b) ? b.minutes : 0;
+  std::size_t number = 0;
+  for (const Benchmark& b : benchmarks()) {
+    const std::filesystem::path file = setting.out / "sections" / (b.name + ".json");
+    std::optional<ReportSection> section;
+    if (!fresh || !wanted(b)) section = read_section(file, made_with);
+    if (!wanted(b)) {
+      if (section) sections.push_back(std::move(*section));  // of an earlier call: the page keeps it
+      continue;
+    }
+    ++number;
+    if (section) {
+      if (!quiet) say(stderr, fmt::format("{} ({} of {}) was finished before\n", b.name, number, names.size()));
+    } else {
+      const double pace = expected > 0 ? spent / expected : 1;
+      if (!quiet)
+        say(stderr, fmt::format("{} ({} of {}): {}; about {} left\n", b.name, number, names.size(), b.meaning,
+                                duration_text(60 * left * pace)));
+      const Stopwatch watch;
+      section = b.run(setting);
+      if (interrupted()) return 130;
+      spent += watch.elapsed_ms() / 60000;
+      expected += b.minutes;
+      write_section(*section, made_with, file);
+    }
+    left -= b.minutes;
+    sections.push_back(std::move(*section));
+    for (const std::string& missing : write_page(page_of(setting, sections), setting.out)) {
+      if (!quiet) say(stderr, missing + "\n");
+    }
+    if (interrupted()) return 130;
+  }
+  if (!quiet) say(stdout, fmt::format("  page     {}\n", (setting.out / "index.html").string()));
+  return 0;
+}
+
+}  // namespace supple

@@ -1,0 +1,75 @@
+// Solvers on one state: how long, and how near the minimum they came. Everything is measured inside one run, from the
+// same state, with the same threads.
+#pragma once
+
+#include "app/bench/subject.h"
+#include "baselines/make_rule.h"
+#include "baselines/reference.h"
+
+namespace supple {
+
+// A solver as it takes part.
+struct Contestant {
+  std::string label;
+  Method method = Method::quasi_newton;
+  int iterations = 10;
+  int history = 5;
+  LineSearch line_search = LineSearch::armijo;
+  RuleSettings rule = {};
+};
+
+// How one contestant did on one state. Lists go by iteration, the first iterate first.
+struct Outcome {
+  std::string label;
+  std::vector<double> gained;  // g(y) - g(x_k) [J]
+  std::vector<double> ms;      // since the step was entered, the least of all repeats
+  std::vector<IterationRecord> history;
+  double step_ms = 0, median_ms = 0;  // of the whole step, least and median
+  double overhead_ms = 0;             // of L-BFGS without its solve
+  int iterations = 0, trials = 0;
+  bool failed = false;
+  Positions x;
+};
+
+// Prepared solvers of one subject; patterns and constant factors are made once, outside of what is measured.
+class Contest {
+ public:
+  Contest(const Subject& subject, Threads& threads) : subject_(subject), threads_(threads), lowest_(subject.model) {
+    workspace_.threads = reference_workspace_.threads = &threads;
+  }
+
+  // Runs every contestant `repeats` times from the state, after one that is not counted. budget_ms: no further
+  // repeats once a contestant has used this [ms].
+  std::vector<Outcome> run(const BenchState& state, const std::vector<Contestant>& contestants, int repeats,
+                           double budget_ms = 4000);
+
+  // g(y) - g*, from the best of the outcomes; once more from any that is still lower [J].
+  Minimum reference(const BenchState& state, const std::vector<Outcome>& outcomes);
+
+  const Subject& subject() const { return subject_; }
+
+ private:
+  SearchRule& rule_of(const Contestant& contestant);
+
+  const Subject& subject_;
+  Threads& threads_;
+  Reference lowest_;
+  Workspace workspace_, reference_workspace_;
+  struct Prepared {
+    Method method;
+    RuleSettings settings;
+    std::unique_ptr<SearchRule> rule;
+  };
+  std::vector<Prepared> prepared_;
+};
+
+// Equation 12 by iteration: 1 - gained / whole. NaN once a run has failed.
+std::vector<double> errors_of(const Outcome& outcome, double whole);
+
+// The first time at which the error is at most `tolerance`; infinity when it never is [ms].
+double time_to(const Outcome& outcome, double whole, double tolerance);
+
+// The radius that makes Chebyshev's method best after 30 iterations on a training state.
+RuleSettings trained_chebyshev(Contest& contest, const BenchState& training);
+
+}  // namespace supple

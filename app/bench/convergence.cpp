@@ -1,0 +1,238 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/bench/bench.h"
+
+namespace supple {
+namespace {
+
+// The example of all convergence figures: the twisting bar, on the paper's mesh when it is there.
+SubjectChoice twisting_bar(const BenchSetting& setting) {
+  const SubjectChoice ours{"twisting-bar", "bar"};
+  return setting.with_paper_mesh(ours, "longbar2.mesh").value_or(ours);
+}
+
+constexpr int example_frame = 90;
+
+double at_iteration(const std::vector<double>& errors, int k) {
+  return errors.empty() ? std::nan("") : errors[std::min<std::size_t>(k, errors.size() - 1)];
+}
+
+// Curves of one state as two plots and a table.
+void add_curves(ReportSection& section, const std::string& name, const std::vector<Outcome>& outcomes, double whole,
+                const std::string& ours) {
+  ReportPlot by_iteration{name + "-iterations", "Error by iteration"}, by_time{name + "-time", "Error by time"};
+  by_iteration.x_label = "iteration";
+  by_time.x_label = "time [ms]";
+  by_time.log_x = true;
+  ReportTable table{name, "The same in numbers"};
+  table.columns = {"method",   "error after 1",      "after 5",      "after 10",     "after 20",
+                   "after 50", "10 iterations [ms]", "to 1e-2 [ms]", "to 1e-4 [ms]", "to 1e-6 [ms]",
+                   "trials",   "iterations"};
+  double longest = 0;
+  for (const Outcome& outcome : outcomes) {
+    const std::vector<double> errors = errors_of(outcome, whole);
+    PlotSeries curve{outcome.label};
+    curve.thick = outcome.label == ours;
+    for (std::size_t k = 0; k < errors.size(); ++k) {
+      if (errors[k] < 1e-14) break;
+      curve.x.push_back(static_cast<double>(k));
+      curve.y.push_back(errors[k]);
+    }
+    by_iteration.series.push_back(curve);
+    curve.x.assign(outcome.ms.begin(), outcome.ms.begin() + static_cast<long>(curve.y.size()));
+    if (curve.thick && !curve.x.empty()) longest = curve.x.back();
+    by_time.series.push_back(curve);
+    const auto ms_at = [&](std::size_t k) { return outcome.ms.size() > k ? outcome.ms[k] : std::nan(""); };
+    table.rows.push_back({outcome.label, number_text(at_iteration(errors, 1)), number_text(at_iteration(errors, 5)),
+                          number_text(at_iteration(errors, 10)), number_text(at_iteration(errors, 20)),
+                          number_text(at_iteration(errors, 50)), number_text(ms_at(10)),
+                          number_text(time_to(outcome, whole, 1e-2)), number_text(time_to(outcome, whole, 1e-4)),
+                          number_text(time_to(outcome, whole, 1e-6)), std::to_string(outcome.trials),
+                          std::to_string(outcome.iterations)});
+  }
+  for (ReportPlot* plot : {&by_iteration, &by_time}) {
+    plot->y_label = "error (equation 12)";
+    plot->y_min = 1e-12;
+    plot->y_max = 2;
+  }
+  by_iteration.x_min = 0;
+  by_iteration.x_max = 60;
+  by_time.x_min = 0.2;
+  by_time.x_max = std::max(20 * longest, 1000.0);
+  section.tables.push_back(std::move(table));
+  section.plots.push_back(std::move(by_iteration));
+  section.plots.push_back(std::move(by_time));
+}
+
+ReportSection compare(const BenchSetting& setting, const std::string& name, const std::string& heading,
+                      std::vector<Contestant> contestants, const std::string& ours, const std::string& text) {
+  const Subject subject(twisting_bar(setting));
+  Contest contest(subject, *setting.threads);
+  const std::vector<BenchState> states = setting.states_of(subject, {60, example_frame});
+  for (Contestant& contestant : contestants) {
+    if (contestant.method == Method::chebyshev) contestant.rule = trained_chebyshev(contest, states[0]);
+  }
+  const std::vector<Outcome> outcomes = contest.run(states[1], contestants, 5);
+  const Minimum lowest = contest.reference(states[1], outcomes);
+  ReportSection section{name, heading};
+  section.text =
+      fmt::format("Twisting bar, Neo-Hookean, frame {} ({}). {}{}", example_frame, subject.size_text(), text,
+                  lowest.positive_definite ? " The reference is a minimum: its Hessian has a Cholesky factor."
+                                           : " The Hessian at the reference has no Cholesky factor.");
+  add_curves(section, name, outcomes, lowest.below_y, ours);
+  return section;
+}
+
+}  // namespace
+
+ReportSection bench_figure7(const BenchSetting& setting) {
+  return compare(setting, "figure7", "Figure 7: L-BFGS, Chebyshev, Newton",
+                 {{"Projective Dynamics (m = 0)", Method::projective_dynamics, 100},
+                  {"Chebyshev", Method::chebyshev, 100},
+                  {"ours, m = 2", Method::quasi_newton, 100, 2},
+                  {"ours, m = 5", Method::quasi_newton, 100, 5},
+                  {"Newton", Method::newton, 12}},
+                 "ours, m = 5",
+                 "The paper's order: by iterations Newton first, then m = 5, m = 2, Chebyshev, Projective Dynamics; by "
+                 "time m = 5 first. Chebyshev's radius was trained on another frame of the same motion.");
+}
+
+ReportSection bench_figure8(const BenchSetting& setting) {
+  return compare(
+      setting, "figure8", "Figure 8: initial Hessians",
+      {{"ours", Method::quasi_newton, 100},
+       {"scaled identity", Method::lbfgs_identity, 100},
+       {"rest pose", Method::lbfgs_rest, 100},
+       {"rest pose, warped", Method::lbfgs_warped, 100},
+       {"frame's start", Method::lbfgs_frame, 40},
+       {"Newton", Method::newton, 12}},
+      "ours",
+      "L-BFGS with m = 5 from each. The paper's order by time: ours, then the warped rest pose, the rest pose "
+      "and the identity; the Hessian of the frame's start is best by iterations and pays for its "
+      "factorisation.");
+}
+
+ReportSection bench_figure13(const BenchSetting& setting) {
+  std::vector<Contestant> windows;
+  for (const int m : {0, 1, 2, 3, 5, 8, 10, 20, 50, 100})
+    windows.push_back({fmt::format("m = {}", m), Method::quasi_newton, 100, m});
+  return compare(setting, "figure13", "Figure 13: window of L-BFGS", windows, "m = 5",
+                 "In the paper m = 5 is best and m = 100 slightly worse.");
+}
+
+ReportSection bench_figure16(const BenchSetting& setting) {
+  return compare(
+      setting, "figure16", "Figure 16: direct solves and conjugate gradients",
+      {{"ours", Method::quasi_newton, 100},
+       {"ours, 5 CG", Method::quasi_newton_cg5, 100},
+       {"ours, 15 CG", Method::quasi_newton_cg15, 100},
+       {"Newton", Method::newton, 12},
+       {"Newton, 5 CG", Method::newton_cg5, 100},
+       {"Newton, 15 CG", Method::newton_cg15, 100},
+       {"Gast et al.", Method::gast, 40}},
+      "ours",
+      "Preconditioners are Jacobi. In the paper conjugate gradients are slower than the direct solve in both "
+      "families, and Gast's method leads Newton's with conjugate gradients at first.");
+}
+
+ReportSection bench_figure17(const BenchSetting& setting) {
+  return compare(setting, "figure17", "Figure 17: preconditioners",
+                 {{"ours", Method::quasi_newton, 100},
+                  {"frame's start, direct", Method::lbfgs_frame, 40},
+                  {"5 CG, ichol of rest pose", Method::lbfgs_frame_cg5_rest, 60},
+                  {"15 CG, ichol of rest pose", Method::lbfgs_frame_cg15_rest, 60},
+                  {"5 CG, ichol of ours", Method::lbfgs_frame_cg5_ours, 60},
+                  {"15 CG, ichol of ours", Method::lbfgs_frame_cg15_ours, 60}},
+                 "ours",
+                 "L-BFGS from the Hessian of the frame's start, solved with preconditioned conjugate gradients. In the "
+                 "paper our matrix is the better preconditioner of the two.");
+}
+
+ReportSection bench_figure14(const BenchSetting& setting) {
+  const Subject subject(twisting_bar(setting));
+  Contest contest(subject, *setting.threads);
+  const std::vector<BenchState> states = setting.states_of(subject, {30, 60, example_frame, 120, 150});
+  ReportSection section{"figure14", "Figure 14: step lengths"};
+  ReportPlot plot{"figure14-steps", fmt::format("Step lengths, frame {}", example_frame)};
+  plot.x_label = "iteration";
+  plot.y_label = "alpha";
+  plot.log_y = false;
+  plot.style = ReportPlot::Style::points;
+  ReportTable table{"figure14", "How often the full step does"};
+  table.columns = {"frame",
+                   "search",
+                   "iterations",
+                   "alpha = 1 taken [%]",
+                   "full step decreases enough [%]",
+                   "full step is flat enough too [%]",
+                   "error after 10",
+                   "10 iterations [ms]",
+                   "trials"};
+  for (const BenchState& state : states) {
+    const std::vector<Outcome> outcomes = contest.run(state,
+                                                      {{"Armijo", Method::quasi_newton, 30, 5, LineSearch::armijo},
+                                                       {"Wolfe", Method::quasi_newton, 30, 5, LineSearch::wolfe}},
+                                                      3);
+    const Minimum lowest = contest.reference(state, outcomes);
+    for (const Outcome& outcome : outcomes) {
+      int full = 0, decreases = 0, both = 0;
+      PlotSeries points{outcome.label};
+      points.thick = outcome.label == "Armijo";
+      for (std::size_t k = 0; k < outcome.history.size(); ++k) {
+        const IterationRecord& record = outcome.history[k];
+        full += record.alpha == 1;
+        decreases += record.full.decreases;
+        both += record.full.decreases && std::abs(record.full.slope_ratio) <= 0.9;
+        points.x.push_back(static_cast<double>(k + 1));
+        points.y.push_back(record.alpha);
+      }
+      const double share = 100.0 / std::max<double>(1, static_cast<double>(outcome.history.size()));
+      const std::vector<double> errors = errors_of(outcome, lowest.below_y);
+      table.rows.push_back(
+          {std::to_string(state.frame), outcome.label, std::to_string(outcome.iterations), number_text(share * full),
+           number_text(share * decreases), number_text(share * both), number_text(at_iteration(errors, 10)),
+           number_text(outcome.ms.size() > 10 ? outcome.ms[10] : std::nan("")), std::to_string(outcome.trials)});
+      if (state.frame == example_frame) plot.series.push_back(points);
+    }
+  }
+  section.text = fmt::format(
+      "Twisting bar ({}). Armijo's backtracking against the strong Wolfe conditions with gamma_2 = 0.9. In the paper "
+      "the "
+      "full step nearly always satisfies both.",
+      subject.size_text());
+  section.tables.push_back(std::move(table));
+  section.plots.push_back(std::move(plot));
+  return section;
+}
+
+ReportSection bench_figure15(const BenchSetting& setting) {
+  ReportSection section{"figure15", "Figure 15: the interval of equation 11"};
+  std::vector<Outcome> outcomes;
+  double whole = 0;
+  std::optional<BenchState> state;
+  std::string sizes, stiffnesses;
+  for (const double half : {0.5, 0.4, 0.3, 0.2, 0.1, 0.01}) {
+    SubjectChoice choice = twisting_bar(setting);
+    choice.settings.push_back(fmt::format("solver.fit_from={:g}", 1 - half));
+    choice.settings.push_back(fmt::format("solver.fit_to={:g}", 1 + half));
+    const Subject subject(choice);
+    Contest contest(subject, *setting.threads);
+    if (!state) state = setting.states_of(subject, {example_frame}).front();  // the same for all
+    const std::string label = fmt::format("[{:g}, {:g}]", 1 - half, 1 + half);
+    outcomes.push_back(contest.run(*state, {{label, Method::quasi_newton, 100}}, 5).front());
+    whole = std::max(whole, contest.reference(*state, {outcomes.back()}).below_y);
+    stiffnesses +=
+        fmt::format("{}{}: k = {:.4g}", stiffnesses.empty() ? "" : "; ", label, subject.model.stiffness[0].k);
+    sizes = subject.size_text();
+  }
+  section.text =
+      fmt::format("Twisting bar, frame {} ({}); stiffness by interval: {}. In the paper the curves nearly coincide.",
+                  example_frame, sizes, stiffnesses);
+  add_curves(section, "figure15", outcomes, whole, "[0.5, 1.5]");
+  return section;
+}
+
+}  // namespace supple

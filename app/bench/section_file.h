@@ -1,0 +1,15 @@
+// Finished sections of a report, kept so that an interrupted run goes on where it stopped.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "output/report_page.h"
+
+namespace supple {
+
+// made_with: program, build, machine and options in words; a section made with others is not read back.
+void write_section(const ReportSection& section, const std::string& made_with, const std::filesystem::path& file);
+std::optional<ReportSection> read_section(const std::filesystem::path& file, const std::string& made_with);
+
+}  // namespace supple

@@ -1,0 +1,201 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "app/bench/bench.h"
+#include "app/verbs.h"
+
+namespace supple {
+namespace {
+
+constexpr int sweep_frame = 60;
+
+// One point of a sweep: ours and Newton's to an error.
+void add_point(ReportTable& table, ReportPlot& plot, const std::string& sweep, double value,
+               const SubjectChoice& choice, const BenchSetting& setting) {
+  const Subject subject(choice);
+  Contest contest(subject, *setting.threads);
+  const BenchState state = setting.states_of(subject, {sweep_frame}).front();
+  const std::vector<Outcome> outcomes =
+      contest.run(state, {{"ours", Method::quasi_newton, 300}, {"Newton", Method::newton, 15}}, 2, 3000);
+  const Minimum lowest = contest.reference(state, outcomes);
+  const std::vector<double> ours = errors_of(outcomes[0], lowest.below_y);
+  const std::vector<double> newton = errors_of(outcomes[1], lowest.below_y);
+  std::vector<std::string> row = {sweep, number_text(value), std::to_string(subject.model.vertices),
+                                  number_text(ours[std::min<std::size_t>(10, ours.size() - 1)]),
+                                  number_text(newton[std::min<std::size_t>(1, newton.size() - 1)])};
+  for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
+    for (const Outcome& outcome : outcomes) row.push_back(number_text(time_to(outcome, lowest.below_y, tolerance)));
+  }
+  table.rows.push_back(std::move(row));
+  int series = 0;
+  for (const double tolerance : {1e-2, 1e-4}) {
+    for (const Outcome& outcome : outcomes) {
+      if (plot.series.size() <= std::size_t(series)) {
+        plot.series.push_back({fmt::format("{}, to {:g}", outcome.label, tolerance)});
+        plot.series.back().thick = series == 0;
+        plot.series.back().dashed = tolerance < 1e-3;
+      }
+      plot.series[series].x.push_back(value);
+      plot.series[series].y.push_back(time_to(outcome, lowest.below_y, tolerance));
+      ++series;
+    }
+  }
+}
+
+ReportPlot sweep_plot(const std::string& name, const std::string& title, const std::string& label, bool log_x) {
+  ReportPlot plot{name, title};
+  plot.x_label = label;
+  plot.y_label = "time [ms]";
+  plot.log_x = log_x;
+  return plot;
+}
+
+double rms(const Positions& a, const Positions& b) {
+  return std::sqrt((a - b).squaredNorm() / static_cast<double>(a.rows()));
+}
+
+struct Played {
+  State state;
+  double ms_a_frame = 0;
+};
+
+Played play(const Subject& subject, Method method, int iterations, int frames, Threads& threads) {
+  Played played{start_state(subject.model, subject.body)};
+  Workspace workspace;
+  workspace.threads = &threads;
+  const auto rule = make_rule(method, subject.model);
+  for (int frame = 0; frame < frames; ++frame) {
+    for (int substep = 0; substep < subject.scene.substeps; ++substep) {
+      const double h = subject.scene.time_step(), from = frame / subject.scene.fps + substep * h;
+      FrameInputs inputs = subject.inputs(frame);
+      handle_targets(subject.model, subject.body, from + h, inputs.targets);
+      inputs.solver.iterations = iterations;
+      inputs.solver = settings_of(method, inputs.solver);
+      const StepReport& report = step(subject.model, inputs, played.state, workspace, *rule);
+      if (report.failed) {
+        played.state.x.setConstant(std::nan(""));
+        return played;
+      }
+      played.ms_a_frame += report.step_ms / frames;
+    }
+  }
+  return played;
+}
+
+}  // namespace
+
+ReportSection bench_sweeps(const BenchSetting& setting) {
+  ReportSection section{"sweeps", "Where Newton overtakes: stiffness, Poisson's ratio, resolution"};
+  section.text = fmt::format(
+      "Twisting bar, Neo-Hookean, frame {}, our mesh; time to an error for ours and for Newton's method. An infinite "
+      "time "
+      "means not within 300 iterations of ours or 15 of Newton's.",
+      sweep_frame);
+  ReportTable table{"sweeps", "Time to an error"};
+  table.columns = {"sweep",
+                   "value",
+                   "vertices",
+                   "error, ours after 10",
+                   "error, Newton after 1",
+                   "ours to 1e-2 [ms]",
+                   "Newton to 1e-2 [ms]",
+                   "ours to 1e-4 [ms]",
+                   "Newton to 1e-4 [ms]",
+                   "ours to 1e-6 [ms]",
+                   "Newton to 1e-6 [ms]"};
+  ReportPlot stiffness = sweep_plot("sweep-stiffness", "Stiffness", "mu over the scene's", true);
+  for (const double scale : {0.01, 0.1, 1.0, 10.0, 100.0, 1000.0}) {
+    const SubjectChoice choice{"twisting-bar",
+                               "bar",
+                               {fmt::format("body.bar.material.mu={:g}", 80 * scale),
+                                fmt::format("body.bar.material.lambda={:g}", 20 * scale)}};
+    add_point(table, stiffness, "stiffness", scale, choice, setting);
+  }
+  ReportPlot poisson =
+      sweep_plot("sweep-poisson", "Poisson's ratio at constant Young's modulus", "Poisson's ratio", false);
+  for (const double ratio : {0.0, 0.1, 0.2, 0.3, 0.4, 0.45, 0.49}) {
+    const SubjectChoice choice{
+        "twisting-bar",
+        "bar",
+        {fmt::format("body.bar.material={{ model = \"neo-hookean\", young = 176, poisson = {:g} }}", ratio)}};
+    add_point(table, poisson, "Poisson's ratio", ratio, choice, setting);
+  }
+  ReportPlot resolution = sweep_plot("sweep-resolution", "Resolution", "cells across", true);
+  for (const int across : {3, 5, 7, 10, 14}) {
+    const SubjectChoice choice{
+        "twisting-bar", "bar", {fmt::format("body.bar.box.cells=[{}, {}, {}]", across * 28 / 10, across, across)}};
+    add_point(table, resolution, "cells across", across, choice, setting);
+  }
+  section.tables.push_back(std::move(table));
+  section.plots = {std::move(stiffness), std::move(poisson), std::move(resolution)};
+  return section;
+}
+
+ReportSection bench_substeps(const BenchSetting& setting) {
+  constexpr int frames = 45;
+  ReportSection section{"substeps", "The same time spent on substeps instead of iterations"};
+  ReportTable table{"substeps", "Distance from the limit of small steps"};
+  table.columns = {"scene", "substeps x iterations", "a frame [ms]", "from the limit [of the size]",
+                   "from the solved step of the same h [of the size]"};
+  for (const SubjectChoice& choice : {SubjectChoice{"shaking-bar", "bar"}, SubjectChoice{"hanging-bar", "bar"}}) {
+    SubjectChoice placed = choice;
+    if (choice.scene == "hanging-bar") placed.scene = (assets_folder() / "bench" / "hanging-bar.toml").string();
+    const auto with_substeps = [&](int substeps) {
+      SubjectChoice changed = placed;
+      changed.settings.push_back(fmt::format("substeps={}", substeps));
+      return changed;
+    };
+    const Subject fine(with_substeps(64));
+    const Positions limit = play(fine, Method::quasi_newton, 10, frames, *setting.threads).state.x;
+    for (const auto& [substeps, iterations] :
+         std::vector<std::pair<int, int>>{{1, 10}, {2, 5}, {5, 2}, {10, 1}, {1, 2}, {1, 100}}) {
+      const Subject subject(with_substeps(substeps));
+      const Positions solved = play(subject, Method::quasi_newton, 200, frames, *setting.threads).state.x;
+      const Played played = play(subject, Method::quasi_newton, iterations, frames, *setting.threads);
+      table.rows.push_back({choice.scene, fmt::format("{} x {}", substeps, iterations), number_text(played.ms_a_frame),
+                            number_text(rms(played.state.x, limit) / subject.model.size),
+                            number_text(rms(played.state.x, solved) / subject.model.size)});
+    }
+  }
+  section.text = fmt::format(
+      "Where the body is after {} frames (root mean square over vertices), against 64 substeps of 10 iterations, which "
+      "stand for h -> 0, and against backward Euler's own answer with the same h (200 iterations).",
+      frames);
+  section.tables.push_back(std::move(table));
+  return section;
+}
+
+ReportSection bench_hanging(const BenchSetting& setting) {
+  constexpr int frames = 60;
+  const Subject subject({(assets_folder() / "bench" / "hanging-bar.toml").string(), "bar"});
+  int tip = 0;  // the vertex furthest along x
+  for (int v = 0; v < subject.model.vertices; ++v) {
+    if (subject.model.rest(v, 0) > subject.model.rest(tip, 0)) tip = v;
+  }
+  const Positions solved = play(subject, Method::newton, 30, frames, *setting.threads).state.x;
+  ReportSection section{"hanging", "Where the tip of a hanging bar is after two seconds"};
+  section.text = fmt::format(
+      "A corotated bar, 1 m long, held at one end and let go ({}, E = 1e5 Pa, h = 1/30 s). Solved (30 iterations of "
+      "Newton's method a step) its tip is at ({:.4f}, {:.4f}, {:.4f}) m.",
+      subject.size_text(), solved(tip, 0), solved(tip, 1), solved(tip, 2));
+  ReportTable table{"hanging", "The tip by method"};
+  table.columns = {"method", "iterations", "a step [ms]", "tip x [m]", "tip y [m]", "from the solved one [mm]"};
+  for (const MethodInfo& info : methods) {
+    if (info.method == Method::contact_matrix) continue;
+    const bool newton = info.method == Method::newton || info.method == Method::newton_shifted;
+    for (const int iterations : newton ? std::vector<int>{1, 2} : std::vector<int>{5, 10, 20}) {
+      const Played played = play(subject, info.method, iterations, frames, *setting.threads);
+      const Eigen::RowVector3d at = played.state.x.row(tip);
+      table.rows.push_back({std::string(info.name), std::to_string(iterations), number_text(played.ms_a_frame),
+                            number_text(at.x(), 4), number_text(at.y(), 4),
+                            number_text(1000 * (at - solved.row(tip)).norm())});
+    }
+  }
+  section.tables.push_back(std::move(table));
+  return section;
+}
+
+}  // namespace supple

@@ -1,0 +1,27 @@
+#include "baselines/post_projection.h"
+
+namespace supple {
+
+const StepReport& step_then_project(const Model& model, const FrameInputs& inputs, State& state, Workspace& w) {
+  FrameInputs oblivious = inputs;
+  oblivious.colliders = nullptr;
+  const State before = state;
+  const StepReport& report = step(model, oblivious, state, w);
+  if (report.failed || inputs.colliders == nullptr) return report;
+  const Stopwatch watch;
+  for (std::size_t c = 0; c < inputs.colliders->size(); ++c) {
+    const Collider& collider = (*inputs.colliders)[c];
+    const Eigen::Isometry3d& pose = inputs.collider_motions[c].end;
+    for (int v = 0; v < model.free; ++v) {
+      const SurfacePoint nearest = collider.shape.closest(pose.inverse() * Vec3(state.x.row(v)));
+      if (nearest.distance >= collider.thickness) continue;
+      state.x.row(v) = (pose * (nearest.point + collider.thickness * nearest.normal)).transpose();
+    }
+  }
+  state.v.topRows(model.free) = (state.x - before.x).topRows(model.free) / model.time_step;
+  w.report.collide_ms += watch.elapsed_ms();
+  w.report.step_ms += watch.elapsed_ms();
+  return report;
+}
+
+}  // namespace supple

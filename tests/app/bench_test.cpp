@@ -1,0 +1,133 @@
+// What `supple bench` is made of, and the program itself on its shortest benchmark.
+#include "app/bench/bench.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "app/bench/section_file.h"
+#include "support/bodies.h"
+#include "support/program.h"
+
+namespace supple {
+namespace {
+
+using test::TemporaryFolder;
+
+TEST(Bench, StatesComeBackFromTheirFilesWithTheSameBits) {
+  const TemporaryFolder folder;
+  const Subject subject({"shaking-bar", "bar"});
+  Threads threads(1);
+  const std::vector<BenchState> played = states_of(subject, {3, 17}, folder.path, threads);
+  const std::vector<BenchState> read = states_of(subject, {3, 17}, folder.path, threads);
+  ASSERT_EQ(read.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(played[i].hash, read[i].hash);
+    EXPECT_TRUE(played[i].before.x == read[i].before.x && played[i].before.v == read[i].before.v);
+    EXPECT_EQ(played[i].before.time, read[i].before.time);
+  }
+  EXPECT_NE(read[0].hash, read[1].hash);
+}
+
+TEST(Bench, GainsByIterationAddUpToWhereTheMethodsEnd) {
+  const TemporaryFolder folder;
+  const Subject subject({"shaking-bar", "bar"});
+  Threads threads(1);
+  Contest contest(subject, threads);
+  const BenchState state = states_of(subject, {25}, folder.path, threads).front();
+  const std::vector<Outcome> outcomes =
+      contest.run(state, {{"ours", Method::quasi_newton, 8}, {"Newton", Method::newton, 40}}, 1);
+  const Minimum lowest = contest.reference(state, outcomes);
+  EXPECT_TRUE(lowest.positive_definite);
+  Workspace w;
+  for (const Outcome& outcome : outcomes) {
+    ASSERT_FALSE(outcome.failed);
+    ASSERT_EQ(outcome.gained.size(), outcome.ms.size());
+    EXPECT_NEAR(outcome.gained.back(), gained(subject.model, subject.inputs(25), state.before, outcome.x, w),
+                1e-12 * lowest.below_y);
+    const std::vector<double> errors = errors_of(outcome, lowest.below_y);
+    for (std::size_t k = 1; k < errors.size(); ++k) {
+      EXPECT_LE(errors[k], errors[k - 1] + 1e-14);
+      EXPECT_GE(outcome.ms[k], outcome.ms[k - 1]);
+    }
+    EXPECT_EQ(time_to(outcome, lowest.below_y, errors.front()), outcome.ms.front());
+    EXPECT_EQ(time_to(outcome, lowest.below_y, -1), std::numeric_limits<double>::infinity());
+  }
+  EXPECT_LT(errors_of(outcomes[1], lowest.below_y).back(), 1e-12);
+}
+
+TEST(Bench, TheReferenceIsBelowEveryMethodsEnd) {
+  const TemporaryFolder folder;
+  const Subject subject({"spline-spheres", "a"});
+  Threads threads(1);
+  Contest contest(subject, threads);
+  const BenchState state = states_of(subject, {20}, folder.path, threads).front();
+  std::vector<Contestant> contestants;
+  for (const MethodInfo& info : methods) contestants.push_back({std::string(info.name), info.method, 40});
+  const std::vector<Outcome> outcomes = contest.run(state, contestants, 0);
+  const Minimum lowest = contest.reference(state, outcomes);
+  for (const Outcome& outcome : outcomes) {
+    if (outcome.failed) continue;
+    EXPECT_LE(outcome.gained.back(), lowest.below_y * (1 + 1e-12)) << outcome.label;
+  }
+}
+
+TEST(Bench, SectionsSurviveTheirFiles) {
+  const TemporaryFolder folder;
+  ReportSection section{"name", "Heading", "Text with \"quotes\""};
+  section.tables.push_back({"t", "T", "note", {"a", "b"}, {{"1", "x, y"}}, {"b"}});
+  ReportPlot plot{"p", "P"};
+  plot.style = ReportPlot::Style::steps;
+  plot.log_x = true;
+  plot.x_max = 7;
+  plot.series.push_back({"s", {1, std::numeric_limits<double>::infinity()}, {2, std::nan("")}, true});
+  section.plots.push_back(plot);
+  write_section(section, "this machine", folder.path / "s.json");
+  const auto back = read_section(folder.path / "s.json", "this machine");
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->text, section.text);
+  EXPECT_EQ(back->tables[0].rows, section.tables[0].rows);
+  EXPECT_EQ(back->plots[0].x_max, 7);
+  EXPECT_EQ(back->plots[0].style, ReportPlot::Style::steps);
+  EXPECT_TRUE(std::isinf(back->plots[0].series[0].x[1]) && std::isnan(back->plots[0].series[0].y[1]));
+  EXPECT_TRUE(back->plots[0].series[0].thick);
+  EXPECT_FALSE(read_section(folder.path / "s.json", "another machine"));
+  EXPECT_FALSE(read_section(folder.path / "none.json", "this machine"));
+}
+
+// Table II: our matrix does not see how a body is turned, the rest pose's does.
+TEST(Bench, Table2IsTheSameInBothPosesForOursAlone) {
+  const TemporaryFolder folder;
+  Threads threads(1);
+  const ReportSection section = bench_table2({folder.path, std::nullopt, &threads});
+  const auto number = [&](std::size_t row) { return std::stod(section.tables[0].rows[row][2]); };
+  EXPECT_NEAR(number(2), number(3), 1e-6 * number(2));
+  EXPECT_GT(number(1), 5 * number(0));
+}
+
+TEST(BenchProgram, LeavesAPageAndGoesOnWhereItStopped) {
+  const TemporaryFolder folder;
+  const std::string out = (folder.path / "report").string();
+  const test::Result first = test::run(folder.path, {"bench", "table2", "--out", out});
+  ASSERT_EQ(first.status, 0) << first.err;
+  for (const char* name : {"index.html", "table2.csv", "table2.json", "figure9.csv"})
+    EXPECT_TRUE(std::filesystem::exists(folder.path / "report" / name)) << name;
+  const auto csv = read_csv(folder.path / "report" / "table2.csv");
+  const std::string page = test::read_file(folder.path / "report" / "index.html");
+  for (std::size_t row = 1; row < csv.size(); ++row) EXPECT_NE(page.find(csv[row][3]), std::string::npos);
+  const test::Result again = test::run(folder.path, {"bench", "table2", "--out", out});
+  EXPECT_EQ(again.status, 0);
+  EXPECT_NE(again.err.find("finished before"), std::string::npos) << again.err;
+}
+
+TEST(BenchProgram, RefusesWhatItCannotRun) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(test::run(folder.path, {"bench", "figure99"}).status, 2);
+  const test::Result meshes = test::run(folder.path, {"bench", "table2", "--paper-meshes", "/nowhere"});
+  EXPECT_EQ(meshes.status, 2);
+  EXPECT_NE(meshes.err.find("/nowhere"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace supple
