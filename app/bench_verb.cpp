@@ -25,7 +25,7 @@ int bench(const BenchOptions& options) {
     if (options.name == "all" || options.name == b.name) names.push_back(b.name);
   }
   Threads threads(options.threads);
-  BenchSetting setting{options.out, std::nullopt, &threads};
+  BenchSetting setting{options.out, std::nullopt, &threads, options.quiet};
   if (!options.paper_meshes.empty()) {
     std::error_code error;
     if (!std::filesystem::exists(std::filesystem::path(options.paper_meshes) / "longbar2.mesh", error))
@@ -33,7 +33,7 @@ int bench(const BenchOptions& options) {
     setting.paper_meshes = options.paper_meshes;
   }
   catch_interrupts();
-  return run_benchmarks(names, setting, options.fresh, options.quiet);
+  return run_benchmarks(names, setting, options.fresh);
 }
 
 }  // namespace

@@ -146,6 +146,7 @@ ReportSection bench_profiles(const BenchSetting& setting) {
     const Subject subject(choice);
     if (subject.model.vertices > most_vertices) continue;
     ++bodies;
+    setting.doing(fmt::format("{}, {} ({})", choice.scene, choice.body, subject.size_text()));
     Contest contest(subject, *setting.threads);
     const std::vector<BenchState> states = setting.states_of(subject, {6, 18, 30, 42, 54, 66, 78});
     const RuleSettings chebyshev = trained_chebyshev(contest, states.front());

@@ -25,6 +25,10 @@ std::optional<SubjectChoice> BenchSetting::with_paper_mesh(const SubjectChoice& 
   return changed;
 }
 
+void BenchSetting::doing(const std::string& what) const {
+  if (!quiet) say(stderr, fmt::format("  {}\n", what));
+}
+
 Summary summary_of(std::vector<double> values) {
   Summary summary;
   if (values.empty()) return summary;
@@ -96,7 +100,8 @@ ReportPage page_of(const BenchSetting& setting, std::vector<ReportSection> secti
 
 }  // namespace
 
-int run_benchmarks(const std::vector<std::string>& names, const BenchSetting& setting, bool fresh, bool quiet) {
+int run_benchmarks(const std::vector<std::string>& names, const BenchSetting& setting, bool fresh) {
+  const bool quiet = setting.quiet;
   std::filesystem::create_directories(setting.out / "sections");
   const std::string made_with = fingerprint(setting);
   std::vector<ReportSection> sections;
@@ -121,8 +126,12 @@ int run_benchmarks(const std::vector<std::string>& names, const BenchSetting& se
         say(stderr, fmt::format("{} ({} of {}): {}; about {} left\n", b.name, number, names.size(), b.meaning,
                                 duration_text(60 * left * pace)));
       const Stopwatch watch;
-      section = b.run(setting);
-      if (interrupted()) return 130;
+      try {
+        section = b.run(setting);
+      } catch (const ContestInterrupted&) {
+        if (!quiet) say(stderr, "interrupted; what is finished is kept\n");
+        return 130;
+      }
       spent += watch.elapsed_ms() / 60000;
       expected += b.minutes;
       write_section(*section, made_with, file);

@@ -13,11 +13,15 @@ struct BenchSetting {
   std::filesystem::path out;                          // folder of the report
   std::optional<std::filesystem::path> paper_meshes;  // folder with the paper's meshes
   Threads* threads = nullptr;                         // of the solvers
+  bool quiet = true;                                  // no word of what is being measured
 
   std::filesystem::path states() const { return out / "states"; }
   std::vector<BenchState> states_of(const Subject& subject, const std::vector<int>& frames) const {
     return supple::states_of(subject, frames, states(), *threads);
   }
+  // Tells what comes next, on standard error.
+  void doing(const std::string& what) const;
+
   // The same scene with a mesh of the paper in the body's place, when there are such.
   std::optional<SubjectChoice> with_paper_mesh(const SubjectChoice& choice, const std::string& mesh) const;
 };
@@ -33,7 +37,7 @@ const std::vector<Benchmark>& benchmarks();
 
 // Runs the named ones in order, writes the page after each, and skips those that an earlier call with the same program
 // and options has finished. Returns the exit status.
-int run_benchmarks(const std::vector<std::string>& names, const BenchSetting& setting, bool fresh, bool quiet);
+int run_benchmarks(const std::vector<std::string>& names, const BenchSetting& setting, bool fresh);
 
 // The sections. table1.cpp
 ReportSection bench_table1(const BenchSetting& setting);

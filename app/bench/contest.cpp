@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "app/frame_loop.h"
+
 namespace supple {
 
 SearchRule& Contest::rule_of(const Contestant& contestant) {
@@ -22,6 +24,7 @@ std::vector<Outcome> Contest::run(const BenchState& state, const std::vector<Con
                                   double budget_ms) {
   std::vector<Outcome> outcomes;
   for (const Contestant& contestant : contestants) {
+    if (interrupted()) throw ContestInterrupted{};
     SearchRule& rule = rule_of(contestant);
     FrameInputs inputs = subject_.inputs(state.frame);
     inputs.solver.iterations = contestant.iterations;

@@ -31,6 +31,9 @@ struct Outcome {
   Positions x;
 };
 
+// Thrown between two runs once SIGINT or SIGTERM asked for an end.
+struct ContestInterrupted {};
+
 // Prepared solvers of one subject; patterns and constant factors are made once, outside of what is measured.
 class Contest {
  public:

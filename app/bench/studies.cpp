@@ -16,6 +16,7 @@ constexpr int sweep_frame = 60;
 void add_point(ReportTable& table, ReportPlot& plot, const std::string& sweep, double value,
                const SubjectChoice& choice, const BenchSetting& setting) {
   const Subject subject(choice);
+  setting.doing(fmt::format("{} {:g}", sweep, value));
   Contest contest(subject, *setting.threads);
   const BenchState state = setting.states_of(subject, {sweep_frame}).front();
   const std::vector<Outcome> outcomes =

@@ -219,6 +219,14 @@ void HessianMatrix::shift(double amount) {
   }
 }
 
+void factorize_projected(HessianMatrix& hessian, ChangingFactor& factor) {
+  double shift = 1e-10 * hessian.matrix().diagonal().mean();
+  while (!factor.factorize(hessian.matrix())) {
+    hessian.shift(shift);
+    shift *= 100;
+  }
+}
+
 SparseMatrix system_matrix_of(const Model& model) {
   const double scale = model.scheme.energy * model.scheme.theta * model.scheme.theta;
   std::vector<Eigen::Triplet<double>> entries;

@@ -54,6 +54,10 @@ class HessianMatrix {
   ElementMatrices scratch_;
 };
 
+// Factors a sum of projected matrices, which is positive definite but for round-off; where that shows, a shift of its
+// size mends it.
+void factorize_projected(HessianMatrix& hessian, ChangingFactor& factor);
+
 // A over the free vertices, all of it (both triangles) [N/m].
 SparseMatrix system_matrix_of(const Model& model);
 

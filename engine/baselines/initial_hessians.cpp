@@ -39,14 +39,6 @@ void turn(const std::vector<Mat3>& rotation, bool back, Positions& r) {
   }
 }
 
-void factorize(HessianMatrix& hessian, ChangingFactor& factor) {
-  double shift = 1e-10 * hessian.matrix().diagonal().mean();
-  while (!factor.factorize(hessian.matrix())) {
-    hessian.shift(shift);
-    shift *= 100;
-  }
-}
-
 HessianMatrix rest_hessian(const Model& model) {
   HessianMatrix hessian(model);
   ElementMatrices elements;
@@ -77,7 +69,7 @@ void IdentityInverse::apply(const Model& model, const FrameInputs&, Workspace&, 
 RestInverse::RestInverse(const Model& model) {
   HessianMatrix hessian = rest_hessian(model);
   factor_.analyze(hessian.matrix());
-  factorize(hessian, factor_);
+  factorize_projected(hessian, factor_);
 }
 
 void RestInverse::apply(const Model&, const FrameInputs&, Workspace&, Positions& r, Positions& z) {
@@ -98,7 +90,7 @@ FrameInverse::FrameInverse(const Model& model) : hessian_(model) { factor_.analy
 
 void FrameInverse::begin(const Model& model, const FrameInputs&, Workspace& w) {
   hessian_.assemble(model, w, true);
-  factorize(hessian_, factor_);
+  factorize_projected(hessian_, factor_);
 }
 
 void FrameInverse::apply(const Model&, const FrameInputs&, Workspace&, Positions& r, Positions& z) {
@@ -184,7 +176,7 @@ void HechtInverse::begin(const Model& model, const FrameInputs&, Workspace& w) {
       }
     });
     hessian_.assemble(model, turned_, w.contact, w.x);
-    factorize(hessian_, factor_);
+    factorize_projected(hessian_, factor_);
   }
   warp_.resize(now_.size());
   for (std::size_t v = 0; v < now_.size(); ++v) warp_[v] = now_[v] * factored_[v].transpose();

@@ -19,12 +19,7 @@ double NewtonRule::direction(const Model& model, const FrameInputs&, Workspace& 
   const Stopwatch watch;
   hessian_.assemble(model, w, definite_ == Definite::projected);
   if (definite_ == Definite::projected) {
-    // Positive definite but for round-off; a shift of that size then mends it.
-    double shift = 1e-10 * hessian_.matrix().diagonal().mean();
-    while (!factor_.factorize(hessian_.matrix())) {
-      hessian_.shift(shift);
-      shift *= 100;
-    }
+    factorize_projected(hessian_, factor_);
   } else {
     // Nocedal and Wright 2006, algorithm 3.3; the next iteration tries half of what this one needed.
     const double least = 1e-3 * hessian_.matrix().diagonal().cwiseAbs().mean();
