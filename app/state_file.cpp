@@ -73,7 +73,7 @@ Json solver_json(const StepProblem& problem) {
   const ContactSettings& c = s.contact;
   return {{"iterations", s.iterations},
           {"history", s.history},
-          {"line_search", s.line_search == LineSearch::armijo ? "armijo" : "none"},
+          {"line_search", text_of(s.line_search)},
           {"armijo", s.armijo},
           {"target_error", s.target_error},
           {"fit_from", problem.body.fit.start},

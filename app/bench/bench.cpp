@@ -1,5 +1,6 @@
 #include "app/bench/bench.h"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include "app/frame_loop.h"
 #include "base/console.h"
 #include "base/error.h"
+#include "base/hash.h"
 #include "base/text.h"
 #include "output/run_folder.h"
 #include "sim/kernels.h"
@@ -31,7 +33,8 @@ void BenchSetting::doing(const std::string& what) const {
 
 Summary summary_of(std::vector<double> values) {
   Summary summary;
-  if (values.empty()) return summary;
+  std::erase_if(values, [](double v) { return std::isnan(v); });
+  if (values.empty()) return {std::nan(""), std::nan(""), std::nan("")};
   std::sort(values.begin(), values.end());
   for (const double v : values) summary.mean += v / static_cast<double>(values.size());
   summary.worst = values.back();
@@ -74,10 +77,21 @@ std::string processor() {
   return "unknown";
 }
 
+// The BLAS that Newton's factorisations use.
+std::string blas() {
+  Dl_info info{};
+  void* symbol = dlsym(RTLD_DEFAULT, "dgemm_");
+  if (symbol == nullptr || dladdr(symbol, &info) == 0 || info.dli_fname == nullptr) return "unknown";
+  std::error_code error;
+  const std::filesystem::path file = std::filesystem::canonical(info.dli_fname, error);
+  return error ? info.dli_fname : file.filename().string();
+}
+
 // What a finished section must have been made with to be kept.
 std::string fingerprint(const BenchSetting& setting) {
-  return fmt::format("{}; {}; {}; {} threads; {}; paper meshes: {}", program_version(), build_flags(), kernels().name,
-                     setting.threads->count(), processor(), setting.paper_meshes ? "yes" : "no");
+  return fmt::format("{}; {}; {}; {}; {}; {} threads; {}; paper meshes: {}", hash_text_form(program_identity()), blas(),
+                     program_version(), build_flags(), kernels().name, setting.threads->count(), processor(),
+                     setting.paper_meshes ? "yes" : "no");
 }
 
 ReportPage page_of(const BenchSetting& setting, std::vector<ReportSection> sections) {
@@ -86,12 +100,17 @@ ReportPage page_of(const BenchSetting& setting, std::vector<ReportSection> secti
   page.lead =
       "Quasi-Newton steps after Liu, Bouaziz and Kavan 2017, and what they are compared with, on the same states in "
       "one "
-      "program. The paper's numbers stand beside ours. All methods share first iterate, line search and contacts; "
-      "constant factorisations and patterns are made outside of what is timed.";
+      "program. The paper's numbers stand beside ours. All methods share first iterate, line search, stopping and the "
+      "search for contacts; constant factorisations and patterns are made outside of what is timed. Where bodies "
+      "touch, "
+      "ours, Projective Dynamics and Chebyshev's method correct their directions for contacts, Newton's has them in "
+      "its "
+      "Hessian, and the others learn of them from L-BFGS pairs alone.";
   page.facts = {{"processor", processor()},
                 {"program", program_version()},
                 {"build", build_flags()},
                 {"kernels", kernels().name},
+                {"BLAS of Newton's factorisations", blas()},
                 {"threads of the solver", std::to_string(setting.threads->count())},
                 {"paper's meshes", setting.paper_meshes ? "yes, where a table or figure says so" : "not given"}};
   page.sections = std::move(sections);

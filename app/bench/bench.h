@@ -69,6 +69,6 @@ ReportSection bench_contact(const BenchSetting& setting);
 struct Summary {
   double mean = 0, worst = 0, p95 = 0;
 };
-Summary summary_of(std::vector<double> values);
+Summary summary_of(std::vector<double> values);  // NaN are left out
 
 }  // namespace supple

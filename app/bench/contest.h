@@ -22,13 +22,16 @@ struct Contestant {
 struct Outcome {
   std::string label;
   std::vector<double> gained;  // g(y) - g(x_k) [J]
-  std::vector<double> ms;      // since the step was entered, the least of all repeats
+  std::vector<double> ms;      // since the step was entered, the least of all timed runs
   std::vector<IterationRecord> history;
   double step_ms = 0, median_ms = 0;  // of the whole step, least and median
   double overhead_ms = 0;             // of L-BFGS without its solve
   int iterations = 0, trials = 0;
   bool failed = false;
+  StopReason stop_reason = StopReason::iterations;
   Positions x;
+  std::vector<double> steps, overheads;  // of each timed run [ms]
+  double used_ms = 0;                    // by all runs
 };
 
 // Thrown between two runs once SIGINT or SIGTERM asked for an end.
@@ -41,18 +44,19 @@ class Contest {
     workspace_.threads = reference_workspace_.threads = &threads;
   }
 
-  // Runs every contestant `repeats` times from the state, after one that is not counted. budget_ms: no further
-  // repeats once a contestant has used this [ms].
+  // Runs every contestant `repeats` times (at least once) from the state, after one run that is not timed; all in
+  // turns. budget_ms: no further repeats once a contestant has used this [ms].
   std::vector<Outcome> run(const BenchState& state, const std::vector<Contestant>& contestants, int repeats,
                            double budget_ms = 4000);
 
-  // g(y) - g*, from the best of the outcomes; once more from any that is still lower [J].
+  // The minimum below the best of the outcomes.
   Minimum reference(const BenchState& state, const std::vector<Outcome>& outcomes);
 
   const Subject& subject() const { return subject_; }
 
  private:
   SearchRule& rule_of(const Contestant& contestant);
+  FrameInputs inputs_of(const BenchState& state, const Contestant& contestant) const;
 
   const Subject& subject_;
   Threads& threads_;
@@ -66,8 +70,11 @@ class Contest {
   std::vector<Prepared> prepared_;
 };
 
-// Equation 12 by iteration: 1 - gained / whole. NaN once a run has failed.
+// Equation 12 by iteration: 1 - gained / whole. Empty when the run failed.
 std::vector<double> errors_of(const Outcome& outcome, double whole);
+
+// Of the end; NaN when the run failed.
+double last_error(const Outcome& outcome, double whole);
 
 // The first time at which the error is at most `tolerance`; infinity when it never is [ms].
 double time_to(const Outcome& outcome, double whole, double tolerance);

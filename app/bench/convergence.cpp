@@ -17,7 +17,8 @@ SubjectChoice twisting_bar(const BenchSetting& setting) {
 constexpr int example_frame = 130;
 
 double at_iteration(const std::vector<double>& errors, int k) {
-  return errors.empty() ? std::nan("") : errors[std::min<std::size_t>(k, errors.size() - 1)];
+  if (std::size_t(k) < errors.size()) return errors[k];
+  return !errors.empty() && errors.back() < 1e-11 ? errors.back() : std::nan("");  // it stopped at round-off, or early
 }
 
 // Curves of one state as two plots and a table.
@@ -183,6 +184,7 @@ ReportSection bench_figure14(const BenchSetting& setting) {
       points.thick = outcome.label == "Armijo";
       for (std::size_t k = 0; k < outcome.history.size(); ++k) {
         const IterationRecord& record = outcome.history[k];
+        if (record.alpha == 0) continue;  // a new start
         full += record.alpha == 1;
         decreases += record.full.decreases;
         both += record.full.decreases && std::abs(record.full.slope_ratio) <= 0.9;

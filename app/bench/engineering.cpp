@@ -98,7 +98,7 @@ ReportSection bench_ablation(const BenchSetting& setting) {
   State at = state.before;
   begin_step(model, subject.inputs(state.frame), at, workspace);
   energy = elastic_energy(model, workspace, x);
-  add("ours: no SVD, eight elements side by side, with inertia and gathering",
+  add("ours: no SVD, elements side by side in vector registers, with inertia and gathering",
       least_ms(15, [&] { evaluate(model, workspace, x, workspace.trial_energy, &gradient, nullptr, nullptr); }));
   add("the same, energy alone", least_ms(15, [&] { energy = elastic_energy(model, workspace, x); }));
   section.tables.push_back(std::move(table));
@@ -112,7 +112,7 @@ ReportSection bench_ablation(const BenchSetting& setting) {
     const std::vector<Outcome> outcomes = contest.run(state, {{"ours", Method::quasi_newton, 10}}, 15);
     const Minimum lowest = contest.reference(state, outcomes);
     steps.rows.push_back({how, number_text(outcomes[0].step_ms), number_text(outcomes[0].median_ms),
-                          number_text(errors_of(outcomes[0], lowest.below_y).back())});
+                          number_text(last_error(outcomes[0], lowest.below_y))});
   };
   SubjectChoice with_double = choice;
   with_double.settings.emplace_back("solver.factor=double");
@@ -156,13 +156,13 @@ ReportSection bench_contact(const BenchSetting& setting) {
     Outcome projected;
     projected.step_ms = least_ms(2, [&] {
       after = state.before;
-      step_then_project(model, inputs, after, workspace);
+      projected.trials = step_then_project(model, inputs, after, workspace).line_search;
     });
     projected.x = after.x;
     projected.gained = {gained(model, inputs, state.before, after.x, workspace)};
     outcomes.push_back(projected);
     for (std::size_t m = 0; m < rows.size(); ++m) {
-      rows[m].error.push_back(errors_of(outcomes[m], lowest.below_y).back());
+      rows[m].error.push_back(last_error(outcomes[m], lowest.below_y));
       rows[m].depth.push_back(penetration(subject.set.colliders, inputs.collider_motions, outcomes[m].x, surface) /
                               model.size);
       rows[m].ms.push_back(outcomes[m].step_ms);

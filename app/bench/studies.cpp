@@ -25,8 +25,8 @@ void add_point(ReportTable& table, ReportPlot& plot, const std::string& sweep, d
   const std::vector<double> ours = errors_of(outcomes[0], lowest.below_y);
   const std::vector<double> newton = errors_of(outcomes[1], lowest.below_y);
   std::vector<std::string> row = {sweep, number_text(value), std::to_string(subject.model.vertices),
-                                  number_text(ours[std::min<std::size_t>(10, ours.size() - 1)]),
-                                  number_text(newton[std::min<std::size_t>(1, newton.size() - 1)])};
+                                  number_text(ours.size() > 10 ? ours[10] : last_error(outcomes[0], lowest.below_y)),
+                                  number_text(newton.size() > 1 ? newton[1] : std::nan(""))};
   for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
     for (const Outcome& outcome : outcomes) row.push_back(number_text(time_to(outcome, lowest.below_y, tolerance)));
   }

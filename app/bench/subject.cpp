@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 
 #include "app/state_file.h"
 #include "app/verbs.h"
 #include "base/error.h"
 #include "base/hash.h"
+#include "baselines/make_rule.h"
 #include "scene/scene_reader.h"
 
 namespace supple {
@@ -20,10 +22,10 @@ Body body_named(std::vector<Body> bodies, const SubjectChoice& choice) {
   throw InputError(choice.scene, fmt::format("there is no body '{}'", choice.body));
 }
 
-// Names a state by all that it depends on: scene, body, settings, mesh and frame.
+// Names a state by all that it depends on: program, scene as resolved, body and frame.
 std::string state_name(const Subject& subject, int frame) {
-  std::uint64_t hash = 1;
-  for (const std::string& setting : subject.choice.settings) hash = hash_bytes(setting.data(), setting.size(), hash);
+  std::uint64_t hash = program_identity();
+  hash = hash_bytes(subject.resolved.data(), subject.resolved.size(), hash);
   hash = hash_bytes(subject.model.rest.data(), sizeof(double) * subject.model.rest.size(), hash);
   return fmt::format("{}-{}-{:08x}-{:06}", subject.scene.name, subject.body.def.name, static_cast<std::uint32_t>(hash),
                      frame);
@@ -33,13 +35,23 @@ std::string state_name(const Subject& subject, int frame) {
 
 Subject::Subject(const SubjectChoice& chosen)
     : choice(chosen),
-      scene(load_scene(scene_file(chosen.scene), assets_folder(), chosen.settings)),
+      scene(load_scene(scene_file(chosen.scene), assets_folder(), chosen.settings, &resolved)),
       body(body_named(assemble(scene), chosen)),
       model(build_model(body.description)),
       set(collision_set(scene)) {}
 
+std::uint64_t program_identity() {
+  static const std::uint64_t identity = [] {
+    std::ifstream file("/proc/self/exe", std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    return hash_text(bytes);
+  }();
+  return identity;
+}
+
 FrameInputs Subject::inputs(int frame) const {
-  FrameInputs inputs{scene.gravity, {}, {}, body.def.solver.settings, &set.colliders};
+  FrameInputs inputs{
+      scene.gravity, {}, {}, settings_of(body.def.solver.method, body.def.solver.settings), &set.colliders};
   const double from = frame / scene.fps, to = from + scene.time_step();
   handle_targets(model, body, to, inputs.targets);
   if (model.scheme.theta < 1) handle_targets(model, body, 0.5 * (from + to), inputs.middle_targets);
@@ -68,6 +80,7 @@ std::vector<BenchState> states_of(const Subject& subject, const std::vector<int>
     return states;
   }
   State state = start_state(subject.model, subject.body);
+  const auto rule = make_rule(subject.body.def.solver.method, subject.model);
   Workspace workspace;
   workspace.threads = &threads;
   for (int frame = 0; frame <= frames.back(); ++frame) {
@@ -84,7 +97,7 @@ std::vector<BenchState> states_of(const Subject& subject, const std::vector<int>
         handle_targets(subject.model, subject.body, from + h, own.targets);
         collider_motions(subject.set.obstacles, from, from + h, own.collider_motions);
       }
-      const StepReport& report = step(subject.model, own, state, workspace);
+      const StepReport& report = step(subject.model, own, state, workspace, *rule);
       if (report.failed)
         throw RunError(fmt::format("{}, body '{}': frame {} failed: {}", subject.choice.scene, subject.choice.body,
                                    frame, report.failure.what));

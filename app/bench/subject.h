@@ -23,6 +23,7 @@ struct SubjectChoice {
 struct Subject {
   explicit Subject(const SubjectChoice& choice);
   SubjectChoice choice;
+  std::string resolved;  // the scene with all settings, as JSON
   SceneDef scene;
   Body body;
   Model model;
@@ -32,6 +33,9 @@ struct Subject {
   FrameInputs inputs(int frame) const;
   std::string size_text() const;  // "3472 vertices, 10441 elements"
 };
+
+// XXH64 of the running program: what an earlier build has measured or played is not this one's.
+std::uint64_t program_identity();
 
 // One step to be made.
 struct BenchState {

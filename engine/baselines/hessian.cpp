@@ -221,7 +221,8 @@ void HessianMatrix::shift(double amount) {
 
 void factorize_projected(HessianMatrix& hessian, ChangingFactor& factor) {
   double shift = 1e-10 * hessian.matrix().diagonal().mean();
-  while (!factor.factorize(hessian.matrix())) {
+  for (int tries = 0; !factor.factorize(hessian.matrix()); ++tries) {
+    if (tries == 12) throw RunError("a projected Hessian has no Cholesky factor: its numbers are not finite");
     hessian.shift(shift);
     shift *= 100;
   }

@@ -55,7 +55,7 @@ class HessianMatrix {
 };
 
 // Factors a sum of projected matrices, which is positive definite but for round-off; where that shows, a shift of its
-// size mends it.
+// size mends it. Throws RunError when none does.
 void factorize_projected(HessianMatrix& hessian, ChangingFactor& factor);
 
 // A over the free vertices, all of it (both triangles) [N/m].

@@ -108,6 +108,7 @@ class HechtInverse final : public InitialInverse {
 class ContactMatrixInverse final : public InitialInverse {
  public:
   explicit ContactMatrixInverse(const Model& model);
+  void begin(const Model&, const FrameInputs&, Workspace&) override { factored_.clear(); }
   void apply(const Model& model, const FrameInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
 
  private:

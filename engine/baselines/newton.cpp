@@ -1,9 +1,12 @@
 #include "baselines/newton.h"
 
+#include "base/error.h"
 #include "base/timing.h"
 
 namespace supple {
 namespace {
+
+constexpr int most_tries = 60;  // doublings of the shift
 
 double slope_of(const Model& model, const Workspace& w) {
   return (w.gradient.topRows(model.free).array() * w.direction.topRows(model.free).array()).sum();
@@ -24,7 +27,8 @@ double NewtonRule::direction(const Model& model, const FrameInputs&, Workspace& 
     // Nocedal and Wright 2006, algorithm 3.3; the next iteration tries half of what this one needed.
     const double least = 1e-3 * hessian_.matrix().diagonal().cwiseAbs().mean();
     double shift = shift_ / 2 < least ? 0 : shift_ / 2, added = 0;
-    for (;;) {
+    for (int tries = 0;; ++tries) {
+      if (tries == most_tries) throw RunError("Newton's method: no shift makes the Hessian positive definite");
       hessian_.shift(shift - added);
       added = shift;
       if (factor_.factorize(hessian_.matrix())) break;

@@ -16,6 +16,7 @@ enum class Definite {
 class NewtonRule final : public SearchRule {
  public:
   NewtonRule(const Model& model, Definite definite);
+  void begin(const Model&, const FrameInputs&, Workspace&) override { shift_ = 0; }
   double direction(const Model& model, const FrameInputs& inputs, Workspace& workspace) override;
 
  private:

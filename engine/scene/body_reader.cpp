@@ -53,10 +53,7 @@ SolverDef read_solver(const ConfigTable& table, const SolverDef& defaults) {
       table.integer({"history", "", "window m of L-BFGS; 0 is plain quasi-Newton"}, s.history, Range::between(0, 100));
   const std::string search =
       table.choice({"line_search", "", "how a step length is accepted; none takes every full step"},
-                   s.line_search == LineSearch::armijo  ? "armijo"
-                   : s.line_search == LineSearch::wolfe ? "wolfe"
-                                                        : "none",
-                   {"armijo", "wolfe", "none"});
+                   text_of(s.line_search), {"armijo", "wolfe", "none"});
   s.line_search = search == "armijo" ? LineSearch::armijo : search == "wolfe" ? LineSearch::wolfe : LineSearch::none;
   s.armijo = table.number({"armijo", "", "gamma of the sufficient decrease"}, s.armijo, Range::above(0, 0.5));
   s.target_error =

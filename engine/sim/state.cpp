@@ -19,6 +19,15 @@ std::uint64_t state_hash(const Model& model, const State& state) {
   return hash_bytes(both.data(), sizeof(double) * both.size());
 }
 
+const char* text_of(LineSearch search) {
+  switch (search) {
+    case LineSearch::armijo: return "armijo";
+    case LineSearch::wolfe: return "wolfe";
+    case LineSearch::none: return "none";
+  }
+  return "";
+}
+
 const char* text_of(StopReason reason) {
   switch (reason) {
     case StopReason::iterations: return "iterations";

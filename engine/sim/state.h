@@ -25,6 +25,7 @@ std::uint64_t state_hash(const Model& model, const State& state);
 Positions in_input_order(const Model& model, const Positions& internal);
 
 enum class LineSearch { armijo, wolfe, none };
+const char* text_of(LineSearch search);  // as scene files spell it
 
 // Settings that may change between steps.
 struct SolverSettings {
@@ -55,7 +56,7 @@ struct StepFailure {
   std::string what;  // "the position is not finite"
 };
 
-// One iteration, for who looks closer.
+// One iteration, for who looks closer; or, with alpha = 0, a new start from where the body was.
 struct IterationRecord {
   double elapsed_ms = 0;     // since the step was entered
   double decrease = 0;       // of g [J]

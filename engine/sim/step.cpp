@@ -71,7 +71,7 @@ Descent next_direction(const Model& model, const FrameInputs& inputs, Workspace&
     const double slope = rule.direction(model, inputs, w);
     if (below_resolution(model, w)) return {true, slope};
     if (slope < 0) return {false, slope};
-    if (!std::isfinite(slope) || !rule.forget()) return {true, slope};
+    if (!rule.forget()) return {true, slope};
   }
 }
 
@@ -212,7 +212,8 @@ void descend_from_staying(const Model& model, const FrameInputs& inputs, const S
   const Stopwatch watch;
   if (has_colliders(inputs)) find_contacts_timed(model, inputs, w.trial, w);
   Change staying = evaluate(model, w, w.trial, w.trial_energy, nullptr, nullptr, nullptr);
-  staying.value -= friction_energy(w.contact.found, w.contact.stick_length, w.trial);
+  const double rubbed_there = friction_energy(w.contact.found, w.contact.stick_length, w.trial);
+  staying.value -= rubbed_there;
   report.evaluate_ms += watch.elapsed_ms();
   if (!(staying.value < reached - noise_of(model, reached, extent_of(model, w)))) {
     if (has_colliders(inputs)) w.contact.found.swap(w.contact.earlier);
@@ -220,6 +221,7 @@ void descend_from_staying(const Model& model, const FrameInputs& inputs, const S
   }
   w.x.swap(w.trial);
   report.decrease += reached + rubbed - staying.value;
+  report.history.push_back({w.since_entry.elapsed_ms(), reached + rubbed - staying.value - rubbed_there, 0, {}});
   const int iterations = report.iterations;
   minimize(model, inputs, w, rule);
   report.iterations += iterations;
