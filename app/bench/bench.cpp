@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -69,14 +68,6 @@ const std::vector<Benchmark>& benchmarks() {
 
 namespace {
 
-std::string processor() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);) {
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  }
-  return "unknown";
-}
-
 // The BLAS that Newton's factorisations use.
 std::string blas() {
   Dl_info info{};
@@ -84,13 +75,14 @@ std::string blas() {
   if (symbol == nullptr || dladdr(symbol, &info) == 0 || info.dli_fname == nullptr) return "unknown";
   std::error_code error;
   const std::filesystem::path file = std::filesystem::canonical(info.dli_fname, error);
-  return error ? info.dli_fname : file.filename().string();
+  if (error) return info.dli_fname;
+  return (file.parent_path().filename() / file.filename()).string();  // Debian has a folder for each BLAS
 }
 
 // What a finished section must have been made with to be kept.
 std::string fingerprint(const BenchSetting& setting) {
   return fmt::format("{}; {}; {}; {}; {}; {} threads; {}; paper meshes: {}", hash_text_form(program_identity()), blas(),
-                     program_version(), build_flags(), kernels().name, setting.threads->count(), processor(),
+                     program_version(), build_flags(), kernels().name, setting.threads->count(), cpu_name(),
                      setting.paper_meshes ? "yes" : "no");
 }
 
@@ -106,7 +98,7 @@ ReportPage page_of(const BenchSetting& setting, std::vector<ReportSection> secti
       "ours, Projective Dynamics and Chebyshev's method correct their directions for contacts, Newton's has them in "
       "its "
       "Hessian, and the others learn of them from L-BFGS pairs alone.";
-  page.facts = {{"processor", processor()},
+  page.facts = {{"processor", cpu_name()},
                 {"program", program_version()},
                 {"build", build_flags()},
                 {"kernels", kernels().name},

@@ -9,7 +9,6 @@
 #include "output/whole_file.h"
 
 namespace supple {
-namespace {
 
 std::string cpu_name() {
   std::ifstream file("/proc/cpuinfo");
@@ -18,8 +17,6 @@ std::string cpu_name() {
   }
   return "unknown";
 }
-
-}  // namespace
 
 std::string program_version() { return SUPPLE_VERSION; }
 std::string build_flags() { return SUPPLE_BUILD_FLAGS; }

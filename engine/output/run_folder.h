@@ -48,5 +48,6 @@ class RunFolder {
 // Version of the program and how it was built, as run.json has them.
 std::string program_version();
 std::string build_flags();
+std::string cpu_name();  // of this machine; "unknown" where the system does not tell
 
 }  // namespace supple
