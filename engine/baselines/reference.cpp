@@ -8,6 +8,7 @@ namespace supple {
 namespace {
 
 constexpr int newton_iterations = 100;
+constexpr int first_iterations = 300;  // of L-BFGS before it: cheap, and near a minimum in contact often all it takes
 constexpr int check_iterations = 300;  // of L-BFGS behind it
 constexpr int slow_iterations = 5000;  // of L-BFGS where Newton's line search gives up (a crease of the contact set)
 // A direction's slope bounds what it can still gain to within a small factor; this is far below the digits that anybody
@@ -60,6 +61,7 @@ Minimum Reference::minimum(const Model& model, const FrameInputs& inputs, const 
   Minimum result;
   const double reached = gained(model, by_newton, before, x, w);
   const double enough = digits * std::abs(reached);
+  minimize(model, thorough(inputs, first_iterations, 20), w, enough);
   minimize(model, by_newton, w, parts_->newton, enough);
   const bool gave_up = w.report.stop_reason == StopReason::line_search_failed;
   minimize(model, gave_up ? thorough(inputs, slow_iterations, 20) : by_lbfgs, w, enough);

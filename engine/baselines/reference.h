@@ -18,7 +18,8 @@ struct Minimum {
   bool positive_definite = false;
 };
 
-// Finds minima of one body's steps: Newton's method to round-off, then L-BFGS until that finds nothing either.
+// Finds minima of one body's steps: some L-BFGS, Newton's method to round-off, then L-BFGS again until
+// that finds nothing either.
 class Reference {
  public:
   explicit Reference(const Model& model);
