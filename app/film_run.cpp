@@ -1,0 +1,201 @@
+#include "app/film_run.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "app/verbs.h"
+#include "base/console.h"
+#include "base/error.h"
+#include "base/hash.h"
+#include "base/text.h"
+#include "base/timing.h"
+#include "scene/scene_reader.h"
+#include "scene/warnings.h"
+#include "sim/kernels.h"
+
+namespace supple {
+namespace {
+
+// Of the points, elements and springs of a body.
+std::string mesh_hash(const Body& body) {
+  const TetMesh& mesh = body.description.mesh;
+  std::uint64_t hash = hash_bytes(mesh.rest.data(), sizeof(double) * mesh.rest.size());
+  hash = hash_bytes(mesh.tets.data(), sizeof(std::int32_t) * mesh.tets.size(), hash);
+  for (const Spring& spring : body.description.springs) {
+    const std::int32_t ends[] = {spring.from, spring.to};
+    hash = hash_bytes(ends, sizeof ends, hash);
+  }
+  return hash_text_form(hash);
+}
+
+void print_result(const FilmResult& result, const RunFolder& folder, const SceneDef& scene) {
+  say(stdout, fmt::format("\n{}\n", profile_table(result.rows)));
+  const double seconds = result.wall_ms / 1000;
+  say(stdout, fmt::format("  {} frames in {} ({:.1f} a second; the film's rate is {:g}), after {} of set-up\n",
+                          result.rows.size(), duration_text(seconds), static_cast<double>(result.rows.size()) / seconds,
+                          scene.fps, duration_text(result.setup_ms / 1000)));
+  if (result.video_written) say(stdout, fmt::format("  film     {}\n", folder.video().string()));
+  if (!result.video_message.empty() && !result.video_failed) say(stdout, fmt::format("  {}\n", result.video_message));
+  say(stdout, fmt::format("  profile  {}\n", (folder.path() / "profile.json").string()));
+}
+
+std::string how_it_ended(const FilmResult& result) {
+  return result.end == FilmEnd::done ? "done" : result.end == FilmEnd::interrupted ? "interrupted" : "failed";
+}
+
+void print_json(const FilmResult& result, const RunFolder& folder) {
+  nlohmann::ordered_json json = {
+      {"ended", how_it_ended(result)}, {"message", result.message},
+      {"frames", result.rows.size()},  {"wall_ms", result.wall_ms},
+      {"setup_ms", result.setup_ms},   {"profile", (folder.path() / "profile.json").string()}};
+  json["video"] =
+      result.video_written ? nlohmann::ordered_json(folder.video().string()) : nlohmann::ordered_json(nullptr);
+  json["video_message"] = result.video_message;
+  say(stdout, fmt::format("{}\n", json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)));
+}
+
+void check_save_states(const std::vector<int>& frames, const SceneDef& scene) {
+  for (const int frame : frames) {
+    if (frame < scene.frames) continue;
+    throw InputError(fmt::format("--save-state {}", frame),
+                     scene.frames == 1
+                         ? std::string("the film has one frame, 0")
+                         : fmt::format("the film has {} frames, 0 to {}", scene.frames, scene.frames - 1));
+  }
+}
+
+// Warnings, and what reading meshes had to say.
+void say_remarks(const SceneDef& scene, const std::vector<Body>& bodies) {
+  for (const Problem& warning : warnings(scene, bodies)) say(stderr, fmt::format("warning: {}\n", warning.text()));
+  for (const Body& body : bodies) {
+    for (const std::string& note : body.notes) say(stderr, fmt::format("note: {}: {}\n", body.source, note));
+  }
+  for (const ColliderDef& collider : scene.colliders) {
+    for (const std::string& note : collider.shape.notes)
+      say(stderr, fmt::format("note: collider '{}': {}\n", collider.name, note));
+  }
+}
+
+FilmOptions options_of(const FilmRequest& request) {
+  FilmOptions film;
+  film.threads = request.threads > 0 ? request.threads : std::max(1u, std::thread::hardware_concurrency());
+  film.error_every = request.error_every;
+  film.save_states = request.save_states;
+  film.images = !request.no_images;
+  film.video = !request.no_video;
+  film.gl = request.gl == "egl" ? GlChoice::egl : request.gl == "osmesa" ? GlChoice::osmesa : GlChoice::automatic;
+  film.quiet = request.quiet;
+  film.shaders = shaders_folder();
+  film.font = caption_font();
+  return film;
+}
+
+void add_result(const FilmResult& result, RunInfo& info) {
+  info.gl_backend = result.gl_backend;
+  info.gl_renderer = result.gl_renderer;
+  info.gl_version = result.gl_version;
+  info.frames = static_cast<int>(result.rows.size());
+  info.ended = how_it_ended(result);
+  if (result.end == FilmEnd::failed) info.ended += ": " + result.message;
+  info.video = result.video_written ? "video.mp4" : result.video_message;
+}
+
+// Returns the exit status.
+int say_result(const FilmRequest& request, const FilmResult& result, const RunFolder& folder, const SceneDef& scene,
+               const std::string& unrecorded) {
+  if (request.json) {
+    print_json(result, folder);
+  } else if (!request.quiet && !result.rows.empty()) {
+    print_result(result, folder, scene);
+  }
+  if (result.end == FilmEnd::failed) {
+    say(stderr, fmt::format("supple: {}\n  kept: {} whole frames in {}\n", result.message, result.rows.size(),
+                            folder.path().string()));
+  }
+  if (!unrecorded.empty()) say(stderr, fmt::format("supple: {}\n", unrecorded));
+  if (result.video_failed) say(stderr, fmt::format("supple: {}\n", result.video_message));
+  if (result.end == FilmEnd::interrupted) {
+    say(stderr,
+        fmt::format("supple: interrupted after {} frames; they are whole, and so is what belongs to them in {}\n",
+                    result.rows.size(), folder.path().string()));
+    return 130;
+  }
+  return result.end == FilmEnd::done && !result.video_failed && unrecorded.empty() ? 0 : 1;
+}
+
+}  // namespace
+
+void add_film_options(CLI::App& verb, FilmRequest& request) {
+  verb.add_option("--out", request.out, "folder for the results [out/NAME]");
+  verb.add_option("--frames", request.frames, "length of the film, over the scene's")->check(CLI::Range(1, 1000000));
+  verb.add_option("--threads", request.threads, "threads of the solver [all cores]; results do not depend on it")
+      ->check(CLI::Range(1, 256));
+  verb.add_option("--set", request.set, "path=value over the scene's, such as solver.iterations=20; may be repeated")
+      ->take_all()
+      ->allow_extra_args(false);
+  verb.add_option("--seed", request.seed, "of random start states, over the scene's")->check(CLI::Range(0, 2000000000));
+  verb.add_option("--error-every", request.error_every, "measure the error of equation 12 every N frames (slow)")
+      ->check(CLI::Range(1, 1000000));
+  verb.add_option("--save-state", request.save_states,
+                  "frames, such as 10,20: each body's state and problem before it, in states/BODY-NNNNNN/")
+      ->delimiter(',')
+      ->take_all()
+      ->allow_extra_args(false)
+      ->check(CLI::Range(0, 999999));
+  verb.add_flag("--no-video", request.no_video, "frames only");
+  verb.add_flag("--no-images", request.no_images, "simulate only");
+  verb.add_option("--gl", request.gl, "auto, osmesa or egl")->check(CLI::IsMember({"auto", "osmesa", "egl"}));
+  verb.add_flag("--quiet", request.quiet, "say nothing but errors");
+  verb.add_flag("--json", request.json, "the result as one line of JSON on standard output");
+}
+
+int run_film(const FilmRequest& request, const std::vector<std::string>& command) {
+  const Stopwatch setup;
+  RunInfo info;
+  info.command = command;
+  info.scene_file = scene_file(request.scene).string();
+  std::vector<std::string> settings = request.set;
+  if (request.frames > 0) settings.push_back(fmt::format("frames={}", request.frames));
+  if (request.seed >= 0) settings.push_back(fmt::format("seed={}", request.seed));
+  const SceneDef scene = load_scene(info.scene_file, assets_folder(), settings, &info.scene_json);
+  check_save_states(request.save_states, scene);
+  const std::vector<Body> bodies = assemble(scene);
+  if (!request.quiet) say_remarks(scene, bodies);
+  std::vector<Model> models;
+  for (const Body& body : bodies) models.push_back(build_model(body.description));
+
+  const RunFolder folder(request.out.empty() ? std::filesystem::path("out") / scene.name
+                                             : std::filesystem::path(request.out));
+  const FilmOptions options = options_of(request);
+  info.kernel_variant = kernels().name;
+  info.threads = options.threads;
+  for (const Body& body : bodies) {
+    const TetMesh& mesh = body.description.mesh;
+    const auto elements = static_cast<int>(mesh.tets.rows() + body.description.springs.size());
+    info.meshes.push_back({body.def.name, body.source, mesh_hash(body), int(mesh.rest.rows()), elements});
+    if (!request.quiet)
+      say(stderr,
+          fmt::format("{}: {} vertices, {} elements ({})\n", body.def.name, mesh.rest.rows(), elements, body.source));
+  }
+  info.ended = "running";
+  folder.write_info(info);
+
+  catch_interrupts();
+  const double before_film = setup.elapsed_ms();
+  FilmResult result = make_film(scene, bodies, models, collision_set(scene), folder, options);
+  result.setup_ms += before_film;
+
+  add_result(result, info);
+  std::string unrecorded;  // what the disk refused; said after what went wrong first
+  try {
+    folder.write_info(info);
+    folder.write_profile(profile_json(result.rows));
+  } catch (const RunError& error) {
+    unrecorded = error.what();
+  }
+  return say_result(request, result, folder, scene, unrecorded);
+}
+
+}  // namespace supple

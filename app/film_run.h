@@ -1,0 +1,32 @@
+// A film from the command line to its folder: what the verbs that run a scene have in common.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "app/frame_loop.h"
+
+namespace supple {
+
+// As the command line gives it.
+struct FilmRequest {
+  std::string scene;
+  std::string out;
+  int frames = 0;  // 0: the scene's
+  int threads = 0;
+  std::vector<std::string> set;
+  int error_every = 0;
+  std::vector<int> save_states;
+  long long seed = -1;
+  bool no_video = false, no_images = false, quiet = false, json = false;
+  std::string gl = "auto";
+};
+
+// The options that every run of a scene has.
+void add_film_options(CLI::App& verb, FilmRequest& request);
+
+// Runs it and tells how it went; returns the exit status. command: as it was called, for run.json.
+int run_film(const FilmRequest& request, const std::vector<std::string>& command);
+
+}  // namespace supple
