@@ -5,54 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <nlohmann/json.hpp>
-
-#include "base/hash.h"
 
 namespace supple {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-// Ten significant digits are plenty for times, and all seventeen are kept where a number may be compared.
-double rounded_ms(double ms) { return std::round(ms * 1e4) / 1e4; }
-
-Json json_of(const BodyRow& body) {
-  Json row = {{"name", body.name},
-              {"step_ms", rounded_ms(body.step_ms)},
-              {"evaluate_ms", rounded_ms(body.evaluate_ms)},
-              {"solve_ms", rounded_ms(body.solve_ms)},
-              {"lbfgs_ms", rounded_ms(body.lbfgs_ms)},
-              {"other_ms", rounded_ms(body.other_ms)},
-              {"iterations", body.iterations},
-              {"line_search", body.line_search},
-              {"objective_start", body.objective_start},
-              {"objective_end", body.objective_end},
-              {"error_estimate", body.error_estimate}};
-  if (body.error_measured) row["error"] = body.error ? Json(*body.error) : Json(nullptr);
-  if (body.contact) {
-    row["collide_ms"] = rounded_ms(body.contact->collide_ms);
-    row["contacts"] = body.contact->contacts;
-    row["contact_changes"] = body.contact->changes;
-    row["contact_cycles"] = body.contact->cycles;
-    row["penetration"] = body.contact->penetration;
-  }
-  row["stretch"] = body.stretch;
-  if (body.energy) {
-    row["kinetic_energy"] = (*body.energy)[0];
-    row["elastic_energy"] = (*body.energy)[1];
-    row["gravitational_energy"] = (*body.energy)[2];
-  }
-  if (body.inverted) row["inverted"] = *body.inverted;
-  if (body.jiggle) row["jiggle"] = *body.jiggle;
-  row["stop_reason"] = body.stop_reason;
-  return row;
-}
-
-Json json_of(const Distribution& d) {
-  return {{"p50", rounded_ms(d.p50)}, {"p95", rounded_ms(d.p95)},   {"p99", rounded_ms(d.p99)},
-          {"max", rounded_ms(d.max)}, {"mean", rounded_ms(d.mean)}, {"total", rounded_ms(d.total)}};
-}
 
 std::vector<double> of_body(const std::vector<FrameRow>& rows, std::size_t body,
                             const std::function<std::optional<double>(const BodyRow&)>& get) {
@@ -104,29 +59,6 @@ std::vector<StageSummary> summarize(const std::vector<FrameRow>& rows) {
     result.push_back({stage.name, first, distribution_of(std::move(values))});
   }
   return result;
-}
-
-std::string profile_json(const std::vector<FrameRow>& rows) {
-  Json frames = Json::array();
-  for (const FrameRow& row : rows) {
-    Json frame = {{"frame", row.frame}, {"time_s", row.time_s}, {"step_ms", rounded_ms(row.step_ms)}};
-    if (row.draw_ms) frame["draw_ms"] = rounded_ms(*row.draw_ms);
-    if (row.render_ms) frame["render_ms"] = rounded_ms(*row.render_ms);
-    if (row.encode_ms) frame["encode_ms"] = rounded_ms(*row.encode_ms);
-    frame["state_hash"] = hash_text_form(row.state_hash);
-    frame["bodies"] = Json::array();
-    for (const BodyRow& body : row.bodies) frame["bodies"].push_back(json_of(body));
-    frames.push_back(std::move(frame));
-  }
-  Json first, rest;
-  for (const StageSummary& stage : summarize(rows)) {
-    first[stage.stage + "_ms"] = rounded_ms(stage.first);
-    rest[stage.stage + "_ms"] = json_of(stage.rest);
-  }
-  Json document;
-  document["frames"] = std::move(frames);
-  document["summary"] = {{"frames", rows.size()}, {"first_frame", first}, {"without_first_frame", rest}};
-  return document.dump(1) + "\n";
 }
 
 std::string profile_table(const std::vector<FrameRow>& rows) {

@@ -61,7 +61,13 @@ struct StageSummary {
 };
 std::vector<StageSummary> summarize(const std::vector<FrameRow>& rows);
 
+// Rows as text (profile_json.cpp): all of a run's, and one as a line of its own.
 std::string profile_json(const std::vector<FrameRow>& rows);
+std::string row_line(const FrameRow& row);
+
+// The other way round. Throws InputError naming the file where it cannot be read or is not such a text.
+FrameRow row_of_line(const std::string& line, const std::string& source);
+std::vector<FrameRow> read_profile(const std::filesystem::path& path);
 
 // A table for people: stages, then solver figures by body.
 std::string profile_table(const std::vector<FrameRow>& rows);

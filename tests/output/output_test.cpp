@@ -79,6 +79,40 @@ TEST(Profile, LeavesOutWhatWasNotUsedAndTheFirstFrame) {
   EXPECT_NE(profile_json(rows).find("\"error\": null"), std::string::npos);
 }
 
+TEST(Profile, RowsComeBackFromTheirText) {
+  FrameRow row;
+  row.frame = 7;
+  row.time_s = 8.0 / 30;
+  row.step_ms = 12.25;
+  row.render_ms = 3.5;
+  row.state_hash = 0xfedcba9876543210u;
+  BodyRow body;
+  body.name = "soft";
+  body.objective_end = 0.1 + 0.2;
+  body.error_measured = true;
+  body.jiggle = 1.0 / 3;
+  body.inverted = 2;
+  body.energy = {1, 2, 3.5};
+  body.contact = {0.5, 4, 3, 2, 1e-3};
+  body.stop_reason = "round-off";
+  row.bodies = {body, BodyRow{}};
+  const std::string line = row_line(row);
+  EXPECT_EQ(line.find('\n'), std::string::npos);
+  const FrameRow back = row_of_line(line, "a line");
+  EXPECT_EQ(row_line(back), line);
+  EXPECT_EQ(back.state_hash, row.state_hash);
+  EXPECT_EQ(back.bodies[0].objective_end, body.objective_end);  // all seventeen digits
+  EXPECT_TRUE(back.bodies[0].error_measured && !back.bodies[0].error);
+  EXPECT_FALSE(back.draw_ms || back.bodies[1].contact || back.bodies[1].jiggle);
+
+  const test::TemporaryFolder folder;
+  write_whole_file(folder.path / "profile.json", profile_json({row, back}));
+  EXPECT_EQ(profile_json(read_profile(folder.path / "profile.json")), profile_json({row, back}));
+  EXPECT_THROW(row_of_line("{}", "a line"), InputError);
+  EXPECT_THROW(row_of_line(line.substr(0, line.size() / 2), "a line"), InputError);
+  EXPECT_THROW(read_profile(folder.path / "none.json"), InputError);
+}
+
 TEST(RunFolder, TakesOverItsOwnAndRefusesWhatOthersLeft) {
   const test::TemporaryFolder folder;
   const std::filesystem::path run = folder.path / "run";

@@ -1,0 +1,159 @@
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "output/profile.h"
+
+namespace supple {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Four digits behind the point are plenty for times; all seventeen are kept where a number may be compared.
+double rounded_ms(double ms) { return std::round(ms * 1e4) / 1e4; }
+
+Json json_of(const BodyRow& body) {
+  Json row = {{"name", body.name},
+              {"step_ms", rounded_ms(body.step_ms)},
+              {"evaluate_ms", rounded_ms(body.evaluate_ms)},
+              {"solve_ms", rounded_ms(body.solve_ms)},
+              {"lbfgs_ms", rounded_ms(body.lbfgs_ms)},
+              {"other_ms", rounded_ms(body.other_ms)},
+              {"iterations", body.iterations},
+              {"line_search", body.line_search},
+              {"objective_start", body.objective_start},
+              {"objective_end", body.objective_end},
+              {"error_estimate", body.error_estimate}};
+  if (body.error_measured) row["error"] = body.error ? Json(*body.error) : Json(nullptr);
+  if (body.contact) {
+    row["collide_ms"] = rounded_ms(body.contact->collide_ms);
+    row["contacts"] = body.contact->contacts;
+    row["contact_changes"] = body.contact->changes;
+    row["contact_cycles"] = body.contact->cycles;
+    row["penetration"] = body.contact->penetration;
+  }
+  row["stretch"] = body.stretch;
+  if (body.energy) {
+    row["kinetic_energy"] = (*body.energy)[0];
+    row["elastic_energy"] = (*body.energy)[1];
+    row["gravitational_energy"] = (*body.energy)[2];
+  }
+  if (body.inverted) row["inverted"] = *body.inverted;
+  if (body.jiggle) row["jiggle"] = *body.jiggle;
+  row["stop_reason"] = body.stop_reason;
+  return row;
+}
+
+Json json_of(const Distribution& d) {
+  return {{"p50", rounded_ms(d.p50)}, {"p95", rounded_ms(d.p95)},   {"p99", rounded_ms(d.p99)},
+          {"max", rounded_ms(d.max)}, {"mean", rounded_ms(d.mean)}, {"total", rounded_ms(d.total)}};
+}
+
+Json json_of(const FrameRow& row) {
+  Json frame = {{"frame", row.frame}, {"time_s", row.time_s}, {"step_ms", rounded_ms(row.step_ms)}};
+  if (row.draw_ms) frame["draw_ms"] = rounded_ms(*row.draw_ms);
+  if (row.render_ms) frame["render_ms"] = rounded_ms(*row.render_ms);
+  if (row.encode_ms) frame["encode_ms"] = rounded_ms(*row.encode_ms);
+  frame["state_hash"] = hash_text_form(row.state_hash);
+  frame["bodies"] = Json::array();
+  for (const BodyRow& body : row.bodies) frame["bodies"].push_back(json_of(body));
+  return frame;
+}
+
+template <class Number>
+void read_if_there(const Json& json, const char* key, std::optional<Number>& value) {
+  if (json.contains(key)) value = json.at(key).get<Number>();
+}
+
+BodyRow body_row(const Json& json) {
+  BodyRow row;
+  json.at("name").get_to(row.name);
+  json.at("step_ms").get_to(row.step_ms);
+  json.at("evaluate_ms").get_to(row.evaluate_ms);
+  json.at("solve_ms").get_to(row.solve_ms);
+  json.at("lbfgs_ms").get_to(row.lbfgs_ms);
+  json.at("other_ms").get_to(row.other_ms);
+  json.at("iterations").get_to(row.iterations);
+  json.at("line_search").get_to(row.line_search);
+  json.at("objective_start").get_to(row.objective_start);
+  json.at("objective_end").get_to(row.objective_end);
+  json.at("error_estimate").get_to(row.error_estimate);
+  row.error_measured = json.contains("error");
+  if (row.error_measured && !json.at("error").is_null()) row.error = json.at("error").get<double>();
+  if (json.contains("collide_ms")) {
+    row.contact = {json.at("collide_ms").get<double>(), json.at("contacts").get<int>(),
+                   json.at("contact_changes").get<int>(), json.at("contact_cycles").get<int>(),
+                   json.at("penetration").get<double>()};
+  }
+  json.at("stretch").get_to(row.stretch);
+  if (json.contains("kinetic_energy")) {
+    row.energy = {json.at("kinetic_energy").get<double>(), json.at("elastic_energy").get<double>(),
+                  json.at("gravitational_energy").get<double>()};
+  }
+  read_if_there(json, "inverted", row.inverted);
+  read_if_there(json, "jiggle", row.jiggle);
+  json.at("stop_reason").get_to(row.stop_reason);
+  return row;
+}
+
+FrameRow frame_row(const Json& json) {
+  FrameRow row;
+  json.at("frame").get_to(row.frame);
+  json.at("time_s").get_to(row.time_s);
+  json.at("step_ms").get_to(row.step_ms);
+  read_if_there(json, "draw_ms", row.draw_ms);
+  read_if_there(json, "render_ms", row.render_ms);
+  read_if_there(json, "encode_ms", row.encode_ms);
+  row.state_hash = std::stoull(json.at("state_hash").get<std::string>(), nullptr, 16);
+  for (const Json& body : json.at("bodies")) row.bodies.push_back(body_row(body));
+  return row;
+}
+
+// What the parsers of JSON and of numbers throw becomes a message about the file.
+template <class Read>
+auto told_of(const std::string& source, const Read& read) {
+  try {
+    return read();
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(source, fmt::format("is not a profile as this version writes it: {}", error.what()));
+  } catch (const std::logic_error&) {
+    throw InputError(source, "is not a profile: a state_hash is not sixteen hexadecimal digits");
+  }
+}
+
+}  // namespace
+
+std::string row_line(const FrameRow& row) { return json_of(row).dump(); }
+
+FrameRow row_of_line(const std::string& line, const std::string& source) {
+  return told_of(source, [&] { return frame_row(Json::parse(line)); });
+}
+
+std::vector<FrameRow> read_profile(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  if (!file) throw InputError(path.string(), "cannot be read");
+  return told_of(path.string(), [&] {
+    std::vector<FrameRow> rows;
+    const Json document = Json::parse(file);
+    for (const Json& frame : document.at("frames")) rows.push_back(frame_row(frame));
+    return rows;
+  });
+}
+
+std::string profile_json(const std::vector<FrameRow>& rows) {
+  Json frames = Json::array();
+  for (const FrameRow& row : rows) frames.push_back(json_of(row));
+  Json first, rest;
+  for (const StageSummary& stage : summarize(rows)) {
+    first[stage.stage + "_ms"] = rounded_ms(stage.first);
+    rest[stage.stage + "_ms"] = json_of(stage.rest);
+  }
+  Json document;
+  document["frames"] = std::move(frames);
+  document["summary"] = {{"frames", rows.size()}, {"first_frame", first}, {"without_first_frame", rest}};
+  return document.dump(1) + "\n";
+}
+
+}  // namespace supple
