@@ -37,37 +37,87 @@ std::string failure_text(int frame, const std::string& body, const StepFailure& 
 
 // The surface that may touch, in the model's numbering.
 Triangles touching_surface(const Body& body, const Model& model) {
-  Triangles surface = body.def.cloth ? body.surface : boundary_faces(body.description.mesh.tets);
+  Triangles surface = body.def.cloth ? body.cloth.surface.triangles : boundary_faces(body.description.mesh.tets);
   for (Eigen::Index i = 0; i < surface.size(); ++i) surface.data()[i] = model.internal_of[surface.data()[i]];
   return surface;
 }
 
 }  // namespace
 
-Actor::Actor(const SceneDef& scene, const Body& body, const Model& model, const CollisionSet& set,
-             const RunFolder& folder, Threads& threads)
+Actor::Actor(const SceneDef& scene, Body& body, Model& model, const CollisionSet& set, const RunFolder& folder,
+             Threads& threads, int kept_frames)
     : scene_(scene),
       body_(body),
       model_(model),
       set_(set),
       folder_(folder),
       state_(start_state(model, body)),
-      motion_(folder.motion(body.def.name), model.vertices) {
-  inputs_.gravity = scene.gravity;
-  inputs_.solver = settings_of(body.def.solver.method, body.def.solver.settings);
-  rule_ = make_rule(body.def.solver.method, model);
+      anchors_(rest_anchors(model, body)),
+      motion_(folder.motion(body.def.name), model.vertices, kept_frames) {
+  adopt({.rule = true});
   inputs_.colliders = &set.colliders;
   if (!set.colliders.empty()) surface_ = touching_surface(body, model);
   workspace_.threads = &threads;
   reference_workspace_.threads = &threads;
 }
 
+void Actor::adopt(const ChangeCost& cost) {
+  inputs_.gravity = scene_.gravity;
+  inputs_.solver = settings_of(body_.def.solver.method, body_.def.solver.settings);
+  if (cost.factor) update_model();
+  if (cost.rule || cost.factor) rule_ = make_rule(body_.def.solver.method, model_);
+}
+
+void Actor::update_model() {
+  if (!values_) values_.emplace(model_, body_.description);
+  values_->set(model_, body_.description);
+  reference_.reset();
+}
+
+// Handles that grab close and let go.
+void Actor::close_handles(double time) {
+  bool changed = false;
+  for (std::size_t h = 0; h < body_.def.handles.size(); ++h) {
+    const HandleDef& def = body_.def.handles[h];
+    Handle& handle = body_.description.handles[h];
+    if (!def.grabs) continue;
+    if (time <= 0 && handle.holds) grab(model_, static_cast<int>(h), state_.x, anchors_);
+    if (handle.holds == def.holds_at(time)) continue;
+    handle.holds = !handle.holds;
+    if (handle.holds) grab(model_, static_cast<int>(h), state_.x, anchors_);
+    changed = true;
+  }
+  if (changed) adopt({.factor = true});
+}
+
+BodyMoment Actor::moment() const {
+  BodyMoment moment{state_, anchors_, {}};
+  for (const Handle& handle : body_.description.handles) moment.holds.push_back(handle.holds);
+  return moment;
+}
+
+void Actor::go_on_from(const BodyMoment& moment) {
+  state_ = moment.state;
+  anchors_ = moment.anchors;
+  bool changed = false;
+  for (std::size_t h = 0; h < moment.holds.size(); ++h) {
+    Handle& handle = body_.description.handles[h];
+    changed |= handle.holds != (moment.holds[h] != 0);
+    handle.holds = moment.holds[h] != 0;
+  }
+  if (changed) adopt({.factor = true});
+}
+
 void Actor::set_inputs(int frame, int substep) {
-  const double done = static_cast<double>(frame) * scene_.substeps + substep;
-  const double from = done * scene_.time_step(), to = (done + 1) * scene_.time_step();
-  handle_targets(model_, body_, to, inputs_.targets);
-  if (model_.scheme.theta < 1) handle_targets(model_, body_, 0.5 * (from + to), inputs_.middle_targets);
-  collider_motions(set_.obstacles, from, to, inputs_.collider_motions);
+  const double done = static_cast<double>(frame) * scene_.substeps + substep, share = 1.0 / scene_.substeps;
+  const StepSpan span{done * scene_.time_step(), (done + 1) * scene_.time_step(), substep * share,
+                      (substep + 1) * share};
+  close_handles(span.from);
+  handle_targets(model_, body_, anchors_, span.to, span.change_to, inputs_.targets);
+  if (model_.scheme.theta < 1)
+    handle_targets(model_, body_, anchors_, 0.5 * (span.from + span.to), 0.5 * (span.change_from + span.change_to),
+                   inputs_.middle_targets);
+  collider_motions(set_, span, inputs_.collider_motions);
 }
 
 std::string Actor::advance(int frame, bool measure_error, BodyRow& row) {
@@ -100,7 +150,7 @@ void Actor::measure(int frame, BodyRow& row) {
     const Energies energy = energies(model_, state_, scene_.gravity, workspace_);
     row.energy = {energy.kinetic, energy.elastic, energy.gravitational};
   }
-  if (!body_.motions.empty()) {
+  if (!body_.motions.empty() && !body_.def.handles.front().grabs) {
     const double time = (frame + 1) / scene_.fps;
     row.jiggle = jiggle(model_, state_.x, body_.motions.front().at(time));
   }

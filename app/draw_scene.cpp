@@ -36,23 +36,34 @@ Positions at_pose(const Positions& points, const Eigen::Isometry3d& pose) {
 
 }  // namespace
 
-std::vector<Skin> drawn_set(const std::vector<Obstacle>& obstacles, const std::vector<Body>& bodies) {
+Bounds bounds_at_rest(const std::vector<Body>& bodies) {
   Bounds around;
   for (const Body& body : bodies) {
     const Bounds box = bounds_of(body.description.mesh.rest);
     around.include(box.lower);
     around.include(box.upper);
   }
+  return around;
+}
+
+std::vector<Skin> drawn_set(const std::vector<Obstacle>& obstacles, const std::vector<Body>& bodies) {
   std::vector<Skin> film_set;
-  for (const Obstacle& obstacle : obstacles) film_set.push_back(drawn_obstacle(obstacle, around));
+  for (const Obstacle& obstacle : obstacles) film_set.push_back(drawn_obstacle(obstacle, bounds_at_rest(bodies)));
   return film_set;
 }
 
 void add_set(const std::vector<Obstacle>& obstacles, const std::vector<Skin>& film_set, double time, DrawList& list) {
-  for (std::size_t c = 0; c < obstacles.size(); ++c) {
-    if (film_set[c].rest.points.rows() > 0)
-      list.positions.push_back(as_floats(at_pose(film_set[c].rest.points, obstacles[c].pose(time))));
-  }
+  for (std::size_t c = 0; c < obstacles.size(); ++c)
+    list.positions.push_back(as_floats(at_pose(film_set[c].rest.points, obstacles[c].pose(time))));
+}
+
+DrawMesh collider_mesh(const Obstacle& obstacle, const Skin& skin) {
+  DrawMesh mesh = mesh_of(skin, obstacle.def.shape.paint);
+  mesh.color = collider_color(obstacle.def);
+  mesh.gloss = collider_gloss;
+  mesh.rest = bounds_of(at_pose(skin.rest.points, obstacle.pose(0)));
+  mesh.framed = skin.rest.points.rows() > 0 && obstacle.def.shape.bounds().diagonal() < 1e6;
+  return mesh;
 }
 
 Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const std::vector<DrawnBody>& drawn,
@@ -75,16 +86,7 @@ Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const s
     mesh.rest = bounds_of(bodies[b].description.mesh.rest);
     stage.meshes.push_back(std::move(mesh));
   }
-  for (std::size_t c = 0; c < obstacles.size(); ++c) {
-    const Skin& skin = film_set[c];
-    if (skin.rest.points.rows() == 0) continue;
-    DrawMesh mesh = mesh_of(skin, obstacles[c].def.shape.paint);
-    mesh.color = collider_color(obstacles[c].def);
-    mesh.gloss = collider_gloss;
-    mesh.rest = bounds_of(at_pose(skin.rest.points, obstacles[c].pose(0)));
-    mesh.framed = obstacles[c].def.shape.bounds().diagonal() < 1e6;
-    stage.meshes.push_back(std::move(mesh));
-  }
+  for (std::size_t c = 0; c < obstacles.size(); ++c) stage.meshes.push_back(collider_mesh(obstacles[c], film_set[c]));
   return stage;
 }
 

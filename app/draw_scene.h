@@ -9,8 +9,12 @@ namespace supple {
 
 // What is drawn of each collider; empty where nothing is.
 std::vector<Skin> drawn_set(const std::vector<Obstacle>& obstacles, const std::vector<Body>& bodies);
+Bounds bounds_at_rest(const std::vector<Body>& bodies);
 
-// Bodies, then colliders that are drawn.
+// A collider, drawn by its skin; empty where nothing is.
+DrawMesh collider_mesh(const Obstacle& obstacle, const Skin& skin);
+
+// Bodies, then colliders.
 Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const std::vector<DrawnBody>& drawn,
                  const std::vector<Obstacle>& obstacles, const std::vector<Skin>& film_set, const std::string& font);
 

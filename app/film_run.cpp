@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -92,6 +93,73 @@ FilmOptions options_of(const FilmRequest& request) {
   return film;
 }
 
+bool remembers_steps(const Script& script) {
+  const auto& bodies = script.scene().bodies;
+  return std::any_of(bodies.begin(), bodies.end(),
+                     [](const BodyDef& body) { return remembers_steps(body.solver.method); }) ||
+         std::any_of(script.changes().begin(), script.changes().end(), [](const TimedChange& change) {
+           return change.path.ends_with("method") &&
+                  change.to.text() == fmt::format("'{}'", info_of(Method::hecht).name);
+         });
+}
+
+// All that must be the same for two runs to give the same films, but for their length.
+std::string identity_of(const RunInfo& info, const FilmRequest& request) {
+  nlohmann::ordered_json scene = nlohmann::ordered_json::parse(info.scene_json);
+  scene.erase("frames");
+  nlohmann::ordered_json meshes;
+  for (const RunInfo::Mesh& mesh : info.meshes) meshes[mesh.body] = mesh.hash;
+  nlohmann::ordered_json identity = {
+      {"program", fmt::format("{} {}", program_version(), hash_text_form(program_identity()))},
+      {"kernels", info.kernel_variant},
+      {"cpu", cpu_name()},
+      {"images", !request.no_images},
+      {"gl", request.gl},
+      {"meshes", meshes},
+      {"scene", scene}};
+  if (!info.replay_json.empty()) identity["replay"] = nlohmann::ordered_json::parse(info.replay_json);
+  return identity.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+// What a film goes on from, if there is anything yet.
+std::optional<Checkpoint> checkpoint_in(const std::filesystem::path& run, const std::string& identity, int frames) {
+  const std::filesystem::path file = RunFolder::checkpoint_of(run);
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) {
+    say(stderr, fmt::format("note: {} has no checkpoint yet; starting with the first frame\n", run.string()));
+    return std::nullopt;
+  }
+  Checkpoint checkpoint = read_checkpoint(file, identity);
+  if (checkpoint.frames > frames)
+    throw InputError("--resume", fmt::format("the film in {} has {} frames already, which is more than {}",
+                                             run.string(), checkpoint.frames, frames));
+  say(stderr, fmt::format("note: going on behind frame {} of {}\n", checkpoint.frames, frames));
+  return checkpoint;
+}
+
+RecordHead record_head(const RunInfo& info, const std::vector<Body>& bodies) {
+  nlohmann::ordered_json film = {{"scene", nlohmann::ordered_json::parse(info.scene_json)}};
+  film["scene"].erase("frames");
+  if (!info.replay_json.empty()) film["replay"] = nlohmann::ordered_json::parse(info.replay_json);
+  RecordHead head{hash_text_form(program_identity()),
+                  info.kernel_variant,
+                  film.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace),
+                  {}};
+  for (const Body& body : bodies) head.bodies.push_back({body.def.name, int(body.description.mesh.rest.rows())});
+  return head;
+}
+
+// Every frame's changes once, so that what cannot be is said before the film begins.
+void try_changes(const Script& script, std::vector<Body> bodies) {
+  for (int frame = 0; frame < script.scene().frames; ++frame) {
+    const std::vector<const TimedChange*> at_work = script.at_work(frame);
+    if (std::none_of(at_work.begin(), at_work.end(), [](const TimedChange* change) { return change->cost.factor; }))
+      continue;
+    const SceneDef scene = script.scene_at(frame);
+    for (std::size_t b = 0; b < bodies.size(); ++b) update_body(bodies[b], scene, scene.bodies[b]);
+  }
+}
+
 void add_result(const FilmResult& result, RunInfo& info) {
   info.gl_backend = result.gl_backend;
   info.gl_renderer = result.gl_renderer;
@@ -147,6 +215,18 @@ void add_film_options(CLI::App& verb, FilmRequest& request) {
   verb.add_flag("--no-video", request.no_video, "frames only");
   verb.add_flag("--no-images", request.no_images, "simulate only");
   verb.add_option("--gl", request.gl, "auto, osmesa or egl")->check(CLI::IsMember({"auto", "osmesa", "egl"}));
+  verb.add_option("--checkpoint-every", request.checkpoint_every,
+                  "frames between checkpoints, from which --resume goes on; 0 makes none")
+      ->check(CLI::Range(0, 1000000))
+      ->capture_default_str();
+  verb.add_flag("--resume", request.resume, "go on with the film in --out that was interrupted or killed");
+  verb.add_option("--record", request.record, "file for the states of all frames, to be compared with --verify");
+  CLI::Option* verify =
+      verb.add_option("--verify", request.verify, "stop at the first frame that is not as this file has it");
+  verb.add_option("--tolerance", request.tolerance,
+                  "compare positions up to this, over the body's size, instead of all bits")
+      ->needs(verify)
+      ->check(CLI::Range(0.0, 1.0));
   verb.add_flag("--quiet", request.quiet, "say nothing but errors");
   verb.add_flag("--json", request.json, "the result as one line of JSON on standard output");
 }
@@ -159,16 +239,18 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
   std::vector<std::string> settings = request.set;
   if (request.frames > 0) settings.push_back(fmt::format("frames={}", request.frames));
   if (request.seed >= 0) settings.push_back(fmt::format("seed={}", request.seed));
-  const SceneDef scene = load_scene(info.scene_file, assets_folder(), settings, &info.scene_json);
+  const Script script = Script::load(info.scene_file, assets_folder(), settings);
+  const SceneDef& scene = script.scene();
+  info.scene_json = script.scene_json();
+  info.replay_json = script.replay_json();
   check_save_states(request.save_states, scene);
-  const std::vector<Body> bodies = assemble(scene);
+  std::vector<Body> bodies = assemble(scene);
   if (!request.quiet) say_remarks(scene, bodies);
+  try_changes(script, bodies);
   std::vector<Model> models;
   for (const Body& body : bodies) models.push_back(build_model(body.description));
 
-  const RunFolder folder(request.out.empty() ? std::filesystem::path("out") / scene.name
-                                             : std::filesystem::path(request.out));
-  const FilmOptions options = options_of(request);
+  FilmOptions options = options_of(request);
   info.kernel_variant = kernels().name;
   info.threads = options.threads;
   for (const Body& body : bodies) {
@@ -179,12 +261,28 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
       say(stderr,
           fmt::format("{}: {} vertices, {} elements ({})\n", body.def.name, mesh.rest.rows(), elements, body.source));
   }
+  const std::filesystem::path path =
+      request.out.empty() ? std::filesystem::path("out") / scene.name : std::filesystem::path(request.out);
+  options.identity = identity_of(info, request);
+  options.checkpoint_every = remembers_steps(script) ? 0 : request.checkpoint_every;
+  if (request.resume) options.start = checkpoint_in(path, options.identity, scene.frames);
+  const int start = options.start ? options.start->frames : 0;
+  options.record = request.record;
+  options.record_head = record_head(info, bodies);
+  std::optional<StateVerifier> verifier;
+  if (!request.verify.empty()) {
+    verifier.emplace(request.verify, options.record_head, request.tolerance, start);
+    if (!verifier->remark().empty()) say(stderr, fmt::format("note: {}: {}\n", request.verify, verifier->remark()));
+    options.verifier = &*verifier;
+  }
+  const RunFolder folder(path, start);
   info.ended = "running";
+  if (start > 0) info.resumed.push_back(start);
   folder.write_info(info);
 
   catch_interrupts();
   const double before_film = setup.elapsed_ms();
-  FilmResult result = make_film(scene, bodies, models, collision_set(scene), folder, options);
+  FilmResult result = make_film(script, bodies, models, folder, options);
   result.setup_ms += before_film;
 
   add_result(result, info);
@@ -195,7 +293,10 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
   } catch (const RunError& error) {
     unrecorded = error.what();
   }
-  return say_result(request, result, folder, scene, unrecorded);
+  const int status = say_result(request, result, folder, scene, unrecorded);
+  if (verifier && result.end == FilmEnd::done)
+    say(request.json ? stderr : stdout, fmt::format("  {}\n", verifier->verdict(int(result.rows.size()))));
+  return status;
 }
 
 }  // namespace supple

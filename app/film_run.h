@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,10 @@ struct FilmRequest {
   long long seed = -1;
   bool no_video = false, no_images = false, quiet = false, json = false;
   std::string gl = "auto";
+  int checkpoint_every = 60;
+  bool resume = false;
+  std::string record, verify;
+  std::optional<double> tolerance;
 };
 
 // The options that every run of a scene has.

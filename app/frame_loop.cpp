@@ -6,21 +6,18 @@
 #include <algorithm>
 #include <csignal>
 #include <exception>
-#include <mutex>
-#include <thread>
+#include <utility>
 
 #include "app/actor.h"
 #include "app/draw_scene.h"
-#include "base/console.h"
+#include "app/film_log.h"
+#include "app/pictures.h"
+#include "app/progress.h"
 #include "base/error.h"
 #include "base/hash.h"
-#include "base/queue.h"
-#include "base/text.h"
 #include "base/timing.h"
-#include "output/png_file.h"
 #include "output/pose_table.h"
 #include "output/video.h"
-#include "render/renderer.h"
 
 namespace supple {
 namespace {
@@ -31,117 +28,6 @@ extern "C" void on_interrupt(int) {
   interrupt_count = interrupt_count + 1;
   if (interrupt_count >= 3) _exit(130);  // somebody means it
 }
-
-constexpr std::size_t frames_in_flight = 3;  // between two stages
-
-// Drawing and compressing, each on a thread of its own. A stage that fails closes the queues; its error waits to be
-// collected.
-class Pictures {
- public:
-  Pictures(const Stage& stage, const FilmOptions& options, const RunFolder& folder)
-      : options_(options), folder_(folder), lists_(frames_in_flight), images_(frames_in_flight) {
-    drawing_ = std::thread([this, stage] { guarded([&] { draw_all(stage); }); });
-    compressing_ = std::thread([this] { guarded([this] { compress_all(); }); });
-  }
-  ~Pictures() { finish(); }
-
-  // False when a stage has failed.
-  bool put(int frame, DrawList list) { return lists_.push({frame, std::move(list)}); }
-
-  // Waits until every frame that was put is on the disk.
-  void finish() {
-    lists_.close();
-    if (drawing_.joinable()) drawing_.join();
-    images_.close();
-    if (compressing_.joinable()) compressing_.join();
-  }
-
-  std::string error() {
-    const std::lock_guard lock(mutex_);
-    return error_;
-  }
-  // Valid after finish().
-  const std::vector<std::pair<double, double>>& times() const { return times_; }  // render and encode by frame [ms]
-  int frames_written() const { return frames_written_; }
-  std::string backend, renderer, version;
-
- private:
-  template <class Work>
-  void guarded(const Work& work) {
-    try {
-      work();
-    } catch (const std::exception& error) {
-      const std::lock_guard lock(mutex_);
-      if (error_.empty()) error_ = error.what();
-    }
-    lists_.close();
-    images_.close();
-  }
-
-  void draw_all(const Stage& stage) {
-    Renderer renderer_object(stage, options_.gl, options_.shaders);
-    backend = renderer_object.backend();
-    renderer = renderer_object.name();
-    version = renderer_object.version();
-    while (auto item = lists_.pop()) {
-      const Stopwatch watch;
-      Image image = renderer_object.draw(item->second);
-      const double ms = watch.elapsed_ms();
-      if (!images_.push({item->first, ms, std::move(image)})) return;
-    }
-  }
-
-  struct Drawn {
-    int frame;
-    double render_ms;
-    Image image;
-  };
-
-  void compress_all() {
-    while (auto drawn = images_.pop()) {
-      const Stopwatch watch;
-      write_png(folder_.frame(drawn->frame), drawn->image.width, drawn->image.height, drawn->image.rgb);
-      times_.emplace_back(drawn->render_ms, watch.elapsed_ms());
-      frames_written_ = drawn->frame + 1;
-    }
-  }
-
-  const FilmOptions& options_;
-  const RunFolder& folder_;
-  BoundedQueue<std::pair<int, DrawList>> lists_;
-  BoundedQueue<Drawn> images_;
-  std::thread drawing_, compressing_;
-  std::mutex mutex_;
-  std::string error_;
-  std::vector<std::pair<double, double>> times_;
-  int frames_written_ = 0;
-};
-
-// The progress line on a terminal; a plain line now and then elsewhere.
-class Progress {
- public:
-  Progress(int frames, bool quiet) : frames_(frames), quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
-
-  void show(int done) {
-    const double elapsed = watch_.elapsed_ms() / 1000;
-    const bool due = terminal_ ? elapsed - last_ > 0.1 : elapsed - last_ > 10;
-    if (quiet_ || (!due && done != frames_)) return;
-    last_ = elapsed;
-    const std::string left = duration_text(elapsed / done * (frames_ - done));
-    say(stderr, fmt::format("{}frame {} of {}, {:.1f} a second, {} left{}", terminal_ ? "\r\033[K" : "", done, frames_,
-                            done / elapsed, left, terminal_ ? "" : "\n"));
-    shown_ = true;
-  }
-  void end() {
-    if (!quiet_ && terminal_ && shown_) say(stderr, fmt::format("\n"));
-  }
-
- private:
-  int frames_;
-  bool quiet_, terminal_, shown_ = false;
-  double last_ = 0;
-  Stopwatch watch_;
-};
 
 }  // namespace
 
@@ -154,98 +40,245 @@ void catch_interrupts() {
   sigaction(SIGTERM, &action, nullptr);
 }
 
-FilmResult make_film(const SceneDef& scene, const std::vector<Body>& bodies, std::vector<Model>& models,
-                     const CollisionSet& set, const RunFolder& folder, const FilmOptions& options) {
-  FilmResult result;
-  const Stopwatch setup;
-  Threads threads(options.threads);
+namespace {
+
+// What is drawn, which follows from the scene as the film starts; only with images.
+struct DrawnFilm {
+  DrawnFilm(const SceneDef& scene, const std::vector<Body>& bodies, const CollisionSet& set, const std::string& font) {
+    for (const Body& body : bodies) drawn.push_back(drawn_body(scene, body));
+    film_set = drawn_set(set.obstacles, bodies);
+    stage = make_stage(scene, bodies, drawn, set.obstacles, film_set, font);
+  }
+
+  // The shape of a collider has changed.
+  void renew(std::size_t collider, const CollisionSet& set, const std::vector<Body>& bodies) {
+    film_set[collider] = drawn_obstacle(set.obstacles[collider], bounds_at_rest(bodies));
+    renewed.push_back(collider);
+  }
+
+  DrawList list(const SceneDef& scene, const std::vector<std::unique_ptr<Actor>>& actors, const CollisionSet& set,
+                double time) {
+    DrawList result;
+    result.camera = make_camera(scene, stage);
+    for (std::size_t b = 0; b < actors.size(); ++b)
+      result.positions.push_back(skin_positions(drawn[b], actors[b]->model(), actors[b]->state()));
+    add_set(set.obstacles, film_set, time, result);
+    for (const std::size_t c : std::exchange(renewed, {}))
+      result.renewed.emplace_back(actors.size() + c, collider_mesh(set.obstacles[c], film_set[c]));
+    return result;
+  }
+
   std::vector<DrawnBody> drawn;
   std::vector<Skin> film_set;  // of colliders
-  std::optional<Pictures> pictures;
-  std::vector<FrameRow> rows;
-  Progress progress(scene.frames, options.quiet);
-  Stopwatch loop;
-  try {
-    Camera camera;
+  Stage stage;
+  std::vector<std::size_t> renewed;  // colliders, since the last list
+};
+
+// A film in progress.
+class Film {
+ public:
+  Film(const Script& script, std::vector<Body>& bodies, std::vector<Model>& models, const RunFolder& folder,
+       const FilmOptions& options)
+      : script_(script),
+        bodies_(bodies),
+        folder_(folder),
+        options_(options),
+        scene_(script.scene()),
+        set_(collision_set(scene_)),
+        threads_(options.threads),
+        start_(options.start ? options.start->frames : 0),
+        log_(folder, options.checkpoint_every, options.identity, start_) {
     if (options.images) {
-      for (const Body& body : bodies) drawn.push_back(drawn_body(scene, body));
-      film_set = drawn_set(set.obstacles, bodies);
-      const Stage stage = make_stage(scene, bodies, drawn, set.obstacles, film_set, options.font);
-      camera = make_camera(scene, stage);
-      pictures.emplace(stage, options, folder);
+      drawn_.emplace(scene_, bodies, set_, options.font);
+      pictures_.emplace(drawn_->stage, options.gl, options.shaders, folder);
     }
-    std::vector<std::unique_ptr<Actor>> actors;
     for (std::size_t b = 0; b < bodies.size(); ++b)
-      actors.push_back(std::make_unique<Actor>(scene, bodies[b], models[b], set, folder, threads));
-    std::optional<PoseTableWriter> poses;
-    if (!set.obstacles.empty()) poses.emplace(folder.colliders());
-    result.setup_ms = setup.elapsed_ms();
-    loop.lap_ms();
-    for (int frame = 0; frame < scene.frames; ++frame) {
-      if (interrupted()) {
-        result.end = FilmEnd::interrupted;
-        break;
-      }
+      actors_.push_back(std::make_unique<Actor>(scene_, bodies[b], models[b], set_, folder, threads_, start_));
+    if (!set_.obstacles.empty()) poses_.emplace(folder.colliders(), start_);
+    if (options.start) go_on();
+    if (!options.record.empty()) recorder_.emplace(options.record, options.record_head, start_);
+  }
+
+  // Returns how it ended.
+  FilmEnd run(Progress& progress, std::string& message) {
+    for (int frame = start_; frame < script_.scene().frames; ++frame) {
+      if (interrupted()) return FilmEnd::interrupted;
       FrameRow row;
       row.frame = frame;
-      row.time_s = (frame + 1) / scene.fps;
-      const bool measure_error = options.error_every > 0 && frame % options.error_every == 0;
-      const bool save_states = std::ranges::find(options.save_states, frame) != options.save_states.end();
-      std::vector<std::uint64_t> hashes;
-      for (const auto& actor : actors) {
-        if (save_states) actor->save_state(frame);
-        row.bodies.emplace_back();
-        result.message = actor->advance(frame, measure_error, row.bodies.back());
-        if (!result.message.empty()) break;
-        row.step_ms += row.bodies.back().step_ms;
-        hashes.push_back(state_hash(actor->model(), actor->state()));
-      }
-      if (!result.message.empty()) {
-        result.end = FilmEnd::failed;
-        break;
-      }
-      // Of one body its own; of several, XXH64 of theirs in the order of the scene.
-      row.state_hash =
-          hashes.size() == 1 ? hashes.front() : hash_bytes(hashes.data(), sizeof(hashes.front()) * hashes.size());
-      if (pictures) {
-        const Stopwatch watch;
-        DrawList list{camera, {}};
-        for (std::size_t b = 0; b < actors.size(); ++b)
-          list.positions.push_back(skin_positions(drawn[b], actors[b]->model(), actors[b]->state()));
-        add_set(set.obstacles, film_set, row.time_s, list);
-        row.draw_ms = watch.elapsed_ms();
-        if (!pictures->put(frame, std::move(list))) break;
-      }
-      for (const auto& actor : actors) actor->save_motion();
-      for (const Obstacle& obstacle : set.obstacles) poses->add(frame, obstacle.def.name, obstacle.pose(row.time_s));
-      rows.push_back(std::move(row));
+      row.time_s = (frame + 1) / scene_.fps;
+      change(frame, row);
+      message = advance(frame, row);
+      if (!message.empty()) return FilmEnd::failed;
+      if (!show(frame, row)) return FilmEnd::done;  // the pictures' error says why
+      for (const auto& actor : actors_) actor->save_motion();
+      for (const Obstacle& obstacle : set_.obstacles) poses_->add(frame, obstacle.def.name, obstacle.pose(row.time_s));
+      log_.add(std::move(row));
+      if (log_.wants_checkpoint(frame + 1)) add_checkpoint(frame + 1);
+      log_.settle(pictures());
       progress.show(frame + 1);
     }
+    return FilmEnd::done;
+  }
+
+  // Waits for the pictures, and leaves a checkpoint behind the last frame.
+  void finish(FilmResult& result) {
+    if (pictures_) {
+      pictures_->finish();
+      result.gl_backend = pictures_->backend;
+      result.gl_renderer = pictures_->renderer;
+      result.gl_version = pictures_->version;
+    }
+    const int frames = static_cast<int>(log_.rows().size());
+    const bool at_end = result.end != FilmEnd::failed && log_.keeps_checkpoints() && !log_.wants_checkpoint(frames);
+    if (at_end) add_checkpoint(frames);
+    log_.settle(pictures());
+    log_.drop_others();
+    if (pictures_ && !pictures_->error().empty()) {
+      result.end = FilmEnd::failed;
+      result.message = pictures_->error();
+    }
+  }
+
+  const FilmLog& log() const { return log_; }
+
+ private:
+  Pictures* pictures() { return pictures_ ? &*pictures_ : nullptr; }
+
+  // To where an earlier run's checkpoint was taken.
+  void go_on() {
+    const int before = start_ - 1;
+    const bool changed = std::ranges::any_of(
+        script_.changes(), [&](const TimedChange& change) { return change.at < start_ / scene_.fps; });
+    if (changed) {
+      take_over(script_.scene_at(before), script_.changes());
+      settle_changes();
+    }
+    for (std::size_t b = 0; b < actors_.size(); ++b) actors_[b]->go_on_from(options_.start->bodies[b]);
+  }
+
+  // What a replay changes in a frame.
+  void change(int frame, FrameRow& row) {
+    settle_changes();
+    const std::vector<const TimedChange*> at_work = script_.at_work(frame);
+    if (at_work.empty()) return;
+    const Stopwatch watch;
+    std::vector<TimedChange> changes;
+    for (const TimedChange* one : at_work) changes.push_back(*one);
+    take_over(script_.scene_at(frame), changes);
+    row.change_ms = watch.elapsed_ms();
+  }
+
+  void settle_changes() {
+    set_.earlier.clear();
+    for (Body& body : bodies_) body.earlier.clear();
+  }
+
+  void take_over(SceneDef scene, const std::vector<TimedChange>& changes) {
+    const auto cost_for = [&changes](const std::string& name) {
+      ChangeCost cost;
+      for (const TimedChange& change : changes) {
+        if (change.object.empty() || change.object == name) cost |= change.cost;
+      }
+      return cost;
+    };
+    scene_ = std::move(scene);
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      update_body(bodies_[b], scene_, scene_.bodies[b]);
+      actors_[b]->adopt(cost_for(bodies_[b].def.name));
+    }
+    CollisionSet now = collision_set(scene_);
+    now.earlier = std::move(set_.obstacles);
+    set_ = std::move(now);
+    for (std::size_t c = 0; drawn_ && c < set_.obstacles.size(); ++c) {
+      if (cost_for(set_.obstacles[c].def.name).surface) drawn_->renew(c, set_, bodies_);
+    }
+  }
+
+  // All bodies' steps. Returns what went wrong.
+  std::string advance(int frame, FrameRow& row) {
+    const bool measure_error = options_.error_every > 0 && frame % options_.error_every == 0;
+    const bool save_states = std::ranges::find(options_.save_states, frame) != options_.save_states.end();
+    std::vector<std::uint64_t> hashes;
+    for (const auto& actor : actors_) {
+      if (save_states) actor->save_state(frame);
+      row.bodies.emplace_back();
+      std::string message = actor->advance(frame, measure_error, row.bodies.back());
+      if (!message.empty()) return message;
+      row.step_ms += row.bodies.back().step_ms;
+      hashes.push_back(state_hash(actor->model(), actor->state()));
+      if (recorder_) recorder_->add(actor->model(), actor->state());
+      if (options_.verifier != nullptr) message = options_.verifier->compare(frame, actor->model(), actor->state());
+      if (!message.empty()) return message;
+    }
+    // Of one body its own; of several, XXH64 of theirs in the order of the scene.
+    row.state_hash =
+        hashes.size() == 1 ? hashes.front() : hash_bytes(hashes.data(), sizeof(hashes.front()) * hashes.size());
+    return "";
+  }
+
+  // False when the pictures have failed.
+  bool show(int frame, FrameRow& row) {
+    if (!pictures_) return true;
+    const Stopwatch watch;
+    DrawList list = drawn_->list(scene_, actors_, set_, row.time_s);
+    row.draw_ms = watch.elapsed_ms();
+    return pictures_->put(frame, std::move(list));
+  }
+
+  void add_checkpoint(int frames) {
+    Checkpoint checkpoint{frames, {}};
+    for (const auto& actor : actors_) checkpoint.bodies.push_back(actor->moment());
+    log_.add(checkpoint);
+  }
+
+  const Script& script_;
+  std::vector<Body>& bodies_;
+  const RunFolder& folder_;
+  const FilmOptions& options_;
+  SceneDef scene_;  // of the frame in progress
+  CollisionSet set_;
+  Threads threads_;
+  int start_;
+  FilmLog log_;
+  std::optional<DrawnFilm> drawn_;
+  std::vector<std::unique_ptr<Actor>> actors_;
+  std::optional<PoseTableWriter> poses_;
+  std::optional<StateRecorder> recorder_;
+  std::optional<Pictures> pictures_;  // last: its threads end first
+};
+
+}  // namespace
+
+FilmResult make_film(const Script& script, std::vector<Body>& bodies, std::vector<Model>& models,
+                     const RunFolder& folder, const FilmOptions& options) {
+  FilmResult result;
+  const Stopwatch setup;
+  Stopwatch loop;
+  Progress progress(script.scene().frames, options.start ? options.start->frames : 0, options.quiet);
+  std::optional<Film> film;
+  try {
+    film.emplace(script, bodies, models, folder, options);
+    result.setup_ms = setup.elapsed_ms();
+    loop.lap_ms();
+    result.end = film->run(progress, result.message);
   } catch (const std::exception& error) {
     result.end = FilmEnd::failed;
     result.message = error.what();
   }
-  if (pictures) {
-    pictures->finish();
-    for (std::size_t i = 0; i < rows.size() && i < pictures->times().size(); ++i) {
-      rows[i].render_ms = pictures->times()[i].first;
-      rows[i].encode_ms = pictures->times()[i].second;
-    }
-    if (!pictures->error().empty()) {
+  if (film) {
+    try {
+      film->finish(result);
+    } catch (const std::exception& error) {
       result.end = FilmEnd::failed;
-      result.message = pictures->error();
-      rows.resize(std::min<std::size_t>(rows.size(), pictures->frames_written()));
+      if (result.message.empty()) result.message = error.what();
     }
-    result.gl_backend = pictures->backend;
-    result.gl_renderer = pictures->renderer;
-    result.gl_version = pictures->version;
+    result.rows = film->log().rows();
   }
   progress.end();
   result.wall_ms = loop.elapsed_ms();
-  result.rows = std::move(rows);
-  if (pictures && options.video && !result.rows.empty()) {
+  if (film && options.images && options.video && !result.rows.empty()) {
     const VideoResult video =
-        encode_video(folder.frames(), static_cast<int>(result.rows.size()), scene.fps, folder.video());
+        encode_video(folder.frames(), static_cast<int>(result.rows.size()), script.scene().fps, folder.video());
     result.video_written = video.outcome == VideoOutcome::written;
     result.video_failed = video.outcome == VideoOutcome::failed;
     result.video_message = video.message;

@@ -6,11 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "app/checkpoint.h"
+#include "app/state_record.h"
 #include "output/profile.h"
 #include "output/run_folder.h"
 #include "render/gl_context.h"
 #include "scene/assemble.h"
-#include "scene/obstacle.h"
+#include "scene/script.h"
 
 namespace supple {
 
@@ -24,6 +26,12 @@ struct FilmOptions {
   bool quiet = false;
   std::filesystem::path shaders;
   std::string font;
+  int checkpoint_every = 0;         // frames; 0: never
+  std::string identity;             // of what a checkpoint belongs to
+  std::optional<Checkpoint> start;  // to go on from
+  std::filesystem::path record;     // empty: none
+  RecordHead record_head;
+  StateVerifier* verifier = nullptr;  // may be null: nothing to compare with
 };
 
 enum class FilmEnd { done, interrupted, failed };
@@ -41,8 +49,8 @@ struct FilmResult {
 };
 
 // Runs a scene into a folder. Whatever happens, the frames before it are whole, and rows tells of them.
-FilmResult make_film(const SceneDef& scene, const std::vector<Body>& bodies, std::vector<Model>& models,
-                     const CollisionSet& set, const RunFolder& folder, const FilmOptions& options);
+FilmResult make_film(const Script& script, std::vector<Body>& bodies, std::vector<Model>& models,
+                     const RunFolder& folder, const FilmOptions& options);
 
 // True once SIGINT or SIGTERM asked the run to end after the frame in progress.
 bool interrupted();

@@ -24,6 +24,7 @@ int run(int argc, char** argv) {
   const std::vector<std::string> command(argv, argv + argc);
   supple::Action action;
   supple::add_render(app, action, command);
+  supple::add_replay(app, action, command);
   supple::add_bench(app, action);
   supple::add_check(app, action);
   supple::add_mesh(app, action);

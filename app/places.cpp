@@ -31,8 +31,11 @@ std::string caption_font() {
 std::filesystem::path scene_file(const std::string& name) {
   std::error_code error;
   if (std::filesystem::exists(name, error)) return name;
-  const std::filesystem::path shipped = assets_folder() / "scenes" / (name + ".toml");
-  return std::filesystem::exists(shipped, error) ? shipped : std::filesystem::path(name);
+  for (const char* kind : {"scenes", "replays"}) {
+    const std::filesystem::path shipped = assets_folder() / kind / (name + ".toml");
+    if (std::filesystem::exists(shipped, error)) return shipped;
+  }
+  return name;
 }
 
 }  // namespace supple

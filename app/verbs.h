@@ -14,6 +14,7 @@ namespace supple {
 using Action = std::function<int()>;
 
 void add_render(CLI::App& app, Action& action, const std::vector<std::string>& command);
+void add_replay(CLI::App& app, Action& action, const std::vector<std::string>& command);
 void add_check(CLI::App& app, Action& action);
 void add_mesh(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
@@ -27,7 +28,7 @@ std::filesystem::path shaders_folder();
 // A sans font for captions; empty when none of the known ones is installed.
 std::string caption_font();
 
-// A file, or the name of a scene that ships ("squirrel").
+// A file, or the name of a scene or replay that ships ("squirrel").
 std::filesystem::path scene_file(const std::string& name);
 
 }  // namespace supple

@@ -9,6 +9,7 @@
 #include "app/verbs.h"
 #include "base/error.h"
 #include "base/hash.h"
+#include "output/run_folder.h"
 #include "baselines/make_rule.h"
 #include "scene/scene_reader.h"
 
@@ -40,22 +41,13 @@ Subject::Subject(const SubjectChoice& chosen)
       model(build_model(body.description)),
       set(collision_set(scene)) {}
 
-std::uint64_t program_identity() {
-  static const std::uint64_t identity = [] {
-    std::ifstream file("/proc/self/exe", std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-    return hash_text(bytes);
-  }();
-  return identity;
-}
-
 FrameInputs Subject::inputs(int frame) const {
   FrameInputs inputs{
       scene.gravity, {}, {}, settings_of(body.def.solver.method, body.def.solver.settings), &set.colliders};
   const double from = frame / scene.fps, to = from + scene.time_step();
   handle_targets(model, body, to, inputs.targets);
   if (model.scheme.theta < 1) handle_targets(model, body, 0.5 * (from + to), inputs.middle_targets);
-  collider_motions(set.obstacles, from, to, inputs.collider_motions);
+  collider_motions(set, {from, to}, inputs.collider_motions);
   return inputs;
 }
 
@@ -95,7 +87,7 @@ std::vector<BenchState> states_of(const Subject& subject, const std::vector<int>
       if (substep > 0) {
         const double h = subject.scene.time_step(), from = frame / subject.scene.fps + substep * h;
         handle_targets(subject.model, subject.body, from + h, own.targets);
-        collider_motions(subject.set.obstacles, from, from + h, own.collider_motions);
+        collider_motions(subject.set, {from, from + h}, own.collider_motions);
       }
       const StepReport& report = step(subject.model, own, state, workspace, *rule);
       if (report.failed)

@@ -34,9 +34,6 @@ struct Subject {
   std::string size_text() const;  // "3472 vertices, 10441 elements"
 };
 
-// XXH64 of the running program: what an earlier build has measured or played is not this one's.
-std::uint64_t program_identity();
-
 // One step to be made.
 struct BenchState {
   int frame = 0;

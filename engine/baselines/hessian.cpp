@@ -243,17 +243,19 @@ SparseMatrix system_matrix_of(const Model& model) {
   }
   for_each_element(model, [&](const ElementView& element) {
     const bool solid = element.kind == ElementKind::tetrahedron;
-    const Fibre* fibre = solid && !model.fibres.empty() ? &model.fibres[element.region] : nullptr;
-    for (const SystemTerm& term : system_terms(element, solid ? model.stiffness[element.region].k : 0, fibre)) {
+    const auto add = [&](const SystemTerm& term, double k) {
       for (int a = 0; a < corners_of(element.kind); ++a) {
         for (int b = 0; b < corners_of(element.kind); ++b) {
           if (std::max(element.corner[a], element.corner[b]) >= model.free) continue;
           double product = 0;
           for (int i = 0; i < 3; ++i) product += term.row[a][i] * term.row[b][i];
-          entries.emplace_back(element.corner[a], element.corner[b], scale * term.weight * product);
+          entries.emplace_back(element.corner[a], element.corner[b], scale * k * term.weight * product);
         }
       }
-    }
+    };
+    add(unit_term(element), solid ? model.stiffness[element.region].k : element.field[1]);
+    if (solid && !model.fibres.empty() && model.fibres[element.region].kappa > 0)
+      add(fibre_term(element, model.fibres[element.region]), 1);
   });
   SparseMatrix matrix(model.free, model.free);
   matrix.setFromTriplets(entries.begin(), entries.end());

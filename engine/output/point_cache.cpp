@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstring>
 
@@ -23,12 +25,29 @@ static_assert(sizeof(Header) == 32);
 
 }  // namespace
 
-PointCacheWriter::PointCacheWriter(const std::filesystem::path& path, int points)
-    : path_(path), file_(std::fopen(path.c_str(), "wb")), points_(points) {
-  if (!file_) fail("be created");
+PointCacheWriter::PointCacheWriter(const std::filesystem::path& path, int points, int kept_frames)
+    : path_(path), file_(std::fopen(path.c_str(), kept_frames > 0 ? "r+b" : "wb")), points_(points) {
+  if (!file_) fail(kept_frames > 0 ? "be opened" : "be created");
+  if (kept_frames > 0) {
+    go_on_behind(kept_frames);
+    return;
+  }
   // One sample a frame: the rate counts frames of the film between samples.
   const Header header{{'P', 'O', 'I', 'N', 'T', 'C', 'A', 'C', 'H', 'E', '2', '\0'}, 1, points, 0.0f, 1.0f, 0};
   if (std::fwrite(&header, sizeof header, 1, file_.get()) != 1) fail("be written");
+}
+
+void PointCacheWriter::go_on_behind(int frames) {
+  Header header{};
+  const auto size = static_cast<std::int64_t>(sizeof header + sizeof(float) * 3 * std::size_t(points_) * frames);
+  if (std::fread(&header, sizeof header, 1, file_.get()) != 1 || header.points != points_ || header.samples < frames)
+    throw RunError(fmt::format("{}: does not have the {} frames to go on from", path_.string(), frames));
+  header.samples = frames_ = frames;
+  if (std::fseek(file_.get(), 0, SEEK_SET) != 0 || std::fwrite(&header, sizeof header, 1, file_.get()) != 1 ||
+      std::fflush(file_.get()) != 0 || ftruncate(fileno(file_.get()), size) != 0 ||
+      std::fseek(file_.get(), 0, SEEK_END) != 0) {
+    fail("be written");
+  }
 }
 
 void PointCacheWriter::add(const Positions& points) {

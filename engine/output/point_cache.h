@@ -11,8 +11,9 @@ namespace supple {
 
 class PointCacheWriter {
  public:
-  // Throws RunError when the file cannot be written.
-  PointCacheWriter(const std::filesystem::path& path, int points);
+  // Starts a file, or goes on behind the first frames of one. Throws RunError when it cannot be written, or does not
+  // have those frames.
+  PointCacheWriter(const std::filesystem::path& path, int points, int kept_frames = 0);
 
   // Appends a frame (points x 3, float in the file). The header's count is brought up to date, so that the file is
   // valid after every frame.
@@ -20,6 +21,7 @@ class PointCacheWriter {
 
  private:
   void fail(const char* doing) const;
+  void go_on_behind(int frames);
 
   std::filesystem::path path_;
   struct Close {

@@ -13,8 +13,8 @@ namespace supple {
 
 class PoseTableWriter {
  public:
-  // Throws RunError when the file cannot be written.
-  explicit PoseTableWriter(const std::filesystem::path& path);
+  // Starts a file, or goes on behind the first frames of one. Throws RunError when it cannot be written.
+  explicit PoseTableWriter(const std::filesystem::path& path, int kept_frames = 0);
 
   // Position [m] and rotation as a quaternion, from the collider's frame to the world.
   void add(int frame, const std::string& name, const Eigen::Isometry3d& pose);

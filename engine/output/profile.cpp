@@ -44,19 +44,18 @@ std::vector<StageSummary> summarize(const std::vector<FrameRow>& rows) {
     std::optional<double> (*get)(const FrameRow&);
   };
   constexpr Stage stages[] = {{"step", [](const FrameRow& r) { return std::optional<double>(r.step_ms); }},
+                              {"change", [](const FrameRow& r) { return r.change_ms; }},
                               {"draw", [](const FrameRow& r) { return r.draw_ms; }},
                               {"render", [](const FrameRow& r) { return r.render_ms; }},
                               {"encode", [](const FrameRow& r) { return r.encode_ms; }}};
   std::vector<StageSummary> result;
   for (const Stage& stage : stages) {
     std::vector<double> values;
-    for (const FrameRow& row : rows) {
-      if (const auto value = stage.get(row)) values.push_back(*value);
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      if (const auto value = stage.get(rows[i])) values.push_back(*value);
     }
-    if (values.empty()) continue;
-    const double first = values.front();
-    values.erase(values.begin());
-    result.push_back({stage.name, first, distribution_of(std::move(values))});
+    const std::optional<double> first = rows.empty() ? std::nullopt : stage.get(rows.front());
+    if (first || !values.empty()) result.push_back({stage.name, first.value_or(0), distribution_of(std::move(values))});
   }
   return result;
 }

@@ -40,6 +40,7 @@ struct FrameRow {
   int frame = 0;
   double time_s = 0;
   double step_ms = 0;
+  std::optional<double> change_ms;  // taking over what a replay changes; absent where it changes nothing
   std::optional<double> draw_ms, render_ms, encode_ms;  // absent without images
   std::uint64_t state_hash = 0;
   std::vector<BodyRow> bodies;

@@ -53,6 +53,7 @@ Json json_of(const Distribution& d) {
 
 Json json_of(const FrameRow& row) {
   Json frame = {{"frame", row.frame}, {"time_s", row.time_s}, {"step_ms", rounded_ms(row.step_ms)}};
+  if (row.change_ms) frame["change_ms"] = rounded_ms(*row.change_ms);
   if (row.draw_ms) frame["draw_ms"] = rounded_ms(*row.draw_ms);
   if (row.render_ms) frame["render_ms"] = rounded_ms(*row.render_ms);
   if (row.encode_ms) frame["encode_ms"] = rounded_ms(*row.encode_ms);
@@ -103,6 +104,7 @@ FrameRow frame_row(const Json& json) {
   json.at("frame").get_to(row.frame);
   json.at("time_s").get_to(row.time_s);
   json.at("step_ms").get_to(row.step_ms);
+  read_if_there(json, "change_ms", row.change_ms);
   read_if_there(json, "draw_ms", row.draw_ms);
   read_if_there(json, "render_ms", row.render_ms);
   read_if_there(json, "encode_ms", row.encode_ms);

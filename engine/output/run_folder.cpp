@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "output/whole_file.h"
 
 namespace supple {
@@ -18,10 +19,32 @@ std::string cpu_name() {
   return "unknown";
 }
 
+std::uint64_t program_identity() {
+  static const std::uint64_t identity = [] {
+    std::ifstream file("/proc/self/exe", std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    return hash_text(bytes);
+  }();
+  return identity;
+}
+
 std::string program_version() { return SUPPLE_VERSION; }
 std::string build_flags() { return SUPPLE_BUILD_FLAGS; }
 
-RunFolder::RunFolder(const std::filesystem::path& path) : path_(path) {
+namespace {
+
+void remove_frames_from(const std::filesystem::path& frames, int first) {
+  std::error_code error;
+  std::vector<std::filesystem::path> later;
+  for (const auto& entry : std::filesystem::directory_iterator(frames, error)) {
+    if (entry.path().filename().string() >= fmt::format("{:06}.png", first)) later.push_back(entry.path());
+  }
+  for (const std::filesystem::path& file : later) std::filesystem::remove(file, error);
+}
+
+}  // namespace
+
+RunFolder::RunFolder(const std::filesystem::path& path, int kept_frames) : path_(path) {
   std::error_code error;
   if (std::filesystem::exists(path, error)) {
     if (!std::filesystem::is_directory(path, error))
@@ -32,13 +55,18 @@ RunFolder::RunFolder(const std::filesystem::path& path) : path_(path) {
                        "holds files that no run left there (no run.json); choose another folder or empty it");
     }
   }
-  for (const char* part : {"frames", "motion", "states"}) std::filesystem::remove_all(path / part, error);
+  if (kept_frames == 0) {
+    for (const char* part : {"frames", "motion", "states", "checkpoint"})
+      std::filesystem::remove_all(path / part, error);
+  }
+  remove_frames_from(path / "frames", kept_frames);
   for (const char* part : {"video.mp4", "profile.json"}) std::filesystem::remove(path / part, error);
-  for (const char* part : {"frames", "motion"}) {
+  for (const char* part : {"frames", "motion", "checkpoint"}) {
     std::filesystem::create_directories(path / part, error);
     if (error) throw RunError(fmt::format("{}: cannot be made: {}", (path / part).string(), error.message()));
   }
-  write_whole_file(path / "run.json", std::string_view("{}\n"));  // from now on the folder is known as a run's
+  // From now on the folder is known as a run's.
+  if (kept_frames == 0) write_whole_file(path / "run.json", std::string_view("{}\n"));
 }
 
 std::filesystem::path RunFolder::frame(int index) const { return frames() / fmt::format("{:06}.png", index); }
@@ -67,6 +95,8 @@ void RunFolder::write_info(const RunInfo& info) const {
   }
   json["scene_file"] = info.scene_file;
   json["scene"] = nlohmann::ordered_json::parse(info.scene_json, nullptr, false);
+  if (!info.replay_json.empty()) json["replay"] = nlohmann::ordered_json::parse(info.replay_json, nullptr, false);
+  if (!info.resumed.empty()) json["resumed_at"] = info.resumed;
   if (!info.video.empty()) json["video"] = info.video;
   // File names need not be UTF-8; JSON must be.
   write_whole_file(path_ / "run.json",

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/types.h"
@@ -51,7 +52,8 @@ struct Camera {
 
 struct DrawList {
   Camera camera;
-  std::vector<std::vector<float>> positions;  // by mesh: x y z by vertex [m]
+  std::vector<std::vector<float>> positions;              // by mesh: x y z by vertex [m]
+  std::vector<std::pair<std::size_t, DrawMesh>> renewed;  // meshes that take the place of the stage's from now on
 };
 
 struct Image {

@@ -44,7 +44,8 @@ class Renderer {
   };
 
   void make_targets();
-  void make_meshes();
+  MeshBuffers make_mesh(const DrawMesh& mesh);
+  void delete_mesh(const MeshBuffers& mesh);
   void make_labels();
   void check_test_triangle();
   void upload(const DrawList& list);

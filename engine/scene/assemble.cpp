@@ -67,8 +67,9 @@ Problem at(const Problem& place, std::string message) {
   return {place.source, place.line, place.column, std::move(message)};
 }
 
-void add_regions(const BodyDef& def, const Loaded& loaded, BodyDescription& description,
-                 std::vector<std::string>& notes, std::vector<Problem>& problems) {
+void set_substances(Body& body, std::vector<Problem>& problems) {
+  const BodyDef& def = body.def;
+  BodyDescription& description = body.description;
   // The fibres' direction turns with the body.
   const Mat3 turn = rotation_from_degrees(def.turn_deg).toRotationMatrix();
   const auto turned = [&turn](Fibre fibre) {
@@ -76,16 +77,16 @@ void add_regions(const BodyDef& def, const Loaded& loaded, BodyDescription& desc
     for (int i = 0; i < 3; ++i) fibre.direction[i] = direction[i];
     return fibre;
   };
-  description.materials.assign(loaded.regions.size(), def.substance.material);
-  description.fibres.assign(loaded.regions.size(), turned(def.substance.fibre));
+  description.materials.assign(body.regions.size(), def.substance.material);
+  description.fibres.assign(body.regions.size(), turned(def.substance.fibre));
   for (const RegionDef& region : def.regions) {
-    const auto known = std::find(loaded.regions.begin(), loaded.regions.end(), region.name);
-    if (known == loaded.regions.end()) {
-      const std::vector<std::string> names(loaded.regions.begin() + 1, loaded.regions.end());
+    const auto known = std::find(body.regions.begin(), body.regions.end(), region.name);
+    if (known == body.regions.end()) {
+      const std::vector<std::string> names(body.regions.begin() + 1, body.regions.end());
       const std::string nearest = nearest_word(region.name, names);
       // A body made of another mesh than the scene was written for has no teeth to be stiff: that is said, not refused.
       if (!def.mesh.empty()) {
-        notes.push_back(fmt::format("there is no region '{}'; its material is not used", region.name));
+        body.notes.push_back(fmt::format("there is no region '{}'; its material is not used", region.name));
       } else {
         problems.push_back(at(region.place, fmt::format("body '{}' has no region '{}'; {}", def.name, region.name,
                                                         names.empty()     ? "it has no tags"
@@ -94,15 +95,17 @@ void add_regions(const BodyDef& def, const Loaded& loaded, BodyDescription& desc
       }
       continue;
     }
-    description.materials[known - loaded.regions.begin()] = region.substance.material;
-    description.fibres[known - loaded.regions.begin()] = turned(region.substance.fibre);
+    description.materials[known - body.regions.begin()] = region.substance.material;
+    description.fibres[known - body.regions.begin()] = turned(region.substance.fibre);
   }
 }
 
 // Springs at their lengths in the world, and the mass of the cloth by vertex.
-void add_cloth(const BodyDef& def, const Loaded& loaded, Body& body) {
+void weave(Body& body) {
+  const BodyDef& def = body.def;
   BodyDescription& description = body.description;
-  const ClothMesh& cloth = loaded.cloth;
+  const ClothMesh& cloth = body.cloth;
+  description.springs.clear();
   const auto join = [&](const std::vector<VertexPair>& pairs, double stiffness) {
     if (stiffness <= 0) return;
     for (const auto& [from, to] : pairs) {
@@ -113,7 +116,6 @@ void add_cloth(const BodyDef& def, const Loaded& loaded, Body& body) {
   join(cloth.edges, def.cloth->stretch);
   join(cloth.diagonals, def.cloth->shear);
   join(cloth.bends, def.cloth->bend);
-  body.surface = cloth.surface.triangles;
   description.point_mass = vertex_areas({description.mesh.rest, cloth.surface.triangles});
   double area = 0;
   for (const double share : description.point_mass) area += share;
@@ -125,7 +127,8 @@ void add_handles(Body& body, const Loaded& loaded, std::vector<Problem>& problem
   std::vector<char> taken(loaded.mesh.rest.rows(), 0);
   Eigen::Index held = 0;
   for (const HandleDef& def : body.def.handles) {
-    Handle handle{def.name, selected(def.select, loaded.mesh, loaded.mesh.rest, loaded.regions), def.spring};
+    Handle handle{def.name, selected(def.select, loaded.mesh, loaded.mesh.rest, loaded.regions), def.spring,
+                  !def.grabs || def.holds_at(0)};
     // Where two handles overlap the first one has the vertices.
     std::erase_if(handle.vertices, [&](std::int32_t v) { return taken[v] != 0; });
     for (const std::int32_t v : handle.vertices) taken[v] = 1;
@@ -152,7 +155,40 @@ void add_handles(Body& body, const Loaded& loaded, std::vector<Problem>& problem
   }
 }
 
+// All that follows from the definition once the mesh is in its place, but for handles.
+void set_values(Body& body, const SceneDef& scene, std::vector<Problem>& problems) {
+  const BodyDef& def = body.def;
+  body.description.time_step = scene.time_step();
+  body.description.fit = def.solver.fit;
+  body.description.precision = def.solver.precision;
+  body.description.integrator = def.solver.integrator;
+  body.description.damping = def.solver.damping;
+  if (def.cloth) return weave(body);
+  body.description.density = def.total_mass ? *def.total_mass / body.volume : def.body_density();
+  set_substances(body, problems);
+}
+
 }  // namespace
+
+void update_body(Body& body, const SceneDef& scene, const BodyDef& def) {
+  std::vector<Problem> problems;
+  const std::vector<std::string> notes = body.notes;  // were said when it was assembled
+  body.def = def;
+  set_values(body, scene, problems);
+  body.notes = notes;
+  body.earlier = body.motions;
+  for (std::size_t h = 0; h < def.handles.size(); ++h) {
+    Handle& handle = body.description.handles[h];
+    if ((handle.spring <= 0) != (def.handles[h].spring <= 0))
+      problems.push_back(at(def.handles[h].select.place,
+                            fmt::format("handle '{}' of body '{}': hard handles stay hard, and springs stay springs",
+                                        handle.name, def.name)));
+    handle.spring = def.handles[h].spring;
+    body.motions[h].ease = def.handles[h].ease;
+    body.motions[h].keys = def.handles[h].keys;
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
 
 std::vector<Body> assemble(const SceneDef& scene) {
   std::vector<Body> bodies;
@@ -171,18 +207,10 @@ std::vector<Body> assemble(const SceneDef& scene) {
       body.description.mesh = loaded.mesh;
       body.placement = placement(def, loaded.mesh.rest);
       apply(body.placement, body.description.mesh.rest);
-      body.description.time_step = scene.time_step();
-      body.description.fit = def.solver.fit;
-      body.description.precision = def.solver.precision;
-      body.description.integrator = def.solver.integrator;
-      body.description.damping = def.solver.damping;
-      if (def.cloth) {
-        add_cloth(def, loaded, body);
-      } else {
-        body.description.density = def.body_density();
-        if (def.total_mass) body.description.density = *def.total_mass / quality(body.description.mesh).volume;
-        add_regions(def, loaded, body.description, body.notes, problems);
-      }
+      body.regions = loaded.regions;
+      body.cloth = loaded.cloth;
+      if (!def.cloth) body.volume = quality(body.description.mesh).volume;
+      set_values(body, scene, problems);
       if (def.pattern_size && *def.pattern_size < 1e-3 * bounds_of(body.description.mesh.rest).diagonal()) {
         problems.push_back(
             at(def.place, fmt::format("pattern_size of body '{}' is below a thousandth of its size", def.name)));
@@ -230,7 +258,7 @@ DrawnBody drawn_body(const SceneDef& scene, const Body& body) {
     return drawn;
   }
   if (body.def.shape.empty()) {
-    const Triangles surface = body.def.cloth ? body.surface : boundary_faces(placed.tets);
+    const Triangles surface = body.def.cloth ? body.cloth.surface.triangles : boundary_faces(placed.tets);
     // In the body's own directions, so that the print lies along its edges however it stands.
     const Mat3 turn = rotation_from_degrees(body.def.turn_deg).toRotationMatrix();
     drawn.skin = skin_of_surface(placed.rest * turn, surface, square_of(body), drawn.vertex_of);
@@ -256,21 +284,58 @@ State start_state(const Model& model, const Body& body) {
     state.x.row(v) = start.row(model.input_of[v]);
     state.v.row(v) = body.def.velocity.transpose();
   }
-  for (const Model::HandleVertex& held : model.handled) {
-    state.x.row(held.vertex) = model.rest.row(held.vertex);
-    state.v.row(held.vertex).setZero();
+  for (const auto& [vertex, handle] : model.handled) {
+    if (body.def.handles[handle].grabs) continue;
+    state.x.row(vertex) = model.rest.row(vertex);
+    state.v.row(vertex).setZero();
   }
   return state;
 }
 
-void handle_targets(const Model& model, const Body& body, double time, Positions& targets) {
-  targets.resize(model.handled.size(), 3);
-  std::vector<Eigen::Isometry3d> pose;
-  for (const KeyedMotion& motion : body.motions) pose.push_back(motion.at(time));
+Anchors rest_anchors(const Model& model, const Body& body) {
+  Anchors anchors;
+  anchors.points.resize(model.handled.size(), 3);
+  for (std::size_t i = 0; i < model.handled.size(); ++i)
+    anchors.points.row(i) = model.rest.row(model.handled[i].vertex);
+  for (const KeyedMotion& motion : body.motions) anchors.centers.push_back(motion.center);
+  return anchors;
+}
+
+void grab(const Model& model, int handle, const Positions& x, Anchors& anchors) {
+  Bounds box;
   for (std::size_t i = 0; i < model.handled.size(); ++i) {
-    const auto& [vertex, handle] = model.handled[i];
-    targets.row(i) = (pose[handle] * Vec3(model.rest.row(vertex))).transpose();
+    if (model.handled[i].handle != handle) continue;
+    anchors.points.row(i) = x.row(model.handled[i].vertex);
+    box.include(anchors.points.row(i).transpose());
   }
+  if (!box.empty()) anchors.centers[handle] = box.center();
+}
+
+namespace {
+
+void add_targets(const Model& model, std::vector<KeyedMotion> motions, const Anchors& anchors, double time,
+                 double weight, Positions& targets) {
+  std::vector<Eigen::Isometry3d> pose;
+  for (std::size_t h = 0; h < motions.size(); ++h) {
+    motions[h].center = anchors.centers[h];
+    pose.push_back(motions[h].at(time));
+  }
+  for (std::size_t i = 0; i < model.handled.size(); ++i)
+    targets.row(i) += weight * (pose[model.handled[i].handle] * Vec3(anchors.points.row(i))).transpose();
+}
+
+}  // namespace
+
+void handle_targets(const Model& model, const Body& body, const Anchors& anchors, double time, double change,
+                    Positions& targets) {
+  targets.setZero(model.handled.size(), 3);
+  const bool changing = !body.earlier.empty() && change < 1;
+  if (changing) add_targets(model, body.earlier, anchors, time, 1 - change, targets);
+  add_targets(model, body.motions, anchors, time, changing ? change : 1, targets);
+}
+
+void handle_targets(const Model& model, const Body& body, double time, Positions& targets) {
+  handle_targets(model, body, rest_anchors(model, body), time, 1, targets);
 }
 
 }  // namespace supple

@@ -2,6 +2,7 @@
 // prepared.
 #pragma once
 
+#include "geometry/cloth.h"
 #include "geometry/skin.h"
 #include "scene/keyed_motion.h"
 #include "scene/scene_def.h"
@@ -20,11 +21,14 @@ struct DrawnBody {
 
 struct Body {
   BodyDef def;
-  BodyDescription description;                              // the mesh as placed, and its handles
-  std::vector<KeyedMotion> motions;                         // by handle
-  std::vector<std::string> notes;                           // what reading the mesh had to say
-  std::string source;                                       // the mesh or shape file, or what it is made of
-  Triangles surface;                                        // of cloth
+  BodyDescription description;       // the mesh as placed, and its handles
+  std::vector<KeyedMotion> motions;  // by handle
+  std::vector<KeyedMotion> earlier;  // the same before a change that is spread over this frame; else empty
+  std::vector<std::string> notes;    // what reading the mesh had to say
+  std::string source;                // the mesh or shape file, or what it is made of
+  std::vector<std::string> regions;  // names by tag
+  double volume = 0;                 // of its tetrahedra at rest [m^3]
+  ClothMesh cloth;
   TriMesh skin;                                             // of a body made from a surface, in the file's frame
   std::uint64_t seed = 0;                                   // of its random start
   Eigen::Affine3d placement = Eigen::Affine3d::Identity();  // from the file's frame to the world: turned, scaled, moved
@@ -34,13 +38,29 @@ struct Body {
 // once.
 std::vector<Body> assemble(const SceneDef& scene);
 
+// Takes over what may change while a body moves (live.h) from the scene's definition of it. Throws InputError.
+void update_body(Body& body, const SceneDef& scene, const BodyDef& def);
+
 // Only for pictures; separate because a run without images does not pay for it.
 DrawnBody drawn_body(const SceneDef& scene, const Body& body);
 
 // Where a body starts; handled vertices at rest.
 State start_state(const Model& model, const Body& body);
 
-// Targets of all handled vertices, by model.handled.
+// What keys move handled vertices from: rest, or where a handle grabbed them.
+struct Anchors {
+  Positions points;           // by Model::handled [m]
+  std::vector<Vec3> centers;  // what keys turn about, by handle [m]
+};
+Anchors rest_anchors(const Model& model, const Body& body);
+// A handle closes on its vertices where they are.
+void grab(const Model& model, int handle, const Positions& x, Anchors& anchors);
+
+// Targets of all handled vertices, by model.handled. change: how much of a change that is spread over the frame is
+// done, 0 to 1.
+void handle_targets(const Model& model, const Body& body, const Anchors& anchors, double time, double change,
+                    Positions& targets);
+// Of a body whose handles grab nothing, and whose definition does not change.
 void handle_targets(const Model& model, const Body& body, double time, Positions& targets);
 
 }  // namespace supple

@@ -158,6 +158,14 @@ HandleDef read_handle(const ConfigTable& table) {
                            "of each vertex's spring to its target; hard vertices are eliminated and follow exactly"},
                           "hard", Range::positive())
           .value_or(0);
+  handle.grabs = table.has("from") || table.has("until");
+  handle.from = table.number({"from", "s", "it grabs its vertices where they are then, and keys move them from there"},
+                             0.0, Range::at_least(0));
+  handle.until = table.number_if_given({"until", "s", "it lets go; the default is never"}, Range::positive())
+                     .value_or(handle.until);
+  if (handle.until <= handle.from) table.complain("until", "until: must be later than 'from'");
+  if (handle.grabs && handle.spring <= 0)
+    table.complain("stiffness", "a handle that grabs or lets go needs a number as its stiffness [N/m]");
   handle.ease = read_ease(table);
   handle.keys = read_keys(table, "rotation about the handle's centre: x, then y, then z");
   return handle;

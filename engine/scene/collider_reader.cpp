@@ -15,7 +15,7 @@ Shape read_collider_shape(const ConfigTable& table) {
     const std::filesystem::path file = table.file(key);
     if (file.empty()) return ball;
     try {
-      return load_shape(file, table.config().assets());
+      return load_shape(file, table.config().assets(), &table.config());
     } catch (const InputError& error) {
       for (const Problem& problem : error.problems()) table.config().complain(problem);
       return ball;

@@ -12,7 +12,67 @@ namespace supple {
 namespace {
 
 constexpr std::uintmax_t largest_file = 1 << 20;
+
+std::vector<std::string> words_of(const std::string& path) {
+  std::vector<std::string> result;
+  std::istringstream words(path);
+  for (std::string word; std::getline(words, word, '.');) result.push_back(word);
+  return result;
+}
+
+[[noreturn]] void fail(const Problem& place, std::string message) {
+  throw InputError({Problem{place.source, place.line, place.column, std::move(message)}});
+}
+
+// The table that the last word of a path stands in; tables on the way are made, elements of lists found by name.
+toml::table& enter(toml::table& document, const std::vector<std::string>& path, const Problem& place) {
+  toml::table* table = &document;
+  for (std::size_t depth = 0; depth + 1 < path.size(); ++depth) {
+    toml::node* next = table->get(path[depth]);
+    if (next == nullptr) {
+      table->insert(path[depth], toml::table{});
+      next = table->get(path[depth]);
+    }
+    if (toml::array* list = next->as_array()) {
+      const std::string& wanted = path[++depth];
+      std::vector<std::string> names;
+      toml::node* found = nullptr;
+      for (toml::node& element : *list) {
+        if (!element.is_table()) continue;
+        names.push_back(name_of(*element.as_table(), path[depth - 1]));
+        if (names.back() == wanted) found = &element;
+      }
+      if (found == nullptr || depth + 1 >= path.size()) {
+        fail(place, found == nullptr ? fmt::format("there is no {} named '{}' (there is {})", path[depth - 1], wanted,
+                                                   word_list(names))
+                                     : fmt::format("names a whole {}; a value inside it is wanted", path[depth - 1]));
+      }
+      next = found;
+    }
+    if (!next->is_table()) fail(place, fmt::format("'{}' is not a table", path[depth]));
+    table = next->as_table();
+  }
+  if (path.empty() || path.back().empty()) fail(place, "the path ends in nothing");
+  return *table;
+}
+
+// Returns the value in its new place.
+toml::node& put_node(toml::table& document, const std::vector<std::string>& path, const Problem& place,
+                     const std::vector<std::set<std::string>>& exclusive, const toml::node& value) {
+  toml::table& table = enter(document, path, place);
+  for (const std::set<std::string>& group : exclusive) {
+    if (!group.contains(path.back())) continue;
+    for (const std::string& other : group) table.erase(other);
+  }
+  value.visit([&](const auto& typed) { table.insert_or_assign(path.back(), typed); });
+  return *table.get(path.back());
+}
+
 }  // namespace
+
+std::string name_of(const toml::table& element, const std::string& list) {
+  return element.get("name") ? element.get("name")->value_or(std::string()) : list;
+}
 
 Config::Config(std::unique_ptr<Content> content) : content_(std::move(content)) {}
 Config::Config(Config&&) noexcept = default;
@@ -54,9 +114,7 @@ void Config::set(const std::string& assignment, const std::vector<std::set<std::
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0)
     throw InputError(source, "should read path=value, such as solver.iterations=20");
-  std::vector<std::string> path;
-  std::istringstream words(assignment.substr(0, equals));
-  for (std::string word; std::getline(words, word, '.');) path.push_back(word);
+  const std::vector<std::string> path = words_of(assignment.substr(0, equals));
   const std::string value = assignment.substr(equals + 1);
 
   // A value that is not TOML is taken as the word that it is, so that no shell quotes are needed around names and
@@ -70,45 +128,54 @@ void Config::set(const std::string& assignment, const std::vector<std::set<std::
     parsed.get("value")->as_string()->get() = value;
   }
 
-  toml::table* table = &content_->document;
-  for (std::size_t depth = 0; depth + 1 < path.size(); ++depth) {
-    toml::node* next = table->get(path[depth]);
-    if (next == nullptr) {
-      table->insert(path[depth], toml::table{});
-      next = table->get(path[depth]);
-    }
-    if (toml::array* list = next->as_array()) {
-      const std::string& wanted = path[++depth];
-      std::vector<std::string> names;  // an element without a name bears its list's
-      toml::node* found = nullptr;
-      for (toml::node& element : *list) {
-        const toml::table* candidate = element.as_table();
-        if (candidate == nullptr) continue;
-        const std::string element_name =
-            candidate->get("name") ? candidate->get("name")->value_or(std::string()) : path[depth - 1];
-        names.push_back(element_name);
-        if (element_name == wanted) found = &element;
-      }
-      if (found == nullptr || depth + 1 >= path.size()) {
-        throw InputError(source, found == nullptr
-                                     ? fmt::format("there is no {} named '{}' (there is {})", path[depth - 1], wanted,
-                                                   word_list(names))
-                                     : fmt::format("names a whole {}; a value inside it is wanted", path[depth - 1]));
-      }
-      next = found;
-    }
-    if (!next->is_table()) throw InputError(source, fmt::format("'{}' is not a table", path[depth]));
-    table = next->as_table();
-  }
-  if (path.empty() || path.back().empty()) throw InputError(source, "the path ends in nothing");
-  for (const std::set<std::string>& group : exclusive) {
-    if (!group.contains(path.back())) continue;
-    for (const std::string& other : group) table->erase(other);
-  }
-  table->insert_or_assign(path.back(), std::move(*parsed.get("value")));
+  const toml::node& put = put_node(content_->document, path, {source, 0, 0, ""}, exclusive, *parsed.get("value"));
+  content_->settle(put, content_->value_of(*parsed.get("value")));
 }
 
-ConfigTable Config::root() { return ConfigTable(this, &content_->document, ""); }
+void Config::put(const std::string& path, const ConfigValue& value, const Problem& place,
+                 const std::vector<std::set<std::string>>& exclusive) {
+  content_->settle(put_node(content_->document, words_of(path), place, exclusive, *value.content_->node), value);
+}
+
+void Config::append(const std::string& list_path, const ConfigValue& table, const Problem& place) {
+  const std::vector<std::string> path = words_of(list_path);
+  toml::table& parent = enter(content_->document, path, place);
+  if (!parent.contains(path.back())) parent.insert(path.back(), toml::array{});
+  toml::array* list = parent.get(path.back())->as_array();
+  if (list == nullptr) fail(place, fmt::format("'{}' is not a list of tables", list_path));
+  list->push_back(*table.content_->node->as_table());
+  content_->settle(list->back(), table);
+}
+
+std::optional<ConfigValue> Config::value_at(const std::string& path) const {
+  const std::vector<std::string> words = words_of(path);
+  const toml::node* node = &content_->document;
+  for (std::size_t depth = 0; depth < words.size(); ++depth) {
+    if (const toml::array* list = node->as_array()) {
+      node = nullptr;
+      for (const toml::node& element : *list) {
+        if (element.is_table() && name_of(*element.as_table(), words[depth - 1]) == words[depth]) node = &element;
+      }
+    } else {
+      node = node->is_table() ? node->as_table()->get(words[depth]) : nullptr;
+    }
+    if (node == nullptr) return std::nullopt;
+  }
+  return content_->value_of(*node);
+}
+
+Config Config::copy() const {
+  auto content = std::make_unique<Content>();
+  content->document = content_->document;
+  content->settle(content->document, content_->value_of(content_->document));
+  content->name = content_->name;
+  content->folder = content_->folder;
+  content->assets = content_->assets;
+  content->surfaces = content_->surfaces;
+  return Config(std::move(content));
+}
+
+ConfigTable Config::root() { return ConfigTable(this, &content_->document, "", ""); }
 
 void Config::complain(const toml::node* where, const std::string& message) {
   content_->problems.push_back(content_->place(where, message));
@@ -148,7 +215,10 @@ void Config::finish() {
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 
+const std::vector<Problem>& Config::complaints() const { return content_->problems; }
 const std::vector<DocumentedKey>& Config::documented() const { return content_->documented; }
+const std::vector<KnownKey>& Config::known() const { return content_->known; }
+std::shared_ptr<KnownSurfaces>& Config::surfaces() { return content_->surfaces; }
 const std::filesystem::path& Config::assets() const { return content_->assets; }
 const std::string& Config::name() const { return content_->name; }
 
@@ -158,9 +228,21 @@ std::string Config::as_json() const {
   return out.str();
 }
 
-ConfigTable::ConfigTable(Config* config, const toml::table* table, std::string path)
-    : config_(config), table_(table), path_(std::move(path)) {
+ConfigTable::ConfigTable(Config* config, const toml::table* table, std::string path, std::string generic)
+    : config_(config), table_(table), path_(std::move(path)), generic_(std::move(generic)) {
   config_->content_->asked.try_emplace(table_);
+}
+
+namespace {
+
+std::string joined(const std::string& path, const char* name) { return path.empty() ? name : path + "." + name; }
+
+}  // namespace
+
+// name: of an element, with its dot; behind: what a list's generic path ends in.
+ConfigTable ConfigTable::inner(const Key& key, const toml::table& table, const std::string& name,
+                               const char* behind) const {
+  return ConfigTable(config_, &table, joined(path_, key.name) + name, joined(generic_, key.name) + behind);
 }
 
 bool ConfigTable::has(const char* key) const {
@@ -176,12 +258,24 @@ std::vector<std::string> ConfigTable::keys() const {
 
 const toml::node* ConfigTable::find(const Key& key, const char* type, std::string fallback, std::string allowed) const {
   config_->content_->asked[table_].push_back(key.name);
-  const std::string path = path_.empty() ? key.name : path_ + "." + key.name;
+  const toml::node* node = table_->get(key.name);
+  const std::string generic = joined(generic_, key.name);
+  auto& known = config_->content_->known;
+  KnownKey key_here{joined(path_, key.name),
+                    generic,
+                    type,
+                    allowed,
+                    key.unit,
+                    key.meaning,
+                    node != nullptr ? shown(*node) : fallback};
+  const bool seen =
+      std::any_of(known.rbegin(), known.rend(), [&](const KnownKey& k) { return k.path == key_here.path; });
+  if (!seen) known.push_back(std::move(key_here));
   auto& documented = config_->content_->documented;
-  const bool known = std::any_of(documented.begin(), documented.end(),
-                                 [&](const DocumentedKey& d) { return d.path == path && d.type == type; });
-  if (!known) documented.push_back({path, type, std::move(fallback), std::move(allowed), key.unit, key.meaning});
-  return table_->get(key.name);
+  const bool listed = std::any_of(documented.begin(), documented.end(),
+                                  [&](const DocumentedKey& d) { return d.path == generic && d.type == type; });
+  if (!listed) documented.push_back({generic, type, std::move(fallback), std::move(allowed), key.unit, key.meaning});
+  return node;
 }
 
 Problem ConfigTable::place(const char* key, std::string message) const {

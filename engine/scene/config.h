@@ -57,7 +57,37 @@ struct DocumentedKey {
   std::string meaning;
 };
 
+// One key of one table of a file, where it stands or could stand: body.soft.material.mu.
+struct KnownKey {
+  std::string path;     // as --set takes it
+  std::string generic;  // as in DocumentedKey
+  std::string type, allowed, unit, meaning;
+  std::string value;  // as it stands, or the default
+};
+
+// A value of a file, whatever its type; knows where it stood.
+class ConfigValue {
+ public:
+  std::string text() const;  // shortened to what fits into a message
+  bool is_list_or_number() const;
+  // Numbers, or lists of them (of lists, ...) of one form: what a ramp can lead through.
+  bool joins(const ConfigValue& other) const;
+  bool all_positive() const;
+  // Of a default as KnownKey has it; nothing where that is only words.
+  static std::optional<ConfigValue> parse(const std::string& text);
+  // (1 - s) from + s to, number by number; by_ratio: from^(1-s) to^s; whole: rounded.
+  static ConfigValue between(const ConfigValue& from, const ConfigValue& to, double s, bool by_ratio, bool whole);
+
+ private:
+  friend class Config;
+  friend class ConfigTable;
+  struct Content;
+  explicit ConfigValue(std::shared_ptr<const Content> content) : content_(std::move(content)) {}
+  std::shared_ptr<const Content> content_;
+};
+
 class ConfigTable;
+struct KnownSurfaces;  // read once for a Config and its copies (shape_reader.cpp)
 
 class Config {
  public:
@@ -73,6 +103,16 @@ class Config {
   // body.soft.material.mu. Setting one key of an exclusive group removes the others. Throws InputError.
   void set(const std::string& assignment, const std::vector<std::set<std::string>>& exclusive);
 
+  // The same with a value of another file; `place` is where messages about the path point.
+  void put(const std::string& path, const ConfigValue& value, const Problem& place,
+           const std::vector<std::set<std::string>>& exclusive);
+  // Nothing where the path leads nowhere.
+  std::optional<ConfigValue> value_at(const std::string& path) const;
+  // Appends a table of another file to a list of tables that may not be there yet.
+  void append(const std::string& list_path, const ConfigValue& table, const Problem& place);
+  // The document as it stands, without what was asked of it.
+  Config copy() const;
+
   ConfigTable root();
   void complain(const toml::node* where, const std::string& message);
   void complain(Problem problem);
@@ -81,9 +121,14 @@ class Config {
   void finish();
   // The problems so far, unknown keys among them; empties the list.
   std::vector<Problem> take_problems();
+  // The problems so far, without a word on keys that nobody has asked for yet.
+  const std::vector<Problem>& complaints() const;
 
   const std::vector<DocumentedKey>& documented() const;
+  // Every key that a reader asked for, table by table.
+  const std::vector<KnownKey>& known() const;
   std::string as_json() const;  // the whole document after set()
+  std::shared_ptr<KnownSurfaces>& surfaces();
   const std::filesystem::path& assets() const;
   const std::string& name() const;
 
@@ -122,6 +167,12 @@ class ConfigTable {
   // A path that exists, found beside the file that names it or among the assets; empty when absent or wrong.
   std::filesystem::path file(const Key& key) const;
 
+  // Of any type, which is for the caller to judge.
+  std::optional<ConfigValue> value(const Key& key, const char* fallback = "required") const;
+
+  // The whole table but for one key; all of it counts as known to the reader.
+  ConfigValue all_but(const char* key) const;
+
   std::optional<ConfigTable> table(const Key& key, const char* fallback = "none") const;
   std::vector<ConfigTable> tables(const Key& key) const;
   // A number, or nothing when the key is absent or says `word`.
@@ -136,13 +187,17 @@ class ConfigTable {
 
  private:
   friend class Config;
-  ConfigTable(Config* config, const toml::table* table, std::string path);
+  ConfigTable(Config* config, const toml::table* table, std::string path, std::string generic);
   const toml::node* find(const Key& key, const char* type, std::string fallback, std::string allowed) const;
   void wrong(const Key& key, const toml::node& node, const std::string& allowed) const;
 
   Config* config_;
   const toml::table* table_;
-  std::string path_;  // as in DocumentedKey
+
+  ConfigTable inner(const Key& key, const toml::table& table, const std::string& name, const char* behind) const;
+
+  std::string path_;     // as --set takes it
+  std::string generic_;  // as in DocumentedKey
 };
 
 }  // namespace supple

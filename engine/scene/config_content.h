@@ -17,15 +17,50 @@ struct Config::Content {
   std::vector<Problem> problems;
   std::map<const toml::table*, std::vector<std::string>> asked;  // keys by table that was opened
   std::vector<DocumentedKey> documented;
+  std::vector<KnownKey> known;
+  std::shared_ptr<KnownSurfaces> surfaces;
+  std::map<const toml::node*, toml::source_region> moved;  // where nodes that are copies stood; the parser forgets it
+
+  const toml::source_region& source_of(const toml::node& node) const {
+    const auto at = moved.find(&node);
+    return at != moved.end() ? at->second : node.source();
+  }
+
+  ConfigValue value_of(const toml::node& node) const;
+  // A copy of a value has taken its place in the document.
+  void settle(const toml::node& copy, const ConfigValue& value);
 
   Problem place(const toml::node* node, std::string message) const {
     if (node == nullptr) return {name, 0, 0, std::move(message)};
-    const toml::source_region& region = node->source();
+    const toml::source_region& region = source_of(*node);
     const std::string source = region.path ? *region.path : name;
     const bool from_option = source.starts_with(set_option);
     return {source, from_option ? 0 : int(region.begin.line), from_option ? 0 : int(region.begin.column),
             std::move(message)};
   }
 };
+
+// What a ConfigValue owns.
+struct ConfigValue::Content {
+  std::shared_ptr<const toml::node> node;
+  std::vector<toml::source_region> places;  // of the node and those below it, as walk() goes
+};
+
+// Calls visit(node) for a node and all below it, in an order that copies share.
+template <class Visit>
+void walk(const toml::node& node, const Visit& visit) {
+  visit(node);
+  if (const toml::table* table = node.as_table()) {
+    for (const auto& [key, inner] : *table) walk(inner, visit);
+  } else if (const toml::array* list = node.as_array()) {
+    for (const toml::node& inner : *list) walk(inner, visit);
+  }
+}
+
+// As messages show a value.
+std::string shown(const toml::node& node);
+
+// An element of a list of tables goes by its name, or by its list's.
+std::string name_of(const toml::table& element, const std::string& list);
 
 }  // namespace supple

@@ -9,6 +9,10 @@
 namespace supple {
 namespace {
 
+std::string number_text(double value) { return fmt::format("{:g}", value); }
+
+}  // namespace
+
 std::string shown(const toml::node& node) {
   if (node.is_table()) return "a table";
   std::string text;
@@ -18,20 +22,18 @@ std::string shown(const toml::node& node) {
     text = fmt::format("'{}'", *word);
   } else {
     std::ostringstream out;
-    if (node.is_array()) out << *node.as_array();
-    if (!node.is_array()) {
+    if (const toml::array* list = node.as_array()) {
+      for (std::size_t i = 0; i < list->size(); ++i) out << (i == 0 ? "" : ", ") << shown((*list)[i]);
+      text = "[" + out.str() + "]";
+    } else {
       node.visit([&out](const auto& value) {
         if constexpr (toml::is_value<decltype(value)>) out << value;
       });
+      text = out.str();
     }
-    text = out.str();
   }
   return text.size() > 60 ? text.substr(0, 57) + "..." : text;
 }
-
-std::string number_text(double value) { return fmt::format("{:g}", value); }
-
-}  // namespace
 
 std::string Range::text() const {
   const bool below = std::isfinite(lowest), above = std::isfinite(highest);
@@ -219,7 +221,8 @@ std::filesystem::path ConfigTable::file(const Key& key) const {
     wrong(key, *node, "a path");
     return {};
   }
-  const bool from_option = node->source().path && node->source().path->starts_with(set_option);
+  const toml::source_region& source = config_->content_->source_of(*node);
+  const bool from_option = source.path && source.path->starts_with(set_option);
   const std::filesystem::path beside = (from_option ? std::filesystem::path() : config_->content_->folder) / *value;
   const std::filesystem::path asset = config_->content_->assets / *value;
   std::error_code error;
@@ -231,12 +234,17 @@ std::filesystem::path ConfigTable::file(const Key& key) const {
   return {};
 }
 
+std::optional<ConfigValue> ConfigTable::value(const Key& key, const char* fallback) const {
+  const toml::node* node = find(key, "any", fallback, "any value");
+  if (node != nullptr) return config_->content_->value_of(*node);
+  if (fallback == std::string_view("required")) complain(fmt::format("'{}' is missing: {}", key.name, key.meaning));
+  return std::nullopt;
+}
+
 std::optional<ConfigTable> ConfigTable::table(const Key& key, const char* fallback) const {
   const toml::node* node = find(key, "table", fallback, "a table");
   if (node == nullptr) return std::nullopt;
-  if (const toml::table* inner = node->as_table()) {
-    return ConfigTable(config_, inner, path_.empty() ? key.name : path_ + "." + key.name);
-  }
+  if (const toml::table* table = node->as_table()) return inner(key, *table, "", "");
   wrong(key, *node, "a table");
   return std::nullopt;
 }
@@ -251,9 +259,8 @@ std::vector<ConfigTable> ConfigTable::tables(const Key& key) const {
     return result;
   }
   for (const toml::node& element : *list) {
-    if (const toml::table* inner = element.as_table()) {
-      result.push_back(
-          ConfigTable(config_, inner, (path_.empty() ? key.name : path_ + "." + key.name) + std::string("[]")));
+    if (const toml::table* table = element.as_table()) {
+      result.push_back(inner(key, *table, "." + name_of(*table, key.name), "[]"));
     } else {
       wrong(key, element, "a list of tables");
     }

@@ -60,10 +60,25 @@ CollisionSet collision_set(const SceneDef& scene) {
   return set;
 }
 
-void collider_motions(const std::vector<Obstacle>& obstacles, double from, double to,
-                      std::vector<ColliderMotion>& motions) {
+namespace {
+
+Eigen::Isometry3d between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, double share) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translate((1 - share) * a.translation() + share * b.translation());
+  return pose.rotate(Eigen::Quaterniond(a.linear()).slerp(share, Eigen::Quaterniond(b.linear())));
+}
+
+}  // namespace
+
+void collider_motions(const CollisionSet& set, const StepSpan& span, std::vector<ColliderMotion>& motions) {
   motions.clear();
-  for (const Obstacle& obstacle : obstacles) motions.push_back({obstacle.pose(from), obstacle.pose(to)});
+  for (std::size_t c = 0; c < set.obstacles.size(); ++c) {
+    const auto pose = [&](double time, double change) {
+      const Eigen::Isometry3d now = set.obstacles[c].pose(time);
+      return set.earlier.empty() || change >= 1 ? now : between(set.earlier[c].pose(time), now, change);
+    };
+    motions.push_back({pose(span.from, span.change_from), pose(span.to, span.change_to)});
+  }
 }
 
 bool is_ground(const Obstacle& obstacle) {

@@ -19,13 +19,20 @@ struct Obstacle {
 // All that bodies can run into.
 struct CollisionSet {
   std::vector<Obstacle> obstacles;
+  std::vector<Obstacle> earlier;    // the same before a change that is spread over this frame; else empty
   std::vector<Collider> colliders;  // the same, as the solver wants them
 };
 CollisionSet collision_set(const SceneDef& scene);
 
-// Their motions over one step.
-void collider_motions(const std::vector<Obstacle>& obstacles, double from, double to,
-                      std::vector<ColliderMotion>& motions);
+// A part of the frame in progress: from one time to another [s], and how much of a change that is spread over the frame
+// is done at each, 0 to 1.
+struct StepSpan {
+  double from, to;
+  double change_from = 1, change_to = 1;
+};
+
+// Motions of all colliders over one step.
+void collider_motions(const CollisionSet& set, const StepSpan& span, std::vector<ColliderMotion>& motions);
 
 // What is drawn of it, in its own frame. A half space is a square that reaches well beyond `around` (in the world);
 // empty when it is the ground that every film has.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,8 +41,14 @@ struct HandleDef {
   std::string name;
   Selection select;
   double spring = 0;  // 0: hard [N/m]
+  // A handle that grabs holds from one time to another, and its keys count from where its vertices are then [s].
+  bool grabs = false;
+  double from = 0, until = std::numeric_limits<double>::infinity();
   Ease ease = Ease::smooth;
   std::vector<MotionKey> keys;
+
+  // Whether it holds in a step that starts at a time [s].
+  bool holds_at(double time) const { return time >= from - 1e-9 && time < until - 1e-9; }
 };
 
 // What a part is made of.

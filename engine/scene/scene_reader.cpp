@@ -82,6 +82,8 @@ SceneDef read_scene(Config& config) {
 SceneDef load_scene(const std::filesystem::path& path, const std::filesystem::path& assets,
                     const std::vector<std::string>& settings, std::string* resolved_json) {
   Config config = Config::load(path, assets);
+  if (config.root().has("scene"))
+    throw InputError(path.string(), "is a replay of a scene, not a scene: supple replay runs it");
   for (const std::string& setting : settings) config.set(setting, exclusive_keys());
   SceneDef scene = read_scene(config);
   config.finish();

@@ -7,6 +7,15 @@
 #include "scene/rotation.h"
 
 namespace supple {
+
+struct KnownSurfaces {
+  struct Read {
+    ClosedSurface surface;
+    std::vector<std::string> notes;
+  };
+  std::map<std::filesystem::path, Read> by_file;
+};
+
 namespace {
 
 constexpr int deepest_group = 8;
@@ -24,6 +33,25 @@ double read_round(const ConfigTable& table, double largest) {
   if (round > largest)
     table.complain("round", fmt::format("round = {}: must be at most {:g}, half the shortest extent", round, largest));
   return std::min(round, largest);
+}
+
+// A replay reads a scene's document again and again; the files that it names stay.
+std::shared_ptr<KnownSurfaces> known_surfaces(Config& config) {
+  if (!config.surfaces()) config.surfaces() = std::make_shared<KnownSurfaces>();
+  return config.surfaces();
+}
+
+ClosedSurface known_surface(Config& config, const std::filesystem::path& file, std::vector<std::string>& notes) {
+  const auto known = known_surfaces(config);
+  const auto at = known->by_file.find(file);
+  if (at != known->by_file.end()) {
+    notes.insert(notes.end(), at->second.notes.begin(), at->second.notes.end());
+    return at->second.surface;
+  }
+  KnownSurfaces::Read read;
+  read.surface.solid = std::make_shared<TriangleSolid>(read_closed_surface(file, &read.notes));
+  notes.insert(notes.end(), read.notes.begin(), read.notes.end());
+  return known->by_file.emplace(file, std::move(read)).first->second.surface;
 }
 
 std::optional<Primitive> read_primitive(const ConfigTable& part, Shape& shape, int depth) {
@@ -71,7 +99,7 @@ std::optional<Primitive> read_primitive(const ConfigTable& part, Shape& shape, i
     const std::filesystem::path file = part.file({"surface", "", "a closed surface: OBJ, PLY, STL, glTF, OFF"});
     if (!file.empty()) {
       try {
-        result = ClosedSurface{std::make_shared<TriangleSolid>(read_closed_surface(file, &shape.notes))};
+        result = known_surface(part.config(), file, shape.notes);
       } catch (const InputError& error) {
         for (const Problem& problem : error.problems()) part.config().complain(problem);
       }
@@ -178,8 +206,9 @@ Shape load_surface(const std::filesystem::path& path) {
   return shape;
 }
 
-Shape load_shape(const std::filesystem::path& path, const std::filesystem::path& assets) {
+Shape load_shape(const std::filesystem::path& path, const std::filesystem::path& assets, Config* user) {
   Config config = Config::load(path, assets);
+  if (user != nullptr) config.surfaces() = known_surfaces(*user);
   Shape shape = read_shape(config.root());
   config.finish();
   return shape;

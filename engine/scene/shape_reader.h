@@ -15,7 +15,8 @@ Shape read_single_part(const ConfigTable& table);
 // The solid inside a closed surface's file (OBJ, PLY, STL, glTF, OFF). Throws InputError.
 Shape load_surface(const std::filesystem::path& path);
 
-// Loads and reads a shape file; throws InputError with all problems.
-Shape load_shape(const std::filesystem::path& path, const std::filesystem::path& assets);
+// Loads and reads a shape file; throws InputError with all problems. Closed surfaces that `user` has read already are
+// not read again.
+Shape load_shape(const std::filesystem::path& path, const std::filesystem::path& assets, Config* user = nullptr);
 
 }  // namespace supple

@@ -46,7 +46,7 @@ double crossing_number(const Body& body) {
   double density = body.description.density;
   if (body.def.cloth) {  // a sheet: tension by width over mass by area
     const std::vector<double>& points = body.description.point_mass;
-    const std::vector<double> areas = vertex_areas({body.description.mesh.rest, body.surface});
+    const std::vector<double> areas = vertex_areas({body.description.mesh.rest, body.cloth.surface.triangles});
     stiffness = body.def.cloth->stretch;
     density = std::accumulate(points.begin(), points.end(), 0.0) / std::accumulate(areas.begin(), areas.end(), 0.0);
   }
@@ -68,7 +68,7 @@ std::vector<Problem> warnings(const SceneDef& scene, const std::vector<Body>& bo
     const double mass = body.description.density * q.volume + std::accumulate(points.begin(), points.end(), 0.0);
     for (std::size_t i = 0; i < body.description.handles.size(); ++i) {
       const Handle& handle = body.description.handles[i];
-      if (handle.spring <= 0) continue;
+      if (handle.spring <= 0 || body.def.handles[i].grabs) continue;
       const double sag = mass * scene.gravity.norm() / (handle.spring * static_cast<double>(handle.vertices.size()));
       if (sag > 0.02 * box.diagonal()) {
         list.push_back(at(body.def.handles[i].select.place,

@@ -63,6 +63,9 @@ constexpr std::array methods = {
     MethodInfo{Method::contact_matrix, "contact-matrix", "the paper's, contacts in the matrix, factored anew"},
 };
 
+// Whether a step depends on earlier ones by more than the state.
+constexpr bool remembers_steps(Method method) { return method == Method::hecht; }
+
 constexpr const MethodInfo& info_of(Method method) { return methods[static_cast<std::size_t>(method)]; }
 
 }  // namespace supple

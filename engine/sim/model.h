@@ -1,7 +1,7 @@
-// A body, constant after build: elements in SIMD blocks, masses, handles and the factor of A = M/h^2 + L (Liu et al.
-// 2017, section 3.3). Not here: where the body is (State), what drives it (FrameInputs). Vertices are renumbered: free
-// ones first, in the factor's order of elimination (so that solves permute nothing), then those that hard handles hold.
-// Elements are sorted by material and by their first vertex.
+// A body, constant while it is stepped: elements in SIMD blocks, masses, handles and the factor of A = M/h^2 + L (Liu
+// et al. 2017, section 3.3). Not here: where the body is (State), what drives it (FrameInputs). Vertices are
+// renumbered: free ones first, in the factor's order of elimination (so that solves permute nothing), then those that
+// hard handles hold. Elements are sorted by material and by their first vertex.
 #pragma once
 
 #include <string>
@@ -18,6 +18,7 @@ struct Handle {
   std::string name;
   std::vector<std::int32_t> vertices;  // of the mesh, in its own numbering; one vertex belongs to one handle
   double spring = 0;  // stiffness of each vertex's spring to its target [N/m]; 0: hard, the rows are eliminated
+  bool holds = true;  // springs that have been let go pull at nothing until they hold again
 };
 
 enum class Integrator { backward_euler, implicit_midpoint };
@@ -50,7 +51,7 @@ struct BodyDescription {
 };
 
 struct Model {
-  std::uint64_t id = 0;  // of this build, so that whoever remembers something of a model knows it again
+  std::uint64_t id = 0;  // new whenever its numbers are set, so that whoever remembers something of it knows
   std::string name;
   int vertices = 0;  // n
   int free = 0;      // vertices that the solver moves: 0 .. free-1

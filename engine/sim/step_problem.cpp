@@ -22,10 +22,15 @@ StepProblem problem_of(const BodyDescription& body, const Model& model, const Fr
   problem.y = in_input_order(model, y);
   problem.hash = state_hash(model, state);
   problem.solver = inputs.solver;
-  for (const Model::HandleVertex& held : model.handled)
-    problem.handled.push_back({model.input_of[held.vertex], body.handles[held.handle].spring});
-  problem.targets = inputs.targets;
-  if (model.scheme.theta < 1) problem.middle_targets = inputs.middle_targets;
+  std::vector<Eigen::Index> rows;  // of targets, without those of handles that have let go
+  for (std::size_t i = 0; i < model.handled.size(); ++i) {
+    const Handle& handle = body.handles[model.handled[i].handle];
+    if (!handle.holds) continue;
+    rows.push_back(static_cast<Eigen::Index>(i));
+    problem.handled.push_back({model.input_of[model.handled[i].vertex], handle.spring});
+  }
+  problem.targets = inputs.targets(rows, Eigen::all);
+  if (model.scheme.theta < 1) problem.middle_targets = inputs.middle_targets(rows, Eigen::all);
   for (std::size_t c = 0; has_colliders(inputs) && c < inputs.colliders->size(); ++c) {
     const Collider& collider = (*inputs.colliders)[c];
     problem.colliders.push_back({collider.name, collider.thickness, collider.friction, inputs.collider_motions[c]});

@@ -156,7 +156,7 @@ TEST(States, GiveTheRunsBitsWhenTheStepIsMadeAgain) {
       for (int substep = 0; substep < film.scene.substeps; ++substep) {
         const double done = 3.0 * film.scene.substeps + substep, h = film.scene.time_step();
         handle_targets(model, film.bodies[b], (done + 1) * h, inputs.targets);
-        collider_motions(film.set.obstacles, done * h, (done + 1) * h, inputs.collider_motions);
+        collider_motions(film.set, {done * h, (done + 1) * h}, inputs.collider_motions);
         if (substep == 0) {
           const NpyArray<double> y = read_npy_doubles(stored.folder / "y.npy");
           w.prepare(model, inputs.solver);

@@ -212,7 +212,7 @@ shape = { sphere = { radius = 1 } }
 position = [7, 0, 0]
 )"));
   std::vector<ColliderMotion> motions(5);
-  collider_motions(set.obstacles, 0.25, 0.5, motions);
+  collider_motions(set, {0.25, 0.5}, motions);
   ASSERT_EQ(motions.size(), 2u);
   EXPECT_TRUE(motions[0].start.isApprox(set.obstacles[0].pose(0.25)));
   EXPECT_TRUE(motions[0].end.isApprox(set.obstacles[0].pose(0.5)));

@@ -56,7 +56,7 @@ int main(int count, char** arguments) {
       *std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.def.name == arguments[3]; });
   const Model model = build_model(body.description);
   const CollisionSet set = collision_set(scene);
-  Triangles surface = body.def.cloth ? body.surface : boundary_faces(body.description.mesh.tets);
+  Triangles surface = body.def.cloth ? body.cloth.surface.triangles : boundary_faces(body.description.mesh.tets);
   for (Eigen::Index i = 0; i < surface.size(); ++i) surface.data()[i] = model.internal_of[surface.data()[i]];
   FrameInputs inputs{scene.gravity, {}, {}, body.def.solver.settings, &set.colliders};
   std::vector<Variant> list = variants(inputs.solver);
@@ -69,7 +69,7 @@ int main(int count, char** arguments) {
   for (int frame = 0; frame < std::atoi(arguments[5]); ++frame) {
     const double h = scene.time_step();
     handle_targets(model, body, (frame + 1) * h, inputs.targets);
-    collider_motions(set.obstacles, frame * h, (frame + 1) * h, inputs.collider_motions);
+    collider_motions(set, {frame * h, (frame + 1) * h}, inputs.collider_motions);
     const State before = state;
     const StepReport& report = step(model, inputs, state, usual);
     if (report.failed) return 1;

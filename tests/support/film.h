@@ -34,7 +34,7 @@ struct Film {
         const double h = scene.time_step(), time = (number + 1) * h;
         handle_targets(models[b], bodies[b], time, inputs.targets);
         handle_targets(models[b], bodies[b], time - 0.5 * h, inputs.middle_targets);
-        collider_motions(set.obstacles, time - h, time, inputs.collider_motions);
+        collider_motions(set, {time - h, time}, inputs.collider_motions);
         const State before = state;
         const StepReport& report = step(models[b], inputs, state, w);
         ASSERT_FALSE(report.failed) << bodies[b].def.name << " step " << number << ": " << report.failure.what;

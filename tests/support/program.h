@@ -1,6 +1,7 @@
 // The program, run as a user does.
 #pragma once
 
+#include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -13,9 +14,12 @@ struct Result {
   std::string out, err;
 };
 
-// Runs the program in `folder`; with a path in interrupt_when it gets SIGINT once that file exists.
+// Runs the program in `folder`; with a path in signal_when it gets the signal once that file exists.
 Result run(const std::filesystem::path& folder, const std::vector<std::string>& arguments,
-           const std::filesystem::path& interrupt_when = {});
+           const std::filesystem::path& signal_when = {}, int signal = SIGINT);
+
+// The same, and SIGKILL after some milliseconds.
+Result run_and_kill(const std::filesystem::path& folder, const std::vector<std::string>& arguments, int milliseconds);
 
 nlohmann::json profile_of(const std::filesystem::path& run_folder);
 

@@ -17,6 +17,13 @@ ElementRecord tetrahedron(const TetMesh& mesh, Eigen::Index e) {
   return record;
 }
 
+void shape_gradients(const ElementRecord& element, std::array<std::array<double, 3>, most_corners>& rows) {
+  double field[Tetrahedron::fields], gradient[4][3];
+  std::copy(element.field.begin(), element.field.end(), field);
+  Tetrahedron::shape_gradients(field, gradient);
+  for (int c = 0; c < 4; ++c) std::copy(gradient[c], gradient[c] + 3, rows[c].begin());
+}
+
 }  // namespace
 
 std::vector<ElementRecord> element_records(const TetMesh& mesh, const std::vector<Spring>& springs) {
@@ -32,30 +39,28 @@ std::vector<ElementRecord> element_records(const TetMesh& mesh, const std::vecto
   return records;
 }
 
-std::vector<SystemTerm> system_terms(const ElementRecord& element, double k, const Fibre* fibre) {
-  std::vector<SystemTerm> terms;
+SystemTerm unit_term(const ElementRecord& element) {
   if (element.kind == ElementKind::spring) {
-    SystemTerm term{{}, element.field[1]};
+    SystemTerm term{{}, 1};
     term.row[0][0] = -1;
     term.row[1][0] = 1;
-    terms.push_back(term);
-    return terms;
+    return term;
   }
-  double field[Tetrahedron::fields], gradient[4][3];
-  std::copy(element.field.begin(), element.field.end(), field);
-  Tetrahedron::shape_gradients(field, gradient);
-  SystemTerm solid{{}, field[9] * k}, along{{}, fibre != nullptr ? field[9] * fibre->kappa : 0};
+  SystemTerm term{{}, element.field[9]};
+  shape_gradients(element, term.row);
+  return term;
+}
+
+// The Hessian of a stretched fibre along itself is kappa V (G^T d)(G^T d)^T. docs/results.md says what it is worth in
+// A.
+SystemTerm fibre_term(const ElementRecord& element, const Fibre& fibre) {
+  std::array<std::array<double, 3>, most_corners> gradient;
+  shape_gradients(element, gradient);
+  SystemTerm term{{}, element.field[9] * fibre.kappa};
   for (int c = 0; c < 4; ++c) {
-    for (int i = 0; i < 3; ++i) {
-      solid.row[c][i] = gradient[c][i];
-      if (fibre != nullptr) along.row[c][0] += gradient[c][i] * fibre->direction[i];
-    }
+    for (int i = 0; i < 3; ++i) term.row[c][0] += gradient[c][i] * fibre.direction[i];
   }
-  terms.push_back(solid);
-  // The Hessian of a stretched fibre along itself is kappa V (G^T d)(G^T d)^T. docs/results.md says what it is worth in
-  // A.
-  if (along.weight > 0) terms.push_back(along);
-  return terms;
+  return term;
 }
 
 }  // namespace supple

@@ -33,7 +33,10 @@ struct SystemTerm {
   double weight;
 };
 
-// k: of the element's material [Pa]; fibre: null when there is none. At most two terms.
-std::vector<SystemTerm> system_terms(const ElementRecord& element, double k, const Fibre* fibre);
+// Of the material with k = 1 Pa, or of a spring with a stiffness of 1 N/m.
+SystemTerm unit_term(const ElementRecord& element);
+
+// Of a tetrahedron's fibres.
+SystemTerm fibre_term(const ElementRecord& element, const Fibre& fibre);
 
 }  // namespace supple

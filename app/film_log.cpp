@@ -1,0 +1,53 @@
+#include "app/film_log.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "output/whole_file.h"
+
+namespace supple {
+
+FilmLog::FilmLog(const RunFolder& folder, int every, std::string identity, int kept)
+    : folder_(folder), every_(every), identity_(std::move(identity)), whole_(kept) {
+  const std::string source = folder.rows().string();
+  std::ifstream earlier(folder.rows());
+  off_t size = 0;
+  for (std::string line; int(rows_.size()) < kept && std::getline(earlier, line); size += off_t(line.size()) + 1)
+    rows_.push_back(row_of_line(line, source));
+  if (int(rows_.size()) < kept)
+    throw RunError(fmt::format("{}: does not have the {} frames to go on from", source, kept));
+  if (every_ == 0) return;
+  notes_.reset(std::fopen(source.c_str(), kept > 0 ? "r+" : "w"));
+  if (!notes_ || ftruncate(fileno(notes_.get()), size) != 0 || std::fseek(notes_.get(), 0, SEEK_END) != 0)
+    throw RunError(fmt::format("{}: cannot be written: {}", source, std::strerror(errno)));
+}
+
+void FilmLog::add(const Checkpoint& checkpoint) {
+  waiting_.emplace_back(checkpoint.frames, checkpoint_bytes(checkpoint, identity_));
+}
+
+void FilmLog::note_row(const FrameRow& row) {
+  if (!notes_) return;
+  const std::string line = row_line(row) + '\n';
+  if (std::fwrite(line.data(), 1, line.size(), notes_.get()) != line.size() || std::fflush(notes_.get()) != 0)
+    throw RunError(fmt::format("{}: cannot be written: {}", folder_.rows().string(), std::strerror(errno)));
+}
+
+void FilmLog::settle(Pictures* pictures) {
+  if (pictures != nullptr) {
+    for (const Pictures::Written& written : pictures->take_written()) {
+      rows_[whole_].render_ms = written.render_ms;
+      rows_[whole_].encode_ms = written.encode_ms;
+      note_row(rows_[whole_++]);
+    }
+  } else {
+    while (whole_ < int(rows_.size())) note_row(rows_[whole_++]);
+  }
+  for (; !waiting_.empty() && waiting_.front().first <= whole_; waiting_.pop_front())
+    write_whole_file(folder_.checkpoint(), waiting_.front().second);
+}
+
+}  // namespace supple

@@ -1,0 +1,18 @@
+#include "app/film_run.h"
+#include "app/verbs.h"
+
+namespace supple {
+
+void add_replay(CLI::App& app, Action& action, const std::vector<std::string>& command) {
+  auto request = std::make_shared<FilmRequest>();
+  CLI::App* verb = app.add_subcommand("replay", "Film a scene whose parameters change while it runs.");
+  verb->footer(
+      "Example: supple replay softening --record first.rec && supple replay softening --verify first.rec\n"
+      "A replay names a scene and timed changes: docs/replays.md. `supple info --live SCENE` lists what can change.\n"
+      "Leaves what `supple render` leaves.");
+  verb->add_option("REPLAY", request->scene, "replay file, or the name of one that ships (supple list)")->required();
+  add_film_options(*verb, *request);
+  verb->callback([&action, request, command] { action = [request, command] { return run_film(*request, command); }; });
+}
+
+}  // namespace supple

@@ -1,0 +1,172 @@
+#include "app/state_record.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "output/json_difference.h"
+
+namespace supple {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* format_name = "supple record 1";
+
+// Of a vertex, in the order of the input file.
+struct VertexRecord {
+  std::array<float, 3> position;  // [m]
+  std::uint32_t hash;             // of position and velocity
+};
+static_assert(sizeof(VertexRecord) == 16);
+
+std::vector<VertexRecord> vertex_records(const Model& model, const State& state) {
+  std::vector<VertexRecord> records(model.vertices);
+  for (int v = 0; v < model.vertices; ++v) {
+    double both[6];
+    for (int c = 0; c < 3; ++c) {
+      both[c] = state.x(v, c);
+      both[3 + c] = state.v(v, c);
+    }
+    VertexRecord& record = records[model.input_of[v]];
+    for (int c = 0; c < 3; ++c) record.position[c] = static_cast<float>(both[c]);
+    record.hash = static_cast<std::uint32_t>(hash_bytes(both, sizeof both));
+  }
+  return records;
+}
+
+std::size_t bytes_of_frame(const RecordHead& head) {
+  std::size_t bytes = 0;
+  for (const RecordHead::Body& body : head.bodies) bytes += sizeof(VertexRecord) * body.vertices;
+  return bytes;
+}
+
+std::string line_of(const RecordHead& head) {
+  Json bodies = Json::array();
+  for (const RecordHead::Body& body : head.bodies) bodies.push_back({{"name", body.name}, {"vertices", body.vertices}});
+  const Json json = {{"format", format_name},
+                     {"program", head.program},
+                     {"kernels", head.kernels},
+                     {"film", Json::parse(head.film)},
+                     {"bodies", bodies}};
+  return json.dump() + '\n';
+}
+
+RecordHead read_head(std::istream& file, const std::string& source) {
+  RecordHead head;
+  try {
+    std::string line;
+    std::getline(file, line);
+    const Json json = Json::parse(line);
+    if (json.at("format") != format_name) throw InputError(source, "is a record of another version");
+    head.program = json.at("program");
+    head.kernels = json.at("kernels");
+    head.film = json.at("film").dump();
+    for (const Json& body : json.at("bodies")) head.bodies.push_back({body.at("name"), body.at("vertices")});
+  } catch (const nlohmann::json::exception&) {
+    throw InputError(source, "is not a record that --record made");
+  }
+  return head;
+}
+
+std::string names_of(const RecordHead& head) {
+  std::string names;
+  for (const RecordHead::Body& body : head.bodies)
+    names += fmt::format("{}{} ({} vertices)", names.empty() ? "" : ", ", body.name, body.vertices);
+  return names;
+}
+
+}  // namespace
+
+StateRecorder::StateRecorder(const std::filesystem::path& path, const RecordHead& head, int kept_frames)
+    : path_(path), file_(std::fopen(path.c_str(), kept_frames > 0 ? "r+b" : "wb")) {
+  const std::string line = line_of(head);
+  bool done = file_ != nullptr;
+  if (done && kept_frames > 0) {
+    const auto size = static_cast<off_t>(line.size() + bytes_of_frame(head) * kept_frames);
+    std::error_code ignored;
+    if (off_t(std::filesystem::file_size(path, ignored)) < size)
+      throw RunError(fmt::format("{}: does not have the {} frames to go on from", path.string(), kept_frames));
+    done = ftruncate(fileno(file_.get()), size) == 0 && std::fseek(file_.get(), 0, SEEK_END) == 0;
+  } else if (done) {
+    done = std::fwrite(line.data(), 1, line.size(), file_.get()) == line.size();
+  }
+  if (!done) throw RunError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
+}
+
+void StateRecorder::add(const Model& model, const State& state) {
+  const std::vector<VertexRecord> records = vertex_records(model, state);
+  if (std::fwrite(records.data(), sizeof(VertexRecord), records.size(), file_.get()) != records.size() ||
+      std::fflush(file_.get()) != 0) {
+    throw RunError(fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(errno)));
+  }
+}
+
+StateVerifier::StateVerifier(const std::filesystem::path& path, const RecordHead& now, std::optional<double> tolerance,
+                             int skipped_frames)
+    : path_(path), file_(path, std::ios::binary), tolerance_(tolerance) {
+  const std::string source = path.string();
+  if (!file_) throw InputError(source, "cannot be read");
+  head_ = read_head(file_, source);
+  const bool same_program = head_.program == now.program && head_.kernels == now.kernels;
+  if (!same_program && !tolerance_) {
+    throw InputError(source,
+                     fmt::format("was recorded by another build ({}, kernels {}; this is {}, kernels {}), which "
+                                 "need not give the same bits; --tolerance 1e-6 compares positions",
+                                 head_.program, head_.kernels, now.program, now.kernels));
+  }
+  if (names_of(head_) != names_of(now))
+    throw InputError(source, fmt::format("is of other bodies: {}; this film has {}", names_of(head_), names_of(now)));
+  for (const std::string& difference : json_differences(head_.film, now.film))
+    remark_ +=
+        fmt::format("{}{}", remark_.empty() ? "not the film that was recorded; then and now: " : "; ", difference);
+  const auto begin = file_.tellg();
+  std::error_code ignored;
+  recorded_frames_ = static_cast<int>((std::filesystem::file_size(path, ignored) - std::size_t(begin)) /
+                                      std::max<std::size_t>(1, bytes_of_frame(head_)));
+  file_.seekg(begin + static_cast<std::streamoff>(bytes_of_frame(head_) * skipped_frames));
+}
+
+std::string StateVerifier::compare(int frame, const Model& model, const State& state) {
+  const RecordHead::Body& body = head_.bodies[next_body_];
+  next_body_ = (next_body_ + 1) % head_.bodies.size();
+  if (frame >= recorded_frames_) return "";
+  std::vector<VertexRecord> before(body.vertices);
+  file_.read(reinterpret_cast<char*>(before.data()),
+             static_cast<std::streamsize>(sizeof(VertexRecord) * before.size()));
+  if (!file_) return fmt::format("frame {}: {} cannot be read any further", frame, path_.string());
+  const std::vector<VertexRecord> now = vertex_records(model, state);
+  for (int v = 0; v < body.vertices; ++v) {
+    double squared = 0;
+    for (int c = 0; c < 3; ++c) {
+      const double d = double(now[v].position[c]) - double(before[v].position[c]);
+      squared += d * d;
+    }
+    const double distance = std::sqrt(squared);
+    furthest_ = std::max(furthest_, distance / model.size);
+    if (tolerance_ ? !(distance <= *tolerance_ * model.size) : now[v].hash != before[v].hash) {
+      return fmt::format(
+          "frame {}: body '{}' is not what was recorded; vertex {} is the first that differs, by {:.2g} m "
+          "({:.1e} of the body's size)",
+          frame, body.name, v + 1, distance, distance / model.size);
+    }
+  }
+  return "";
+}
+
+std::string StateVerifier::verdict(int frames) const {
+  const int compared = std::min(frames, recorded_frames_);
+  const std::string how =
+      tolerance_ ? fmt::format("within {:g} of the bodies' size (furthest: {:.1e})", *tolerance_, furthest_)
+                 : std::string("the same to the last bit");
+  const std::string end =
+      frames > recorded_frames_ ? fmt::format("; the record ends there, the film has {}", frames) : "";
+  return fmt::format("verified: {} frames are {}{}", compared, how, end);
+}
+
+}  // namespace supple

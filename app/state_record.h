@@ -1,0 +1,68 @@
+// Records of a film's states, frame by frame, to be compared with those of another run: for --record and --verify.
+// docs/replays.md has the format.
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/state.h"
+
+namespace supple {
+
+// What a record says of itself.
+struct RecordHead {
+  std::string program, kernels;  // identities: the same bits are promised only where both are the same
+  std::string film;              // JSON of the scene and the replay
+  struct Body {
+    std::string name;
+    int vertices = 0;
+  };
+  std::vector<Body> bodies;
+};
+
+class StateRecorder {
+ public:
+  // Starts a file, or goes on behind the first frames of one. Throws RunError when it cannot be written.
+  StateRecorder(const std::filesystem::path& path, const RecordHead& head, int kept_frames);
+  void add(const Model& model, const State& state);  // body by body, frame by frame
+
+ private:
+  std::filesystem::path path_;
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  std::unique_ptr<std::FILE, Close> file_;
+};
+
+class StateVerifier {
+ public:
+  // tolerance: how far a vertex may be from the record, over the body's size; nothing: the same bits, and then the
+  // record must be of this program. Throws InputError: not a record, or of other bodies or another program.
+  StateVerifier(const std::filesystem::path& path, const RecordHead& now, std::optional<double> tolerance,
+                int skipped_frames);
+
+  // What is said before the run: that the scene is not the recorded one, and in what. Empty where it is.
+  const std::string& remark() const { return remark_; }
+
+  // Body by body, frame by frame. Returns what differs, or nothing; behind the end of the record, nothing.
+  std::string compare(int frame, const Model& model, const State& state);
+
+  std::string verdict(int frames) const;
+
+ private:
+  std::filesystem::path path_;
+  std::ifstream file_;
+  RecordHead head_;
+  std::optional<double> tolerance_;
+  std::size_t next_body_ = 0;
+  int recorded_frames_ = 0;
+  double furthest_ = 0;  // over the size
+  std::string remark_;
+};
+
+}  // namespace supple

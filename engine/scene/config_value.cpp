@@ -1,0 +1,112 @@
+// Values of any type: how they are shown, and what lies between two of them.
+#include <cmath>
+
+#include "scene/config_content.h"
+
+namespace supple {
+namespace {
+
+std::optional<double> number_of(const toml::node& node) {
+  return node.is_number() ? node.value<double>() : std::nullopt;
+}
+
+bool of_one_form(const toml::node& a, const toml::node& b) {
+  if (a.is_number() && b.is_number()) return true;
+  const toml::array *first = a.as_array(), *second = b.as_array();
+  if (first == nullptr || second == nullptr || first->size() != second->size()) return false;
+  for (std::size_t i = 0; i < first->size(); ++i) {
+    if (!of_one_form((*first)[i], (*second)[i])) return false;
+  }
+  return true;
+}
+
+bool only_positive(const toml::node& node) {
+  if (const auto number = number_of(node)) return *number > 0;
+  if (!node.is_array()) return false;
+  for (const toml::node& element : *node.as_array()) {
+    if (!only_positive(element)) return false;
+  }
+  return true;
+}
+
+void append_between(const toml::node& a, const toml::node& b, double s, bool by_ratio, bool whole, toml::array& out) {
+  if (const toml::array* first = a.as_array()) {
+    toml::array list;
+    for (std::size_t i = 0; i < first->size(); ++i)
+      append_between((*first)[i], (*b.as_array())[i], s, by_ratio, whole, list);
+    out.push_back(std::move(list));
+    return;
+  }
+  const double from = *number_of(a), to = *number_of(b);
+  const double value = by_ratio ? from * std::pow(to / from, s) : from + s * (to - from);
+  if (whole) {
+    out.push_back(static_cast<std::int64_t>(std::llround(value)));
+  } else {
+    out.push_back(value);
+  }
+}
+
+std::shared_ptr<const toml::node> clone(const toml::node& node) {
+  std::shared_ptr<const toml::node> result;
+  node.visit([&](const auto& typed) { result = std::make_shared<std::remove_cvref_t<decltype(typed)>>(typed); });
+  return result;
+}
+
+}  // namespace
+
+ConfigValue Config::Content::value_of(const toml::node& node) const {
+  auto content = std::make_shared<ConfigValue::Content>();
+  content->node = clone(node);
+  walk(node, [&](const toml::node& inner) { content->places.push_back(source_of(inner)); });
+  return ConfigValue(std::move(content));
+}
+
+void Config::Content::settle(const toml::node& copy, const ConfigValue& value) {
+  std::size_t next = 0;
+  const std::vector<toml::source_region>& places = value.content_->places;
+  walk(copy, [&](const toml::node& inner) {
+    if (next < places.size()) moved[&inner] = places[next++];
+  });
+}
+
+std::optional<ConfigValue> ConfigValue::parse(const std::string& text) {
+  try {
+    const toml::table table = toml::parse("value = " + text);
+    auto content = std::make_shared<Content>();
+    content->node = clone(*table.get("value"));
+    return ConfigValue(std::move(content));
+  } catch (const toml::parse_error&) {
+    return std::nullopt;
+  }
+}
+
+std::string ConfigValue::text() const { return shown(*content_->node); }
+bool ConfigValue::is_list_or_number() const { return content_->node->is_number() || content_->node->is_array(); }
+bool ConfigValue::joins(const ConfigValue& other) const { return of_one_form(*content_->node, *other.content_->node); }
+bool ConfigValue::all_positive() const { return only_positive(*content_->node); }
+
+ConfigValue ConfigValue::between(const ConfigValue& from, const ConfigValue& to, double s, bool by_ratio, bool whole) {
+  if (s >= 1) return to;  // exactly
+  toml::array result;
+  append_between(*from.content_->node, *to.content_->node, s, by_ratio, whole, result);
+  auto content = std::make_shared<Content>();
+  content->node = clone(result[0]);
+  content->places.assign(to.content_->places.begin(), to.content_->places.begin() + !to.content_->places.empty());
+  return ConfigValue(std::move(content));
+}
+
+ConfigValue ConfigTable::all_but(const char* key) const {
+  toml::table rest = *table_;
+  for (const auto& [name, node] : rest) (void)has(std::string(name.str()).c_str());
+  rest.erase(key);
+  auto content = std::make_shared<ConfigValue::Content>();
+  content->places.push_back(config_->content_->source_of(*table_));
+  for (const auto& [name, node] : *table_) {
+    if (name.str() == key) continue;
+    walk(node, [&](const toml::node& inner) { content->places.push_back(config_->content_->source_of(inner)); });
+  }
+  content->node = std::make_shared<toml::table>(std::move(rest));
+  return ConfigValue(std::move(content));
+}
+
+}  // namespace supple

@@ -1,0 +1,100 @@
+#include "scene/live.h"
+
+#include <array>
+#include <sstream>
+
+namespace supple {
+namespace {
+
+struct LivePattern {
+  std::string_view path;  // it and all that is below it
+  ChangeCost cost;
+};
+
+constexpr ChangeCost nothing{}, new_factor{true, false, false}, new_rule{false, true, false},
+    new_surface{false, false, true};
+
+// The first that fits decides. A body's solver has the keys of the scene's.
+constexpr auto patterns = std::to_array<LivePattern>({
+    {"gravity", nothing},
+    {"substeps", new_factor},
+    {"solver.method", new_rule},
+    {"solver.factor", new_factor},
+    {"solver.fit_from", new_factor},
+    {"solver.fit_to", new_factor},
+    {"solver.integrator", new_factor},
+    {"solver.damping", new_factor},
+    {"solver", nothing},
+    {"body[].material", new_factor},
+    {"body[].fibre", new_factor},
+    {"body[].regions", new_factor},
+    {"body[].density", new_factor},
+    {"body[].total_mass", new_factor},
+    {"body[].cloth.stretch", new_factor},
+    {"body[].cloth.shear", new_factor},
+    {"body[].cloth.bend", new_factor},
+    {"body[].handles[].stiffness", new_factor},
+    {"body[].handles[].ease", nothing},
+    {"body[].handles[].keys", nothing},
+    {"collider[].shape", new_surface},
+    {"collider[].position", nothing},
+    {"collider[].turn_deg", nothing},
+    {"collider[].friction", nothing},
+    {"collider[].thickness", nothing},
+    {"collider[].ease", nothing},
+    {"collider[].keys", nothing},
+    {"camera", nothing},
+});
+
+// At or below a pattern.
+bool covers(std::string_view pattern, std::string_view path) {
+  return path == pattern || (path.starts_with(pattern) && path[pattern.size()] == '.');
+}
+
+std::optional<ChangeCost> cost_of_generic(std::string_view path) {
+  constexpr std::string_view body_solver = "body[].solver";
+  if (covers(body_solver, path)) path.remove_prefix(std::string_view("body[].").size());
+  for (const LivePattern& pattern : patterns) {
+    if (covers(pattern.path, path)) return pattern.cost;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+ChangeCost& ChangeCost::operator|=(const ChangeCost& other) {
+  factor |= other.factor;
+  rule |= other.rule;
+  surface |= other.surface;
+  return *this;
+}
+
+const char* ChangeCost::text() const {
+  return factor ? "a new factor" : rule ? "the method starts anew" : surface ? "a new drawn surface" : "nothing";
+}
+
+std::string generic_path(const std::string& path) {
+  std::istringstream words(path);
+  std::string generic;
+  for (std::string word; std::getline(words, word, '.');) {
+    generic += generic.empty() ? word : "." + word;
+    if (word != "body" && word != "collider" && word != "handles") continue;
+    generic += "[]";
+    std::getline(words, word, '.');  // the element's name
+  }
+  return generic;
+}
+
+std::optional<ChangeCost> cost_of_change(const std::string& path) { return cost_of_generic(generic_path(path)); }
+
+std::vector<LiveKey> live_keys(const Config& config) {
+  std::vector<LiveKey> result;
+  for (const KnownKey& key : config.known()) {
+    if (key.type == "table" || key.type == "list of tables") continue;  // their keys are listed
+    if (key.generic.find("keys[]") != std::string::npos) continue;      // keys change as a whole
+    if (const auto cost = cost_of_change(key.path)) result.push_back({key, *cost});
+  }
+  return result;
+}
+
+}  // namespace supple

@@ -1,0 +1,277 @@
+#include "scene/script.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/text.h"
+#include "scene/scene_reader.h"
+
+namespace supple {
+namespace {
+
+constexpr double tolerance = 1e-9;          // of times that are given as seconds and counted in frames [s]
+constexpr double at_start = 2 * tolerance;  // jumps at 0 are in force before the first frame [s]
+
+// A time by its seconds or its frame.
+double read_time(const ConfigTable& table, double fps, const Key& seconds, const Key& frames, bool required) {
+  const auto in_seconds = table.number_if_given(seconds, Range::at_least(0));
+  const auto in_frames = table.number_if_given(frames, Range::at_least(0));
+  if (in_seconds && in_frames)
+    table.complain(frames.name, fmt::format("either '{}' or '{}', not both", seconds.name, frames.name));
+  if (required && !in_seconds && !in_frames)
+    table.complain(fmt::format("when? '{}' [s] or '{}' is missing", seconds.name, frames.name));
+  return in_seconds ? *in_seconds : in_frames.value_or(0) / fps;
+}
+
+std::string object_of(const std::string& path) {
+  for (const char* list : {"body.", "collider."}) {
+    if (!path.starts_with(list)) continue;
+    const std::size_t begin = std::string_view(list).size();
+    return path.substr(begin, path.find('.', begin) - begin);
+  }
+  return "";
+}
+
+std::optional<TimedChange> read_change(const ConfigTable& table, double fps) {
+  const std::string path =
+      table.text({"path", "", "the value, as --set takes it; `supple info --live SCENE` lists them"}, std::nullopt);
+  const double at =
+      read_time(table, fps, {"t", "s", "when it begins"}, {"frame", "", "the frame that it begins with"}, true);
+  const double over = read_time(table, fps, {"over", "s", "how long it takes; without it the value jumps"},
+                                {"frames", "", "how many frames it takes"}, false);
+  const std::string ease = table.choice({"ease", "", "how a ramp starts and ends"}, "smooth", {"smooth", "linear"});
+  const std::string by = table.choice({"by", "", "a ramp adds the same or multiplies by the same in equal times"},
+                                      "difference", {"difference", "ratio"});
+  const auto from = table.value({"from", "", "where a ramp begins; the value that is in force then"}, "none");
+  const auto to = table.value({"value", "", "what it becomes"});
+  if (!to || path.empty()) return std::nullopt;
+  const auto cost = cost_of_change(path);
+  if (!cost) {
+    table.complain(
+        "path", fmt::format("'{}' cannot change while the film runs; `supple info --live SCENE` lists what can", path));
+    return std::nullopt;
+  }
+  if (from && over <= 0) table.complain("from", "from: of ramps, which have an 'over' or 'frames'");
+  return TimedChange{path,
+                     object_of(path),
+                     at,
+                     over,
+                     ease == "smooth" ? Ease::smooth : Ease::linear,
+                     by == "ratio",
+                     false,
+                     *cost,
+                     from,
+                     *to,
+                     table.place("value", "")};
+}
+
+}  // namespace
+
+std::optional<double> TimedChange::done_at(double time) const {
+  if (time < at + tolerance) return std::nullopt;
+  if (over <= 0) return 1;
+  if (time - at <= at_start) return 0;
+  const double s = (time - at) / over;
+  return s >= 1 - tolerance ? 1 : ease == Ease::smooth ? s * s * (3 - 2 * s) : s;
+}
+
+struct Script::Parts {
+  std::optional<Config> replay;
+  Config scene_file;  // before any change
+  SceneDef start;
+  std::vector<TimedChange> changes;  // in the order of their beginnings
+
+  Config document_at(double time, std::size_t count) const {
+    Config document = scene_file.copy();
+    for (std::size_t i = 0; i < count; ++i) {
+      const TimedChange& change = changes[i];
+      const auto done = change.done_at(time);
+      if (!done) continue;
+      document.put(change.path,
+                   change.over > 0 ? ConfigValue::between(*change.from, change.to, *done, change.by_ratio, change.whole)
+                                   : change.to,
+                   change.place, exclusive_keys());
+    }
+    return document;
+  }
+  bool at_work(const TimedChange& change, int frame) const {
+    const double from = frame / start.fps, to = (frame + 1) / start.fps;
+    if (change.over <= 0) return change.at > tolerance && change.at > from - tolerance && change.at < to - tolerance;
+    return change.at < to - tolerance && change.at + change.over > from + tolerance;
+  }
+  SceneDef read(Config& document) const {
+    SceneDef scene = read_scene(document);
+    document.finish();
+    scene.name = start.name;
+    return scene;
+  }
+  void read_replay(const std::filesystem::path& assets, const std::vector<std::string>& settings);
+  std::optional<ConfigValue> value_at(const std::string& path, Config document) const;
+  void prepare_ramps();
+  void check() const;
+};
+
+Script::Script(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+Script::Script(Script&&) noexcept = default;
+Script::~Script() = default;
+
+namespace {
+
+// Where a replay's scene is: the name of one that ships, or a file beside the replay.
+Config load_replayed_scene(Config& replay, const std::filesystem::path& assets) {
+  const ConfigTable root = replay.root();
+  const Key key = {"scene", "", "a scene file, or the name of one that ships"};
+  const std::string name = root.text(key, std::nullopt);
+  const std::filesystem::path shipped = assets / "scenes" / (name + ".toml");
+  std::error_code error;
+  if (!name.empty() && std::filesystem::is_regular_file(shipped, error)) return Config::load(shipped, assets);
+  const std::filesystem::path file = root.file(key);
+  if (file.empty()) throw InputError(replay.complaints());
+  return Config::load(file, assets);
+}
+
+// Tables that a scene may leave out, so that their keys are asked for too.
+void open_tables(Config& document) {
+  std::vector<std::string> tables = {"camera", "solver"};
+  if (document.value_at("collider")) tables.emplace_back("solver.contact");
+  for (const std::string& table : tables) {
+    if (!document.value_at(table)) document.put(table, *ConfigValue::parse("{}"), {}, {});
+  }
+}
+
+bool is_whole_number(const Config& scene, const std::string& path) {
+  return std::any_of(scene.known().begin(), scene.known().end(),
+                     [&](const KnownKey& key) { return key.path == path && key.type == "whole number"; });
+}
+
+}  // namespace
+
+// The scene as the replay starts with it, and its changes.
+void Script::Parts::read_replay(const std::filesystem::path& assets, const std::vector<std::string>& settings) {
+  scene_file = load_replayed_scene(*replay, assets);
+  const ConfigTable root = replay->root();
+  if (const auto title = root.value({"title", "", "for people"}, "the scene's"))
+    scene_file.put("title", *title, root.place("title", ""), {});
+  if (const auto frames = root.value({"frames", "", "length of the film"}, "the scene's"))
+    scene_file.put("frames", *frames, root.place("frames", ""), {});
+  if (const auto set = root.table({"set", "", "values of the scene, by their paths in quotes, from the start on"})) {
+    for (const std::string& path : set->keys())
+      scene_file.put(path, *set->value({path.c_str(), "", ""}), set->place(path.c_str(), ""), exclusive_keys());
+  }
+  for (const ConfigTable& table : root.tables({"grab", "", "a handle for a body, with the keys of [[body.handles]]"})) {
+    const std::string body = table.text({"body", "", "whose vertices are grabbed"}, std::nullopt);
+    scene_file.append("body." + body + ".handles", table.all_but("body"), table.place(nullptr, ""));
+  }
+  for (const std::string& setting : settings) scene_file.set(setting, exclusive_keys());
+  Config plain = scene_file.copy();
+  start = read_scene(plain);
+  plain.finish();
+  open_tables(plain);
+  (void)read_scene(plain);  // for the kinds of all keys
+  for (const ConfigTable& table : root.tables({"change", "", "a value on its way to another"})) {
+    auto change = read_change(table, start.fps);
+    if (!change) continue;
+    change->whole = is_whole_number(plain, change->path);
+    changes.push_back(std::move(*change));
+  }
+  replay->finish();
+  std::stable_sort(changes.begin(), changes.end(),
+                   [](const TimedChange& a, const TimedChange& b) { return a.at < b.at; });
+}
+
+// What a path says, or leaves to the default.
+std::optional<ConfigValue> Script::Parts::value_at(const std::string& path, Config document) const {
+  if (auto value = document.value_at(path)) return value;
+  open_tables(document);
+  (void)read_scene(document);
+  for (const KnownKey& key : document.known()) {
+    if (key.path == path) return ConfigValue::parse(key.value);
+  }
+  return std::nullopt;
+}
+
+// Where each ramp begins.
+void Script::Parts::prepare_ramps() {
+  std::vector<Problem> problems;
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    TimedChange& change = changes[i];
+    const auto complain = [&](std::string message) {
+      problems.push_back({change.place.source, change.place.line, change.place.column, std::move(message)});
+    };
+    if (change.over <= 0) continue;
+    if (!change.from) change.from = value_at(change.path, document_at(change.at + at_start, i));
+    if (!change.from) {
+      complain(fmt::format("{} has no value in the scene to begin with: give the ramp a 'from'", change.path));
+    } else if (!change.from->joins(change.to)) {
+      complain(fmt::format("a ramp leads through numbers, or lists of them of one form; not from {} to {}",
+                           change.from->text(), change.to.text()));
+    } else if (change.by_ratio && !(change.from->all_positive() && change.to.all_positive())) {
+      complain("by = \"ratio\": only between positive numbers");
+    }
+    if (!problems.empty()) throw InputError(std::move(problems));
+  }
+}
+
+// Reads the scene of every frame in which something changes.
+void Script::Parts::check() const {
+  std::vector<Problem> problems;
+  std::set<std::string> said;
+  for (int frame = 0; frame < start.frames && problems.size() < 20; ++frame) {
+    if (std::none_of(changes.begin(), changes.end(), [&](const TimedChange& c) { return at_work(c, frame); })) continue;
+    Config document = document_at((frame + 1) / start.fps, changes.size());
+    (void)read_scene(document);
+    for (Problem& problem : document.take_problems()) {
+      if (!said.insert(fmt::format("{}:{}", problem.source, problem.line)).second) continue;
+      problem.message += fmt::format(" (first in frame {})", frame);
+      problems.push_back(std::move(problem));
+    }
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+Script Script::load(const std::filesystem::path& path, const std::filesystem::path& assets,
+                    const std::vector<std::string>& settings) {
+  auto parts = std::make_unique<Parts>(Parts{std::nullopt, Config::load(path, assets), {}, {}});
+  if (parts->scene_file.root().has("scene")) {
+    parts->replay = parts->scene_file.copy();
+    parts->read_replay(assets, settings);
+    parts->prepare_ramps();
+  } else {
+    for (const std::string& setting : settings) parts->scene_file.set(setting, exclusive_keys());
+  }
+  parts->start.name = path.stem().string();
+  Config document = parts->document_at(at_start, parts->changes.size());
+  parts->start = parts->read(document);
+  parts->check();
+  return Script(std::move(parts));
+}
+
+bool Script::is_replay() const { return parts_->replay.has_value(); }
+const SceneDef& Script::scene() const { return parts_->start; }
+const std::vector<TimedChange>& Script::changes() const { return parts_->changes; }
+
+std::vector<const TimedChange*> Script::at_work(int frame) const {
+  std::vector<const TimedChange*> result;
+  for (const TimedChange& change : parts_->changes) {
+    if (parts_->at_work(change, frame)) result.push_back(&change);
+  }
+  return result;
+}
+
+SceneDef Script::scene_at(int frame) const {
+  Config document = parts_->document_at((frame + 1) / parts_->start.fps, parts_->changes.size());
+  return parts_->read(document);
+}
+
+std::string Script::scene_json() const { return parts_->document_at(at_start, parts_->changes.size()).as_json(); }
+std::string Script::replay_json() const { return parts_->replay ? parts_->replay->as_json() : ""; }
+
+std::vector<LiveKey> Script::live() const {
+  Config document = parts_->document_at(at_start, parts_->changes.size());
+  open_tables(document);
+  (void)read_scene(document);
+  return live_keys(document);
+}
+
+}  // namespace supple

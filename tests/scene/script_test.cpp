@@ -1,0 +1,188 @@
+// Replays: what a frame's scene is, and what is refused.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "scene/script.h"
+#include "support/bodies.h"
+
+namespace supple {
+namespace {
+
+class Replay : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::ofstream(folder_.path / "bar.toml") << R"(frames = 60
+[[body]]
+name = "bar"
+box = { extent = [0.4, 0.1, 0.1], cells = [8, 2, 2] }
+material = { model = "neo-hookean", mu = 10000, lambda = 20000 }
+[[body.handles]]
+name = "end"
+select = { box = [[0, 0, 0], [0.1, 1, 1]] }
+[[collider]]
+name = "ball"
+shape = { sphere = { radius = 0.1 } }
+position = [0, -1, 0]
+)";
+  }
+  Script script(const std::string& changes, const std::vector<std::string>& settings = {}) {
+    std::ofstream(folder_.path / "r.toml") << "scene = \"bar.toml\"\n" << changes;
+    return Script::load(folder_.path / "r.toml", test::assets, settings);
+  }
+  std::string refused(const std::string& changes) {
+    try {
+      (void)script(changes);
+    } catch (const InputError& error) {
+      const std::string text = error.what(), path = (folder_.path / "").string();
+      return text.starts_with(path) ? text.substr(path.size()) : text;
+    }
+    return "accepted";
+  }
+  static double mu_of(const SceneDef& scene) { return std::get<NeoHookean>(scene.bodies[0].substance.material).mu; }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(Replay, WithoutChangesItIsItsScene) {
+  const Script plain = script("");
+  EXPECT_TRUE(plain.is_replay());
+  EXPECT_EQ(plain.scene().name, "r");
+  EXPECT_EQ(mu_of(plain.scene()), 10000);
+  for (int frame = 0; frame < 60; ++frame) EXPECT_TRUE(plain.at_work(frame).empty());
+  EXPECT_FALSE(Script::load(folder_.path / "bar.toml", test::assets, {}).is_replay());
+}
+
+TEST_F(Replay, JumpsTakeEffectInTheirFrame) {
+  const Script jump = script("[[change]]\nt = 1\npath = 'body.bar.material.mu'\nvalue = 5e4\n");
+  EXPECT_EQ(mu_of(jump.scene_at(29)), 10000);
+  EXPECT_EQ(mu_of(jump.scene_at(30)), 50000);
+  for (int frame = 0; frame < 60; ++frame) EXPECT_EQ(jump.at_work(frame).size(), frame == 30 ? 1u : 0u) << frame;
+  const Script by_frame = script("[[change]]\nframe = 30\npath = 'body.bar.material.mu'\nvalue = 5e4\n");
+  EXPECT_EQ(mu_of(by_frame.scene_at(29)), 10000);
+  EXPECT_EQ(mu_of(by_frame.scene_at(30)), 50000);
+  const Script at_once = script("[[change]]\nt = 0\npath = 'body.bar.material.mu'\nvalue = 5e4\n");
+  EXPECT_EQ(mu_of(at_once.scene()), 50000);
+  EXPECT_TRUE(at_once.at_work(0).empty());
+}
+
+TEST_F(Replay, RampsLeadThroughWhatLiesBetween) {
+  const Script linear = script(
+      "[[change]]\nt = 1\nover = 0.5\nease = 'linear'\npath = 'body.bar.material.mu'\nvalue = 40000\n"
+      "[[change]]\nt = 1\nframes = 15\nease = 'linear'\nby = 'ratio'\npath = 'body.bar.material.lambda'\nvalue = "
+      "80000\n");
+  EXPECT_EQ(mu_of(linear.scene_at(29)), 10000);
+  EXPECT_NEAR(mu_of(linear.scene_at(30)), 12000, 1e-6);
+  EXPECT_NEAR(mu_of(linear.scene_at(36)), 24000, 1e-6);
+  EXPECT_EQ(mu_of(linear.scene_at(44)), 40000);
+  EXPECT_EQ(mu_of(linear.scene_at(59)), 40000);
+  const auto lambda = [&](int frame) {
+    return std::get<NeoHookean>(linear.scene_at(frame).bodies[0].substance.material).lambda;
+  };
+  EXPECT_NEAR(lambda(36) / lambda(35), lambda(40) / lambda(39), 1e-9);
+  EXPECT_EQ(lambda(44), 80000);
+  EXPECT_EQ(linear.at_work(29).size() + linear.at_work(45).size(), 0u);
+  EXPECT_EQ(linear.at_work(30).size() + linear.at_work(44).size(), 4u);
+  const Script smooth = script("[[change]]\nt = 1\nover = 0.4\npath = 'gravity'\nvalue = [0, -1.81, 8]\n");
+  EXPECT_NEAR(smooth.scene_at(32).gravity.y(), -9.81 + 8 * (0.25 * 0.25 * 2.5),
+              1e-9);  // 3 of 12 frames; the default's y
+  EXPECT_NEAR(smooth.scene_at(35).gravity.z(), 4, 1e-9);
+}
+
+TEST_F(Replay, WholeNumbersStayWholeAndListsGoNumberByNumber) {
+  const Script whole = script(
+      "[[change]]\nt = 1\nover = 1\npath = 'solver.iterations'\nvalue = 31\n"
+      "[[change]]\nt = 1\npath = 'body.bar.material'\nvalue = { model = 'spline', a = [[0.5, -100], [1, 0], [2, 10]] "
+      "}\n"
+      "[[change]]\nt = 1.5\nover = 0.4\nease = 'linear'\npath = 'body.bar.material.a'\nvalue = [[0.5, -300], [1, 0], "
+      "[2, 50]]\n");
+  EXPECT_EQ(whole.scene_at(44).bodies[0].solver.settings.iterations, 21);
+  EXPECT_EQ(whole.scene_at(59).bodies[0].solver.settings.iterations, 31);
+  const Spline spline = std::get<Spline>(whole.scene_at(50).bodies[0].substance.material);
+  EXPECT_NEAR(spline.a.points()[0].value, -200, 1e-9);
+  EXPECT_NEAR(spline.a.points()[2].value, 30, 1e-9);
+}
+
+TEST_F(Replay, LaterChangesBeginWhereEarlierOnesAre) {
+  const Script chain = script(
+      "[[change]]\nt = 1.5\nover = 0.3\nease = 'linear'\npath = 'body.bar.material.mu'\nvalue = 10000\n"
+      "[[change]]\nt = 1\nover = 1\nease = 'linear'\npath = 'body.bar.material.mu'\nvalue = 20000\n");
+  EXPECT_NEAR(mu_of(chain.scene_at(44)), 15000, 1e-3);
+  EXPECT_NEAR(mu_of(chain.scene_at(47)), 15000 - 5000.0 * 3 / 9, 1e-3);
+  EXPECT_EQ(mu_of(chain.scene_at(59)), 10000);
+}
+
+TEST_F(Replay, StartsFromWhatItSetsAndGrabs) {
+  const Script set = script(
+      "frames = 20\ntitle = 'other'\n[set]\n'body.bar.material.mu' = 7\n"
+      "[[grab]]\nbody = 'bar'\nname = 'fingers'\nselect = { box = [[0.9, 0, 0], [1, 1, 1]] }\nstiffness = 5\nfrom = "
+      "0.2\nuntil = 0.4\n",
+      {"body.bar.material.lambda=8"});
+  EXPECT_EQ(set.scene().frames, 20);
+  EXPECT_EQ(set.scene().title, "other");
+  EXPECT_EQ(mu_of(set.scene()), 7);
+  ASSERT_EQ(set.scene().bodies[0].handles.size(), 2u);
+  const HandleDef& fingers = set.scene().bodies[0].handles[1];
+  EXPECT_TRUE(fingers.grabs);
+  EXPECT_FALSE(fingers.holds_at(5 / 30.0));
+  EXPECT_TRUE(fingers.holds_at(6 / 30.0));
+  EXPECT_TRUE(fingers.holds_at(11 / 30.0));
+  EXPECT_FALSE(fingers.holds_at(12 / 30.0));
+}
+
+TEST_F(Replay, CollidersAndCameraMove) {
+  const Script moved = script(
+      "[[change]]\nt = 0.5\nover = 0.5\npath = 'collider.ball.shape.sphere.radius'\nvalue = 0.3\n"
+      "[[change]]\nt = 0.5\npath = 'camera.fov_deg'\nvalue = 50\n");
+  EXPECT_NEAR(moved.scene_at(29).colliders[0].shape.distance(Vec3(1, 0, 0)), 0.7, 1e-9);
+  EXPECT_EQ(moved.scene_at(15).camera.fov_deg, 50);
+  EXPECT_TRUE(moved.at_work(20)[0]->cost.surface);
+}
+
+TEST_F(Replay, RefusesWithPlaceAndReason) {
+  EXPECT_EQ(
+      refused("[[change]]\nt = 1\npath = 'body.bar.box.cells'\nvalue = [1, 2, 3]\n"),
+      "r.toml:4:8: 'body.bar.box.cells' cannot change while the film runs; `supple info --live SCENE` lists what can");
+  EXPECT_EQ(refused("[[change]]\nt = 1\npath = 'body.bar.material.mu'\nvalue = -4\n"),
+            "r.toml:5:9: mu = -4: must be above 0 (first in frame 30)");
+  EXPECT_EQ(refused("[[change]]\nt = 1\npath = 'body.rod.material.mu'\nvalue = 4\n"),
+            "r.toml:5:9: there is no body named 'rod' (there is bar)");
+  EXPECT_EQ(refused("[[change]]\nt = 1\npath = 'body.bar.material.muu'\nvalue = 4\n"),
+            "r.toml:5:9: unknown key 'muu'; did you mean 'mu'? (first in frame 30)");
+  EXPECT_EQ(refused("[[change]]\npath = 'gravity'\nvalue = [0, 0, 0]\n"),
+            "r.toml:2:1: when? 't' [s] or 'frame' is missing");
+  EXPECT_EQ(refused("[[change]]\nt = 1\nover = 1\npath = 'gravity'\nvalue = 3\n"),
+            "r.toml:6:9: a ramp leads through numbers, or lists of them of one form; not from [0, -9.81, 0] to 3");
+  EXPECT_EQ(refused("[[change]]\nt = 1\nover = 1\nby = 'ratio'\npath = 'gravity'\nvalue = [1, 2, 3]\n"),
+            "r.toml:7:9: by = \"ratio\": only between positive numbers");
+  EXPECT_EQ(refused("[[chnage]]\nt = 1\n"), "r.toml:2:3: unknown key 'chnage'; did you mean 'change'?");
+  EXPECT_EQ(refused("[[grab]]\nbody = 'bar'\nname = 'f'\nselect = { box = [[0.9, 0, 0], [1, 1, 1]] }\nfrom = 1\n"),
+            "r.toml:2:1: a handle that grabs or lets go needs a number as its stiffness [N/m]");
+  // In the middle of a ramp: the line of its value.
+  EXPECT_EQ(refused("[[change]]\nt = 0.5\nover = 1\npath = 'camera.fov_deg'\nvalue = 500\n").substr(0, 10),
+            "r.toml:6:9");
+}
+
+TEST_F(Replay, ListsWhatCanChange) {
+  const std::vector<LiveKey> live = script("").live();
+  const auto find = [&](const std::string& path) -> const LiveKey* {
+    for (const LiveKey& key : live) {
+      if (key.key.path == path) return &key;
+    }
+    return nullptr;
+  };
+  ASSERT_NE(find("body.bar.material.mu"), nullptr);
+  EXPECT_TRUE(find("body.bar.material.mu")->cost.factor);
+  EXPECT_EQ(find("body.bar.material.mu")->key.unit, "Pa");
+  EXPECT_EQ(find("body.bar.material.mu")->key.value, "10000");
+  ASSERT_NE(find("gravity"), nullptr);
+  EXPECT_FALSE(find("gravity")->cost.factor);
+  EXPECT_NE(find("collider.ball.shape.sphere.radius"), nullptr);
+  EXPECT_NE(find("camera.fov_deg"), nullptr);
+  EXPECT_EQ(find("frames"), nullptr);
+  EXPECT_EQ(find("body.bar.box.cells"), nullptr);
+  for (const LiveKey& key : live) EXPECT_TRUE(cost_of_change(key.key.path)) << key.key.path;
+}
+
+}  // namespace
+}  // namespace supple
