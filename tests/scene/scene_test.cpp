@@ -56,7 +56,7 @@ keys = [ { t = 1 }, { t = 0.5 } ]
           "; did you mean 'polynomial'?",
       "scene.toml:13:8: two bodies named 'body'",
       "scene.toml:15:41: mu = -1: must be above 0",
-      "scene.toml:18:18: box = [ [ 0, 0, 0 ], [ 1, 1 ] ]: must be 2 lists of three numbers, all finite",
+      "scene.toml:18:18: box = [[0, 0, 0], [1, 1]]: must be 2 lists of three numbers, all finite",
       "scene.toml:19:13: stiffness = -5: must be \"hard\" or above 0",
       "scene.toml:20:27: t = 0.5: keys must stand in order of time (the one before is at 1)",
   };
