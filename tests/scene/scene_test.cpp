@@ -45,7 +45,7 @@ keys = [ { t = 1 }, { t = 0.5 } ]
   const std::vector<std::string> expected = {
       "scene.toml:1:1: unknown key 'frams'; did you mean 'frames'?",
       "scene.toml:2:7: fps = 0: must be 1 to 100000",
-      "scene.toml:3:11: gravity = [ 0, nan, 0 ]: must be a list of three numbers, all finite",
+      "scene.toml:3:11: gravity = [0, nan, 0]: must be a list of three numbers, all finite",
       "scene.toml:4:12: substeps = 1.5: must be a whole number, 1 to 1000",
       "scene.toml:6:14: iterations = 0: must be a whole number, 1 to 10000",
       "scene.toml:7:10: armijo = -0.3: must be above 0 to 0.5",

@@ -1,0 +1,247 @@
+// Films that change on the way, and films that were killed, as a user meets them: the same bits, always.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <random>
+
+#include "output/video.h"
+#include "support/bodies.h"
+#include "support/program.h"
+
+namespace supple {
+namespace {
+
+using test::read_file;
+using test::Result;
+using test::run;
+
+// A bar and a cloth that are changed in every way, filmed small.
+class ReplayedFilm : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::ofstream(folder_.path / "two.toml") << R"(frames = 24
+[[body]]
+name = "bar"
+box = { extent = [0.4, 0.1, 0.1], cells = [10, 3, 3] }
+position = [0, 0.3, 0]
+material = { model = "neo-hookean", mu = 2e4, lambda = 4e4 }
+[[body.handles]]
+name = "end"
+select = { box = [[0, 0, 0], [0.1, 1, 1]] }
+keys = [{ t = 0 }, { t = 0.4, move = [0, 0.1, 0] }, { t = 0.8 }]
+[[body]]
+name = "sheet"
+cloth = { extent = [0.4, 0.4], cells = [10, 10], stretch = 100, bend = 1 }
+turn_deg = [90, 0, 0]
+position = [0, 0.25, 0]
+[[collider]]
+name = "ball"
+shape = { sphere = { radius = 0.1 } }
+position = [0, 0.1, 0]
+[output]
+width = 96
+height = 64
+samples = 1
+)";
+    std::ofstream(folder_.path / "r.toml") << R"(scene = "two.toml"
+[[grab]]
+body = "bar"
+name = "fingers"
+select = { box = [[0.9, 0, 0], [1, 1, 1]] }
+stiffness = 30
+from = 0.1
+until = 0.5
+keys = [{ t = 0.1 }, { t = 0.4, move = [0.05, 0.1, 0], turn_deg = [20, 0, 0] }]
+[[change]]
+t = 0.2
+over = 0.3
+by = "ratio"
+path = "body.bar.material.mu"
+value = 2e5
+[[change]]
+t = 0.3
+path = "body.sheet.cloth.stretch"
+value = 300
+[[change]]
+t = 0.3
+over = 0.2
+path = "collider.ball.shape.sphere.radius"
+value = 0.14
+[[change]]
+t = 0.1
+over = 0.4
+path = "collider.ball.position"
+value = [0.05, 0.1, 0.02]
+[[change]]
+frame = 12
+path = "substeps"
+value = 2
+[[change]]
+frame = 16
+path = "body.bar.solver.method"
+value = "newton"
+[[change]]
+frame = 18
+path = "body.bar.solver.integrator"
+value = "implicit-midpoint"
+[[change]]
+t = 0.1
+over = 0.5
+path = "camera.margin"
+value = 1.6
+)";
+  }
+
+  std::vector<std::string> film(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {"replay", "r.toml", "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+  std::vector<std::string> hashes(const std::string& out) const {
+    std::vector<std::string> list;
+    const auto profile = test::profile_of(folder_.path / out);
+    for (const auto& frame : profile["frames"]) list.push_back(frame["state_hash"]);
+    return list;
+  }
+  std::vector<std::string> pictures(const std::string& out) const {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path / out / "frames")) files.push_back(entry);
+    std::sort(files.begin(), files.end());
+    std::vector<std::string> contents;
+    for (const std::filesystem::path& file : files) contents.push_back(read_file(file));
+    return contents;
+  }
+  // Everything that a film consists of, but for times.
+  void expect_the_same_film(const std::string& a, const std::string& b) const {
+    EXPECT_EQ(hashes(a), hashes(b));
+    EXPECT_EQ(pictures(a), pictures(b));
+    for (const char* file : {"motion/bar.pc2", "motion/sheet.pc2", "motion/colliders.csv"})
+      EXPECT_EQ(read_file(folder_.path / a / file), read_file(folder_.path / b / file)) << file;
+    if (std::filesystem::exists(folder_.path / a / "video.mp4")) {
+      EXPECT_EQ(count_video_frames(folder_.path / b / "video.mp4"), count_video_frames(folder_.path / a / "video.mp4"));
+    }
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(ReplayedFilm, GivesTheSameBitsForAnyThreadsWithAndWithoutImages) {
+  ASSERT_EQ(run(folder_.path, film({"--no-images", "--threads", "1", "--out", "a"})).status, 0);
+  const std::vector<std::string> expected = hashes("a");
+  ASSERT_EQ(expected.size(), 24u);
+  for (const char* threads : {"1", "2", "4"}) {
+    ASSERT_EQ(run(folder_.path, film({"--no-video", "--threads", threads, "--out", "b"})).status, 0);
+    EXPECT_EQ(hashes("b"), expected);
+  }
+  ASSERT_EQ(run(folder_.path, {"render", "two.toml", "--no-images", "--quiet", "--out", "plain"}).status, 0);
+  const std::vector<std::string> plain = hashes("plain");
+  EXPECT_TRUE(std::equal(plain.begin(), plain.begin() + 3, expected.begin()));  // the grab is at 0.1 s
+  EXPECT_NE(plain[3], expected[3]);
+}
+
+TEST_F(ReplayedFilm, IsVerifiedVertexByVertex) {
+  ASSERT_EQ(run(folder_.path, film({"--no-images", "--record", "film.rec"})).status, 0);
+  const Result same = run(folder_.path, film({"--no-images", "--verify", "film.rec", "--threads", "1"}));
+  EXPECT_EQ(same.status, 0) << same.err;
+  EXPECT_EQ(same.out, "  verified: 24 frames are the same to the last bit\n");
+
+  // The last bit of one number of the replay: 2e5 and the next double.
+  std::string text = read_file(folder_.path / "r.toml");
+  text.replace(text.find("value = 2e5"), 11, "value = 200000.00000000003");
+  std::ofstream(folder_.path / "r.toml") << text;
+  const Result other = run(folder_.path, film({"--no-images", "--verify", "film.rec"}));
+  EXPECT_EQ(other.status, 1);
+  EXPECT_NE(other.err.find("not the film that was recorded"), std::string::npos) << other.err;
+  EXPECT_NE(other.err.find("replay.change"), std::string::npos) << other.err;
+  EXPECT_NE(other.err.find("body 'bar' is not what was recorded; vertex "), std::string::npos) << other.err;
+  const std::size_t named = other.err.find("supple: frame ");
+  ASSERT_NE(named, std::string::npos);
+  const int frame = std::atoi(other.err.c_str() + named + 14);
+  EXPECT_GE(frame, 6);  // 0.2 s
+  EXPECT_LE(frame, 14);
+  const Result near = run(folder_.path, film({"--no-images", "--verify", "film.rec", "--tolerance", "1e-4"}));
+  EXPECT_EQ(near.status, 0) << near.err;
+  EXPECT_NE(near.out.find("24 frames are within 0.0001"), std::string::npos) << near.out;
+
+  std::string record = read_file(folder_.path / "film.rec");
+  record.replace(record.find("\"program\":\"") + 11, 4, "0000");
+  std::ofstream(folder_.path / "film.rec", std::ios::binary) << record;
+  const Result foreign = run(folder_.path, film({"--no-images", "--verify", "film.rec"}));
+  EXPECT_EQ(foreign.status, 2);
+  EXPECT_NE(foreign.err.find("was recorded by another build"), std::string::npos) << foreign.err;
+  EXPECT_EQ(run(folder_.path, film({"--no-images", "--verify", "two.toml"})).status, 2);
+}
+
+TEST_F(ReplayedFilm, GoesOnAfterBeingKilledAsIfNothingHadHappened) {
+  ASSERT_EQ(run(folder_.path, film({"--out", "whole"})).status, 0);
+  std::mt19937 dice(5);
+  int kills = 0;
+  for (int attempt = 0; attempt < 6; ++attempt) {
+    std::filesystem::remove_all(folder_.path / "cut");
+    std::vector<std::string> arguments = film({"--out", "cut", "--checkpoint-every", "1"});
+    Result result = test::run_and_kill(folder_.path, arguments, int(dice() % 900));
+    kills += result.status < 0;
+    arguments.push_back("--resume");
+    if (attempt % 2 == 0 && std::filesystem::exists(folder_.path / "cut" / "run.json"))  // and once more
+      kills += test::run_and_kill(folder_.path, arguments, int(dice() % 900)).status < 0;
+    result = run(folder_.path, arguments);
+    ASSERT_EQ(result.status, 0) << result.err;
+    expect_the_same_film("whole", "cut");
+  }
+  EXPECT_GE(kills, 4);
+}
+
+TEST_F(ReplayedFilm, GoesOnAfterAnInterruptAndMayBecomeLonger) {
+  ASSERT_EQ(run(folder_.path, film({"--out", "whole", "--frames", "30"})).status, 0);
+  const Result cut = run(folder_.path, film({"--out", "cut"}), folder_.path / "cut" / "frames" / "000004.png");
+  ASSERT_EQ(cut.status, 130) << cut.err;
+  const Result on = run(folder_.path, film({"--out", "cut", "--resume"}));
+  ASSERT_EQ(on.status, 0) << on.err;
+  EXPECT_NE(on.err.find("note: going on behind frame "), std::string::npos) << on.err;
+  EXPECT_EQ(hashes("cut").size(), 24u);
+  ASSERT_EQ(run(folder_.path, film({"--out", "cut", "--resume", "--frames", "30"})).status, 0);
+  expect_the_same_film("whole", "cut");
+  EXPECT_EQ(run(folder_.path, film({"--out", "cut", "--resume", "--frames", "20"})).status, 2);
+}
+
+TEST_F(ReplayedFilm, RefusesTheCheckpointOfAnotherFilm) {
+  ASSERT_EQ(run(folder_.path, film({"--out", "a", "--no-images"})).status, 0);
+  const auto refused = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--out", "a", "--resume"});
+    const Result result = run(folder_.path, film(more));
+    EXPECT_EQ(result.status, 2) << result.err;
+    return result.err;
+  };
+  EXPECT_NE(refused({"--no-images", "--set", "body.bar.density=900"}).find("scene.body.bar.density: nothing and 900"),
+            std::string::npos);
+  EXPECT_NE(refused({}).find("images: false and true"), std::string::npos);
+  EXPECT_EQ(hashes("a").size(), 24u);  // nothing of it was lost
+  std::string bytes = read_file(folder_.path / "a" / "checkpoint" / "state");
+  bytes[bytes.size() / 2] ^= 1;
+  std::ofstream(folder_.path / "a" / "checkpoint" / "state", std::ios::binary) << bytes;
+  EXPECT_NE(refused({"--no-images"}).find("is damaged"), std::string::npos);
+}
+
+TEST_F(ReplayedFilm, StartsAnewWhereThereIsNoCheckpointYet) {
+  const Result result = run(folder_.path, film({"--out", "a", "--no-images", "--resume"}));
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.err.find("has no checkpoint yet"), std::string::npos) << result.err;
+}
+
+TEST_F(ReplayedFilm, TellsOfImpossibleChangesBeforeTheFilmBegins) {
+  std::ofstream(folder_.path / "bad.toml") << R"(scene = "two.toml"
+[[change]]
+t = 0.3
+path = "body.bar.handles.end.stiffness"
+value = 30
+)";
+  const Result result = run(folder_.path, {"replay", "bad.toml", "--no-images"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("hard handles stay hard"), std::string::npos) << result.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_.path / "out"));
+}
+
+}  // namespace
+}  // namespace supple
