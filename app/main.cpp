@@ -29,6 +29,7 @@ int run(int argc, char** argv) {
   supple::add_check(app, action);
   supple::add_mesh(app, action);
   supple::add_info(app, action);
+  supple::add_compare(app, action);
   supple::add_list(app, action);
   try {
     app.parse(argc, argv);

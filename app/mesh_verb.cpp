@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "app/summary.h"
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
@@ -18,22 +19,6 @@ std::filesystem::path shape_file(const std::string& name) {
   return std::filesystem::exists(shipped, error) ? shipped : std::filesystem::path(name);
 }
 
-void describe(const TetMesh& mesh) {
-  const MeshQuality q = quality(mesh);
-  const Manifoldness m = manifoldness(mesh);
-  const Bounds box = bounds_of(mesh.rest);
-  say(stdout, fmt::format("vertices        {}\nelements        {}\nboundary faces  {}\n", mesh.rest.rows(),
-                          mesh.tets.rows(), boundary_faces(mesh.tets).rows()));
-  say(stdout, fmt::format("extent          {:.4g} x {:.4g} x {:.4g}\nvolume          {:.6g}\n", box.extent().x(),
-                          box.extent().y(), box.extent().z(), q.volume));
-  say(stdout, fmt::format("dihedral angles {:.2f} to {:.2f} degrees\nsmallest volume {:.2e} of the mean\n",
-                          q.smallest_dihedral, q.largest_dihedral, q.smallest_volume));
-  say(stdout, fmt::format("pieces          {}\nboundary        {}\n", m.pieces,
-                          m.bad_edges + m.bad_vertices == 0 ? "manifold"
-                                                            : fmt::format("touches itself at {} edges and {} vertices",
-                                                                          m.bad_edges, m.bad_vertices)));
-}
-
 int make_mesh(const std::string& input, const std::string& output, int vertices) {
   const Stopwatch watch;
   const std::filesystem::path path = shape_file(input);
@@ -50,7 +35,7 @@ int make_mesh(const std::string& input, const std::string& output, int vertices)
     mesh = tetrahedralize(shape, vertices, path.string());
   }
   write_mesh(output, mesh);
-  describe(mesh);
+  say(stdout, mesh_summary(mesh));
   say(stdout, fmt::format("written         {} ({:.2f} s)\n", output, watch.elapsed_ms() / 1000));
   return 0;
 }
@@ -66,7 +51,7 @@ void add_mesh(CLI::App& app, Action& action) {
   CLI::App* verb =
       app.add_subcommand("mesh", "Make tetrahedra of a shape or a closed surface, or check and rewrite a mesh.");
   verb->footer("Example: supple mesh squirrel -o squirrel.mesh --vertices 8395");
-  verb->add_option("INPUT", options->input,
+  verb->add_option("SHAPE", options->input,
                    "shape file (.toml), the name of a shape that ships, a closed surface (OBJ, PLY, STL, glTF, OFF), "
                    "or a .mesh file")
       ->required();
@@ -74,21 +59,6 @@ void add_mesh(CLI::App& app, Action& action) {
   verb->add_option("--vertices", options->vertices, "wanted (within 3 %)")->check(CLI::Range(50, 500000));
   verb->callback([&action, options] {
     action = [options] { return make_mesh(options->input, options->output, options->vertices); };
-  });
-}
-
-void add_info(CLI::App& app, Action& action) {
-  auto input = std::make_shared<std::string>();
-  CLI::App* verb = app.add_subcommand("info", "What is in a mesh, and its quality.");
-  verb->footer("Example: supple info squirrel.mesh");
-  verb->add_option("MESH", *input, "MEDIT .mesh file")->required();
-  verb->callback([&action, input] {
-    action = [input] {
-      const MeshFile file = read_mesh(*input);
-      for (const std::string& note : file.notes) say(stdout, fmt::format("note: {}\n", note));
-      describe(file.mesh);
-      return 0;
-    };
   });
 }
 

@@ -19,6 +19,7 @@ void add_check(CLI::App& app, Action& action);
 void add_mesh(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);
 void add_list(CLI::App& app, Action& action);
+void add_compare(CLI::App& app, Action& action);
 void add_bench(CLI::App& app, Action& action);
 
 // Where scenes, shapes and shaders are: beside the installed program, or in the source tree it was built from.

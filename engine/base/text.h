@@ -1,6 +1,7 @@
-// Small things about words: which known word a mistyped one is nearest to, and times as people read them.
+// Small things about words: which known word a mistyped one is nearest to, times and sizes as people read them.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,5 +16,11 @@ std::string word_list(const std::vector<std::string>& words);
 
 // "7.4 s", "2 min 05 s"
 std::string duration_text(double seconds);
+
+// "812 bytes", "4.1 kB", "12.3 MB", "1.2 GB": thousands, not 1024s
+std::string bytes_text(std::uintmax_t bytes);
+
+// The word as a shell reads it back: quoted where it has to be.
+std::string shell_word(const std::string& word);
 
 }  // namespace supple

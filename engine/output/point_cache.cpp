@@ -22,6 +22,10 @@ struct Header {
   std::int32_t samples;
 };
 static_assert(sizeof(Header) == 32);
+constexpr char signature[12] = "POINTCACHE2";
+
+// One row a vertex, as the file has them.
+using FilePoints = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
 }  // namespace
 
@@ -33,7 +37,8 @@ PointCacheWriter::PointCacheWriter(const std::filesystem::path& path, int points
     return;
   }
   // One sample a frame: the rate counts frames of the film between samples.
-  const Header header{{'P', 'O', 'I', 'N', 'T', 'C', 'A', 'C', 'H', 'E', '2', '\0'}, 1, points, 0.0f, 1.0f, 0};
+  Header header{{}, 1, points, 0.0f, 1.0f, 0};
+  std::memcpy(header.signature, signature, sizeof signature);
   if (std::fwrite(&header, sizeof header, 1, file_.get()) != 1) fail("be written");
 }
 
@@ -52,7 +57,7 @@ void PointCacheWriter::go_on_behind(int frames) {
 
 void PointCacheWriter::add(const Positions& points) {
   SUPPLE_CHECK(points.rows(), ==, points_);
-  const Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> rows = points.cast<float>();
+  const FilePoints rows = points.cast<float>();
   if (std::fwrite(rows.data(), sizeof(float), rows.size(), file_.get()) != std::size_t(rows.size())) fail("be written");
   const std::int32_t samples = ++frames_;
   if (std::fseek(file_.get(), offsetof(Header, samples), SEEK_SET) != 0 ||
@@ -65,5 +70,40 @@ void PointCacheWriter::add(const Positions& points) {
 void PointCacheWriter::fail(const char* doing) const {
   throw RunError(fmt::format("{}: cannot {}: {}", path_.string(), doing, std::strerror(errno)));
 }
+
+PointCacheReader::PointCacheReader(const std::filesystem::path& path) : path_(path), file_(path, std::ios::binary) {
+  Header header;
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  if (error || !file_) refuse("cannot be read");
+  if (!file_.read(reinterpret_cast<char*>(&header), sizeof header) ||
+      std::memcmp(header.signature, signature, sizeof signature) != 0)
+    refuse("is not a PC2 point cache");
+  if (header.version != 1) refuse(fmt::format("is of version {}; this program reads version 1", header.version));
+  if (header.points < 0 || header.samples < 0)
+    refuse(fmt::format("is damaged: its header tells {} points and {} frames", header.points, header.samples));
+  points_ = header.points;
+  frames_ = header.samples;
+  const std::uintmax_t frame = 3 * sizeof(float) * std::uintmax_t(points_);
+  const std::uintmax_t told = sizeof header + frame * std::uintmax_t(frames_);
+  if (bytes < told || bytes - told > frame) {
+    refuse(fmt::format("is {}: it holds {} bytes, and {} frames of {} points need {}",
+                       bytes < told ? "cut short" : "damaged", bytes, frames_, points_, told));
+  }
+}
+
+Positions PointCacheReader::frame(int index) {
+  SUPPLE_CHECK(index, >=, 0);
+  SUPPLE_CHECK(index, <, frames_);
+  FilePoints rows(points_, 3);
+  const auto bytes = std::streamsize(sizeof(float)) * rows.size();
+  file_.seekg(std::streamoff(sizeof(Header)) + bytes * index);
+  if (!file_.read(reinterpret_cast<char*>(rows.data()), bytes))
+    refuse(fmt::format("cannot be read at frame {}", index));
+  if (!rows.allFinite()) refuse(fmt::format("is damaged: a number of frame {} is not finite", index));
+  return rows.cast<double>();
+}
+
+void PointCacheReader::refuse(const std::string& what) const { throw InputError(path_.string(), what); }
 
 }  // namespace supple

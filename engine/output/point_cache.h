@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 
 #include "base/types.h"
@@ -29,6 +30,29 @@ class PointCacheWriter {
   };
   std::unique_ptr<std::FILE, Close> file_;
   int points_;
+  int frames_ = 0;
+};
+
+// Reads such a file back, frame by frame.
+class PointCacheReader {
+ public:
+  // Throws InputError naming the file: it cannot be read, is not a PC2 file of version 1, or holds fewer bytes than its
+  // header tells or more than one frame beyond (a run that was killed may leave part of a frame that nobody counted).
+  explicit PointCacheReader(const std::filesystem::path& path);
+
+  int points() const { return points_; }
+  int frames() const { return frames_; }
+
+  // Positions of a frame, 0 to frames() - 1, points x 3 [m]. Throws InputError naming the file and the frame: it cannot
+  // be read, or a number in it is not finite.
+  Positions frame(int index);
+
+ private:
+  [[noreturn]] void refuse(const std::string& what) const;
+
+  std::filesystem::path path_;
+  std::ifstream file_;
+  int points_ = 0;
   int frames_ = 0;
 };
 

@@ -1,0 +1,148 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "app/run_comparison.h"
+#include "app/verbs.h"
+#include "base/console.h"
+#include "base/error.h"
+#include "output/report_table.h"
+#include "output/whole_file.h"
+
+namespace supple {
+namespace {
+
+struct CompareOptions {
+  std::string a, b, csv;
+  bool json = false;
+};
+
+constexpr std::size_t most_differences = 24;  // in the text; --json has all
+
+std::string states_text(const RunComparison& c) {
+  std::string text;
+  if (c.first_difference) {
+    text = fmt::format("differ from frame {} on", *c.first_difference);
+  } else {
+    text = fmt::format("the same in {}", c.frames == 1 ? "the one frame" : fmt::format("all {} frames", c.frames));
+  }
+  if (c.frames_a != c.frames_b)
+    text += fmt::format("; A has {} frames and B {}: the first {} are compared", c.frames_a, c.frames_b, c.frames);
+  return text;
+}
+
+std::string distance_table(const RunComparison& c) {
+  std::string text = fmt::format("  {:<16}{:>12}{:>12}{:>8}{:>14}\n", "distance", "largest [m]", "over size", "frame",
+                                 "rms there [m]");
+  for (const BodyComparison& body : c.bodies) {
+    if (body.distance.empty()) {
+      text += fmt::format("  {:<16}{} vertices in A and {} in B: no distances\n", body.name, body.vertices_a,
+                          body.vertices_b);
+      continue;
+    }
+    const FrameDistance& worst = body.distance[body.worst_frame];
+    text += fmt::format("  {:<16}{:>12.4g}{:>12.3g}{:>8}{:>14.4g}\n", body.name, worst.largest,
+                        worst.largest / body.size, body.worst_frame, worst.rms);
+  }
+  for (const std::string& name : c.only_a) text += fmt::format("  {:<16}only in A\n", name);
+  for (const std::string& name : c.only_b) text += fmt::format("  {:<16}only in B\n", name);
+  return text;
+}
+
+std::string differences_text(const RunComparison& c) {
+  if (c.differences.empty()) return "  run.json        the same program, machine and scene\n";
+  std::string text = "  run.json        A and B differ in\n";
+  for (std::size_t i = 0; i < std::min(c.differences.size(), most_differences); ++i) {
+    const JsonDifference& d = c.differences[i];
+    text += fmt::format("    {}: {} and {}\n", d.path, d.a, d.b);
+  }
+  if (c.differences.size() > most_differences)
+    text += fmt::format("    and {} more (--json has all)\n", c.differences.size() - most_differences);
+  return text;
+}
+
+std::string text_of(const RunRecord& a, const RunRecord& b, const RunComparison& c) {
+  std::string text = fmt::format("  A               {} ({} frames, {})\n", a.folder.string(), c.frames_a, a.ended());
+  text += fmt::format("  B               {} ({} frames, {})\n", b.folder.string(), c.frames_b, b.ended());
+  text += fmt::format("  states          {}\n\n{}\n", states_text(c), distance_table(c));
+  text += fmt::format("  median step     {:.3f} ms in A, {:.3f} ms in B: B takes {:.3f} times as long\n\n", c.step_ms_a,
+                      c.step_ms_b, c.step_ms_b / c.step_ms_a);
+  return text + differences_text(c);
+}
+
+std::string json_of(const RunRecord& a, const RunRecord& b, const RunComparison& c) {
+  using Json = nlohmann::ordered_json;
+  Json json = {{"a", a.folder.string()}, {"b", b.folder.string()}, {"same_states", c.same_states()}};
+  json["frames"] = {{"a", c.frames_a}, {"b", c.frames_b}, {"compared", c.frames}};
+  json["first_difference"] = c.first_difference ? Json(*c.first_difference) : Json(nullptr);
+  json["bodies"] = Json::array();
+  for (const BodyComparison& body : c.bodies) {
+    Json row = {
+        {"name", body.name}, {"vertices", {{"a", body.vertices_a}, {"b", body.vertices_b}}}, {"size_m", body.size}};
+    if (!body.distance.empty()) {
+      const FrameDistance& worst = body.distance[body.worst_frame];
+      row["frame"] = body.worst_frame;
+      row["largest_m"] = worst.largest;
+      row["rms_m"] = worst.rms;
+    }
+    json["bodies"].push_back(row);
+  }
+  json["only_a"] = c.only_a;
+  json["only_b"] = c.only_b;
+  json["median_step_ms"] = {{"a", c.step_ms_a}, {"b", c.step_ms_b}, {"ratio", c.step_ms_b / c.step_ms_a}};
+  json["differences"] = Json::array();
+  for (const JsonDifference& d : c.differences)
+    json["differences"].push_back({{"path", d.path}, {"a", d.a}, {"b", d.b}});
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string csv_of(const RunComparison& c) {
+  std::vector<std::vector<std::string>> records = {
+      {"frame", "time_s", "body", "largest_m", "rms_m", "largest_over_size", "rms_over_size"}};
+  for (int frame = 0; frame < c.frames; ++frame) {
+    for (const BodyComparison& body : c.bodies) {
+      if (body.distance.empty()) continue;
+      const FrameDistance& d = body.distance[frame];
+      records.push_back({fmt::format("{}", frame), fmt::format("{}", c.time_s[frame]), body.name,
+                         fmt::format("{}", d.largest), fmt::format("{}", d.rms),
+                         fmt::format("{}", d.largest / body.size), fmt::format("{}", d.rms / body.size)});
+    }
+  }
+  return csv_text(records);
+}
+
+// Status 1 has a meaning here, so a place that cannot be written is told as wrong input.
+void write_csv(const std::string& file, const RunComparison& comparison) {
+  try {
+    write_whole_file(file, csv_of(comparison));
+  } catch (const RunError& error) {
+    throw InputError("--csv", error.what());
+  }
+}
+
+int compare(const CompareOptions& options) {
+  const RunRecord a = read_run(options.a), b = read_run(options.b);
+  const RunComparison comparison = compare_runs(a, b);
+  if (!options.csv.empty()) write_csv(options.csv, comparison);
+  say(stdout, options.json ? json_of(a, b, comparison) : text_of(a, b, comparison));
+  return comparison.same_states() ? 0 : 1;
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, Action& action) {
+  auto options = std::make_shared<CompareOptions>();
+  CLI::App* verb = app.add_subcommand("compare", "Two runs: the first frame that differs, distances, timing.");
+  verb->footer(
+      "Example: supple compare out/squirrel out/squirrel-2 --csv distances.csv\n"
+      "Distances are between equal vertices of the saved motion (single precision); size is the diagonal of the box "
+      "around a body in A's first frame.\n"
+      "Exit status: 0 the same bodies, frames and states; 1 they differ; 2 a folder cannot be read as a run's.");
+  verb->add_option("RUN_A", options->a, "folder that supple render left")->required();
+  verb->add_option("RUN_B", options->b, "the other one")->required();
+  verb->add_option("--csv", options->csv, "file for the distances, a row a frame and body");
+  verb->add_flag("--json", options->json, "the result as one line of JSON");
+  verb->callback([&action, options] { action = [options] { return compare(*options); }; });
+}
+
+}  // namespace supple

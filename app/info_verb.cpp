@@ -1,0 +1,51 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <thread>
+
+#include "app/summary.h"
+#include "app/verbs.h"
+#include "base/console.h"
+#include "base/error.h"
+#include "geometry/mesh_file.h"
+
+namespace supple {
+namespace {
+
+// The kind of thing goes by what it is on the disk: a folder, a .mesh file, else a scene.
+int inform(const std::string& input) {
+  std::error_code error;
+  const std::filesystem::path path = input;
+  if (std::filesystem::is_directory(path, error)) {
+    say(stdout, run_summary(read_run(path)));
+    return 0;
+  }
+  if (path.extension() == ".mesh") {
+    const MeshFile file = read_mesh(path);
+    for (const std::string& note : file.notes) say(stdout, fmt::format("note: {}\n", note));
+    say(stdout, mesh_summary(file.mesh));
+    return 0;
+  }
+  const std::filesystem::path scene = scene_file(input);
+  if (scene.extension() != ".toml")
+    throw InputError(input, "neither a MEDIT .mesh file, a scene (.toml, or a name of supple list) nor a run's folder");
+  say(stdout, scene_summary(scene, static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))));
+  return 0;
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, Action& action) {
+  auto input = std::make_shared<std::string>();
+  CLI::App* verb = app.add_subcommand("info", "What is in a mesh, a scene or the folder of a run.");
+  verb->footer(
+      "Examples: supple info squirrel.mesh, supple info squirrel, supple info out/squirrel\n"
+      "Of a scene the first frames are simulated, to tell what one costs here; nothing is written.");
+  verb->add_option("SCENE|MESH|RUN", *input,
+                   "MEDIT .mesh file, scene file or the name of one that ships, or a folder that supple render left")
+      ->required();
+  verb->callback([&action, input] { action = [input] { return inform(*input); }; });
+}
+
+}  // namespace supple

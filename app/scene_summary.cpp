@@ -1,0 +1,100 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/summary.h"
+#include "app/verbs.h"
+#include "base/text.h"
+#include "baselines/make_rule.h"
+#include "output/profile.h"
+#include "scene/assemble.h"
+#include "scene/obstacle.h"
+#include "scene/script.h"
+#include "sim/step.h"
+
+namespace supple {
+namespace {
+
+constexpr int tried_frames = 5;
+
+// Median of the first frames' step_ms, or why there is none.
+std::string cost_text(const SceneDef& scene, const Body& body, const Model& model, const CollisionSet& set,
+                      Threads& threads) {
+  FrameInputs inputs{
+      scene.gravity, {}, {}, settings_of(body.def.solver.method, body.def.solver.settings), &set.colliders};
+  const auto rule = make_rule(body.def.solver.method, model);
+  State state = start_state(model, body);
+  const Anchors anchors = rest_anchors(model, body);
+  Workspace workspace;
+  workspace.threads = &threads;
+  const double h = scene.time_step();
+  std::vector<double> frames(std::min(tried_frames, scene.frames), 0.0);
+  for (std::size_t number = 0; number < frames.size() * scene.substeps; ++number) {
+    const double from = double(number) * h;
+    handle_targets(model, body, anchors, from + h, 1, inputs.targets);
+    if (model.scheme.theta < 1) handle_targets(model, body, anchors, from + 0.5 * h, 1, inputs.middle_targets);
+    collider_motions(set, {from, from + h}, inputs.collider_motions);
+    const StepReport& report = step(model, inputs, state, workspace, *rule);
+    if (report.failed) return fmt::format("step {} fails: {}", number, report.failure.what);
+    frames[number / scene.substeps] += report.step_ms;
+  }
+  return fmt::format("{:.2f} ms a frame (median of the first {}, {} threads)", distribution_of(frames).p50,
+                     frames.size(), threads.count());
+}
+
+std::string substance_text(const Body& body) {
+  if (body.def.cloth) return fmt::format("{} springs", body.description.springs.size());
+  std::vector<std::string> names;
+  for (const Material& material : body.description.materials) {
+    const std::string name(name_of(material));
+    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+  }
+  return fmt::format("{} elements of {}", body.description.mesh.tets.rows(), fmt::join(names, ", "));
+}
+
+std::string body_text(const SceneDef& scene, const Body& body, const CollisionSet& set, Threads& threads) {
+  const TetMesh& mesh = body.description.mesh;
+  const Model model = build_model(body.description);
+  const Vec3 extent = bounds_of(mesh.rest).extent();
+  std::string text = fmt::format("\nbody '{}'\n  made of         {}\n", body.def.name, body.source);
+  text += fmt::format("  size            {} vertices, {}\n", mesh.rest.rows(), substance_text(body));
+  text += fmt::format("  extent          {:.3g} x {:.3g} x {:.3g} m\n", extent.x(), extent.y(), extent.z());
+  if (!body.def.cloth) {
+    const MeshQuality q = quality(mesh);
+    text +=
+        fmt::format("  elements        dihedral angles {:.1f} to {:.1f} degrees, smallest volume {:.1e} of the mean\n",
+                    q.smallest_dihedral, q.largest_dihedral, q.smallest_volume);
+  }
+  text += fmt::format("  mass that moves {:.4g} kg\n", model.total_mass);
+  for (const Handle& handle : body.description.handles) {
+    text += fmt::format("  handle          '{}' {} {} vertices\n", handle.name, handle.spring > 0 ? "pulls" : "holds",
+                        handle.vertices.size());
+  }
+  text += fmt::format("  solver          {}, {} iterations a step, {} numbers in the factor\n",
+                      info_of(body.def.solver.method).name, body.def.solver.settings.iterations,
+                      model.factor.stored_numbers());
+  return text + fmt::format("  costs           {}\n", cost_text(scene, body, model, set, threads));
+}
+
+}  // namespace
+
+std::string scene_summary(const std::filesystem::path& file, int thread_count) {
+  const Script script = Script::load(file, assets_folder(), {});
+  const SceneDef& scene = script.scene();
+  const std::vector<Body> bodies = assemble(scene);
+  const CollisionSet set = collision_set(scene);
+  Threads threads(thread_count);
+  std::string text = fmt::format("scene           {}{}\n", scene.name, scene.title.empty() ? "" : ": " + scene.title);
+  text += fmt::format("film            {} frames at {:g} a second ({}), {} of {} s a frame, {} x {} pixels\n",
+                      scene.frames, scene.fps, duration_text(scene.frames / scene.fps),
+                      scene.substeps == 1 ? "one step" : fmt::format("{} steps", scene.substeps),
+                      fmt::format("{:.3g}", scene.time_step()), scene.output.width, scene.output.height);
+  if (script.is_replay()) text += fmt::format("changes         {} while it runs\n", script.changes().size());
+  for (const ColliderDef& collider : scene.colliders)
+    text += fmt::format("collider        '{}', friction {:g}{}\n", collider.name, collider.friction,
+                        collider.keys.empty() ? "" : ", moves");
+  for (const Body& body : bodies) text += body_text(scene, body, set, threads);
+  return text;
+}
+
+}  // namespace supple

@@ -1,0 +1,48 @@
+#include "output/run_record.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "base/error.h"
+
+namespace supple {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Tables are made by body: each frame must have those of the first, with contact or without.
+void check_bodies(const std::vector<FrameRow>& rows, const std::string& source) {
+  for (const FrameRow& row : rows) {
+    const bool same = std::ranges::equal(row.bodies, rows.front().bodies, [](const BodyRow& a, const BodyRow& b) {
+      return a.name == b.name && a.contact.has_value() == b.contact.has_value();
+    });
+    if (!same) throw InputError(source, fmt::format("is damaged: frame {} has other bodies than the first", row.frame));
+  }
+}
+
+}  // namespace
+
+std::string RunRecord::ended() const {
+  return info.contains("ended") && info["ended"].is_string() ? info["ended"].get<std::string>() : "not known";
+}
+
+RunRecord read_run(const std::filesystem::path& folder) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error)) throw InputError(folder.string(), "no such folder");
+  std::ifstream file(folder / "run.json");
+  if (!file) throw InputError(folder.string(), "there is no run.json in it: this is not the folder of a run");
+  RunRecord record;
+  record.folder = folder;
+  record.info = Json::parse(file, nullptr, false);
+  if (!record.info.is_object()) throw InputError((folder / "run.json").string(), "is damaged: not a JSON object");
+  record.has_profile = std::filesystem::exists(folder / "profile.json", error);
+  if (record.has_profile) {
+    record.rows = read_profile(folder / "profile.json");
+    check_bodies(record.rows, (folder / "profile.json").string());
+  }
+  return record;
+}
+
+}  // namespace supple

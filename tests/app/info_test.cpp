@@ -1,0 +1,94 @@
+// `supple info`: what it says of a mesh, a scene and the folder of a run.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "support/bodies.h"
+#include "support/program.h"
+
+namespace supple {
+namespace {
+
+using test::Result;
+using test::run;
+
+constexpr const char* bar_scene = R"(title = "A bar"
+frames = 4
+[[body]]
+name = "bar"
+box = { extent = [0.4, 0.1, 0.1], cells = [4, 2, 2] }
+material = { model = "neo-hookean", young = 1e5, poisson = 0.3 }
+[[body.handles]]
+name = "end"
+select = { box = [[0, 0, 0], [0.1, 1, 1]] }
+[[collider]]
+name = "floor"
+shape = { half_space = { normal = [0, 1, 0] } }
+)";
+
+void expect_lines(const std::string& text, const std::vector<std::string>& lines) {
+  for (const std::string& line : lines)
+    EXPECT_NE(text.find(line), std::string::npos) << line << "\nis not in\n" << text;
+}
+
+TEST(Info, TellsOfASceneAndWhatAFrameCosts) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path / "bar.toml") << bar_scene;
+  const Result result = run(folder.path, {"info", "bar.toml"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  expect_lines(result.out,
+               {"scene           bar: A bar\n", "film            4 frames at 30 a second (0.1 s), one step of",
+                "collider        'floor', friction 0\n", "body 'bar'\n", "45 vertices, ", "elements of neo-hookean\n",
+                "handle          'end' holds 9 vertices\n", "quasi-newton, 10 iterations a step",
+                "ms a frame (median of the first 4, "});
+  EXPECT_FALSE(std::filesystem::exists(folder.path / "out"));
+  EXPECT_EQ(run(folder.path, {"info", "thin-sheet"}).status, 0);
+  expect_lines(run(folder.path, {"info", "tightening"}).out, {"changes         ", " while it runs\n"});
+}
+
+TEST(Info, TellsOfARun) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path / "bar.toml") << bar_scene;
+  ASSERT_EQ(run(folder.path, {"render", "bar.toml", "--no-images", "--quiet", "--error-every", "2", "--out", "my run"})
+                .status,
+            0);
+  const Result result = run(folder.path, {"info", "my run"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  expect_lines(
+      result.out,
+      {"run             my run\n", "render bar.toml --no-images --quiet --error-every 2 --out 'my run'\n",
+       "scene           bar.toml\n", "body            'bar': 45 vertices", "ended           done\n",
+       "frames          4 in profile.json, 0 pictures\n", "film            none\n",
+       "errors          measured at 2 of 4 frames\n", "ms/frame", "error mean", "    motion/ ", "    profile.json "});
+}
+
+TEST(Info, TellsOfARunThatWasKilled) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path out = folder.path / "out";
+  std::filesystem::create_directories(out / "frames");
+  std::ofstream(out / "run.json") << R"({"ended":"running","command":["supple","render","x"]})";
+  for (const char* frame : {"000000.png", "000001.png", "000003.png"}) std::ofstream(out / "frames" / frame) << "x";
+  const Result result = run(folder.path, {"info", "out"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  expect_lines(result.out, {"ended           not yet, or the run was killed\n",
+                            "frames          0 in profile.json, 2 pictures\n", "    frames/ ", "3 bytes  3 files\n"});
+  std::ofstream(out / "run.json") << "{}\n";  // as a run starts
+  EXPECT_EQ(run(folder.path, {"info", "out"}).status, 0);
+}
+
+TEST(Info, TellsOfAMeshAndRefusesTheRest) {
+  const test::TemporaryFolder folder;
+  const Result result = run(folder.path, {"mesh", "sphere", "-o", "s.mesh", "--vertices", "100"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  expect_lines(run(folder.path, {"info", "s.mesh"}).out,
+               {"vertices        ", "dihedral angles ", "boundary        manifold"});
+  EXPECT_EQ(run(folder.path, {"info", "none"}).err,
+            "none: neither a MEDIT .mesh file, a scene (.toml, or a name of supple list) nor a run's folder\n");
+  EXPECT_EQ(run(folder.path, {"info", "none.toml"}).status, 2);
+  EXPECT_EQ(run(folder.path, {"info", "none.mesh"}).status, 2);
+  std::filesystem::create_directory(folder.path / "empty");
+  EXPECT_EQ(run(folder.path, {"info", "empty"}).status, 2);
+}
+
+}  // namespace
+}  // namespace supple

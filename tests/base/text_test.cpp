@@ -1,0 +1,26 @@
+#include "base/text.h"
+
+#include <gtest/gtest.h>
+
+namespace supple {
+namespace {
+
+TEST(Text, SizesAreInThousands) {
+  EXPECT_EQ(bytes_text(0), "0 bytes");
+  EXPECT_EQ(bytes_text(1), "1 byte");
+  EXPECT_EQ(bytes_text(999), "999 bytes");
+  EXPECT_EQ(bytes_text(1000), "1.0 kB");
+  EXPECT_EQ(bytes_text(999949), "999.9 kB");
+  EXPECT_EQ(bytes_text(999951), "1.0 MB");
+  EXPECT_EQ(bytes_text(12'340'000'000), "12.3 GB");
+}
+
+TEST(Text, WordsAreQuotedWhereAShellWouldSplitOrReplaceThem) {
+  EXPECT_EQ(shell_word("body.soft.material.mu=2e4"), "body.soft.material.mu=2e4");
+  EXPECT_EQ(shell_word(""), "''");
+  EXPECT_EQ(shell_word("my scene.toml"), "'my scene.toml'");
+  EXPECT_EQ(shell_word("$it's"), "'$it'\\''s'");
+}
+
+}  // namespace
+}  // namespace supple
