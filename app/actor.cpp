@@ -5,6 +5,7 @@
 #include "app/state_file.h"
 #include "baselines/make_rule.h"
 #include "baselines/reference.h"
+#include "output/obj_file.h"
 #include "sim/measures.h"
 #include "sim/step.h"
 
@@ -35,9 +36,14 @@ std::string failure_text(int frame, const std::string& body, const StepFailure& 
                      failure.phase, failure.what, failure.vertex + 1);
 }
 
+// In the numbering of the input file.
+Triangles surface_of(const Body& body) {
+  return body.def.cloth ? body.cloth.surface.triangles : boundary_faces(body.description.mesh.tets);
+}
+
 // The surface that may touch, in the model's numbering.
 Triangles touching_surface(const Body& body, const Model& model) {
-  Triangles surface = body.def.cloth ? body.cloth.surface.triangles : boundary_faces(body.description.mesh.tets);
+  Triangles surface = surface_of(body);
   for (Eigen::Index i = 0; i < surface.size(); ++i) surface.data()[i] = model.internal_of[surface.data()[i]];
   return surface;
 }
@@ -57,6 +63,7 @@ Actor::Actor(const SceneDef& scene, Body& body, Model& model, const CollisionSet
   adopt({.rule = true});
   inputs_.colliders = &set.colliders;
   if (!set.colliders.empty()) surface_ = touching_surface(body, model);
+  write_obj(folder.surface(body.def.name), body.description.mesh.rest, surface_of(body));
   workspace_.threads = &threads;
   reference_workspace_.threads = &threads;
 }
@@ -162,6 +169,11 @@ void Actor::save_state(int frame) {
   set_inputs(frame, 0);
   write_state(folder_.state(body_.def.name, frame), {scene_.name, scene_.title, frame, frame * scene_.substeps},
               problem_of(body_.description, model_, inputs_, state_));
+}
+
+void Actor::save_fields(int frame) {
+  if (!fields_) fields_.emplace(body_, model_, folder_, scene_.fps);
+  fields_->add(frame, state_, inputs_, workspace_);
 }
 
 }  // namespace supple

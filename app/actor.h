@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/checkpoint.h"
+#include "app/field_writer.h"
 #include "base/threads.h"
 #include "baselines/reference.h"
 #include "output/point_cache.h"
@@ -40,6 +41,9 @@ class Actor {
   // The problem of a frame's first step, which has not been made yet, into the folder of states. Changes no result.
   void save_state(int frame);
 
+  // The frame's fields into fields/.
+  void save_fields(int frame);
+
  private:
   void set_inputs(int frame, int substep);
   void close_handles(double time);
@@ -60,6 +64,7 @@ class Actor {
   std::optional<Reference> reference_;  // once an error is asked for
   std::optional<ModelValues> values_;   // once the model changes
   PointCacheWriter motion_;
+  std::optional<FieldWriter> fields_;  // once fields are asked for
 };
 
 }  // namespace supple

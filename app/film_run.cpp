@@ -83,6 +83,7 @@ FilmOptions options_of(const FilmRequest& request) {
   FilmOptions film;
   film.threads = request.threads > 0 ? request.threads : std::max(1u, std::thread::hardware_concurrency());
   film.error_every = request.error_every;
+  film.fields_every = request.fields_every;
   film.save_states = request.save_states;
   film.images = !request.no_images;
   film.video = !request.no_video;
@@ -212,6 +213,9 @@ void add_film_options(CLI::App& verb, FilmRequest& request) {
       ->take_all()
       ->allow_extra_args(false)
       ->check(CLI::Range(0, 999999));
+  verb.add_option("--vtu", request.fields_every,
+                  "write fields every N frames, for ParaView: fields/BODY-NNNNNN.vtu and fields/BODY.pvd")
+      ->check(CLI::Range(1, 1000000));
   verb.add_flag("--no-video", request.no_video, "frames only");
   verb.add_flag("--no-images", request.no_images, "simulate only");
   verb.add_option("--gl", request.gl, "auto, osmesa or egl")->check(CLI::IsMember({"auto", "osmesa", "egl"}));

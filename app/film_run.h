@@ -18,6 +18,7 @@ struct FilmRequest {
   int threads = 0;
   std::vector<std::string> set;
   int error_every = 0;
+  int fields_every = 0;
   std::vector<int> save_states;
   long long seed = -1;
   bool no_video = false, no_images = false, quiet = false, json = false;

@@ -111,6 +111,9 @@ class Film {
       if (!message.empty()) return FilmEnd::failed;
       if (!show(frame, row)) return FilmEnd::done;  // the pictures' error says why
       for (const auto& actor : actors_) actor->save_motion();
+      if (options_.fields_every > 0 && frame % options_.fields_every == 0) {
+        for (const auto& actor : actors_) actor->save_fields(frame);
+      }
       for (const Obstacle& obstacle : set_.obstacles) poses_->add(frame, obstacle.def.name, obstacle.pose(row.time_s));
       log_.add(std::move(row));
       if (log_.wants_checkpoint(frame + 1)) add_checkpoint(frame + 1);

@@ -19,6 +19,7 @@ namespace supple {
 struct FilmOptions {
   int threads = 1;
   int error_every = 0;           // measure equation 12 every so many frames; 0: never
+  int fields_every = 0;          // write fields every so many frames; 0: never
   std::vector<int> save_states;  // frames before which the bodies' states are written
   bool images = true;
   bool video = true;

@@ -56,7 +56,7 @@ RunFolder::RunFolder(const std::filesystem::path& path, int kept_frames) : path_
     }
   }
   if (kept_frames == 0) {
-    for (const char* part : {"frames", "motion", "states", "checkpoint"})
+    for (const char* part : {"frames", "motion", "states", "fields", "checkpoint"})
       std::filesystem::remove_all(path / part, error);
   }
   remove_frames_from(path / "frames", kept_frames);
@@ -73,6 +73,10 @@ std::filesystem::path RunFolder::frame(int index) const { return frames() / fmt:
 
 std::filesystem::path RunFolder::state(const std::string& body, int frame) const {
   return path_ / "states" / fmt::format("{}-{:06}", body, frame);
+}
+
+std::filesystem::path RunFolder::fields(const std::string& body, int frame) const {
+  return fields() / fmt::format("{}-{:06}.vtu", body, frame);
 }
 
 void RunFolder::write_info(const RunInfo& info) const {

@@ -1,5 +1,5 @@
-// The folder that a run leaves behind: run.json, frames/, video.mp4, motion/, profile.json, checkpoint/, and states/ if
-// asked.
+// The folder that a run leaves behind: run.json, frames/, video.mp4, motion/, profile.json, checkpoint/, and states/
+// and fields/ if asked.
 #pragma once
 
 #include <cstdint>
@@ -39,8 +39,12 @@ class RunFolder {
   std::filesystem::path frames() const { return path_ / "frames"; }
   std::filesystem::path frame(int index) const;
   std::filesystem::path motion(const std::string& body) const { return path_ / "motion" / (body + ".pc2"); }
+  std::filesystem::path surface(const std::string& body) const { return path_ / "motion" / (body + ".obj"); }
   std::filesystem::path colliders() const { return path_ / "motion" / "colliders.csv"; }
   std::filesystem::path state(const std::string& body, int frame) const;  // a folder
+  std::filesystem::path fields() const { return path_ / "fields"; }
+  std::filesystem::path fields(const std::string& body, int frame) const;
+  std::filesystem::path field_collection(const std::string& body) const { return fields() / (body + ".pvd"); }
   std::filesystem::path video() const { return path_ / "video.mp4"; }
   std::filesystem::path checkpoint() const { return checkpoint_of(path_); }
   std::filesystem::path rows() const { return path_ / "checkpoint" / "rows.jsonl"; }  // of profile.json, so far

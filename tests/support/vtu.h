@@ -1,0 +1,38 @@
+// A reader of .vtu files of its own, as strict as the writer is plain: well-formed XML of the elements that
+// unstructured grids have, arrays of as many numbers as the file says.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace supple::test {
+
+struct XmlElement {
+  std::string name;
+  std::map<std::string, std::string> attributes;
+  std::string text;
+  std::vector<XmlElement> children;
+
+  // The only child of this name; an empty element and a failure of the test when there is none or several.
+  const XmlElement& child(const std::string& wanted) const;
+};
+
+// The document's root. Throws std::runtime_error when it is not well-formed.
+XmlElement read_xml(const std::filesystem::path& path);
+
+struct VtuNumbers {
+  std::string type;
+  int components = 0;
+  std::vector<double> values;
+};
+struct VtuFile {
+  int points = 0, cells = 0;
+  std::map<std::string, VtuNumbers> point_data, cell_data, cell_arrays;  // the last: connectivity, offsets, types
+  VtuNumbers position;
+};
+// Throws std::runtime_error when it is not such a file.
+VtuFile read_vtu(const std::filesystem::path& path);
+
+}  // namespace supple::test
