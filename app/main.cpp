@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstdio>
 #include <new>
+#include <sstream>
 
 #include "app/verbs.h"
 #include "base/console.h"
@@ -31,12 +32,16 @@ int run(int argc, char** argv) {
   supple::add_info(app, action);
   supple::add_compare(app, action);
   supple::add_list(app, action);
+  supple::add_doctor(app, action);
+  supple::add_complete(app, action, command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {
     return app.exit(asked);
   } catch (const CLI::ParseError& error) {
-    (void)app.exit(error);
+    std::ostringstream help, message;
+    (void)app.exit(error, help, message);
+    supple::say(stderr, message.str());
     return 2;
   }
   const int status = action();

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <system_error>
 
 #include "app/verbs.h"
@@ -17,6 +18,16 @@ std::filesystem::path shared_folder() {
 
 std::filesystem::path assets_folder() { return shared_folder() / "assets"; }
 std::filesystem::path shaders_folder() { return shared_folder() / "shaders"; }
+
+std::vector<std::string> shipped_names(const std::string& kind) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(assets_folder() / kind, error)) {
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
 
 std::string caption_font() {
   for (const char* font :

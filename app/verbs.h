@@ -21,10 +21,15 @@ void add_info(CLI::App& app, Action& action);
 void add_list(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action);
 void add_bench(CLI::App& app, Action& action);
+void add_doctor(CLI::App& app, Action& action);
+void add_complete(CLI::App& app, Action& action, const std::vector<std::string>& command);
 
 // Where scenes, shapes and shaders are: beside the installed program, or in the source tree it was built from.
 std::filesystem::path assets_folder();
 std::filesystem::path shaders_folder();
+
+// Names of what ships in a folder of assets ("scenes", "shapes"), sorted; empty when there is no such folder.
+std::vector<std::string> shipped_names(const std::string& kind);
 
 // A sans font for captions; empty when none of the known ones is installed.
 std::string caption_font();

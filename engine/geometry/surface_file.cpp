@@ -27,16 +27,6 @@ void check_file(const std::filesystem::path& path) {
   if (!std::ifstream(path, std::ios::binary)) throw InputError(name, "cannot be opened");
 }
 
-// Beside this program, where an installation puts it, or where the build did (for programs in other folders).
-std::filesystem::path reader_program() {
-  std::error_code error;
-  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-  for (const std::filesystem::path& place :
-       {folder / "supple-read-surface", folder / SUPPLE_LIBEXEC_FROM_BIN / "supple-read-surface"})
-    if (std::filesystem::is_regular_file(place, error)) return place;
-  return SUPPLE_SURFACE_READER;
-}
-
 // Takes values off the front of the reader's bytes.
 class Stream {
  public:
@@ -77,9 +67,18 @@ TriMesh decode(const std::string& bytes, const std::string& name) {
 
 }  // namespace
 
+std::filesystem::path surface_reader_program() {
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  for (const std::filesystem::path& place :
+       {folder / "supple-read-surface", folder / SUPPLE_LIBEXEC_FROM_BIN / "supple-read-surface"})
+    if (std::filesystem::is_regular_file(place, error)) return place;
+  return SUPPLE_SURFACE_READER;
+}
+
 TriMesh read_closed_surface(const std::filesystem::path& path, std::vector<std::string>* notes) {
   check_file(path);
-  return closed_surface(decode(run_reader(reader_program(), path), path.string()), path.string(), notes);
+  return closed_surface(decode(run_reader(surface_reader_program(), path), path.string()), path.string(), notes);
 }
 
 }  // namespace supple

@@ -23,4 +23,8 @@ TriMesh read_closed_surface(const std::filesystem::path& path, std::vector<std::
 // surfaces, edges with three triangles and more, one-sided surfaces, numbers that are not finite, indices out of range.
 TriMesh closed_surface(TriMesh raw, const std::string& name, std::vector<std::string>* notes);
 
+// Where the reading program is looked for: beside the one that runs, where an installation puts it, or where the build
+// did (for programs in other folders).
+std::filesystem::path surface_reader_program();
+
 }  // namespace supple

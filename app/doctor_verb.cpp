@@ -1,0 +1,203 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "app/verbs.h"
+#include "base/console.h"
+#include "base/text.h"
+#include "geometry/surface_file.h"
+#include "output/child_program.h"
+#include "output/run_folder.h"
+#include "render/renderer.h"
+#include "sim/kernels.h"
+
+namespace supple {
+namespace {
+
+// One thing that the program uses.
+struct Finding {
+  std::string name;
+  bool ok = false;
+  bool needed = true;   // for a film
+  std::string found;    // what there is, or what is wrong
+  std::string purpose;  // what it is for
+  std::string package;  // of Debian; empty: it comes with the program or the machine
+};
+
+constexpr std::uintmax_t enough_disk = 1'000'000'000;  // bytes: some hundred frames at 1280 x 720, and the film
+
+// A triangle, drawn with the film's own shaders.
+Finding opengl() {
+  Finding finding{"OpenGL", false, true, "", "draws the pictures", "libosmesa6, or libegl1 and libgl1-mesa-dri"};
+  try {
+    DrawMesh triangle;
+    triangle.triangles = {0, 1, 2};
+    triangle.occlusion = {1, 1, 1};
+    triangle.paint.resize(3);
+    triangle.color = Vec3::Ones();
+    triangle.rest = {Vec3::Zero(), Vec3::Ones()};
+    Stage stage;
+    stage.meshes.push_back(triangle);
+    stage.width = stage.height = 16;
+    stage.samples = 1;
+    Renderer renderer(stage, GlChoice::automatic, shaders_folder());
+    (void)renderer.draw({Camera{}, {{0, 0, 0, 1, 0, 0, 0, 1, 0}}, {}});
+    finding.ok = true;
+    finding.found = fmt::format("{}: {}, {}", renderer.backend(), renderer.name(), renderer.version());
+  } catch (const std::exception& error) {
+    finding.found = error.what();
+  }
+  return finding;
+}
+
+// The version that a program tells in its first line, as in "ffmpeg version 5.1.6" or "gnuplot 5.4 patchlevel 4".
+Finding tool(const std::string& name, const char* option, bool needed, const char* purpose, const char* package) {
+  Finding finding{name, false, needed, "not found in PATH", purpose, package};
+  const auto told = run_program({name, option});
+  if (!told) return finding;
+  finding.ok = told->status == 0;
+  std::string line = told->output.substr(0, told->output.find('\n'));
+  if (line.starts_with(name + " ")) line.erase(0, name.size() + 1);
+  finding.found = finding.ok ? line.substr(0, line.find(" Copyright")) : how_it_ended(*told);
+  if (name == "ffmpeg" && finding.ok && told->output.find("--enable-libx264") == std::string::npos) {
+    finding.ok = false;
+    finding.found += ", without libx264";
+  }
+  return finding;
+}
+
+Finding font() {
+  const std::string file = caption_font();
+  return {"font",
+          !file.empty(),
+          false,
+          file.empty() ? "none of the known ones is installed" : file,
+          "captions in the pictures",
+          "fonts-lato"};
+}
+
+Finding surface_reader() {
+  const std::filesystem::path program = surface_reader_program();
+  const bool runs = run_program({program.string()}).has_value();
+  return {"surface reader",
+          runs,
+          false,
+          runs ? program.string() : program.string() + " cannot be run",
+          "bodies from OBJ, PLY, STL, glTF and OFF files",
+          "libassimp5"};
+}
+
+Finding scenes() {
+  const std::size_t count = shipped_names("scenes").size();
+  return {"scenes",
+          count > 0,
+          true,
+          fmt::format("{} in {}", count, (assets_folder() / "scenes").string()),
+          "supple render NAME",
+          ""};
+}
+
+Finding disk() {
+  std::error_code error;
+  const bool there = std::filesystem::exists("out", error);
+  const std::filesystem::path place = there ? "out" : ".";
+  const std::filesystem::space_info space = std::filesystem::space(place, error);
+  Finding finding{"disk",
+                  !error && space.available >= enough_disk && access(place.c_str(), W_OK) == 0,
+                  true,
+                  "",
+                  "frames, film and motion of a run",
+                  ""};
+  finding.found = error ? error.message() : bytes_text(space.available) + " free for out/";
+  if (!error && !finding.ok)
+    finding.found += space.available < enough_disk ? "; a film may need " + bytes_text(enough_disk) : ", not writable";
+  return finding;
+}
+
+// What the build may use of the processor, and whether it is there. A build for this machine alone has no other
+// kernels.
+Finding processor() {
+  std::vector<std::string> missing, used;
+  const auto look = [&](const char* name, bool here) { (here ? used : missing).push_back(name); };
+#ifdef __AVX2__
+  look("AVX2", __builtin_cpu_supports("avx2"));
+#endif
+#ifdef __FMA__
+  look("FMA", __builtin_cpu_supports("fma"));
+#endif
+#ifdef __AVX512F__
+  look("AVX-512F", __builtin_cpu_supports("avx512f"));
+#endif
+  std::string found = fmt::format("{}; kernels '{}'", cpu_name(), kernels().name);
+  if (!used.empty()) found += fmt::format(", built for {}", fmt::join(used, ", "));
+  if (!missing.empty())
+    found += fmt::format("; the build needs {}: build it here, or portable", fmt::join(missing, ", "));
+  return {"processor", missing.empty(), true, found, "the solver", ""};
+}
+
+Finding cores() {
+  const unsigned count = std::thread::hardware_concurrency();
+  return {"cores", count > 0, false, fmt::format("{} threads by default", std::max(1u, count)), "solver and pictures",
+          ""};
+}
+
+std::vector<Finding> findings() {
+  return {processor(),
+          cores(),
+          opengl(),
+          tool("ffmpeg", "-version", true, "makes video.mp4", "ffmpeg"),
+          tool("ffprobe", "-version", false, "counts the frames of the film", "ffmpeg"),
+          tool("gnuplot", "--version", false, "plots in the reports of supple bench", "gnuplot-nox"),
+          font(),
+          surface_reader(),
+          scenes(),
+          disk()};
+}
+
+void say_text(const std::vector<Finding>& list, bool ready) {
+  for (const Finding& f : list) {
+    std::string line = fmt::format("{:<9}{:<16}{}\n{:25}{}", f.ok ? "ok" : "missing", f.name, f.found, "", f.purpose);
+    if (!f.ok && !f.package.empty()) line += fmt::format("; Debian: {}", f.package);
+    if (!f.ok && !f.needed) line += "; a film can do without";
+    say(stdout, line + "\n");
+  }
+  say(stdout, ready ? "Everything that a film needs is there.\n" : "A film needs what is missing above.\n");
+}
+
+void say_json(const std::vector<Finding>& list, bool ready) {
+  nlohmann::ordered_json json = {{"ready", ready}, {"checks", nlohmann::ordered_json::array()}};
+  for (const Finding& f : list) {
+    json["checks"].push_back({{"name", f.name},
+                              {"ok", f.ok},
+                              {"needed", f.needed},
+                              {"found", f.found},
+                              {"purpose", f.purpose},
+                              {"package", f.package}});
+  }
+  say(stdout, json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+}
+
+int examine(bool as_json) {
+  const std::vector<Finding> list = findings();
+  bool ready = true;
+  for (const Finding& f : list) ready &= f.ok || !f.needed;
+  as_json ? say_json(list, ready) : say_text(list, ready);
+  return ready ? 0 : 1;
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& app, Action& action) {
+  auto json = std::make_shared<bool>(false);
+  CLI::App* verb = app.add_subcommand("doctor", "What this machine has and lacks for making films.");
+  verb->footer(
+      "Example: supple doctor\n"
+      "Exit status: 0 everything that a film needs is there; 1 something is missing.");
+  verb->add_flag("--json", *json, "the result as one line of JSON");
+  verb->callback([&action, json] { action = [json] { return examine(*json); }; });
+}
+
+}  // namespace supple

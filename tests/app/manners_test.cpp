@@ -1,0 +1,162 @@
+// What the program is like to use: help with examples, completion, what it says of the machine, colour.
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <algorithm>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "output/child_program.h"
+#include "support/bodies.h"
+#include "support/program.h"
+
+namespace supple {
+namespace {
+
+using test::Result;
+using test::run;
+
+using Words = std::set<std::string>;
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+// The program in a folder of its own.
+struct Program {
+  test::TemporaryFolder folder;
+
+  std::string help(const std::vector<std::string>& verb) const {
+    std::vector<std::string> words = verb;
+    words.push_back("--help");
+    const Result result = run(folder.path, words);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return result.out;
+  }
+  // Verbs as the help lists them.
+  std::vector<std::string> verbs() const {
+    const std::string text = help({});
+    std::vector<std::string> names;
+    const std::regex pattern("^  (\\w+) +\\S.*");
+    std::smatch match;
+    for (const std::string& line : lines_of(text.substr(text.find("Subcommands:")))) {
+      if (std::regex_match(line, match, pattern)) names.push_back(match[1]);
+    }
+    return names;
+  }
+  Words completed(const std::vector<std::string>& line) const {
+    std::vector<std::string> words = {"complete", "--"};
+    words.insert(words.end(), line.begin(), line.end());
+    const Result result = run(folder.path, words);
+    EXPECT_EQ(result.status, 0) << result.err;
+    const std::vector<std::string> answer = lines_of(result.out);
+    return {answer.begin(), answer.end()};
+  }
+};
+
+TEST(Help, OfEveryVerbHasAnExampleOfIt) {
+  const Program program;
+  const std::vector<std::string> verbs = program.verbs();
+  for (const char* known : {"render", "replay", "check", "mesh", "info", "compare", "bench", "list", "doctor"})
+    EXPECT_NE(std::ranges::find(verbs, known), verbs.end()) << known;
+  for (const std::string& verb : verbs) {
+    const std::string text = program.help({verb});
+    EXPECT_TRUE(std::regex_search(text, std::regex("Examples?: supple " + verb + "\\b"))) << text;
+  }
+}
+
+TEST(Completion, KnowsEveryVerbAndOptionOfTheHelp) {
+  const Program program;
+  const std::vector<std::string> verbs = program.verbs();
+  Words expected(verbs.begin(), verbs.end());
+  expected.insert({"-h", "--help", "--version"});
+  EXPECT_EQ(program.completed({""}), expected);
+  const std::regex option("^  (-\\w,)?(--[\\w-]+).*");
+  for (const std::string& verb : verbs) {
+    Words options;
+    std::smatch match;
+    for (const std::string& line : lines_of(program.help({verb}))) {
+      if (std::regex_match(line, match, option)) options.insert(match[2]);
+    }
+    EXPECT_GE(options.size(), 1u) << verb;
+    EXPECT_EQ(program.completed({verb, "--"}), options) << verb;
+  }
+}
+
+TEST(Completion, KnowsNamesAndChoicesByTheirPlace) {
+  const Program program;
+  EXPECT_EQ(program.completed({"ren"}), Words{"render"});
+  EXPECT_EQ(program.completed({"render", "squirrel", "--gl", ""}), (Words{"auto", "egl", "osmesa"}));
+  EXPECT_EQ(program.completed({"render", "--threads", "2", "squirrel-"}), (Words{"/", "squirrel-impulsive"}));
+  EXPECT_EQ(program.completed({"render", "--quiet", "squirrel-i"}), (Words{"/", "squirrel-impulsive"}));
+  EXPECT_EQ(program.completed({"replay", "soft"}), (Words{"/", "softening"}));
+  EXPECT_EQ(program.completed({"mesh", "bun"}), (Words{"/", "bunny"}));
+  EXPECT_EQ(program.completed({"compare", "out"}), Words{"/"});
+  EXPECT_EQ(program.completed({"compare", "a", "b", ""}), Words{});
+  EXPECT_EQ(program.completed({"render", "--out", "x"}), Words{"/"});
+  EXPECT_EQ(program.completed({"bench", "figure7"}), Words{"figure7"});
+  EXPECT_EQ(program.completed({"frobnicate", ""}), Words{});
+  Words scenes;
+  for (const auto& entry : std::filesystem::directory_iterator(test::assets / "scenes"))
+    scenes.insert(entry.path().stem());
+  Words offered = program.completed({"check", ""});
+  EXPECT_EQ(offered.erase("/"), 1u);
+  EXPECT_EQ(offered, scenes);
+}
+
+TEST(Completion, OffersWordsAndFilesInBash) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path / "my run");
+  const auto offered = [&](const std::string& line) {
+    const std::string script = "cd '" + folder.path.string() + "'; . '" +
+                               (test::assets / "completion/supple.bash").string() + "'; COMP_WORDS=('" +
+                               SUPPLE_PROGRAM + "' " + line +
+                               "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _supple; printf '%s|' \"${COMPREPLY[@]}\"";
+    const auto end = run_program({"bash", "-c", script});
+    return end ? end->output : "no bash";
+  };
+  EXPECT_EQ(offered("do"), "doctor|");
+  EXPECT_EQ(offered("info my"), "my run|");
+  EXPECT_EQ(offered("render --gl o"), "osmesa|");
+}
+
+TEST(Doctor, SaysWhatThereIsAndWhatIsMissing) {
+  const Program program;
+  const Result text = run(program.folder.path, {"doctor"});
+  const Result json = run(program.folder.path, {"doctor", "--json"});
+  EXPECT_EQ(text.status, json.status);
+  const auto told = nlohmann::json::parse(json.out);
+  EXPECT_EQ(told["ready"].get<bool>(), json.status == 0);
+  bool ready = true;
+  std::set<std::string> names;
+  for (const auto& check : told["checks"]) {
+    names.insert(check["name"]);
+    ready &= check["ok"].get<bool>() || !check["needed"].get<bool>();
+    const std::string start = check["ok"].get<bool>() ? "ok       " : "missing  ";
+    EXPECT_NE(text.out.find(start + check["name"].get<std::string>()), std::string::npos) << text.out;
+  }
+  EXPECT_EQ(ready, told["ready"].get<bool>());
+  EXPECT_EQ(names, (std::set<std::string>{"processor", "cores", "OpenGL", "ffmpeg", "ffprobe", "gnuplot", "font",
+                                          "surface reader", "scenes", "disk"}));
+}
+
+TEST(Doctor, MissesWhatIsNotInPath) {
+  const Program program;
+  const std::string path = getenv("PATH");
+  setenv("PATH", program.folder.path.c_str(), 1);
+  const Result result = run(program.folder.path, {"doctor"});
+  setenv("PATH", path.c_str(), 1);
+  EXPECT_EQ(result.status, 1) << result.out;
+  EXPECT_TRUE(std::regex_search(result.out,
+                                std::regex("missing  ffmpeg +not found in PATH\n +makes video.mp4; Debian: ffmpeg\n")))
+      << result.out;
+  EXPECT_NE(result.out.find("Debian: gnuplot-nox; a film can do without"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("A film needs what is missing above."), std::string::npos) << result.out;
+}
+
+}  // namespace
+}  // namespace supple
