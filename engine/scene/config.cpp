@@ -24,14 +24,18 @@ std::vector<std::string> words_of(const std::string& path) {
   throw InputError({Problem{place.source, place.line, place.column, std::move(message)}});
 }
 
+using Places = std::map<const toml::node*, toml::source_region>;
+
 // The table that the last word of a path stands in; tables on the way are made, elements of lists found by name.
-toml::table& enter(toml::table& document, const std::vector<std::string>& path, const Problem& place) {
+toml::table& enter(toml::table& document, Places& places, const std::vector<std::string>& path, const Problem& place) {
   toml::table* table = &document;
   for (std::size_t depth = 0; depth + 1 < path.size(); ++depth) {
     toml::node* next = table->get(path[depth]);
     if (next == nullptr) {
       table->insert(path[depth], toml::table{});
       next = table->get(path[depth]);
+      const toml::source_position at{toml::source_index(place.line), toml::source_index(place.column)};
+      places[next] = {at, at, std::make_shared<const std::string>(place.source)};
     }
     if (toml::array* list = next->as_array()) {
       const std::string& wanted = path[++depth];
@@ -57,9 +61,9 @@ toml::table& enter(toml::table& document, const std::vector<std::string>& path, 
 }
 
 // Returns the value in its new place.
-toml::node& put_node(toml::table& document, const std::vector<std::string>& path, const Problem& place,
+toml::node& put_node(toml::table& document, Places& places, const std::vector<std::string>& path, const Problem& place,
                      const std::vector<std::set<std::string>>& exclusive, const toml::node& value) {
-  toml::table& table = enter(document, path, place);
+  toml::table& table = enter(document, places, path, place);
   for (const std::set<std::string>& group : exclusive) {
     if (!group.contains(path.back())) continue;
     for (const std::string& other : group) table.erase(other);
@@ -128,18 +132,20 @@ void Config::set(const std::string& assignment, const std::vector<std::set<std::
     parsed.get("value")->as_string()->get() = value;
   }
 
-  const toml::node& put = put_node(content_->document, path, {source, 0, 0, ""}, exclusive, *parsed.get("value"));
+  const toml::node& put =
+      put_node(content_->document, content_->moved, path, {source, 0, 0, ""}, exclusive, *parsed.get("value"));
   content_->settle(put, content_->value_of(*parsed.get("value")));
 }
 
 void Config::put(const std::string& path, const ConfigValue& value, const Problem& place,
                  const std::vector<std::set<std::string>>& exclusive) {
-  content_->settle(put_node(content_->document, words_of(path), place, exclusive, *value.content_->node), value);
+  content_->settle(
+      put_node(content_->document, content_->moved, words_of(path), place, exclusive, *value.content_->node), value);
 }
 
 void Config::append(const std::string& list_path, const ConfigValue& table, const Problem& place) {
   const std::vector<std::string> path = words_of(list_path);
-  toml::table& parent = enter(content_->document, path, place);
+  toml::table& parent = enter(content_->document, content_->moved, path, place);
   if (!parent.contains(path.back())) parent.insert(path.back(), toml::array{});
   toml::array* list = parent.get(path.back())->as_array();
   if (list == nullptr) fail(place, fmt::format("'{}' is not a list of tables", list_path));
@@ -163,6 +169,8 @@ std::optional<ConfigValue> Config::value_at(const std::string& path) const {
   }
   return content_->value_of(*node);
 }
+
+void Config::remove(const char* key) { content_->document.erase(key); }
 
 Config Config::copy() const {
   auto content = std::make_unique<Content>();

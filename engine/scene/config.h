@@ -86,6 +86,20 @@ class ConfigValue {
   std::shared_ptr<const Content> content_;
 };
 
+// A value out of a list, to be put elsewhere.
+struct ListedValue {
+  ConfigValue value;
+  std::string text;  // whole, as people read it: words without quotes
+  Problem place;     // where it stands
+};
+
+// What a table of lists has for one path: "a.b" = [...] or a.b = [...].
+struct PathList {
+  std::string path;
+  std::vector<ListedValue> values;
+  Problem place;
+};
+
 class ConfigTable;
 struct KnownSurfaces;  // read once for a Config and its copies (shape_reader.cpp)
 
@@ -110,6 +124,8 @@ class Config {
   std::optional<ConfigValue> value_at(const std::string& path) const;
   // Appends a table of another file to a list of tables that may not be there yet.
   void append(const std::string& list_path, const ConfigValue& table, const Problem& place);
+  // Takes a key off the root, if it is there.
+  void remove(const char* key);
   // The document as it stands, without what was asked of it.
   Config copy() const;
 
@@ -175,6 +191,8 @@ class ConfigTable {
 
   std::optional<ConfigTable> table(const Key& key, const char* fallback = "none") const;
   std::vector<ConfigTable> tables(const Key& key) const;
+  // All lists in this table, whose keys are paths, in the order in which they stand.
+  std::vector<PathList> path_lists() const;
   // A number, or nothing when the key is absent or says `word`.
   std::optional<double> number_or_word(const Key& key, const char* word, const Range& range) const;
 

@@ -1,5 +1,7 @@
 // Values of any type: how they are shown, and what lies between two of them.
+#include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "scene/config_content.h"
 
@@ -50,6 +52,38 @@ std::shared_ptr<const toml::node> clone(const toml::node& node) {
   std::shared_ptr<const toml::node> result;
   node.visit([&](const auto& typed) { result = std::make_shared<std::remove_cvref_t<decltype(typed)>>(typed); });
   return result;
+}
+
+// The whole value, words without quotes.
+std::string people_form(const toml::node& node) {
+  std::string text;
+  if (const toml::array* list = node.as_array()) {
+    for (const toml::node& element : *list) text += (text.empty() ? "" : ", ") + people_form(element);
+    return "[" + text + "]";
+  }
+  if (const toml::table* table = node.as_table()) {
+    for (const auto& [key, value] : *table)
+      text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", std::string(key.str()), people_form(value));
+    return "{" + text + "}";
+  }
+  return node.is_string() ? node.as_string()->get() : shown(node);
+}
+
+struct FoundList {
+  std::string path;
+  const toml::node* node;
+};
+
+// What stands in a table of lists; tables inside spell the paths of theirs.
+void find_lists(const toml::table& table, const std::string& prefix, std::vector<FoundList>& found) {
+  for (const auto& [key, node] : table) {
+    const std::string path = prefix.empty() ? std::string(key.str()) : prefix + "." + std::string(key.str());
+    if (const toml::table* inner = node.as_table()) {
+      find_lists(*inner, path, found);
+    } else {
+      found.push_back({path, &node});
+    }
+  }
 }
 
 }  // namespace
@@ -107,6 +141,31 @@ ConfigValue ConfigTable::all_but(const char* key) const {
   }
   content->node = std::make_shared<toml::table>(std::move(rest));
   return ConfigValue(std::move(content));
+}
+
+std::vector<PathList> ConfigTable::path_lists() const {
+  const Config::Content& content = *config_->content_;
+  for (const std::string& key : keys()) (void)has(key.c_str());
+  std::vector<FoundList> found;
+  find_lists(*table_, "", found);
+  std::stable_sort(found.begin(), found.end(), [&](const FoundList& a, const FoundList& b) {
+    const toml::source_position first = content.source_of(*a.node).begin, second = content.source_of(*b.node).begin;
+    return std::tie(first.line, first.column) < std::tie(second.line, second.column);
+  });
+  std::vector<PathList> lists;
+  for (const FoundList& one : found) {
+    PathList list{one.path, {}, content.place(one.node, "")};
+    const toml::array* values = one.node->as_array();
+    if (values == nullptr || values->empty()) {
+      config_->complain(one.node,
+                        fmt::format("{} = {}: must be a list of values, at least one", one.path, shown(*one.node)));
+      continue;
+    }
+    for (const toml::node& value : *values)
+      list.values.push_back({content.value_of(value), people_form(value), content.place(&value, "")});
+    lists.push_back(std::move(list));
+  }
+  return lists;
 }
 
 }  // namespace supple

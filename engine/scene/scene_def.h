@@ -167,6 +167,7 @@ struct SceneDef {
   CameraDef camera;
   LookDef look;
   OutputDef output;
+  std::size_t sweep_points = 0;  // of the [sweep] table (sweep.h), which a scene that is run alone leaves aside
   std::filesystem::path assets;
 
   double time_step() const { return 1 / (fps * substeps); }

@@ -5,6 +5,7 @@
 
 #include "scene/body_reader.h"
 #include "scene/collider_reader.h"
+#include "scene/sweep.h"
 
 namespace supple {
 
@@ -76,6 +77,7 @@ SceneDef read_scene(Config& config) {
     scene.output.energy = output->boolean(
         {"energy", "", "kinetic, elastic and gravitational energy of each body, each frame, in profile.json"}, false);
   }
+  scene.sweep_points = read_sweep(root).points();
   return scene;
 }
 

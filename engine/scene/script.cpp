@@ -6,6 +6,7 @@
 
 #include "base/text.h"
 #include "scene/scene_reader.h"
+#include "scene/sweep.h"
 
 namespace supple {
 namespace {
@@ -231,7 +232,7 @@ void Script::Parts::check() const {
 }
 
 Script Script::load(const std::filesystem::path& path, const std::filesystem::path& assets,
-                    const std::vector<std::string>& settings) {
+                    const std::vector<std::string>& settings, std::optional<std::size_t> sweep_point) {
   auto parts = std::make_unique<Parts>(Parts{std::nullopt, Config::load(path, assets), {}, {}});
   if (parts->scene_file.root().has("scene")) {
     parts->replay = parts->scene_file.copy();
@@ -239,6 +240,7 @@ Script Script::load(const std::filesystem::path& path, const std::filesystem::pa
     parts->prepare_ramps();
   } else {
     for (const std::string& setting : settings) parts->scene_file.set(setting, exclusive_keys());
+    if (sweep_point) put_sweep_point(parts->scene_file, *sweep_point);
   }
   parts->start.name = path.stem().string();
   Config document = parts->document_at(at_start, parts->changes.size());

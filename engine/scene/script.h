@@ -28,9 +28,9 @@ struct TimedChange {
 class Script {
  public:
   // A scene's file, or a replay's: one that names its `scene`. Settings are --set's, over the scene as the film starts.
-  // Throws InputError with all that is wrong at any time.
+  // sweep_point: of the scene's sweep, which has as many. Throws InputError with all that is wrong at any time.
   static Script load(const std::filesystem::path& path, const std::filesystem::path& assets,
-                     const std::vector<std::string>& settings);
+                     const std::vector<std::string>& settings, std::optional<std::size_t> sweep_point = {});
   Script(Script&&) noexcept;
   ~Script();
 

@@ -230,6 +230,7 @@ keys = [{{ t = 0 }}]
 [camera]
 [look]
 [output]
+[sweep.values]
 )",
                                               material),
                                   "keys", test::assets);
