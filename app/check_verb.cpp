@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "scene/assemble.h"
 #include "scene/scene_reader.h"
+#include "scene/sweep.h"
 #include "scene/warnings.h"
 
 namespace supple {
@@ -12,6 +13,10 @@ namespace {
 
 int check(const std::string& name, const std::vector<std::string>& settings) {
   const SceneDef scene = load_scene(scene_file(name), assets_folder(), settings);
+  if (scene.sweep_points > 0) {
+    check_sweep_points(scene_file(name), assets_folder(), settings,
+                       load_sweep(scene_file(name), assets_folder(), settings));
+  }
   const std::vector<Body> bodies = assemble(scene);
   for (const Body& body : bodies) {
     for (const std::string& note : body.notes) say(stdout, fmt::format("note: {}: {}\n", body.source, note));
@@ -31,6 +36,9 @@ int check(const std::string& name, const std::vector<std::string>& settings) {
                             body.def.cloth ? body.description.springs.size() : std::size_t(mesh.tets.rows()),
                             body.def.cloth ? "springs" : "elements", crossing_number(body)));
   }
+  if (scene.sweep_points > 0)
+    say(stdout,
+        fmt::format("  sweep: {} point{}, all readable\n", scene.sweep_points, scene.sweep_points == 1 ? "" : "s"));
   return 0;
 }
 

@@ -37,14 +37,16 @@ void FilmLog::note_row(const FrameRow& row) {
 }
 
 void FilmLog::settle(Pictures* pictures) {
-  if (pictures != nullptr) {
-    for (const Pictures::Written& written : pictures->take_written()) {
-      rows_[whole_].render_ms = written.render_ms;
-      rows_[whole_].encode_ms = written.encode_ms;
-      note_row(rows_[whole_++]);
-    }
-  } else {
-    while (whole_ < int(rows_.size())) note_row(rows_[whole_++]);
+  const auto settle_undrawn = [this] {
+    while (whole_ < int(rows_.size()) && !rows_[whole_].draw_ms) note_row(rows_[whole_++]);
+  };
+  settle_undrawn();
+  const auto written = pictures != nullptr ? pictures->take_written() : std::vector<Pictures::Written>();
+  for (const Pictures::Written& frame : written) {
+    rows_[whole_].render_ms = frame.render_ms;
+    rows_[whole_].encode_ms = frame.encode_ms;
+    note_row(rows_[whole_++]);
+    settle_undrawn();
   }
   for (; !waiting_.empty() && waiting_.front().first <= whole_; waiting_.pop_front())
     write_whole_file(folder_.checkpoint(), waiting_.front().second);

@@ -20,7 +20,7 @@ class FilmLog {
   bool keeps_checkpoints() const { return every_ > 0; }
   bool wants_checkpoint(int frames) const { return every_ > 0 && frames % every_ == 0; }
 
-  // A frame whose steps are done. Without pictures it is whole.
+  // A frame whose steps are done. One that is not drawn is whole once those before it are.
   void add(FrameRow row) { rows_.push_back(std::move(row)); }
   // Kept in memory until the frames before it are whole.
   void add(const Checkpoint& checkpoint);

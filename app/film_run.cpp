@@ -69,6 +69,10 @@ void check_save_states(const std::vector<int>& frames, const SceneDef& scene) {
 
 // Warnings, and what reading meshes had to say.
 void say_remarks(const SceneDef& scene, const std::vector<Body>& bodies) {
+  if (scene.sweep_points > 0) {
+    say(stderr, fmt::format("note: the scene has a sweep of {} points, which this leaves aside: supple sweep runs it\n",
+                            scene.sweep_points));
+  }
   for (const Problem& warning : warnings(scene, bodies)) say(stderr, fmt::format("warning: {}\n", warning.text()));
   for (const Body& body : bodies) {
     for (const std::string& note : body.notes) say(stderr, fmt::format("note: {}: {}\n", body.source, note));
@@ -243,7 +247,7 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
   std::vector<std::string> settings = request.set;
   if (request.frames > 0) settings.push_back(fmt::format("frames={}", request.frames));
   if (request.seed >= 0) settings.push_back(fmt::format("seed={}", request.seed));
-  const Script script = Script::load(info.scene_file, assets_folder(), settings);
+  const Script script = Script::load(info.scene_file, assets_folder(), settings, request.sweep_point);
   const SceneDef& scene = script.scene();
   info.scene_json = script.scene_json();
   info.replay_json = script.replay_json();
@@ -255,6 +259,7 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
   for (const Body& body : bodies) models.push_back(build_model(body.description));
 
   FilmOptions options = options_of(request);
+  if (request.last_image_only) options.pictured = {scene.frames - 1};
   info.kernel_variant = kernels().name;
   info.threads = options.threads;
   for (const Body& body : bodies) {

@@ -13,6 +13,7 @@ namespace supple {
 // As the command line gives it.
 struct FilmRequest {
   std::string scene;
+  std::optional<std::size_t> sweep_point;  // of the scene's sweep; otherwise the scene as it stands
   std::string out;
   int frames = 0;  // 0: the scene's
   int threads = 0;
@@ -21,7 +22,7 @@ struct FilmRequest {
   int fields_every = 0;
   std::vector<int> save_states;
   long long seed = -1;
-  bool no_video = false, no_images = false, quiet = false, json = false;
+  bool no_video = false, no_images = false, last_image_only = false, quiet = false, json = false;
   std::string gl = "auto";
   int checkpoint_every = 60;
   bool resume = false;

@@ -221,7 +221,8 @@ class Film {
 
   // False when the pictures have failed.
   bool show(int frame, FrameRow& row) {
-    if (!pictures_) return true;
+    const bool drawn = options_.pictured.empty() || std::ranges::count(options_.pictured, frame) > 0;
+    if (!pictures_ || !drawn) return true;
     const Stopwatch watch;
     DrawList list = drawn_->list(scene_, actors_, set_, row.time_s);
     row.draw_ms = watch.elapsed_ms();

@@ -22,6 +22,7 @@ struct FilmOptions {
   int fields_every = 0;          // write fields every so many frames; 0: never
   std::vector<int> save_states;  // frames before which the bodies' states are written
   bool images = true;
+  std::vector<int> pictured;  // with images: which frames are drawn; empty: all
   bool video = true;
   GlChoice gl = GlChoice::automatic;
   bool quiet = false;

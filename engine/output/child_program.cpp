@@ -2,6 +2,8 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -12,7 +14,22 @@ extern char** environ;
 
 namespace supple {
 
-std::optional<ProgramEnd> run_program(const std::vector<std::string>& words) {
+namespace {
+
+// Waits until the child has said something or ended, or until it is asked to stop; the last is told.
+bool stopped_before_words(int output, pid_t child, const std::function<bool()>& stop) {
+  pollfd waited{output, POLLIN, 0};
+  do {
+    if (!stop()) continue;
+    ::kill(child, SIGINT);
+    return true;
+  } while (::poll(&waited, 1, 100) <= 0);
+  return false;
+}
+
+}  // namespace
+
+std::optional<ProgramEnd> run_program(const std::vector<std::string>& words, const std::function<bool()>& stop) {
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) return std::nullopt;
   posix_spawn_file_actions_t actions;
@@ -39,7 +56,8 @@ std::optional<ProgramEnd> run_program(const std::vector<std::string>& words) {
   }
   ProgramEnd finished{0, ""};
   char buffer[4096];
-  for (;;) {
+  for (bool asked = false;;) {
+    if (stop && !asked) asked = stopped_before_words(ends[0], child, stop);
     const ssize_t count = ::read(ends[0], buffer, sizeof buffer);
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) break;

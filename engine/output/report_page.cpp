@@ -43,7 +43,8 @@ nav ul a:hover { text-decoration: underline; }
 figure { margin: 2.25rem 0; }
 figcaption { max-width: 50rem; margin-bottom: 0.6rem; }
 figcaption p, .note p { max-width: 50rem; margin: 0.35rem 0 0; font-size: 0.925rem; line-height: 1.5; }
-.plot figcaption { margin: 0.4rem 0 0; }
+.plot figcaption, .picture figcaption { margin: 0.4rem 0 0; }
+.picture img { display: block; max-width: 100%; height: auto; }
 .box { overflow: auto; width: fit-content; max-width: 100%; max-height: 85vh; border: solid var(--line); border-width: 1px 0;
   /* a shadow at the side where there is more to scroll to */
   background: linear-gradient(to right, #fff 40%, #fff0) left / 3rem 100% no-repeat local,
@@ -155,9 +156,16 @@ std::string header_text(const std::string& column) {
          "</span>";
 }
 
+// Numbers with more digits than the page shows are rounded; others stay as they are.
+std::string page_cell(const ReportTable& table, const std::string& cell) {
+  if (table.page_digits == 0 || !reads_as_number(cell)) return cell;
+  const std::string rounded = number_text(std::stod(cell), table.page_digits);
+  return rounded.size() < cell.size() ? rounded : cell;
+}
+
 std::string table_grid(const ReportTable& table) {
   const std::vector<std::size_t> shown = shown_columns(table);
-  std::string html = "<table>\n<thead><tr><th class=\"row\" scope=\"col\">row</th>";
+  std::string html = "<table>\n<thead><tr><th class=\"row\" scope=\"col\">" + markup_text(table.row_name) + "</th>";
   std::vector<const char*> kinds;
   for (const std::size_t column : shown) {
     kinds.push_back(column_kind(table, column));
@@ -165,9 +173,9 @@ std::string table_grid(const ReportTable& table) {
   }
   html += "</tr></thead>\n<tbody>\n";
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    html += fmt::format("<tr><td class=\"row\">{}</td>", i + 1);
+    html += fmt::format("<tr><td class=\"row\">{}</td>", table.first_row + i);
     for (std::size_t k = 0; k < shown.size(); ++k)
-      html += fmt::format("<td class=\"{}\">{}</td>", kinds[k], markup_text(table.rows[i][shown[k]]));
+      html += fmt::format("<td class=\"{}\">{}</td>", kinds[k], markup_text(page_cell(table, table.rows[i][shown[k]])));
     html += "</tr>\n";
   }
   return html + "</tbody>\n</table>";
@@ -206,6 +214,16 @@ std::string plot_figure(const ReportPlot& plot, const std::filesystem::path& fol
       plot.name, picture, markup_text(plot.title), paragraphs(plot.note), link);
 }
 
+std::string picture_figure(const ReportPicture& picture, const std::filesystem::path& folder) {
+  std::ifstream file(folder / (picture.name + ".png"), std::ios::binary);
+  const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), {}};
+  return fmt::format(
+      "<figure id=\"{0}\" class=\"picture\">\n<img alt=\"{1}\" src=\"data:image/png;base64,{2}\">\n"
+      "<figcaption><h3>{1}</h3>\n{3}</figcaption>\n<p class=\"files\">File: <a href=\"{0}.png\">{0}.png</a></p>\n"
+      "</figure>\n",
+      picture.name, markup_text(picture.title), base64_text(bytes), paragraphs(picture.note));
+}
+
 // Of sections apart from tables and plots, whose names are files too.
 std::string anchor(const ReportSection& section) { return "section-" + section.name; }
 
@@ -216,10 +234,13 @@ std::string contents(const ReportPage& page) {
   };
   for (const ReportSection& section : page.sections) {
     html += "<li>" + link(anchor(section), section.heading);
-    if (!section.tables.empty() || !section.plots.empty()) html += "\n<ul>\n";
+    const bool holds = !section.pictures.empty() || !section.tables.empty() || !section.plots.empty();
+    if (holds) html += "\n<ul>\n";
+    for (const ReportPicture& picture : section.pictures)
+      html += "<li>" + link(picture.name, picture.title) + "</li>\n";
     for (const ReportTable& table : section.tables) html += "<li>" + link(table.name, table.title) + "</li>\n";
     for (const ReportPlot& plot : section.plots) html += "<li>" + link(plot.name, plot.title) + "</li>\n";
-    if (!section.tables.empty() || !section.plots.empty()) html += "</ul>";
+    if (holds) html += "</ul>";
     html += "</li>\n";
   }
   return html + "</ol>\n</nav>\n";
@@ -238,6 +259,7 @@ void check_names(const ReportPage& page) {
     add(anchor(section));
     for (const ReportTable& table : section.tables) add(table.name);
     for (const ReportPlot& plot : section.plots) add(plot.name);
+    for (const ReportPicture& picture : section.pictures) add(picture.name);
   }
 }
 
@@ -290,6 +312,7 @@ std::vector<std::string> write_page(const ReportPage& given, const std::filesyst
   for (const ReportSection& section : page.sections) {
     html += fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}", anchor(section), markup_text(section.heading),
                         paragraphs(section.text));
+    for (const ReportPicture& picture : section.pictures) html += picture_figure(picture, folder);
     for (const ReportTable& table : section.tables) {
       write_csv(table, folder);
       write_json(table, folder);

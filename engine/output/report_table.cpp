@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 void check_table(const ReportTable& table) {
   check_report_name(table.name);
-  std::set<std::string> names = {"row"};
+  std::set<std::string> names = {table.row_name};
   for (const std::string& column : table.columns) names.insert(column);
   SUPPLE_CHECK(names.size(), ==, table.columns.size() + 1);
   for (const auto& row : table.rows) SUPPLE_CHECK(row.size(), ==, table.columns.size());
@@ -136,8 +136,8 @@ std::string csv_text(const std::vector<std::vector<std::string>>& records) {
 
 void write_csv(const ReportTable& table, const std::filesystem::path& folder) {
   check_table(table);
-  std::vector<std::vector<std::string>> records = {{"row"}};
-  for (std::size_t i = 0; i < table.rows.size(); ++i) records.push_back({fmt::format("{}", i + 1)});
+  std::vector<std::vector<std::string>> records = {{table.row_name}};
+  for (std::size_t i = 0; i < table.rows.size(); ++i) records.push_back({fmt::format("{}", table.first_row + i)});
   records[0].insert(records[0].end(), table.columns.begin(), table.columns.end());
   for (std::size_t i = 0; i < table.rows.size(); ++i)
     records[i + 1].insert(records[i + 1].end(), table.rows[i].begin(), table.rows[i].end());
@@ -148,7 +148,7 @@ void write_json(const ReportTable& table, const std::filesystem::path& folder) {
   check_table(table);
   Json list = Json::array();
   for (const auto& cells : table.rows) {
-    Json row = {{"row", list.size() + 1}};
+    Json row = {{table.row_name, table.first_row + list.size()}};
     for (std::size_t i = 0; i < cells.size(); ++i) {
       Json value = cells[i].empty() ? Json(nullptr) : Json(cells[i]);
       row[table.columns[i]] = reads_as_number(cells[i]) ? Json::parse(cells[i]) : std::move(value);

@@ -15,6 +15,9 @@ struct ReportTable {
   std::vector<std::string> columns = {};            // all different, with units in brackets: "time, ours [ms]"
   std::vector<std::vector<std::string>> rows = {};  // cells as they are to be read; a cell may be empty
   std::vector<std::string> page_columns = {};       // which of the columns the page shows, in this order; empty: all
+  std::string row_name = "row";                     // what a row is called, above their numbers
+  std::size_t first_row = 1;                        // number of the first row
+  int page_digits = 0;                              // significant digits of numbers on the page; 0: cells as they are
 };
 
 // A number as readers and programs like it: "1.23e-4", "12.3", "33666"; "" for NaN. Whole numbers below a million keep
@@ -24,10 +27,10 @@ std::string number_text(double value, int digits = 3);
 // Whether JSON would take the text for a number that a double holds.
 bool reads_as_number(const std::string& cell);
 
-// folder/NAME.csv with RFC 4180's quoting and lines that end in LF. The first column, "row", counts from 1.
+// folder/NAME.csv with RFC 4180's quoting and lines that end in LF. The first column numbers the rows.
 void write_csv(const ReportTable& table, const std::filesystem::path& folder);
 
-// folder/NAME.json: a list of objects, "row" first. Cells that are numbers become numbers, empty ones null.
+// folder/NAME.json: a list of objects, the row's number first. Cells that are numbers become numbers, empty ones null.
 void write_json(const ReportTable& table, const std::filesystem::path& folder);
 
 // All records, the header first; every one has as many fields as the header. Lines end in LF or CRLF. Throws InputError

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
@@ -165,6 +166,17 @@ TEST(ReportMarkup, EscapesTextAndPrefixesIdsInTagsOnly) {
   EXPECT_EQ(count_signs("µm²"), 3u);
 }
 
+TEST(ReportMarkup, WritesBytesAsBase64) {
+  const auto text = [](std::string_view bytes) {
+    return base64_text({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  };
+  EXPECT_EQ(text(""), "");
+  EXPECT_EQ(text("f"), "Zg==");
+  EXPECT_EQ(text("fo"), "Zm8=");
+  EXPECT_EQ(text("foobar"), "Zm9vYmFy");
+  EXPECT_EQ(text("\xff\xfe\xfd"), "//79");
+}
+
 TEST(ReportPlot, DrawsEverySeriesUnderItsName) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const test::TemporaryFolder folder;
@@ -282,6 +294,30 @@ TEST(ReportPage, ShowsEveryRowAndNeedsNothingFromElsewhere) {
     EXPECT_TRUE(inside ? ids.count(target) > 0 : std::filesystem::exists(folder.path / target)) << target;
   }
   EXPECT_GE(links, 12);
+}
+
+TEST(ReportPage, HoldsPicturesAndRoundsWhereATableSaysSo) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path / "sheet.png") << "foobar";
+  ReportTable table{"points", "Points"};
+  table.columns = {"value"};
+  table.rows = {{"0.123456789"}, {"0.2"}, {"word"}};
+  table.row_name = "point";
+  table.first_row = 0;
+  table.page_digits = 3;
+  ReportSection section{"all", "All"};
+  section.tables = {table};
+  section.pictures = {{"sheet", "A & B", "Note."}};
+  EXPECT_TRUE(write_page({"Page", "", {}, {section}}, folder.path).empty());
+  const std::string html = test::read_file(folder.path / "index.html");
+  EXPECT_NE(html.find("<img alt=\"A &amp; B\" src=\"data:image/png;base64,Zm9vYmFy\">"), std::string::npos);
+  EXPECT_NE(html.find("<a href=\"#sheet\">A &amp; B</a>"), std::string::npos);
+  EXPECT_NE(html.find("<th class=\"row\" scope=\"col\">point</th>"), std::string::npos);
+  EXPECT_NE(html.find("<td class=\"row\">0</td><td class=\"number\">0.123</td>"), std::string::npos);
+  EXPECT_NE(html.find("<td class=\"row\">1</td><td class=\"number\">0.2</td>"), std::string::npos);
+  EXPECT_EQ(test::read_file(folder.path / "points.csv"), "point,value\n0,0.123456789\n1,0.2\n2,word\n");
+  EXPECT_NE(test::read_file(folder.path / "points.json").find("\"point\": 0,\n  \"value\": 0.123456789"),
+            std::string::npos);
 }
 
 TEST(ReportPage, WithoutGnuplotSaysSoInThePicturesPlace) {

@@ -1,0 +1,152 @@
+#include "app/sweep/point.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "app/film_run.h"
+#include "app/verbs.h"
+#include "base/error.h"
+#include "base/hash.h"
+#include "base/timing.h"
+#include "output/whole_file.h"
+
+namespace supple {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* picture_words[] = {"none", "last", "all"};
+
+// Null where the file is not there or not whole.
+Json read_json(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  if (!file) return nullptr;
+  Json json = Json::parse(file, nullptr, false);
+  return json.is_object() ? json : Json(nullptr);
+}
+
+// What a record was made with; empty hash where the point's scene cannot be read.
+Json made_with(const SweepRequest& request, std::size_t point) {
+  std::string scene;
+  try {
+    scene = hash_text_form(
+        hash_text(sweep_point_json(request.file, assets_folder(), request.settings, request.sweep, point)));
+  } catch (const InputError&) {
+    scene = "";
+  }
+  return {{"program", hash_text_form(program_identity())}, {"scene", scene}};
+}
+
+void write_record(const SweepRequest& request, std::size_t point, int status, const std::string& message,
+                  double seconds) {
+  Json json = made_with(request, point);
+  json["error_every"] = request.error_every;
+  json["pictures"] = picture_words[int(request.pictures)];
+  json["exit_status"] = status;
+  json["message"] = message;
+  json["wall_s"] = seconds;
+  std::error_code error;
+  std::filesystem::create_directories(request.folder(point), error);
+  write_whole_file(request.folder(point) / "point.json",
+                   json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+FilmRequest film_of(const SweepRequest& request, std::size_t point) {
+  FilmRequest film;
+  film.scene = request.file.string();
+  film.sweep_point = point;
+  film.out = request.folder(point).string();
+  film.set = request.settings;
+  film.threads = request.threads;
+  film.error_every = request.error_every;
+  film.no_video = request.pictures != SweepPictures::all;
+  film.no_images = request.pictures == SweepPictures::none;
+  film.checkpoint_every = 0;
+  film.last_image_only = request.pictures == SweepPictures::last;
+  film.gl = request.gl;
+  film.quiet = request.quiet;
+  return film;
+}
+
+// "failed: why" as run.json has it.
+std::string failure_in(const Json& run) {
+  const std::string ended = run.is_object() ? run.value("ended", "") : "";
+  return ended.starts_with("failed: ") ? ended.substr(8) : "";
+}
+
+}  // namespace
+
+std::filesystem::path SweepRequest::folder(std::size_t point) const {
+  const std::size_t digits = std::max<std::size_t>(4, std::to_string(sweep.points() - 1).size());
+  return out / "points" / fmt::format("{:0{}}", point, digits);
+}
+
+std::string end_text(PointEnd end) {
+  switch (end) {
+    case PointEnd::done: return "done";
+    case PointEnd::failed: return "failed";
+    case PointEnd::interrupted: return "interrupted";
+    case PointEnd::outdated: return "outdated";
+    case PointEnd::unfinished: return "unfinished";
+    case PointEnd::not_run: break;
+  }
+  return "not run";
+}
+
+int run_point(const SweepRequest& request, std::size_t point, const std::vector<std::string>& command) {
+  const std::filesystem::path folder = request.folder(point);
+  std::error_code error;
+  for (const char* stale : {"point.json", "profile.json"}) std::filesystem::remove(folder / stale, error);
+  const Stopwatch watch;
+  try {
+    const int status = run_film(film_of(request, point), command);
+    const std::string message = status == 1 ? failure_in(read_json(folder / "run.json")) : "";
+    write_record(request, point, status, message, watch.elapsed_ms() / 1000);
+    return status;
+  } catch (const InputError& wrong) {
+    write_record(request, point, 2, wrong.what(), watch.elapsed_ms() / 1000);
+    throw;
+  } catch (const std::exception& wrong) {
+    write_record(request, point, 1, wrong.what(), watch.elapsed_ms() / 1000);
+    throw;
+  }
+}
+
+void keep_failure(const SweepRequest& request, std::size_t point, int exit_status, const std::string& message) {
+  write_record(request, point, exit_status, message, 0);
+}
+
+PointOutcome outcome_of(const SweepRequest& request, std::size_t point) {
+  const std::filesystem::path folder = request.folder(point);
+  const Json record = read_json(folder / "point.json"), run = read_json(folder / "run.json");
+  PointOutcome outcome;
+  if (!record.is_object()) {
+    if (run.is_object()) outcome = {PointEnd::unfinished, "", "still running, or ended without a word", 0};
+    return outcome;
+  }
+  const int status = record.value("exit_status", 1);
+  outcome = {PointEnd::failed, std::to_string(status), record.value("message", ""), record.value("wall_s", 0.0)};
+  const Json now = made_with(request, point);
+  if (record.value("program", "") != now["program"] || record.value("scene", "") != now["scene"]) {
+    outcome.end = PointEnd::outdated;
+    outcome.message = record.value("program", "") != now["program"] ? "was made by another build of the program"
+                                                                    : "was made from another scene or other settings";
+  } else if (status == 130) {
+    outcome.end = PointEnd::interrupted;
+  } else if (status == 0 && run.is_object() && run.value("ended", "") == "done") {
+    outcome.end = PointEnd::done;
+  }
+  return outcome;
+}
+
+bool has_what_is_asked(const SweepRequest& request, std::size_t point) {
+  const Json record = read_json(request.folder(point) / "point.json");
+  if (!record.is_object() || record.value("error_every", 0) != request.error_every) return false;
+  const std::string pictures = record.value("pictures", "none");
+  return request.pictures == SweepPictures::none || pictures == "all" ||
+         pictures == picture_words[int(request.pictures)];
+}
+
+}  // namespace supple
