@@ -118,6 +118,7 @@ SweepDef read_sweep(const ConfigTable& root) {
 SweepDef load_sweep(const std::filesystem::path& path, const std::filesystem::path& assets,
                     const std::vector<std::string>& settings) {
   Config config = config_of(path, assets, settings);
+  if (config.value_at("scene")) throw InputError(path.string(), "is a replay; a sweep is of a scene");
   (void)read_scene(config);
   config.finish();
   const SweepDef sweep = read_sweep(config.root());
