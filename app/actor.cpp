@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/state_file.h"
+#include "base/trace.h"
 #include "baselines/make_rule.h"
 #include "baselines/reference.h"
 #include "output/obj_file.h"
@@ -116,6 +117,7 @@ void Actor::go_on_from(const BodyMoment& moment) {
 }
 
 void Actor::set_inputs(int frame, int substep) {
+  const Zone zone("inputs", body_.def.name);
   const double done = static_cast<double>(frame) * scene_.substeps + substep, share = 1.0 / scene_.substeps;
   const StepSpan span{done * scene_.time_step(), (done + 1) * scene_.time_step(), substep * share,
                       (substep + 1) * share};
@@ -138,6 +140,7 @@ std::string Actor::advance(int frame, bool measure_error, BodyRow& row) {
     add_up(row, report);
     if (report.failed) return failure_text(frame, body_.def.name, report.failure);
     if (measured) {
+      const Zone zone("reference error", body_.def.name);
       row.error_measured = true;
       if (!reference_) reference_.emplace(model_);
       row.error = reference_->step_error(model_, inputs_, before, state_, reference_workspace_);
@@ -148,6 +151,7 @@ std::string Actor::advance(int frame, bool measure_error, BodyRow& row) {
 }
 
 void Actor::measure(int frame, BodyRow& row) {
+  const Zone zone("measure", body_.def.name);
   const Deformation shape = deformation(model_, state_.x);
   row.stretch = shape.stretch;
   row.inverted = shape.inverted;
@@ -163,9 +167,13 @@ void Actor::measure(int frame, BodyRow& row) {
   }
 }
 
-void Actor::save_motion() { motion_.add(in_input_order(model_, state_.x)); }
+void Actor::save_motion() {
+  const Zone zone("motion files", body_.def.name);
+  motion_.add(in_input_order(model_, state_.x));
+}
 
 void Actor::save_state(int frame) {
+  const Zone zone("save state", body_.def.name);
   set_inputs(frame, 0);
   write_state(folder_.state(body_.def.name, frame), {scene_.name, scene_.title, frame, frame * scene_.substeps},
               problem_of(body_.description, model_, inputs_, state_));

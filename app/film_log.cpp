@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "base/trace.h"
 #include "output/whole_file.h"
 
 namespace supple {
@@ -37,6 +38,7 @@ void FilmLog::note_row(const FrameRow& row) {
 }
 
 void FilmLog::settle(Pictures* pictures) {
+  const Zone zone("run's log");
   const auto settle_undrawn = [this] {
     while (whole_ < int(rows_.size()) && !rows_[whole_].draw_ms) note_row(rows_[whole_++]);
   };

@@ -12,6 +12,8 @@
 #include "base/hash.h"
 #include "base/text.h"
 #include "base/timing.h"
+#include "output/chrome_trace.h"
+#include "output/whole_file.h"
 #include "scene/scene_reader.h"
 #include "scene/warnings.h"
 #include "sim/kernels.h"
@@ -180,7 +182,7 @@ int say_result(const FilmRequest& request, const FilmResult& result, const RunFo
                const std::string& unrecorded) {
   if (request.json) {
     print_json(result, folder);
-  } else if (!request.quiet && !result.rows.empty()) {
+  } else if (request.table && !request.quiet && !result.rows.empty()) {
     print_result(result, folder, scene);
   }
   if (result.end == FilmEnd::failed) {
@@ -222,6 +224,8 @@ void add_film_options(CLI::App& verb, FilmRequest& request) {
       ->check(CLI::Range(1, 1000000));
   verb.add_flag("--no-video", request.no_video, "frames only");
   verb.add_flag("--no-images", request.no_images, "simulate only");
+  verb.add_flag("--trace", request.trace,
+                "where every thread's time went, for chrome://tracing or Perfetto: trace.json");
   verb.add_option("--gl", request.gl, "auto, osmesa or egl")->check(CLI::IsMember({"auto", "osmesa", "egl"}));
   verb.add_option("--checkpoint-every", request.checkpoint_every,
                   "frames between checkpoints, from which --resume goes on; 0 makes none")
@@ -239,7 +243,10 @@ void add_film_options(CLI::App& verb, FilmRequest& request) {
   verb.add_flag("--json", request.json, "the result as one line of JSON on standard output");
 }
 
-int run_film(const FilmRequest& request, const std::vector<std::string>& command) {
+int run_film(const FilmRequest& request, const std::vector<std::string>& command, FilmRecord* record) {
+  name_thread("main");
+  if (request.trace) start_trace();
+  Zone zone("read scene");
   const Stopwatch setup;
   RunInfo info;
   info.command = command;
@@ -252,12 +259,15 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
   info.scene_json = script.scene_json();
   info.replay_json = script.replay_json();
   check_save_states(request.save_states, scene);
+  zone.next("assemble meshes");
   std::vector<Body> bodies = assemble(scene);
   if (!request.quiet) say_remarks(scene, bodies);
   try_changes(script, bodies);
+  zone.next("build models");
   std::vector<Model> models;
   for (const Body& body : bodies) models.push_back(build_model(body.description));
 
+  zone.next("begin folder");
   FilmOptions options = options_of(request);
   if (request.last_image_only) options.pictured = {scene.frames - 1};
   info.kernel_variant = kernels().name;
@@ -289,22 +299,26 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
   if (start > 0) info.resumed.push_back(start);
   folder.write_info(info);
 
+  zone.finish();
   catch_interrupts();
   const double before_film = setup.elapsed_ms();
   FilmResult result = make_film(script, bodies, models, folder, options);
   result.setup_ms += before_film;
 
   add_result(result, info);
+  std::vector<ThreadTrace> trace = request.trace ? stop_trace() : std::vector<ThreadTrace>();
   std::string unrecorded;  // what the disk refused; said after what went wrong first
   try {
     folder.write_info(info);
     folder.write_profile(profile_json(result.rows));
+    if (request.trace) write_whole_file(folder.trace(), chrome_trace(trace));
   } catch (const RunError& error) {
     unrecorded = error.what();
   }
   const int status = say_result(request, result, folder, scene, unrecorded);
   if (verifier && result.end == FilmEnd::done)
     say(request.json ? stderr : stdout, fmt::format("  {}\n", verifier->verdict(int(result.rows.size()))));
+  if (record != nullptr) *record = {info, folder.path(), scene.name, scene.fps, result, std::move(trace)};
   return status;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/frame_loop.h"
+#include "base/trace.h"
 
 namespace supple {
 
@@ -22,7 +23,8 @@ struct FilmRequest {
   int fields_every = 0;
   std::vector<int> save_states;
   long long seed = -1;
-  bool no_video = false, no_images = false, last_image_only = false, quiet = false, json = false;
+  bool no_video = false, no_images = false, last_image_only = false, trace = false, quiet = false, json = false;
+  bool table = true;  // at the end
   std::string gl = "auto";
   int checkpoint_every = 60;
   bool resume = false;
@@ -33,7 +35,18 @@ struct FilmRequest {
 // The options that every run of a scene has.
 void add_film_options(CLI::App& verb, FilmRequest& request);
 
-// Runs it and tells how it went; returns the exit status. command: as it was called, for run.json.
-int run_film(const FilmRequest& request, const std::vector<std::string>& command);
+// What is known of a run once it is over, for who looks closer.
+struct FilmRecord {
+  RunInfo info;
+  std::filesystem::path folder;
+  std::string scene;  // its name
+  double fps = 0;
+  FilmResult result;
+  std::vector<ThreadTrace> trace;  // when one was asked for
+};
+
+// Runs it and tells how it went; returns the exit status. command: as it was called, for run.json. record: null when
+// nobody asks.
+int run_film(const FilmRequest& request, const std::vector<std::string>& command, FilmRecord* record = nullptr);
 
 }  // namespace supple

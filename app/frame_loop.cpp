@@ -16,6 +16,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/timing.h"
+#include "base/trace.h"
 #include "output/pose_table.h"
 #include "output/video.h"
 
@@ -103,6 +104,7 @@ class Film {
   FilmEnd run(Progress& progress, std::string& message) {
     for (int frame = start_; frame < script_.scene().frames; ++frame) {
       if (interrupted()) return FilmEnd::interrupted;
+      const Zone zone("frame", {}, frame);
       FrameRow row;
       row.frame = frame;
       row.time_s = (frame + 1) / scene_.fps;
@@ -125,6 +127,7 @@ class Film {
 
   // Waits for the pictures, and leaves a checkpoint behind the last frame.
   void finish(FilmResult& result) {
+    const Zone zone("finish film");
     if (pictures_) {
       pictures_->finish();
       result.gl_backend = pictures_->backend;
@@ -164,6 +167,7 @@ class Film {
     settle_changes();
     const std::vector<const TimedChange*> at_work = script_.at_work(frame);
     if (at_work.empty()) return;
+    const Zone zone("change");
     const Stopwatch watch;
     std::vector<TimedChange> changes;
     for (const TimedChange* one : at_work) changes.push_back(*one);
@@ -223,13 +227,16 @@ class Film {
   bool show(int frame, FrameRow& row) {
     const bool drawn = options_.pictured.empty() || std::ranges::count(options_.pictured, frame) > 0;
     if (!pictures_ || !drawn) return true;
+    Zone zone("draw list");
     const Stopwatch watch;
     DrawList list = drawn_->list(scene_, actors_, set_, row.time_s);
     row.draw_ms = watch.elapsed_ms();
+    zone.next("wait for render");
     return pictures_->put(frame, std::move(list));
   }
 
   void add_checkpoint(int frames) {
+    const Zone zone("checkpoint");
     Checkpoint checkpoint{frames, {}};
     for (const auto& actor : actors_) checkpoint.bodies.push_back(actor->moment());
     log_.add(checkpoint);
@@ -261,9 +268,11 @@ FilmResult make_film(const Script& script, std::vector<Body>& bodies, std::vecto
   Progress progress(script.scene().frames, options.start ? options.start->frames : 0, options.quiet);
   std::optional<Film> film;
   try {
+    Zone prepare("prepare film");
     film.emplace(script, bodies, models, folder, options);
     result.setup_ms = setup.elapsed_ms();
     loop.lap_ms();
+    prepare.finish();
     result.end = film->run(progress, result.message);
   } catch (const std::exception& error) {
     result.end = FilmEnd::failed;
@@ -281,6 +290,7 @@ FilmResult make_film(const Script& script, std::vector<Body>& bodies, std::vecto
   progress.end();
   result.wall_ms = loop.elapsed_ms();
   if (film && options.images && options.video && !result.rows.empty()) {
+    const Zone zone("video");
     const VideoResult video =
         encode_video(folder.frames(), static_cast<int>(result.rows.size()), script.scene().fps, folder.video());
     result.video_written = video.outcome == VideoOutcome::written;

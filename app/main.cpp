@@ -27,6 +27,7 @@ int run(int argc, char** argv) {
   supple::add_render(app, action, command);
   supple::add_replay(app, action, command);
   supple::add_sweep(app, action, command);
+  supple::add_profile(app, action, command);
   supple::add_bench(app, action);
   supple::add_check(app, action);
   supple::add_mesh(app, action);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/timing.h"
+#include "base/trace.h"
 #include "output/png_file.h"
 
 namespace supple {
@@ -50,20 +51,27 @@ void Pictures::guarded(const Work& work) {
 }
 
 void Pictures::draw_all(const Stage& stage, GlChoice gl, const std::filesystem::path& shaders) {
+  name_thread("render");
+  Zone start("start renderer");
   Renderer renderer_object(stage, gl, shaders);
   backend = renderer_object.backend();
   renderer = renderer_object.name();
   version = renderer_object.version();
+  start.finish();
   while (auto item = lists_.pop()) {
+    Zone zone("render", {}, item->first);
     const Stopwatch watch;
     Image image = renderer_object.draw(item->second);
     const double ms = watch.elapsed_ms();
+    zone.next("wait for encode");
     if (!images_.push({item->first, ms, std::move(image)})) return;
   }
 }
 
 void Pictures::compress_all() {
+  name_thread("encode");
   while (auto drawn = images_.pop()) {
+    const Zone zone("encode", {}, drawn->frame);
     const Stopwatch watch;
     write_png(folder_.frame(drawn->frame), drawn->image.width, drawn->image.height, drawn->image.rgb);
     const std::lock_guard lock(mutex_);

@@ -16,6 +16,7 @@ using Action = std::function<int()>;
 void add_render(CLI::App& app, Action& action, const std::vector<std::string>& command);
 void add_replay(CLI::App& app, Action& action, const std::vector<std::string>& command);
 void add_sweep(CLI::App& app, Action& action, const std::vector<std::string>& command);
+void add_profile(CLI::App& app, Action& action, const std::vector<std::string>& command);
 void add_check(CLI::App& app, Action& action);
 void add_mesh(CLI::App& app, Action& action);
 void add_info(CLI::App& app, Action& action);

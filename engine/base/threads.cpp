@@ -1,9 +1,11 @@
 #include "base/threads.h"
 
+#include "base/trace.h"
+
 namespace supple {
 
 Threads::Threads(int count) {
-  for (int i = 1; i < count; ++i) workers_.emplace_back([this] { work(); });
+  for (int i = 1; i < count; ++i) workers_.emplace_back([this, i] { work(i); });
 }
 
 Threads::~Threads() {
@@ -26,16 +28,19 @@ void Threads::run_shared(int chunks, Call call, const void* context) {
     call_ = call;
     context_ = context;
     chunks_ = chunks;
+    zone_ = current_zone();
     ++generation_;
   }
   work_ready_.notify_all();
   take_chunks(call, context, chunks);
+  const Zone zone("wait for workers");
   std::unique_lock lock(mutex_);
   call_ = nullptr;  // who has not entered by now stays out
   work_done_.wait(lock, [this] { return running_ == 0; });
 }
 
-void Threads::work() {
+void Threads::work(int number) {
+  name_thread("worker", number);
   unsigned long seen = 0;
   std::unique_lock lock(mutex_);
   for (;;) {
@@ -45,9 +50,13 @@ void Threads::work() {
     const Call call = call_;
     const void* context = context_;
     const int chunks = chunks_;
+    const char* name = zone_;
     ++running_;
     lock.unlock();
-    take_chunks(call, context, chunks);
+    {
+      const Zone zone(name);
+      take_chunks(call, context, chunks);
+    }
     lock.lock();
     if (--running_ == 0) work_done_.notify_one();
   }

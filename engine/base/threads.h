@@ -41,7 +41,7 @@ class Threads {
   using Call = void (*)(const void* context, int chunk);
 
   void run_shared(int chunks, Call call, const void* context);
-  void work();
+  void work(int number);
   void take_chunks(Call call, const void* context, int chunks);
 
   std::vector<std::thread> workers_;
@@ -50,6 +50,7 @@ class Threads {
   std::condition_variable work_done_;
   Call call_ = nullptr;            // the job in progress, guarded by mutex_; null between jobs
   const void* context_ = nullptr;  // its body
+  const char* zone_ = nullptr;     // that it was asked for in, for traces
   int chunks_ = 0;
   int running_ = 0;               // workers inside the job
   unsigned long generation_ = 0;  // counts jobs, so that a worker enters each at most once

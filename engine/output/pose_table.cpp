@@ -10,6 +10,7 @@
 
 #include "base/console.h"
 #include "base/error.h"
+#include "base/trace.h"
 
 namespace supple {
 
@@ -43,6 +44,7 @@ PoseTableWriter::PoseTableWriter(const std::filesystem::path& path, int kept_fra
 }
 
 void PoseTableWriter::add(int frame, const std::string& name, const Eigen::Isometry3d& pose) {
+  const Zone zone("motion files", name);
   const Vec3 p = pose.translation();
   const Eigen::Quaterniond q(pose.linear());
   say(file_.get(),

@@ -60,7 +60,7 @@ RunFolder::RunFolder(const std::filesystem::path& path, int kept_frames) : path_
       std::filesystem::remove_all(path / part, error);
   }
   remove_frames_from(path / "frames", kept_frames);
-  for (const char* part : {"video.mp4", "profile.json"}) std::filesystem::remove(path / part, error);
+  for (const char* part : {"video.mp4", "profile.json", "trace.json"}) std::filesystem::remove(path / part, error);
   for (const char* part : {"frames", "motion", "checkpoint"}) {
     std::filesystem::create_directories(path / part, error);
     if (error) throw RunError(fmt::format("{}: cannot be made: {}", (path / part).string(), error.message()));

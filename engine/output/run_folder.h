@@ -46,6 +46,7 @@ class RunFolder {
   std::filesystem::path fields(const std::string& body, int frame) const;
   std::filesystem::path field_collection(const std::string& body) const { return fields() / (body + ".pvd"); }
   std::filesystem::path video() const { return path_ / "video.mp4"; }
+  std::filesystem::path trace() const { return path_ / "trace.json"; }  // if asked
   std::filesystem::path checkpoint() const { return checkpoint_of(path_); }
   std::filesystem::path rows() const { return path_ / "checkpoint" / "rows.jsonl"; }  // of profile.json, so far
   static std::filesystem::path checkpoint_of(const std::filesystem::path& run) { return run / "checkpoint" / "state"; }

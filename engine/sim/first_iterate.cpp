@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "base/timing.h"
+#include "base/trace.h"
 
 namespace supple {
 namespace {
@@ -12,6 +13,7 @@ constexpr double deepest_start = 0.004;  // overlap that a first iterate may hav
 }  // namespace
 
 void find_contacts_timed(const Model& model, const FrameInputs& inputs, const Positions& x, Workspace& w) {
+  const Zone zone("find contacts");
   const Stopwatch watch;
   find_contacts(model, inputs, x, w);
   const double ms = watch.elapsed_ms();
@@ -35,6 +37,7 @@ void begin_step(const Model& model, const FrameInputs& inputs, const State& stat
   w.contact.found.clear();
   w.contact.earlier.clear();
   if (has_colliders(inputs)) {
+    const Zone zone("begin contacts");
     const Stopwatch watch;
     begin_contacts(model, inputs, state.x, w);
     w.report.collide_ms += watch.elapsed_ms();
@@ -79,8 +82,10 @@ std::optional<double> spread_handles(const Model& model, const FrameInputs& inpu
   }
   if (right.isZero(0)) return std::nullopt;
   Stopwatch watch;
+  Zone zone("solve");
   model.factor.solve(right.data(), w.direction.data(), w.solve_scratch.data());
   w.report.solve_ms += watch.lap_ms();
+  zone.next("spread handles");
   if (has_colliders(inputs)) find_contacts_timed(model, inputs, w.x, w);
   const double at_y = evaluate(model, w, w.x, w.energy, nullptr, nullptr, nullptr).value;
   w.report.evaluate_ms += watch.lap_ms();
@@ -97,6 +102,7 @@ std::optional<double> spread_handles(const Model& model, const FrameInputs& inpu
 // goes only as far as the first impact and a little further. Returns whether it was stopped.
 bool stop_at_impact(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
   if (!has_colliders(inputs)) return false;
+  const Zone zone("stop at impact");
   const Stopwatch watch;
   const double way = free_way(model, inputs, w.x, deepest_start * model.size, w);
   if (way < 1) w.x.topRows(model.free) = state.x.topRows(model.free) + way * (w.x - state.x).topRows(model.free);
@@ -109,6 +115,7 @@ bool stop_at_impact(const Model& model, const FrameInputs& inputs, const State& 
 // touches. Friction as in descend_from_staying.
 void start_where_better(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
   if (!has_colliders(inputs) || w.contact.counts.touching == 0) return;
+  const Zone zone("start where better");
   const Stopwatch watch;
   const double given = w.report.objective.back() - friction_energy(w.contact.found, w.contact.stick_length, w.x);
   w.trial.topRows(model.free) = (state.x + model.time_step * state.v).topRows(model.free);

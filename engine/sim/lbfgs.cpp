@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/timing.h"
+#include "base/trace.h"
 #include "sim/contact_direction.h"
 
 namespace supple {
@@ -95,6 +96,7 @@ class ContactPairs {
 double search_direction(const Model& model, const FrameInputs& inputs, Workspace& workspace, const PairHistory& history,
                         InitialInverse& initial) {
   Stopwatch watch;
+  Zone zone("L-BFGS");
   const int count = history.count;
   Pointers s{}, t{};
   for (int i = 0; i < count; ++i) {
@@ -123,11 +125,13 @@ double search_direction(const Model& model, const FrameInputs& inputs, Workspace
   contacts.add(factor.data(), r);
   workspace.report.lbfgs_ms += watch.lap_ms();
 
+  zone.next("solve");
   Positions& z = workspace.trial_gradient;  // free until the next trial
   initial.apply(model, inputs, workspace, r, z);
   r = z;
   workspace.report.solve_ms += watch.lap_ms();
 
+  zone.next("L-BFGS");
   dot_all(model, workspace, t, count, r.data(), against.data());
   for (int i = 0; i < count; ++i) against[i] += contacts.dot(i, r);
   for (int i = count - 1; i >= 0; --i) {
@@ -138,8 +142,10 @@ double search_direction(const Model& model, const FrameInputs& inputs, Workspace
   add_all(model, workspace, s, factor.data(), count, r.data());
   r = -r;
   workspace.report.lbfgs_ms += watch.lap_ms();
+  zone.next("solve");
   const bool bent = initial.bend(model, inputs, workspace);
   workspace.report.solve_ms += watch.lap_ms();
+  zone.next("L-BFGS");
   double slope = 0;
   Pointers gradient{workspace.gradient.data()};
   dot_all(model, workspace, gradient, 1, r.data(), &slope);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/trace.h"
+
 namespace supple {
 
 void Workspace::prepare(const Model& model, const SolverSettings& solver) {
@@ -152,6 +154,7 @@ bool needs_start(const Model& model) { return model.scheme.theta < 1 || !model.d
 
 Change evaluate(const Model& model, Workspace& workspace, const Positions& point, AlignedVector<double>& energy,
                 Positions* gradient, const Positions* reference, const AlignedVector<double>* reference_energy) {
+  const Zone zone("evaluate");
   const double theta = model.scheme.theta;
   if (theta < 1) workspace.middle = theta * point + (1 - theta) * workspace.q;
   Change change{evaluate_elements(model, workspace, theta < 1 ? workspace.middle : point, energy, gradient != nullptr,

@@ -1,6 +1,7 @@
 #include "sim/state.h"
 
 #include "base/hash.h"
+#include "base/trace.h"
 
 namespace supple {
 
@@ -13,6 +14,7 @@ Positions in_input_order(const Model& model, const Positions& internal) {
 }
 
 std::uint64_t state_hash(const Model& model, const State& state) {
+  const Zone zone("hash");
   Positions both(2 * model.vertices, 3);
   both.topRows(model.vertices) = in_input_order(model, state.x);
   both.bottomRows(model.vertices) = in_input_order(model, state.v);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/timing.h"
+#include "base/trace.h"
 #include "sim/lbfgs.h"
 #include "sim/line_search.h"
 
@@ -67,6 +68,7 @@ struct Descent {
 
 // A direction that leads downhill: what the rule says, or what it says once it has forgotten what it learned.
 Descent next_direction(const Model& model, const FrameInputs& inputs, Workspace& w, SearchRule& rule) {
+  const Zone zone("direction");
   for (;;) {
     const double slope = rule.direction(model, inputs, w);
     if (below_resolution(model, w)) return {true, slope};
@@ -109,6 +111,7 @@ void iterate(const Model& model, const FrameInputs& inputs, Workspace& w, Search
       break;
     }
     watch.lap_ms();
+    Zone zone("line search");
     Change change{};
     IterationRecord record;
     if (solver.line_search == LineSearch::none) {
@@ -131,6 +134,7 @@ void iterate(const Model& model, const FrameInputs& inputs, Workspace& w, Search
       }
     }
     report.evaluate_ms += watch.lap_ms();
+    zone.next("accept");
     rule.accepted(model, inputs, w);
     if (has_colliders(inputs)) {
       const int changes = w.contact.counts.changes;
@@ -200,6 +204,7 @@ void set_staying(const Model& model, const FrameInputs& inputs, const State& sta
 // potential, which staying has none of, does not count.
 void descend_from_staying(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w,
                           SearchRule& rule) {
+  const Zone zone("check staying");
   StepReport& report = w.report;
   const double rubbed = friction_energy(w.contact.found, w.contact.stick_length, w.x);
   const double reached = report.objective.back() - rubbed;
@@ -257,13 +262,18 @@ const StepReport& step(const Model& model, const FrameInputs& inputs, State& sta
 
 const StepReport& step(const Model& model, const FrameInputs& inputs, State& state, Workspace& w, SearchRule& rule) {
   w.since_entry = Stopwatch();
+  const Zone step_zone("step", model.name);
+  Zone zone("begin step");
   w.prepare(model, inputs.solver);
   StepReport& report = w.report;
   clear(report);
   begin_step(model, inputs, state, w);
+  zone.next("first iterate");
   const double above_start = set_first_iterate(model, inputs, state, w);
   report.start_ms = w.since_entry.elapsed_ms();
+  zone.next("iterate");
   iterate(model, inputs, w, rule, 0);
+  zone.next("end step");
   if (!report.failed && inputs.solver.line_search != LineSearch::none)
     descend_from_staying(model, inputs, state, w, rule);
   report.error_estimate = as_error(report.remaining_estimate, report.decrease + above_start);

@@ -1,0 +1,146 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "app/film_run.h"
+#include "app/verbs.h"
+#include "base/console.h"
+#include "base/error.h"
+#include "base/hash.h"
+#include "output/whole_file.h"
+#include "output/zone_comparison.h"
+#include "output/zone_table.h"
+
+namespace supple {
+namespace {
+
+struct ProfileRequest {
+  FilmRequest film;
+  int repeats = 10;
+  std::vector<std::string> compared;  // two files, or none
+};
+
+ProfiledRun run_of(const FilmRecord& record) {
+  ProfiledRun run;
+  run.scene = record.scene;
+  run.scene_json = record.info.scene_json;
+  run.replay_json = record.info.replay_json;
+  for (const RunInfo::Mesh& mesh : record.info.meshes) run.meshes.emplace_back(mesh.body, mesh.hash);
+  run.frames = static_cast<int>(record.result.rows.size());
+  run.fps = record.fps;
+  run.threads = record.info.threads;
+  run.pictures = record.info.gl_renderer;
+  run.cpu = cpu_name();
+  run.kernels = record.info.kernel_variant;
+  run.version = program_version();
+  run.build = build_flags();
+  run.state_hash = hash_text_form(record.result.rows.back().state_hash);
+  return run;
+}
+
+long lost_zones(const std::vector<ThreadTrace>& threads) {
+  long lost = 0;
+  for (const ThreadTrace& thread : threads) lost += thread.lost;
+  return lost;
+}
+
+// Leaves the profile in the folder and tells of it.
+void report(const ProfileRequest& request, const ZoneProfile& profile, const std::filesystem::path& folder) {
+  write_whole_file(folder / "zones.json", zones_json(profile));
+  std::string no_plot;
+  const bool plotted = write_plot(frame_time_plot(profile), folder, &no_plot);
+  if (request.film.json) {
+    say(stdout, summary_json(profile));
+  } else if (!request.film.quiet) {
+    say(stdout, fmt::format("\n{}\n  zones    {}\n  trace    {}\n", zone_table(profile),
+                            (folder / "zones.json").string(), (folder / "trace.json").string()));
+    if (plotted) say(stdout, fmt::format("  plot     {}\n", (folder / "frame-times.svg").string()));
+  }
+  if (!plotted && !request.film.quiet) say(stderr, fmt::format("note: {}\n", no_plot));
+}
+
+int profile(const ProfileRequest& request, const std::vector<std::string>& command) {
+  FilmRequest film = request.film;
+  film.trace = film.no_video = true;
+  film.json = film.table = false;
+  std::optional<ZoneCollector> zones;
+  std::filesystem::path folder;
+  int status = 0;
+  for (int repeat = 0; repeat < request.repeats && status == 0; ++repeat) {
+    film.quiet = request.film.quiet || repeat > 0;
+    FilmRecord record;
+    status = run_film(film, command, &record);
+    if (status != 0) break;
+    if (!zones) zones.emplace(run_of(record));
+    if (const long lost = lost_zones(record.trace); lost > 0)
+      throw RunError(fmt::format("{} zones found no room; profile fewer frames (--frames)", lost));
+    zones->add(record.trace);
+    folder = record.folder;
+    if (!request.film.quiet) {
+      say(stderr,
+          fmt::format("repeat {} of {}: {:.1f} s\n", repeat + 1, request.repeats, record.result.wall_ms / 1000));
+    }
+  }
+  if (zones) report(request, zones->result(), folder);
+  return status;
+}
+
+int compare(const ProfileRequest& request) {
+  const std::string &before_name = request.compared[0], &after_name = request.compared[1];
+  const ZoneProfile before = read_zones(before_name), after = read_zones(after_name);
+  std::vector<Problem> problems;
+  for (const std::string& difference : differences(before.run, after.run))
+    problems.push_back({before_name + ", " + after_name, 0, 0, "cannot be compared: " + difference});
+  for (const auto& [name, profile] : {std::pair(before_name, &before), {after_name, &after}}) {
+    if (profile->repeats < least_repeats_compared) {
+      problems.push_back({name, 0, 0,
+                          fmt::format("has {} repeats; a comparison needs {} or more (--repeats)", profile->repeats,
+                                      least_repeats_compared)});
+    }
+  }
+  if (!problems.empty()) throw InputError(problems);
+  const ZoneComparison comparison = compare_zones(before, after);
+  if (request.film.json) {
+    say(stdout, comparison_json(comparison));
+  } else {
+    say(stdout, fmt::format("\n  A {}: {} repeats, supple {}, {}\n  B {}: {} repeats, supple {}, {}\n\n{}", before_name,
+                            before.repeats, before.run.version, before.run.build, after_name, after.repeats,
+                            after.run.version, after.run.build, comparison_text(comparison)));
+  }
+  return 0;
+}
+
+int run(const ProfileRequest& request, const std::vector<std::string>& command) {
+  if (request.compared.empty()) {
+    if (request.film.scene.empty()) throw InputError("profile", "needs a SCENE, or --compare with two zones.json");
+    if (request.film.resume)
+      throw InputError("--resume", "a profile runs the whole film in every repeat: leave it out");
+    return profile(request, command);
+  }
+  if (!request.film.scene.empty())
+    throw InputError("profile " + request.film.scene, "a SCENE and --compare exclude each other");
+  return compare(request);
+}
+
+}  // namespace
+
+void add_profile(CLI::App& app, Action& action, const std::vector<std::string>& command) {
+  auto request = std::make_shared<ProfileRequest>();
+  CLI::App* verb = app.add_subcommand("profile", "Where the time of a scene's frames goes; two profiles compared.");
+  verb->footer(
+      "Examples: supple profile squirrel --frames 100 --no-images --out out/before\n"
+      "          supple profile --compare out/before/zones.json out/after/zones.json\n"
+      "Leaves zones.json, frame-times.svg and trace.json (of the last repeat) beside what render leaves, without a "
+      "video.");
+  verb->add_option("SCENE", request->film.scene, "scene or replay file, or the name of one that ships (supple list)");
+  verb->add_option("--repeats", request->repeats, "how often the scene is run")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  verb->add_option("--compare", request->compared, "two zones.json: what became slower or faster from A to B")
+      ->type_name("A B")
+      ->expected(2);
+  add_film_options(*verb, request->film);
+  verb->callback([&action, request, command] { action = [request, command] { return run(*request, command); }; });
+}
+
+}  // namespace supple

@@ -1,0 +1,82 @@
+// Where a film's time went, zone by zone and frame by frame, over repeats of the same run: from traces, as zones.json,
+// and as a table. docs/profiling.md explains it to users.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/trace.h"
+
+namespace supple {
+
+// What was run: all that two profiles must have in common to be compared, and what they may differ in.
+struct ProfiledRun {
+  std::string scene;                                        // its name
+  std::string scene_json;                                   // as resolved after --set
+  std::string replay_json;                                  // of a replay, its file; else empty
+  std::vector<std::pair<std::string, std::string>> meshes;  // body and XXH64
+  int frames = 0;
+  double fps = 0;
+  int threads = 1;
+  std::string pictures;  // what draws them; empty without
+  std::string cpu, kernels;
+  std::string version, build;  // may differ
+  std::string state_hash;      // of the last frame; may differ
+};
+
+// A zone, under all that it lies in. Frames of a zone that did not run hold zeros.
+struct ZoneTimes {
+  std::string thread;                             // of those that do the same, such as workers, the sum
+  std::string path;                               // "frame/step/iterate/direction"
+  double calls = 0;                               // a frame, on average
+  std::vector<std::vector<double>> ms = {};       // by repeat, then by frame
+  std::vector<std::vector<double>> self_ms = {};  // without the zones within
+
+  int depth() const;
+  std::string name() const;  // the last of the path
+};
+
+// What runs once, before the frames or after them.
+struct SetupTimes {
+  std::string name;
+  std::vector<double> ms;  // by repeat
+};
+
+struct ZoneProfile {
+  ProfiledRun run;
+  int repeats = 0;
+  std::vector<SetupTimes> setup;
+  // The thread that makes the frames first: the frame as a whole, then what lies in it, parents before children.
+  std::vector<ZoneTimes> zones;
+};
+
+// Adds repeats one by one; result() may be asked for once there is one.
+class ZoneCollector {
+ public:
+  explicit ZoneCollector(ProfiledRun run);
+  void add(const std::vector<ThreadTrace>& threads);
+  const ProfiledRun& run() const { return profile_.run; }
+  ZoneProfile result() const;
+
+ private:
+  struct Node {
+    std::string thread, name;
+    int parent;  // -1: none
+    long calls = 0;
+    std::vector<std::vector<double>> ms, self_ms;
+  };
+  int node(const std::string& thread, int parent, const std::string& name);
+  void add_thread(const ThreadTrace& thread, const std::vector<const TraceEvent*>& frames);
+  void add_setup(const TraceEvent& event);
+  void add_rows(const std::string& thread, int parent, const std::string& path, ZoneProfile& profile) const;
+
+  ZoneProfile profile_;
+  std::vector<Node> nodes_;  // parents before children
+};
+
+// zones.json. Reading throws InputError naming the file where it cannot be read or is not such a text.
+std::string zones_json(const ZoneProfile& profile);
+ZoneProfile read_zones(const std::filesystem::path& path);
+
+}  // namespace supple

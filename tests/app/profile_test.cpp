@@ -1,0 +1,127 @@
+// The profiler as a user meets it.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "output/zones.h"
+#include "support/bodies.h"
+#include "support/program.h"
+
+namespace supple {
+namespace {
+
+using test::Result;
+using test::run;
+
+void write_scene(const std::filesystem::path& path) {
+  std::ofstream(path) << R"(frames = 5
+[[body]]
+name = "bar"
+box = { extent = [0.4, 0.1, 0.1], cells = [8, 2, 2] }
+position = [0, 0.3, 0]
+material = { model = "neo-hookean", mu = 1e4, lambda = 4e4 }
+[[body.handles]]
+name = "end"
+select = { box = [[0, 0, 0], [0, 1, 1]] }
+[[collider]]
+name = "floor"
+shape = { half_space = { normal = [0, 1, 0] } }
+[output]
+width = 160
+height = 90
+samples = 1
+)";
+}
+
+TEST(Profile, OfASceneLeavesZonesTraceAndPlot) {
+  const test::TemporaryFolder folder;
+  write_scene(folder.path / "bar.toml");
+  const Result result = run(folder.path, {"profile", "bar.toml", "--repeats", "2", "--threads", "2"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  for (const char* word :
+       {"\n  frame ", "step", "evaluate", "meanwhile, render", "Deadline 33.3 ms: of 8 frames", "build models"})
+    EXPECT_NE(result.out.find(word), std::string::npos) << word << "\n" << result.out;
+  const std::filesystem::path out = folder.path / "out" / "bar";
+  const ZoneProfile profile = read_zones(out / "zones.json");
+  EXPECT_EQ(profile.repeats, 2);
+  EXPECT_EQ(profile.run.frames, 5);
+  EXPECT_FALSE(profile.run.pictures.empty());
+  const ZoneTimes& whole = profile.zones.front();
+  for (int repeat = 0; repeat < 2; ++repeat) {
+    for (int frame = 0; frame < 5; ++frame) {
+      double sum = 0;
+      for (const ZoneTimes& zone : profile.zones) {
+        if (zone.thread == whole.thread) sum += zone.self_ms[repeat][frame];
+        EXPECT_GE(zone.self_ms[repeat][frame], -1e-3) << zone.path;
+      }
+      EXPECT_NEAR(sum, whole.ms[repeat][frame], 0.01);
+    }
+  }
+  const auto trace = nlohmann::json::parse(test::read_file(out / "trace.json"));
+  std::vector<std::string> tracks;
+  for (const auto& event : trace["traceEvents"]) {
+    if (event["name"] == "thread_name") tracks.push_back(event["args"]["name"]);
+  }
+  for (const char* track : {"main", "render", "encode"})
+    EXPECT_NE(std::ranges::find(tracks, track), tracks.end()) << track;
+  EXPECT_TRUE(std::filesystem::exists(out / "frame-times.csv"));
+  EXPECT_EQ(std::filesystem::exists(out / "frame-times.svg"), result.err.find("gnuplot") == std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(out / "video.mp4"));
+}
+
+TEST(Profile, TracesOnlyWhenAskedAndChangesNoResult) {
+  const test::TemporaryFolder folder;
+  write_scene(folder.path / "bar.toml");
+  const std::filesystem::path out = folder.path / "out" / "bar";
+  const auto hashes = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"render", "bar.toml", "--no-images", "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(run(folder.path, arguments).status, 0);
+    std::vector<std::string> list;
+    for (const auto& frame : test::profile_of(out)["frames"]) list.push_back(frame["state_hash"]);
+    return list;
+  };
+  const std::vector<std::string> traced = hashes({"--trace"});
+  EXPECT_TRUE(std::filesystem::exists(out / "trace.json"));
+  EXPECT_EQ(hashes({}), traced);
+  EXPECT_FALSE(std::filesystem::exists(out / "trace.json"));
+}
+
+TEST(Profile, ComparisonsRefuseWhatCannotBeCompared) {
+  const test::TemporaryFolder folder;
+  write_scene(folder.path / "bar.toml");
+  const auto profile = [&](const std::string& out, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"profile", "bar.toml", "--no-images", "--threads",
+                                          "1",       "--json",   "--out",       out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Result result = run(folder.path, arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_GT(nlohmann::json::parse(result.out)["zones"].size(), 5u);
+  };
+  const auto compare = [&](const std::string& a, const std::string& b) {
+    return run(folder.path, {"profile", "--compare", a + "/zones.json", b + "/zones.json"});
+  };
+  profile("a", {"--repeats", "4"});
+  profile("soft", {"--repeats", "3", "--set", "body.bar.material.mu=2e4"});
+  const Result same = compare("a", "a");
+  EXPECT_EQ(same.status, 0) << same.err;
+  EXPECT_NE(same.out.find("No zone became slower or faster beyond the noise."), std::string::npos) << same.out;
+  const Result differ = compare("a", "soft");
+  EXPECT_EQ(differ.status, 2);
+  EXPECT_NE(differ.err.find("cannot be compared: the scenes differ at /body/0/material/mu: 10000.0 and 20000.0"),
+            std::string::npos)
+      << differ.err;
+  EXPECT_NE(differ.err.find("soft/zones.json: has 3 repeats; a comparison needs 4 or more (--repeats)"),
+            std::string::npos)
+      << differ.err;
+  EXPECT_EQ(compare("a", "none").status, 2);
+  EXPECT_EQ(compare("a", "a/../bar.toml/..").status, 2);
+  EXPECT_EQ(run(folder.path, {"profile"}).status, 2);
+  EXPECT_EQ(run(folder.path, {"profile", "bar.toml", "--resume"}).status, 2);
+  EXPECT_EQ(run(folder.path, {"profile", "--compare", "a/zones.json"}).status, 2);
+  EXPECT_EQ(run(folder.path, {"profile", "bar.toml", "--compare", "a/zones.json", "a/zones.json"}).status, 2);
+}
+
+}  // namespace
+}  // namespace supple
