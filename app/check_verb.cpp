@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
+#include "app/film_run.h"
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
 #include "scene/assemble.h"
-#include "scene/scene_reader.h"
 #include "scene/sweep.h"
 #include "scene/warnings.h"
 
@@ -12,12 +12,14 @@ namespace supple {
 namespace {
 
 int check(const std::string& name, const std::vector<std::string>& settings) {
-  const SceneDef scene = load_scene(scene_file(name), assets_folder(), settings);
+  const Script script = Script::load(scene_file(name), assets_folder(), settings);
+  const SceneDef& scene = script.scene();
   if (scene.sweep_points > 0) {
     check_sweep_points(scene_file(name), assets_folder(), settings,
                        load_sweep(scene_file(name), assets_folder(), settings));
   }
   const std::vector<Body> bodies = assemble(scene);
+  try_changes(script, bodies);
   for (const Body& body : bodies) {
     for (const std::string& note : body.notes) say(stdout, fmt::format("note: {}: {}\n", body.source, note));
   }
@@ -36,6 +38,9 @@ int check(const std::string& name, const std::vector<std::string>& settings) {
                             body.def.cloth ? body.description.springs.size() : std::size_t(mesh.tets.rows()),
                             body.def.cloth ? "springs" : "elements", crossing_number(body)));
   }
+  if (script.is_replay())
+    say(stdout, fmt::format("  replay: {} change{}, all possible\n", script.changes().size(),
+                            script.changes().size() == 1 ? "" : "s"));
   if (scene.sweep_points > 0)
     say(stdout,
         fmt::format("  sweep: {} point{}, all readable\n", scene.sweep_points, scene.sweep_points == 1 ? "" : "s"));
@@ -47,9 +52,9 @@ int check(const std::string& name, const std::vector<std::string>& settings) {
 void add_check(CLI::App& app, Action& action) {
   auto name = std::make_shared<std::string>();
   auto settings = std::make_shared<std::vector<std::string>>();
-  CLI::App* verb = app.add_subcommand("check", "Every error and warning of a scene at once; writes nothing.");
+  CLI::App* verb = app.add_subcommand("check", "Every error and warning of a scene or replay at once; writes nothing.");
   verb->footer("Example: supple check my-scene.toml");
-  verb->add_option("SCENE", *name, "scene file, or the name of one that ships")->required();
+  verb->add_option("SCENE", *name, "scene or replay file, or the name of one that ships")->required();
   verb->add_option("--set", *settings, "path=value over the scene's; may be repeated")
       ->take_all()
       ->allow_extra_args(false);

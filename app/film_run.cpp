@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "base/timing.h"
 #include "output/chrome_trace.h"
+#include "output/png_file.h"
 #include "output/whole_file.h"
 #include "scene/scene_reader.h"
 #include "scene/warnings.h"
@@ -144,6 +145,16 @@ std::optional<Checkpoint> checkpoint_in(const std::filesystem::path& run, const 
   return checkpoint;
 }
 
+// The pictures of frames that are not made again.
+void check_pictures(const std::filesystem::path& frames, int count) {
+  for (int frame = 0; frame < count; ++frame) {
+    const std::filesystem::path picture = frames / fmt::format("{:06}.png", frame);
+    if (!looks_whole(picture))
+      throw InputError(picture.string(),
+                       "is missing or damaged, and --resume does not make it again; start anew without --resume");
+  }
+}
+
 RecordHead record_head(const RunInfo& info, const std::vector<Body>& bodies) {
   nlohmann::ordered_json film = {{"scene", nlohmann::ordered_json::parse(info.scene_json)}};
   film["scene"].erase("frames");
@@ -154,17 +165,6 @@ RecordHead record_head(const RunInfo& info, const std::vector<Body>& bodies) {
                   {}};
   for (const Body& body : bodies) head.bodies.push_back({body.def.name, int(body.description.mesh.rest.rows())});
   return head;
-}
-
-// Every frame's changes once, so that what cannot be is said before the film begins.
-void try_changes(const Script& script, std::vector<Body> bodies) {
-  for (int frame = 0; frame < script.scene().frames; ++frame) {
-    const std::vector<const TimedChange*> at_work = script.at_work(frame);
-    if (std::none_of(at_work.begin(), at_work.end(), [](const TimedChange* change) { return change->cost.factor; }))
-      continue;
-    const SceneDef scene = script.scene_at(frame);
-    for (std::size_t b = 0; b < bodies.size(); ++b) update_body(bodies[b], scene, scene.bodies[b]);
-  }
 }
 
 void add_result(const FilmResult& result, RunInfo& info) {
@@ -201,6 +201,16 @@ int say_result(const FilmRequest& request, const FilmResult& result, const RunFo
 }
 
 }  // namespace
+
+void try_changes(const Script& script, std::vector<Body> bodies) {
+  for (int frame = 0; frame < script.scene().frames; ++frame) {
+    const std::vector<const TimedChange*> at_work = script.at_work(frame);
+    if (std::none_of(at_work.begin(), at_work.end(), [](const TimedChange* change) { return change->cost.factor; }))
+      continue;
+    const SceneDef scene = script.scene_at(frame);
+    for (std::size_t b = 0; b < bodies.size(); ++b) update_body(bodies[b], scene, scene.bodies[b]);
+  }
+}
 
 void add_film_options(CLI::App& verb, FilmRequest& request) {
   verb.add_option("--out", request.out, "folder for the results [out/NAME]");
@@ -286,6 +296,7 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
   options.checkpoint_every = remembers_steps(script) ? 0 : request.checkpoint_every;
   if (request.resume) options.start = checkpoint_in(path, options.identity, scene.frames);
   const int start = options.start ? options.start->frames : 0;
+  if (options.images && !request.last_image_only) check_pictures(path / "frames", start);
   options.record = request.record;
   options.record_head = record_head(info, bodies);
   std::optional<StateVerifier> verifier;

@@ -45,6 +45,9 @@ struct FilmRecord {
   std::vector<ThreadTrace> trace;  // when one was asked for
 };
 
+// Every change of a script once, so that what cannot be is said before anything is written. Throws InputError.
+void try_changes(const Script& script, std::vector<Body> bodies);
+
 // Runs it and tells how it went; returns the exit status. command: as it was called, for run.json. record: null when
 // nobody asks.
 int run_film(const FilmRequest& request, const std::vector<std::string>& command, FilmRecord* record = nullptr);

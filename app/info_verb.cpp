@@ -14,9 +14,11 @@ namespace supple {
 namespace {
 
 // The kind of thing goes by what it is on the disk: a folder, a .mesh file, else a scene.
-int inform(const std::string& input) {
+int inform(const std::string& input, bool live) {
   std::error_code error;
   const std::filesystem::path path = input;
+  const bool scene_wanted = live && (std::filesystem::is_directory(path, error) || path.extension() == ".mesh");
+  if (scene_wanted) throw InputError(input, "is no scene: --live lists what of a scene can change");
   if (std::filesystem::is_directory(path, error)) {
     say(stdout, run_summary(read_run(path)));
     return 0;
@@ -30,6 +32,10 @@ int inform(const std::string& input) {
   const std::filesystem::path scene = scene_file(input);
   if (scene.extension() != ".toml")
     throw InputError(input, "neither a MEDIT .mesh file, a scene (.toml, or a name of supple list) nor a run's folder");
+  if (live) {
+    say(stdout, live_summary(scene));
+    return 0;
+  }
   say(stdout, scene_summary(scene, static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))));
   return 0;
 }
@@ -38,14 +44,17 @@ int inform(const std::string& input) {
 
 void add_info(CLI::App& app, Action& action) {
   auto input = std::make_shared<std::string>();
+  auto live = std::make_shared<bool>(false);
   CLI::App* verb = app.add_subcommand("info", "What is in a mesh, a scene or the folder of a run.");
   verb->footer(
-      "Examples: supple info squirrel.mesh, supple info squirrel, supple info out/squirrel\n"
+      "Examples: supple info squirrel.mesh, supple info squirrel, supple info --live squirrel, supple info "
+      "out/squirrel\n"
       "Of a scene the first frames are simulated, to tell what one costs here; nothing is written.");
   verb->add_option("SCENE|MESH|RUN", *input,
                    "MEDIT .mesh file, scene file or the name of one that ships, or a folder that supple render left")
       ->required();
-  verb->callback([&action, input] { action = [input] { return inform(*input); }; });
+  verb->add_flag("--live", *live, "list what of a scene can change while it runs, and what that costs");
+  verb->callback([&action, input, live] { action = [input, live] { return inform(*input, *live); }; });
 }
 
 }  // namespace supple

@@ -3,6 +3,7 @@
 #include "app/verbs.h"
 #include "base/console.h"
 #include "scene/scene_reader.h"
+#include "scene/script.h"
 
 namespace supple {
 namespace {
@@ -12,13 +13,18 @@ int list_scenes() {
     const SceneDef scene = load_scene(assets_folder() / "scenes" / (name + ".toml"), assets_folder(), {});
     say(stdout, fmt::format("{:<22}{}\n", scene.name, scene.title));
   }
+  say(stdout, "\nReplays, for supple replay:\n");
+  for (const std::string& name : shipped_names("replays")) {
+    const Script script = Script::load(assets_folder() / "replays" / (name + ".toml"), assets_folder(), {});
+    say(stdout, fmt::format("{:<22}{}\n", name, script.scene().title));
+  }
   return 0;
 }
 
 }  // namespace
 
 void add_list(CLI::App& app, Action& action) {
-  CLI::App* verb = app.add_subcommand("list", "The scenes that ship, a line each.");
+  CLI::App* verb = app.add_subcommand("list", "The scenes and replays that ship, a line each.");
   verb->footer("Example: supple list");
   verb->callback([&action] { action = list_scenes; });
 }

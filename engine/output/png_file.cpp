@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 #include <png.h>
+#include <fstream>
+#include <string_view>
 
 #include <cerrno>
 #include <cstring>
@@ -47,6 +49,16 @@ void write_png(const std::filesystem::path& path, int width, int height, std::sp
   for (int y = 0; y < height; ++y) png_write_row(png, rgb.data() + std::size_t(y) * width * 3);
   png_write_end(png, nullptr);
   write_whole_file(path, bytes);
+}
+
+bool looks_whole(const std::filesystem::path& png) {
+  constexpr std::string_view begin = "\x89PNG\r\n\x1a\n", end("\0\0\0\0IEND\xae\x42\x60\x82", 12);
+  std::ifstream file(png, std::ios::binary);
+  char head[begin.size()] = {}, tail[end.size()] = {};
+  file.read(head, sizeof head);
+  file.seekg(-static_cast<std::streamoff>(sizeof tail), std::ios::end);
+  file.read(tail, sizeof tail);
+  return file && std::string_view(head, sizeof head) == begin && std::string_view(tail, sizeof tail) == end;
 }
 
 PngImage read_png(const std::filesystem::path& path) {

@@ -21,4 +21,7 @@ struct PngImage {
 // Any PNG as 8-bit RGB. Throws InputError.
 PngImage read_png(const std::filesystem::path& path);
 
+// Whether a file begins and ends as a PNG does; what lies between is not read.
+bool looks_whole(const std::filesystem::path& png);
+
 }  // namespace supple

@@ -70,7 +70,7 @@ ChangeCost& ChangeCost::operator|=(const ChangeCost& other) {
 }
 
 const char* ChangeCost::text() const {
-  return factor ? "a new factor" : rule ? "the method starts anew" : surface ? "a new drawn surface" : "nothing";
+  return factor ? "a new factor" : rule ? "the method starts anew" : surface ? "a new drawn surface" : "";
 }
 
 std::string generic_path(const std::string& path) {

@@ -16,7 +16,7 @@ struct ChangeCost {
   bool surface = false;  // the drawn surface of a collider
 
   ChangeCost& operator|=(const ChangeCost& other);
-  const char* text() const;  // for people
+  const char* text() const;  // for people; empty for nothing
 };
 
 // Of a path as --set takes it ("body.soft.material.mu"); nothing where the value is fixed for a film.

@@ -1,0 +1,49 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/summary.h"
+#include "app/verbs.h"
+#include "base/timing.h"
+#include "scene/assemble.h"
+#include "scene/script.h"
+#include "sim/model_values.h"
+
+namespace supple {
+namespace {
+
+// Least of three, on this machine [ms].
+double cost_of_factor(const Body& body) {
+  Model model = build_model(body.description);
+  ModelValues values(model, body.description);
+  double least = 0;
+  for (int repeat = 0; repeat < 3; ++repeat) {
+    const Stopwatch watch;
+    values.set(model, body.description);
+    least = repeat == 0 ? watch.elapsed_ms() : std::min(least, watch.elapsed_ms());
+  }
+  return least;
+}
+
+}  // namespace
+
+std::string live_summary(const std::filesystem::path& file) {
+  const Script script = Script::load(file, assets_folder(), {});
+  const std::vector<LiveKey> live = script.live();
+  std::size_t widest = 0;
+  for (const LiveKey& key : live) widest = std::max(widest, key.key.path.size());
+  std::string text = fmt::format("{:<{}}  {:<14} {:<10} now; what is allowed; what a change asks for\n", "path", widest,
+                                 "type", "unit");
+  for (const auto& [key, cost] : live) {
+    const std::string value = key.type == "table" ? "" : key.value + "; ";
+    const char* asks = cost.text();
+    text += fmt::format("{:<{}}  {:<14} {:<10} {}{}{}{}\n", key.path, widest, key.type, key.unit, value, key.allowed,
+                        *asks == '\0' ? "" : "; ", asks);
+  }
+  text += "\nWhole tables may change too, such as a body's material or a handle's keys.\n";
+  for (const Body& body : assemble(script.scene()))
+    text += fmt::format("A new factor of '{}' takes {:.1f} ms here.\n", body.def.name, cost_of_factor(body));
+  return text;
+}
+
+}  // namespace supple

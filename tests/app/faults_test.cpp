@@ -1,0 +1,101 @@
+// What goes wrong outside: the disk, ffmpeg, files that somebody damaged. A message, a status, and nothing lost.
+#include <sys/stat.h>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "output/png_file.h"
+#include "output/whole_file.h"
+#include "support/bodies.h"
+#include "support/program.h"
+
+namespace supple {
+namespace {
+
+using test::Result;
+using test::run;
+
+class Faults : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::ofstream(folder_.path / "bar.toml") << R"(frames = 8
+[[body]]
+name = "bar"
+box = { extent = [0.4, 0.1, 0.1], cells = [8, 2, 2] }
+material = "jelly"
+[[body.handles]]
+name = "end"
+select = { box = [[0, 0, 0], [0.1, 1, 1]] }
+[output]
+width = 96
+height = 64
+samples = 1
+)";
+  }
+  // The program by the shell, with what the shell does before.
+  Result in_shell(const std::string& before, const std::string& arguments) const {
+    const std::string command = fmt::format("cd '{}' && {} '{}' {} > stdout.txt 2> stderr.txt", folder_.path.string(),
+                                            before, SUPPLE_PROGRAM, arguments);
+    const int status = std::system(fmt::format("bash -c \"{}\"", command).c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, test::read_file(folder_.path / "stdout.txt"),
+            test::read_file(folder_.path / "stderr.txt")};
+  }
+  void expect_whole_frames(int count) const {
+    const std::filesystem::path frames = folder_.path / "out" / "bar" / "frames";
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(frames), {}), count);
+    for (int frame = 0; frame < count; ++frame) EXPECT_TRUE(looks_whole(frames / fmt::format("{:06}.png", frame)));
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(Faults, WithoutFfmpegTheFramesAreWholeAndThePackageIsNamed) {
+  const Result result = in_shell("PATH=/nowhere", "render bar.toml");
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("ffmpeg is not installed (Debian: ffmpeg)"), std::string::npos) << result.out;
+  expect_whole_frames(8);
+}
+
+TEST_F(Faults, AKilledFfmpegIsToldAndTheFramesAreWhole) {
+  std::filesystem::create_directory(folder_.path / "bin");
+  std::ofstream(folder_.path / "bin" / "ffmpeg") << "#!/bin/sh\nkill -9 $$\n";
+  chmod((folder_.path / "bin" / "ffmpeg").c_str(), 0755);
+  const Result result = in_shell("PATH=\\$PWD/bin:\\$PATH", "render bar.toml");
+  EXPECT_EQ(result.status, 1) << result.err;
+  EXPECT_NE(result.err.find("no film: ffmpeg"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("the frames are whole"), std::string::npos) << result.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_.path / "out" / "bar" / "video.mp4"));
+  expect_whole_frames(8);
+}
+
+// No file may become longer than the limit: what a full disk looks like to the program.
+TEST_F(Faults, AFullDiskEndsTheRunWithWhatWasWritten) {
+  const Result result = in_shell("trap '' XFSZ; ulimit -f 8; ", "render bar.toml --no-video");
+  EXPECT_EQ(result.status, 1) << result.err;
+  EXPECT_NE(result.err.find("cannot be written: File too large"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("kept: "), std::string::npos) << result.err;
+}
+
+TEST_F(Faults, AFolderThatCannotBeWrittenIsNamed) {
+  const Result result = in_shell("", "render bar.toml --out /proc/here");
+  EXPECT_EQ(result.status, 1) << result.err;
+  EXPECT_EQ(result.err.substr(result.err.rfind("supple: ")),
+            "supple: /proc/here/frames: cannot be made: No such file or directory\n");
+}
+
+TEST_F(Faults, ADamagedFrameIsFoundBeforeGoingOn) {
+  ASSERT_EQ(run(folder_.path, {"render", "bar.toml", "--no-video", "--quiet"}).status, 0);
+  const std::filesystem::path frame = folder_.path / "out" / "bar" / "frames" / "000003.png";
+  write_whole_file(frame, std::string_view("x"));
+  EXPECT_FALSE(looks_whole(frame));
+  const Result result = run(folder_.path, {"render", "bar.toml", "--no-video", "--resume", "--frames", "10"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("000003.png: is missing or damaged"), std::string::npos) << result.err;
+  EXPECT_EQ(test::profile_of(folder_.path / "out" / "bar")["frames"].size(), 8u);  // all else is as it was
+}
+
+}  // namespace
+}  // namespace supple
