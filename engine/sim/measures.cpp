@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <utility>
 
@@ -20,6 +21,21 @@ double largest_eigenvalue(const Mat3& c) {
   if (p < 1e-150) return mean;
   const double r = std::clamp((d / p).determinant() / 2, -1.0, 1.0);
   return mean + 2 * p * std::cos(std::acos(r) / 3);
+}
+
+// The value above which values of a given weight lie, of pairs of value and weight. Only the top is sorted.
+double weighted_top(std::vector<std::pair<double, double>>& pairs, double weight_above) {
+  for (std::size_t count = pairs.size() / 256 + 64;; count *= 2) {
+    const auto end = pairs.begin() + static_cast<std::ptrdiff_t>(std::min(count, pairs.size()));
+    std::partial_sort(pairs.begin(), end, pairs.end(), std::greater<>());
+    double above = 0, value = 0;
+    for (auto pair = pairs.begin(); pair != end; ++pair) {
+      value = pair->first;
+      above += pair->second;
+      if (above > weight_above) return value;
+    }
+    if (end == pairs.end()) return value;
+  }
 }
 
 }  // namespace
@@ -52,13 +68,7 @@ Deformation deformation(const Model& model, const Positions& x) {
     result.inverted =
         static_cast<int>(std::count_if(inverted.begin(), inverted.end(), [least](double v) { return v > least; }));
   }
-  std::sort(stretches.begin(), stretches.end());
-  double below = 0;
-  for (const auto& [value, weight] : stretches) {
-    below += weight;
-    result.stretch = value;
-    if (below >= 0.999 * total) break;
-  }
+  result.stretch = weighted_top(stretches, 0.001 * total);
   return result;
 }
 
