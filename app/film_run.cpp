@@ -253,6 +253,13 @@ void add_film_options(CLI::App& verb, FilmRequest& request) {
   verb.add_flag("--json", request.json, "the result as one line of JSON on standard output");
 }
 
+void add_film(CLI::App& verb, const FilmArgument& argument, Action& action, const std::vector<std::string>& command) {
+  auto request = std::make_shared<FilmRequest>();
+  verb.add_option(argument.name, request->scene, argument.meaning)->required();
+  add_film_options(verb, *request);
+  verb.callback([&action, request, command] { action = [request, command] { return run_film(*request, command); }; });
+}
+
 int run_film(const FilmRequest& request, const std::vector<std::string>& command, FilmRecord* record) {
   name_thread("main");
   if (request.trace) start_trace();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/frame_loop.h"
+#include "app/verbs.h"
 #include "base/trace.h"
 
 namespace supple {
@@ -44,6 +45,12 @@ struct FilmRecord {
   FilmResult result;
   std::vector<ThreadTrace> trace;  // when one was asked for
 };
+
+// Makes a verb one that films what its argument names.
+struct FilmArgument {
+  const char *name, *meaning;
+};
+void add_film(CLI::App& verb, const FilmArgument& argument, Action& action, const std::vector<std::string>& command);
 
 // Every change of a script once, so that what cannot be is said before anything is written. Throws InputError.
 void try_changes(const Script& script, std::vector<Body> bodies);

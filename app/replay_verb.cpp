@@ -4,15 +4,12 @@
 namespace supple {
 
 void add_replay(CLI::App& app, Action& action, const std::vector<std::string>& command) {
-  auto request = std::make_shared<FilmRequest>();
   CLI::App* verb = app.add_subcommand("replay", "Film a scene whose parameters change while it runs.");
   verb->footer(
       "Example: supple replay softening --record first.rec && supple replay softening --verify first.rec\n"
       "A replay names a scene and timed changes: docs/replays.md. `supple info --live SCENE` lists what can change.\n"
       "Leaves what `supple render` leaves.");
-  verb->add_option("REPLAY", request->scene, "replay file, or the name of one that ships (supple list)")->required();
-  add_film_options(*verb, *request);
-  verb->callback([&action, request, command] { action = [request, command] { return run_film(*request, command); }; });
+  add_film(*verb, {"REPLAY", "replay file, or the name of one that ships (supple list)"}, action, command);
 }
 
 }  // namespace supple

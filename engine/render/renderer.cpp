@@ -66,13 +66,13 @@ Renderer::Renderer(const Stage& stage, GlChoice choice, const std::filesystem::p
   gl_.GenVertexArrays(1, &empty_array_);
   make_targets();
   check_test_triangle();
-  for (const DrawMesh& mesh : stage_.meshes) meshes_.push_back(make_mesh(mesh));
+  for (const DrawMesh& mesh : stage_.meshes) meshes_.push_back(make_mesh_buffers(gl_, mesh));
   make_labels();
   check_gl(gl_, "preparing the stage");
 }
 
 Renderer::~Renderer() {
-  for (const MeshBuffers& mesh : meshes_) delete_mesh(mesh);
+  for (const MeshBuffers& mesh : meshes_) delete_mesh_buffers(gl_, mesh);
   for (Label& label : labels_) gl_.DeleteTextures(1, &label.texture);
   for (const GLuint program :
        {body_program_, ground_program_, shadow_program_, label_program_, backdrop_program_, layer_program_}) {
@@ -181,52 +181,6 @@ void Renderer::check_test_triangle() {
   }
 }
 
-void Renderer::delete_mesh(const MeshBuffers& mesh) {
-  const GLuint buffers[] = {mesh.positions, mesh.normals, mesh.fixed, mesh.indices};
-  gl_.DeleteBuffers(4, buffers);
-  gl_.DeleteVertexArrays(1, &mesh.array);
-}
-
-Renderer::MeshBuffers Renderer::make_mesh(const DrawMesh& mesh) {
-  MeshBuffers buffers;
-  buffers.vertices = mesh.occlusion.size();
-  buffers.count = static_cast<GLsizei>(mesh.triangles.size());
-  gl_.GenVertexArrays(1, &buffers.array);
-  gl_.BindVertexArray(buffers.array);
-  const auto attribute = [&](GLuint index, GLint size, GLsizei stride, std::size_t offset) {
-    gl_.EnableVertexAttribArray(index);
-    gl_.VertexAttribPointer(index, size, GL_FLOAT, GL_FALSE, stride, reinterpret_cast<const void*>(offset));
-  };
-  for (auto [buffer, index] : {std::pair{&buffers.positions, 0u}, {&buffers.normals, 1u}}) {
-    gl_.GenBuffers(1, buffer);
-    gl_.BindBuffer(GL_ARRAY_BUFFER, *buffer);
-    gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(buffers.vertices * 3 * sizeof(float)), nullptr,
-                   GL_STREAM_DRAW);
-    attribute(index, 3, 0, 0);
-  }
-  std::vector<float> fixed;
-  for (std::size_t v = 0; v < buffers.vertices; ++v) {
-    fixed.push_back(mesh.occlusion[v]);
-    fixed.insert(fixed.end(), mesh.paint[v].begin(), mesh.paint[v].end());
-    const std::array<float, 2> square = mesh.square.empty() ? std::array<float, 2>{} : mesh.square[v];
-    fixed.insert(fixed.end(), square.begin(), square.end());
-  }
-  gl_.GenBuffers(1, &buffers.fixed);
-  gl_.BindBuffer(GL_ARRAY_BUFFER, buffers.fixed);
-  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(fixed.size() * sizeof(float)), fixed.data(), GL_STATIC_DRAW);
-  constexpr GLsizei stride = 11 * sizeof(float);
-  attribute(2, 1, stride, 0);
-  attribute(3, 4, stride, sizeof(float));
-  attribute(4, 4, stride, 5 * sizeof(float));
-  attribute(5, 2, stride, 9 * sizeof(float));
-  gl_.GenBuffers(1, &buffers.indices);
-  gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers.indices);
-  gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.triangles.size() * sizeof(std::uint32_t)),
-                 mesh.triangles.data(), GL_STATIC_DRAW);
-  gl_.BindVertexArray(0);
-  return buffers;
-}
-
 void Renderer::make_labels() {
   if (stage_.font.empty()) return;
   const int pixels = std::max(9, static_cast<int>(std::lround(stage_.height / 32.0)));
@@ -249,8 +203,8 @@ void Renderer::make_labels() {
 
 void Renderer::upload(const DrawList& list) {
   for (const auto& [m, mesh] : list.renewed) {
-    delete_mesh(meshes_[m]);
-    meshes_[m] = make_mesh(mesh);
+    delete_mesh_buffers(gl_, meshes_[m]);
+    meshes_[m] = make_mesh_buffers(gl_, mesh);
     stage_.meshes[m] = mesh;
   }
   SUPPLE_CHECK(list.positions.size(), ==, meshes_.size());

@@ -10,6 +10,7 @@
 #include "render/gl_context.h"
 #include "render/gl_table.h"
 #include "render/ground_occlusion.h"
+#include "render/mesh_buffers.h"
 
 namespace supple {
 
@@ -28,12 +29,6 @@ class Renderer {
   const std::string& version() const { return version_; }  // GL_VERSION
 
  private:
-  struct MeshBuffers {
-    GLuint array = 0, positions = 0, normals = 0, fixed = 0, indices = 0;
-    GLsizei count = 0;
-    std::size_t vertices = 0;
-    std::vector<float> normal_data;
-  };
   struct Target {
     GLuint framebuffer = 0, color = 0, depth = 0;  // depth only where bodies are drawn
   };
@@ -44,8 +39,6 @@ class Renderer {
   };
 
   void make_targets();
-  MeshBuffers make_mesh(const DrawMesh& mesh);
-  void delete_mesh(const MeshBuffers& mesh);
   void make_labels();
   void check_test_triangle();
   void upload(const DrawList& list);

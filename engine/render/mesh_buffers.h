@@ -1,0 +1,20 @@
+// A drawn surface in OpenGL's memory: positions and normals that change each frame, and what stays.
+#pragma once
+
+#include "render/draw_list.h"
+#include "render/gl_table.h"
+
+namespace supple {
+
+struct MeshBuffers {
+  GLuint array = 0, positions = 0, normals = 0, fixed = 0, indices = 0;
+  GLsizei count = 0;
+  std::size_t vertices = 0;
+  std::vector<float> normal_data;
+};
+
+// Positions and normals are uploaded later.
+MeshBuffers make_mesh_buffers(const GlTable& gl, const DrawMesh& mesh);
+void delete_mesh_buffers(const GlTable& gl, const MeshBuffers& mesh);
+
+}  // namespace supple
