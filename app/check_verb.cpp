@@ -27,7 +27,7 @@ int check(const std::string& name, const std::vector<std::string>& settings) {
     for (const std::string& note : collider.shape.notes)
       say(stdout, fmt::format("note: collider '{}': {}\n", collider.name, note));
   }
-  const std::vector<Problem> list = warnings(scene, bodies);
+  const std::vector<Problem> list = all_warnings(script, bodies);
   for (const Problem& warning : list) say(stdout, fmt::format("warning: {}\n", warning.text()));
   say(stdout,
       fmt::format("{}: no errors, {} warning{}; {} frames, {} {}\n", scene.name, list.size(),

@@ -14,6 +14,7 @@
 #include "base/timing.h"
 #include "output/chrome_trace.h"
 #include "output/png_file.h"
+#include "output/run_record.h"
 #include "output/whole_file.h"
 #include "scene/scene_reader.h"
 #include "scene/warnings.h"
@@ -37,9 +38,11 @@ std::string mesh_hash(const Body& body) {
 void print_result(const FilmResult& result, const RunFolder& folder, const SceneDef& scene) {
   say(stdout, fmt::format("\n{}\n", profile_table(result.rows)));
   const double seconds = result.wall_ms / 1000;
-  say(stdout, fmt::format("  {} frames in {} ({:.1f} a second; the film's rate is {:g}), after {} of set-up\n",
-                          result.rows.size(), duration_text(seconds), static_cast<double>(result.rows.size()) / seconds,
-                          scene.fps, duration_text(result.setup_ms / 1000)));
+  const int made = static_cast<int>(result.rows.size()) - result.kept_frames;
+  const std::string kept = result.kept_frames > 0 ? fmt::format(" behind {} from before", result.kept_frames) : "";
+  const std::string rate = made > 0 ? fmt::format("{:.1f} a second; ", made / seconds) : "";
+  say(stdout, fmt::format("  {} frames{} in {} ({}the film's rate is {:g}), after {} of set-up\n", made, kept,
+                          duration_text(seconds), rate, scene.fps, duration_text(result.setup_ms / 1000)));
   if (result.video_written) say(stdout, fmt::format("  film     {}\n", folder.video().string()));
   if (!result.video_message.empty() && !result.video_failed) say(stdout, fmt::format("  {}\n", result.video_message));
   say(stdout, fmt::format("  profile  {}\n", (folder.path() / "profile.json").string()));
@@ -70,13 +73,24 @@ void check_save_states(const std::vector<int>& frames, const SceneDef& scene) {
   }
 }
 
+}  // namespace
+
+std::vector<Problem> all_warnings(const Script& script, const std::vector<Body>& bodies) {
+  std::vector<Problem> list = warnings(script.scene(), bodies), of_time = script.warnings();
+  list.insert(list.end(), of_time.begin(), of_time.end());
+  return list;
+}
+
+namespace {
+
 // Warnings, and what reading meshes had to say.
-void say_remarks(const SceneDef& scene, const std::vector<Body>& bodies) {
+void say_remarks(const Script& script, const std::vector<Body>& bodies) {
+  const SceneDef& scene = script.scene();
   if (scene.sweep_points > 0) {
     say(stderr, fmt::format("note: the scene has a sweep of {} points, which this leaves aside: supple sweep runs it\n",
                             scene.sweep_points));
   }
-  for (const Problem& warning : warnings(scene, bodies)) say(stderr, fmt::format("warning: {}\n", warning.text()));
+  for (const Problem& warning : all_warnings(script, bodies)) say(stderr, fmt::format("warning: {}\n", warning.text()));
   for (const Body& body : bodies) {
     for (const std::string& note : body.notes) say(stderr, fmt::format("note: {}: {}\n", body.source, note));
   }
@@ -192,9 +206,9 @@ int say_result(const FilmRequest& request, const FilmResult& result, const RunFo
   if (!unrecorded.empty()) say(stderr, fmt::format("supple: {}\n", unrecorded));
   if (result.video_failed) say(stderr, fmt::format("supple: {}\n", result.video_message));
   if (result.end == FilmEnd::interrupted) {
-    say(stderr,
-        fmt::format("supple: interrupted after {} frames; they are whole, and so is what belongs to them in {}\n",
-                    result.rows.size(), folder.path().string()));
+    say(stderr, fmt::format("supple: interrupted after {} frames; they are whole, and so is what belongs to them in "
+                            "{}; --resume goes on\n",
+                            result.rows.size(), folder.path().string()));
     return 130;
   }
   return result.end == FilmEnd::done && !result.video_failed && unrecorded.empty() ? 0 : 1;
@@ -260,6 +274,16 @@ void add_film(CLI::App& verb, const FilmArgument& argument, Action& action, cons
   verb.callback([&action, request, command] { action = [request, command] { return run_film(*request, command); }; });
 }
 
+namespace {
+
+// Where the film in a folder was gone on with before.
+std::vector<int> resumed_before(const std::filesystem::path& run) {
+  const nlohmann::ordered_json info = read_run(run).info;
+  return info.contains("resumed_at") ? info["resumed_at"].get<std::vector<int>>() : std::vector<int>();
+}
+
+}  // namespace
+
 int run_film(const FilmRequest& request, const std::vector<std::string>& command, FilmRecord* record) {
   name_thread("main");
   if (request.trace) start_trace();
@@ -278,7 +302,7 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
   check_save_states(request.save_states, scene);
   zone.next("assemble meshes");
   std::vector<Body> bodies = assemble(scene);
-  if (!request.quiet) say_remarks(scene, bodies);
+  if (!request.quiet) say_remarks(script, bodies);
   try_changes(script, bodies);
   zone.next("build models");
   std::vector<Model> models;
@@ -306,6 +330,10 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
   if (options.images && !request.last_image_only) check_pictures(path / "frames", start);
   options.record = request.record;
   options.record_head = record_head(info, bodies);
+  std::error_code ignored;
+  if (!request.record.empty() && !request.verify.empty() &&
+      (request.record == request.verify || std::filesystem::equivalent(request.record, request.verify, ignored)))
+    throw InputError("--record " + request.record, "is the file to --verify with, which would be overwritten");
   std::optional<StateVerifier> verifier;
   if (!request.verify.empty()) {
     verifier.emplace(request.verify, options.record_head, request.tolerance, start);
@@ -314,6 +342,7 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
   }
   const RunFolder folder(path, start);
   info.ended = "running";
+  if (start > 0) info.resumed = resumed_before(path);
   if (start > 0) info.resumed.push_back(start);
   folder.write_info(info);
 

@@ -55,6 +55,9 @@ void add_film(CLI::App& verb, const FilmArgument& argument, Action& action, cons
 // Every change of a script once, so that what cannot be is said before anything is written. Throws InputError.
 void try_changes(const Script& script, std::vector<Body> bodies);
 
+// What is legal and unwise about a scene and its changes.
+std::vector<Problem> all_warnings(const Script& script, const std::vector<Body>& bodies);
+
 // Runs it and tells how it went; returns the exit status. command: as it was called, for run.json. record: null when
 // nobody asks.
 int run_film(const FilmRequest& request, const std::vector<std::string>& command, FilmRecord* record = nullptr);

@@ -286,6 +286,7 @@ FilmResult make_film(const Script& script, std::vector<Body>& bodies, std::vecto
       if (result.message.empty()) result.message = error.what();
     }
     result.rows = film->log().rows();
+    result.kept_frames = options.start ? options.start->frames : 0;
   }
   progress.end();
   result.wall_ms = loop.elapsed_ms();

@@ -42,6 +42,7 @@ struct FilmResult {
   FilmEnd end = FilmEnd::done;
   std::string message;         // why it failed, for people
   std::vector<FrameRow> rows;  // of finished frames
+  int kept_frames = 0;         // of them, of an earlier run
   std::string gl_backend, gl_renderer, gl_version;
   std::string video_message;  // why there is no film
   bool video_written = false;

@@ -1,12 +1,16 @@
 #include <fmt/format.h>
+#include <sys/wait.h>
 
 #include <memory>
+#include <optional>
 
 #include "app/film_run.h"
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/timing.h"
+#include "output/child_program.h"
 #include "output/whole_file.h"
 #include "output/zone_comparison.h"
 #include "output/zone_table.h"
@@ -59,34 +63,73 @@ void report(const ProfileRequest& request, const ZoneProfile& profile, const std
   if (!plotted && !request.film.quiet) say(stderr, fmt::format("note: {}\n", no_plot));
 }
 
-int profile(const ProfileRequest& request, const std::vector<std::string>& command) {
+// One run in this process.
+int profile_once(const ProfileRequest& request, const std::vector<std::string>& command) {
   FilmRequest film = request.film;
   film.trace = film.no_video = true;
   film.json = film.table = false;
-  std::optional<ZoneCollector> zones;
-  std::filesystem::path folder;
-  int status = 0;
-  for (int repeat = 0; repeat < request.repeats && status == 0; ++repeat) {
-    film.quiet = request.film.quiet || repeat > 0;
-    FilmRecord record;
-    status = run_film(film, command, &record);
-    if (status != 0) break;
-    if (!zones) zones.emplace(run_of(record));
-    if (const long lost = lost_zones(record.trace); lost > 0)
-      throw RunError(fmt::format("{} zones found no room; profile fewer frames (--frames)", lost));
-    zones->add(record.trace);
-    folder = record.folder;
-    if (!request.film.quiet) {
-      say(stderr,
-          fmt::format("repeat {} of {}: {:.1f} s\n", repeat + 1, request.repeats, record.result.wall_ms / 1000));
+  FilmRecord record;
+  const int status = run_film(film, command, &record);
+  if (status != 0) return status;
+  if (const long lost = lost_zones(record.trace); lost > 0)
+    throw RunError(fmt::format("{} zones found no room; profile fewer frames (--frames)", lost));
+  ZoneCollector zones(run_of(record));
+  zones.add(record.trace);
+  report(request, zones.result(), record.folder);
+  return 0;
+}
+
+// The same command for one repeat.
+std::vector<std::string> one_repeat(const std::vector<std::string>& command, const std::filesystem::path& folder) {
+  std::vector<std::string> words = {std::filesystem::read_symlink("/proc/self/exe").string()};
+  for (std::size_t i = 1; i < command.size(); ++i) {
+    const std::string& word = command[i];
+    if (word == "--repeats" || word == "--out") {
+      ++i;
+    } else if (!word.starts_with("--repeats=") && !word.starts_with("--out=") && word != "--json" &&
+               word != "--quiet") {
+      words.push_back(word);
     }
   }
-  if (zones) report(request, zones->result(), folder);
-  return status;
+  words.insert(words.end(), {"--repeats", "1", "--quiet", "--out", folder.string()});
+  return words;
+}
+
+// Each repeat is a process of its own: where its memory lies changes the time of a zone by more than 10 %, for all of
+// its frames.
+int profile(const ProfileRequest& request, const std::vector<std::string>& command) {
+  const SceneDef scene = Script::load(scene_file(request.film.scene), assets_folder(), request.film.set).scene();
+  const std::filesystem::path folder =
+      request.film.out.empty() ? std::filesystem::path("out") / scene.name : std::filesystem::path(request.film.out);
+  catch_interrupts();
+  std::optional<ZoneProfile> all;
+  for (int repeat = 0; repeat < request.repeats; ++repeat) {
+    const Stopwatch watch;
+    const auto end = run_program(one_repeat(command, folder), interrupted);
+    if (!end) throw RunError("the program cannot start itself for a repeat");
+    if (interrupted()) return 130;
+    if (!WIFEXITED(end->status) || WEXITSTATUS(end->status) != 0) {
+      say(stderr, end->output);
+      return WIFEXITED(end->status) ? WEXITSTATUS(end->status) : 1;
+    }
+    const ZoneProfile one = read_zones(folder / "zones.json");
+    if (all) add_repeats(one, *all);
+    if (!all) all = one;
+    if (!request.film.quiet)
+      say(stderr, fmt::format("repeat {} of {}: {:.1f} s\n", repeat + 1, request.repeats, watch.elapsed_ms() / 1000));
+  }
+  report(request, *all, folder);
+  return 0;
+}
+
+// A zones.json, or the one in a profile's folder.
+std::string zones_file(const std::string& name) {
+  std::error_code error;
+  return std::filesystem::is_directory(name, error) ? (std::filesystem::path(name) / "zones.json").string() : name;
 }
 
 int compare(const ProfileRequest& request) {
-  const std::string &before_name = request.compared[0], &after_name = request.compared[1];
+  const std::string before_name = zones_file(request.compared[0]), after_name = zones_file(request.compared[1]);
   const ZoneProfile before = read_zones(before_name), after = read_zones(after_name);
   std::vector<Problem> problems;
   for (const std::string& difference : differences(before.run, after.run))
@@ -115,7 +158,7 @@ int run(const ProfileRequest& request, const std::vector<std::string>& command) 
     if (request.film.scene.empty()) throw InputError("profile", "needs a SCENE, or --compare with two zones.json");
     if (request.film.resume)
       throw InputError("--resume", "a profile runs the whole film in every repeat: leave it out");
-    return profile(request, command);
+    return request.repeats == 1 ? profile_once(request, command) : profile(request, command);
   }
   if (!request.film.scene.empty())
     throw InputError("profile " + request.film.scene, "a SCENE and --compare exclude each other");

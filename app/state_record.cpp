@@ -85,15 +85,19 @@ std::string names_of(const RecordHead& head) {
 
 StateRecorder::StateRecorder(const std::filesystem::path& path, const RecordHead& head, int kept_frames)
     : path_(path), file_(std::fopen(path.c_str(), kept_frames > 0 ? "r+b" : "wb")) {
+  if (!file_) throw RunError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
   const std::string line = line_of(head);
-  bool done = file_ != nullptr;
-  if (done && kept_frames > 0) {
+  bool done = true;
+  if (kept_frames > 0) {
     const auto size = static_cast<off_t>(line.size() + bytes_of_frame(head) * kept_frames);
     std::error_code ignored;
     if (off_t(std::filesystem::file_size(path, ignored)) < size)
-      throw RunError(fmt::format("{}: does not have the {} frames to go on from", path.string(), kept_frames));
+      throw RunError(
+          fmt::format("{}: does not have the first {} frames of the film; record from the first one on, or "
+                      "leave --record out",
+                      path.string(), kept_frames));
     done = ftruncate(fileno(file_.get()), size) == 0 && std::fseek(file_.get(), 0, SEEK_END) == 0;
-  } else if (done) {
+  } else {
     done = std::fwrite(line.data(), 1, line.size(), file_.get()) == line.size();
   }
   if (!done) throw RunError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
@@ -109,7 +113,7 @@ void StateRecorder::add(const Model& model, const State& state) {
 
 StateVerifier::StateVerifier(const std::filesystem::path& path, const RecordHead& now, std::optional<double> tolerance,
                              int skipped_frames)
-    : path_(path), file_(path, std::ios::binary), tolerance_(tolerance) {
+    : path_(path), file_(path, std::ios::binary), tolerance_(tolerance), first_frame_(skipped_frames) {
   const std::string source = path.string();
   if (!file_) throw InputError(source, "cannot be read");
   head_ = read_head(file_, source);
@@ -127,8 +131,11 @@ StateVerifier::StateVerifier(const std::filesystem::path& path, const RecordHead
         fmt::format("{}{}", remark_.empty() ? "not the film that was recorded; then and now: " : "; ", difference);
   const auto begin = file_.tellg();
   std::error_code ignored;
-  recorded_frames_ = static_cast<int>((std::filesystem::file_size(path, ignored) - std::size_t(begin)) /
-                                      std::max<std::size_t>(1, bytes_of_frame(head_)));
+  const std::size_t bytes = std::filesystem::file_size(path, ignored) - std::size_t(begin);
+  recorded_frames_ = static_cast<int>(bytes / bytes_of_frame(head_));
+  if (recorded_frames_ == 0) throw InputError(source, "holds no whole frame");
+  if (bytes % bytes_of_frame(head_) != 0)
+    remark_ += fmt::format("{}ends in the middle of frame {}", remark_.empty() ? "" : "; ", recorded_frames_);
   file_.seekg(begin + static_cast<std::streamoff>(bytes_of_frame(head_) * skipped_frames));
 }
 
@@ -150,23 +157,26 @@ std::string StateVerifier::compare(int frame, const Model& model, const State& s
     const double distance = std::sqrt(squared);
     furthest_ = std::max(furthest_, distance / model.size);
     if (tolerance_ ? !(distance <= *tolerance_ * model.size) : now[v].hash != before[v].hash) {
-      return fmt::format(
-          "frame {}: body '{}' is not what was recorded; vertex {} is the first that differs, by {:.2g} m "
-          "({:.1e} of the body's size)",
-          frame, body.name, v + 1, distance, distance / model.size);
+      return fmt::format("frame {}: body '{}' is not what was recorded; vertex {} is the first that differs, {}", frame,
+                         body.name, v + 1,
+                         distance > 0
+                             ? fmt::format("by {:.2g} m ({:.1e} of the body's size)", distance, distance / model.size)
+                             : std::string("in the last bits of its position or in its velocity"));
     }
   }
   return "";
 }
 
 std::string StateVerifier::verdict(int frames) const {
-  const int compared = std::min(frames, recorded_frames_);
+  const int last = std::min(frames, recorded_frames_) - 1;
+  if (last < first_frame_) return "verified: nothing; the record ends before the frames of this run";
   const std::string how =
       tolerance_ ? fmt::format("within {:g} of the bodies' size (furthest: {:.1e})", *tolerance_, furthest_)
                  : std::string("the same to the last bit");
-  const std::string end =
-      frames > recorded_frames_ ? fmt::format("; the record ends there, the film has {}", frames) : "";
-  return fmt::format("verified: {} frames are {}{}", compared, how, end);
+  const std::string end = frames == recorded_frames_
+                              ? ""
+                              : fmt::format("; the record has {} frames, the film {}", recorded_frames_, frames);
+  return fmt::format("verified: frames {} to {} are {}{}", first_frame_, last, how, end);
 }
 
 }  // namespace supple

@@ -60,6 +60,7 @@ class StateVerifier {
   RecordHead head_;
   std::optional<double> tolerance_;
   std::size_t next_body_ = 0;
+  int first_frame_;  // that is compared
   int recorded_frames_ = 0;
   double furthest_ = 0;  // over the size
   std::string remark_;

@@ -45,7 +45,8 @@ PointCacheWriter::PointCacheWriter(const std::filesystem::path& path, int points
 void PointCacheWriter::go_on_behind(int frames) {
   Header header{};
   const auto size = static_cast<std::int64_t>(sizeof header + sizeof(float) * 3 * std::size_t(points_) * frames);
-  if (std::fread(&header, sizeof header, 1, file_.get()) != 1 || header.points != points_ || header.samples < frames)
+  if (std::fread(&header, sizeof header, 1, file_.get()) != 1 || header.points != points_ || header.samples < frames ||
+      std::fseek(file_.get(), 0, SEEK_END) != 0 || std::ftell(file_.get()) < size)
     throw RunError(fmt::format("{}: does not have the {} frames to go on from", path_.string(), frames));
   header.samples = frames_ = frames;
   if (std::fseek(file_.get(), 0, SEEK_SET) != 0 || std::fwrite(&header, sizeof header, 1, file_.get()) != 1 ||

@@ -118,8 +118,8 @@ template <class Read>
 auto told_of(const std::string& source, const Read& read) {
   try {
     return read();
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError(source, fmt::format("is not a profile as this version writes it: {}", error.what()));
+  } catch (const nlohmann::json::exception&) {
+    throw InputError(source, "is not a profile as this version writes it");
   } catch (const std::logic_error&) {
     throw InputError(source, "is not a profile: a state_hash is not sixteen hexadecimal digits");
   }

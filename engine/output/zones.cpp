@@ -120,4 +120,41 @@ ZoneProfile ZoneCollector::result() const {
   return profile;
 }
 
+void add_repeats(const ZoneProfile& more, ZoneProfile& profile) {
+  const std::vector<double> idle(profile.run.frames, 0.0);  // of a zone that did not run in some repeats
+  for (const ZoneTimes& zone : more.zones) {
+    const bool known = std::any_of(profile.zones.begin(), profile.zones.end(),
+                                   [&](const ZoneTimes& z) { return z.thread == zone.thread && z.path == zone.path; });
+    if (known) continue;
+    ZoneTimes added{zone.thread, zone.path, 0};
+    added.ms.assign(profile.repeats, idle);
+    added.self_ms.assign(profile.repeats, idle);
+    // Behind what lies in the same zone as it, so that parents stay before children.
+    const std::string parent =
+        zone.path.substr(0, zone.path.find_last_of('/') == std::string::npos ? 0 : zone.path.find_last_of('/'));
+    const auto sibling = std::find_if(profile.zones.rbegin(), profile.zones.rend(), [&](const ZoneTimes& z) {
+      return z.thread == zone.thread && (parent.empty() || z.path == parent || z.path.starts_with(parent + "/"));
+    });
+    profile.zones.insert(sibling.base() == profile.zones.begin() ? profile.zones.end() : sibling.base(),
+                         std::move(added));
+  }
+  const int repeats = profile.repeats + more.repeats;
+  for (ZoneTimes& zone : profile.zones) {
+    const auto same = std::find_if(more.zones.begin(), more.zones.end(),
+                                   [&](const ZoneTimes& z) { return z.thread == zone.thread && z.path == zone.path; });
+    const bool ran = same != more.zones.end();
+    zone.calls = (zone.calls * profile.repeats + (ran ? same->calls * more.repeats : 0)) / repeats;
+    for (int repeat = 0; repeat < more.repeats; ++repeat) {
+      zone.ms.push_back(ran ? same->ms[repeat] : idle);
+      zone.self_ms.push_back(ran ? same->self_ms[repeat] : idle);
+    }
+  }
+  for (SetupTimes& part : profile.setup) {
+    for (const SetupTimes& other : more.setup) {
+      if (other.name == part.name) part.ms.insert(part.ms.end(), other.ms.begin(), other.ms.end());
+    }
+  }
+  profile.repeats = repeats;
+}
+
 }  // namespace supple

@@ -75,6 +75,9 @@ class ZoneCollector {
   std::vector<Node> nodes_;  // parents before children
 };
 
+// Takes the repeats of another profile of the same run to those that are there.
+void add_repeats(const ZoneProfile& more, ZoneProfile& profile);
+
 // zones.json. Reading throws InputError naming the file where it cannot be read or is not such a text.
 std::string zones_json(const ZoneProfile& profile);
 ZoneProfile read_zones(const std::filesystem::path& path);

@@ -107,8 +107,8 @@ ZoneProfile read_zones(const std::filesystem::path& path) {
   if (!file) throw InputError(path.string(), "cannot be read");
   try {
     return profile_of(Json::parse(file), path.string());
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError(path.string(), fmt::format("is not a zones.json as this version writes it: {}", error.what()));
+  } catch (const nlohmann::json::exception&) {
+    throw InputError(path.string(), "is not a zones.json as this version writes it");
   }
 }
 

@@ -47,8 +47,10 @@ SolverDef read_solver(const ConfigTable& table, const SolverDef& defaults) {
                                      std::string(info_of(solver.method).name), names)) -
               names.begin()]
           .method;
-  s.iterations = table.integer({"iterations", "", "quasi-Newton iterations a step, at most"}, s.iterations,
-                               Range::between(1, 10000));
+  s.iterations =
+      table.integer({"iterations", "",
+                     "quasi-Newton iterations a step, at most; a step that ends worse than staying descends once more"},
+                    s.iterations, Range::between(1, 10000));
   s.history =
       table.integer({"history", "", "window m of L-BFGS; 0 is plain quasi-Newton"}, s.history, Range::between(0, 100));
   const std::string search =

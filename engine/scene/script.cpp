@@ -17,7 +17,8 @@ constexpr double at_start = 2 * tolerance;  // jumps at 0 are in force before th
 // A time by its seconds or its frame.
 double read_time(const ConfigTable& table, double fps, const Key& seconds, const Key& frames, bool required) {
   const auto in_seconds = table.number_if_given(seconds, Range::at_least(0));
-  const auto in_frames = table.number_if_given(frames, Range::at_least(0));
+  std::optional<double> in_frames;
+  if (table.has(frames.name)) in_frames = table.integer(frames, std::nullopt, Range::between(0, 1000000));
   if (in_seconds && in_frames)
     table.complain(frames.name, fmt::format("either '{}' or '{}', not both", seconds.name, frames.name));
   if (required && !in_seconds && !in_frames)
@@ -46,7 +47,7 @@ std::optional<TimedChange> read_change(const ConfigTable& table, double fps) {
                                       "difference", {"difference", "ratio"});
   const auto from = table.value({"from", "", "where a ramp begins; the value that is in force then"}, "none");
   const auto to = table.value({"value", "", "what it becomes"});
-  if (!to || path.empty()) return std::nullopt;
+  if (!to || !table.has("path")) return std::nullopt;
   const auto cost = cost_of_change(path);
   if (!cost) {
     table.complain(
@@ -109,6 +110,7 @@ struct Script::Parts {
   }
   void read_replay(const std::filesystem::path& assets, const std::vector<std::string>& settings);
   std::optional<ConfigValue> value_at(const std::string& path, Config document) const;
+  std::vector<Problem> problems_with(const TimedChange& ramp, std::size_t before) const;
   void prepare_ramps();
   void check() const;
 };
@@ -162,7 +164,7 @@ void Script::Parts::read_replay(const std::filesystem::path& assets, const std::
   }
   for (const ConfigTable& table : root.tables({"grab", "", "a handle for a body, with the keys of [[body.handles]]"})) {
     const std::string body = table.text({"body", "", "whose vertices are grabbed"}, std::nullopt);
-    scene_file.append("body." + body + ".handles", table.all_but("body"), table.place(nullptr, ""));
+    if (!body.empty()) scene_file.append("body." + body + ".handles", table.all_but("body"), table.place("body", ""));
   }
   for (const std::string& setting : settings) scene_file.set(setting, exclusive_keys());
   Config plain = scene_file.copy();
@@ -192,6 +194,14 @@ std::optional<ConfigValue> Script::Parts::value_at(const std::string& path, Conf
   return std::nullopt;
 }
 
+// What is wrong with the scene once a ramp is over.
+std::vector<Problem> Script::Parts::problems_with(const TimedChange& ramp, std::size_t before) const {
+  Config document = document_at(ramp.at + at_start, before);
+  document.put(ramp.path, ramp.to, ramp.place, exclusive_keys());
+  (void)read_scene(document);
+  return document.take_problems();
+}
+
 // Where each ramp begins.
 void Script::Parts::prepare_ramps() {
   std::vector<Problem> problems;
@@ -202,6 +212,10 @@ void Script::Parts::prepare_ramps() {
     };
     if (change.over <= 0) continue;
     if (!change.from) change.from = value_at(change.path, document_at(change.at + at_start, i));
+    if (!change.from) {
+      problems = problems_with(change, i);  // most often a misspelled path
+    }
+    if (!problems.empty()) throw InputError(std::move(problems));
     if (!change.from) {
       complain(fmt::format("{} has no value in the scene to begin with: give the ramp a 'from'", change.path));
     } else if (!change.from->joins(change.to)) {
@@ -234,7 +248,8 @@ void Script::Parts::check() const {
 Script Script::load(const std::filesystem::path& path, const std::filesystem::path& assets,
                     const std::vector<std::string>& settings, std::optional<std::size_t> sweep_point) {
   auto parts = std::make_unique<Parts>(Parts{std::nullopt, Config::load(path, assets), {}, {}});
-  if (parts->scene_file.root().has("scene")) {
+  const ConfigTable root = parts->scene_file.root();
+  if (root.has("scene") || root.has("change") || root.has("grab")) {
     parts->replay = parts->scene_file.copy();
     parts->read_replay(assets, settings);
     parts->prepare_ramps();
@@ -264,6 +279,34 @@ std::vector<const TimedChange*> Script::at_work(int frame) const {
 SceneDef Script::scene_at(int frame) const {
   Config document = parts_->document_at((frame + 1) / parts_->start.fps, parts_->changes.size());
   return parts_->read(document);
+}
+
+std::vector<Problem> Script::warnings() const {
+  std::vector<Problem> list;
+  const double end = parts_->start.frames / parts_->start.fps;
+  const auto warn = [&list](const Problem& place, std::string message) {
+    list.push_back({place.source, place.line, place.column, std::move(message)});
+  };
+  for (const TimedChange& change : parts_->changes) {
+    if (change.at > end - tolerance) {
+      warn(change.place,
+           fmt::format("{} would change at {:g} s, when the film is over ({:g} s)", change.path, change.at, end));
+    } else if (change.at + change.over > end + tolerance) {
+      warn(change.place, fmt::format("the film is over ({:g} s) before {} has changed all the way", end, change.path));
+    }
+  }
+  for (const BodyDef& body : parts_->start.bodies) {
+    for (const HandleDef& handle : body.handles) {
+      bool holds = !handle.grabs;
+      for (int step = 0; step < parts_->start.frames * parts_->start.substeps && !holds; ++step)
+        holds = handle.holds_at(step * parts_->start.time_step());
+      if (!holds)
+        warn(handle.select.place,
+             fmt::format("handle '{}' of body '{}' never holds: from {:g} to {:g} s no step of this film begins",
+                         handle.name, body.name, handle.from, handle.until));
+    }
+  }
+  return list;
 }
 
 std::string Script::scene_json() const { return parts_->document_at(at_start, parts_->changes.size()).as_json(); }

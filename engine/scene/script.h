@@ -43,6 +43,9 @@ class Script {
   // The scene at the end of a frame; its start when no change is at work.
   SceneDef scene_at(int frame) const;
 
+  // What is legal and does nothing, or not all of what it says.
+  std::vector<Problem> warnings() const;
+
   std::string scene_json() const;   // as the film starts
   std::string replay_json() const;  // the replay's own file; empty for a scene
   std::vector<LiveKey> live() const;

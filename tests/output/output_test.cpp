@@ -52,6 +52,28 @@ TEST(PointCache, IsValidAfterEveryFrame) {
   }
 }
 
+TEST(PointCache, GoesOnBehindTheFramesItKeepsAndNoOthers) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path path = folder.path / "body.pc2";
+  Positions points(2, 3);
+  points << 1, 2, 3, 4, 5, 6;
+  {
+    PointCacheWriter writer(path, 2);
+    for (int frame = 1; frame <= 5; ++frame) writer.add(points * frame);
+  }
+  const std::string whole = test::read_file(path);
+  {
+    PointCacheWriter writer(path, 2, 3);
+    for (int frame = 4; frame <= 5; ++frame) writer.add(points * frame);
+  }
+  EXPECT_EQ(test::read_file(path), whole);
+  EXPECT_THROW(PointCacheWriter(path, 2, 6), RunError);
+  EXPECT_THROW(PointCacheWriter(path, 3, 2), RunError);
+  std::filesystem::resize_file(path, 32 + 2 * 24);  // its head still says five
+  EXPECT_THROW(PointCacheWriter(path, 2, 3), RunError);
+  EXPECT_NO_THROW(PointCacheWriter(path, 2, 2));
+}
+
 TEST(Profile, PercentilesAreNearestRanks) {
   std::vector<double> values;
   for (int i = 100; i >= 1; --i) values.push_back(i);

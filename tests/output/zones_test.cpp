@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -90,6 +91,24 @@ TEST(Zones, TimesWithoutTheZonesWithinAddUpToTheFrames) {
     }
     EXPECT_NEAR(sum, profile.zones.front().ms[0][frame], 1e-9);
   }
+}
+
+TEST(Zones, RepeatsOfSeveralProcessesAddUp) {
+  ZoneProfile profile = small_profile(1);
+  add_repeats(small_profile(2), profile);
+  EXPECT_EQ(zones_json(profile), zones_json(small_profile(3)));
+  ZoneProfile shorter = small_profile(1);  // a repeat in which nothing was solved within a step
+  std::erase_if(shorter.zones, [](const ZoneTimes& z) { return z.path == "frame/step/solve"; });
+  add_repeats(small_profile(1), shorter);
+  const ZoneTimes& solve = zone(shorter, "main", "frame/step/solve");
+  EXPECT_EQ(solve.ms.size(), 2u);
+  EXPECT_EQ(solve.ms[0], std::vector<double>(3, 0.0));
+  EXPECT_EQ(solve.ms[1], zone(small_profile(1), "main", "frame/step/solve").ms[0]);
+  const auto place = [&](const std::string& path) {
+    return std::find_if(shorter.zones.begin(), shorter.zones.end(), [&](const ZoneTimes& z) { return z.path == path; });
+  };
+  EXPECT_LT(place("frame/step"), place("frame/step/solve"));
+  EXPECT_LT(place("frame/step/solve"), place("frame/hash"));
 }
 
 TEST(Zones, ComeBackFromTheirFile) {

@@ -163,6 +163,42 @@ TEST_F(Replay, RefusesWithPlaceAndReason) {
             "r.toml:6:9");
 }
 
+TEST_F(Replay, RefusesSlipsOfThePen) {
+  EXPECT_EQ(refused("[[change]]\nt = 1\npath = ''\nvalue = 4\n"),
+            "r.toml:4:8: '' cannot change while the film runs; `supple info --live SCENE` lists what can");
+  EXPECT_EQ(refused("[[change]]\nt = 1\nover = 1\npath = 'body.bar.material.muu'\nvalue = 4\n"),
+            "r.toml:6:9: unknown key 'muu'; did you mean 'mu'?");
+  EXPECT_EQ(refused("[[change]]\nframe = 1.5\npath = 'gravity'\nvalue = [0, 0, 0]\n").substr(0, 22),
+            "r.toml:3:9: frame = 1.5");
+  EXPECT_EQ(refused("[[grab]]\nbody = 'rod'\nname = 'f'\n"), "r.toml:3:8: there is no body named 'rod' (there is bar)");
+  std::ofstream(folder_.path / "n.toml") << "[[change]]\nt = 1\npath = 'gravity'\nvalue = [0, 0, 0]\n";
+  EXPECT_THROW(
+      {
+        try {
+          (void)Script::load(folder_.path / "n.toml", test::assets, {});
+        } catch (const InputError& error) {
+          EXPECT_NE(std::string(error.what()).find("'scene' is missing"), std::string::npos) << error.what();
+          throw;
+        }
+      },
+      InputError);
+}
+
+TEST_F(Replay, WarnsOfWhatNoFrameSees) {
+  const Script late = script(
+      "[[change]]\nt = 2\npath = 'gravity'\nvalue = [0, 0, 0]\n"
+      "[[change]]\nt = 1\nover = 2\npath = 'body.bar.material.mu'\nvalue = 5\n"
+      "[[grab]]\nbody = 'bar'\nname = 'f'\nselect = { box = [[0.9, 0, 0], [1, 1, 1]] }\nstiffness = 5\nfrom = "
+      "0.501\nuntil = 0.502\n");
+  std::string all;
+  for (const Problem& warning : late.warnings()) all += warning.text() + "\n";
+  EXPECT_NE(all.find("gravity would change at 2 s, when the film is over (2 s)"), std::string::npos) << all;
+  EXPECT_NE(all.find("before body.bar.material.mu has changed all the way"), std::string::npos) << all;
+  EXPECT_NE(all.find("handle 'f' of body 'bar' never holds"), std::string::npos) << all;
+  EXPECT_EQ(late.warnings().size(), 3u) << all;
+  EXPECT_TRUE(script("[[change]]\nt = 1\nover = 1\npath = 'body.bar.material.mu'\nvalue = 5\n").warnings().empty());
+}
+
 TEST_F(Replay, ListsWhatCanChange) {
   const std::vector<LiveKey> live = script("").live();
   const auto find = [&](const std::string& path) -> const LiveKey* {
