@@ -30,24 +30,31 @@ void FilmLog::add(const Checkpoint& checkpoint) {
   waiting_.emplace_back(checkpoint.frames, checkpoint_bytes(checkpoint, identity_));
 }
 
-void FilmLog::note_row(const FrameRow& row) {
-  if (!notes_) return;
-  const std::string line = row_line(row) + '\n';
-  if (std::fwrite(line.data(), 1, line.size(), notes_.get()) != line.size() || std::fflush(notes_.get()) != 0)
-    throw RunError(fmt::format("{}: cannot be written: {}", folder_.rows().string(), std::strerror(errno)));
+// The next row is whole, and stands in the notes before it counts as that.
+void FilmLog::note_row() {
+  if (notes_) {
+    const std::string line = row_line(rows_[whole_]) + '\n';
+    if (std::fwrite(line.data(), 1, line.size(), notes_.get()) != line.size() || std::fflush(notes_.get()) != 0) {
+      broken_ = true;
+      throw RunError(fmt::format("{}: cannot be written: {}", folder_.rows().string(), std::strerror(errno)));
+    }
+  }
+  ++whole_;
 }
 
 void FilmLog::settle(Pictures* pictures) {
   const Zone zone("run's log");
+  if (broken_) return;
   const auto settle_undrawn = [this] {
-    while (whole_ < int(rows_.size()) && !rows_[whole_].draw_ms) note_row(rows_[whole_++]);
+    while (whole_ < int(rows_.size()) && !rows_[whole_].draw_ms) note_row();
   };
   settle_undrawn();
   const auto written = pictures != nullptr ? pictures->take_written() : std::vector<Pictures::Written>();
   for (const Pictures::Written& frame : written) {
+    if (whole_ == int(rows_.size())) break;  // drawn, but its row never came
     rows_[whole_].render_ms = frame.render_ms;
     rows_[whole_].encode_ms = frame.encode_ms;
-    note_row(rows_[whole_++]);
+    note_row();
     settle_undrawn();
   }
   for (; !waiting_.empty() && waiting_.front().first <= whole_; waiting_.pop_front())

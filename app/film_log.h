@@ -34,13 +34,14 @@ class FilmLog {
   void drop_others() { rows_.resize(whole_); }
 
  private:
-  void note_row(const FrameRow& row);
+  void note_row();
 
   const RunFolder& folder_;
   int every_;
   std::string identity_;
   std::vector<FrameRow> rows_;
   int whole_ = 0;
+  bool broken_ = false;  // the disk has refused a row
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };

@@ -115,14 +115,18 @@ FilmOptions options_of(const FilmRequest& request) {
   return film;
 }
 
+bool remembers_steps(const SceneDef& scene) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                     [](const BodyDef& body) { return remembers_steps(body.solver.method); });
+}
+
 bool remembers_steps(const Script& script) {
-  const auto& bodies = script.scene().bodies;
-  return std::any_of(bodies.begin(), bodies.end(),
-                     [](const BodyDef& body) { return remembers_steps(body.solver.method); }) ||
-         std::any_of(script.changes().begin(), script.changes().end(), [](const TimedChange& change) {
-           return change.path.ends_with("method") &&
-                  change.to.text() == fmt::format("'{}'", info_of(Method::hecht).name);
-         });
+  for (int frame = 0; frame < script.scene().frames; ++frame) {
+    const std::vector<const TimedChange*> at_work = script.at_work(frame);
+    const bool method = std::any_of(at_work.begin(), at_work.end(), [](const TimedChange* c) { return c->cost.rule; });
+    if (method && remembers_steps(script.scene_at(frame))) return true;
+  }
+  return remembers_steps(script.scene());
 }
 
 // All that must be the same for two runs to give the same films, but for their length.

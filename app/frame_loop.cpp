@@ -111,12 +111,12 @@ class Film {
       change(frame, row);
       message = advance(frame, row);
       if (!message.empty()) return FilmEnd::failed;
-      if (!show(frame, row)) return FilmEnd::done;  // the pictures' error says why
       for (const auto& actor : actors_) actor->save_motion();
       if (options_.fields_every > 0 && frame % options_.fields_every == 0) {
         for (const auto& actor : actors_) actor->save_fields(frame);
       }
       for (const Obstacle& obstacle : set_.obstacles) poses_->add(frame, obstacle.def.name, obstacle.pose(row.time_s));
+      if (!show(frame, row)) return FilmEnd::failed;  // the pictures' error says why
       log_.add(std::move(row));
       if (log_.wants_checkpoint(frame + 1)) add_checkpoint(frame + 1);
       log_.settle(pictures());
@@ -197,7 +197,12 @@ class Film {
     now.earlier = std::move(set_.obstacles);
     set_ = std::move(now);
     for (std::size_t c = 0; drawn_ && c < set_.obstacles.size(); ++c) {
-      if (cost_for(set_.obstacles[c].def.name).surface) drawn_->renew(c, set_, bodies_);
+      const std::string& name = set_.obstacles[c].def.name;
+      // What is drawn of a half space depends on where it is.
+      const bool moved =
+          is_half_space(set_.obstacles[c]) &&
+          std::ranges::any_of(changes, [&name](const TimedChange& change) { return change.object == name; });
+      if (moved || cost_for(name).surface) drawn_->renew(c, set_, bodies_);
     }
   }
 

@@ -90,6 +90,11 @@ StateRecorder::StateRecorder(const std::filesystem::path& path, const RecordHead
   bool done = true;
   if (kept_frames > 0) {
     const auto size = static_cast<off_t>(line.size() + bytes_of_frame(head) * kept_frames);
+    std::ifstream earlier(path, std::ios::binary);
+    std::string first;
+    std::getline(earlier, first);
+    if (first + '\n' != line)
+      throw RunError(fmt::format("{}: is not the record of this film's first frames", path.string()));
     std::error_code ignored;
     if (off_t(std::filesystem::file_size(path, ignored)) < size)
       throw RunError(

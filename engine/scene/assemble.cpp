@@ -173,6 +173,13 @@ void set_values(Body& body, const SceneDef& scene, std::vector<Problem>& problem
 void update_body(Body& body, const SceneDef& scene, const BodyDef& def) {
   std::vector<Problem> problems;
   const std::vector<std::string> notes = body.notes;  // were said when it was assembled
+  const auto starts_or_ends = [&](double ClothDef::*stiffness) {
+    return def.cloth && ((*def.cloth).*stiffness > 0) != ((*body.def.cloth).*stiffness > 0);
+  };
+  if (starts_or_ends(&ClothDef::shear) || starts_or_ends(&ClothDef::bend))
+    throw InputError({at(
+        def.place, fmt::format("shear and bend of the cloth of body '{}' cannot reach or leave 0 while the film runs",
+                               def.name))});
   body.def = def;
   set_values(body, scene, problems);
   body.notes = notes;

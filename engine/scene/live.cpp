@@ -54,6 +54,7 @@ bool covers(std::string_view pattern, std::string_view path) {
 std::optional<ChangeCost> cost_of_generic(std::string_view path) {
   constexpr std::string_view body_solver = "body[].solver";
   if (covers(body_solver, path)) path.remove_prefix(std::string_view("body[].").size());
+  if (path == "solver") return ChangeCost{true, true, false};  // the whole table
   for (const LivePattern& pattern : patterns) {
     if (covers(pattern.path, path)) return pattern.cost;
   }

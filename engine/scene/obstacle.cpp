@@ -81,6 +81,8 @@ void collider_motions(const CollisionSet& set, const StepSpan& span, std::vector
   }
 }
 
+bool is_half_space(const Obstacle& obstacle) { return lone<HalfSpace>(obstacle) != nullptr; }
+
 bool is_ground(const Obstacle& obstacle) {
   const HalfSpace* half = lone<HalfSpace>(obstacle);
   if (half == nullptr || !obstacle.def.keys.empty()) return false;

@@ -38,6 +38,9 @@ void collider_motions(const CollisionSet& set, const StepSpan& span, std::vector
 // empty when it is the ground that every film has.
 Skin drawn_obstacle(const Obstacle& obstacle, const Bounds& around);
 
+// A half space and nothing else.
+bool is_half_space(const Obstacle& obstacle);
+
 // The half space y < 0, at rest.
 bool is_ground(const Obstacle& obstacle);
 

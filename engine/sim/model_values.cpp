@@ -190,6 +190,7 @@ void ModelValues::set(Model& model, const BodyDescription& body) {
     model.stiffness.push_back(system_stiffness(material, body.fit));
     model.energy_may_be_negative |= may_be_negative(material);
   }
+  SUPPLE_CHECK(elements_.size(), ==, std::size_t(body.mesh.tets.rows()) + body.springs.size());
   for (ElementRecord& element : elements_) {
     if (element.kind == ElementKind::spring) element.field[1] = body.springs[element.input].stiffness;
   }

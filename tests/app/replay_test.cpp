@@ -233,6 +233,28 @@ TEST_F(ReplayedFilm, StartsAnewWhereThereIsNoCheckpointYet) {
   EXPECT_NE(result.err.find("has no checkpoint yet"), std::string::npos) << result.err;
 }
 
+TEST_F(ReplayedFilm, RefusesSpringsThatWouldComeOrGo) {
+  for (const char* change :
+       {"path = \"body.sheet.cloth.bend\"\nvalue = 0", "path = \"body.sheet.cloth.shear\"\nvalue = 0"}) {
+    std::ofstream(folder_.path / "bad.toml") << "scene = \"two.toml\"\n[[change]]\nt = 0.3\nover = 0.2\n"
+                                             << change << "\n";
+    const Result result = run(folder_.path, {"replay", "bad.toml", "--no-images"});
+    EXPECT_EQ(result.status, 2) << change;
+    EXPECT_NE(result.err.find("cannot reach or leave 0"), std::string::npos) << result.err;
+  }
+}
+
+TEST_F(ReplayedFilm, AWholeSolverTableTakesEffectAtOnce) {
+  const auto film_with = [&](const std::string& changes) {
+    std::ofstream(folder_.path / "s.toml") << "scene = \"two.toml\"\nframes = 10\n" << changes;
+    EXPECT_EQ(run(folder_.path, {"replay", "s.toml", "--no-images", "--quiet", "--out", "s"}).status, 0);
+    return hashes("s");
+  };
+  const std::string at = "[[change]]\nframe = 4\npath = \"body.bar.solver";
+  EXPECT_EQ(film_with(at + "\"\nvalue = { method = \"newton\", damping = 0.01 }\n"),
+            film_with(at + ".method\"\nvalue = \"newton\"\n" + at + ".damping\"\nvalue = 0.01\n"));
+}
+
 TEST_F(ReplayedFilm, TellsOfImpossibleChangesBeforeTheFilmBegins) {
   std::ofstream(folder_.path / "bad.toml") << R"(scene = "two.toml"
 [[change]]

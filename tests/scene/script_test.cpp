@@ -168,7 +168,7 @@ TEST_F(Replay, RefusesSlipsOfThePen) {
             "r.toml:4:8: '' cannot change while the film runs; `supple info --live SCENE` lists what can");
   EXPECT_EQ(refused("[[change]]\nt = 1\nover = 1\npath = 'body.bar.material.muu'\nvalue = 4\n"),
             "r.toml:6:9: unknown key 'muu'; did you mean 'mu'?");
-  EXPECT_EQ(refused("[[change]]\nframe = 1.5\npath = 'gravity'\nvalue = [0, 0, 0]\n").substr(0, 22),
+  EXPECT_EQ(refused("[[change]]\nframe = 1.5\npath = 'gravity'\nvalue = [0, 0, 0]\n").substr(0, 23),
             "r.toml:3:9: frame = 1.5");
   EXPECT_EQ(refused("[[grab]]\nbody = 'rod'\nname = 'f'\n"), "r.toml:3:8: there is no body named 'rod' (there is bar)");
   std::ofstream(folder_.path / "n.toml") << "[[change]]\nt = 1\npath = 'gravity'\nvalue = [0, 0, 0]\n";
@@ -215,6 +215,7 @@ TEST_F(Replay, ListsWhatCanChange) {
   EXPECT_FALSE(find("gravity")->cost.factor);
   EXPECT_NE(find("collider.ball.shape.sphere.radius"), nullptr);
   EXPECT_NE(find("camera.fov_deg"), nullptr);
+  EXPECT_TRUE(cost_of_change("solver")->factor && cost_of_change("body.bar.solver")->rule);
   EXPECT_EQ(find("frames"), nullptr);
   EXPECT_EQ(find("body.bar.box.cells"), nullptr);
   for (const LiveKey& key : live) EXPECT_TRUE(cost_of_change(key.key.path)) << key.key.path;
