@@ -39,14 +39,17 @@ TEST(Profile, OfASceneLeavesZonesTraceAndPlot) {
   write_scene(folder.path / "bar.toml");
   const Result result = run(folder.path, {"profile", "bar.toml", "--repeats", "2", "--threads", "2"});
   ASSERT_EQ(result.status, 0) << result.err;
-  for (const char* word :
-       {"\n  frame ", "step", "evaluate", "meanwhile, render", "Deadline 33.3 ms: of 8 frames", "build models"})
+  for (const char* word : {"\n  frame ", "meanwhile, render", "Deadline 33.3 ms: of 8 frames", "build models"})
     EXPECT_NE(result.out.find(word), std::string::npos) << word << "\n" << result.out;
   const std::filesystem::path out = folder.path / "out" / "bar";
   const ZoneProfile profile = read_zones(out / "zones.json");
   EXPECT_EQ(profile.repeats, 2);
   EXPECT_EQ(profile.run.frames, 5);
   EXPECT_FALSE(profile.run.pictures.empty());
+  // In the table they may be among the smaller ones, when the pictures are waited for.
+  for (const char* name : {"step", "evaluate"})
+    EXPECT_TRUE(std::ranges::any_of(profile.zones, [name](const ZoneTimes& zone) { return zone.name() == name; }))
+        << name;
   const ZoneTimes& whole = profile.zones.front();
   for (int repeat = 0; repeat < 2; ++repeat) {
     for (int frame = 0; frame < 5; ++frame) {
