@@ -53,36 +53,6 @@ cholmod_sparse view_of(const Eigen::SparseMatrix<double>& matrix, int xtype) {
   return view;
 }
 
-// Adjacent columns with (nearly) one pattern. Children are merged into their parents while the zeros that this stores
-// stay few: the thresholds are CHOLMOD's (nrelax, zrelax), which our solve times confirm to within noise.
-struct Supernode {
-  int first, last;
-  std::int64_t nonzeros;  // without the zeros that merging stores
-};
-
-std::vector<Supernode> find_supernodes(int size, const std::vector<int>& columns, const std::vector<int>& rows) {
-  const auto below = [&](int j) { return columns[j + 1] - columns[j] - 1; };
-  const auto parent = [&](int j) { return below(j) > 0 ? rows[columns[j] + 1] : size; };
-  std::vector<Supernode> merged;
-  for (int j = 0; j < size; ++j) {
-    Supernode node{j, j, below(j) + 1};
-    while (!merged.empty()) {
-      const Supernode& child = merged.back();
-      if (parent(child.last) != node.first) break;
-      const std::int64_t wide = node.last - child.first + 1;
-      const std::int64_t dense = wide * (wide + 1) / 2 + wide * below(node.last);
-      const double zeros = static_cast<double>(dense - child.nonzeros - node.nonzeros) / static_cast<double>(dense);
-      const bool few =
-          zeros <= 0 || wide <= 4 || (wide <= 16 && zeros < 0.8) || (wide <= 48 && zeros < 0.1) || zeros < 0.05;
-      if (!few) break;
-      node = {child.first, node.last, child.nonzeros + node.nonzeros};
-      merged.pop_back();
-    }
-    merged.push_back(node);
-  }
-  return merged;
-}
-
 }  // namespace
 
 std::vector<std::int32_t> fill_reducing_order(int count,
@@ -105,85 +75,148 @@ std::vector<std::int32_t> fill_reducing_order(int count,
   return {order, order + count};
 }
 
-CholeskyFactor::CholeskyFactor(const Eigen::SparseMatrix<double>& matrix, Precision precision)
-    : size_(static_cast<int>(matrix.rows())), precision_(precision) {
-  std::vector<int> columns(size_ + 1, 0), rows;
-  std::vector<double> values;
-  {
-    Cholmod cholmod;
-    cholmod.common.method[0].ordering = CHOLMOD_NATURAL;
-    cholmod.common.postorder = 0;
-    cholmod_sparse view = view_of(matrix, CHOLMOD_REAL);
-    const auto factor = cholmod.hold(size_ > 0 ? cholmod_analyze(&view, &cholmod.common) : nullptr);
-    if (size_ > 0) {
-      if (!factor || !cholmod_factorize(&view, factor.get(), &cholmod.common))
-        throw RunError("the stiffness matrix could not be factored: out of memory");
-      if (cholmod.common.status == CHOLMOD_NOT_POSDEF || factor->minor < factor->n) {
-        throw RunError(fmt::format("the stiffness matrix is not positive definite (unknown {})", factor->minor));
-      }
-      const int* begin = static_cast<const int*>(factor->p);
-      const int* length = static_cast<const int*>(factor->nz);
-      for (int j = 0; j < size_; ++j) {
-        columns[j + 1] = columns[j] + length[j];
-        const int* row = static_cast<const int*>(factor->i) + begin[j];
-        const double* value = static_cast<const double*>(factor->x) + begin[j];
-        rows.insert(rows.end(), row, row + length[j]);
-        values.insert(values.end(), value, value + length[j]);
-      }
-    }
-  }
+bool CholeskyFactor::has_pattern_of(const Eigen::SparseMatrix<double>& matrix) const {
+  return matrix.rows() == size_ && !outer_.empty() &&
+         std::equal(outer_.begin(), outer_.end(), matrix.outerIndexPtr()) &&
+         std::equal(inner_.begin(), inner_.end(), matrix.innerIndexPtr());
+}
 
+// Cuts supernodes into panels of equal width; the rows below a panel are the supernode's later columns and its rows.
+void CholeskyFactor::analyze(const Eigen::SparseMatrix<double>& matrix) {
+  *this = {};
+  size_ = static_cast<int>(matrix.rows());
+  outer_.assign(matrix.outerIndexPtr(), matrix.outerIndexPtr() + size_ + 1);
+  inner_.assign(matrix.innerIndexPtr(), matrix.innerIndexPtr() + matrix.nonZeros());
+  elimination_ = Elimination::of(matrix);
   first_row_.push_back(0);
+  first_panel_.push_back(0);
   std::int64_t value_count = 0;
-  for (const Supernode& node : find_supernodes(size_, columns, rows)) {
-    // Panels split a supernode into equal parts; the rows below a panel are the supernode's later columns and the rows
-    // of its last.
-    const int wide = node.last - node.first + 1;
-    const int parts = (wide + panel_width - 1) / panel_width;
+  for (const Supernode& node : elimination_.nodes) {
+    const int parts = (node.width() + panel_width - 1) / panel_width;
     for (int part = 0; part < parts; ++part) {
-      const int first = node.first + wide * part / parts;
-      const int end = node.first + wide * (part + 1) / parts;
+      const int first = node.first + node.width() * part / parts;
+      const int end = node.first + node.width() * (part + 1) / parts;
       first_column_.push_back(first);
       width_.push_back(end - first);
       for (int j = end; j <= node.last; ++j) rows_.push_back(j);
-      rows_.insert(rows_.end(), rows.begin() + columns[node.last] + 1, rows.begin() + columns[node.last + 1]);
+      const auto below = elimination_.rows.begin() + node.first_row;
+      rows_.insert(rows_.end(), below, below + node.row_count);
       first_value_.push_back(value_count);
       const auto row_count = static_cast<std::int64_t>(rows_.size()) - first_row_.back();
       value_count += (end - first) * (end - first + row_count);
       first_row_.push_back(static_cast<std::int64_t>(rows_.size()));
     }
+    first_panel_.push_back(static_cast<std::int32_t>(width_.size()));
   }
-  if (precision == Precision::single_precision) {
-    single_.assign(value_count, 0.0f);
-    fill(columns, rows, values, single_);
-  } else {
-    double_.assign(value_count, 0.0);
-    fill(columns, rows, values, double_);
+  first_value_.push_back(value_count);
+}
+
+namespace {
+
+// What the fronts are made of: the one that is worked on, and the update matrices that wait for their parents.
+class Fronts {
+ public:
+  Fronts(const Elimination& elimination, const Eigen::SparseMatrix<double>& matrix)
+      : elimination_(elimination),
+        matrix_(matrix),
+        place_(elimination.size),
+        front_(padded_rows(elimination.largest_front) * elimination.largest_front),
+        stack_(elimination.deepest_stack) {
+    waiting_.reserve(elimination.nodes.size());
+  }
+
+  // The front of a node after elimination of its columns: a column has padded_rows(front()) numbers.
+  const double* eliminate(int s) {
+    const Supernode& node = elimination_.nodes[s];
+    assemble(s);
+    const int failed = kernels().eliminate(front_.data(), padded_rows(node.front()), node.front(), node.width());
+    if (failed >= 0)
+      throw RunError(fmt::format("the stiffness matrix is not positive definite (unknown {})", node.first + failed));
+    if (node.parent >= 0) leave_update(s);
+    return front_.data();
+  }
+
+ private:
+  // Of the matrix what the node's columns hold, and what its children left on the stack.
+  void assemble(int s) {
+    const Supernode& node = elimination_.nodes[s];
+    const std::int64_t stride = padded_rows(node.front());
+    std::fill_n(front_.begin(), stride * node.front(), 0.0);
+    for (int j = 0; j < node.width(); ++j) place_[node.first + j] = j;
+    const std::int32_t* rows = &elimination_.rows[node.first_row];
+    for (int i = 0; i < node.row_count; ++i) place_[rows[i]] = node.width() + i;
+    for (int j = 0; j < node.width(); ++j) {
+      for (Eigen::SparseMatrix<double>::InnerIterator entry(matrix_, node.first + j); entry; ++entry)
+        front_[j * stride + place_[entry.row()]] = entry.value();
+    }
+    while (!waiting_.empty() && elimination_.nodes[waiting_.back()].parent == s) {
+      add_update(elimination_.nodes[waiting_.back()], stride);
+      waiting_.pop_back();
+    }
+  }
+
+  void add_update(const Supernode& child, std::int64_t stride) {
+    const std::int64_t child_stride = padded_rows(child.row_count);
+    stacked_ -= child_stride * child.row_count;
+    const double* update = &stack_[stacked_];
+    const std::int32_t* rows = &elimination_.rows[child.first_row];
+    target_.resize(child.row_count);
+    for (int i = 0; i < child.row_count; ++i) target_[i] = place_[rows[i]];
+    for (int j = 0; j < child.row_count; ++j, update += child_stride) {
+      double* column = &front_[target_[j] * stride];
+      for (int i = j; i < child.row_count; ++i) column[target_[i]] += update[i];
+    }
+  }
+
+  void leave_update(int s) {
+    const Supernode& node = elimination_.nodes[s];
+    const std::int64_t stride = padded_rows(node.front()), own_stride = padded_rows(node.row_count);
+    for (int j = 0; j < node.row_count; ++j) {
+      const double* column = &front_[(node.width() + j) * stride + node.width()];
+      std::copy(column + j, column + node.row_count, &stack_[stacked_ + j * own_stride + j]);
+    }
+    stacked_ += own_stride * node.row_count;
+    waiting_.push_back(s);
+  }
+
+  const Elimination& elimination_;
+  const Eigen::SparseMatrix<double>& matrix_;
+  std::vector<std::int32_t> place_, target_, waiting_;  // row of the front by unknown; by row of a child; nodes
+  AlignedVector<double> front_, stack_;
+  std::int64_t stacked_ = 0;  // numbers on the stack
+};
+
+}  // namespace
+
+void CholeskyFactor::factorize(const Eigen::SparseMatrix<double>& matrix, Precision precision) {
+  if (!has_pattern_of(matrix)) analyze(matrix);
+  precision_ = precision;
+  single_.resize(precision == Precision::single_precision ? first_value_.back() : 0);
+  double_.resize(precision == Precision::double_precision ? first_value_.back() : 0);
+  Fronts fronts(elimination_, matrix);
+  for (const std::int32_t s : elimination_.order) {
+    const double* front = fronts.eliminate(s);
+    precision == Precision::single_precision ? store_panels(s, front, single_) : store_panels(s, front, double_);
   }
 }
 
+// Columns of a front become rows of its panels, the diagonal inverted; above it 0.
 template <class T>
-void CholeskyFactor::fill(const std::vector<int>& columns, const std::vector<int>& rows,
-                          const std::vector<double>& values, AlignedVector<T>& out) {
-  for (std::size_t panel = 0; panel < width_.size(); ++panel) {
-    const int first = first_column_[panel], width = width_[panel];
-    T* triangle = out.data() + first_value_[panel];
-    const auto below_begin = rows_.begin() + first_row_[panel];
-    const auto below_end = rows_.begin() + first_row_[panel + 1];
-    for (int j = first; j < first + width; ++j) {
-      auto at = below_begin;
-      for (int k = columns[j]; k < columns[j + 1]; ++k) {
-        const int i = rows[k];
-        if (i == j) {
-          triangle[(i - first) * width + (j - first)] = static_cast<T>(1 / values[k]);
-        } else if (i < first + width) {
-          triangle[(i - first) * width + (j - first)] = static_cast<T>(values[k]);
-        } else {
-          at = std::lower_bound(at, below_end, i);
-          SUPPLE_CHECK(*at, ==, i);
-          triangle[width * width + (at - below_begin) * width + (j - first)] = static_cast<T>(values[k]);
-        }
-      }
+void CholeskyFactor::store_panels(int s, const double* front, AlignedVector<T>& out) const {
+  const Supernode& node = elimination_.nodes[s];
+  const std::int64_t stride = padded_rows(node.front());
+  for (int panel = first_panel_[s]; panel < first_panel_[s + 1]; ++panel) {
+    const int first = first_column_[panel] - node.first, width = width_[panel];
+    const double* source = front + first * stride + first;
+    T* target = out.data() + first_value_[panel];
+    for (int i = 0; i < width; ++i) {
+      for (int j = 0; j < width; ++j)
+        target[i * width + j] = static_cast<T>(j > i    ? 0.0
+                                               : j == i ? 1 / source[j * stride + j]
+                                                        : source[j * stride + i]);
+    }
+    for (int i = width; i < node.front() - first; ++i) {
+      for (int j = 0; j < width; ++j) target[i * width + j] = static_cast<T>(source[j * stride + i]);
     }
   }
 }

@@ -1,6 +1,7 @@
-// Sparse Cholesky of a symmetric positive definite matrix: ordering and numbers by CHOLMOD (its simplicial code, whose
-// bits depend neither on the number of threads nor on a BLAS), solves by our own panels for three right-hand sides at
-// once. The only place that knows CHOLMOD. Not thread-safe against itself: build on one thread.
+// Sparse Cholesky of a symmetric positive definite matrix: ordered by CHOLMOD, numbers by fronts of our own
+// (multifrontal; the bits depend on the matrix and the instruction set, on no BLAS and no number of threads), solves by
+// our own panels for three right-hand sides at once. The only place that knows CHOLMOD. Not thread-safe against itself:
+// build on one thread.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +12,7 @@
 
 #include "base/aligned.h"
 #include "base/types.h"
+#include "sim/elimination.h"
 #include "sim/kernels.h"
 
 namespace supple {
@@ -25,9 +27,12 @@ enum class Precision { single_precision, double_precision };
 class CholeskyFactor {
  public:
   CholeskyFactor() = default;
-  // Factors the lower triangle of `matrix` in the order given. Throws RunError when it is not positive definite, naming
-  // the column.
-  CholeskyFactor(const Eigen::SparseMatrix<double>& matrix, Precision precision);
+  CholeskyFactor(const Eigen::SparseMatrix<double>& matrix, Precision precision) { factorize(matrix, precision); }
+
+  // Factors a lower triangle (compressed, nothing stored above the diagonal) in the order given. A matrix with the
+  // pattern of the last one, in its precision, costs the numbers alone. Throws RunError when it is not positive
+  // definite, naming the column; the factor then solves nothing.
+  void factorize(const Eigen::SparseMatrix<double>& matrix, Precision precision);
 
   int size() const { return size_; }
   std::int64_t stored_numbers() const { return static_cast<std::int64_t>(single_.size() + double_.size()); }
@@ -36,13 +41,17 @@ class CholeskyFactor {
   void solve(const double* b, double* x, double* scratch) const;
 
  private:
+  bool has_pattern_of(const Eigen::SparseMatrix<double>& matrix) const;
+  void analyze(const Eigen::SparseMatrix<double>& matrix);
   template <class T>
-  void fill(const std::vector<int>& columns, const std::vector<int>& rows, const std::vector<double>& values,
-            AlignedVector<T>& out);
+  void store_panels(int node, const double* front, AlignedVector<T>& out) const;
   PanelsView view() const;
 
   int size_ = 0;
   Precision precision_ = Precision::double_precision;
+  std::vector<int> outer_, inner_;  // the pattern that was analysed
+  Elimination elimination_;
+  std::vector<std::int32_t> first_panel_;  // by supernode; one more entry than supernodes
   std::vector<std::int32_t> first_column_, width_, rows_;
   std::vector<std::int64_t> first_row_, first_value_;
   AlignedVector<float> single_;

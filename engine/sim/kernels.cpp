@@ -139,6 +139,77 @@ void stiffness(const ElementChunk& chunk, const double* x, bool project, double*
   });
 }
 
+// Adjacent columns that are brought up to date together: each number loaded from an earlier column serves them all.
+constexpr int strip_width = 4;
+
+// Columns first to first + width of a front lose what the `done` columns of L before them take from them, rows from
+// `first` down (and up to lanes - 1 above, where nobody looks).
+template <int width, int registers>
+void update_rows(double* front, long stride, int first, int done, long row) {
+  double* target = front + first * stride + row;
+  Lanes sum[width][registers];
+  for (int c = 0; c < width; ++c) {
+    for (int r = 0; r < registers; ++r) sum[c][r] = Lanes::load_aligned(target + c * stride + r * lanes);
+  }
+  const double* source = front + row;
+  const double* scale = front + first;
+  for (int k = 0; k < done; ++k, source += stride, scale += stride) {
+    Lanes known[registers];
+    for (int r = 0; r < registers; ++r) known[r] = Lanes::load_aligned(source + r * lanes);
+    for (int c = 0; c < width; ++c) {
+      const Lanes factor(scale[c]);
+      for (int r = 0; r < registers; ++r) sum[c][r] = fnma(factor, known[r], sum[c][r]);
+    }
+  }
+  for (int c = 0; c < width; ++c) {
+    for (int r = 0; r < registers; ++r) sum[c][r].store_aligned(target + c * stride + r * lanes);
+  }
+}
+
+template <int width>
+void update_strip(double* front, long stride, int first, int done) {
+  long row = first / lanes * lanes;
+  for (; row + 2 * lanes <= stride; row += 2 * lanes) update_rows<width, 2>(front, stride, first, done, row);
+  for (; row < stride; row += lanes) update_rows<width, 1>(front, stride, first, done, row);
+}
+
+using StripUpdate = void (*)(double*, long, int, int);
+
+// The columns of a strip, which know of all before the strip, become columns of L.
+int factor_strip(double* front, long stride, int first, int width) {
+  for (int j = first; j < first + width; ++j) {
+    double* column = front + j * stride;
+    const long begin = j / lanes * lanes;
+    for (int k = first; k < j; ++k) {
+      const double* known = front + k * stride;
+      const Lanes factor(known[j]);
+      for (long i = begin; i < stride; i += lanes)
+        fnma(factor, Lanes::load_aligned(known + i), Lanes::load_aligned(column + i)).store_aligned(column + i);
+    }
+    if (!(column[j] > 0)) return j;
+    const Lanes scale = Lanes(1.0) / sqrt(Lanes(column[j]));
+    for (long i = begin; i < stride; i += lanes) (Lanes::load_aligned(column + i) * scale).store_aligned(column + i);
+  }
+  return -1;
+}
+
+int eliminate(double* front, long stride, int size, int pivots) {
+  static constexpr StripUpdate update[strip_width] = {update_strip<1>, update_strip<2>, update_strip<3>,
+                                                      update_strip<4>};
+  for (int first = 0; first < size;) {
+    const int left = (first < pivots ? pivots : size) - first;
+    const int width = left < strip_width ? left : strip_width;
+    const int done = first < pivots ? first : pivots;
+    if (done > 0) update[width - 1](front, stride, first, done);
+    if (first < pivots) {
+      const int failed = factor_strip(front, stride, first, width);
+      if (failed >= 0) return failed;
+    }
+    first += width;
+  }
+  return -1;
+}
+
 // Four right-hand sides side by side: x, y, z and a spare that keeps loads whole.
 template <class T>
 struct Four {
@@ -259,6 +330,6 @@ void add_scaled(const double* const* a, const double* c, int count, double* r, l
 
 extern const Kernels SUPPLE_TABLE(SUPPLE_VARIANT);
 const Kernels SUPPLE_TABLE(SUPPLE_VARIANT) = {
-    SUPPLE_TEXT(SUPPLE_VARIANT), elements, stiffness, solve<float>, solve<double>, dots, add_scaled};
+    SUPPLE_TEXT(SUPPLE_VARIANT), elements, stiffness, eliminate, solve<float>, solve<double>, dots, add_scaled};
 
 }  // namespace supple

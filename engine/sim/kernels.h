@@ -40,6 +40,12 @@ struct Kernels {
   // translations. [N/m]
   void (*stiffness)(const ElementChunk& chunk, const double* x, bool project, double* out);
 
+  // Eliminates the first `pivots` columns of a dense symmetric front of `size` rows: its lower triangle, column-major,
+  // a column of `stride` numbers (a multiple of 8 and no less than size; those below the front must be 0 and stay so).
+  // They become columns of L, the others what elimination leaves of them (the update matrix). Above the diagonal
+  // anything may stand afterwards. Returns the first pivot that is not positive, or -1.
+  int (*eliminate)(double* front, long stride, int size, int pivots);
+
   // Solves L L^T x = b in place for four interleaved right-hand sides (n x 4), by panels of up to panel_width columns.
   void (*solve_float)(const struct PanelsView& panels, float* x);
   void (*solve_double)(const struct PanelsView& panels, double* x);

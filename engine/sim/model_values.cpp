@@ -202,7 +202,7 @@ void ModelValues::set(Model& model, const BodyDescription& body) {
     const Eigen::SparseMatrix<double> system = system_matrix(model, body.damping);
     const Eigen::VectorXd diagonal = system.diagonal();
     model.diagonal.assign(diagonal.begin(), diagonal.end());
-    model.factor = CholeskyFactor(system, body.precision);
+    model.factor.factorize(system, body.precision);
   } catch (const RunError& error) {
     throw RunError(fmt::format("body '{}': {}", body.name, error.what()));
   }

@@ -16,7 +16,7 @@ class ModelValues {
 
   // Whatever the description says now, in place; numbering and packing stay. Mesh, ends of springs, and
   // handles' vertices and hardness must be those of the description that the model was built from. Throws RunError when
-  // A cannot be factored; the model then keeps its old factor and must not be stepped.
+  // A cannot be factored; the model then must not be stepped.
   void set(Model& model, const BodyDescription& body);
 
  private:

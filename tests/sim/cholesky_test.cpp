@@ -1,0 +1,237 @@
+#include "sim/cholesky.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <numeric>
+#include <random>
+
+#include "base/error.h"
+
+namespace supple {
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+// A random lower triangle with about `links` entries a column, made positive definite by its diagonal.
+Sparse random_matrix(int size, double links, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> value(-1, 1);
+  std::uniform_int_distribution<int> unknown(0, std::max(size - 1, 0));
+  std::vector<Eigen::Triplet<double>> entries;
+  std::vector<double> diagonal(size, 0.1);
+  for (int k = 0; k < links * size; ++k) {
+    const int a = unknown(random), b = unknown(random);
+    if (a == b) continue;
+    const double v = value(random);
+    entries.emplace_back(std::max(a, b), std::min(a, b), v);
+    diagonal[a] += std::abs(v);
+    diagonal[b] += std::abs(v);
+  }
+  for (int i = 0; i < size; ++i) entries.emplace_back(i, i, diagonal[i]);
+  Sparse matrix(size, size);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+// The 7-point Laplacian of a grid plus a little mass, in an order of little fill or in the grid's own.
+Sparse grid_matrix(int n, bool ordered, double mass) {
+  const auto at = [&](int x, int y, int z) { return (x * n + y) * n + z; };
+  std::vector<std::pair<std::int32_t, std::int32_t>> edges;
+  for (int x = 0; x < n; ++x) {
+    for (int y = 0; y < n; ++y) {
+      for (int z = 0; z < n; ++z) {
+        if (x > 0) edges.emplace_back(at(x, y, z), at(x - 1, y, z));
+        if (y > 0) edges.emplace_back(at(x, y, z), at(x, y - 1, z));
+        if (z > 0) edges.emplace_back(at(x, y, z), at(x, y, z - 1));
+      }
+    }
+  }
+  const int size = n * n * n;
+  std::vector<std::int32_t> place(size);
+  std::iota(place.begin(), place.end(), 0);
+  if (ordered) {
+    const std::vector<std::int32_t> order = fill_reducing_order(size, edges);
+    for (int k = 0; k < size; ++k) place[order[k]] = k;
+  }
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i < size; ++i) entries.emplace_back(i, i, mass);
+  for (const auto& [a, b] : edges) {
+    entries.emplace_back(std::max(place[a], place[b]), std::min(place[a], place[b]), -1.0);
+    entries.emplace_back(place[a], place[a], 1.0);
+    entries.emplace_back(place[b], place[b], 1.0);
+  }
+  Sparse matrix(size, size);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+Eigen::MatrixXd dense(const Sparse& matrix) { return Eigen::MatrixXd(matrix).selfadjointView<Eigen::Lower>(); }
+
+Eigen::MatrixX3d solve(const CholeskyFactor& factor, const Eigen::MatrixX3d& b) {
+  const int size = factor.size();
+  std::vector<double> right(3 * size), x(3 * size);
+  AlignedVector<double> scratch(4 * size + 8);
+  for (int i = 0; i < size; ++i) {
+    for (int c = 0; c < 3; ++c) right[3 * i + c] = b(i, c);
+  }
+  factor.solve(right.data(), x.data(), scratch.data());
+  Eigen::MatrixX3d out(size, 3);
+  for (int i = 0; i < size; ++i) {
+    for (int c = 0; c < 3; ++c) out(i, c) = x[3 * i + c];
+  }
+  return out;
+}
+
+// || A x - b || / || b ||
+double residual(const Sparse& matrix, const CholeskyFactor& factor) {
+  const Eigen::MatrixX3d b = Eigen::MatrixX3d::Random(matrix.rows(), 3);
+  const Eigen::MatrixX3d x = solve(factor, b);
+  return (matrix.selfadjointView<Eigen::Lower>() * x - b).norm() / b.norm();
+}
+
+// All bits of a factor, by what it does to the columns of the identity.
+Eigen::MatrixXd inverse(const CholeskyFactor& factor) {
+  const int size = factor.size();
+  Eigen::MatrixXd out(size, size);
+  for (int i = 0; i < size; ++i) {
+    Eigen::MatrixX3d unit = Eigen::MatrixX3d::Zero(size, 3);
+    unit(i, 0) = 1;
+    out.col(i) = solve(factor, unit).col(0);
+  }
+  return out;
+}
+
+TEST(Elimination, FindsThePatternOfTheDenseFactor) {
+  for (const unsigned seed : {1u, 2u, 3u, 4u}) {
+    const Sparse matrix = random_matrix(70, 0.4 * seed, seed);
+    const Elimination elimination = Elimination::of(matrix);
+    Eigen::MatrixXd stored = Eigen::MatrixXd::Zero(70, 70);
+    int next = 0;
+    for (const Supernode& node : elimination.nodes) {
+      EXPECT_EQ(node.first, next);
+      next = node.last + 1;
+      for (int j = node.first; j <= node.last; ++j) {
+        stored.block(j, j, next - j, 1).setOnes();
+        for (int i = 0; i < node.row_count; ++i) stored(elimination.rows[node.first_row + i], j) = 1;
+      }
+      if (node.parent >= 0) {
+        EXPECT_GE(elimination.rows[node.first_row], elimination.nodes[node.parent].first);
+        EXPECT_LE(elimination.rows[node.first_row], elimination.nodes[node.parent].last);
+      }
+    }
+    EXPECT_EQ(next, 70);
+    const Eigen::MatrixXd full = dense(matrix);
+    const Eigen::MatrixXd factor = full.llt().matrixL();
+    for (int j = 0; j < 70; ++j) {
+      for (int i = j; i < 70; ++i) {
+        EXPECT_TRUE(stored(i, j) == 1 || std::abs(factor(i, j)) < 1e-14) << i << ", " << j;
+      }
+    }
+  }
+}
+
+TEST(Elimination, ComesToChildrenBeforeTheirParents) {
+  const Elimination elimination = Elimination::of(random_matrix(200, 0.7, 7));
+  std::vector<bool> done(elimination.nodes.size(), false);
+  for (const std::int32_t s : elimination.order) {
+    for (std::size_t child = 0; child < elimination.nodes.size(); ++child) {
+      EXPECT_TRUE(elimination.nodes[child].parent != s || done[child]);
+    }
+    EXPECT_FALSE(done[s]);
+    done[s] = true;
+  }
+  EXPECT_EQ(elimination.order.size(), elimination.nodes.size());
+}
+
+TEST(CholeskyFactor, SolvesWhateverThePattern) {
+  for (const double links : {0.0, 0.3, 0.6, 1.0, 3.0, 20.0}) {  // from a diagonal through forests to nearly dense
+    for (const int size : {1, 2, 3, 7, 8, 9, 40, 150}) {
+      const Sparse matrix = random_matrix(size, links, static_cast<unsigned>(size));
+      EXPECT_LT(residual(matrix, CholeskyFactor(matrix, Precision::double_precision)), 1e-13) << size << " " << links;
+      EXPECT_LT(residual(matrix, CholeskyFactor(matrix, Precision::single_precision)), 1e-4) << size << " " << links;
+    }
+  }
+  EXPECT_EQ(CholeskyFactor(Sparse(0, 0), Precision::double_precision).stored_numbers(), 0);
+}
+
+TEST(CholeskyFactor, AgreesWithADenseFactorOnGrids) {
+  for (const bool ordered : {false, true}) {
+    const Sparse matrix = grid_matrix(7, ordered, 0.01);
+    const Eigen::MatrixXd full = dense(matrix);
+    const Eigen::MatrixXd exact = full.llt().solve(Eigen::MatrixXd::Identity(full.rows(), full.cols()));
+    const CholeskyFactor factor(matrix, Precision::double_precision);
+    EXPECT_LT((inverse(factor) - exact).norm() / exact.norm(), 1e-13);
+  }
+  // The order pays: less is stored than in the grid's own.
+  const auto stored = [](bool ordered) {
+    return CholeskyFactor(grid_matrix(14, ordered, 0.01), Precision::double_precision).stored_numbers();
+  };
+  EXPECT_LT(stored(true), stored(false) / 2);
+}
+
+TEST(CholeskyFactor, OfNewNumbersIsTheFactorMadeAnew) {
+  const Sparse first = grid_matrix(6, true, 0.01), second = grid_matrix(6, true, 2.0);
+  for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
+    CholeskyFactor factor(first, precision);
+    factor.factorize(second, precision);
+    EXPECT_EQ(inverse(factor), inverse(CholeskyFactor(second, precision)));
+    // Also in the other precision, and for another pattern.
+    factor.factorize(second, Precision::double_precision);
+    EXPECT_EQ(inverse(factor), inverse(CholeskyFactor(second, Precision::double_precision)));
+    const Sparse other = random_matrix(50, 1.5, 3);
+    factor.factorize(other, precision);
+    EXPECT_EQ(inverse(factor), inverse(CholeskyFactor(other, precision)));
+  }
+}
+
+TEST(CholeskyFactor, NamesTheUnknownWhosePivotIsNotPositive) {
+  Sparse matrix = random_matrix(60, 1.5, 5);
+  const Sparse sound = matrix;
+  matrix.coeffRef(41, 41) = -1;
+  CholeskyFactor factor;
+  try {
+    factor.factorize(matrix, Precision::double_precision);
+    ADD_FAILURE() << "a matrix that is not positive definite was factored";
+  } catch (const RunError& error) {
+    EXPECT_NE(std::string(error.what()).find("unknown 41"), std::string::npos) << error.what();
+  }
+  matrix.coeffRef(41, 41) = std::nan("");
+  EXPECT_THROW(factor.factorize(matrix, Precision::double_precision), RunError);
+  factor.factorize(sound, Precision::double_precision);
+  EXPECT_LT(residual(sound, factor), 1e-13);
+}
+
+// Every instruction set, all sizes around its registers: the pivots' columns against a dense factor, the rest against
+// what a dense elimination leaves.
+TEST(Kernels, EliminateDenseFronts) {
+  int variants = 0;
+  const Kernels* const* tables = kernel_variants(variants);
+  for (int v = 0; v < variants; ++v) {
+    for (int size = 1; size < 42; ++size) {
+      for (const int pivots : {1, 2, 3, 4, 5, 9, size / 2, size}) {
+        if (pivots < 1 || pivots > size) continue;
+        const Eigen::MatrixXd random = Eigen::MatrixXd::Random(size, size);
+        const Eigen::MatrixXd full = random * random.transpose() + Eigen::MatrixXd::Identity(size, size);
+        const long stride = padded_rows(size);
+        AlignedVector<double> front(stride * size, 0.0);
+        for (int j = 0; j < size; ++j) {
+          for (int i = j; i < size; ++i) front[j * stride + i] = full(i, j);
+        }
+        ASSERT_EQ(tables[v]->eliminate(front.data(), stride, size, pivots), -1);
+        const Eigen::MatrixXd lower = full.llt().matrixL();
+        const auto left = lower.leftCols(pivots);
+        const Eigen::MatrixXd update = full - left * left.transpose();
+        for (int j = 0; j < size; ++j) {
+          for (int i = j; i < size; ++i)
+            EXPECT_NEAR(front[j * stride + i], j < pivots ? lower(i, j) : update(i, j), 1e-11 * size)
+                << tables[v]->name << ": " << size << ", " << pivots << " at " << i << ", " << j;
+          for (long i = size; i < stride; ++i) EXPECT_EQ(front[j * stride + i], 0.0);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace supple
