@@ -44,7 +44,9 @@ Finding opengl() {
     stage.width = stage.height = 16;
     stage.samples = 1;
     Renderer renderer(stage, GlChoice::automatic, shaders_folder());
-    (void)renderer.draw({Camera{}, {{0, 0, 0, 1, 0, 0, 0, 1, 0}}, {}});
+    DrawList list;
+    list.positions = {{0, 0, 0, 1, 0, 0, 0, 1, 0}};
+    (void)renderer.draw(list);
     finding.ok = true;
     finding.found = fmt::format("{}: {}, {}", renderer.backend(), renderer.name(), renderer.version());
   } catch (const std::exception& error) {

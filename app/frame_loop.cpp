@@ -66,6 +66,11 @@ struct DrawnFilm {
     add_set(set.obstacles, film_set, time, result);
     for (const std::size_t c : std::exchange(renewed, {}))
       result.renewed.emplace_back(actors.size() + c, collider_mesh(set.obstacles[c], film_set[c]));
+    for (std::size_t b = 0; b < actors.size(); ++b) {
+      if (stage.meshes[b].label == scene.bodies[b].label) continue;
+      stage.meshes[b].label = scene.bodies[b].label;
+      result.captions.emplace_back(b, scene.bodies[b].label);
+    }
     return result;
   }
 

@@ -52,8 +52,9 @@ struct Camera {
 
 struct DrawList {
   Camera camera;
-  std::vector<std::vector<float>> positions;              // by mesh: x y z by vertex [m]
-  std::vector<std::pair<std::size_t, DrawMesh>> renewed;  // meshes that take the place of the stage's from now on
+  std::vector<std::vector<float>> positions;                  // by mesh: x y z by vertex [m]
+  std::vector<std::pair<std::size_t, DrawMesh>> renewed;      // meshes that take the place of the stage's from now on
+  std::vector<std::pair<std::size_t, std::string>> captions;  // of meshes, from now on
 };
 
 struct Image {

@@ -67,7 +67,8 @@ Renderer::Renderer(const Stage& stage, GlChoice choice, const std::filesystem::p
   make_targets();
   check_test_triangle();
   for (const DrawMesh& mesh : stage_.meshes) meshes_.push_back(make_mesh_buffers(gl_, mesh));
-  make_labels();
+  labels_.resize(stage_.meshes.size());
+  for (std::size_t m = 0; m < labels_.size(); ++m) make_label(m);
   check_gl(gl_, "preparing the stage");
 }
 
@@ -181,24 +182,24 @@ void Renderer::check_test_triangle() {
   }
 }
 
-void Renderer::make_labels() {
-  if (stage_.font.empty()) return;
+void Renderer::make_label(std::size_t m) {
+  const DrawMesh& mesh = stage_.meshes[m];
+  gl_.DeleteTextures(1, &labels_[m].texture);  // 0 is no texture and not an error
+  labels_[m] = {};
+  if (stage_.font.empty() || mesh.label.empty()) return;
   const int pixels = std::max(9, static_cast<int>(std::lround(stage_.height / 32.0)));
+  // On the ground: what hangs in the air moves below where it starts.
+  const CaptionBitmap bitmap = draw_caption(stage_.font, mesh.label, pixels);
+  Label label{0, bitmap.width, bitmap.height,
+              Vec3(mesh.rest.center().x(), std::min(mesh.rest.lower.y(), 0.0), mesh.rest.upper.z())};
   gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  for (const DrawMesh& mesh : stage_.meshes) {
-    if (mesh.label.empty()) continue;
-    // On the ground: what hangs in the air moves below where it starts.
-    const CaptionBitmap bitmap = draw_caption(stage_.font, mesh.label, pixels);
-    Label label{0, bitmap.width, bitmap.height,
-                Vec3(mesh.rest.center().x(), std::min(mesh.rest.lower.y(), 0.0), mesh.rest.upper.z())};
-    gl_.GenTextures(1, &label.texture);
-    gl_.BindTexture(GL_TEXTURE_2D, label.texture);
-    gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, bitmap.width, bitmap.height, 0, GL_RED, GL_UNSIGNED_BYTE,
-                   bitmap.coverage.data());
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    labels_.push_back(label);
-  }
+  gl_.GenTextures(1, &label.texture);
+  gl_.BindTexture(GL_TEXTURE_2D, label.texture);
+  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, bitmap.width, bitmap.height, 0, GL_RED, GL_UNSIGNED_BYTE,
+                 bitmap.coverage.data());
+  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  labels_[m] = label;
 }
 
 void Renderer::upload(const DrawList& list) {
@@ -206,6 +207,10 @@ void Renderer::upload(const DrawList& list) {
     delete_mesh_buffers(gl_, meshes_[m]);
     meshes_[m] = make_mesh_buffers(gl_, mesh);
     stage_.meshes[m] = mesh;
+  }
+  for (const auto& [m, caption] : list.captions) {
+    stage_.meshes[m].label = caption;
+    make_label(m);
   }
   SUPPLE_CHECK(list.positions.size(), ==, meshes_.size());
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
@@ -356,7 +361,6 @@ void Renderer::lay_bodies_over_ground() {
 }
 
 void Renderer::draw_labels(const Camera& camera) {
-  if (labels_.empty()) return;
   const double aspect = static_cast<double>(stage_.width) / stage_.height;
   const Eigen::Matrix4f view = view_matrix(camera, aspect, bounds_.center(), bounds_.diagonal() + largest_body_);
   gl_.Enable(GL_BLEND);
@@ -365,6 +369,7 @@ void Renderer::draw_labels(const Camera& camera) {
   gl_.BindVertexArray(empty_array_);
   gl_.Uniform1i(uniform(label_program_, "caption"), 0);
   for (const Label& label : labels_) {
+    if (label.texture == 0) continue;
     const Eigen::Vector4f clip =
         view * Eigen::Vector4f(float(label.anchor.x()), float(label.anchor.y()), float(label.anchor.z()), 1);
     if (clip.w() <= 0) continue;

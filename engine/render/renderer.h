@@ -39,7 +39,7 @@ class Renderer {
   };
 
   void make_targets();
-  void make_labels();
+  void make_label(std::size_t mesh);
   void check_test_triangle();
   void upload(const DrawList& list);
   void draw_shadow_map();
@@ -64,8 +64,8 @@ class Renderer {
   GLuint layer_texture_ = 0;
   GLuint shadow_framebuffer_ = 0, shadow_texture_ = 0, occlusion_texture_ = 0, empty_array_ = 0;
   std::vector<MeshBuffers> meshes_;
-  std::vector<Label> labels_;
-  Bounds bounds_;  // of the stage at rest, widened: what lights and shadows cover
+  std::vector<Label> labels_;  // by mesh
+  Bounds bounds_;              // of the stage at rest, widened: what lights and shadows cover
   double largest_body_ = 1;
   GroundOcclusion occlusion_;
   Eigen::Matrix4f light_matrix_ = Eigen::Matrix4f::Identity();

@@ -87,6 +87,10 @@ frame = 18
 path = "body.bar.solver.integrator"
 value = "implicit-midpoint"
 [[change]]
+frame = 9
+path = "body.bar.label"
+value = "pulled"
+[[change]]
 t = 0.1
 over = 0.5
 path = "camera.margin"
@@ -256,6 +260,27 @@ TEST_F(ReplayedFilm, AWholeSolverTableTakesEffectAtOnce) {
   const std::string at = "[[change]]\nframe = 4\npath = \"body.bar.solver";
   EXPECT_EQ(film_with(at + "\"\nvalue = { method = \"newton\", damping = 0.01 }\n"),
             film_with(at + ".method\"\nvalue = \"newton\"\n" + at + ".damping\"\nvalue = 0.01\n"));
+}
+
+TEST_F(ReplayedFilm, ACaptionChangesFromItsFrameOn) {
+  std::ofstream(folder_.path / "s.toml") << R"(scene = "two.toml"
+frames = 6
+[[change]]
+frame = 2
+path = "body.bar.label"
+value = "pulled"
+[[change]]
+frame = 4
+path = "body.bar.label"
+value = "bar"
+)";
+  ASSERT_EQ(run(folder_.path, {"replay", "s.toml", "--no-video", "--quiet", "--out", "s"}).status, 0);
+  ASSERT_EQ(run(folder_.path, {"render", "two.toml", "--frames", "6", "--no-video", "--quiet", "--out", "p"}).status,
+            0);
+  EXPECT_EQ(hashes("s"), hashes("p"));
+  const std::vector<std::string> changed = pictures("s"), plain = pictures("p");
+  for (const std::size_t frame : {0, 1, 4, 5}) EXPECT_EQ(changed[frame], plain[frame]) << frame;
+  for (const std::size_t frame : {2, 3}) EXPECT_NE(changed[frame], plain[frame]) << frame;
 }
 
 TEST_F(ReplayedFilm, TellsOfImpossibleChangesBeforeTheFilmBegins) {
