@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "base/timing.h"
 #include "output/chrome_trace.h"
+#include "output/folder_lock.h"
 #include "output/png_file.h"
 #include "output/run_record.h"
 #include "output/whole_file.h"
@@ -329,12 +330,14 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
       request.out.empty() ? std::filesystem::path("out") / scene.name : std::filesystem::path(request.out);
   options.identity = identity_of(info, request);
   options.checkpoint_every = remembers_steps(script) ? 0 : request.checkpoint_every;
+  std::error_code ignored;
+  std::optional<FolderLock> lock;
+  if (!request.folder_is_held && std::filesystem::is_directory(path, ignored)) lock.emplace(path);
   if (request.resume) options.start = checkpoint_in(path, options.identity, scene.frames);
   const int start = options.start ? options.start->frames : 0;
   if (options.images && !request.last_image_only) check_pictures(path / "frames", start);
   options.record = request.record;
   options.record_head = record_head(info, bodies);
-  std::error_code ignored;
   if (!request.record.empty() && !request.verify.empty() &&
       (request.record == request.verify || std::filesystem::equivalent(request.record, request.verify, ignored)))
     throw InputError("--record " + request.record, "is the file to --verify with, which would be overwritten");
@@ -344,6 +347,7 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
     if (!verifier->remark().empty()) say(stderr, fmt::format("note: {}: {}\n", request.verify, verifier->remark()));
     options.verifier = &*verifier;
   }
+  if (!request.folder_is_held && !lock) lock.emplace(path);  // not before all that is refused without a trace
   const RunFolder folder(path, start);
   info.ended = "running";
   if (start > 0) info.resumed = resumed_before(path);

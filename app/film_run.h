@@ -17,7 +17,8 @@ struct FilmRequest {
   std::string scene;
   std::optional<std::size_t> sweep_point;  // of the scene's sweep; otherwise the scene as it stands
   std::string out;
-  int frames = 0;  // 0: the scene's
+  bool folder_is_held = false;  // who calls has the lock of `out`
+  int frames = 0;               // 0: the scene's
   int threads = 0;
   std::vector<std::string> set;
   int error_every = 0;

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/timing.h"
+#include "output/folder_lock.h"
 #include "output/whole_file.h"
 
 namespace supple {
@@ -58,6 +59,7 @@ FilmRequest film_of(const SweepRequest& request, std::size_t point) {
   film.scene = request.file.string();
   film.sweep_point = point;
   film.out = request.folder(point).string();
+  film.folder_is_held = true;
   film.set = request.settings;
   film.threads = request.threads;
   film.error_every = request.error_every;
@@ -97,6 +99,7 @@ std::string end_text(PointEnd end) {
 
 int run_point(const SweepRequest& request, std::size_t point, const std::vector<std::string>& command) {
   const std::filesystem::path folder = request.folder(point);
+  const FolderLock lock(folder);
   std::error_code error;
   for (const char* stale : {"point.json", "profile.json"}) std::filesystem::remove(folder / stale, error);
   const Stopwatch watch;

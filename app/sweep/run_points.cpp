@@ -16,6 +16,7 @@
 #include "base/text.h"
 #include "base/timing.h"
 #include "output/child_program.h"
+#include "output/folder_lock.h"
 
 namespace supple {
 namespace {
@@ -116,6 +117,7 @@ int sensible_jobs(const SweepRequest& request, int jobs, std::size_t points) {
 
 int run_points(const SweepRequest& request, int jobs, bool again) {
   check_sweep_points(request.file, assets_folder(), request.settings, request.sweep);
+  const FolderLock lock(request.out);
   const std::vector<std::size_t> points = points_to_run(request, again);
   const std::size_t all = request.sweep.points();
   const int at_once = sensible_jobs(request, jobs, points.size());

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "output/folder_lock.h"
 #include "output/png_file.h"
 #include "output/whole_file.h"
 #include "support/bodies.h"
@@ -96,6 +97,35 @@ TEST_F(Faults, ADamagedFrameIsFoundBeforeGoingOn) {
   EXPECT_EQ(result.status, 2);
   EXPECT_NE(result.err.find("000003.png: is missing or damaged"), std::string::npos) << result.err;
   EXPECT_EQ(test::profile_of(folder_.path / "out" / "bar")["frames"].size(), 8u);  // all else is as it was
+}
+
+TEST_F(Faults, AFolderThatAnotherRunWritesIntoIsLeftAlone) {
+  std::ofstream(folder_.path / "bar.toml", std::ios::app) << "[sweep.values]\n\"body.bar.density\" = [900, 1000]\n";
+  const auto expect_refused = [&](const std::string& held, std::vector<std::string> words) {
+    words.insert(words.end(), {"--no-images", "--quiet"});
+    std::string before, record;
+    {
+      const FolderLock lock(folder_.path / held);
+      before = test::read_file(folder_.path / held / "run.json");
+      record = test::read_file(folder_.path / held / "point.json");
+      const Result refused = run(folder_.path, words);
+      EXPECT_EQ(refused.status, 2) << held << refused.out;
+      EXPECT_EQ(refused.err, "--out " + held +
+                                 ": another run writes into this folder now; wait until it has ended, or choose "
+                                 "another folder\n");
+    }
+    EXPECT_EQ(test::read_file(folder_.path / held / "run.json"), before);
+    EXPECT_EQ(test::read_file(folder_.path / held / "point.json"), record);
+    EXPECT_EQ(run(folder_.path, words).status, 0) << held;  // once the folder is free
+  };
+  const std::vector<std::string> film = {"render", "bar.toml"}, resumed = {"render", "bar.toml", "--resume"},
+                                 point = {"sweep", "bar.toml", "--index", "1"}, points = {"sweep", "bar.toml"};
+  expect_refused("out/bar", film);
+  expect_refused("out/bar", film);  // where a run has been
+  expect_refused("out/bar", resumed);
+  expect_refused("out/bar-sweep/points/0001", point);
+  expect_refused("out/bar-sweep/points/0001", point);
+  expect_refused("out/bar-sweep", points);
 }
 
 }  // namespace
