@@ -130,8 +130,34 @@ bool remembers_steps(const Script& script) {
   return remembers_steps(script.scene());
 }
 
+// What was read beside the scene and the replay, also for shapes that colliders take on later. Files go by their names
+// without folders, so that a film can go on where it was moved to.
+nlohmann::ordered_json files_of(const Script& script, const std::vector<Body>& bodies) {
+  std::vector<SourceFile> files;
+  const auto add = [&files](const std::vector<SourceFile>& more) {
+    files.insert(files.end(), more.begin(), more.end());
+  };
+  const auto add_colliders = [&add](const SceneDef& scene) {
+    for (const ColliderDef& collider : scene.colliders) add(collider.shape.files);
+  };
+  for (const Body& body : bodies) add(body.files);
+  add_colliders(script.scene());
+  for (int frame = 0; frame < script.scene().frames; ++frame) {
+    const std::vector<const TimedChange*> at_work = script.at_work(frame);
+    const auto names_file = [](const TimedChange* change) { return change->cost.surface && change->over <= 0; };
+    if (std::any_of(at_work.begin(), at_work.end(), names_file)) add_colliders(script.scene_at(frame));
+  }
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const SourceFile& file : files) {
+    const nlohmann::ordered_json entry = {{"name", file.path.filename().string()},
+                                          {"xxh64", hash_text_form(file.hash)}};
+    if (std::find(list.begin(), list.end(), entry) == list.end()) list.push_back(entry);
+  }
+  return list;
+}
+
 // All that must be the same for two runs to give the same films, but for their length.
-std::string identity_of(const RunInfo& info, const FilmRequest& request) {
+std::string identity_of(const RunInfo& info, const nlohmann::ordered_json& files, const FilmRequest& request) {
   nlohmann::ordered_json scene = nlohmann::ordered_json::parse(info.scene_json);
   scene.erase("frames");
   nlohmann::ordered_json meshes;
@@ -143,6 +169,7 @@ std::string identity_of(const RunInfo& info, const FilmRequest& request) {
       {"images", !request.no_images},
       {"gl", request.gl},
       {"meshes", meshes},
+      {"files", files},
       {"scene", scene}};
   if (!info.replay_json.empty()) identity["replay"] = nlohmann::ordered_json::parse(info.replay_json);
   return identity.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
@@ -328,7 +355,7 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
   }
   const std::filesystem::path path =
       request.out.empty() ? std::filesystem::path("out") / scene.name : std::filesystem::path(request.out);
-  options.identity = identity_of(info, request);
+  options.identity = identity_of(info, files_of(script, bodies), request);
   options.checkpoint_every = remembers_steps(script) ? 0 : request.checkpoint_every;
   std::error_code ignored;
   std::optional<FolderLock> lock;

@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "geometry/source_file.h"
 #include "geometry/triangle_solid.h"
 
 namespace supple {
@@ -97,6 +98,7 @@ struct Shape {
   Vec3 color = Vec3(0.8, 0.6, 0.4);         // sRGB of what no layer covers
   std::vector<PaintLayer> paint;            // later layers lie over earlier ones
   std::vector<std::string> notes;           // what reading its files had to say
+  std::vector<SourceFile> files;            // that it was read from
 
   double distance(const Vec3& point) const;
   Vec3 gradient(const Vec3& point, double step) const;  // central differences over +-step

@@ -208,6 +208,7 @@ std::vector<Body> assemble(const SceneDef& scene) {
       body.def = def;
       body.notes = loaded.notes;
       body.source = loaded.source;
+      body.files = loaded.files;
       body.seed = scene.seed;
       body.skin = loaded.skin;
       body.description.name = def.name;

@@ -26,6 +26,7 @@ struct Body {
   std::vector<KeyedMotion> earlier;  // the same before a change that is spread over this frame; else empty
   std::vector<std::string> notes;    // what reading the mesh had to say
   std::string source;                // the mesh or shape file, or what it is made of
+  std::vector<SourceFile> files;     // that its mesh and looks were read from
   std::vector<std::string> regions;  // names by tag
   double volume = 0;                 // of its tetrahedra at rest [m^3]
   ClothMesh cloth;

@@ -10,6 +10,7 @@ namespace {
 Loaded loaded_cloth(const ClothDef& def) {
   Loaded loaded;
   loaded.cloth = def.mesh.empty() ? cloth_grid(def.extent, def.cells) : cloth_of(read_surface(def.mesh));
+  if (!def.mesh.empty()) loaded.files = {source_of(def.mesh, loaded.cloth.surface)};
   loaded.mesh.rest = loaded.cloth.surface.points;
   loaded.mesh.tets.resize(0, 4);
   loaded.source =
@@ -55,11 +56,13 @@ const Loaded& MeshCache::get(const SceneDef& scene, const BodyDef& def) {
     loaded.mesh = tetrahedralize(shape, def.vertices, loaded.source);
     loaded.regions = shape.regions;
     loaded.notes = shape.notes;
+    loaded.files = shape.files;
     if (!def.surface.empty())
       loaded.skin = std::get<ClosedSurface>(shape.root.parts.front().primitive).solid->surface();
   } else {
     loaded.source = def.mesh.string();
     MeshFile file = read_mesh(def.mesh);
+    loaded.files = {source_of(def.mesh, file.mesh)};
     loaded.mesh = std::move(file.mesh);
     loaded.notes = std::move(file.notes);
     name_references(loaded);

@@ -13,6 +13,7 @@ struct Loaded {
   std::vector<std::string> regions;  // names by tag
   std::vector<std::string> notes;
   std::string source;
+  std::vector<SourceFile> files;
   ClothMesh cloth;
   TriMesh skin;  // of a body made from a surface, as it was read
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "base/hash.h"
 #include "geometry/surface_file.h"
 #include "scene/rotation.h"
 
@@ -12,6 +13,7 @@ struct KnownSurfaces {
   struct Read {
     ClosedSurface surface;
     std::vector<std::string> notes;
+    SourceFile source;
   };
   std::map<std::filesystem::path, Read> by_file;
 };
@@ -41,17 +43,19 @@ std::shared_ptr<KnownSurfaces> known_surfaces(Config& config) {
   return config.surfaces();
 }
 
-ClosedSurface known_surface(Config& config, const std::filesystem::path& file, std::vector<std::string>& notes) {
+ClosedSurface known_surface(Config& config, const std::filesystem::path& file, Shape& shape) {
   const auto known = known_surfaces(config);
-  const auto at = known->by_file.find(file);
-  if (at != known->by_file.end()) {
-    notes.insert(notes.end(), at->second.notes.begin(), at->second.notes.end());
-    return at->second.surface;
+  auto at = known->by_file.find(file);
+  if (at == known->by_file.end()) {
+    KnownSurfaces::Read read;
+    TriMesh triangles = read_closed_surface(file, &read.notes);
+    read.source = source_of(file, triangles);
+    read.surface.solid = std::make_shared<TriangleSolid>(std::move(triangles));
+    at = known->by_file.emplace(file, std::move(read)).first;
   }
-  KnownSurfaces::Read read;
-  read.surface.solid = std::make_shared<TriangleSolid>(read_closed_surface(file, &read.notes));
-  notes.insert(notes.end(), read.notes.begin(), read.notes.end());
-  return known->by_file.emplace(file, std::move(read)).first->second.surface;
+  shape.notes.insert(shape.notes.end(), at->second.notes.begin(), at->second.notes.end());
+  shape.files.push_back(at->second.source);
+  return at->second.surface;
 }
 
 std::optional<Primitive> read_primitive(const ConfigTable& part, Shape& shape, int depth) {
@@ -99,7 +103,7 @@ std::optional<Primitive> read_primitive(const ConfigTable& part, Shape& shape, i
     const std::filesystem::path file = part.file({"surface", "", "a closed surface: OBJ, PLY, STL, glTF, OFF"});
     if (!file.empty()) {
       try {
-        result = known_surface(part.config(), file, shape.notes);
+        result = known_surface(part.config(), file, shape);
       } catch (const InputError& error) {
         for (const Problem& problem : error.problems()) part.config().complain(problem);
       }
@@ -183,8 +187,9 @@ Shape read_shape(const ConfigTable& table) {
     paint.color = read_color(layer, Vec3(0.2, 0.2, 0.2));
     paint.gloss = layer.number({"gloss", "", "0 matt to 1 wet"}, 0.2, Range::between(0, 1));
     paint.soft = layer.number({"soft", "m", "width of the layer's border"}, 0.0, Range::at_least(0));
-    Shape unused;
-    paint.area = read_parts(layer, {"part", "", "where the colour is"}, unused, 0);
+    Shape area;  // but for its files, only its parts count
+    paint.area = read_parts(layer, {"part", "", "where the colour is"}, area, 0);
+    shape.files.insert(shape.files.end(), area.files.begin(), area.files.end());
     shape.paint.push_back(std::move(paint));
   }
   if (shape.paint.size() > 8) table.complain("paint", fmt::format("{} layers of paint: at most 8", shape.paint.size()));
@@ -201,7 +206,9 @@ Shape read_single_part(const ConfigTable& table) {
 Shape load_surface(const std::filesystem::path& path) {
   Shape shape;
   ShapePart part;
-  part.primitive = ClosedSurface{std::make_shared<TriangleSolid>(read_closed_surface(path, &shape.notes))};
+  TriMesh triangles = read_closed_surface(path, &shape.notes);
+  shape.files.push_back(source_of(path, triangles));
+  part.primitive = ClosedSurface{std::make_shared<TriangleSolid>(std::move(triangles))};
   shape.root.parts.push_back(std::move(part));
   return shape;
 }
@@ -211,6 +218,7 @@ Shape load_shape(const std::filesystem::path& path, const std::filesystem::path&
   if (user != nullptr) config.surfaces() = known_surfaces(*user);
   Shape shape = read_shape(config.root());
   config.finish();
+  shape.files.push_back({path, hash_text(config.as_json())});
   return shape;
 }
 

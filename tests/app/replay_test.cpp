@@ -234,6 +234,52 @@ TEST_F(ReplayedFilm, RefusesTheCheckpointOfAnotherFilm) {
   EXPECT_NE(refused({"--no-images"}).find("is damaged"), std::string::npos);
 }
 
+// Two tetrahedra with a region each.
+std::string two_regions(int first, int second) {
+  return fmt::format(
+      "MeshVersionFormatted 2\nDimension 3\nVertices\n5\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 1 1 0\n"
+      "Tetrahedra\n2\n1 2 3 4 {}\n2 5 3 4 {}\nEnd\n",
+      first, second);
+}
+
+TEST_F(ReplayedFilm, RefusesTheCheckpointOfOtherFiles) {
+  const auto write = [&](const char* name, const std::string& text) { std::ofstream(folder_.path / name) << text; };
+  const std::string ball = "[[part]]\nsphere = { radius = 0.1 }\n";
+  write("ball.toml", ball);
+  write("later.toml", ball);
+  write("two.mesh", two_regions(1, 2));
+  write("files.toml", R"(frames = 6
+[[body]]
+name = "solid"
+mesh = "two.mesh"
+material = "rubber"
+position = [0, 2, 0]
+[body.regions.1]
+material = "jelly"
+[[collider]]
+name = "ball"
+shape = "ball.toml"
+)");
+  write("r.toml",
+        "scene = \"files.toml\"\n[[change]]\nframe = 3\npath = \"collider.ball.shape\"\nvalue = \"later.toml\"\n");
+  const auto resumed = [&] { return run(folder_.path, film({"--no-images", "--out", "a", "--resume"})); };
+  ASSERT_EQ(run(folder_.path, film({"--no-images", "--out", "a"})).status, 0);
+  write("ball.toml", "# the same ball\n" + ball);
+  EXPECT_EQ(resumed().status, 0);
+  const auto expect_refused = [&](const char* name, const std::string& text) {
+    const std::string before = read_file(folder_.path / name);
+    write(name, text);
+    const Result result = resumed();
+    EXPECT_EQ(result.status, 2) << name;
+    EXPECT_NE(result.err.find(fmt::format("files.{}.xxh64: ", name)), std::string::npos) << result.err;
+    write(name, before);
+    EXPECT_EQ(resumed().status, 0) << name;
+  };
+  expect_refused("ball.toml", "[[part]]\nsphere = { radius = 0.11 }\n");
+  expect_refused("later.toml", "[[part]]\nsphere = { radius = 0.11 }\n");
+  expect_refused("two.mesh", two_regions(2, 1));
+}
+
 TEST_F(ReplayedFilm, StartsAnewWhereThereIsNoCheckpointYet) {
   const Result result = run(folder_.path, film({"--out", "a", "--no-images", "--resume"}));
   EXPECT_EQ(result.status, 0);

@@ -1,0 +1,24 @@
+#include "geometry/source_file.h"
+
+#include "base/hash.h"
+
+namespace supple {
+namespace {
+
+template <class Matrix>
+std::uint64_t hash_of(const Matrix& rows, std::uint64_t seed) {
+  return hash_bytes(rows.data(), sizeof(typename Matrix::Scalar) * static_cast<std::size_t>(rows.size()), seed);
+}
+
+}  // namespace
+
+SourceFile source_of(const std::filesystem::path& path, const TetMesh& mesh) {
+  const std::uint64_t hash = hash_of(mesh.tets, hash_of(mesh.rest, 0));
+  return {path, hash_bytes(mesh.regions.data(), sizeof(int) * mesh.regions.size(), hash)};
+}
+
+SourceFile source_of(const std::filesystem::path& path, const TriMesh& mesh) {
+  return {path, hash_of(mesh.triangles, hash_of(mesh.points, 0))};
+}
+
+}  // namespace supple
