@@ -53,7 +53,8 @@ struct FilmArgument {
 };
 void add_film(CLI::App& verb, const FilmArgument& argument, Action& action, const std::vector<std::string>& command);
 
-// Every change of a script once, so that what cannot be is said before anything is written. Throws InputError.
+// Every change of a script once, so that what cannot be is said before anything is written. Throws InputError with all
+// that the bodies refuse.
 void try_changes(const Script& script, std::vector<Body> bodies);
 
 // What is legal and unwise about a scene and its changes.

@@ -2,17 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "base/text.h"
 #include "scene/scene_reader.h"
+#include "scene/script_parts.h"
 #include "scene/sweep.h"
 
 namespace supple {
 namespace {
-
-constexpr double tolerance = 1e-9;          // of times that are given as seconds and counted in frames [s]
-constexpr double at_start = 2 * tolerance;  // jumps at 0 are in force before the first frame [s]
 
 // A time by its seconds or its frame.
 double read_time(const ConfigTable& table, double fps, const Key& seconds, const Key& frames, bool required) {
@@ -71,49 +68,40 @@ std::optional<TimedChange> read_change(const ConfigTable& table, double fps) {
 }  // namespace
 
 std::optional<double> TimedChange::done_at(double time) const {
-  if (time < at + tolerance) return std::nullopt;
+  if (time < at + time_tolerance) return std::nullopt;
   if (over <= 0) return 1;
   if (time - at <= at_start) return 0;
   const double s = (time - at) / over;
-  return s >= 1 - tolerance ? 1 : ease == Ease::smooth ? s * s * (3 - 2 * s) : s;
+  return s >= 1 - time_tolerance ? 1 : ease == Ease::smooth ? s * s * (3 - 2 * s) : s;
 }
 
-struct Script::Parts {
-  std::optional<Config> replay;
-  Config scene_file;  // before any change
-  SceneDef start;
-  std::vector<TimedChange> changes;  // in the order of their beginnings
+Config Script::Parts::document_at(double time, std::size_t count, std::optional<std::size_t> left_out) const {
+  Config document = scene_file.copy();
+  for (std::size_t i = 0; i < count; ++i) {
+    const TimedChange& change = changes[i];
+    const auto done = change.done_at(time);
+    if (i == left_out || !done) continue;
+    document.put(change.path,
+                 change.over > 0 ? ConfigValue::between(*change.from, change.to, *done, change.by_ratio, change.whole)
+                                 : change.to,
+                 change.place, exclusive_keys());
+  }
+  return document;
+}
 
-  Config document_at(double time, std::size_t count) const {
-    Config document = scene_file.copy();
-    for (std::size_t i = 0; i < count; ++i) {
-      const TimedChange& change = changes[i];
-      const auto done = change.done_at(time);
-      if (!done) continue;
-      document.put(change.path,
-                   change.over > 0 ? ConfigValue::between(*change.from, change.to, *done, change.by_ratio, change.whole)
-                                   : change.to,
-                   change.place, exclusive_keys());
-    }
-    return document;
-  }
-  bool at_work(const TimedChange& change, int frame) const {
-    const double from = frame / start.fps, to = (frame + 1) / start.fps;
-    if (change.over <= 0) return change.at > tolerance && change.at > from - tolerance && change.at < to - tolerance;
-    return change.at < to - tolerance && change.at + change.over > from + tolerance;
-  }
-  SceneDef read(Config& document) const {
-    SceneDef scene = read_scene(document);
-    document.finish();
-    scene.name = start.name;
-    return scene;
-  }
-  void read_replay(const std::filesystem::path& assets, const std::vector<std::string>& settings);
-  std::optional<ConfigValue> value_at(const std::string& path, Config document) const;
-  std::vector<Problem> problems_with(const TimedChange& ramp, std::size_t before) const;
-  void prepare_ramps();
-  void check() const;
-};
+bool Script::Parts::at_work(const TimedChange& change, int frame) const {
+  const double from = frame / start.fps, to = (frame + 1) / start.fps;
+  if (change.over <= 0)
+    return change.at > time_tolerance && change.at > from - time_tolerance && change.at < to - time_tolerance;
+  return change.at < to - time_tolerance && change.at + change.over > from + time_tolerance;
+}
+
+SceneDef Script::Parts::read(Config& document) const {
+  SceneDef scene = read_scene(document);
+  document.finish();
+  scene.name = start.name;
+  return scene;
+}
 
 Script::Script(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 Script::Script(Script&&) noexcept = default;
@@ -134,7 +122,13 @@ Config load_replayed_scene(Config& replay, const std::filesystem::path& assets) 
   return Config::load(file, assets);
 }
 
-// Tables that a scene may leave out, so that their keys are asked for too.
+bool is_whole_number(const Config& scene, const std::string& path) {
+  return std::any_of(scene.known().begin(), scene.known().end(),
+                     [&](const KnownKey& key) { return key.path == path && key.type == "whole number"; });
+}
+
+}  // namespace
+
 void open_tables(Config& document) {
   std::vector<std::string> tables = {"camera", "solver"};
   if (document.value_at("collider")) tables.emplace_back("solver.contact");
@@ -143,15 +137,15 @@ void open_tables(Config& document) {
   }
 }
 
-bool is_whole_number(const Config& scene, const std::string& path) {
-  return std::any_of(scene.known().begin(), scene.known().end(),
-                     [&](const KnownKey& key) { return key.path == path && key.type == "whole number"; });
-}
-
-}  // namespace
-
 // The scene as the replay starts with it, and its changes.
 void Script::Parts::read_replay(const std::filesystem::path& assets, const std::vector<std::string>& settings) {
+  const auto collect = [this](const auto& put) {
+    try {
+      put();
+    } catch (const InputError& error) {
+      problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+    }
+  };
   scene_file = load_replayed_scene(*replay, assets);
   const ConfigTable root = replay->root();
   if (const auto title = root.value({"title", "", "for people"}, "the scene's"))
@@ -160,16 +154,19 @@ void Script::Parts::read_replay(const std::filesystem::path& assets, const std::
     scene_file.put("frames", *frames, root.place("frames", ""), {});
   if (const auto set = root.table({"set", "", "values of the scene, by their paths in quotes, from the start on"})) {
     for (const std::string& path : set->keys())
-      scene_file.put(path, *set->value({path.c_str(), "", ""}), set->place(path.c_str(), ""), exclusive_keys());
+      collect([&] {
+        scene_file.put(path, *set->value({path.c_str(), "", ""}), set->place(path.c_str(), ""), exclusive_keys());
+      });
   }
   for (const ConfigTable& table : root.tables({"grab", "", "a handle for a body, with the keys of [[body.handles]]"})) {
     const std::string body = table.text({"body", "", "whose vertices are grabbed"}, std::nullopt);
-    if (!body.empty()) scene_file.append("body." + body + ".handles", table.all_but("body"), table.place("body", ""));
+    if (body.empty()) continue;
+    collect([&] { scene_file.append("body." + body + ".handles", table.all_but("body"), table.place("body", "")); });
   }
   for (const std::string& setting : settings) scene_file.set(setting, exclusive_keys());
   Config plain = scene_file.copy();
   start = read_scene(plain);
-  plain.finish();
+  const std::vector<Problem> of_scene = plain.take_problems();
   open_tables(plain);
   (void)read_scene(plain);  // for the kinds of all keys
   for (const ConfigTable& table : root.tables({"change", "", "a value on its way to another"})) {
@@ -178,81 +175,21 @@ void Script::Parts::read_replay(const std::filesystem::path& assets, const std::
     change->whole = is_whole_number(plain, change->path);
     changes.push_back(std::move(*change));
   }
-  replay->finish();
+  for (const std::vector<Problem>& more : {of_scene, replay->take_problems()})
+    problems.insert(problems.end(), more.begin(), more.end());
+  if (!of_scene.empty()) throw InputError(std::move(problems));
   std::stable_sort(changes.begin(), changes.end(),
                    [](const TimedChange& a, const TimedChange& b) { return a.at < b.at; });
 }
 
-// What a path says, or leaves to the default.
-std::optional<ConfigValue> Script::Parts::value_at(const std::string& path, Config document) const {
-  if (auto value = document.value_at(path)) return value;
-  open_tables(document);
-  (void)read_scene(document);
-  for (const KnownKey& key : document.known()) {
-    if (key.path == path) return ConfigValue::parse(key.value);
-  }
-  return std::nullopt;
-}
-
-// What is wrong with the scene once a ramp is over.
-std::vector<Problem> Script::Parts::problems_with(const TimedChange& ramp, std::size_t before) const {
-  Config document = document_at(ramp.at + at_start, before);
-  document.put(ramp.path, ramp.to, ramp.place, exclusive_keys());
-  (void)read_scene(document);
-  return document.take_problems();
-}
-
-// Where each ramp begins.
-void Script::Parts::prepare_ramps() {
-  std::vector<Problem> problems;
-  for (std::size_t i = 0; i < changes.size(); ++i) {
-    TimedChange& change = changes[i];
-    const auto complain = [&](std::string message) {
-      problems.push_back({change.place.source, change.place.line, change.place.column, std::move(message)});
-    };
-    if (change.over <= 0) continue;
-    if (!change.from) change.from = value_at(change.path, document_at(change.at + at_start, i));
-    if (!change.from) {
-      problems = problems_with(change, i);  // most often a misspelled path
-    }
-    if (!problems.empty()) throw InputError(std::move(problems));
-    if (!change.from) {
-      complain(fmt::format("{} has no value in the scene to begin with: give the ramp a 'from'", change.path));
-    } else if (!change.from->joins(change.to)) {
-      complain(fmt::format("a ramp leads through numbers, or lists of them of one form; not from {} to {}",
-                           change.from->text(), change.to.text()));
-    } else if (change.by_ratio && !(change.from->all_positive() && change.to.all_positive())) {
-      complain("by = \"ratio\": only between positive numbers");
-    }
-    if (!problems.empty()) throw InputError(std::move(problems));
-  }
-}
-
-// Reads the scene of every frame in which something changes.
-void Script::Parts::check() const {
-  std::vector<Problem> problems;
-  std::set<std::string> said;
-  for (int frame = 0; frame < start.frames && problems.size() < 20; ++frame) {
-    if (std::none_of(changes.begin(), changes.end(), [&](const TimedChange& c) { return at_work(c, frame); })) continue;
-    Config document = document_at((frame + 1) / start.fps, changes.size());
-    (void)read_scene(document);
-    for (Problem& problem : document.take_problems()) {
-      if (!said.insert(fmt::format("{}:{}", problem.source, problem.line)).second) continue;
-      problem.message += fmt::format(" (first in frame {})", frame);
-      problems.push_back(std::move(problem));
-    }
-  }
-  if (!problems.empty()) throw InputError(std::move(problems));
-}
-
 Script Script::load(const std::filesystem::path& path, const std::filesystem::path& assets,
                     const std::vector<std::string>& settings, std::optional<std::size_t> sweep_point) {
-  auto parts = std::make_unique<Parts>(Parts{std::nullopt, Config::load(path, assets), {}, {}});
+  auto parts = std::make_unique<Parts>(Parts{std::nullopt, Config::load(path, assets), {}, {}, {}});
   const ConfigTable root = parts->scene_file.root();
   if (root.has("scene") || root.has("change") || root.has("grab")) {
     parts->replay = parts->scene_file.copy();
     parts->read_replay(assets, settings);
-    parts->prepare_ramps();
+    parts->check_changes();
   } else {
     for (const std::string& setting : settings) parts->scene_file.set(setting, exclusive_keys());
     if (sweep_point) put_sweep_point(parts->scene_file, *sweep_point);
@@ -260,7 +197,6 @@ Script Script::load(const std::filesystem::path& path, const std::filesystem::pa
   parts->start.name = path.stem().string();
   Config document = parts->document_at(at_start, parts->changes.size());
   parts->start = parts->read(document);
-  parts->check();
   return Script(std::move(parts));
 }
 
@@ -288,10 +224,10 @@ std::vector<Problem> Script::warnings() const {
     list.push_back({place.source, place.line, place.column, std::move(message)});
   };
   for (const TimedChange& change : parts_->changes) {
-    if (change.at > end - tolerance) {
+    if (change.at > end - time_tolerance) {
       warn(change.place,
            fmt::format("{} would change at {:g} s, when the film is over ({:g} s)", change.path, change.at, end));
-    } else if (change.at + change.over > end + tolerance) {
+    } else if (change.at + change.over > end + time_tolerance) {
       warn(change.place, fmt::format("the film is over ({:g} s) before {} has changed all the way", end, change.path));
     }
   }

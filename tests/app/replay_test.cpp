@@ -297,6 +297,28 @@ TEST_F(ReplayedFilm, RefusesSpringsThatWouldComeOrGo) {
   }
 }
 
+TEST_F(ReplayedFilm, ListsAllThatTheBodiesRefuse) {
+  std::ofstream(folder_.path / "bad.toml") << R"(scene = "two.toml"
+[[change]]
+t = 0.3
+path = "body.bar.handles.end.stiffness"
+value = 30
+[[change]]
+t = 0.2
+path = "body.sheet.cloth.bend"
+value = 0
+[[change]]
+t = 0.4
+path = "body.sheet.cloth.stretch"
+value = 200
+)";
+  const Result result = run(folder_.path, {"check", "bad.toml"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_EQ(result.err,
+            "bad.toml:9:9: shear and bend of the cloth of body 'sheet' cannot reach or leave 0 while the film runs\n"
+            "bad.toml:5:9: handle 'end' of body 'bar': hard handles stay hard, and springs stay springs\n");
+}
+
 TEST_F(ReplayedFilm, AWholeSolverTableTakesEffectAtOnce) {
   const auto film_with = [&](const std::string& changes) {
     std::ofstream(folder_.path / "s.toml") << "scene = \"two.toml\"\nframes = 10\n" << changes;

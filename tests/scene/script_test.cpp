@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <sstream>
 
 #include "scene/script.h"
 #include "support/bodies.h"
@@ -34,8 +35,10 @@ position = [0, -1, 0]
     try {
       (void)script(changes);
     } catch (const InputError& error) {
-      const std::string text = error.what(), path = (folder_.path / "").string();
-      return text.starts_with(path) ? text.substr(path.size()) : text;
+      const std::string path = (folder_.path / "").string();
+      std::string text = error.what();
+      for (std::size_t at = text.find(path); at != std::string::npos; at = text.find(path)) text.erase(at, path.size());
+      return text;
     }
     return "accepted";
   }
@@ -161,6 +164,51 @@ TEST_F(Replay, RefusesWithPlaceAndReason) {
   // In the middle of a ramp: the line of its value.
   EXPECT_EQ(refused("[[change]]\nt = 0.5\nover = 1\npath = 'camera.fov_deg'\nvalue = 500\n").substr(0, 10),
             "r.toml:6:9");
+}
+
+TEST_F(Replay, ListsAllWrongChangesAtOnce) {
+  std::istringstream list(
+      refused("[set]\n'body.rod.density' = 3\n"
+              "[[change]]\nt = 1\npath = 'body.rod.material.mu'\nvalue = 4\n"
+              "[[change]]\nt = 0.5\npath = 'body.bar.box.cells'\nvalue = [1, 2, 3]\n"
+              "[[change]]\nt = 0\npath = 'camera.fov_deg'\nvalue = 500\n"
+              "[[change]]\nt = 1.5\nover = 0.1\npath = 'gravity'\nvalue = 3\n"
+              "[[change]]\nt = 1\nover = 0.2\npath = 'body.bar.material.mu'\nvalue = -3e4\n"
+              "[[change]]\nt = 1\npath = 'solver.iterations'\nvalue = 0\nvalu = 0\n"));
+  for (const char* expected : {
+           "r.toml:3:22: there is no body named 'rod' (there is bar)",
+           "r.toml:7:9: there is no body named 'rod' (there is bar)",
+           "r.toml:10:8: 'body.bar.box.cells' cannot change while the film runs",
+           "r.toml:15:9: fov_deg = 500: must be 1 to 150",
+           "r.toml:20:9: a ramp leads through numbers, or lists of them of one form; not from [0, -9.81, 0] to 3",
+           "r.toml:25:9: mu = -",
+           "r.toml:29:9: iterations = 0: must be ",
+           "r.toml:30:1: unknown key 'valu'; did you mean 'value'?",
+       }) {
+    std::string line;
+    std::getline(list, line);
+    EXPECT_TRUE(line.starts_with(expected)) << line;
+  }
+  EXPECT_EQ(list.peek(), EOF) << list.str();
+}
+
+TEST_F(Replay, TellsAtAChangeWhatItMakesWrongElsewhere) {
+  EXPECT_EQ(refused("[[change]]\nt = 1\npath = 'body.bar.material.model'\nvalue = 'corotated'\n"),
+            "r.toml:5:9: body.bar.material.model = 'corotated' does not go with what stands beside it: unknown key "
+            "'lambda'; allowed here: model, mu, poisson or young (bar.toml:5:49). Change all of it at once: path = "
+            "\"body.bar.material\", value = { ... } (first in frame 30)");
+  for (const char* over : {"", "over = 1\n"}) {
+    const std::string text =
+        refused(std::string("[[change]]\nt = 1\npath = 'body.bar.material.young'\nvalue = 5e4\n") + over);
+    EXPECT_TRUE(
+        text.starts_with("r.toml:5:9: body.bar.material.young = 50000 does not go with what stands beside it: "
+                         "'poisson' is missing"))
+        << text;
+    EXPECT_NE(text.find("; mu: not together with young and poisson, which say the same (bar.toml:5:42); "),
+              std::string::npos)
+        << text;
+    EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+  }
 }
 
 TEST_F(Replay, RefusesSlipsOfThePen) {

@@ -1,0 +1,171 @@
+// What is wrong with the changes of a replay: all of it at once, each told where the replay has it.
+#include <algorithm>
+#include <iterator>
+#include <tuple>
+
+#include "scene/scene_reader.h"
+#include "scene/script_parts.h"
+
+namespace supple {
+namespace {
+
+constexpr std::size_t most_problems = 20;
+
+std::vector<Problem> problems_of(Config document) {
+  (void)read_scene(document);
+  return document.take_problems();
+}
+
+// Those of a list that another one does not have.
+std::vector<Problem> beyond(const std::vector<Problem>& list, const std::vector<Problem>& other) {
+  std::vector<Problem> rest;
+  for (const Problem& problem : list) {
+    const auto same = [&problem](const Problem& p) { return p.text() == problem.text(); };
+    if (std::none_of(other.begin(), other.end(), same)) rest.push_back(problem);
+  }
+  return rest;
+}
+
+std::string place_text(const Problem& problem) {
+  return problem.line > 0 ? fmt::format("{}:{}:{}", problem.source, problem.line, problem.column) : problem.source;
+}
+
+// The table that a path leads into; empty at the top.
+std::string table_of(const std::string& path) {
+  const std::size_t dot = path.rfind('.');
+  return dot == std::string::npos ? "" : path.substr(0, dot);
+}
+
+Problem at(const TimedChange& change, std::string message) {
+  return {change.place.source, change.place.line, change.place.column, std::move(message)};
+}
+
+// What a change makes wrong: in the replay as it stands there; elsewhere, where nobody has changed anything, told at
+// the change.
+std::vector<Problem> told_at(const TimedChange& change, const std::vector<Problem>& made) {
+  std::vector<Problem> own;
+  std::string elsewhere;
+  for (const Problem& problem : made) {
+    if (problem.source == change.place.source) own.push_back(problem);
+    elsewhere += fmt::format("{}{} ({})", elsewhere.empty() ? "" : "; ", problem.message, place_text(problem));
+  }
+  if (!own.empty()) return own;
+  const std::string table = table_of(change.path);
+  const bool together = cost_of_change(table).has_value();
+  return {at(
+      change,
+      fmt::format("{} = {} does not go with what stands beside it: {}{}", change.path, change.to.text(), elsewhere,
+                  together ? fmt::format(". Change all of it at once: path = \"{}\", value = {{ ... }}", table) : ""))};
+}
+
+}  // namespace
+
+void Script::Parts::tell(std::vector<Problem> more) {
+  problems.insert(problems.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
+void Script::Parts::tell(Problem problem, const std::string& when, Told& told) {
+  if (!told.places.insert(place_text(problem)).second) return;
+  problem.message += when;
+  problems.push_back(std::move(problem));
+}
+
+// Takes out the changes whose paths lead nowhere.
+void Script::Parts::put_each() {
+  Config document = scene_file.copy();
+  std::erase_if(changes, [&](const TimedChange& change) {
+    try {
+      document.put(change.path, change.to, change.place, exclusive_keys());
+      return false;
+    } catch (const InputError& error) {
+      tell(error.problems());
+      return true;
+    }
+  });
+}
+
+// What a path says, or leaves to the default.
+std::optional<ConfigValue> Script::Parts::value_at(const std::string& path, Config document) const {
+  if (auto value = document.value_at(path)) return value;
+  open_tables(document);
+  (void)read_scene(document);
+  for (const KnownKey& key : document.known()) {
+    if (key.path == path) return ConfigValue::parse(key.value);
+  }
+  return std::nullopt;
+}
+
+// Where a ramp begins. Returns why it cannot be one.
+std::vector<Problem> Script::Parts::prepare(TimedChange& ramp, std::size_t index) const {
+  const auto before = [&] { return document_at(ramp.at + at_start, index); };
+  if (!ramp.from) ramp.from = value_at(ramp.path, before());
+  if (!ramp.from) {  // most often a misspelled path
+    Config over = before();
+    over.put(ramp.path, ramp.to, ramp.place, exclusive_keys());
+    const std::vector<Problem> made = beyond(problems_of(std::move(over)), problems_of(before()));
+    if (!made.empty()) return told_at(ramp, made);
+    return {at(ramp, fmt::format("{} has no value in the scene to begin with: give the ramp a 'from'", ramp.path))};
+  }
+  if (!ramp.from->joins(ramp.to))
+    return {at(ramp, fmt::format("a ramp leads through numbers, or lists of them of one form; not from {} to {}",
+                                 ramp.from->text(), ramp.to.text()))};
+  if (ramp.by_ratio && !(ramp.from->all_positive() && ramp.to.all_positive()))
+    return {at(ramp, "by = \"ratio\": only between positive numbers")};
+  return {};
+}
+
+void Script::Parts::prepare_ramps() {
+  for (std::size_t i = 0; i < changes.size();) {
+    std::vector<Problem> wrong = changes[i].over > 0 ? prepare(changes[i], i) : std::vector<Problem>();
+    if (wrong.empty()) {
+      ++i;
+    } else {
+      tell(std::move(wrong));
+      changes.erase(changes.begin() + std::ptrdiff_t(i));
+    }
+  }
+}
+
+// Reads the scene as it is at a time.
+void Script::Parts::check_at(double time, const std::string& when, Told& told) {
+  std::vector<Problem> found = problems_of(document_at(time, changes.size()));
+  std::erase_if(found, [&](const Problem& problem) {
+    return told.places.contains(place_text(problem)) || told.texts.contains(problem.text());
+  });
+  for (std::size_t i = changes.size(); i-- > 0 && !found.empty();) {
+    if (!changes[i].done_at(time)) continue;
+    std::vector<Problem> made;
+    try {
+      made = beyond(found, problems_of(document_at(time, changes.size(), i)));
+    } catch (const InputError&) {
+      continue;  // others lead into what this one puts there
+    }
+    if (made.empty()) continue;
+    for (const Problem& problem : made) told.texts.insert(problem.text());
+    for (Problem& problem : told_at(changes[i], made)) tell(std::move(problem), when, told);
+    found = beyond(found, made);
+  }
+  for (Problem& problem : found) tell(std::move(problem), when, told);
+}
+
+void Script::Parts::check_changes() {
+  try {
+    put_each();
+    prepare_ramps();
+    Told told;
+    check_at(at_start, "", told);
+    for (int frame = 0; frame < start.frames && problems.size() < most_problems; ++frame) {
+      if (std::any_of(changes.begin(), changes.end(), [&](const TimedChange& c) { return at_work(c, frame); }))
+        check_at((frame + 1) / start.fps, fmt::format(" (first in frame {})", frame), told);
+    }
+  } catch (const InputError& error) {  // a change that lost one it rests on
+    if (problems.empty()) throw;
+  }
+  if (problems.empty()) return;
+  std::stable_sort(problems.begin(), problems.end(), [](const Problem& a, const Problem& b) {
+    return std::tie(a.source, a.line, a.column) < std::tie(b.source, b.line, b.column);
+  });
+  throw InputError(std::move(problems));
+}
+
+}  // namespace supple
