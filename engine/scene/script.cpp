@@ -217,6 +217,31 @@ SceneDef Script::scene_at(int frame) const {
   return parts_->read(document);
 }
 
+namespace {
+
+// Whether a change of one path leaves nothing of one of another.
+bool replaces(const std::string& path, const std::string& other) {
+  return other.starts_with(path) && (other.size() == path.size() || other[path.size()] == '.');
+}
+
+// Ramps that another change cuts off: from its beginning on only that one counts.
+void warn_of_broken_ramps(const std::vector<TimedChange>& changes, std::vector<Problem>& list) {
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const TimedChange& ramp = changes[i];
+    for (std::size_t j = i + 1; j < changes.size() && changes[j].at < ramp.at + ramp.over - time_tolerance; ++j) {
+      const TimedChange& later = changes[j];
+      if (!replaces(later.path, ramp.path)) continue;
+      list.push_back({later.place.source, later.place.line, later.place.column,
+                      fmt::format("from {:g} s on this change has its way with {}; the ramp of line {} ({:g} to {:g} "
+                                  "s) ends there, unfinished",
+                                  later.at, ramp.path, ramp.place.line, ramp.at, ramp.at + ramp.over)});
+      break;
+    }
+  }
+}
+
+}  // namespace
+
 std::vector<Problem> Script::warnings() const {
   std::vector<Problem> list;
   const double end = parts_->start.frames / parts_->start.fps;
@@ -231,6 +256,7 @@ std::vector<Problem> Script::warnings() const {
       warn(change.place, fmt::format("the film is over ({:g} s) before {} has changed all the way", end, change.path));
     }
   }
+  warn_of_broken_ramps(parts_->changes, list);
   for (const BodyDef& body : parts_->start.bodies) {
     for (const HandleDef& handle : body.handles) {
       bool holds = !handle.grabs;

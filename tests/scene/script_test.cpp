@@ -189,7 +189,7 @@ TEST_F(Replay, ListsAllWrongChangesAtOnce) {
     std::getline(list, line);
     EXPECT_TRUE(line.starts_with(expected)) << line;
   }
-  EXPECT_EQ(list.peek(), EOF) << list.str();
+  EXPECT_EQ(list.peek(), std::char_traits<char>::eof()) << list.str();
 }
 
 TEST_F(Replay, TellsAtAChangeWhatItMakesWrongElsewhere) {
@@ -245,6 +245,34 @@ TEST_F(Replay, WarnsOfWhatNoFrameSees) {
   EXPECT_NE(all.find("handle 'f' of body 'bar' never holds"), std::string::npos) << all;
   EXPECT_EQ(late.warnings().size(), 3u) << all;
   EXPECT_TRUE(script("[[change]]\nt = 1\nover = 1\npath = 'body.bar.material.mu'\nvalue = 5\n").warnings().empty());
+}
+
+TEST_F(Replay, WarnsOfRampsThatAnotherChangeBreaksOff) {
+  const auto warned = [this](const std::string& changes) {
+    std::string all;
+    const std::string path = (folder_.path / "r.toml").string();
+    for (const Problem& warning : script(changes).warnings()) all += warning.text().substr(path.size()) + "\n";
+    return all;
+  };
+  const std::string ramp = "[[change]]\nt = 0.5\nover = 1\npath = 'body.bar.material.mu'\nvalue = 2e4\n";
+  const std::string says =
+      " s on this change has its way with body.bar.material.mu; the ramp of line 6 (0.5 to 1.5 s) ends there, "
+      "unfinished\n";
+  EXPECT_EQ(warned(ramp + "[[change]]\nt = 1\nover = 0.2\npath = 'body.bar.material.mu'\nvalue = 3e4\n"),
+            ":11:9: from 1" + says);
+  EXPECT_EQ(warned(ramp + "[[change]]\nt = 1.25\npath = 'body.bar.material.mu'\nvalue = 3e4\n"
+                          "[[change]]\nt = 1.4\npath = 'body.bar.material.mu'\nvalue = 4e4\n"),
+            ":10:9: from 1.25" + says);
+  EXPECT_EQ(warned(ramp + "[[change]]\nt = 1\npath = 'body.bar.material'\nvalue = 'jelly'\n"), ":10:9: from 1" + says);
+  // One behind the other, and one of another value.
+  EXPECT_EQ(warned(ramp + "[[change]]\nt = 1.5\npath = 'body.bar.material.mu'\nvalue = 3e4\n"
+                          "[[change]]\nt = 1\npath = 'body.bar.material.lambda'\nvalue = 3e4\n"),
+            "");
+  // The value that is left behind, and that the ramp does not come back.
+  const Script broken = script(ramp + "[[change]]\nt = 1\npath = 'body.bar.material.mu'\nvalue = 3e4\n");
+  EXPECT_LT(mu_of(broken.scene_at(29)), 2e4);
+  EXPECT_EQ(mu_of(broken.scene_at(30)), 3e4);
+  EXPECT_EQ(mu_of(broken.scene_at(50)), 3e4);
 }
 
 TEST_F(Replay, ListsWhatCanChange) {
