@@ -31,6 +31,21 @@ std::string states_text(const RunComparison& c) {
   return text;
 }
 
+// Of bodies whose saved motion is not that of the states; else empty.
+std::string motion_text(const RunComparison& c) {
+  std::string text;
+  for (const BodyComparison& body : c.bodies) {
+    if (!c.only_motion_differs(body)) continue;
+    const std::string what = body.first_difference
+                                 ? fmt::format("differs from frame {} on", *body.first_difference)
+                                 : fmt::format("has {} frames in A and {} in B", body.saved_a, body.saved_b);
+    text +=
+        fmt::format("  motion          motion/{}.pc2 {}, though the states do not differ there: a file was changed\n",
+                    body.name, what);
+  }
+  return text;
+}
+
 std::string distance_table(const RunComparison& c) {
   std::string text = fmt::format("  {:<16}{:>12}{:>12}{:>8}{:>14}\n", "distance", "largest [m]", "over size", "frame",
                                  "rms there [m]");
@@ -64,7 +79,7 @@ std::string differences_text(const RunComparison& c) {
 std::string text_of(const RunRecord& a, const RunRecord& b, const RunComparison& c) {
   std::string text = fmt::format("  A               {} ({} frames, {})\n", a.folder.string(), c.frames_a, a.ended());
   text += fmt::format("  B               {} ({} frames, {})\n", b.folder.string(), c.frames_b, b.ended());
-  text += fmt::format("  states          {}\n\n{}\n", states_text(c), distance_table(c));
+  text += fmt::format("  states          {}\n{}\n{}\n", states_text(c), motion_text(c), distance_table(c));
   text += fmt::format("  median step     {:.3f} ms in A, {:.3f} ms in B: B takes {:.3f} times as long\n\n", c.step_ms_a,
                       c.step_ms_b, c.step_ms_b / c.step_ms_a);
   return text + differences_text(c);
@@ -72,15 +87,20 @@ std::string text_of(const RunRecord& a, const RunRecord& b, const RunComparison&
 
 std::string json_of(const RunRecord& a, const RunRecord& b, const RunComparison& c) {
   using Json = nlohmann::ordered_json;
-  Json json = {{"a", a.folder.string()}, {"b", b.folder.string()}, {"same_states", c.same_states()}};
+  Json json = {{"a", a.folder.string()},
+               {"b", b.folder.string()},
+               {"same_states", c.same_states()},
+               {"same_motion", c.same_motion()}};
   json["frames"] = {{"a", c.frames_a}, {"b", c.frames_b}, {"compared", c.frames}};
   json["first_difference"] = c.first_difference ? Json(*c.first_difference) : Json(nullptr);
   json["bodies"] = Json::array();
   for (const BodyComparison& body : c.bodies) {
     Json row = {
         {"name", body.name}, {"vertices", {{"a", body.vertices_a}, {"b", body.vertices_b}}}, {"size_m", body.size}};
+    row["saved_frames"] = {{"a", body.saved_a}, {"b", body.saved_b}};
     if (!body.distance.empty()) {
       const FrameDistance& worst = body.distance[body.worst_frame];
+      row["first_difference"] = body.first_difference ? Json(*body.first_difference) : Json(nullptr);
       row["frame"] = body.worst_frame;
       row["largest_m"] = worst.largest;
       row["rms_m"] = worst.rms;
@@ -125,7 +145,7 @@ int compare(const CompareOptions& options) {
   const RunComparison comparison = compare_runs(a, b);
   if (!options.csv.empty()) write_csv(options.csv, comparison);
   say(stdout, options.json ? json_of(a, b, comparison) : text_of(a, b, comparison));
-  return comparison.same_states() ? 0 : 1;
+  return comparison.same_states() && comparison.same_motion() ? 0 : 1;
 }
 
 }  // namespace
@@ -137,7 +157,8 @@ void add_compare(CLI::App& app, Action& action) {
       "Example: supple compare out/squirrel out/squirrel-2 --csv distances.csv\n"
       "Distances are between equal vertices of the saved motion (single precision); size is the diagonal of the box "
       "around a body in A's first frame.\n"
-      "Exit status: 0 the same bodies, frames and states; 1 they differ; 2 a folder cannot be read as a run's.");
+      "Exit status: 0 the same bodies, frames, states and saved motion; 1 they differ; 2 a folder cannot be read as a "
+      "run's.");
   verb->add_option("RUN_A", options->a, "folder that supple render left")->required();
   verb->add_option("RUN_B", options->b, "the other one")->required();
   verb->add_option("--csv", options->csv, "file for the distances, a row a frame and body");

@@ -42,6 +42,8 @@ BodyComparison compare_body(const RunRecord& a, const RunRecord& b, const std::s
   body.name = name;
   body.vertices_a = motion_a.points();
   body.vertices_b = motion_b.points();
+  body.saved_a = motion_a.frames();
+  body.saved_b = motion_b.frames();
   body.size = bounds_of(motion_a.frame(0)).diagonal();
   if (body.vertices_a != body.vertices_b) return body;
   for (int frame = 0; frame < frames; ++frame) {
@@ -50,6 +52,7 @@ BodyComparison compare_body(const RunRecord& a, const RunRecord& b, const std::s
     for (Eigen::Index v = 0; v < moved.rows(); ++v) distance.largest = std::max(distance.largest, moved.row(v).norm());
     distance.rms = std::sqrt(moved.squaredNorm() / double(std::max<Eigen::Index>(1, moved.rows())));
     body.distance.push_back(distance);
+    if (distance.largest > 0 && !body.first_difference) body.first_difference = frame;
     if (distance.largest > body.distance[body.worst_frame].largest) body.worst_frame = frame;
   }
   return body;
@@ -72,6 +75,15 @@ std::string what_was_run(const RunRecord& run) {
 bool RunComparison::same_states() const {
   return !first_difference && frames_a == frames_b && only_a.empty() && only_b.empty() &&
          std::ranges::all_of(bodies, [](const BodyComparison& body) { return body.vertices_a == body.vertices_b; });
+}
+
+bool RunComparison::only_motion_differs(const BodyComparison& body) const {
+  if (body.first_difference) return *body.first_difference < first_difference.value_or(frames);
+  return !first_difference && frames_a == frames_b && body.saved_a != body.saved_b;
+}
+
+bool RunComparison::same_motion() const {
+  return std::ranges::none_of(bodies, [this](const BodyComparison& body) { return only_motion_differs(body); });
 }
 
 RunComparison compare_runs(const RunRecord& a, const RunRecord& b) {

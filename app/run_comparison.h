@@ -23,6 +23,8 @@ struct BodyComparison {
   double size = 0;                      // diagonal of the box around it in A's first frame [m]
   std::vector<FrameDistance> distance;  // by frame; empty when the numbers of vertices differ
   int worst_frame = 0;                  // where the largest distance is largest
+  std::optional<int> first_difference;  // the first frame whose positions differ
+  int saved_a = 0, saved_b = 0;         // frames that the saved motion holds
 };
 
 struct RunComparison {
@@ -36,6 +38,9 @@ struct RunComparison {
 
   // The same bodies and frames, all with the same hash.
   bool same_states() const;
+  // Whether a body's saved motion differs where the states do not: somebody has changed a file.
+  bool only_motion_differs(const BodyComparison& body) const;
+  bool same_motion() const;
 };
 
 // Throws InputError naming the file: a run without a profile, a point cache that is damaged or holds fewer frames than

@@ -161,6 +161,39 @@ TEST(Comparison, TellsOfOtherLengthsAndBodies) {
   EXPECT_FALSE(more.same_states());
 }
 
+TEST(Comparison, FindsMotionThatIsNotThatOfTheStates) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"a", "b", "c"}) HandMade{.bodies = {"soft", "stiff"}}.write(folder.path / name);
+  HandMade{.moved = 0.5}.write(folder.path / "moved");
+  HandMade{.frames = 4}.write(folder.path / "long");
+  const auto put = [&](const std::string& from, const std::string& to) {
+    std::filesystem::copy_file(folder.path / from / "motion/soft.pc2", folder.path / to / "motion/stiff.pc2",
+                               std::filesystem::copy_options::overwrite_existing);
+  };
+  put("moved", "b");
+  const Result content = run(folder.path, {"compare", "a", "b"});
+  EXPECT_EQ(content.status, 1) << content.err;
+  EXPECT_NE(content.out.find("states          the same in all 3 frames\n  motion          motion/stiff.pc2 differs "
+                             "from frame 1 on, though the states do not differ there: a file was changed\n"),
+            std::string::npos)
+      << content.out;
+  const auto json = nlohmann::json::parse(run(folder.path, {"compare", "a", "b", "--json"}).out);
+  EXPECT_TRUE(json["same_states"].get<bool>());
+  EXPECT_FALSE(json["same_motion"].get<bool>());
+  EXPECT_EQ(json["bodies"][1]["first_difference"], 1);
+  EXPECT_TRUE(json["bodies"][0]["first_difference"].is_null());
+
+  put("long", "c");
+  const Result length = run(folder.path, {"compare", "a", "c"});
+  EXPECT_EQ(length.status, 1) << length.err;
+  EXPECT_NE(length.out.find("motion/stiff.pc2 has 3 frames in A and 4 in B"), std::string::npos) << length.out;
+
+  // Where the states differ too, the motion is what they say.
+  const Result states = run(folder.path, {"compare", "long", "moved"});
+  EXPECT_EQ(states.status, 1) << states.err;
+  EXPECT_EQ(states.out.find("though the states"), std::string::npos) << states.out;
+}
+
 TEST(Comparison, NamesDifferencesByPath) {
   const auto found = [](const char* a, const char* b) {
     std::string text;
