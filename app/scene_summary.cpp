@@ -76,6 +76,37 @@ std::string body_text(const SceneDef& scene, const Body& body, const CollisionSe
   return text + fmt::format("  costs           {}\n", cost_text(scene, body, model, set, threads));
 }
 
+// What a change becomes, and how.
+std::string course_text(const TimedChange& change) {
+  if (change.over <= 0) return fmt::format("becomes {}", change.to.whole_text());
+  return fmt::format("from {} to {} over {:g} s, {}{}", change.from->whole_text(), change.to.whole_text(), change.over,
+                     change.ease == Ease::smooth ? "smooth" : "linear", change.by_ratio ? " by ratio" : "");
+}
+
+// The frames in which a change is at work, and what it asks for in each of them.
+std::string frames_text(const Script& script, const TimedChange& change) {
+  int first = -1, count = 0;
+  for (int frame = 0; frame < script.scene().frames; ++frame) {
+    const std::vector<const TimedChange*> at_work = script.at_work(frame);
+    if (std::ranges::find(at_work, &change) == at_work.end()) continue;
+    if (count++ == 0) first = frame;
+  }
+  if (count == 0) return change.at > 0 ? "not in this film" : "before the first frame";
+  const std::string cost = change.cost.text();
+  if (count == 1) return fmt::format("in frame {}{}{}", first, cost.empty() ? "" : ": ", cost);
+  return fmt::format("in frames {} to {}{}{}", first, first + count - 1, cost.empty() ? "" : ", each: ", cost);
+}
+
+// In the order in which they begin.
+std::string changes_text(const Script& script) {
+  std::string text = fmt::format("changes         {} while it runs\n", script.changes().size());
+  for (const TimedChange& change : script.changes()) {
+    text += fmt::format("  {:<14}{} {}; {}\n", fmt::format("{:g} s", change.at), change.path, course_text(change),
+                        frames_text(script, change));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string scene_summary(const std::filesystem::path& file, int thread_count) {
@@ -89,7 +120,7 @@ std::string scene_summary(const std::filesystem::path& file, int thread_count) {
                       scene.frames, scene.fps, duration_text(scene.frames / scene.fps),
                       scene.substeps == 1 ? "one step" : fmt::format("{} steps", scene.substeps),
                       fmt::format("{:.3g}", scene.time_step()), scene.output.width, scene.output.height);
-  if (script.is_replay()) text += fmt::format("changes         {} while it runs\n", script.changes().size());
+  if (script.is_replay()) text += changes_text(script);
   for (const ColliderDef& collider : scene.colliders)
     text += fmt::format("collider        '{}', friction {:g}{}\n", collider.name, collider.friction,
                         collider.keys.empty() ? "" : ", moves");

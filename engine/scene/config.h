@@ -68,7 +68,8 @@ struct KnownKey {
 // A value of a file, whatever its type; knows where it stood.
 class ConfigValue {
  public:
-  std::string text() const;  // shortened to what fits into a message
+  std::string text() const;        // shortened to what fits into a message
+  std::string whole_text() const;  // all of it, as people read it: words without quotes
   bool is_list_or_number() const;
   // Numbers, or lists of them (of lists, ...) of one form: what a ramp can lead through.
   bool joins(const ConfigValue& other) const;

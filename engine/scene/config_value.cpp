@@ -114,6 +114,7 @@ std::optional<ConfigValue> ConfigValue::parse(const std::string& text) {
   }
 }
 
+std::string ConfigValue::whole_text() const { return people_form(*content_->node); }
 std::string ConfigValue::text() const { return shown(*content_->node); }
 bool ConfigValue::is_list_or_number() const { return content_->node->is_number() || content_->node->is_array(); }
 bool ConfigValue::joins(const ConfigValue& other) const { return of_one_form(*content_->node, *other.content_->node); }

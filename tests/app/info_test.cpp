@@ -46,6 +46,49 @@ TEST(Info, TellsOfASceneAndWhatAFrameCosts) {
   expect_lines(run(folder.path, {"info", "tightening"}).out, {"changes         ", " while it runs\n"});
 }
 
+TEST(Info, ListsTheChangesOfAReplayAndWhatTheyCost) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path / "bar.toml") << bar_scene;
+  std::ofstream(folder.path / "r.toml") << R"(scene = "bar.toml"
+frames = 12
+[[change]]
+t = 0.2
+over = 0.1
+by = "ratio"
+path = "body.bar.material.young"
+value = 2e5
+[[change]]
+t = 0.1
+path = "body.bar.solver.method"
+value = "newton"
+[[change]]
+frame = 5
+frames = 2
+ease = "linear"
+path = "gravity"
+value = [0, -3, 0]
+[[change]]
+t = 0
+path = "collider.floor.friction"
+value = 0.5
+[[change]]
+t = 9
+path = "body.bar.material"
+value = { model = "corotated", mu = 2e4 }
+)";
+  const Result result = run(folder.path, {"info", "r.toml"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  expect_lines(
+      result.out,
+      {"changes         5 while it runs\n"
+       "  0 s           collider.floor.friction becomes 0.5; before the first frame\n"
+       "  0.1 s         body.bar.solver.method becomes newton; in frame 3: the method starts anew\n"
+       "  0.166667 s    gravity from [0, -9.81, 0] to [0, -3, 0] over 0.0666667 s, linear; in frames 5 to 6\n"
+       "  0.2 s         body.bar.material.young from 100000 to 200000 over 0.1 s, smooth by ratio; in frames 6 "
+       "to 8, each: a new factor\n"
+       "  9 s           body.bar.material becomes {model = corotated, mu = 20000}; not in this film\n"});
+}
+
 TEST(Info, TellsOfARun) {
   const test::TemporaryFolder folder;
   std::ofstream(folder.path / "bar.toml") << bar_scene;
