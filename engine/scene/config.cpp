@@ -1,6 +1,7 @@
 #include "scene/config.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -24,6 +25,17 @@ std::vector<std::string> words_of(const std::string& path) {
   throw InputError({Problem{place.source, place.line, place.column, std::move(message)}});
 }
 
+// Lists of tables whose elements go by their names.
+constexpr std::array<std::string_view, 3> named_lists = {"body", "collider", "handles"};
+
+std::string one_of(const std::string& list) { return list == "handles" ? "handle" : list; }
+
+[[noreturn]] void fail_unnamed(const Problem& place, const std::string& list, const std::string& wanted,
+                               const std::vector<std::string>& names) {
+  fail(place, fmt::format("there is no {} named '{}' (there is {})", one_of(list), wanted,
+                          names.empty() ? "none" : word_list(names)));
+}
+
 using Places = std::map<const toml::node*, toml::source_region>;
 
 // The table that the last word of a path stands in; tables on the way are made, elements of lists found by name.
@@ -32,6 +44,8 @@ toml::table& enter(toml::table& document, Places& places, const std::vector<std:
   for (std::size_t depth = 0; depth + 1 < path.size(); ++depth) {
     toml::node* next = table->get(path[depth]);
     if (next == nullptr) {
+      if (std::ranges::find(named_lists, path[depth]) != named_lists.end())
+        fail_unnamed(place, path[depth], path[depth + 1], {});
       table->insert(path[depth], toml::table{});
       next = table->get(path[depth]);
       const toml::source_position at{toml::source_index(place.line), toml::source_index(place.column)};
@@ -46,14 +60,15 @@ toml::table& enter(toml::table& document, Places& places, const std::vector<std:
         names.push_back(name_of(*element.as_table(), path[depth - 1]));
         if (names.back() == wanted) found = &element;
       }
-      if (found == nullptr || depth + 1 >= path.size()) {
-        fail(place, found == nullptr ? fmt::format("there is no {} named '{}' (there is {})", path[depth - 1], wanted,
-                                                   word_list(names))
-                                     : fmt::format("names a whole {}; a value inside it is wanted", path[depth - 1]));
-      }
+      if (found == nullptr) fail_unnamed(place, path[depth - 1], wanted, names);
+      if (depth + 1 >= path.size())
+        fail(place, fmt::format("names a whole {}; a value inside it is wanted", one_of(path[depth - 1])));
       next = found;
     }
-    if (!next->is_table()) fail(place, fmt::format("'{}' is not a table", path[depth]));
+    if (!next->is_table()) {
+      fail(place, fmt::format("'{}' is {} here, not a table with a '{}' in it; it can be set as a whole", path[depth],
+                              shown(*next), path[depth + 1]));
+    }
     table = next->as_table();
   }
   if (path.empty() || path.back().empty()) fail(place, "the path ends in nothing");

@@ -1,5 +1,6 @@
 // The typed questions that a ConfigTable answers.
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <sstream>
 
@@ -10,6 +11,22 @@ namespace supple {
 namespace {
 
 std::string number_text(double value) { return fmt::format("{:g}", value); }
+
+// What a number must be.
+std::string number_in(const Range& range) {
+  const std::string text = range.text();
+  return text == "any number" ? "a number" : "a number, " + text;
+}
+
+// For numbers in quotes, which TOML takes for words.
+const char* quotes_hint(const toml::node& node) {
+  const auto word = node.value_exact<std::string>();
+  double number = 0;
+  const bool reads =
+      word && !word->empty() &&
+      std::from_chars(word->data(), word->data() + word->size(), number).ptr == word->data() + word->size();
+  return reads ? " (in quotes it is a word)" : "";
+}
 
 }  // namespace
 
@@ -57,7 +74,8 @@ double ConfigTable::number(const Key& key, std::optional<double> fallback, const
   }
   const std::optional<double> value = node->is_number() ? node->value<double>() : std::nullopt;
   if (!value || !std::isfinite(*value) || !range.contains(*value)) {
-    wrong(key, *node, value && !std::isfinite(*value) ? "finite" : range.text());
+    const bool finite = value && std::isfinite(*value);
+    wrong(key, *node, finite ? range.text() : value ? "finite" : number_in(range) + quotes_hint(*node));
     return instead;
   }
   return *value;
@@ -83,7 +101,7 @@ int ConfigTable::integer(const Key& key, std::optional<int> fallback, const Rang
   }
   const std::optional<std::int64_t> value = node->is_integer() ? node->value<std::int64_t>() : std::nullopt;
   if (!value || !range.contains(static_cast<double>(*value)) || std::abs(static_cast<double>(*value)) > 2e9) {
-    wrong(key, *node, fmt::format("a whole number, {}", range.text()));
+    wrong(key, *node, fmt::format("a whole number, {}{}", range.text(), quotes_hint(*node)));
     return instead;
   }
   return static_cast<int>(*value);
@@ -274,7 +292,7 @@ std::optional<double> ConfigTable::number_or_word(const Key& key, const char* wo
   if (node == nullptr || node->value_exact<std::string>() == word) return std::nullopt;
   const std::optional<double> value = node->is_number() ? node->value<double>() : std::nullopt;
   if (value && std::isfinite(*value) && range.contains(*value)) return value;
-  wrong(key, *node, allowed);
+  wrong(key, *node, allowed + quotes_hint(*node));
   return std::nullopt;
 }
 

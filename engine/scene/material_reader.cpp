@@ -155,6 +155,16 @@ void read_fibre(const ConfigTable& owner, Fibre& fibre) {
 
 }  // namespace
 
+std::string preset_in_full(const std::string& name) {
+  for (const MaterialPreset& preset : material_presets) {
+    if (name != preset.name) continue;
+    return fmt::format("material = {{ model = \"{}\", young = {:g}, poisson = {:g} }}, density = {:g}{}",
+                       name_of(preset.material()), preset.young, preset.poisson, preset.density,
+                       preset.fibre > 0 ? fmt::format(", fibre = {{ kappa = {:g} }}", preset.fibre) : "");
+  }
+  return "";
+}
+
 SubstanceDef read_substance(const ConfigTable& owner) {
   SubstanceDef substance;
   if (owner.is_text("material")) {

@@ -139,13 +139,6 @@ void open_tables(Config& document) {
 
 // The scene as the replay starts with it, and its changes.
 void Script::Parts::read_replay(const std::filesystem::path& assets, const std::vector<std::string>& settings) {
-  const auto collect = [this](const auto& put) {
-    try {
-      put();
-    } catch (const InputError& error) {
-      problems.insert(problems.end(), error.problems().begin(), error.problems().end());
-    }
-  };
   scene_file = load_replayed_scene(*replay, assets);
   const ConfigTable root = replay->root();
   if (const auto title = root.value({"title", "", "for people"}, "the scene's"))
@@ -154,14 +147,16 @@ void Script::Parts::read_replay(const std::filesystem::path& assets, const std::
     scene_file.put("frames", *frames, root.place("frames", ""), {});
   if (const auto set = root.table({"set", "", "values of the scene, by their paths in quotes, from the start on"})) {
     for (const std::string& path : set->keys())
-      collect([&] {
-        scene_file.put(path, *set->value({path.c_str(), "", ""}), set->place(path.c_str(), ""), exclusive_keys());
-      });
+      put(scene_file, path, *set->value({path.c_str(), "", ""}), set->place(path.c_str(), ""));
   }
   for (const ConfigTable& table : root.tables({"grab", "", "a handle for a body, with the keys of [[body.handles]]"})) {
     const std::string body = table.text({"body", "", "whose vertices are grabbed"}, std::nullopt);
     if (body.empty()) continue;
-    collect([&] { scene_file.append("body." + body + ".handles", table.all_but("body"), table.place("body", "")); });
+    try {
+      scene_file.append("body." + body + ".handles", table.all_but("body"), table.place("body", ""));
+    } catch (const InputError& error) {
+      problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+    }
   }
   for (const std::string& setting : settings) scene_file.set(setting, exclusive_keys());
   Config plain = scene_file.copy();

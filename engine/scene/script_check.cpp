@@ -3,6 +3,7 @@
 #include <iterator>
 #include <tuple>
 
+#include "scene/material_reader.h"
 #include "scene/scene_reader.h"
 #include "scene/script_parts.h"
 
@@ -70,18 +71,32 @@ void Script::Parts::tell(Problem problem, const std::string& when, Told& told) {
   problems.push_back(std::move(problem));
 }
 
+bool Script::Parts::put(Config& document, const std::string& path, const ConfigValue& value, const Problem& place) {
+  try {
+    document.put(path, value, place, exclusive_keys());
+    return true;
+  } catch (const InputError& error) {
+    const std::string table = table_of(path);
+    const auto stands = table.ends_with(".material") ? document.value_at(table) : std::nullopt;
+    const std::string preset = stands ? preset_in_full(stands->whole_text()) : "";
+    if (preset.empty()) {
+      tell(error.problems());
+    } else {
+      problems.push_back(
+          {place.source, place.line, place.column,
+           fmt::format("{} is the preset '{}' here, and a preset has no '{}'; write in its place what it "
+                       "stands for: {}",
+                       table, stands->whole_text(), path.substr(table.size() + 1), preset)});
+    }
+    return false;
+  }
+}
+
 // Takes out the changes whose paths lead nowhere.
 void Script::Parts::put_each() {
   Config document = scene_file.copy();
-  std::erase_if(changes, [&](const TimedChange& change) {
-    try {
-      document.put(change.path, change.to, change.place, exclusive_keys());
-      return false;
-    } catch (const InputError& error) {
-      tell(error.problems());
-      return true;
-    }
-  });
+  std::erase_if(changes,
+                [&](const TimedChange& change) { return !put(document, change.path, change.to, change.place); });
 }
 
 // What a path says, or leaves to the default.
@@ -106,9 +121,12 @@ std::vector<Problem> Script::Parts::prepare(TimedChange& ramp, std::size_t index
     if (!made.empty()) return told_at(ramp, made);
     return {at(ramp, fmt::format("{} has no value in the scene to begin with: give the ramp a 'from'", ramp.path))};
   }
-  if (!ramp.from->joins(ramp.to))
-    return {at(ramp, fmt::format("a ramp leads through numbers, or lists of them of one form; not from {} to {}",
-                                 ramp.from->text(), ramp.to.text()))};
+  if (!ramp.from->joins(ramp.to)) {
+    const bool only_jumps = !ramp.from->is_list_or_number() && !ramp.to.is_list_or_number();
+    return {at(ramp, fmt::format("a ramp leads through numbers, or lists of them of one form; not from {} to {}{}",
+                                 ramp.from->text(), ramp.to.text(),
+                                 only_jumps ? ". Words and tables jump: leave out 'over' or 'frames'" : ""))};
+  }
   if (ramp.by_ratio && !(ramp.from->all_positive() && ramp.to.all_positive()))
     return {at(ramp, "by = \"ratio\": only between positive numbers")};
   return {};

@@ -24,6 +24,9 @@ struct Script::Parts {
   // Throws InputError when the scene cannot be read; what is wrong with the replay itself goes to `problems`.
   void read_replay(const std::filesystem::path& assets, const std::vector<std::string>& settings);
 
+  // Puts a value of the replay into a document; false when its path leads nowhere, and then `problems` says so.
+  bool put(Config& document, const std::string& path, const ConfigValue& value, const Problem& place);
+
   // All that is wrong with the changes. Those that are wrong are taken out, so that others can be looked at. Finds out
   // where ramps begin, and how the scene starts. Throws InputError with this and all earlier problems.
   void check_changes();

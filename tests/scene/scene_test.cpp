@@ -111,6 +111,11 @@ TEST(SceneFile, SettingsReachEveryValueByItsPath) {
   EXPECT_EQ(refused("frames"), "--set frames: should read path=value, such as solver.iterations=20");
   EXPECT_EQ(refused("body.head.material.mu=1"),
             "--set body.head.material.mu=1: there is no body named 'head' (there is body)");
+  EXPECT_EQ(refused("collider.floor.friction=1"),
+            "--set collider.floor.friction=1: there is no collider named 'floor' (there is none)");
+  EXPECT_EQ(refused("body.body.shape.ear=1"),
+            "--set body.body.shape.ear=1: 'shape' is 'shapes/squirrel.toml' here, not a table with a 'ear' in it; it "
+            "can be set as a whole");
   EXPECT_EQ(refused("solver.iteration=5"),
             "--set solver.iteration=5: unknown key 'iteration'; did you mean 'iterations'?");
   EXPECT_EQ(refused("fps=-3"), "--set fps=-3: fps = -3: must be 1 to 100000");

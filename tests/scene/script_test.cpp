@@ -211,6 +211,26 @@ TEST_F(Replay, TellsAtAChangeWhatItMakesWrongElsewhere) {
   }
 }
 
+TEST_F(Replay, SaysWhatToWriteInstead) {
+  const std::string rubber = "[set]\n'body.bar.material' = 'rubber'\n", change = "[[change]]\nt = 1\n";
+  for (const char* over : {"", "over = 1\n"}) {
+    EXPECT_EQ(
+        refused(rubber + change + "path = 'body.bar.material.young'\nvalue = 5e4\n" + over),
+        "r.toml:7:9: body.bar.material is the preset 'rubber' here, and a preset has no 'young'; write in its "
+        "place what it stands for: material = { model = \"neo-hookean\", young = 1e+06, poisson = 0.45 }, density = "
+        "1100");
+  }
+  EXPECT_EQ(refused(rubber + change + "over = 1\npath = 'body.bar.material'\nvalue = 'jelly'\n"),
+            "r.toml:8:9: a ramp leads through numbers, or lists of them of one form; not from 'rubber' to 'jelly'. "
+            "Words and tables jump: leave out 'over' or 'frames'");
+  EXPECT_EQ(refused(change + "path = 'body.bar.material.mu'\nvalue = '5e4'\n"),
+            "r.toml:5:9: mu = '5e4': must be a number, above 0 (in quotes it is a word) (first in frame 30)");
+  EXPECT_EQ(refused(change + "path = 'body.bar.material.mu'\nvalue = 'soft'\n"),
+            "r.toml:5:9: mu = 'soft': must be a number, above 0 (first in frame 30)");
+  EXPECT_EQ(refused(change + "path = 'body.bar.handles.fingers.stiffness'\nvalue = 5\n"),
+            "r.toml:5:9: there is no handle named 'fingers' (there is end)");
+}
+
 TEST_F(Replay, RefusesSlipsOfThePen) {
   EXPECT_EQ(refused("[[change]]\nt = 1\npath = ''\nvalue = 4\n"),
             "r.toml:4:8: '' cannot change while the film runs; `supple info --live SCENE` lists what can");
