@@ -54,7 +54,7 @@ void add_check(CLI::App& app, Action& action) {
   auto settings = std::make_shared<std::vector<std::string>>();
   CLI::App* verb = app.add_subcommand("check", "Every error and warning of a scene or replay at once; writes nothing.");
   verb->footer("Example: supple check my-scene.toml");
-  verb->add_option("SCENE", *name, "scene or replay file, or the name of one that ships")->required();
+  verb->add_option("SCENE|REPLAY", *name, "scene or replay file, or the name of one that ships")->required();
   verb->add_option("--set", *settings, "path=value over the scene's; may be repeated")
       ->take_all()
       ->allow_extra_args(false);

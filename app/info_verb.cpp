@@ -45,13 +45,14 @@ int inform(const std::string& input, bool live) {
 void add_info(CLI::App& app, Action& action) {
   auto input = std::make_shared<std::string>();
   auto live = std::make_shared<bool>(false);
-  CLI::App* verb = app.add_subcommand("info", "What is in a mesh, a scene or the folder of a run.");
+  CLI::App* verb = app.add_subcommand("info", "What is in a mesh, a scene, a replay or the folder of a run.");
   verb->footer(
       "Examples: supple info squirrel.mesh, supple info squirrel, supple info --live squirrel, supple info "
       "out/squirrel\n"
       "Of a scene the first frames are simulated, to tell what one costs here; nothing is written.");
-  verb->add_option("SCENE|MESH|RUN", *input,
-                   "MEDIT .mesh file, scene file or the name of one that ships, or a folder that supple render left")
+  verb->add_option(
+          "SCENE|REPLAY|MESH|RUN", *input,
+          "MEDIT .mesh file, scene or replay file or the name of one that ships, or a folder that supple render left")
       ->required();
   verb->add_flag("--live", *live, "list what of a scene can change while it runs, and what that costs");
   verb->callback([&action, input, live] { action = [input, live] { return inform(*input, *live); }; });

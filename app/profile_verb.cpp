@@ -175,7 +175,8 @@ void add_profile(CLI::App& app, Action& action, const std::vector<std::string>& 
       "          supple profile --compare out/before/zones.json out/after/zones.json\n"
       "Leaves zones.json, frame-times.svg and trace.json (of the last repeat) beside what render leaves, without a "
       "video.");
-  verb->add_option("SCENE", request->film.scene, "scene or replay file, or the name of one that ships (supple list)");
+  verb->add_option("SCENE|REPLAY", request->film.scene,
+                   "scene or replay file, or the name of one that ships (supple list)");
   verb->add_option("--repeats", request->repeats, "how often the scene is run")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();

@@ -103,9 +103,16 @@ TEST(Completion, KnowsNamesAndChoicesByTheirPlace) {
   Words scenes;
   for (const auto& entry : std::filesystem::directory_iterator(test::assets / "scenes"))
     scenes.insert(entry.path().stem());
-  Words offered = program.completed({"check", ""});
+  Words offered = program.completed({"render", ""});
   EXPECT_EQ(offered.erase("/"), 1u);
   EXPECT_EQ(offered, scenes);
+  for (const auto& entry : std::filesystem::directory_iterator(test::assets / "replays"))
+    scenes.insert(entry.path().stem());
+  for (const char* verb : {"check", "info", "profile"}) {
+    offered = program.completed({verb, ""});
+    EXPECT_EQ(offered.erase("/"), 1u) << verb;
+    EXPECT_EQ(offered, scenes) << verb;
+  }
 }
 
 TEST(Completion, OffersWordsAndFilesInBash) {
