@@ -316,10 +316,9 @@ void add_film_options(CLI::App& verb, FilmRequest& request) {
                 "where every thread's time went, for chrome://tracing or Perfetto: trace.json");
   verb.add_option("--gl", request.gl, "auto, osmesa or egl")->check(CLI::IsMember({"auto", "osmesa", "egl"}));
   verb.add_option("--checkpoint-every", request.checkpoint_every,
-                  "frames between checkpoints, from which --resume goes on; 0 makes none")
+                  "frames between checkpoints, from which a film can be resumed; 0 makes none")
       ->check(CLI::Range(0, 1000000))
       ->capture_default_str();
-  verb.add_flag("--resume", request.resume, "go on with the film in --out that was interrupted or killed");
   verb.add_option("--record", request.record, "file for the states of all frames, to be compared with --verify");
   CLI::Option* verify =
       verb.add_option("--verify", request.verify, "stop at the first frame that is not as this file has it");
@@ -335,6 +334,7 @@ void add_film(CLI::App& verb, const FilmArgument& argument, Action& action, cons
   auto request = std::make_shared<FilmRequest>();
   verb.add_option(argument.name, request->scene, argument.meaning)->required();
   add_film_options(verb, *request);
+  verb.add_flag("--resume", request->resume, "go on with the film in --out that was interrupted or killed");
   verb.callback([&action, request, command] { action = [request, command] { return run_film(*request, command); }; });
 }
 

@@ -34,7 +34,7 @@ struct FilmRequest {
   std::optional<double> tolerance;
 };
 
-// The options that every run of a scene has.
+// The options that every run of a scene has; to resume is for single films.
 void add_film_options(CLI::App& verb, FilmRequest& request);
 
 // What is known of a run once it is over, for who looks closer.

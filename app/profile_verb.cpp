@@ -156,8 +156,6 @@ int compare(const ProfileRequest& request) {
 int run(const ProfileRequest& request, const std::vector<std::string>& command) {
   if (request.compared.empty()) {
     if (request.film.scene.empty()) throw InputError("profile", "needs a SCENE, or --compare with two zones.json");
-    if (request.film.resume)
-      throw InputError("--resume", "a profile runs the whole film in every repeat: leave it out");
     return request.repeats == 1 ? profile_once(request, command) : profile(request, command);
   }
   if (!request.film.scene.empty())

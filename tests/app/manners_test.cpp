@@ -115,6 +115,15 @@ TEST(Completion, KnowsNamesAndChoicesByTheirPlace) {
   }
 }
 
+// A profile runs the whole film in every repeat.
+TEST(Help, OffersToResumeOnlyWhereAFilmCanBeResumed) {
+  const Program program;
+  for (const char* verb : {"render", "replay"})
+    EXPECT_NE(program.help({verb}).find("--resume"), std::string::npos) << verb;
+  for (const char* verb : {"profile", "sweep"})
+    EXPECT_EQ(program.help({verb}).find("--resume"), std::string::npos) << verb;
+}
+
 TEST(Completion, OffersWordsAndFilesInBash) {
   const test::TemporaryFolder folder;
   std::filesystem::create_directory(folder.path / "my run");
