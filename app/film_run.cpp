@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "app/film_identity.h"
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
@@ -23,18 +24,6 @@
 
 namespace supple {
 namespace {
-
-// Of the points, elements and springs of a body.
-std::string mesh_hash(const Body& body) {
-  const TetMesh& mesh = body.description.mesh;
-  std::uint64_t hash = hash_bytes(mesh.rest.data(), sizeof(double) * mesh.rest.size());
-  hash = hash_bytes(mesh.tets.data(), sizeof(std::int32_t) * mesh.tets.size(), hash);
-  for (const Spring& spring : body.description.springs) {
-    const std::int32_t ends[] = {spring.from, spring.to};
-    hash = hash_bytes(ends, sizeof ends, hash);
-  }
-  return hash_text_form(hash);
-}
 
 void print_result(const FilmResult& result, const RunFolder& folder, const SceneDef& scene) {
   say(stdout, fmt::format("\n{}\n", profile_table(result.rows)));
@@ -130,51 +119,6 @@ bool remembers_steps(const Script& script) {
   return remembers_steps(script.scene());
 }
 
-// What was read beside the scene and the replay, also for shapes that colliders take on later. Files go by their names
-// without folders, so that a film can go on where it was moved to.
-nlohmann::ordered_json files_of(const Script& script, const std::vector<Body>& bodies) {
-  std::vector<SourceFile> files;
-  const auto add = [&files](const std::vector<SourceFile>& more) {
-    files.insert(files.end(), more.begin(), more.end());
-  };
-  const auto add_colliders = [&add](const SceneDef& scene) {
-    for (const ColliderDef& collider : scene.colliders) add(collider.shape.files);
-  };
-  for (const Body& body : bodies) add(body.files);
-  add_colliders(script.scene());
-  for (int frame = 0; frame < script.scene().frames; ++frame) {
-    const std::vector<const TimedChange*> at_work = script.at_work(frame);
-    const auto names_file = [](const TimedChange* change) { return change->cost.surface && change->over <= 0; };
-    if (std::any_of(at_work.begin(), at_work.end(), names_file)) add_colliders(script.scene_at(frame));
-  }
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const SourceFile& file : files) {
-    const nlohmann::ordered_json entry = {{"name", file.path.filename().string()},
-                                          {"xxh64", hash_text_form(file.hash)}};
-    if (std::find(list.begin(), list.end(), entry) == list.end()) list.push_back(entry);
-  }
-  return list;
-}
-
-// All that must be the same for two runs to give the same films, but for their length.
-std::string identity_of(const RunInfo& info, const nlohmann::ordered_json& files, const FilmRequest& request) {
-  nlohmann::ordered_json scene = nlohmann::ordered_json::parse(info.scene_json);
-  scene.erase("frames");
-  nlohmann::ordered_json meshes;
-  for (const RunInfo::Mesh& mesh : info.meshes) meshes[mesh.body] = mesh.hash;
-  nlohmann::ordered_json identity = {
-      {"program", fmt::format("{} {}", program_version(), hash_text_form(program_identity()))},
-      {"kernels", info.kernel_variant},
-      {"cpu", cpu_name()},
-      {"images", !request.no_images},
-      {"gl", request.gl},
-      {"meshes", meshes},
-      {"files", files},
-      {"scene", scene}};
-  if (!info.replay_json.empty()) identity["replay"] = nlohmann::ordered_json::parse(info.replay_json);
-  return identity.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-}
-
 // What a film goes on from, if there is anything yet.
 std::optional<Checkpoint> checkpoint_in(const std::filesystem::path& run, const std::string& identity, int frames) {
   const std::filesystem::path file = RunFolder::checkpoint_of(run);
@@ -199,18 +143,6 @@ void check_pictures(const std::filesystem::path& frames, int count) {
       throw InputError(picture.string(),
                        "is missing or damaged, and --resume does not make it again; start anew without --resume");
   }
-}
-
-RecordHead record_head(const RunInfo& info, const std::vector<Body>& bodies) {
-  nlohmann::ordered_json film = {{"scene", nlohmann::ordered_json::parse(info.scene_json)}};
-  film["scene"].erase("frames");
-  if (!info.replay_json.empty()) film["replay"] = nlohmann::ordered_json::parse(info.replay_json);
-  RecordHead head{hash_text_form(program_identity()),
-                  info.kernel_variant,
-                  film.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace),
-                  {}};
-  for (const Body& body : bodies) head.bodies.push_back({body.def.name, int(body.description.mesh.rest.rows())});
-  return head;
 }
 
 void add_result(const FilmResult& result, RunInfo& info) {
@@ -387,7 +319,7 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
   }
   const std::filesystem::path path =
       request.out.empty() ? std::filesystem::path("out") / scene.name : std::filesystem::path(request.out);
-  options.identity = identity_of(info, files_of(script, bodies), request);
+  options.identity = identity_of(info, script, bodies, request);
   options.checkpoint_every = remembers_steps(script) ? 0 : request.checkpoint_every;
   std::error_code ignored;
   std::optional<FolderLock> lock;

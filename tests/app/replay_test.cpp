@@ -247,6 +247,7 @@ TEST_F(ReplayedFilm, RefusesTheCheckpointOfOtherFiles) {
   const std::string ball = "[[part]]\nsphere = { radius = 0.1 }\n";
   write("ball.toml", ball);
   write("later.toml", ball);
+  write("last.toml", ball);
   write("two.mesh", two_regions(1, 2));
   write("files.toml", R"(frames = 6
 [[body]]
@@ -260,8 +261,9 @@ material = "jelly"
 name = "ball"
 shape = "ball.toml"
 )");
-  write("r.toml",
-        "scene = \"files.toml\"\n[[change]]\nframe = 3\npath = \"collider.ball.shape\"\nvalue = \"later.toml\"\n");
+  const std::string change = "[[change]]\npath = \"collider.ball.shape\"\n";
+  write("r.toml", "scene = \"files.toml\"\n" + change + "frame = 3\nvalue = \"later.toml\"\n" + change +
+                      "frame = 8\nvalue = \"last.toml\"\n");
   const auto resumed = [&] { return run(folder_.path, film({"--no-images", "--out", "a", "--resume"})); };
   ASSERT_EQ(run(folder_.path, film({"--no-images", "--out", "a"})).status, 0);
   write("ball.toml", "# the same ball\n" + ball);
@@ -278,6 +280,8 @@ shape = "ball.toml"
   expect_refused("ball.toml", "[[part]]\nsphere = { radius = 0.11 }\n");
   expect_refused("later.toml", "[[part]]\nsphere = { radius = 0.11 }\n");
   expect_refused("two.mesh", two_regions(2, 1));
+  expect_refused("last.toml", "[[part]]\nsphere = { radius = 0.11 }\n");
+  EXPECT_EQ(run(folder_.path, film({"--no-images", "--out", "a", "--resume", "--frames", "12"})).status, 0);
 }
 
 TEST_F(ReplayedFilm, StartsAnewWhereThereIsNoCheckpointYet) {
