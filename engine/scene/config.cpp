@@ -25,8 +25,8 @@ std::vector<std::string> words_of(const std::string& path) {
   throw InputError({Problem{place.source, place.line, place.column, std::move(message)}});
 }
 
-// Lists of tables whose elements go by their names.
-constexpr std::array<std::string_view, 3> named_lists = {"body", "collider", "handles"};
+// Lists of tables at the top whose elements go by their names; handles, in a body, are another one.
+constexpr std::array<std::string_view, 2> named_lists = {"body", "collider"};
 
 std::string one_of(const std::string& list) { return list == "handles" ? "handle" : list; }
 
@@ -44,8 +44,9 @@ toml::table& enter(toml::table& document, Places& places, const std::vector<std:
   for (std::size_t depth = 0; depth + 1 < path.size(); ++depth) {
     toml::node* next = table->get(path[depth]);
     if (next == nullptr) {
-      if (std::ranges::find(named_lists, path[depth]) != named_lists.end())
-        fail_unnamed(place, path[depth], path[depth + 1], {});
+      const bool named = depth == 0 ? std::ranges::find(named_lists, path[0]) != named_lists.end()
+                                    : path[0] == "body" && path[depth] == "handles";
+      if (named) fail_unnamed(place, path[depth], path[depth + 1], {});
       table->insert(path[depth], toml::table{});
       next = table->get(path[depth]);
       const toml::source_position at{toml::source_index(place.line), toml::source_index(place.column)};

@@ -106,35 +106,55 @@ double elements(const ElementChunk& chunk, const double* x, const double* previo
   });
 }
 
-void stiffness(const ElementChunk& chunk, const double* x, bool project, double* out) {
-  dispatch(chunk, [&]<class Formula>(const Formula& formula) {
-    constexpr int corners = Formula::corners, fields = Formula::fields;
-    constexpr int numbers = packed_size(3 * (corners - 1));
-    for (int block = 0; block < chunk.blocks; ++block) {
-      for (int lane = 0; lane < block_width; lane += lanes) {
-        alignas(64) double gathered[3 * corners][lanes];
-        for (int k = 0; k < corners; ++k) {
-          for (int i = 0; i < lanes; ++i) {
-            const int at = (block * corners + k) * block_width + lane + i;
-            const double* p = x + 3 * long(chunk.vertex[chunk.corner[at]]);
-            for (int c = 0; c < 3; ++c) gathered[3 * k + c][i] = p[c];
-          }
-        }
-        Lanes place[corners][3], field[fields], packed[numbers];
-        for (int k = 0; k < corners; ++k) {
-          for (int c = 0; c < 3; ++c) place[k][c] = Lanes::load_aligned(gathered[3 * k + c]);
-        }
-        for (int i = 0; i < fields; ++i)
-          field[i] = Lanes::load_aligned(chunk.field + (block * fields + i) * block_width + lane);
-        formula.stiffness(place, field, project, packed);
-        alignas(64) double numbers_of[lanes];
-        for (int n = 0; n < numbers; ++n) {
-          packed[n].store_aligned(numbers_of);
-          for (int i = 0; i < lanes; ++i)
-            out[(std::size_t(block) * block_width + lane + i) * numbers + n] = numbers_of[i];
+// Corners and fields of the elements of one register, and where its first lane stands among the chunk's.
+template <class Formula, class Visit>
+void for_each_register(const ElementChunk& chunk, const double* x, const Visit& visit) {
+  constexpr int corners = Formula::corners, fields = Formula::fields;
+  for (int block = 0; block < chunk.blocks; ++block) {
+    for (int lane = 0; lane < block_width; lane += lanes) {
+      alignas(64) double gathered[3 * corners][lanes];
+      for (int k = 0; k < corners; ++k) {
+        for (int i = 0; i < lanes; ++i) {
+          const int at = (block * corners + k) * block_width + lane + i;
+          const double* p = x + 3 * long(chunk.vertex[chunk.corner[at]]);
+          for (int c = 0; c < 3; ++c) gathered[3 * k + c][i] = p[c];
         }
       }
+      Lanes place[corners][3], field[fields];
+      for (int k = 0; k < corners; ++k) {
+        for (int c = 0; c < 3; ++c) place[k][c] = Lanes::load_aligned(gathered[3 * k + c]);
+      }
+      for (int i = 0; i < fields; ++i)
+        field[i] = Lanes::load_aligned(chunk.field + (block * fields + i) * block_width + lane);
+      visit(place, field, std::size_t(block) * block_width + lane);
     }
+  }
+}
+
+void stiffness(const ElementChunk& chunk, const double* x, bool project, double* out) {
+  dispatch(chunk, [&]<class Formula>(const Formula& formula) {
+    constexpr int numbers = packed_size(3 * (Formula::corners - 1));
+    for_each_register<Formula>(chunk, x, [&](const auto& place, const auto& field, std::size_t first) {
+      Lanes packed[numbers];
+      formula.stiffness(place, field, project, packed);
+      alignas(64) double numbers_of[lanes];
+      for (int n = 0; n < numbers; ++n) {
+        packed[n].store_aligned(numbers_of);
+        for (int i = 0; i < lanes; ++i) out[(first + i) * numbers + n] = numbers_of[i];
+      }
+    });
+    return 0.0;
+  });
+}
+
+void stretches(const ElementChunk& chunk, const double* x, double* largest, double* volume) {
+  dispatch(chunk, [&]<class Formula>(const Formula& formula) {
+    for_each_register<Formula>(chunk, x, [&](const auto& place, const auto& field, std::size_t first) {
+      Lanes stretch, share;
+      formula.stretch(place, field, stretch, share);
+      stretch.store_unaligned(largest + first);
+      share.store_unaligned(volume + first);
+    });
     return 0.0;
   });
 }
@@ -329,7 +349,14 @@ void add_scaled(const double* const* a, const double* c, int count, double* r, l
 #define SUPPLE_TABLE(variant) SUPPLE_JOINED(kernels_, variant)
 
 extern const Kernels SUPPLE_TABLE(SUPPLE_VARIANT);
-const Kernels SUPPLE_TABLE(SUPPLE_VARIANT) = {
-    SUPPLE_TEXT(SUPPLE_VARIANT), elements, stiffness, eliminate, solve<float>, solve<double>, dots, add_scaled};
+const Kernels SUPPLE_TABLE(SUPPLE_VARIANT) = {SUPPLE_TEXT(SUPPLE_VARIANT),
+                                              elements,
+                                              stiffness,
+                                              stretches,
+                                              eliminate,
+                                              solve<float>,
+                                              solve<double>,
+                                              dots,
+                                              add_scaled};
 
 }  // namespace supple

@@ -40,6 +40,9 @@ struct Kernels {
   // translations. [N/m]
   void (*stiffness)(const ElementChunk& chunk, const double* x, bool project, double* out);
 
+  // By lane: the largest stretch, and the volume over that at rest, negative where an element is inverted.
+  void (*stretches)(const ElementChunk& chunk, const double* x, double* largest, double* volume);
+
   // Eliminates the first `pivots` columns of a dense symmetric front of `size` rows: its lower triangle, column-major,
   // a column of `stride` numbers (a multiple of 8 and no less than size; those below the front must be 0 and stay so).
   // They become columns of L, the others what elimination leaves of them (the update matrix). Above the diagonal

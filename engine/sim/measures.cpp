@@ -7,21 +7,10 @@
 #include <numbers>
 #include <utility>
 
-#include "sim/element_view.h"
+#include "sim/kernels.h"
 
 namespace supple {
 namespace {
-
-// The largest eigenvalue of a symmetric 3 x 3 matrix, in closed form (Smith 1961, "Eigenvalues of a symmetric 3 x 3
-// matrix").
-double largest_eigenvalue(const Mat3& c) {
-  const double mean = c.trace() / 3;
-  const Mat3 d = c - mean * Mat3::Identity();
-  const double p = std::sqrt(d.squaredNorm() / 6);
-  if (p < 1e-150) return mean;
-  const double r = std::clamp((d / p).determinant() / 2, -1.0, 1.0);
-  return mean + 2 * p * std::cos(std::acos(r) / 3);
-}
 
 // The value above which values of a given weight lie, of pairs of value and weight. Only the top is sorted.
 double weighted_top(std::vector<std::pair<double, double>>& pairs, double weight_above) {
@@ -44,24 +33,28 @@ Deformation deformation(const Model& model, const Positions& x) {
   std::vector<std::pair<double, double>> stretches;  // stretch, weight
   std::vector<double> inverted;                      // their volumes
   stretches.reserve(model.elements);
+  std::vector<double> largest, ratio;
   double total = 0, volume = 0;
   int solids = 0;
-  for_each_element(model, [&](const ElementView& element) {
-    double stretch = 0, weight = 0;
-    if (element.kind == ElementKind::spring) {
-      weight = element.field[0];
-      stretch = weight > 0 ? (x.row(element.corner[1]) - x.row(element.corner[0])).norm() / weight : 1;
-    } else {
-      const Mat3 f = deformation_gradient(x, element);
-      weight = element.field[9];
-      stretch = std::sqrt(std::max(0.0, largest_eigenvalue(f.transpose() * f)));
-      if (f.determinant() < 0) inverted.push_back(weight);
-      volume += weight;
-      ++solids;
+  for (std::size_t c = 0; c < model.chunks.size(); ++c) {
+    const Model::ChunkRange& range = model.chunks[c];
+    const std::size_t lanes = std::size_t(range.blocks) * block_width;
+    largest.resize(lanes);
+    ratio.resize(lanes);
+    kernels().stretches(model.chunk(static_cast<int>(c)), x.data(), largest.data(), ratio.data());
+    const bool solid = range.kind == ElementKind::tetrahedron;
+    const std::size_t fields = fields_of(range.kind), weight_field = solid ? 9 : 0;
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      if (model.element_of_lane[range.first_block * std::size_t(block_width) + lane] < 0) continue;  // padding
+      const std::size_t block = lane / block_width * fields + weight_field;
+      const double weight = model.field[range.first_field + block * block_width + lane % block_width];
+      if (solid && ratio[lane] < 0) inverted.push_back(weight);
+      if (solid) volume += weight;
+      solids += solid;
+      stretches.emplace_back(largest[lane], weight);
+      total += weight;
     }
-    stretches.emplace_back(stretch, weight);
-    total += weight;
-  });
+  }
   Deformation result;
   if (solids > 0) {
     const double least = 1e-6 * volume / solids;

@@ -193,8 +193,9 @@ TEST_F(Replay, ListsAllWrongChangesAtOnce) {
 }
 
 TEST_F(Replay, TellsAtAChangeWhatItMakesWrongElsewhere) {
-  EXPECT_EQ(refused("[[change]]\nt = 1\npath = 'body.bar.material.model'\nvalue = 'corotated'\n"),
-            "r.toml:5:9: body.bar.material.model = 'corotated' does not go with what stands beside it: unknown key "
+  EXPECT_EQ(refused("[[change]]\nt = 1\npath = 'body.bar.material.model'\nvalue = 'as-rigid-as-possible'\n"),
+            "r.toml:5:9: body.bar.material.model = 'as-rigid-as-possible' does not go with what stands beside it: "
+            "unknown key "
             "'lambda'; allowed here: model, mu, poisson or young (bar.toml:5:49). Change all of it at once: path = "
             "\"body.bar.material\", value = { ... } (first in frame 30)");
   for (const char* over : {"", "over = 1\n"}) {

@@ -24,6 +24,17 @@ struct SpringElement {
     return V(0.5) * stiffness * excess * excess;
   }
 
+  // Current over rest length (1 where the rest length is 0), and nothing that could turn inside out.
+  template <class V>
+  void stretch(const V (&x)[2][3], const V (&field)[fields], V& largest, V& volume) const {
+    using std::sqrt;
+    const V d[3] = {x[1][0] - x[0][0], x[1][1] - x[0][1], x[1][2] - x[0][2]};
+    const auto has_length = field[0] > V(0.0);
+    const V length = sqrt(madd(d[0], d[0], madd(d[1], d[1], d[2] * d[2])));
+    largest = choose(has_length, length / choose(has_length, field[0], V(1.0)), V(1.0));
+    volume = V(1.0);
+  }
+
   // d^2 E / dx^2 of corner 1 (3 x 3, packed), or the nearest positive semi-definite matrix:
   // k ((1 - r/l)(1 - n n^T) + n n^T). [N/m]
   template <class V>

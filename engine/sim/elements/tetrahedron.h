@@ -43,6 +43,41 @@ struct Tetrahedron {
   }
 };
 
+// F = (current edges) (rest edges)^-1, as in Sifakis and Barbic 2012, "FEM simulation of 3D deformable solids", section
+// 4.
+template <class V>
+Matrix3<V> deformation_gradient(const V (&x)[4][3], const V (&field)[Tetrahedron::fields]) {
+  Matrix3<V> f;
+  for (int i = 0; i < 3; ++i) {
+    const V edge[3] = {x[1][i] - x[0][i], x[2][i] - x[0][i], x[3][i] - x[0][i]};
+    for (int j = 0; j < 3; ++j) f(i, j) = madd(edge[0], field[j], madd(edge[1], field[3 + j], edge[2] * field[6 + j]));
+  }
+  return f;
+}
+
+// The largest singular value of F: the root of the largest eigenvalue of F^T F, in closed form (Smith 1961,
+// "Eigenvalues of a symmetric 3 x 3 matrix").
+template <class V>
+V largest_stretch(const Matrix3<V>& f) {
+  using std::acos;
+  using std::cos;
+  using std::max;
+  using std::min;
+  using std::sqrt;
+  Symmetric3<V> c = symmetric_product(f, f);
+  const V mean = (c.xx + c.yy + c.zz) / V(3.0);
+  c.xx = c.xx - mean;
+  c.yy = c.yy - mean;
+  c.zz = c.zz - mean;
+  const V spread = sqrt(squared_norm(c) / V(6.0));
+  const auto round = !(spread > V(1e-150));
+  const V scale = V(1.0) / choose(round, V(1.0), spread);
+  for (V* entry : {&c.xx, &c.yy, &c.zz, &c.yz, &c.xz, &c.xy}) *entry = *entry * scale;
+  const V half = V(0.5) * determinant(c, cofactor(c));
+  const V angle = acos(max(V(-1.0), min(V(1.0), half))) / V(3.0);
+  return sqrt(max(V(0.0), choose(round, mean, mean + V(2.0) * spread * cos(angle))));
+}
+
 // Energy density and first Piola-Kirchhoff stress of a material at F, by what it needs.
 template <class M, class V>
 V density_of(const M& material, const Matrix3<V>& f, Matrix3<V>& stress) {
@@ -88,17 +123,10 @@ struct TetrahedronFormula : Tetrahedron {
 
   TetrahedronFormula(const M& m, const Fibre* along) : material(m), fibre(along) {}
 
-  // Energy [J]; force becomes dE/dx of corners 1 to 3 (that of corner 0 is minus their sum) [N]. F = (current edges)
-  // (rest edges)^-1 and the gradient V P (rest edges)^-T, as in Sifakis and Barbic 2012, "FEM simulation of 3D
-  // deformable solids", section 4.
+  // Energy [J]; force becomes dE/dx of corners 1 to 3 (that of corner 0 is minus their sum), V P (rest edges)^-T [N].
   template <class V>
   V energy(const V (&x)[4][3], const V (&field)[fields], V (&force)[3][3]) const {
-    Matrix3<V> f;
-    for (int i = 0; i < 3; ++i) {
-      const V edge[3] = {x[1][i] - x[0][i], x[2][i] - x[0][i], x[3][i] - x[0][i]};
-      for (int j = 0; j < 3; ++j)
-        f(i, j) = madd(edge[0], field[j], madd(edge[1], field[3 + j], edge[2] * field[6 + j]));
-    }
+    const Matrix3<V> f = deformation_gradient(x, field);
     Matrix3<V> stress;
     V density = density_of(material, f, stress);
     if constexpr (with_fibre) density = density + add_fibre(*fibre, f, stress);
@@ -109,6 +137,14 @@ struct TetrahedronFormula : Tetrahedron {
         force[k][i] = madd(p0, field[3 * k], madd(p1, field[3 * k + 1], p2 * field[3 * k + 2]));
     }
     return volume * density;
+  }
+
+  // Largest stretch and volume over rest volume, signed.
+  template <class V>
+  void stretch(const V (&x)[4][3], const V (&field)[fields], V& largest, V& volume) const {
+    const Matrix3<V> f = deformation_gradient(x, field);
+    largest = largest_stretch(f);
+    volume = determinant(f, cofactor(f));
   }
 
   // tetrahedron_stiffness.h
