@@ -40,7 +40,9 @@ std::string live_summary(const std::filesystem::path& file) {
     text += fmt::format("{:<{}}  {:<14} {:<10} {}{}{}{}\n", key.path, widest, key.type, key.unit, value, key.allowed,
                         *asks == '\0' ? "" : "; ", asks);
   }
-  text += "\nWhole tables may change too, such as a body's material or a handle's keys.\n";
+  text +=
+      "\nWhole tables and lists may change too, such as a body's material, a handle's keys or the parts of a shape.\n"
+      "Any body may have a solver of its own (body.NAME.solver.iterations).\n";
   for (const Body& body : assemble(script.scene()))
     text += fmt::format("A new factor of '{}' takes {:.1f} ms here.\n", body.def.name, cost_of_factor(body));
   return text;

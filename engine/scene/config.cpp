@@ -25,8 +25,10 @@ std::vector<std::string> words_of(const std::string& path) {
   throw InputError({Problem{place.source, place.line, place.column, std::move(message)}});
 }
 
-// Lists of tables at the top whose elements go by their names; handles, in a body, are another one.
-constexpr std::array<std::string_view, 2> named_lists = {"body", "collider"};
+// Lists of tables whose elements go by their names, or by their list's: bodies, colliders, a body's handles.
+bool is_named_list(const std::vector<std::string>& path, std::size_t depth) {
+  return depth == 0 ? path[0] == "body" || path[0] == "collider" : path[0] == "body" && path[depth] == "handles";
+}
 
 std::string one_of(const std::string& list) { return list == "handles" ? "handle" : list; }
 
@@ -44,15 +46,15 @@ toml::table& enter(toml::table& document, Places& places, const std::vector<std:
   for (std::size_t depth = 0; depth + 1 < path.size(); ++depth) {
     toml::node* next = table->get(path[depth]);
     if (next == nullptr) {
-      const bool named = depth == 0 ? std::ranges::find(named_lists, path[0]) != named_lists.end()
-                                    : path[0] == "body" && path[depth] == "handles";
-      if (named) fail_unnamed(place, path[depth], path[depth + 1], {});
+      if (is_named_list(path, depth)) fail_unnamed(place, path[depth], path[depth + 1], {});
       table->insert(path[depth], toml::table{});
       next = table->get(path[depth]);
       const toml::source_position at{toml::source_index(place.line), toml::source_index(place.column)};
       places[next] = {at, at, std::make_shared<const std::string>(place.source)};
     }
     if (toml::array* list = next->as_array()) {
+      if (!is_named_list(path, depth))
+        fail(place, fmt::format("'{}' is a list whose entries have no names; it can be set as a whole", path[depth]));
       const std::string& wanted = path[++depth];
       std::vector<std::string> names;
       toml::node* found = nullptr;

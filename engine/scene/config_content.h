@@ -26,6 +26,13 @@ struct Config::Content {
     return at != moved.end() ? at->second : node.source();
   }
 
+  // Beside what the file names in a value are: its own file, which may be a replay's; the working folder for options.
+  std::filesystem::path folder_of(const toml::source_region& source) const {
+    if (!source.path || *source.path == name) return folder;
+    return source.path->starts_with(set_option) ? std::filesystem::path()
+                                                : std::filesystem::path(*source.path).parent_path();
+  }
+
   ConfigValue value_of(const toml::node& node) const;
   // A copy of a value has taken its place in the document.
   void settle(const toml::node& copy, const ConfigValue& value);

@@ -240,8 +240,7 @@ std::filesystem::path ConfigTable::file(const Key& key) const {
     return {};
   }
   const toml::source_region& source = config_->content_->source_of(*node);
-  const bool from_option = source.path && source.path->starts_with(set_option);
-  const std::filesystem::path beside = (from_option ? std::filesystem::path() : config_->content_->folder) / *value;
+  const std::filesystem::path beside = config_->content_->folder_of(source) / *value;
   const std::filesystem::path asset = config_->content_->assets / *value;
   std::error_code error;
   if (std::filesystem::exists(beside, error)) return beside;

@@ -62,6 +62,15 @@ std::optional<ChangeCost> cost_of_generic(std::string_view path) {
   return std::nullopt;
 }
 
+// Entries of most lists have no names, and go by their list's.
+bool names_no_entry(const std::string& path) {
+  std::istringstream words(path);
+  for (std::string before, word; std::getline(words, word, '.'); before = word) {
+    if (word == before && word != "body" && word != "collider" && word != "handles") return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 ChangeCost& ChangeCost::operator|=(const ChangeCost& other) {
@@ -93,7 +102,7 @@ std::vector<LiveKey> live_keys(const Config& config) {
   std::vector<LiveKey> result;
   for (const KnownKey& key : config.known()) {
     if (key.type == "table" || key.type == "list of tables") continue;  // their keys are listed
-    if (key.generic.find("keys[]") != std::string::npos) continue;      // keys change as a whole
+    if (names_no_entry(key.path)) continue;  // keys and parts of a shape: their list changes as a whole
     if (key.generic == "body[].handles[].stiffness" && key.value.find("hard") != std::string::npos) continue;  // stays
     if (const auto cost = cost_of_change(key.path)) result.push_back({key, *cost});
   }

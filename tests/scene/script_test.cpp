@@ -212,6 +212,19 @@ TEST_F(Replay, TellsAtAChangeWhatItMakesWrongElsewhere) {
   }
 }
 
+TEST_F(Replay, FilesAreBesideTheFileThatNamesThem) {
+  std::filesystem::create_directory(folder_.path / "shapes");
+  std::filesystem::create_directory(folder_.path / "replays");
+  std::ofstream(folder_.path / "shapes" / "scene.toml")
+      << "frames = 10\n[[body]]\nbox = { extent = [1, 1, 1], cells = [1, 1, 1] }\nmaterial = \"rubber\"\n"
+         "[[collider]]\nname = \"c\"\nshape = { sphere = { radius = 1 } }\n";
+  std::ofstream(folder_.path / "replays" / "cube.toml") << "[[part]]\nbox = { extent = [1, 1, 1] }\n";
+  const std::filesystem::path replay = folder_.path / "replays" / "r.toml";
+  std::ofstream(replay) << "scene = \"../shapes/scene.toml\"\n[[change]]\nframe = 2\npath = \"collider.c.shape\"\n"
+                           "value = \"cube.toml\"\n";
+  EXPECT_NO_THROW((void)Script::load(replay, test::assets, {}));
+}
+
 TEST_F(Replay, SaysWhatToWriteInstead) {
   const std::string rubber = "[set]\n'body.bar.material' = 'rubber'\n", change = "[[change]]\nt = 1\n";
   for (const char* over : {"", "over = 1\n"}) {
