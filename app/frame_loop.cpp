@@ -25,7 +25,8 @@ namespace {
 
 volatile std::sig_atomic_t interrupt_count = 0;
 
-extern "C" void on_interrupt(int) {
+extern "C" void on_interrupt(int signal) {
+  if (signal == SIGHUP && interrupt_count > 0) return;  // system and shell may both tell that the terminal is gone
   interrupt_count = interrupt_count + 1;
   if (interrupt_count >= 3) _exit(130);  // somebody means it
 }
@@ -39,6 +40,9 @@ void catch_interrupts() {
   action.sa_handler = on_interrupt;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  struct sigaction before {};
+  sigaction(SIGHUP, nullptr, &before);
+  if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup ignores it
 }
 
 namespace {

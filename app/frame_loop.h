@@ -55,7 +55,8 @@ struct FilmResult {
 FilmResult make_film(const Script& script, std::vector<Body>& bodies, std::vector<Model>& models,
                      const RunFolder& folder, const FilmOptions& options);
 
-// True once SIGINT or SIGTERM asked the run to end after the frame in progress.
+// True once SIGINT, SIGTERM or SIGHUP (the terminal is gone; not under nohup) asked the run to end after the frame in
+// progress.
 bool interrupted();
 void catch_interrupts();
 

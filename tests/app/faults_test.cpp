@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 
@@ -97,6 +98,22 @@ TEST_F(Faults, ADamagedFrameIsFoundBeforeGoingOn) {
   EXPECT_EQ(result.status, 2);
   EXPECT_NE(result.err.find("000003.png: is missing or damaged"), std::string::npos) << result.err;
   EXPECT_EQ(test::profile_of(folder_.path / "out" / "bar")["frames"].size(), 8u);  // all else is as it was
+}
+
+// A terminal that is closed says SIGHUP; nohup has it ignored.
+TEST_F(Faults, AClosedTerminalEndsTheFilmAfterItsFrameUnlessNohupSaysOtherwise) {
+  const std::filesystem::path out = folder_.path / "out" / "bar";
+  const std::vector<std::string> film = {"render", "bar.toml", "--no-images", "--frames", "20000"};
+  const Result closed = run(folder_.path, film, out / "motion" / "bar.pc2", SIGHUP);
+  EXPECT_EQ(closed.status, 130) << closed.err;
+  EXPECT_NE(closed.err.find("supple: interrupted after "), std::string::npos) << closed.err;
+  EXPECT_TRUE(std::filesystem::exists(out / "profile.json"));
+  std::filesystem::remove_all(out);
+  std::signal(SIGHUP, SIG_IGN);
+  const Result nohup =
+      run(folder_.path, {"render", "bar.toml", "--no-images", "--frames", "60"}, out / "motion" / "bar.pc2", SIGHUP);
+  std::signal(SIGHUP, SIG_DFL);
+  EXPECT_EQ(nohup.status, 0) << nohup.err;
 }
 
 TEST_F(Faults, AFolderThatAnotherRunWritesIntoIsLeftAlone) {
