@@ -4,13 +4,11 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
-
-extern char** environ;
 
 namespace supple {
 
@@ -27,30 +25,49 @@ bool stopped_before_words(int output, pid_t child, const std::function<bool()>& 
   return false;
 }
 
+constexpr int cannot_start = 127;
+
+// In the child, which may have been forked off one of many threads: system calls alone. parent: with whom it ends; 0:
+// nobody.
+[[noreturn]] void become_program(const std::vector<char*>& arguments, int output, pid_t parent,
+                                 const sigset_t& signals) {
+  // Ctrl-C on the terminal is ours to handle: an encoder finishes what it has, so a child stands in a process group of
+  // its own.
+  ::setpgid(0, 0);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction action {};
+    ::sigaction(signal, nullptr, &action);
+    if (action.sa_handler == SIG_IGN) continue;
+    action.sa_handler = SIG_DFL;
+    ::sigaction(signal, &action, nullptr);
+  }
+  if (parent != 0) ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (parent != 0 && ::getppid() != parent) ::_exit(cannot_start);  // it has ended before that
+  ::dup2(::open("/dev/null", O_RDONLY | O_CLOEXEC), 0);
+  ::dup2(output, 1);
+  ::dup2(output, 2);
+  ::pthread_sigmask(SIG_SETMASK, &signals, nullptr);
+  ::execvp(arguments[0], arguments.data());
+  ::_exit(cannot_start);
+}
+
 }  // namespace
 
 std::optional<ProgramEnd> run_program(const std::vector<std::string>& words, const std::function<bool()>& stop) {
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) return std::nullopt;
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], 2);
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
-  // Ctrl-C on the terminal is ours to handle: an encoder finishes what it has, so a child stands in a process group of
-  // its own.
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-  pid_t child = 0;
-  const int error = ::posix_spawnp(&child, arguments[0], &actions, &attributes, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  posix_spawnattr_destroy(&attributes);
+  const pid_t parent = ::getpid();
+  sigset_t all, before;
+  sigfillset(&all);
+  ::pthread_sigmask(SIG_SETMASK, &all, &before);  // no signal meets our handlers in the child
+  const pid_t child = ::fork();
+  if (child == 0) become_program(arguments, ends[1], stop ? parent : 0, before);
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   ::close(ends[1]);
-  if (error != 0) {
+  if (child < 0) {
     ::close(ends[0]);
     return std::nullopt;
   }
@@ -67,7 +84,7 @@ std::optional<ProgramEnd> run_program(const std::vector<std::string>& words, con
   ::close(ends[0]);
   while (::waitpid(child, &finished.status, 0) < 0 && errno == EINTR) {
   }
-  const bool not_found = WIFEXITED(finished.status) && WEXITSTATUS(finished.status) == 127;
+  const bool not_found = WIFEXITED(finished.status) && WEXITSTATUS(finished.status) == cannot_start;
   return not_found ? std::nullopt : std::optional(finished);
 }
 

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <thread>
 
 #include "app/sweep/contact_sheet.h"
 #include "output/png_file.h"
@@ -236,6 +238,20 @@ TEST(SweepVerb, AnInterruptLeavesWhatIsDoneAndTheSameCommandGoesOn) {
   EXPECT_EQ(on.status, 0) << on.err;
   EXPECT_EQ(std::filesystem::last_write_time(points / "0000" / "profile.json"), first);
   EXPECT_TRUE(std::filesystem::exists(points / "0059" / "profile.json"));
+}
+
+TEST(SweepVerb, AKilledSweepLeavesNoPointRunning) {
+  const test::TemporaryFolder folder;
+  write_scene(folder, four_points);
+  const std::filesystem::path point = folder.path / "out" / "bar-sweep" / "points" / "0000";
+  const Result killed = run(folder.path, {"sweep", "bar.toml", "--no-images", "--frames", "100000", "--jobs", "1"},
+                            point / "motion" / "bar.pc2", SIGKILL);
+  EXPECT_EQ(killed.status, -SIGKILL) << killed.err;
+  for (int tries = 0; tries < 500 && !std::filesystem::exists(point / "point.json"); ++tries)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  const auto record = nlohmann::json::parse(test::read_file(point / "point.json"), nullptr, false);
+  ASSERT_TRUE(record.is_object()) << "the point still runs";
+  EXPECT_EQ(record["exit_status"], 130);
 }
 
 TEST(SweepVerb, CheckReadsTheSceneOfEveryPoint) {
