@@ -1,6 +1,8 @@
 // supple: films of soft bodies from scene files. Exit status: 0 done, 1 the run failed, 2 the input is wrong, 130
 // interrupted.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdio>
@@ -51,9 +53,17 @@ int run(int argc, char** argv) {
   return status == 0 && !said ? 1 : status;
 }
 
+// A file that is opened while a standard stream is closed gets its number, and then the stream's words. Who closes one
+// wants to hear nothing.
+void open_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0) (void)::open("/dev/null", O_RDWR);  // the lowest that is free: this one
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  open_standard_streams();
   std::signal(SIGPIPE, SIG_IGN);  // who stops listening does not end a run
   try {
     return run(argc, argv);

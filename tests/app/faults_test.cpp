@@ -116,6 +116,17 @@ TEST_F(Faults, AClosedTerminalEndsTheFilmAfterItsFrameUnlessNohupSaysOtherwise) 
   EXPECT_EQ(nohup.status, 0) << nohup.err;
 }
 
+TEST_F(Faults, WordsForAClosedStreamDoNotLandInResults) {
+  const auto motion = [&](const std::string& streams) {
+    const std::string line =
+        fmt::format("cd '{}' && '{}' render bar.toml {}", folder_.path.string(), SUPPLE_PROGRAM, streams);
+    EXPECT_EQ(std::system(fmt::format("bash -c \"{}\"", line).c_str()), 0) << streams;
+    return test::read_file(folder_.path / "out" / "bar" / "motion" / "bar.pc2");
+  };
+  const std::string whole = motion("> words.txt 2>&1");
+  for (const char* streams : {"2>&-", "> words.txt 2>&-", "<&- >&- 2>&-"}) EXPECT_EQ(motion(streams), whole) << streams;
+}
+
 TEST_F(Faults, AFolderThatAnotherRunWritesIntoIsLeftAlone) {
   std::ofstream(folder_.path / "bar.toml", std::ios::app) << "[sweep.values]\n\"body.bar.density\" = [900, 1000]\n";
   const auto expect_refused = [&](const std::string& held, std::vector<std::string> words) {
