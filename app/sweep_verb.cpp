@@ -60,6 +60,7 @@ int sweep(const SweepOptions& options, const std::vector<std::string>& command) 
     list_points(request.sweep);
     return 0;
   }
+  check_folder(request);
   if (options.merge) return merge_points(request);
   if (!options.index) return run_points(request, options.jobs, options.again);
   if (*options.index >= points)

@@ -135,7 +135,7 @@ void say_missing(const std::vector<PointResult>& results) {
 
 int merge_points(const SweepRequest& request) {
   std::error_code error;
-  std::filesystem::create_directories(request.out, error);
+  std::filesystem::create_directories(request.out / "points", error);  // by which a sweep's folder is known
   const std::vector<PointResult> results = read_results(request);
   const std::string title = request.title.empty() ? request.name : request.title;
   const bool pictures = write_sheet(request, title, results);

@@ -40,9 +40,16 @@ Json made_with(const SweepRequest& request, std::size_t point) {
   return {{"program", hash_text_form(program_identity())}, {"scene", scene}};
 }
 
+std::vector<std::string> paths_of(const SweepDef& sweep) {
+  std::vector<std::string> paths;
+  for (const PathList& axis : sweep.axes) paths.push_back(axis.path);
+  return paths;
+}
+
 void write_record(const SweepRequest& request, std::size_t point, int status, const std::string& message,
                   double seconds) {
   Json json = made_with(request, point);
+  json["sweep"] = {{"scene", request.name}, {"paths", paths_of(request.sweep)}};
   json["error_every"] = request.error_every;
   json["pictures"] = picture_words[int(request.pictures)];
   json["exit_status"] = status;
@@ -78,7 +85,45 @@ std::string failure_in(const Json& run) {
   return ended.starts_with("failed: ") ? ended.substr(8) : "";
 }
 
+// What tells a record's sweep from this one; "" where nothing does.
+std::string other_sweep(const SweepRequest& request, const Json& record) {
+  const Json sweep = record.is_object() ? record.value("sweep", Json()) : Json();
+  if (!sweep.is_object()) return "";
+  const Json scene = sweep.value("scene", Json()), paths = sweep.value("paths", Json());
+  const Json now = paths_of(request.sweep);
+  if (scene != request.name) return fmt::format("the scene is {} there and \"{}\" here", scene.dump(), request.name);
+  return paths == now ? "" : fmt::format("the paths are {} there and {} here", paths.dump(), now.dump());
+}
+
 }  // namespace
+
+void check_folder(const SweepRequest& request) {
+  const std::string option = "--out " + request.out.string();
+  std::error_code error;
+  if (!std::filesystem::exists(request.out, error)) return;
+  if (!std::filesystem::is_directory(request.out, error)) throw InputError(option, "exists and is not a folder");
+  const bool of_a_sweep = std::filesystem::is_directory(request.out / "points", error) &&
+                          !std::filesystem::exists(request.out / "run.json", error);
+  if (!of_a_sweep && !std::filesystem::is_empty(request.out, error))
+    throw InputError(option, "holds files that no sweep left there; choose another folder or empty it");
+  bool known = false;  // one record tells of all
+  for (const auto& entry : std::filesystem::directory_iterator(request.out / "points", error)) {
+    const std::string name = entry.path().filename().string();
+    const bool surplus = name.find_first_not_of("0123456789") == std::string::npos && name.size() < 10 &&
+                         std::stoul(name) >= request.sweep.points();
+    std::string difference;
+    if (!known) {
+      const Json record = read_json(entry.path() / "point.json");
+      known = record.is_object();
+      difference = other_sweep(request, record);
+    }
+    if (difference.empty() && surplus)
+      difference =
+          fmt::format("it has a point {}, and the last one here is {}", std::stoul(name), request.sweep.points() - 1);
+    if (!difference.empty())
+      throw InputError(option, "holds another sweep: " + difference + "; choose another folder or empty it");
+  }
+}
 
 std::filesystem::path SweepRequest::folder(std::size_t point) const {
   const std::size_t digits = std::max<std::size_t>(4, std::to_string(sweep.points() - 1).size());

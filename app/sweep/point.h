@@ -1,5 +1,6 @@
 // A sweep as it was asked for, and its points: where each runs, and what is known of those that ran. points/0007/ holds
-// the run of point 7; its point.json says how that ended, with what it was made, and what the clock said.
+// the run of point 7; its point.json says how that ended, of which sweep, with what it was made, and what the clock
+// said.
 #pragma once
 
 #include <filesystem>
@@ -39,6 +40,10 @@ struct PointOutcome {
 };
 
 std::string end_text(PointEnd end);
+
+// Throws InputError when --out is no folder, or holds what no sweep left there, or points of another sweep: of another
+// scene, of other paths, or of more points. Other values or another text of the scene make its points outdated.
+void check_folder(const SweepRequest& request);
 
 // Runs one point in this process and keeps how it ended; returns the exit status. command: as it was called. Throws
 // what the run throws, after keeping it.

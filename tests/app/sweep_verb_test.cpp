@@ -254,6 +254,45 @@ TEST(SweepVerb, AKilledSweepLeavesNoPointRunning) {
   EXPECT_EQ(record["exit_status"], 130);
 }
 
+TEST(SweepVerb, LeavesAFolderAloneThatIsNotItsOwn) {
+  const test::TemporaryFolder folder;
+  write_scene(folder, four_points);
+  const auto refusal = [&](const std::string& out, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words = {"sweep", "bar.toml", "--no-images", "--quiet", "--frames", "1", "--out", out};
+    words.insert(words.end(), more.begin(), more.end());
+    const Result result = run(folder.path, words);
+    EXPECT_EQ(result.status, result.err.empty() ? 0 : 2) << result.err;
+    return result.err;
+  };
+  std::ofstream(folder.path / "file") << "mine";
+  EXPECT_EQ(refusal("file"), "--out file: exists and is not a folder\n");
+  for (const char* name : {"index.html", "sweep.csv", "run.json"}) {
+    std::filesystem::remove_all(folder.path / "mine");
+    std::filesystem::create_directory(folder.path / "mine");
+    std::ofstream(folder.path / "mine" / name) << "mine";
+    for (const std::vector<std::string>& what : {std::vector<std::string>{}, {"--merge"}, {"--index", "1"}})
+      EXPECT_EQ(refusal("mine", what),
+                "--out mine: holds files that no sweep left there; choose another folder or empty it\n");
+    EXPECT_EQ(test::read_file(folder.path / "mine" / name), "mine");
+  }
+
+  EXPECT_EQ(run(folder.path, {"sweep", "bar.toml", "--merge", "--out", "four"}).status, 1);
+  ASSERT_EQ(refusal("four"), "") << "a table of nothing is a sweep's";
+  write_scene(folder, "[sweep.values]\n\"body.bar.density\" = [900, 1000, 1100, 1200]\n");
+  EXPECT_EQ(
+      refusal("four"),
+      "--out four: holds another sweep: the paths are [\"body.bar.material.young\","
+      "\"body.bar.material.poisson\"] there and [\"body.bar.density\"] here; choose another folder or empty it\n");
+  write_scene(folder, "[sweep.values]\n\"body.bar.material.young\" = [1e4]\n\"body.bar.material.poisson\" = [0.0]\n");
+  EXPECT_NE(refusal("four").find(", and the last one here is 0; choose another"), std::string::npos);
+  write_scene(folder, four_points);
+  EXPECT_EQ(refusal("four", {"--set", "body.bar.density=900"}), "") << "its points are outdated, and made anew";
+  std::filesystem::rename(folder.path / "bar.toml", folder.path / "beam.toml");
+  EXPECT_EQ(run(folder.path, {"sweep", "beam.toml", "--out", "four"}).err,
+            "--out four: holds another sweep: the scene is \"bar\" there and \"beam\" here; choose another folder or "
+            "empty it\n");
+}
+
 TEST(SweepVerb, CheckReadsTheSceneOfEveryPoint) {
   const test::TemporaryFolder folder;
   write_scene(folder, four_points);
