@@ -52,12 +52,14 @@ long lost_zones(const std::vector<ThreadTrace>& threads) {
 void report(const ProfileRequest& request, const ZoneProfile& profile, const std::filesystem::path& folder) {
   write_whole_file(folder / "zones.json", zones_json(profile));
   std::string no_plot;
+  std::error_code error;
+  const bool traced = std::filesystem::exists(folder / "trace.json", error);  // a repeat that died left none
   const bool plotted = write_plot(frame_time_plot(profile), folder, &no_plot);
   if (request.film.json) {
     say(stdout, summary_json(profile));
   } else if (!request.film.quiet) {
-    say(stdout, fmt::format("\n{}\n  zones    {}\n  trace    {}\n", zone_table(profile),
-                            (folder / "zones.json").string(), (folder / "trace.json").string()));
+    say(stdout, fmt::format("\n{}\n  zones    {}\n", zone_table(profile), (folder / "zones.json").string()));
+    if (traced) say(stdout, fmt::format("  trace    {}\n", (folder / "trace.json").string()));
     if (plotted) say(stdout, fmt::format("  plot     {}\n", (folder / "frame-times.svg").string()));
   }
   if (!plotted && !request.film.quiet) say(stderr, fmt::format("note: {}\n", no_plot));
@@ -96,30 +98,39 @@ std::vector<std::string> one_repeat(const std::vector<std::string>& command, con
 }
 
 // Each repeat is a process of its own: where its memory lies changes the time of a zone by more than 10 %, for all of
-// its frames.
+// its frames. Those before one that fails or is interrupted are reported.
 int profile(const ProfileRequest& request, const std::vector<std::string>& command) {
   const SceneDef scene = Script::load(scene_file(request.film.scene), assets_folder(), request.film.set).scene();
   const std::filesystem::path folder =
       request.film.out.empty() ? std::filesystem::path("out") / scene.name : std::filesystem::path(request.film.out);
   catch_interrupts();
   std::optional<ZoneProfile> all;
+  int status = 0;
   for (int repeat = 0; repeat < request.repeats; ++repeat) {
+    if (interrupted()) {
+      status = 130;
+      break;
+    }
     const Stopwatch watch;
     const auto end = run_program(one_repeat(command, folder), interrupted);
     if (!end) throw RunError("the program cannot start itself for a repeat");
-    if (interrupted()) return 130;
-    if (!WIFEXITED(end->status) || WEXITSTATUS(end->status) != 0) {
-      say(stderr, end->output);
-      return WIFEXITED(end->status) ? WEXITSTATUS(end->status) : 1;
-    }
+    status = WIFEXITED(end->status) ? WEXITSTATUS(end->status) : interrupted() ? 130 : 1;
+    if (status != 0 && status != 130) say(stderr, end->output);
+    if (!WIFEXITED(end->status) && !interrupted())
+      say(stderr, fmt::format("supple: repeat {} of {} {}; what it left is in {}\n", repeat + 1, request.repeats,
+                              how_it_ended(*end), folder.string()));
+    if (status != 0) break;
     const ZoneProfile one = read_zones(folder / "zones.json");
     if (all) add_repeats(one, *all);
     if (!all) all = one;
     if (!request.film.quiet)
       say(stderr, fmt::format("repeat {} of {}: {:.1f} s\n", repeat + 1, request.repeats, watch.elapsed_ms() / 1000));
   }
-  report(request, *all, folder);
-  return 0;
+  if (status == 130)
+    say(stderr,
+        fmt::format("supple: interrupted; {} of {} repeats are whole\n", all ? all->repeats : 0, request.repeats));
+  if (all) report(request, *all, folder);
+  return status;
 }
 
 // A zones.json, or the one in a profile's folder.

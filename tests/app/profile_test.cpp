@@ -1,6 +1,7 @@
 // The profiler as a user meets it.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <fstream>
 
@@ -89,6 +90,31 @@ TEST(Profile, TracesOnlyWhenAskedAndChangesNoResult) {
   EXPECT_TRUE(std::filesystem::exists(out / "trace.json"));
   EXPECT_EQ(hashes({}), traced);
   EXPECT_FALSE(std::filesystem::exists(out / "trace.json"));
+}
+
+TEST(Profile, SaysWhichRepeatDiedAndReportsThoseThatAreWhole) {
+  const test::TemporaryFolder folder;
+  write_scene(folder.path / "bar.toml");
+  const std::filesystem::path out = folder.path / "out" / "bar";
+  const std::vector<std::string> command = {"profile", "bar.toml", "--no-images", "--repeats", "200"};
+  const Result interrupted = run(folder.path, command, out / "zones.json");
+  EXPECT_EQ(interrupted.status, 130) << interrupted.err;
+  const int whole = read_zones(out / "zones.json").repeats;
+  EXPECT_NE(interrupted.err.find(fmt::format("supple: interrupted; {} of 200 repeats are whole\n", whole)),
+            std::string::npos)
+      << interrupted.err;
+  EXPECT_NE(interrupted.out.find("\n  frame "), std::string::npos) << interrupted.out;
+
+  rlimit usual{};
+  getrlimit(RLIMIT_FSIZE, &usual);
+  const rlimit small{60000, usual.rlim_max};  // the motion is larger: SIGXFSZ
+  setrlimit(RLIMIT_FSIZE, &small);
+  const Result died = run(folder.path, {"profile", "bar.toml", "--no-images", "--repeats", "2", "--frames", "100"});
+  setrlimit(RLIMIT_FSIZE, &usual);
+  EXPECT_EQ(died.status, 1);
+  EXPECT_TRUE(died.err.ends_with(
+      fmt::format("supple: repeat 1 of 2 was ended by signal {}; what it left is in out/bar\n", SIGXFSZ)))
+      << died.err;
 }
 
 TEST(Profile, ComparisonsRefuseWhatCannotBeCompared) {
