@@ -12,9 +12,20 @@
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "output/run_folder.h"
 
 namespace {
+
+// A first word that is no verb; CLI11 would say that a subcommand is required.
+std::string unknown_word(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> known = {"--help", "--version"};
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
+    if (!verb->get_group().empty()) known.push_back(verb->get_name());
+  const std::string nearest = supple::nearest_word(word, known);
+  return fmt::format("supple: no {} '{}'{}\nTry: supple --help\n", word.starts_with("-") ? "option" : "verb", word,
+                     nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
+}
 
 int run(int argc, char** argv) {
   CLI::App app("Simulates soft bodies fast and accurately, and films them.", "supple");
@@ -45,7 +56,8 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     std::ostringstream help, message;
     (void)app.exit(error, help, message);
-    supple::say(stderr, message.str());
+    const bool no_verb = app.get_subcommands().empty() && !app.remaining().empty();
+    supple::say(stderr, no_verb ? unknown_word(app, app.remaining().front()) : message.str());
     return 2;
   }
   const int status = action();

@@ -69,6 +69,19 @@ TEST(Help, OfEveryVerbHasAnExampleOfIt) {
   }
 }
 
+TEST(Help, NamesTheWordThatIsNoVerbAndTheNearestOne) {
+  const Program program;
+  const auto told = [&](const std::string& word) {
+    const Result result = run(program.folder.path, {word, "squirrel"});
+    EXPECT_EQ(result.status, 2) << word;
+    return result.err;
+  };
+  EXPECT_EQ(told("rendr"), "supple: no verb 'rendr'; did you mean 'render'?\nTry: supple --help\n");
+  EXPECT_EQ(told("version"), "supple: no verb 'version'; did you mean '--version'?\nTry: supple --help\n");
+  EXPECT_EQ(told("frobnicating"), "supple: no verb 'frobnicating'\nTry: supple --help\n");
+  EXPECT_EQ(told("--frobnicating"), "supple: no option '--frobnicating'\nTry: supple --help\n");
+}
+
 TEST(Completion, KnowsEveryVerbAndOptionOfTheHelp) {
   const Program program;
   const std::vector<std::string> verbs = program.verbs();
