@@ -30,6 +30,9 @@ std::string unknown_word(const CLI::App& app, const std::string& word) {
 int run(int argc, char** argv) {
   CLI::App app("Simulates soft bodies fast and accurately, and films them.", "supple");
   app.require_subcommand(1);
+  app.footer(
+      "Examples: supple render squirrel --frames 60\n"
+      "          supple list");
   app.set_version_flag("--version", supple::program_version());
   app.failure_message([](const CLI::App* a, const CLI::Error& e) {
     return fmt::format("supple: {}\nTry: supple {}--help\n", e.what(),

@@ -63,6 +63,7 @@ TEST(Help, OfEveryVerbHasAnExampleOfIt) {
   const std::vector<std::string> verbs = program.verbs();
   for (const char* known : {"render", "replay", "check", "mesh", "info", "compare", "bench", "list", "doctor"})
     EXPECT_NE(std::ranges::find(verbs, known), verbs.end()) << known;
+  EXPECT_NE(program.help({}).find("Examples: supple render "), std::string::npos);
   for (const std::string& verb : verbs) {
     const std::string text = program.help({verb});
     EXPECT_TRUE(std::regex_search(text, std::regex("Examples?: supple " + verb + "\\b"))) << text;
