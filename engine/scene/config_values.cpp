@@ -18,14 +18,14 @@ std::string number_in(const Range& range) {
   return text == "any number" ? "a number" : "a number, " + text;
 }
 
-// For numbers in quotes, which TOML takes for words.
-const char* quotes_hint(const toml::node& node) {
+// For words that look like numbers: in quotes, or of --set and beyond what a double holds, where TOML refuses them.
+const char* word_hint(const toml::node& node) {
   const auto word = node.value_exact<std::string>();
+  if (!word || word->empty()) return "";
   double number = 0;
-  const bool reads =
-      word && !word->empty() &&
-      std::from_chars(word->data(), word->data() + word->size(), number).ptr == word->data() + word->size();
-  return reads ? " (in quotes it is a word)" : "";
+  const auto [end, error] = std::from_chars(word->data(), word->data() + word->size(), number);
+  if (end != word->data() + word->size()) return "";
+  return error == std::errc::result_out_of_range ? " (beyond what a number holds)" : " (in quotes it is a word)";
 }
 
 }  // namespace
@@ -75,7 +75,7 @@ double ConfigTable::number(const Key& key, std::optional<double> fallback, const
   const std::optional<double> value = node->is_number() ? node->value<double>() : std::nullopt;
   if (!value || !std::isfinite(*value) || !range.contains(*value)) {
     const bool finite = value && std::isfinite(*value);
-    wrong(key, *node, finite ? range.text() : value ? "finite" : number_in(range) + quotes_hint(*node));
+    wrong(key, *node, finite ? range.text() : value ? "finite" : number_in(range) + word_hint(*node));
     return instead;
   }
   return *value;
@@ -101,7 +101,7 @@ int ConfigTable::integer(const Key& key, std::optional<int> fallback, const Rang
   }
   const std::optional<std::int64_t> value = node->is_integer() ? node->value<std::int64_t>() : std::nullopt;
   if (!value || !range.contains(static_cast<double>(*value)) || std::abs(static_cast<double>(*value)) > 2e9) {
-    wrong(key, *node, fmt::format("a whole number, {}{}", range.text(), quotes_hint(*node)));
+    wrong(key, *node, fmt::format("a whole number, {}{}", range.text(), word_hint(*node)));
     return instead;
   }
   return static_cast<int>(*value);
@@ -291,7 +291,7 @@ std::optional<double> ConfigTable::number_or_word(const Key& key, const char* wo
   if (node == nullptr || node->value_exact<std::string>() == word) return std::nullopt;
   const std::optional<double> value = node->is_number() ? node->value<double>() : std::nullopt;
   if (value && std::isfinite(*value) && range.contains(*value)) return value;
-  wrong(key, *node, allowed + quotes_hint(*node));
+  wrong(key, *node, allowed + word_hint(*node));
   return std::nullopt;
 }
 

@@ -119,6 +119,8 @@ TEST(SceneFile, SettingsReachEveryValueByItsPath) {
   EXPECT_EQ(refused("solver.iteration=5"),
             "--set solver.iteration=5: unknown key 'iteration'; did you mean 'iterations'?");
   EXPECT_EQ(refused("fps=-3"), "--set fps=-3: fps = -3: must be 1 to 100000");
+  EXPECT_EQ(refused("fps=1e400"),
+            "--set fps=1e400: fps = '1e400': must be a number, 1 to 100000 (beyond what a number holds)");
 }
 
 TEST(SceneFile, EmptySelectionsAndUnknownRegionsAreRefusedTogether) {
