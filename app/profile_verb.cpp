@@ -9,6 +9,7 @@
 #include "base/console.h"
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/text.h"
 #include "base/timing.h"
 #include "output/child_program.h"
 #include "output/whole_file.h"
@@ -148,8 +149,8 @@ int compare(const ProfileRequest& request) {
   for (const auto& [name, profile] : {std::pair(before_name, &before), {after_name, &after}}) {
     if (profile->repeats < least_repeats_compared) {
       problems.push_back({name, 0, 0,
-                          fmt::format("has {} repeats; a comparison needs {} or more (--repeats)", profile->repeats,
-                                      least_repeats_compared)});
+                          fmt::format("has {}; a comparison needs {} or more (--repeats)",
+                                      count_text(profile->repeats, "repeat"), least_repeats_compared)});
     }
   }
   if (!problems.empty()) throw InputError(problems);
@@ -157,9 +158,10 @@ int compare(const ProfileRequest& request) {
   if (request.film.json) {
     say(stdout, comparison_json(comparison));
   } else {
-    say(stdout, fmt::format("\n  A {}: {} repeats, supple {}, {}\n  B {}: {} repeats, supple {}, {}\n\n{}", before_name,
-                            before.repeats, before.run.version, before.run.build, after_name, after.repeats,
-                            after.run.version, after.run.build, comparison_text(comparison)));
+    say(stdout, fmt::format("\n  A {}: {}, supple {}, {}\n  B {}: {}, supple {}, {}\n\n{}", before_name,
+                            count_text(before.repeats, "repeat"), before.run.version, before.run.build, after_name,
+                            count_text(after.repeats, "repeat"), after.run.version, after.run.build,
+                            comparison_text(comparison)));
   }
   return 0;
 }
@@ -169,9 +171,16 @@ int run(const ProfileRequest& request, const std::vector<std::string>& command) 
     if (request.film.scene.empty()) throw InputError("profile", "needs a SCENE, or --compare with two zones.json");
     return request.repeats == 1 ? profile_once(request, command) : profile(request, command);
   }
-  if (!request.film.scene.empty())
-    throw InputError("profile " + request.film.scene, "a SCENE and --compare exclude each other");
   return compare(request);
+}
+
+// A comparison runs nothing, so what is said of a run has no meaning with it.
+void check_compare_options(const CLI::App& verb) {
+  for (const CLI::Option* option : verb.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() > 0 && name != "--compare" && name != "--json" && name != "--quiet")
+      throw InputError("profile --compare", name + " has no meaning with it");
+  }
 }
 
 }  // namespace
@@ -193,7 +202,10 @@ void add_profile(CLI::App& app, Action& action, const std::vector<std::string>& 
       ->type_name("A B")
       ->expected(2);
   add_film_options(*verb, request->film);
-  verb->callback([&action, request, command] { action = [request, command] { return run(*request, command); }; });
+  verb->callback([&action, request, command, verb] {
+    if (!request->compared.empty()) check_compare_options(*verb);
+    action = [request, command] { return run(*request, command); };
+  });
 }
 
 }  // namespace supple

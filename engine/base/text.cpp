@@ -48,6 +48,10 @@ std::string word_list(const std::vector<std::string>& words) {
   return list;
 }
 
+std::string count_text(long count, const std::string& what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
 std::string duration_text(double seconds) {
   if (seconds < 59.95) return fmt::format("{:.1f} s", seconds);
   const long whole = std::lround(seconds);

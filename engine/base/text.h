@@ -14,6 +14,9 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
 // "mu, lambda or nu"
 std::string word_list(const std::vector<std::string>& words);
 
+// "1 repeat", "3 repeats"
+std::string count_text(long count, const std::string& what);
+
 // "7.4 s", "2 min 05 s"
 std::string duration_text(double seconds);
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "base/text.h"
+
 namespace supple {
 namespace {
 
@@ -168,8 +170,8 @@ std::string zone_table(const ZoneProfile& profile) {
   std::string text = fmt::format("  {:<34}{:>7}{:>9}{:>9}{:>9}{:>9}{:>9}{:>10}{:>8}{:>8}\n", "ms a frame", "calls",
                                  "p50", "p95", "p99", "max", "first", "total s", "share %", "self %");
   text += zone_rows(summarize(profile));
-  text += fmt::format("\n  {} repeats of {} frames together; the first frame of each stands apart.\n", profile.repeats,
-                      profile.run.frames);
+  text += fmt::format("\n  {} of {} together; the first frame of each stands apart.\n",
+                      count_text(profile.repeats, "repeat"), count_text(profile.run.frames, "frame"));
   return text + setup_text(profile) + deadline_text(deadline_of(profile)) + slow_text(profile);
 }
 
@@ -201,8 +203,8 @@ std::string summary_json(const ZoneProfile& profile) {
 }
 
 ReportPlot frame_time_plot(const ZoneProfile& profile) {
-  ReportPlot plot{"frame-times",
-                  fmt::format("Frame times of {}, medians of {} repeats", profile.run.scene, profile.repeats)};
+  ReportPlot plot{"frame-times", fmt::format("Frame times of {}, medians of {}", profile.run.scene,
+                                             count_text(profile.repeats, "repeat"))};
   plot.x_label = "frame";
   plot.y_label = "ms";
   plot.log_y = false;

@@ -149,7 +149,10 @@ TEST(Profile, ComparisonsRefuseWhatCannotBeCompared) {
   EXPECT_EQ(run(folder.path, {"profile"}).status, 2);
   EXPECT_EQ(run(folder.path, {"profile", "bar.toml", "--resume"}).status, 2);
   EXPECT_EQ(run(folder.path, {"profile", "--compare", "a/zones.json"}).status, 2);
-  EXPECT_EQ(run(folder.path, {"profile", "bar.toml", "--compare", "a/zones.json", "a/zones.json"}).status, 2);
+  EXPECT_EQ(run(folder.path, {"profile", "bar.toml", "--compare", "a/zones.json", "a/zones.json"}).err,
+            "profile --compare: SCENE|REPLAY has no meaning with it\n");
+  EXPECT_EQ(run(folder.path, {"profile", "--compare", "a", "a", "--frames", "3"}).err,
+            "profile --compare: --frames has no meaning with it\n");
 }
 
 }  // namespace

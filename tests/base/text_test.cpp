@@ -15,6 +15,11 @@ TEST(Text, SizesAreInThousands) {
   EXPECT_EQ(bytes_text(12'340'000'000), "12.3 GB");
 }
 
+TEST(Text, OneOfAThingIsSingular) {
+  EXPECT_EQ(count_text(0, "repeat"), "0 repeats");
+  EXPECT_EQ(count_text(1, "repeat"), "1 repeat");
+}
+
 TEST(Text, WordsAreQuotedWhereAShellWouldSplitOrReplaceThem) {
   EXPECT_EQ(shell_word("body.soft.material.mu=2e4"), "body.soft.material.mu=2e4");
   EXPECT_EQ(shell_word(""), "''");
