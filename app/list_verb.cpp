@@ -2,6 +2,7 @@
 
 #include "app/verbs.h"
 #include "base/console.h"
+#include "base/text.h"
 #include "scene/scene_reader.h"
 #include "scene/script.h"
 
@@ -11,12 +12,12 @@ namespace {
 int list_scenes() {
   for (const std::string& name : shipped_names("scenes")) {
     const SceneDef scene = load_scene(assets_folder() / "scenes" / (name + ".toml"), assets_folder(), {});
-    say(stdout, fmt::format("{:<22}{}\n", scene.name, scene.title));
+    say(stdout, fmt::format("{:<22}{}\n", scene.name, printable(scene.title)));
   }
   say(stdout, "\nReplays, for supple replay:\n");
   for (const std::string& name : shipped_names("replays")) {
     const Script script = Script::load(assets_folder() / "replays" / (name + ".toml"), assets_folder(), {});
-    say(stdout, fmt::format("{:<22}{}\n", name, script.scene().title));
+    say(stdout, fmt::format("{:<22}{}\n", name, printable(script.scene().title)));
   }
   return 0;
 }

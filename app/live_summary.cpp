@@ -4,6 +4,7 @@
 
 #include "app/summary.h"
 #include "app/verbs.h"
+#include "base/text.h"
 #include "base/timing.h"
 #include "scene/assemble.h"
 #include "scene/script.h"
@@ -35,7 +36,7 @@ std::string live_summary(const std::filesystem::path& file) {
   std::string text = fmt::format("{:<{}}  {:<14} {:<10} now; what is allowed; what a change asks for\n", "path", widest,
                                  "type", "unit");
   for (const auto& [key, cost] : live) {
-    const std::string value = key.type == "table" ? "" : key.value + "; ";
+    const std::string value = key.type == "table" ? "" : printable(key.value) + "; ";
     const char* asks = cost.text();
     text += fmt::format("{:<{}}  {:<14} {:<10} {}{}{}{}\n", key.path, widest, key.type, key.unit, value, key.allowed,
                         *asks == '\0' ? "" : "; ", asks);

@@ -18,7 +18,8 @@ std::string value_at(const Json& info, const std::vector<std::string>& path) {
     if (!value->is_object() || !value->contains(key)) return "not known";
     value = &(*value)[key];
   }
-  return value->is_string() ? value->get<std::string>() : value->dump(-1, ' ', false, Json::error_handler_t::replace);
+  return printable(value->is_string() ? value->get<std::string>()
+                                      : value->dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 // As it can be typed again.
@@ -28,7 +29,7 @@ std::string command_text(const Json& info) {
   for (const Json& word : info["command"]) {
     if (word.is_string()) words.push_back(shell_word(word.get<std::string>()));
   }
-  return fmt::format("{}", fmt::join(words, " "));
+  return printable(fmt::format("{}", fmt::join(words, " ")));
 }
 
 struct FileCount {
@@ -86,7 +87,7 @@ std::string files_text(const std::filesystem::path& folder) {
   std::string text = "\n  files\n";
   for (const auto& [name, count] : contents_of(folder)) {
     const std::string files = name.ends_with('/') ? fmt::format("{} files", count.files) : "";
-    text += fmt::format("    {:<20}{:>12}  {}", name, bytes_text(count.bytes), files);
+    text += fmt::format("    {:<20}{:>12}  {}", printable(name), bytes_text(count.bytes), files);
     text.erase(text.find_last_not_of(' ') + 1);
     text += '\n';
   }
@@ -96,7 +97,7 @@ std::string files_text(const std::filesystem::path& folder) {
 }  // namespace
 
 std::string run_summary(const RunRecord& run) {
-  std::string text = fmt::format("  run             {}\n", run.folder.string());
+  std::string text = fmt::format("  run             {}\n", printable(run.folder.string()));
   text += fmt::format("  command         {}\n", command_text(run.info));
   text += fmt::format("  program         {} {}, {} kernels, {}\n", value_at(run.info, {"program", "name"}),
                       value_at(run.info, {"program", "version"}), value_at(run.info, {"program", "kernels"}),
@@ -104,8 +105,8 @@ std::string run_summary(const RunRecord& run) {
   text += fmt::format("  machine         {}, {} threads\n", value_at(run.info, {"machine", "cpu"}),
                       value_at(run.info, {"machine", "threads"}));
   text += fmt::format("  scene           {}\n{}", value_at(run.info, {"scene_file"}), bodies_text(run.info));
-  text +=
-      fmt::format("  ended           {}\n", run.ended() == "running" ? "not yet, or the run was killed" : run.ended());
+  text += fmt::format("  ended           {}\n",
+                      run.ended() == "running" ? "not yet, or the run was killed" : printable(run.ended()));
   text +=
       fmt::format("  frames          {} in profile.json, {} pictures\n", run.rows.size(), whole_pictures(run.folder));
   if (run.info.contains("resumed_at"))

@@ -56,7 +56,7 @@ std::string body_text(const SceneDef& scene, const Body& body, const CollisionSe
   const TetMesh& mesh = body.description.mesh;
   const Model model = build_model(body.description);
   const Vec3 extent = bounds_of(mesh.rest).extent();
-  std::string text = fmt::format("\nbody '{}'\n  made of         {}\n", body.def.name, body.source);
+  std::string text = fmt::format("\nbody '{}'\n  made of         {}\n", body.def.name, printable(body.source));
   text += fmt::format("  size            {} vertices, {}\n", mesh.rest.rows(), substance_text(body));
   text += fmt::format("  extent          {:.3g} x {:.3g} x {:.3g} m\n", extent.x(), extent.y(), extent.z());
   if (!body.def.cloth) {
@@ -67,8 +67,8 @@ std::string body_text(const SceneDef& scene, const Body& body, const CollisionSe
   }
   text += fmt::format("  mass that moves {:.4g} kg\n", model.total_mass);
   for (const Handle& handle : body.description.handles) {
-    text += fmt::format("  handle          '{}' {} {} vertices\n", handle.name, handle.spring > 0 ? "pulls" : "holds",
-                        handle.vertices.size());
+    text += fmt::format("  handle          '{}' {} {} vertices\n", printable(handle.name),
+                        handle.spring > 0 ? "pulls" : "holds", handle.vertices.size());
   }
   text += fmt::format("  solver          {}, {} iterations a step, {} numbers in the factor\n",
                       info_of(body.def.solver.method).name, body.def.solver.settings.iterations,
@@ -78,7 +78,7 @@ std::string body_text(const SceneDef& scene, const Body& body, const CollisionSe
 
 // What a change becomes, and how.
 std::string course_text(const TimedChange& change) {
-  if (change.over <= 0) return fmt::format("becomes {}", change.to.whole_text());
+  if (change.over <= 0) return fmt::format("becomes {}", printable(change.to.whole_text()));
   return fmt::format("from {} to {} over {:g} s, {}{}", change.from->whole_text(), change.to.whole_text(), change.over,
                      change.ease == Ease::smooth ? "smooth" : "linear", change.by_ratio ? " by ratio" : "");
 }
@@ -115,7 +115,8 @@ std::string scene_summary(const std::filesystem::path& file, int thread_count) {
   const std::vector<Body> bodies = assemble(scene);
   const CollisionSet set = collision_set(scene);
   Threads threads(thread_count);
-  std::string text = fmt::format("scene           {}{}\n", scene.name, scene.title.empty() ? "" : ": " + scene.title);
+  std::string text = fmt::format("scene           {}{}\n", printable(scene.name),
+                                 scene.title.empty() ? "" : ": " + printable(scene.title));
   text += fmt::format("film            {} frames at {:g} a second ({}), {} of {} s a frame, {} x {} pixels\n",
                       scene.frames, scene.fps, duration_text(scene.frames / scene.fps),
                       scene.substeps == 1 ? "one step" : fmt::format("{} steps", scene.substeps),

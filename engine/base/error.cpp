@@ -2,6 +2,8 @@
 
 #include <fmt/ranges.h>
 
+#include "base/text.h"
+
 namespace supple {
 namespace {
 
@@ -17,9 +19,10 @@ std::string joined(const std::vector<Problem>& problems) {
 }  // namespace
 
 std::string Problem::text() const {
-  if (line <= 0) return source.empty() ? message : fmt::format("{}: {}", source, message);
-  if (column <= 0) return fmt::format("{}:{}: {}", source, line, message);
-  return fmt::format("{}:{}:{}: {}", source, line, column, message);
+  std::string place = source;
+  if (line > 0) place += fmt::format(":{}", line);
+  if (line > 0 && column > 0) place += fmt::format(":{}", column);
+  return printable(place.empty() ? message : place + ": " + message);
 }
 
 InputError::InputError(std::vector<Problem> problems)

@@ -23,6 +23,10 @@ std::string duration_text(double seconds);
 // "812 bytes", "4.1 kB", "12.3 MB", "1.2 GB": thousands, not 1024s
 std::string bytes_text(std::uintmax_t bytes);
 
+// The text on one line, with control characters spelt out ("\n", "\x1b"): for titles, names and messages that hold
+// what a file says, which a terminal must not take for orders.
+std::string printable(std::string_view text);
+
 // The word as a shell reads it back: quoted where it has to be.
 std::string shell_word(const std::string& word);
 

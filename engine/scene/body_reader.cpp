@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/text.h"
 #include "scene/material_reader.h"
 
 namespace supple {
@@ -260,7 +261,7 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
   BodyDef body;
   body.place = table.place(nullptr, "");
   body.name = table.text({"name", "", "addresses the body in --set and in reports"}, "body");
-  if (body.name.empty() || body.name.find_first_of("./\\ \t\n") != std::string::npos) {
+  if (body.name.empty() || body.name.find_first_of("./\\ ") != std::string::npos || printable(body.name) != body.name) {
     table.complain("name", fmt::format("name = '{}': must be a word without spaces, dots and slashes", body.name));
   }
   body.label = table.text({"label", "", "caption in the film; the default is the name"}, body.name);

@@ -1,5 +1,6 @@
 #include "scene/collider_reader.h"
 
+#include "base/text.h"
 #include "scene/body_reader.h"
 #include "scene/shape_reader.h"
 
@@ -32,7 +33,8 @@ ColliderDef read_collider(const ConfigTable& table) {
   ColliderDef collider;
   collider.place = table.place(nullptr, "");
   collider.name = table.text({"name", "", "addresses the collider in --set and in reports"}, "collider");
-  if (collider.name.empty() || collider.name.find_first_of("./\\ \t\n,\"") != std::string::npos)
+  if (collider.name.empty() || collider.name.find_first_of("./\\ ,\"") != std::string::npos ||
+      printable(collider.name) != collider.name)
     table.complain("name", fmt::format("name = '{}': must be a word without spaces, dots, commas, quotes and slashes",
                                        collider.name));
   collider.shape = read_collider_shape(table);

@@ -46,6 +46,19 @@ TEST(Info, TellsOfASceneAndWhatAFrameCosts) {
   expect_lines(run(folder.path, {"info", "tightening"}).out, {"changes         ", " while it runs\n"});
 }
 
+TEST(Info, GivesTheTerminalNoOrdersOfAScene) {
+  const test::TemporaryFolder folder;
+  std::string scene = bar_scene;
+  scene.replace(scene.find("A bar"), 5, "A\\u001B[2J\\nbar");
+  std::ofstream(folder.path / "bar.toml") << scene;
+  const Result good = run(folder.path, {"info", "bar.toml"});
+  EXPECT_NE(good.out.find("bar: A\\x1b[2J\\nbar\n"), std::string::npos) << good.out;
+  scene.replace(scene.find("\"bar\""), 5, "\"b\\nr\"");
+  std::ofstream(folder.path / "bar.toml") << scene;
+  EXPECT_EQ(run(folder.path, {"info", "bar.toml"}).err,
+            "bar.toml:4:8: name = 'b\\nr': must be a word without spaces, dots and slashes\n");
+}
+
 TEST(Info, ListsTheChangesOfAReplayAndWhatTheyCost) {
   const test::TemporaryFolder folder;
   std::ofstream(folder.path / "bar.toml") << bar_scene;

@@ -20,6 +20,13 @@ TEST(Text, OneOfAThingIsSingular) {
   EXPECT_EQ(count_text(1, "repeat"), "1 repeat");
 }
 
+TEST(Text, ControlCharactersAreSpeltOut) {
+  EXPECT_EQ(printable("a b\tc\nd"), "a b\\x09c\\nd");
+  EXPECT_EQ(printable("\033[2J\x7f"), "\\x1b[2J\\x7f");
+  EXPECT_EQ(printable("\xc2\x9b[2J"), "\\x9b[2J");
+  EXPECT_EQ(printable("gr\xc3\xbc\xc3\x9f \xc2\xb5"), "gr\xc3\xbc\xc3\x9f \xc2\xb5");
+}
+
 TEST(Text, WordsAreQuotedWhereAShellWouldSplitOrReplaceThem) {
   EXPECT_EQ(shell_word("body.soft.material.mu=2e4"), "body.soft.material.mu=2e4");
   EXPECT_EQ(shell_word(""), "''");
