@@ -98,6 +98,14 @@ class CsvReader {
   int line_ = 1, column_ = 1;
 };
 
+// A number, true, false or a list of them as what it says; empty: null; else the text.
+Json json_of(const std::string& cell) {
+  if (cell.empty()) return nullptr;
+  const bool may_say_more = reads_as_number(cell) || cell == "true" || cell == "false" || cell.front() == '[';
+  Json value = may_say_more ? Json::parse(cell, nullptr, false) : Json(Json::value_t::discarded);
+  return value.is_discarded() ? Json(cell) : value;
+}
+
 }  // namespace
 
 std::string number_text(double value, int digits) {
@@ -149,10 +157,7 @@ void write_json(const ReportTable& table, const std::filesystem::path& folder) {
   Json list = Json::array();
   for (const auto& cells : table.rows) {
     Json row = {{table.row_name, table.first_row + list.size()}};
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      Json value = cells[i].empty() ? Json(nullptr) : Json(cells[i]);
-      row[table.columns[i]] = reads_as_number(cells[i]) ? Json::parse(cells[i]) : std::move(value);
-    }
+    for (std::size_t i = 0; i < cells.size(); ++i) row[table.columns[i]] = json_of(cells[i]);
     list.push_back(std::move(row));
   }
   write_whole_file(folder / (table.name + ".json"), list.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");

@@ -30,7 +30,8 @@ bool reads_as_number(const std::string& cell);
 // folder/NAME.csv with RFC 4180's quoting and lines that end in LF. The first column numbers the rows.
 void write_csv(const ReportTable& table, const std::filesystem::path& folder);
 
-// folder/NAME.json: a list of objects, the row's number first. Cells that are numbers become numbers, empty ones null.
+// folder/NAME.json: a list of objects, the row's number first. Cells that are numbers, true, false or
+// lists of these become what they say, empty ones null.
 void write_json(const ReportTable& table, const std::filesystem::path& folder);
 
 // All records, the header first; every one has as many fields as the header. Lines end in LF or CRLF. Throws InputError

@@ -147,6 +147,17 @@ TEST(ReportTable, JsonHasNumbersWhereCellsAreNumbers) {
     EXPECT_FALSE(reads_as_number(text)) << text;
 }
 
+TEST(ReportTable, JsonHasListsAndTruthsAsWhatTheyAre) {
+  const test::TemporaryFolder folder;
+  write_json({.name = "t", .columns = {"a"}, .rows = {{"[0, -9.5, 0]"}, {"true"}, {"[soft, stiff]"}, {"truly"}}},
+             folder.path);
+  const auto rows = nlohmann::json::parse(test::read_file(folder.path / "t.json"));
+  EXPECT_EQ(rows[0]["a"], nlohmann::json::parse("[0, -9.5, 0]"));
+  EXPECT_EQ(rows[1]["a"], true);
+  EXPECT_EQ(rows[2]["a"], "[soft, stiff]");
+  EXPECT_EQ(rows[3]["a"], "truly");
+}
+
 TEST(ReportTable, ChecksNamesColumnsAndRows) {
   const test::TemporaryFolder folder;
   ReportTable table = table_of("../t");
