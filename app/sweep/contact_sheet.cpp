@@ -101,6 +101,13 @@ CaptionBitmap fitted(const Sheet& sheet, const std::string& words, int pixels, i
   return bitmap;
 }
 
+// "name = value", the value alone where both do not fit.
+CaptionBitmap fitted_value(const Sheet& sheet, const std::string& words, int width) {
+  const std::size_t equals = words.find(" = ");
+  const bool fits = equals == std::string::npos || bitmap_of(sheet, words, word_pixels).width <= width;
+  return fitted(sheet, fits ? words : words.substr(equals + 3), word_pixels, width);
+}
+
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : ",  ") + word;
@@ -175,7 +182,7 @@ PngImage compose(const Sheet& sheet) {
     canvas.write(x + cell.width - mark.width, y + cell.height + 8, mark, soft);
     for (std::size_t k = 0; k < lines[i].size(); ++k) {
       const int room = cell.width - (k == 0 && mark.width > 0 ? mark.width + 10 : 0);
-      canvas.write(x, y + cell.height + 8 + line * int(k), fitted(sheet, lines[i][k], word_pixels, room), ink);
+      canvas.write(x, y + cell.height + 8 + line * int(k), fitted_value(sheet, lines[i][k], room), ink);
     }
   }
   return canvas.take();

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "app/sweep/contact_sheet.h"
+#include "app/verbs.h"
 #include "output/png_file.h"
 #include "output/report_table.h"
 #include "support/bodies.h"
@@ -326,6 +327,18 @@ TEST(ContactSheet, ShowsPicturesInOrderAndSaysWhatIsMissing) {
   write_png(folder.path / "wide.png", 2000, 500, std::vector<std::uint8_t>(2000 * 500 * 3, 0));
   sheet.pictures = {{folder.path / "wide.png"}};
   EXPECT_EQ(compose(sheet).height - 2 * 40, 460 / 4 + 8) << "a larger picture is made smaller, in its shape";
+}
+
+TEST(ContactSheet, ShowsTheValueAloneWhereItsNameDoesNotFit) {
+  if (caption_font().empty()) GTEST_SKIP() << "no font for captions here";
+  const test::TemporaryFolder folder;
+  write_png(folder.path / "a.png", 200, 100, std::vector<std::uint8_t>(200 * 100 * 3, 0));
+  const auto sheet_with = [&](const std::string& words) {
+    return compose({"", {{folder.path / "a.png", "", {words}}}, 1, caption_font()}).rgb;
+  };
+  const auto value = sheet_with("[0, -9, 0]");
+  EXPECT_EQ(sheet_with("a_name_that_leaves_no_room = [0, -9, 0]"), value);
+  EXPECT_NE(sheet_with("g = [0, -9, 0]"), value);
 }
 
 }  // namespace
