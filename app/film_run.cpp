@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "app/film_checks.h"
 #include "app/film_identity.h"
 #include "app/verbs.h"
 #include "base/console.h"
@@ -15,7 +16,6 @@
 #include "base/timing.h"
 #include "output/chrome_trace.h"
 #include "output/folder_lock.h"
-#include "output/png_file.h"
 #include "output/run_record.h"
 #include "output/whole_file.h"
 #include "scene/scene_reader.h"
@@ -51,16 +51,6 @@ void print_json(const FilmResult& result, const RunFolder& folder) {
       result.video_written ? nlohmann::ordered_json(folder.video().string()) : nlohmann::ordered_json(nullptr);
   json["video_message"] = result.video_message;
   say(stdout, fmt::format("{}\n", json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)));
-}
-
-void check_save_states(const std::vector<int>& frames, const SceneDef& scene) {
-  for (const int frame : frames) {
-    if (frame < scene.frames) continue;
-    throw InputError(fmt::format("--save-state {}", frame),
-                     scene.frames == 1
-                         ? std::string("the film has one frame, 0")
-                         : fmt::format("the film has {} frames, 0 to {}", scene.frames, scene.frames - 1));
-  }
 }
 
 }  // namespace
@@ -117,32 +107,6 @@ bool remembers_steps(const Script& script) {
     if (method && remembers_steps(script.scene_at(frame))) return true;
   }
   return remembers_steps(script.scene());
-}
-
-// What a film goes on from, if there is anything yet.
-std::optional<Checkpoint> checkpoint_in(const std::filesystem::path& run, const std::string& identity, int frames) {
-  const std::filesystem::path file = RunFolder::checkpoint_of(run);
-  std::error_code error;
-  if (!std::filesystem::exists(file, error)) {
-    say(stderr, fmt::format("note: {} has no checkpoint yet; starting with the first frame\n", run.string()));
-    return std::nullopt;
-  }
-  Checkpoint checkpoint = read_checkpoint(file, identity);
-  if (checkpoint.frames > frames)
-    throw InputError("--resume", fmt::format("the film in {} has {} frames already, which is more than {}",
-                                             run.string(), checkpoint.frames, frames));
-  say(stderr, fmt::format("note: going on behind frame {} of {}\n", checkpoint.frames, frames));
-  return checkpoint;
-}
-
-// The pictures of frames that are not made again.
-void check_pictures(const std::filesystem::path& frames, int count) {
-  for (int frame = 0; frame < count; ++frame) {
-    const std::filesystem::path picture = frames / fmt::format("{:06}.png", frame);
-    if (!looks_whole(picture))
-      throw InputError(picture.string(),
-                       "is missing or damaged, and --resume does not make it again; start anew without --resume");
-  }
 }
 
 void add_result(const FilmResult& result, RunInfo& info) {
@@ -329,6 +293,7 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
   if (options.images && !request.last_image_only) check_pictures(path / "frames", start);
   options.record = request.record;
   options.record_head = record_head(info, bodies);
+  if (!request.record.empty()) check_record(request.record, path, options.record_head, start);
   if (!request.record.empty() && !request.verify.empty() &&
       (request.record == request.verify || std::filesystem::equivalent(request.record, request.verify, ignored)))
     throw InputError("--record " + request.record, "is the file to --verify with, which would be overwritten");

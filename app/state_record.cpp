@@ -57,6 +57,11 @@ std::string line_of(const RecordHead& head) {
   return json.dump() + '\n';
 }
 
+// Where the frames behind the first ones begin.
+std::size_t bytes_behind(const RecordHead& head, int frames) {
+  return line_of(head).size() + bytes_of_frame(head) * static_cast<std::size_t>(frames);
+}
+
 RecordHead read_head(std::istream& file, const std::string& source) {
   RecordHead head;
   try {
@@ -83,36 +88,42 @@ std::string names_of(const RecordHead& head) {
 
 }  // namespace
 
+void check_kept_record(const std::filesystem::path& path, const RecordHead& head, int kept_frames) {
+  std::ifstream file(path, std::ios::binary);
+  std::string first;
+  std::getline(file, first);
+  if (file && first + '\n' != line_of(head))
+    throw InputError(path.string(), "is not the record of this film's first frames");
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error || size < bytes_behind(head, kept_frames))
+    throw InputError(path.string(), fmt::format("does not have the first {} frames of the film; record from the first "
+                                                "one on, or leave --record out",
+                                                kept_frames));
+}
+
 StateRecorder::StateRecorder(const std::filesystem::path& path, const RecordHead& head, int kept_frames)
     : path_(path), file_(std::fopen(path.c_str(), kept_frames > 0 ? "r+b" : "wb")) {
-  if (!file_) throw RunError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
-  const std::string line = line_of(head);
-  bool done = true;
+  if (!file_) fail();
   if (kept_frames > 0) {
-    const auto size = static_cast<off_t>(line.size() + bytes_of_frame(head) * kept_frames);
-    std::ifstream earlier(path, std::ios::binary);
-    std::string first;
-    std::getline(earlier, first);
-    if (first + '\n' != line)
-      throw RunError(fmt::format("{}: is not the record of this film's first frames", path.string()));
-    std::error_code ignored;
-    if (off_t(std::filesystem::file_size(path, ignored)) < size)
-      throw RunError(
-          fmt::format("{}: does not have the first {} frames of the film; record from the first one on, or "
-                      "leave --record out",
-                      path.string(), kept_frames));
-    done = ftruncate(fileno(file_.get()), size) == 0 && std::fseek(file_.get(), 0, SEEK_END) == 0;
+    check_kept_record(path, head, kept_frames);
+    const auto size = static_cast<off_t>(bytes_behind(head, kept_frames));
+    if (ftruncate(fileno(file_.get()), size) != 0 || std::fseek(file_.get(), 0, SEEK_END) != 0) fail();
   } else {
-    done = std::fwrite(line.data(), 1, line.size(), file_.get()) == line.size();
+    const std::string line = line_of(head);
+    if (std::fwrite(line.data(), 1, line.size(), file_.get()) != line.size()) fail();
   }
-  if (!done) throw RunError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
+}
+
+void StateRecorder::fail() const {
+  throw RunError(fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(errno)));
 }
 
 void StateRecorder::add(const Model& model, const State& state) {
   const std::vector<VertexRecord> records = vertex_records(model, state);
   if (std::fwrite(records.data(), sizeof(VertexRecord), records.size(), file_.get()) != records.size() ||
       std::fflush(file_.get()) != 0) {
-    throw RunError(fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(errno)));
+    fail();
   }
 }
 

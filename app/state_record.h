@@ -25,13 +25,19 @@ struct RecordHead {
   std::vector<Body> bodies;
 };
 
+// Throws InputError where the file is not a record that begins with the first frames of the film.
+void check_kept_record(const std::filesystem::path& path, const RecordHead& head, int kept_frames);
+
 class StateRecorder {
  public:
-  // Starts a file, or goes on behind the first frames of one. Throws RunError when it cannot be written.
+  // Starts a file, or goes on behind the first frames of one. Throws RunError when it cannot be written, InputError as
+  // check_kept_record.
   StateRecorder(const std::filesystem::path& path, const RecordHead& head, int kept_frames);
   void add(const Model& model, const State& state);  // body by body, frame by frame
 
  private:
+  [[noreturn]] void fail() const;
+
   std::filesystem::path path_;
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }

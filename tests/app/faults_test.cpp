@@ -89,6 +89,25 @@ TEST_F(Faults, AFolderThatCannotBeWrittenIsNamed) {
             "supple: /proc/here/frames: cannot be made: No such file or directory\n");
 }
 
+TEST_F(Faults, ARecordThatCannotBeWrittenIsRefusedBeforeTheEarlierFilmIsTouched) {
+  const std::vector<std::string> film = {"render", "bar.toml", "--no-video", "--quiet", "--record"};
+  const auto with = [&film](std::vector<std::string> more) {
+    more.insert(more.begin(), film.begin(), film.end());
+    return more;
+  };
+  ASSERT_EQ(run(folder_.path, with({"film.rec"})).status, 0);
+  std::ofstream(folder_.path / "short.rec");
+  for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{
+           {"nowhere/film.rec"}, {"out"}, {"short.rec", "--resume"}, {"nowhere/film.rec", "--resume"}}) {
+    const Result result = run(folder_.path, with(more));
+    EXPECT_EQ(result.status, 2) << result.err;
+    EXPECT_NE(result.err.find(more[0] + ": "), std::string::npos) << result.err;
+    expect_whole_frames(8);
+    EXPECT_EQ(test::profile_of(folder_.path / "out" / "bar")["frames"].size(), 8u);
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_.path / "nowhere"));
+}
+
 TEST_F(Faults, ADamagedFrameIsFoundBeforeGoingOn) {
   ASSERT_EQ(run(folder_.path, {"render", "bar.toml", "--no-video", "--quiet"}).status, 0);
   const std::filesystem::path frame = folder_.path / "out" / "bar" / "frames" / "000003.png";

@@ -1,0 +1,84 @@
+#include "app/film_checks.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <optional>
+
+#include "base/console.h"
+#include "base/error.h"
+#include "output/png_file.h"
+#include "output/run_folder.h"
+
+namespace supple {
+
+void check_save_states(const std::vector<int>& frames, const SceneDef& scene) {
+  for (const int frame : frames) {
+    if (frame < scene.frames) continue;
+    throw InputError(fmt::format("--save-state {}", frame),
+                     scene.frames == 1
+                         ? std::string("the film has one frame, 0")
+                         : fmt::format("the film has {} frames, 0 to {}", scene.frames, scene.frames - 1));
+  }
+}
+
+std::optional<Checkpoint> checkpoint_in(const std::filesystem::path& run, const std::string& identity, int frames) {
+  const std::filesystem::path file = RunFolder::checkpoint_of(run);
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) {
+    say(stderr, fmt::format("note: {} has no checkpoint yet; starting with the first frame\n", run.string()));
+    return std::nullopt;
+  }
+  Checkpoint checkpoint = read_checkpoint(file, identity);
+  if (checkpoint.frames > frames)
+    throw InputError("--resume", fmt::format("the film in {} has {} frames already, which is more than {}",
+                                             run.string(), checkpoint.frames, frames));
+  say(stderr, fmt::format("note: going on behind frame {} of {}\n", checkpoint.frames, frames));
+  return checkpoint;
+}
+
+void check_pictures(const std::filesystem::path& frames, int count) {
+  for (int frame = 0; frame < count; ++frame) {
+    const std::filesystem::path picture = frames / fmt::format("{:06}.png", frame);
+    if (!looks_whole(picture))
+      throw InputError(picture.string(),
+                       "is missing or damaged, and --resume does not make it again; start anew without --resume");
+  }
+}
+
+namespace {
+
+// Without links, "..", and a slash at the end.
+std::filesystem::path full_path(const std::filesystem::path& path) {
+  std::error_code error;
+  return std::filesystem::weakly_canonical((std::filesystem::absolute(path) / "").lexically_normal().parent_path(),
+                                           error);
+}
+
+// Throws InputError where the file cannot be opened for writing; leaves none that was not there.
+void try_to_write(const std::filesystem::path& path) {
+  std::error_code error;
+  const bool was_there = std::filesystem::exists(std::filesystem::symlink_status(path, error));
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0666);
+  if (file < 0)
+    throw InputError("--record " + path.string(), fmt::format("cannot be written: {}", std::strerror(errno)));
+  ::close(file);
+  if (!was_there) std::filesystem::remove(path, error);
+}
+
+}  // namespace
+
+void check_record(const std::filesystem::path& record, const std::filesystem::path& run, const RecordHead& head,
+                  int kept_frames) {
+  std::error_code error;
+  if (kept_frames > 0) check_kept_record(record, head, kept_frames);
+  if (std::filesystem::exists(record, error) && !std::filesystem::is_regular_file(record, error))
+    throw InputError("--record " + record.string(), "is not a file");
+  const bool in_new_folder = !std::filesystem::exists(run, error) && full_path(record).parent_path() == full_path(run);
+  if (!in_new_folder) try_to_write(record);  // a new folder is the run's to make
+}
+
+}  // namespace supple

@@ -1,0 +1,28 @@
+// What a film is refused for before anything in its folder is touched: all here throw InputError.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/checkpoint.h"
+#include "app/state_record.h"
+#include "scene/scene_def.h"
+
+namespace supple {
+
+// Of --save-state.
+void check_save_states(const std::vector<int>& frames, const SceneDef& scene);
+
+// What a film goes on from, if there is anything yet; says which.
+std::optional<Checkpoint> checkpoint_in(const std::filesystem::path& run, const std::string& identity, int frames);
+
+// The pictures of frames that are not made again.
+void check_pictures(const std::filesystem::path& frames, int count);
+
+// The file for --record, which must be one that can be written, and must begin with the frames that are kept.
+void check_record(const std::filesystem::path& record, const std::filesystem::path& run, const RecordHead& head,
+                  int kept_frames);
+
+}  // namespace supple
