@@ -255,15 +255,27 @@ void read_substances(const ConfigTable& table, BodyDef& body) {
   }
 }
 
+// A body's name is one of files too, with up to 16 bytes behind it, and file systems end at 255.
+void check_name(const ConfigTable& table, const std::string& name) {
+  constexpr std::size_t longest = 200;
+  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+  if (std::any_of(name.begin(), name.end(), is_control)) {
+    table.complain("name", "name: must be a word without control characters, spaces, dots and slashes");
+  } else if (name.empty() || name.find_first_of("./\\ ") != std::string::npos) {
+    table.complain("name", fmt::format("name = '{}': must be a word without spaces, dots and slashes", name));
+  } else if (name.size() > longest) {
+    table.complain("name", fmt::format("name: has {} bytes; files are named by it, so at most {} are allowed",
+                                       name.size(), longest));
+  }
+}
+
 }  // namespace
 
 BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
   BodyDef body;
   body.place = table.place(nullptr, "");
   body.name = table.text({"name", "", "addresses the body in --set and in reports"}, "body");
-  if (body.name.empty() || body.name.find_first_of("./\\ ") != std::string::npos || printable(body.name) != body.name) {
-    table.complain("name", fmt::format("name = '{}': must be a word without spaces, dots and slashes", body.name));
-  }
+  check_name(table, body.name);
   body.label = table.text({"label", "", "caption in the film; the default is the name"}, body.name);
   body.shape = table.file({"shape", "", "a shape file, to be meshed here"});
   body.surface = table.file({"surface", "", "a closed surface (OBJ, PLY, STL, glTF, OFF), to be meshed here"});

@@ -68,6 +68,22 @@ keys = [ { t = 1 }, { t = 0.5 } ]
   }
 }
 
+TEST(SceneFile, RefusesNamesThatFilesCannotHave) {
+  const auto named = [](const std::string& name) { return problems_of(good_body + "name = \"" + name + "\"\n"); };
+  for (const char* name : {"", "a b", "a/b", "a.b"}) {
+    EXPECT_EQ(named(name), std::vector<std::string>{"scene.toml:4:8: name = '" + std::string(name) +
+                                                    "': must be a word without spaces, dots and slashes"});
+  }
+  for (const char* name : {"a\\u0000b", "a\\tb"}) {
+    EXPECT_EQ(named(name), std::vector<std::string>{"scene.toml:4:8: name: must be a word without control characters, "
+                                                    "spaces, dots and slashes"});
+  }
+  EXPECT_EQ(named(std::string(200, 'a')), std::vector<std::string>{});
+  EXPECT_EQ(named(std::string(201, 'a')),
+            std::vector<std::string>{
+                "scene.toml:4:8: name: has 201 bytes; files are named by it, so at most 200 are allowed"});
+}
+
 TEST(SceneFile, AcceptsAGoodSceneWithoutAWord) { EXPECT_EQ(problems_of(good_body), std::vector<std::string>{}); }
 
 TEST(SceneFile, NeedsABodyAndAMaterial) {
