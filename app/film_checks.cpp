@@ -58,6 +58,18 @@ std::filesystem::path full_path(const std::filesystem::path& path) {
                                            error);
 }
 
+// Whether a run keeps a file of its own there, or may.
+bool is_of_run(const std::filesystem::path& file, const std::filesystem::path& run) {
+  const std::filesystem::path inside = full_path(file).lexically_relative(full_path(run));
+  if (inside.empty()) return false;
+  const std::string first = inside.begin()->string();
+  for (const char* own :
+       {"frames", "motion", "states", "fields", "checkpoint", "run.json", "profile.json", "trace.json", "video.mp4"}) {
+    if (first == own || first == std::string(own) + ".part") return true;
+  }
+  return false;
+}
+
 // Throws InputError where the file cannot be opened for writing; leaves none that was not there.
 void try_to_write(const std::filesystem::path& path) {
   std::error_code error;
@@ -74,9 +86,15 @@ void try_to_write(const std::filesystem::path& path) {
 void check_record(const std::filesystem::path& record, const std::filesystem::path& run, const RecordHead& head,
                   int kept_frames) {
   std::error_code error;
-  if (kept_frames > 0) check_kept_record(record, head, kept_frames);
+  const std::string source = "--record " + record.string();
   if (std::filesystem::exists(record, error) && !std::filesystem::is_regular_file(record, error))
-    throw InputError("--record " + record.string(), "is not a file");
+    throw InputError(source, "is not a file");
+  if (is_of_run(record, run))
+    throw InputError(source,
+                     fmt::format("is where the run keeps its own files in {}; choose another place", run.string()));
+  if (!may_be_recorded_over(record))
+    throw InputError(source, "is there already and not a record, so it is not written over; choose another name");
+  if (kept_frames > 0) check_kept_record(record, head, kept_frames);
   const bool in_new_folder = !std::filesystem::exists(run, error) && full_path(record).parent_path() == full_path(run);
   if (!in_new_folder) try_to_write(record);  // a new folder is the run's to make
 }

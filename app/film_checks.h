@@ -21,7 +21,8 @@ std::optional<Checkpoint> checkpoint_in(const std::filesystem::path& run, const 
 // The pictures of frames that are not made again.
 void check_pictures(const std::filesystem::path& frames, int count);
 
-// The file for --record, which must be one that can be written, and must begin with the frames that are kept.
+// The file for --record, which must be one that can be written and that nobody misses: none of the run's own, no other
+// file than a record, and one that begins with the frames that are kept.
 void check_record(const std::filesystem::path& record, const std::filesystem::path& run, const RecordHead& head,
                   int kept_frames);
 

@@ -17,6 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* format_name = "supple record 1";
+constexpr std::string_view first_bytes = "{\"format\":\"supple record ";  // of all versions
 
 // Of a vertex, in the order of the input file.
 struct VertexRecord {
@@ -87,6 +88,16 @@ std::string names_of(const RecordHead& head) {
 }
 
 }  // namespace
+
+bool may_be_recorded_over(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return true;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return false;
+  std::string begin(first_bytes.size(), '\0');
+  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return file.gcount() == 0 || begin == first_bytes;
+}
 
 void check_kept_record(const std::filesystem::path& path, const RecordHead& head, int kept_frames) {
   std::ifstream file(path, std::ios::binary);

@@ -25,6 +25,9 @@ struct RecordHead {
   std::vector<Body> bodies;
 };
 
+// No file yet, an empty one, or a record of any version.
+bool may_be_recorded_over(const std::filesystem::path& path);
+
 // Throws InputError where the file is not a record that begins with the first frames of the film.
 void check_kept_record(const std::filesystem::path& path, const RecordHead& head, int kept_frames);
 

@@ -108,6 +108,23 @@ TEST_F(Faults, ARecordThatCannotBeWrittenIsRefusedBeforeTheEarlierFilmIsTouched)
   EXPECT_FALSE(std::filesystem::exists(folder_.path / "nowhere"));
 }
 
+TEST_F(Faults, ARecordIsWrittenOverNothingButARecord) {
+  const auto recorded = [this](const std::string& file) {
+    return run(folder_.path, {"render", "bar.toml", "--no-images", "--quiet", "--record", file});
+  };
+  EXPECT_EQ(recorded("film.rec").status, 0);
+  EXPECT_EQ(recorded("film.rec").status, 0);
+  EXPECT_EQ(recorded("out/bar/film.rec").status, 0);
+  const std::string scene = test::read_file(folder_.path / "bar.toml");
+  for (const char* file : {"bar.toml", "out/bar/run.json", "out/bar/motion/bar.pc2", "out/bar/motion/new.rec"}) {
+    const Result result = recorded(file);
+    EXPECT_EQ(result.status, 2) << file;
+    EXPECT_NE(result.err.find(std::string("--record ") + file), std::string::npos) << result.err;
+  }
+  EXPECT_EQ(test::read_file(folder_.path / "bar.toml"), scene);
+  EXPECT_EQ(test::profile_of(folder_.path / "out" / "bar")["frames"].size(), 8u);
+}
+
 TEST_F(Faults, ADamagedFrameIsFoundBeforeGoingOn) {
   ASSERT_EQ(run(folder_.path, {"render", "bar.toml", "--no-video", "--quiet"}).status, 0);
   const std::filesystem::path frame = folder_.path / "out" / "bar" / "frames" / "000003.png";
