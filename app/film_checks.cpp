@@ -6,14 +6,17 @@
 
 #include <cerrno>
 #include <cstring>
-#include <optional>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "base/console.h"
 #include "base/error.h"
+#include "output/json_difference.h"
 #include "output/png_file.h"
-#include "output/run_folder.h"
 
 namespace supple {
+
+using Json = nlohmann::ordered_json;
 
 void check_save_states(const std::vector<int>& frames, const SceneDef& scene) {
   for (const int frame : frames) {
@@ -25,10 +28,50 @@ void check_save_states(const std::vector<int>& frames, const SceneDef& scene) {
   }
 }
 
-std::optional<Checkpoint> checkpoint_in(const std::filesystem::path& run, const std::string& identity, int frames) {
+namespace {
+
+// What two runs must have in common for one to be taken for the beginning of the other, where no checkpoint says more.
+std::string film_of_run(const Json& run) {
+  Json film = {{"program", run.value("program", Json())}, {"scene", run.value("scene", Json())}};
+  if (film["scene"].is_object()) film["scene"].erase("frames");
+  if (run.contains("replay")) film["replay"] = run["replay"];
+  for (const Json& mesh : run.value("meshes", Json::array()))
+    film["meshes"][mesh.at("body").get<std::string>()] = mesh.at("xxh64");
+  return film.dump();
+}
+
+// A film without a checkpoint would be made anew: only where that is no more than what it was about to be.
+void check_nothing_is_lost(const std::filesystem::path& run, const RunInfo& info) {
+  const std::filesystem::path file = run / "run.json";
+  std::ifstream stream(file);
+  if (!stream) return;
+  const Json before = Json::parse(stream, nullptr, false);
+  if (before.is_object() && !before.contains("ended")) return;  // killed at its beginning
+  const auto refuse = [&run](const std::string& what) {
+    throw InputError("--resume", fmt::format("{} holds {}; without --resume it is made anew", run.string(), what));
+  };
+  try {
+    if (before.at("ended") == "done")
+      refuse(fmt::format("a film that is complete, of {} frames, and no checkpoint to go on from",
+                         before.at("frames").get<int>()));
+    const std::vector<std::string> differences =
+        json_differences(film_of_run(before), film_of_run(Json::parse(info_json(info))));
+    std::string list;
+    for (const std::string& difference : differences) list += "\n  " + difference;
+    if (!list.empty()) refuse(fmt::format("another film than this one and no checkpoint; then and now:{}\n", list));
+  } catch (const Json::exception&) {
+    throw InputError(file.string(), "is damaged; without --resume the film is made anew");
+  }
+}
+
+}  // namespace
+
+std::optional<Checkpoint> checkpoint_in(const std::filesystem::path& run, const std::string& identity, int frames,
+                                        const RunInfo& info) {
   const std::filesystem::path file = RunFolder::checkpoint_of(run);
   std::error_code error;
   if (!std::filesystem::exists(file, error)) {
+    check_nothing_is_lost(run, info);
     say(stderr, fmt::format("note: {} has no checkpoint yet; starting with the first frame\n", run.string()));
     return std::nullopt;
   }

@@ -8,6 +8,7 @@
 
 #include "app/checkpoint.h"
 #include "app/state_record.h"
+#include "output/run_folder.h"
 #include "scene/scene_def.h"
 
 namespace supple {
@@ -15,8 +16,10 @@ namespace supple {
 // Of --save-state.
 void check_save_states(const std::vector<int>& frames, const SceneDef& scene);
 
-// What a film goes on from, if there is anything yet; says which.
-std::optional<Checkpoint> checkpoint_in(const std::filesystem::path& run, const std::string& identity, int frames);
+// What a film goes on from, if there is anything yet; says which. A film that ended complete, and one of another scene
+// or program, is not taken for a beginning.
+std::optional<Checkpoint> checkpoint_in(const std::filesystem::path& run, const std::string& identity, int frames,
+                                        const RunInfo& info);
 
 // The pictures of frames that are not made again.
 void check_pictures(const std::filesystem::path& frames, int count);

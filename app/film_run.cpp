@@ -288,7 +288,7 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
   std::error_code ignored;
   std::optional<FolderLock> lock;
   if (!request.folder_is_held && std::filesystem::is_directory(path, ignored)) lock.emplace(path);
-  if (request.resume) options.start = checkpoint_in(path, options.identity, scene.frames);
+  if (request.resume) options.start = checkpoint_in(path, options.identity, scene.frames, info);
   const int start = options.start ? options.start->frames : 0;
   if (options.images && !request.last_image_only) check_pictures(path / "frames", start);
   options.record = request.record;

@@ -79,7 +79,7 @@ std::filesystem::path RunFolder::fields(const std::string& body, int frame) cons
   return fields() / fmt::format("{}-{:06}.vtu", body, frame);
 }
 
-void RunFolder::write_info(const RunInfo& info) const {
+std::string info_json(const RunInfo& info) {
   nlohmann::ordered_json json;
   json["program"] = {
       {"name", "supple"}, {"version", program_version()}, {"build", build_flags()}, {"kernels", info.kernel_variant}};
@@ -103,9 +103,10 @@ void RunFolder::write_info(const RunInfo& info) const {
   if (!info.resumed.empty()) json["resumed_at"] = info.resumed;
   if (!info.video.empty()) json["video"] = info.video;
   // File names need not be UTF-8; JSON must be.
-  write_whole_file(path_ / "run.json",
-                   json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
+
+void RunFolder::write_info(const RunInfo& info) const { write_whole_file(path_ / "run.json", info_json(info)); }
 
 void RunFolder::write_profile(const std::string& json) const { write_whole_file(path_ / "profile.json", json); }
 

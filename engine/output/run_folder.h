@@ -28,6 +28,9 @@ struct RunInfo {
   std::string ended;                                // "done", "interrupted" or the failure
 };
 
+// As run.json has it.
+std::string info_json(const RunInfo& info);
+
 class RunFolder {
  public:
   // Makes the folder, or takes over one that an earlier run left: its results are removed, but for what belongs to its

@@ -290,6 +290,32 @@ TEST_F(ReplayedFilm, StartsAnewWhereThereIsNoCheckpointYet) {
   EXPECT_NE(result.err.find("has no checkpoint yet"), std::string::npos) << result.err;
 }
 
+TEST_F(ReplayedFilm, LeavesAFilmWithoutACheckpointAloneUnlessItsRunWasCutShort) {
+  const auto filmed = [this](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"render", "two.toml", "--no-images", "--quiet", "--checkpoint-every", "0"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(folder_.path, words);
+  };
+  ASSERT_EQ(filmed({"--out", "a"}).status, 0);
+  const Result complete = filmed({"--out", "a", "--resume"});
+  EXPECT_EQ(complete.status, 2);
+  EXPECT_NE(complete.err.find("a holds a film that is complete, of 24 frames"), std::string::npos) << complete.err;
+  EXPECT_NE(complete.err.find("without --resume it is made anew"), std::string::npos) << complete.err;
+  EXPECT_EQ(hashes("a").size(), 24u);
+
+  const std::filesystem::path file = folder_.path / "a" / "run.json";
+  std::string text = read_file(file);
+  text.replace(text.find("\"done\""), 6, "\"running\"");  // as a run that was killed leaves it
+  std::ofstream(file) << text;
+  const Result other = filmed({"--out", "a", "--resume", "--set", "body.bar.density=900"});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_NE(other.err.find("scene.body.bar.density: nothing and 900"), std::string::npos) << other.err;
+  EXPECT_EQ(hashes("a").size(), 24u);
+  const Result same = filmed({"--out", "a", "--resume", "--frames", "4"});
+  EXPECT_EQ(same.status, 0) << same.err;
+  EXPECT_EQ(hashes("a").size(), 4u);
+}
+
 TEST_F(ReplayedFilm, RefusesSpringsThatWouldComeOrGo) {
   for (const char* change :
        {"path = \"body.sheet.cloth.bend\"\nvalue = 0", "path = \"body.sheet.cloth.shear\"\nvalue = 0"}) {
