@@ -27,6 +27,7 @@ FilmLog::FilmLog(const RunFolder& folder, int every, std::string identity, int k
 }
 
 void FilmLog::add(const Checkpoint& checkpoint) {
+  if (!waiting_.empty() && waiting_.back().first >= checkpoint.frames) return;
   waiting_.emplace_back(checkpoint.frames, checkpoint_bytes(checkpoint, identity_));
 }
 
@@ -44,7 +45,12 @@ void FilmLog::note_row() {
 
 void FilmLog::settle(Pictures* pictures) {
   const Zone zone("run's log");
-  if (broken_) return;
+  if (!broken_) note_rows(pictures);
+  for (; !waiting_.empty() && waiting_.front().first <= whole_; waiting_.pop_front())
+    write_whole_file(folder_.checkpoint(), waiting_.front().second);
+}
+
+void FilmLog::note_rows(Pictures* pictures) {
   const auto settle_undrawn = [this] {
     while (whole_ < int(rows_.size()) && !rows_[whole_].draw_ms) note_row();
   };
@@ -57,8 +63,6 @@ void FilmLog::settle(Pictures* pictures) {
     note_row();
     settle_undrawn();
   }
-  for (; !waiting_.empty() && waiting_.front().first <= whole_; waiting_.pop_front())
-    write_whole_file(folder_.checkpoint(), waiting_.front().second);
 }
 
 }  // namespace supple

@@ -22,7 +22,7 @@ class FilmLog {
 
   // A frame whose steps are done. One that is not drawn is whole once those before it are.
   void add(FrameRow row) { rows_.push_back(std::move(row)); }
-  // Kept in memory until the frames before it are whole.
+  // Kept in memory until the frames before it are whole; not where one of as many frames waits already.
   void add(const Checkpoint& checkpoint);
 
   // Takes over what has reached the disk; null: there are no pictures. Throws RunError when the disk refuses.
@@ -34,6 +34,7 @@ class FilmLog {
   void drop_others() { rows_.resize(whole_); }
 
  private:
+  void note_rows(Pictures* pictures);
   void note_row();
 
   const RunFolder& folder_;

@@ -128,8 +128,8 @@ int say_result(const FilmRequest& request, const FilmResult& result, const RunFo
     print_result(result, folder, scene);
   }
   if (result.end == FilmEnd::failed) {
-    say(stderr, fmt::format("supple: {}\n  kept: {} whole frames in {}\n", result.message, result.rows.size(),
-                            folder.path().string()));
+    say(stderr, fmt::format("supple: {}\n  kept: {} whole frames in {}\n", result.message,
+                            std::max(int(result.rows.size()), result.kept_frames), folder.path().string()));
   }
   if (!unrecorded.empty()) say(stderr, fmt::format("supple: {}\n", unrecorded));
   if (result.video_failed) say(stderr, fmt::format("supple: {}\n", result.video_message));

@@ -88,7 +88,7 @@ struct DrawnFilm {
 class Film {
  public:
   Film(const Script& script, std::vector<Body>& bodies, std::vector<Model>& models, const RunFolder& folder,
-       const FilmOptions& options)
+       const FilmOptions& options, FilmLog& log)
       : script_(script),
         bodies_(bodies),
         folder_(folder),
@@ -97,7 +97,7 @@ class Film {
         set_(collision_set(scene_)),
         threads_(options.threads),
         start_(options.start ? options.start->frames : 0),
-        log_(folder, options.checkpoint_every, options.identity, start_) {
+        log_(log) {
     if (options.images) {
       drawn_.emplace(scene_, bodies, set_, options.font);
       pictures_.emplace(drawn_->stage, options.gl, options.shaders, folder);
@@ -117,6 +117,7 @@ class Film {
       FrameRow row;
       row.frame = frame;
       row.time_s = (frame + 1) / scene_.fps;
+      if (log_.keeps_checkpoints()) before_ = moment_behind(frame);
       change(frame, row);
       message = advance(frame, row);
       if (!message.empty()) return FilmEnd::failed;
@@ -143,18 +144,17 @@ class Film {
       result.gl_renderer = pictures_->renderer;
       result.gl_version = pictures_->version;
     }
-    const int frames = static_cast<int>(log_.rows().size());
-    const bool at_end = result.end != FilmEnd::failed && log_.keeps_checkpoints() && !log_.wants_checkpoint(frames);
-    if (at_end) add_checkpoint(frames);
-    log_.settle(pictures());
-    log_.drop_others();
     if (pictures_ && !pictures_->error().empty()) {
       result.end = FilmEnd::failed;
       result.message = pictures_->error();
     }
+    const int frames = static_cast<int>(log_.rows().size());
+    // Of a film that failed, the bodies may be in the middle of a frame.
+    if (result.end == FilmEnd::failed && before_.frames > start_) log_.add(before_);
+    const bool at_end = result.end != FilmEnd::failed && log_.keeps_checkpoints() && !log_.wants_checkpoint(frames);
+    if (at_end) add_checkpoint(frames);
+    log_.settle(pictures());
   }
-
-  const FilmLog& log() const { return log_; }
 
  private:
   Pictures* pictures() { return pictures_ ? &*pictures_ : nullptr; }
@@ -251,9 +251,13 @@ class Film {
 
   void add_checkpoint(int frames) {
     const Zone zone("checkpoint");
+    log_.add(moment_behind(frames));
+  }
+
+  Checkpoint moment_behind(int frames) const {
     Checkpoint checkpoint{frames, {}};
     for (const auto& actor : actors_) checkpoint.bodies.push_back(actor->moment());
-    log_.add(checkpoint);
+    return checkpoint;
   }
 
   const Script& script_;
@@ -264,7 +268,8 @@ class Film {
   CollisionSet set_;
   Threads threads_;
   int start_;
-  FilmLog log_;
+  FilmLog& log_;
+  Checkpoint before_;  // the frame in progress
   std::optional<DrawnFilm> drawn_;
   std::vector<std::unique_ptr<Actor>> actors_;
   std::optional<PoseTableWriter> poses_;
@@ -279,11 +284,14 @@ FilmResult make_film(const Script& script, std::vector<Body>& bodies, std::vecto
   FilmResult result;
   const Stopwatch setup;
   Stopwatch loop;
-  Progress progress(script.scene().frames, options.start ? options.start->frames : 0, options.quiet);
+  const int start = result.kept_frames = options.start ? options.start->frames : 0;
+  Progress progress(script.scene().frames, start, options.quiet);
+  std::optional<FilmLog> log;
   std::optional<Film> film;
   try {
     Zone prepare("prepare film");
-    film.emplace(script, bodies, models, folder, options);
+    log.emplace(folder, options.checkpoint_every, options.identity, start);
+    film.emplace(script, bodies, models, folder, options, *log);
     result.setup_ms = setup.elapsed_ms();
     loop.lap_ms();
     prepare.finish();
@@ -299,8 +307,10 @@ FilmResult make_film(const Script& script, std::vector<Body>& bodies, std::vecto
       result.end = FilmEnd::failed;
       if (result.message.empty()) result.message = error.what();
     }
-    result.rows = film->log().rows();
-    result.kept_frames = options.start ? options.start->frames : 0;
+  }
+  if (log) {
+    log->drop_others();
+    result.rows = log->rows();
   }
   progress.end();
   result.wall_ms = loop.elapsed_ms();

@@ -316,6 +316,21 @@ TEST_F(ReplayedFilm, LeavesAFilmWithoutACheckpointAloneUnlessItsRunWasCutShort) 
   EXPECT_EQ(hashes("a").size(), 4u);
 }
 
+TEST_F(ReplayedFilm, GoesOnBehindTheLastWholeFrameOfARunThatFailed) {
+  ASSERT_EQ(run(folder_.path, film({"--no-images", "--record", "film.rec"})).status, 0);
+  std::string text = read_file(folder_.path / "r.toml");
+  text.replace(text.find("value = 2e5"), 11, "value = 3e5");
+  std::ofstream(folder_.path / "r.toml") << text;
+  ASSERT_EQ(run(folder_.path, film({"--no-images", "--out", "whole"})).status, 0);
+  ASSERT_EQ(run(folder_.path, film({"--no-images", "--out", "cut", "--verify", "film.rec"})).status, 1);
+  const std::size_t kept = hashes("cut").size();
+  EXPECT_GE(kept, 6u);  // the change is at 0.2 s
+  const Result on = run(folder_.path, film({"--no-images", "--out", "cut", "--resume"}));
+  EXPECT_EQ(on.status, 0) << on.err;
+  EXPECT_NE(on.err.find(fmt::format("note: going on behind frame {} of 24", kept)), std::string::npos) << on.err;
+  expect_the_same_film("whole", "cut");
+}
+
 TEST_F(ReplayedFilm, RefusesSpringsThatWouldComeOrGo) {
   for (const char* change :
        {"path = \"body.sheet.cloth.bend\"\nvalue = 0", "path = \"body.sheet.cloth.shear\"\nvalue = 0"}) {
