@@ -4,6 +4,8 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
 
 #include "base/error.h"
 #include "base/hash.h"
@@ -33,13 +35,89 @@ std::string build_flags() { return SUPPLE_BUILD_FLAGS; }
 
 namespace {
 
-void remove_frames_from(const std::filesystem::path& frames, int first) {
+constexpr const char* part_suffix = ".part";  // of a file in the making
+
+bool all_digits(std::string_view text) { return text.find_first_not_of("0123456789") == std::string_view::npos; }
+
+// Of a picture's file its frame; of files that no run writes, nothing.
+std::optional<long> frame_of(const std::filesystem::path& file) {
+  const std::string stem = file.stem().string();
+  if (file.extension() != ".png" || stem.size() < 6 || stem.size() > 9 || !all_digits(stem)) return std::nullopt;
+  return std::stol(stem);
+}
+
+// Whether a run writes files of such names there. They come without the suffix of a file in the making.
+bool is_motion(const std::filesystem::path& file) {
+  return file.extension() == ".pc2" || file.extension() == ".obj" || file == "colliders.csv";
+}
+bool is_field(const std::filesystem::path& file) { return file.extension() == ".vtu" || file.extension() == ".pvd"; }
+bool is_checkpoint(const std::filesystem::path& file) { return file == "state" || file == "rows.jsonl"; }
+bool is_state(const std::filesystem::path& file) { return file.extension() == ".npy" || file == "state.json"; }
+
+// What else is there belongs to somebody.
+template <class IsOwn>
+void remove_own(const std::filesystem::path& folder, const IsOwn& is_own) {
   std::error_code error;
-  std::vector<std::filesystem::path> later;
-  for (const auto& entry : std::filesystem::directory_iterator(frames, error)) {
-    if (entry.path().filename().string() >= fmt::format("{:06}.png", first)) later.push_back(entry.path());
+  std::vector<std::filesystem::path> own;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    std::filesystem::path name = entry.path().filename();
+    if (name.extension() == part_suffix) name = name.stem();
+    if (!entry.is_directory(error) && is_own(name)) own.push_back(entry.path());
   }
-  for (const std::filesystem::path& file : later) std::filesystem::remove(file, error);
+  for (const std::filesystem::path& file : own) std::filesystem::remove(file, error);
+}
+
+void remove_frames_from(const std::filesystem::path& frames, int first) {
+  remove_own(frames, [first](const std::filesystem::path& file) {
+    const std::optional<long> frame = frame_of(file);
+    return frame && *frame >= first;
+  });
+}
+
+// The folders BODY-NNNNNN.
+void remove_states(const std::filesystem::path& states) {
+  std::error_code error;
+  std::vector<std::filesystem::path> own;
+  for (const auto& entry : std::filesystem::directory_iterator(states, error)) {
+    const std::string name = entry.path().filename().string();
+    const std::size_t dash = name.rfind('-');
+    if (entry.is_directory(error) && dash != std::string::npos && name.size() - dash == 7 &&
+        all_digits(std::string_view(name).substr(dash + 1)))
+      own.push_back(entry.path());
+  }
+  for (const std::filesystem::path& state : own) {
+    remove_own(state, is_state);
+    std::filesystem::remove(state, error);  // unless there is more in it
+  }
+}
+
+// What a run has left, but for run.json.
+void remove_run(const std::filesystem::path& run) {
+  remove_own(run / "motion", is_motion);
+  remove_own(run / "fields", is_field);
+  remove_states(run / "states");
+  std::error_code error;
+  for (const char* folder : {"fields", "states"}) {
+    if (std::filesystem::is_empty(run / folder, error)) std::filesystem::remove(run / folder, error);
+  }
+}
+
+// Whether nothing is there but what a run makes at its very beginning.
+bool is_beginning_of_run(const std::filesystem::path& path) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(path, error)) {
+    const std::string name = entry.path().filename().string();
+    const bool own_folder = (name == "frames" || name == "motion" || name == "checkpoint") &&
+                            entry.is_directory(error) && std::filesystem::is_empty(entry.path(), error);
+    if (!own_folder && name != "run.json.part") return false;
+  }
+  return true;
+}
+
+void make_folder(const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) throw RunError(fmt::format("{}: cannot be made: {}", path.string(), error.message()));
 }
 
 }  // namespace
@@ -49,24 +127,21 @@ RunFolder::RunFolder(const std::filesystem::path& path, int kept_frames) : path_
   if (std::filesystem::exists(path, error)) {
     if (!std::filesystem::is_directory(path, error))
       throw InputError("--out " + path.string(), "exists and is not a folder");
-    const bool empty = std::filesystem::is_empty(path, error);
-    if (!empty && !std::filesystem::exists(path / "run.json", error)) {
+    if (!std::filesystem::exists(path / "run.json", error) && !is_beginning_of_run(path)) {
       throw InputError("--out " + path.string(),
                        "holds files that no run left there (no run.json); choose another folder or empty it");
     }
   }
+  make_folder(path);
   if (kept_frames == 0) {
-    for (const char* part : {"frames", "motion", "states", "fields", "checkpoint"})
-      std::filesystem::remove_all(path / part, error);
+    std::filesystem::remove(checkpoint_of(path), error);  // first: it is gone on from where it is there
+    remove_own(path / "checkpoint", is_checkpoint);
+    write_whole_file(path / "run.json", std::string_view("{}\n"));  // from now on the folder is known as a run's
+    remove_run(path);
   }
   remove_frames_from(path / "frames", kept_frames);
   for (const char* part : {"video.mp4", "profile.json", "trace.json"}) std::filesystem::remove(path / part, error);
-  for (const char* part : {"frames", "motion", "checkpoint"}) {
-    std::filesystem::create_directories(path / part, error);
-    if (error) throw RunError(fmt::format("{}: cannot be made: {}", (path / part).string(), error.message()));
-  }
-  // From now on the folder is known as a run's.
-  if (kept_frames == 0) write_whole_file(path / "run.json", std::string_view("{}\n"));
+  for (const char* part : {"frames", "motion", "checkpoint"}) make_folder(path / part);
 }
 
 std::filesystem::path RunFolder::frame(int index) const { return frames() / fmt::format("{:06}.png", index); }

@@ -34,8 +34,8 @@ std::string info_json(const RunInfo& info);
 class RunFolder {
  public:
   // Makes the folder, or takes over one that an earlier run left: its results are removed, but for what belongs to its
-  // first frames when that run is to go on. Throws InputError when the folder holds something else, RunError when it
-  // cannot be made.
+  // first frames when that run is to go on. Files that no run writes stay where they are. Throws InputError when the
+  // folder holds something else, RunError when it cannot be made.
   explicit RunFolder(const std::filesystem::path& path, int kept_frames = 0);
 
   const std::filesystem::path& path() const { return path_; }

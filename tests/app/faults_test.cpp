@@ -86,7 +86,7 @@ TEST_F(Faults, AFolderThatCannotBeWrittenIsNamed) {
   const Result result = in_shell("", "render bar.toml --out /proc/here");
   EXPECT_EQ(result.status, 1) << result.err;
   EXPECT_EQ(result.err.substr(result.err.rfind("supple: ")),
-            "supple: /proc/here/frames: cannot be made: No such file or directory\n");
+            "supple: /proc/here: cannot be made: No such file or directory\n");
 }
 
 TEST_F(Faults, ARecordThatCannotBeWrittenIsRefusedBeforeTheEarlierFilmIsTouched) {

@@ -149,5 +149,42 @@ TEST(RunFolder, TakesOverItsOwnAndRefusesWhatOthersLeft) {
   EXPECT_THROW(RunFolder(folder.path / "photos" / "me.png"), InputError);
 }
 
+TEST(RunFolder, RemovesOnlyWhatRunsWrite) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path run = folder.path / "run";
+  RunFolder(run).write_info({});
+  std::filesystem::create_directories(run / "fields");
+  const std::vector<std::filesystem::path> own = {"frames/000000.png", "frames/000001.png.part", "motion/bar.pc2",
+                                                  "motion/bar.obj",    "motion/colliders.csv",   "fields/bar.pvd",
+                                                  "states/bar-000003", "checkpoint/rows.jsonl",  "checkpoint/state"},
+                                           others = {"motion/mine.blend", "frames/mine.txt", "frames/sub/000000.png",
+                                                     "states/mine-000003/notes.txt"};
+  for (const char* made : {"frames/sub", "states/mine-000003", "states/bar-000003"})
+    std::filesystem::create_directories(run / made);
+  write_whole_file(run / "states/bar-000003/q.npy", std::string_view("x"));
+  for (const auto* files : {&own, &others}) {
+    for (const std::filesystem::path& file : *files) {
+      if (!std::filesystem::is_directory(run / file)) write_whole_file(run / file, std::string_view("x"));
+    }
+  }
+  const RunFolder going_on(run, 1);
+  EXPECT_TRUE(std::filesystem::exists(run / own[0]));
+  EXPECT_FALSE(std::filesystem::exists(run / own[1]));
+  const RunFolder anew(run);
+  for (const std::filesystem::path& file : own) EXPECT_FALSE(std::filesystem::exists(run / file)) << file;
+  for (const std::filesystem::path& file : others) EXPECT_TRUE(std::filesystem::exists(run / file)) << file;
+}
+
+TEST(RunFolder, TakesOverWhatARunThatWasKilledAtItsBeginningLeft) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path run = folder.path / "run";
+  for (const char* made : {"frames", "motion", "checkpoint"}) std::filesystem::create_directories(run / made);
+  write_whole_file(run / "run.json.part", std::string_view(""));
+  EXPECT_NO_THROW(RunFolder{run});
+  std::filesystem::remove(run / "run.json");
+  write_whole_file(run / "frames" / "mine.txt", std::string_view("x"));
+  EXPECT_THROW(RunFolder{run}, InputError);
+}
+
 }  // namespace
 }  // namespace supple
