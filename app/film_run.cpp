@@ -326,9 +326,13 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
   } catch (const RunError& error) {
     unrecorded = error.what();
   }
-  const int status = say_result(request, result, folder, scene, unrecorded);
-  if (verifier && result.end == FilmEnd::done)
-    say(request.json ? stderr : stdout, fmt::format("  {}\n", verifier->verdict(int(result.rows.size()))));
+  int status = say_result(request, result, folder, scene, unrecorded);
+  if (verifier && result.end == FilmEnd::done) {
+    const int frames = static_cast<int>(result.rows.size());
+    const bool compared = verifier->compared_any(frames);
+    say(request.json || !compared ? stderr : stdout, fmt::format("  {}\n", verifier->verdict(frames)));
+    if (!compared) status = 1;
+  }
   if (record != nullptr) *record = {info, folder.path(), scene.name, scene.fps, result, std::move(trace)};
   return status;
 }

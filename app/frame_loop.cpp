@@ -227,9 +227,11 @@ class Film {
       if (!message.empty()) return message;
       row.step_ms += row.bodies.back().step_ms;
       hashes.push_back(state_hash(actor->model(), actor->state()));
-      if (recorder_) recorder_->add(actor->model(), actor->state());
       if (options_.verifier != nullptr) message = options_.verifier->compare(frame, actor->model(), actor->state());
       if (!message.empty()) return message;
+    }
+    for (const auto& actor : actors_) {  // a record has whole frames
+      if (recorder_) recorder_->add(actor->model(), actor->state());
     }
     // Of one body its own; of several, XXH64 of theirs in the order of the scene.
     row.state_hash =

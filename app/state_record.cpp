@@ -161,8 +161,10 @@ StateVerifier::StateVerifier(const std::filesystem::path& path, const RecordHead
   const std::size_t bytes = std::filesystem::file_size(path, ignored) - std::size_t(begin);
   recorded_frames_ = static_cast<int>(bytes / bytes_of_frame(head_));
   if (recorded_frames_ == 0) throw InputError(source, "holds no whole frame");
-  if (bytes % bytes_of_frame(head_) != 0)
-    remark_ += fmt::format("{}ends in the middle of frame {}", remark_.empty() ? "" : "; ", recorded_frames_);
+  if (const std::size_t rest = bytes % bytes_of_frame(head_); rest != 0) {
+    throw InputError(source, fmt::format("is damaged: behind {} whole frames of {} bytes there are {} bytes more",
+                                         recorded_frames_, bytes_of_frame(head_), rest));
+  }
   file_.seekg(begin + static_cast<std::streamoff>(bytes_of_frame(head_) * skipped_frames));
 }
 
@@ -194,9 +196,14 @@ std::string StateVerifier::compare(int frame, const Model& model, const State& s
   return "";
 }
 
+bool StateVerifier::compared_any(int frames) const { return std::min(frames, recorded_frames_) > first_frame_; }
+
 std::string StateVerifier::verdict(int frames) const {
+  if (!compared_any(frames)) {
+    return frames == first_frame_ ? "verified: nothing; the film was complete already"
+                                  : "verified: nothing; the record ends before the frames of this run";
+  }
   const int last = std::min(frames, recorded_frames_) - 1;
-  if (last < first_frame_) return "verified: nothing; the record ends before the frames of this run";
   const std::string how =
       tolerance_ ? fmt::format("within {:g} of the bodies' size (furthest: {:.1e})", *tolerance_, furthest_)
                  : std::string("the same to the last bit");

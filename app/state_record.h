@@ -51,7 +51,7 @@ class StateRecorder {
 class StateVerifier {
  public:
   // tolerance: how far a vertex may be from the record, over the body's size; nothing: the same bits, and then the
-  // record must be of this program. Throws InputError: not a record, or of other bodies or another program.
+  // record must be of this program. Throws InputError: not a record, damaged, or of other bodies or another program.
   StateVerifier(const std::filesystem::path& path, const RecordHead& now, std::optional<double> tolerance,
                 int skipped_frames);
 
@@ -61,6 +61,8 @@ class StateVerifier {
   // Body by body, frame by frame. Returns what differs, or nothing; behind the end of the record, nothing.
   std::string compare(int frame, const Model& model, const State& state);
 
+  // Once the film has so many frames.
+  bool compared_any(int frames) const;
   std::string verdict(int frames) const;
 
  private:

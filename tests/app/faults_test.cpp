@@ -125,6 +125,26 @@ TEST_F(Faults, ARecordIsWrittenOverNothingButARecord) {
   EXPECT_EQ(test::profile_of(folder_.path / "out" / "bar")["frames"].size(), 8u);
 }
 
+TEST_F(Faults, ARecordThatVerifiesNothingIsAFailure) {
+  const std::vector<std::string> film = {"render", "bar.toml", "--no-images", "--quiet"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), film.begin(), film.end());
+    return run(folder_.path, more);
+  };
+  ASSERT_EQ(with({"--record", "film.rec"}).status, 0);
+  EXPECT_EQ(with({"--verify", "film.rec"}).status, 0);
+  const Result complete = with({"--verify", "film.rec", "--resume"});
+  EXPECT_EQ(complete.status, 1);
+  EXPECT_NE(complete.err.find("verified: nothing; the film was complete already"), std::string::npos) << complete.err;
+  const Result behind = with({"--verify", "film.rec", "--resume", "--frames", "9"});
+  EXPECT_EQ(behind.status, 1);
+  EXPECT_NE(behind.err.find("verified: nothing; the record ends before"), std::string::npos) << behind.err;
+  std::ofstream(folder_.path / "film.rec", std::ios::app) << "more";
+  const Result damaged = with({"--verify", "film.rec"});
+  EXPECT_EQ(damaged.status, 2);
+  EXPECT_NE(damaged.err.find("is damaged: behind 8 whole frames"), std::string::npos) << damaged.err;
+}
+
 TEST_F(Faults, ADamagedFrameIsFoundBeforeGoingOn) {
   ASSERT_EQ(run(folder_.path, {"render", "bar.toml", "--no-video", "--quiet"}).status, 0);
   const std::filesystem::path frame = folder_.path / "out" / "bar" / "frames" / "000003.png";
