@@ -18,8 +18,13 @@ namespace supple {
 
 using Json = nlohmann::ordered_json;
 
-void check_save_states(const std::vector<int>& frames, const SceneDef& scene) {
+void check_save_states(const std::vector<int>& frames, const SceneDef& scene, int start) {
   for (const int frame : frames) {
+    if (frame < start)
+      throw InputError(fmt::format("--save-state {}", frame),
+                       fmt::format("the film goes on with frame {}; earlier states are gone, and only without --resume "
+                                   "they come again",
+                                   start));
     if (frame < scene.frames) continue;
     throw InputError(fmt::format("--save-state {}", frame),
                      scene.frames == 1

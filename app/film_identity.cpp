@@ -64,6 +64,7 @@ std::string identity_of(const RunInfo& info, const Script& script, const std::ve
       {"cpu", cpu_name()},
       {"images", !request.no_images},
       {"gl", request.gl},
+      {"vtu", request.fields_every},
       {"meshes", meshes},
       {"files", files_of(script, bodies)},
       {"scene", scene}};

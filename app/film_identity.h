@@ -8,7 +8,7 @@ namespace supple {
 // XXH64 of the points, elements and springs of a body.
 std::string mesh_hash(const Body& body);
 
-// All that must be the same for two runs to give the same films, but for their length: as JSON.
+// All that must be the same for two runs to give the same films and fields, but for their length: as JSON.
 std::string identity_of(const RunInfo& info, const Script& script, const std::vector<Body>& bodies,
                         const FilmRequest& request);
 

@@ -259,7 +259,7 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
   const SceneDef& scene = script.scene();
   info.scene_json = script.scene_json();
   info.replay_json = script.replay_json();
-  check_save_states(request.save_states, scene);
+  check_save_states(request.save_states, scene, 0);
   zone.next("assemble meshes");
   std::vector<Body> bodies = assemble(scene);
   if (!request.quiet) say_remarks(script, bodies);
@@ -290,6 +290,7 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
   if (!request.folder_is_held && std::filesystem::is_directory(path, ignored)) lock.emplace(path);
   if (request.resume) options.start = checkpoint_in(path, options.identity, scene.frames, info);
   const int start = options.start ? options.start->frames : 0;
+  check_save_states(request.save_states, scene, start);
   if (options.images && !request.last_image_only) check_pictures(path / "frames", start);
   options.record = request.record;
   options.record_head = record_head(info, bodies);

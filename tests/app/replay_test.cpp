@@ -227,6 +227,9 @@ TEST_F(ReplayedFilm, RefusesTheCheckpointOfAnotherFilm) {
   EXPECT_NE(refused({"--no-images", "--set", "body.bar.density=900"}).find("scene.body.bar.density: nothing and 900"),
             std::string::npos);
   EXPECT_NE(refused({}).find("images: false and true"), std::string::npos);
+  EXPECT_NE(refused({"--no-images", "--vtu", "4"}).find("vtu: 0 and 4"), std::string::npos);
+  EXPECT_NE(refused({"--no-images", "--frames", "30", "--save-state", "23"}).find("goes on with frame 24"),
+            std::string::npos);
   EXPECT_EQ(hashes("a").size(), 24u);  // nothing of it was lost
   std::string bytes = read_file(folder_.path / "a" / "checkpoint" / "state");
   bytes[bytes.size() / 2] ^= 1;
