@@ -9,10 +9,13 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "app/film_log.h"
 #include "base/console.h"
 #include "base/error.h"
 #include "output/json_difference.h"
 #include "output/png_file.h"
+#include "output/point_cache.h"
+#include "output/pose_table.h"
 
 namespace supple {
 
@@ -86,6 +89,22 @@ std::optional<Checkpoint> checkpoint_in(const std::filesystem::path& run, const 
                                              run.string(), checkpoint.frames, frames));
   say(stderr, fmt::format("note: going on behind frame {} of {}\n", checkpoint.frames, frames));
   return checkpoint;
+}
+
+void check_rows_and_motion(const std::filesystem::path& run, const std::vector<Body>& bodies, int colliders,
+                           int frames) {
+  if (frames == 0) return;
+  noted_rows(RunFolder::checkpoint_of(run).parent_path() / "rows.jsonl", frames);
+  const auto refuse = [frames](const std::filesystem::path& file) {
+    throw InputError(file.string(),
+                     fmt::format("does not have the {} frames to go on from; start anew without --resume", frames));
+  };
+  for (const Body& body : bodies) {
+    const std::filesystem::path motion = run / "motion" / (body.def.name + ".pc2");
+    if (!point_cache_has(motion, int(body.description.mesh.rest.rows()), frames)) refuse(motion);
+  }
+  const std::filesystem::path table = run / "motion" / "colliders.csv";
+  if (colliders > 0 && !pose_table_bytes(table, colliders * frames)) refuse(table);
 }
 
 void check_pictures(const std::filesystem::path& frames, int count) {

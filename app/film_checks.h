@@ -21,6 +21,10 @@ void check_save_states(const std::vector<int>& frames, const SceneDef& scene, in
 std::optional<Checkpoint> checkpoint_in(const std::filesystem::path& run, const std::string& identity, int frames,
                                         const RunInfo& info);
 
+// What the first frames have left, which are not made again, but for their pictures.
+void check_rows_and_motion(const std::filesystem::path& run, const std::vector<Body>& bodies, int colliders,
+                           int frames);
+
 // The pictures of frames that are not made again.
 void check_pictures(const std::filesystem::path& frames, int count);
 

@@ -6,23 +6,31 @@
 #include <cstring>
 #include <fstream>
 
+#include "base/error.h"
 #include "base/trace.h"
 #include "output/whole_file.h"
 
 namespace supple {
 
+NotedRows noted_rows(const std::filesystem::path& file, int frames) {
+  NotedRows noted;
+  std::ifstream stream(file);
+  for (std::string line; int(noted.rows.size()) < frames && std::getline(stream, line);
+       noted.bytes += std::int64_t(line.size()) + 1)
+    noted.rows.push_back(row_of_line(line, file.string()));
+  if (int(noted.rows.size()) < frames)
+    throw InputError(file.string(), fmt::format("does not have the {} frames to go on from", frames));
+  return noted;
+}
+
 FilmLog::FilmLog(const RunFolder& folder, int every, std::string identity, int kept)
     : folder_(folder), every_(every), identity_(std::move(identity)), whole_(kept) {
   const std::string source = folder.rows().string();
-  std::ifstream earlier(folder.rows());
-  off_t size = 0;
-  for (std::string line; int(rows_.size()) < kept && std::getline(earlier, line); size += off_t(line.size()) + 1)
-    rows_.push_back(row_of_line(line, source));
-  if (int(rows_.size()) < kept)
-    throw RunError(fmt::format("{}: does not have the {} frames to go on from", source, kept));
+  NotedRows noted = noted_rows(folder.rows(), kept);
+  rows_ = std::move(noted.rows);
   if (every_ == 0) return;
   notes_.reset(std::fopen(source.c_str(), kept > 0 ? "r+" : "w"));
-  if (!notes_ || ftruncate(fileno(notes_.get()), size) != 0 || std::fseek(notes_.get(), 0, SEEK_END) != 0)
+  if (!notes_ || ftruncate(fileno(notes_.get()), off_t(noted.bytes)) != 0 || std::fseek(notes_.get(), 0, SEEK_END) != 0)
     throw RunError(fmt::format("{}: cannot be written: {}", source, std::strerror(errno)));
 }
 

@@ -11,6 +11,14 @@
 
 namespace supple {
 
+// The rows of a run's first frames, from the file in which it noted them, and their bytes there. Throws InputError
+// where there are fewer.
+struct NotedRows {
+  std::vector<FrameRow> rows;
+  std::int64_t bytes = 0;
+};
+NotedRows noted_rows(const std::filesystem::path& file, int frames);
+
 class FilmLog {
  public:
   // every: frames between checkpoints; 0: none. kept: frames of an earlier run of the film that it goes on behind.

@@ -291,6 +291,7 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
   if (request.resume) options.start = checkpoint_in(path, options.identity, scene.frames, info);
   const int start = options.start ? options.start->frames : 0;
   check_save_states(request.save_states, scene, start);
+  check_rows_and_motion(path, bodies, static_cast<int>(scene.colliders.size()), start);
   if (options.images && !request.last_image_only) check_pictures(path / "frames", start);
   options.record = request.record;
   options.record_head = record_head(info, bodies);

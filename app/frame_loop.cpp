@@ -104,7 +104,7 @@ class Film {
     }
     for (std::size_t b = 0; b < bodies.size(); ++b)
       actors_.push_back(std::make_unique<Actor>(scene_, bodies[b], models[b], set_, folder, threads_, start_));
-    if (!set_.obstacles.empty()) poses_.emplace(folder.colliders(), start_);
+    if (!set_.obstacles.empty()) poses_.emplace(folder.colliders(), start_ * int(set_.obstacles.size()));
     if (options.start) go_on();
     if (!options.record.empty()) recorder_.emplace(options.record, options.record_head, start_);
   }

@@ -29,6 +29,15 @@ using FilePoints = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
 }  // namespace
 
+bool point_cache_has(const std::filesystem::path& path, int points, int frames) {
+  Header header{};
+  std::ifstream file(path, std::ios::binary);
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  return !error && file.read(reinterpret_cast<char*>(&header), sizeof header) && header.points == points &&
+         header.samples >= frames && bytes >= sizeof header + 3 * sizeof(float) * std::uintmax_t(points) * frames;
+}
+
 PointCacheWriter::PointCacheWriter(const std::filesystem::path& path, int points, int kept_frames)
     : path_(path), file_(std::fopen(path.c_str(), kept_frames > 0 ? "r+b" : "wb")), points_(points) {
   if (!file_) fail(kept_frames > 0 ? "be opened" : "be created");
@@ -45,9 +54,9 @@ PointCacheWriter::PointCacheWriter(const std::filesystem::path& path, int points
 void PointCacheWriter::go_on_behind(int frames) {
   Header header{};
   const auto size = static_cast<std::int64_t>(sizeof header + sizeof(float) * 3 * std::size_t(points_) * frames);
-  if (std::fread(&header, sizeof header, 1, file_.get()) != 1 || header.points != points_ || header.samples < frames ||
-      std::fseek(file_.get(), 0, SEEK_END) != 0 || std::ftell(file_.get()) < size)
+  if (!point_cache_has(path_, points_, frames))
     throw RunError(fmt::format("{}: does not have the {} frames to go on from", path_.string(), frames));
+  if (std::fread(&header, sizeof header, 1, file_.get()) != 1) fail("be read");
   header.samples = frames_ = frames;
   if (std::fseek(file_.get(), 0, SEEK_SET) != 0 || std::fwrite(&header, sizeof header, 1, file_.get()) != 1 ||
       std::fflush(file_.get()) != 0 || ftruncate(fileno(file_.get()), size) != 0 ||

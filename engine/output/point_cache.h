@@ -10,6 +10,9 @@
 
 namespace supple {
 
+// Whether the file has the first frames of so many points, whatever is behind them.
+bool point_cache_has(const std::filesystem::path& path, int points, int frames);
+
 class PointCacheWriter {
  public:
   // Starts a file, or goes on behind the first frames of one. Throws RunError when it cannot be written, or does not

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 
@@ -14,30 +13,27 @@
 
 namespace supple {
 
-namespace {
-
-// The rows of the first frames, heading included.
-std::string first_rows(const std::filesystem::path& path, int frames) {
+std::optional<std::int64_t> pose_table_bytes(const std::filesystem::path& path, int rows) {
   std::ifstream file(path);
-  std::string kept;
-  for (std::string line; std::getline(file, line);) {
-    if (!kept.empty() && std::atoi(line.c_str()) >= frames) break;
-    kept += line + '\n';
+  std::int64_t bytes = 0;
+  std::string line;
+  for (int i = 0; i <= rows; ++i) {
+    if (!std::getline(file, line) || file.eof()) return std::nullopt;  // a whole row has an end
+    bytes += std::int64_t(line.size()) + 1;
   }
-  return kept;
+  return bytes;
 }
 
-}  // namespace
-
-PoseTableWriter::PoseTableWriter(const std::filesystem::path& path, int kept_frames)
-    : path_(path), file_(std::fopen(path.c_str(), kept_frames > 0 ? "r+" : "w")) {
+PoseTableWriter::PoseTableWriter(const std::filesystem::path& path, int kept_rows)
+    : path_(path), file_(std::fopen(path.c_str(), kept_rows > 0 ? "r+" : "w")) {
   const auto check = [this](bool done) {
     if (!done) throw RunError(fmt::format("{}: cannot be written: {}", path_.string(), std::strerror(errno)));
   };
   check(file_ != nullptr);
-  if (kept_frames > 0) {
-    const auto size = static_cast<off_t>(first_rows(path, kept_frames).size());
-    check(ftruncate(fileno(file_.get()), size) == 0 && std::fseek(file_.get(), 0, SEEK_END) == 0);
+  if (kept_rows > 0) {
+    const std::optional<std::int64_t> bytes = pose_table_bytes(path, kept_rows);
+    if (!bytes) throw RunError(fmt::format("{}: does not have the {} rows to go on from", path.string(), kept_rows));
+    check(ftruncate(fileno(file_.get()), off_t(*bytes)) == 0 && std::fseek(file_.get(), 0, SEEK_END) == 0);
   } else {
     say(file_.get(), "frame,collider,x,y,z,qw,qx,qy,qz\n");
   }

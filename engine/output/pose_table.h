@@ -2,19 +2,24 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "base/types.h"
 
 namespace supple {
 
+// Of the heading and the first rows of a table; nothing where it has fewer.
+std::optional<std::int64_t> pose_table_bytes(const std::filesystem::path& path, int rows);
+
 class PoseTableWriter {
  public:
-  // Starts a file, or goes on behind the first frames of one. Throws RunError when it cannot be written.
-  explicit PoseTableWriter(const std::filesystem::path& path, int kept_frames = 0);
+  // Starts a file, or goes on behind the first rows of one. Throws RunError when it cannot be written, or has fewer.
+  explicit PoseTableWriter(const std::filesystem::path& path, int kept_rows = 0);
 
   // Position [m] and rotation as a quaternion, from the collider's frame to the world.
   void add(int frame, const std::string& name, const Eigen::Isometry3d& pose);

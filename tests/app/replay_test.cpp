@@ -334,6 +334,22 @@ TEST_F(ReplayedFilm, GoesOnBehindTheLastWholeFrameOfARunThatFailed) {
   expect_the_same_film("whole", "cut");
 }
 
+TEST_F(ReplayedFilm, RefusesToGoOnBehindFilesThatWereCutAndTouchesNothing) {
+  ASSERT_EQ(run(folder_.path, film({"--no-images", "--out", "a"})).status, 0);
+  for (const char* name : {"motion/colliders.csv", "motion/sheet.pc2", "checkpoint/rows.jsonl"}) {
+    const std::filesystem::path file = folder_.path / "a" / name;
+    const std::string whole = read_file(file);
+    std::filesystem::resize_file(file, 100);
+    const Result result = run(folder_.path, film({"--no-images", "--out", "a", "--resume", "--frames", "26"}));
+    EXPECT_EQ(result.status, 2) << name;
+    EXPECT_NE(result.err.find(std::string("a/") + name + ": "), std::string::npos) << result.err;
+    EXPECT_EQ(std::filesystem::file_size(file), 100u);
+    EXPECT_EQ(hashes("a").size(), 24u);
+    std::ofstream(file, std::ios::binary) << whole;
+  }
+  EXPECT_EQ(run(folder_.path, film({"--no-images", "--out", "a", "--resume", "--frames", "26"})).status, 0);
+}
+
 TEST_F(ReplayedFilm, RefusesSpringsThatWouldComeOrGo) {
   for (const char* change :
        {"path = \"body.sheet.cloth.bend\"\nvalue = 0", "path = \"body.sheet.cloth.shear\"\nvalue = 0"}) {
