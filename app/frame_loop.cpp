@@ -117,7 +117,7 @@ class Film {
       FrameRow row;
       row.frame = frame;
       row.time_s = (frame + 1) / scene_.fps;
-      if (log_.keeps_checkpoints()) before_ = moment_behind(frame);
+      if (log_.keeps_checkpoints()) remember(frame);
       change(frame, row);
       message = advance(frame, row);
       if (!message.empty()) return FilmEnd::failed;
@@ -254,6 +254,12 @@ class Film {
   void add_checkpoint(int frames) {
     const Zone zone("checkpoint");
     log_.add(moment_behind(frames));
+  }
+
+  // In case that the frame fails.
+  void remember(int frame) {
+    const Zone zone("checkpoint");
+    before_ = moment_behind(frame);
   }
 
   Checkpoint moment_behind(int frames) const {

@@ -102,9 +102,11 @@ void check_folder(const SweepRequest& request) {
   std::error_code error;
   if (!std::filesystem::exists(request.out, error)) return;
   if (!std::filesystem::is_directory(request.out, error)) throw InputError(option, "exists and is not a folder");
+  // Asked in this order, since other points may start at this moment, and what they make first is points/.
+  const bool empty = std::filesystem::is_empty(request.out, error);
   const bool of_a_sweep = std::filesystem::is_directory(request.out / "points", error) &&
                           !std::filesystem::exists(request.out / "run.json", error);
-  if (!of_a_sweep && !std::filesystem::is_empty(request.out, error))
+  if (!of_a_sweep && !empty)
     throw InputError(option, "holds files that no sweep left there; choose another folder or empty it");
   bool known = false;  // one record tells of all
   for (const auto& entry : std::filesystem::directory_iterator(request.out / "points", error)) {

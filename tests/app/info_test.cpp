@@ -56,7 +56,7 @@ TEST(Info, GivesTheTerminalNoOrdersOfAScene) {
   scene.replace(scene.find("\"bar\""), 5, "\"b\\nr\"");
   std::ofstream(folder.path / "bar.toml") << scene;
   EXPECT_EQ(run(folder.path, {"info", "bar.toml"}).err,
-            "bar.toml:4:8: name = 'b\\nr': must be a word without spaces, dots and slashes\n");
+            "bar.toml:4:8: name: must be a word without control characters, spaces, dots and slashes\n");
 }
 
 TEST(Info, ListsTheChangesOfAReplayAndWhatTheyCost) {
