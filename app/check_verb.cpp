@@ -34,7 +34,7 @@ int check(const std::string& name, const std::vector<std::string>& settings) {
                   list.size() == 1 ? "" : "s", scene.frames, bodies.size(), bodies.size() == 1 ? "body" : "bodies"));
   for (const Body& body : bodies) {
     const TetMesh& mesh = body.description.mesh;
-    say(stdout, fmt::format("  {}: {} vertices, {} {}, k h^2 / (rho L^2) = {:.3g}\n", body.def.name, mesh.rest.rows(),
+    say(stdout, fmt::format("  {}: {} vertices, {} {}, k h^2 / (rho L^2) = {:.3g} (stiff above 300)\n", body.def.name, mesh.rest.rows(),
                             body.def.cloth ? body.description.springs.size() : std::size_t(mesh.tets.rows()),
                             body.def.cloth ? "springs" : "elements", crossing_number(body)));
   }

@@ -41,7 +41,8 @@ std::string caption_font() {
 
 std::filesystem::path scene_file(const std::string& name) {
   std::error_code error;
-  if (std::filesystem::exists(name, error)) return name;
+  // Folders are often named after what was filmed into them.
+  if (std::filesystem::exists(name, error) && !std::filesystem::is_directory(name, error)) return name;
   for (const char* kind : {"scenes", "replays"}) {
     const std::filesystem::path shipped = assets_folder() / kind / (name + ".toml");
     if (std::filesystem::exists(shipped, error)) return shipped;

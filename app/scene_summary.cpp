@@ -52,6 +52,23 @@ std::string substance_text(const Body& body) {
   return fmt::format("{} elements of {}", body.description.mesh.tets.rows(), fmt::join(names, ", "));
 }
 
+std::string handle_text(const Body& body, std::size_t index) {
+  const Handle& handle = body.description.handles[index];
+  const HandleDef& def = body.def.handles[index];
+  Vec3 center = Vec3::Zero();
+  for (const std::int32_t v : handle.vertices)
+    center += Vec3(body.description.mesh.rest.row(v)) / static_cast<double>(handle.vertices.size());
+  std::string times;
+  if (def.grabs) {
+    times = fmt::format(", from {:g} s{}: a new factor {}", def.from,
+                        std::isfinite(def.until) ? fmt::format(" until {:g} s", def.until) : "",
+                        std::isfinite(def.until) ? "at both" : "there");
+  }
+  return fmt::format("  handle          '{}' {} {} vertices around ({:.3g}, {:.3g}, {:.3g}) m{}\n",
+                     printable(handle.name), handle.spring > 0 ? "pulls" : "holds", handle.vertices.size(), center.x(),
+                     center.y(), center.z(), times);
+}
+
 std::string body_text(const SceneDef& scene, const Body& body, const CollisionSet& set, Threads& threads) {
   const TetMesh& mesh = body.description.mesh;
   const Model model = build_model(body.description);
@@ -66,10 +83,7 @@ std::string body_text(const SceneDef& scene, const Body& body, const CollisionSe
                     q.smallest_dihedral, q.largest_dihedral, q.smallest_volume);
   }
   text += fmt::format("  mass that moves {:.4g} kg\n", model.total_mass);
-  for (const Handle& handle : body.description.handles) {
-    text += fmt::format("  handle          '{}' {} {} vertices\n", printable(handle.name),
-                        handle.spring > 0 ? "pulls" : "holds", handle.vertices.size());
-  }
+  for (std::size_t h = 0; h < body.description.handles.size(); ++h) text += handle_text(body, h);
   text += fmt::format("  solver          {}, {} iterations a step, {} numbers in the factor\n",
                       info_of(body.def.solver.method).name, body.def.solver.settings.iterations,
                       model.factor.stored_numbers());

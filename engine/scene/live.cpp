@@ -104,7 +104,11 @@ std::vector<LiveKey> live_keys(const Config& config) {
     if (key.type == "table" || key.type == "list of tables") continue;  // their keys are listed
     if (names_no_entry(key.path)) continue;  // keys and parts of a shape: their list changes as a whole
     if (key.generic == "body[].handles[].stiffness" && key.value.find("hard") != std::string::npos) continue;  // stays
-    if (const auto cost = cost_of_change(key.path)) result.push_back({key, *cost});
+    const auto cost = cost_of_change(key.path);
+    if (!cost) continue;
+    result.push_back({key, *cost});
+    constexpr std::string_view hard = "\"hard\" or ";  // springs stay springs
+    if (key.allowed.starts_with(hard)) result.back().key.allowed.erase(0, hard.size());
   }
   return result;
 }

@@ -118,7 +118,9 @@ SweepDef read_sweep(const ConfigTable& root) {
 SweepDef load_sweep(const std::filesystem::path& path, const std::filesystem::path& assets,
                     const std::vector<std::string>& settings) {
   Config config = config_of(path, assets, settings);
-  if (config.value_at("scene")) throw InputError(path.string(), "is a replay; a sweep is of a scene");
+  if (config.value_at("scene"))
+    throw InputError(path.string(),
+                     "is a replay; a sweep is of a scene, where a grab stands as a handle with 'from' and 'until'");
   (void)read_scene(config);
   config.finish();
   const SweepDef sweep = read_sweep(config.root());

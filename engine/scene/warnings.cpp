@@ -68,7 +68,15 @@ std::vector<Problem> warnings(const SceneDef& scene, const std::vector<Body>& bo
     const double mass = body.description.density * q.volume + std::accumulate(points.begin(), points.end(), 0.0);
     for (std::size_t i = 0; i < body.description.handles.size(); ++i) {
       const Handle& handle = body.description.handles[i];
-      if (handle.spring <= 0 || body.def.handles[i].grabs) continue;
+      const HandleDef& def = body.def.handles[i];
+      if (def.grabs && !body.motions[i].at(def.from).isApprox(Eigen::Isometry3d::Identity(), 1e-6)) {
+        list.push_back(
+            at(def.select.place,
+               fmt::format("handle '{}' of body '{}' has moved by its keys already when it grabs, at {:g} s: "
+                           "its vertices jump",
+                           handle.name, body.def.name, def.from)));
+      }
+      if (handle.spring <= 0 || def.grabs) continue;
       const double sag = mass * scene.gravity.norm() / (handle.spring * static_cast<double>(handle.vertices.size()));
       if (sag > 0.02 * box.diagonal()) {
         list.push_back(at(body.def.handles[i].select.place,

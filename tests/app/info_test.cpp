@@ -39,7 +39,7 @@ TEST(Info, TellsOfASceneAndWhatAFrameCosts) {
   expect_lines(result.out,
                {"scene           bar: A bar\n", "film            4 frames at 30 a second (0.1 s), one step of",
                 "collider        'floor', friction 0\n", "body 'bar'\n", "45 vertices, ", "elements of neo-hookean\n",
-                "handle          'end' holds 9 vertices\n", "quasi-newton, 10 iterations a step",
+                "handle          'end' holds 9 vertices around (", "quasi-newton, 10 iterations a step",
                 "ms a frame (median of the first 4, "});
   EXPECT_FALSE(std::filesystem::exists(folder.path / "out"));
   EXPECT_EQ(run(folder.path, {"info", "thin-sheet"}).status, 0);

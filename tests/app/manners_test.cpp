@@ -138,6 +138,15 @@ TEST(Help, OffersToResumeOnlyWhereAFilmCanBeResumed) {
     EXPECT_EQ(program.help({verb}).find("--resume"), std::string::npos) << verb;
 }
 
+TEST(Help, AFolderOfAScenesNameDoesNotHideTheScene) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directory(folder.path / "solvers");
+  EXPECT_EQ(run(folder.path, {"check", "solvers"}).status, 0);
+  const Result other = run(folder.path, {"check", "."});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_EQ(other.err, ".: is not a file\n");
+}
+
 TEST(Completion, OffersWordsAndFilesInBash) {
   const test::TemporaryFolder folder;
   std::filesystem::create_directory(folder.path / "my run");

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "scene/script.h"
+#include "scene/warnings.h"
 #include "support/bodies.h"
 
 namespace supple {
@@ -264,6 +265,22 @@ TEST_F(Replay, RefusesSlipsOfThePen) {
         }
       },
       InputError);
+}
+
+TEST_F(Replay, WarnsOfGrabsThatJump) {
+  const auto warned = [this](const std::string& keys) {
+    const Script grab = script(
+        "[[grab]]\nbody = 'bar'\nname = 'f'\nselect = { box = [[0.9, 0, 0], [1, 1, 1]] }\nstiffness = 5\nfrom = 0.5\n"
+        "keys = " +
+        keys + "\n");
+    std::string all;
+    for (const Problem& warning : warnings(grab.scene(), assemble(grab.scene()))) all += warning.text() + "\n";
+    return all.find("handle 'f' of body 'bar' has moved by its keys already when it grabs") != std::string::npos;
+  };
+  EXPECT_TRUE(warned("[{ t = 0.1 }, { t = 0.4, move = [0, 0.1, 0] }]"));
+  EXPECT_TRUE(warned("[{ t = 0.4 }, { t = 0.6, turn_deg = [0, 40, 0] }]"));
+  EXPECT_FALSE(warned("[{ t = 0.5 }, { t = 0.6, move = [0, 0.1, 0] }]"));
+  EXPECT_FALSE(warned("[{ t = 0 }, { t = 0.5 }, { t = 0.6, move = [0, 0.1, 0] }]"));
 }
 
 TEST_F(Replay, WarnsOfWhatNoFrameSees) {

@@ -158,7 +158,8 @@ TEST_F(Sweep, RefusesPathsAndValuesAtTheirPlaceOnce) {
 }
 
 TEST_F(Sweep, RefusesSettingsOfWhatItVariesAndFilesWithoutASweep) {
-  EXPECT_EQ(refusal("", {"scene=squirrel"}), "scene.toml: is a replay; a sweep is of a scene");
+  EXPECT_EQ(refusal("", {"scene=squirrel"}),
+            "scene.toml: is a replay; a sweep is of a scene, where a grab stands as a handle with 'from' and 'until'");
   EXPECT_EQ(refusal("[sweep.values]\nfps = [1]\n", {"fps=3"}), "--set fps=3: the sweep varies this");
   EXPECT_EQ(
       refusal(""),
