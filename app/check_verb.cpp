@@ -14,7 +14,7 @@ namespace {
 int check(const std::string& name, const std::vector<std::string>& settings) {
   const Script script = Script::load(scene_file(name), assets_folder(), settings);
   const SceneDef& scene = script.scene();
-  if (scene.sweep_points > 0) {
+  if (scene.sweep_points > 0 && !script.is_replay()) {
     check_sweep_points(scene_file(name), assets_folder(), settings,
                        load_sweep(scene_file(name), assets_folder(), settings));
   }
@@ -34,9 +34,10 @@ int check(const std::string& name, const std::vector<std::string>& settings) {
                   list.size() == 1 ? "" : "s", scene.frames, bodies.size(), bodies.size() == 1 ? "body" : "bodies"));
   for (const Body& body : bodies) {
     const TetMesh& mesh = body.description.mesh;
-    say(stdout, fmt::format("  {}: {} vertices, {} {}, k h^2 / (rho L^2) = {:.3g} (stiff above 300)\n", body.def.name, mesh.rest.rows(),
-                            body.def.cloth ? body.description.springs.size() : std::size_t(mesh.tets.rows()),
-                            body.def.cloth ? "springs" : "elements", crossing_number(body)));
+    say(stdout,
+        fmt::format("  {}: {} vertices, {} {}, k h^2 / (rho L^2) = {:.3g} (stiff above 300)\n", body.def.name,
+                    mesh.rest.rows(), body.def.cloth ? body.description.springs.size() : std::size_t(mesh.tets.rows()),
+                    body.def.cloth ? "springs" : "elements", crossing_number(body)));
   }
   if (script.is_replay())
     say(stdout, fmt::format("  replay: {} change{}, all possible\n", script.changes().size(),

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -21,9 +22,15 @@ namespace supple {
 
 using Json = nlohmann::ordered_json;
 
-void check_save_states(const std::vector<int>& frames, const SceneDef& scene, int start) {
+void check_save_states(const std::vector<int>& frames, const SceneDef& scene, const std::filesystem::path& run,
+                       int start) {
+  const auto is_there = [&](int frame) {
+    return std::all_of(scene.bodies.begin(), scene.bodies.end(), [&](const BodyDef& body) {
+      return std::filesystem::exists(run / "states" / fmt::format("{}-{:06}", body.name, frame) / "state.json");
+    });
+  };
   for (const int frame : frames) {
-    if (frame < start)
+    if (frame < start && !is_there(frame))
       throw InputError(fmt::format("--save-state {}", frame),
                        fmt::format("the film goes on with frame {}; earlier states are gone, and only without --resume "
                                    "they come again",
@@ -48,13 +55,19 @@ std::string film_of_run(const Json& run) {
   return film.dump();
 }
 
+// Whether a run has only just begun to make the folder its own: whatever else is there is of an earlier one.
+bool has_just_begun(const std::filesystem::path& run) {
+  std::ifstream stream(run / "run.json");
+  const Json json = stream ? Json::parse(stream, nullptr, false) : Json();
+  return json.is_object() && !json.contains("ended");
+}
+
 // A film without a checkpoint would be made anew: only where that is no more than what it was about to be.
 void check_nothing_is_lost(const std::filesystem::path& run, const RunInfo& info) {
   const std::filesystem::path file = run / "run.json";
   std::ifstream stream(file);
   if (!stream) return;
   const Json before = Json::parse(stream, nullptr, false);
-  if (before.is_object() && !before.contains("ended")) return;  // killed at its beginning
   const auto refuse = [&run](const std::string& what) {
     throw InputError("--resume", fmt::format("{} holds {}; without --resume it is made anew", run.string(), what));
   };
@@ -78,8 +91,9 @@ std::optional<Checkpoint> checkpoint_in(const std::filesystem::path& run, const 
                                         const RunInfo& info) {
   const std::filesystem::path file = RunFolder::checkpoint_of(run);
   std::error_code error;
-  if (!std::filesystem::exists(file, error)) {
-    check_nothing_is_lost(run, info);
+  const bool begun = has_just_begun(run);
+  if (begun || !std::filesystem::exists(file, error)) {
+    if (!begun) check_nothing_is_lost(run, info);
     say(stderr, fmt::format("note: {} has no checkpoint yet; starting with the first frame\n", run.string()));
     return std::nullopt;
   }

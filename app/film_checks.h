@@ -14,7 +14,8 @@
 namespace supple {
 
 // Of --save-state, in a film that begins or goes on with frame `start`.
-void check_save_states(const std::vector<int>& frames, const SceneDef& scene, int start);
+void check_save_states(const std::vector<int>& frames, const SceneDef& scene, const std::filesystem::path& run,
+                       int start);
 
 // What a film goes on from, if there is anything yet; says which. A film that ended complete, and one of another scene
 // or program, is not taken for a beginning.

@@ -135,8 +135,9 @@ int say_result(const FilmRequest& request, const FilmResult& result, const RunFo
   if (result.video_failed) say(stderr, fmt::format("supple: {}\n", result.video_message));
   if (result.end == FilmEnd::interrupted) {
     say(stderr, fmt::format("supple: interrupted after {} frames; they are whole, and so is what belongs to them in "
-                            "{}; --resume goes on\n",
-                            result.rows.size(), folder.path().string()));
+                            "{}{}\n",
+                            result.rows.size(), folder.path().string(),
+                            std::filesystem::exists(folder.checkpoint()) ? "; --resume goes on" : ""));
     return 130;
   }
   return result.end == FilmEnd::done && !result.video_failed && unrecorded.empty() ? 0 : 1;
@@ -259,7 +260,7 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
   const SceneDef& scene = script.scene();
   info.scene_json = script.scene_json();
   info.replay_json = script.replay_json();
-  check_save_states(request.save_states, scene, 0);
+  check_save_states(request.save_states, scene, {}, 0);
   zone.next("assemble meshes");
   std::vector<Body> bodies = assemble(scene);
   if (!request.quiet) say_remarks(script, bodies);
@@ -290,7 +291,7 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
   if (!request.folder_is_held && std::filesystem::is_directory(path, ignored)) lock.emplace(path);
   if (request.resume) options.start = checkpoint_in(path, options.identity, scene.frames, info);
   const int start = options.start ? options.start->frames : 0;
-  check_save_states(request.save_states, scene, start);
+  check_save_states(request.save_states, scene, path, start);
   check_rows_and_motion(path, bodies, static_cast<int>(scene.colliders.size()), start);
   if (options.images && !request.last_image_only) check_pictures(path / "frames", start);
   options.record = request.record;

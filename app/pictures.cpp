@@ -3,6 +3,7 @@
 #include <exception>
 #include <utility>
 
+#include "base/signals.h"
 #include "base/timing.h"
 #include "base/trace.h"
 #include "output/png_file.h"
@@ -16,6 +17,7 @@ constexpr std::size_t frames_in_flight = 3;  // between two stages
 
 Pictures::Pictures(const Stage& stage, GlChoice gl, const std::filesystem::path& shaders, const RunFolder& folder)
     : folder_(folder), lists_(frames_in_flight), images_(frames_in_flight) {
+  const SignalsWait meanwhile;  // the frames' thread takes them
   drawing_ = std::thread([this, stage, gl, shaders] { guarded([&] { draw_all(stage, gl, shaders); }); });
   compressing_ = std::thread([this] { guarded([this] { compress_all(); }); });
 }

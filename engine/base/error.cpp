@@ -2,6 +2,8 @@
 
 #include <fmt/ranges.h>
 
+#include <sstream>
+
 #include "base/text.h"
 
 namespace supple {
@@ -22,7 +24,10 @@ std::string Problem::text() const {
   std::string place = source;
   if (line > 0) place += fmt::format(":{}", line);
   if (line > 0 && column > 0) place += fmt::format(":{}", column);
-  return printable(place.empty() ? message : place + ": " + message);
+  std::string shown;
+  std::istringstream lines(place.empty() ? message : place + ": " + message);
+  for (std::string words; std::getline(lines, words);) shown += (shown.empty() ? "" : "\n") + printable(words);
+  return shown;
 }
 
 InputError::InputError(std::vector<Problem> problems)

@@ -1,10 +1,12 @@
 #include "base/threads.h"
 
+#include "base/signals.h"
 #include "base/trace.h"
 
 namespace supple {
 
 Threads::Threads(int count) {
+  const SignalsWait meanwhile;  // workers leave them to the caller
   for (int i = 1; i < count; ++i) workers_.emplace_back([this, i] { work(i); });
 }
 

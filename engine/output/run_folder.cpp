@@ -134,9 +134,9 @@ RunFolder::RunFolder(const std::filesystem::path& path, int kept_frames) : path_
   }
   make_folder(path);
   if (kept_frames == 0) {
-    std::filesystem::remove(checkpoint_of(path), error);  // first: it is gone on from where it is there
+    // First: from now on the folder is known as a run's, and what is in it counts no more.
+    write_whole_file(path / "run.json", std::string_view("{}\n"));
     remove_own(path / "checkpoint", is_checkpoint);
-    write_whole_file(path / "run.json", std::string_view("{}\n"));  // from now on the folder is known as a run's
     remove_run(path);
   }
   remove_frames_from(path / "frames", kept_frames);

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "base/error.h"
+#include "base/signals.h"
 
 namespace supple {
 namespace {
@@ -69,8 +70,12 @@ std::vector<std::int32_t> fill_reducing_order(int count,
   cholmod.common.method[0].ordering = CHOLMOD_METIS;
   cholmod_sparse view = view_of(pattern, CHOLMOD_PATTERN);
   view.x = nullptr;
+  // METIS takes SIGTERM for an error of its own and gives up; CHOLMOD then goes on with another order, whose last bits
+  // differ, and the signal is lost.
+  const SignalsWait meanwhile;
   const auto factor = cholmod.hold(cholmod_analyze(&view, &cholmod.common));
-  if (!factor) throw RunError("the stiffness matrix could not be ordered: out of memory");
+  if (!factor || factor->ordering != CHOLMOD_METIS)
+    throw RunError("the stiffness matrix could not be ordered: out of memory");
   const int* order = static_cast<const int*>(factor->Perm);
   return {order, order + count};
 }

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include <algorithm>
+#include <fstream>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -145,6 +146,13 @@ TEST(Help, AFolderOfAScenesNameDoesNotHideTheScene) {
   const Result other = run(folder.path, {"check", "."});
   EXPECT_EQ(other.status, 2);
   EXPECT_EQ(other.err, ".: is not a file\n");
+}
+
+TEST(Check, TakesAReplayOfASceneThatHasASweep) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path / "s.toml") << "scene = \"pulled-bar\"\n";
+  const Result result = run(folder.path, {"check", "s.toml"});
+  EXPECT_EQ(result.status, 0) << result.err;
 }
 
 TEST(Completion, OffersWordsAndFilesInBash) {

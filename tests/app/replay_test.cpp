@@ -350,6 +350,24 @@ TEST_F(ReplayedFilm, RefusesToGoOnBehindFilesThatWereCutAndTouchesNothing) {
   EXPECT_EQ(run(folder_.path, film({"--no-images", "--out", "a", "--resume", "--frames", "26"})).status, 0);
 }
 
+TEST_F(ReplayedFilm, GoesOnBehindStatesThatWereSavedUnlessTheyAreGone) {
+  ASSERT_EQ(run(folder_.path, film({"--no-images", "--out", "a", "--frames", "6", "--save-state", "2"})).status, 0);
+  EXPECT_EQ(
+      run(folder_.path, film({"--no-images", "--out", "a", "--frames", "9", "--resume", "--save-state", "2,7"})).status,
+      0);
+  std::filesystem::remove_all(folder_.path / "a" / "states" / "bar-000002");
+  EXPECT_EQ(run(folder_.path, film({"--no-images", "--out", "a", "--resume", "--save-state", "2"})).status, 2);
+}
+
+TEST_F(ReplayedFilm, StartsAnewInAFolderThatARunHadOnlyBegunToTake) {
+  ASSERT_EQ(run(folder_.path, film({"--no-images", "--out", "a", "--frames", "6"})).status, 0);
+  std::ofstream(folder_.path / "a" / "run.json") << "{}\n";  // another run's first act
+  const Result result =
+      run(folder_.path, {"render", "two.toml", "--no-images", "--frames", "3", "--out", "a", "--resume"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(hashes("a").size(), 3u);
+}
+
 TEST_F(ReplayedFilm, RefusesSpringsThatWouldComeOrGo) {
   for (const char* change :
        {"path = \"body.sheet.cloth.bend\"\nvalue = 0", "path = \"body.sheet.cloth.shear\"\nvalue = 0"}) {

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <chrono>
+#include <csignal>
 #include <numeric>
 #include <random>
+#include <thread>
 
 #include "base/error.h"
 
@@ -100,6 +103,34 @@ Eigen::MatrixXd inverse(const CholeskyFactor& factor) {
     out.col(i) = solve(factor, unit).col(0);
   }
   return out;
+}
+
+volatile std::sig_atomic_t terminations = 0;
+
+TEST(FillReducingOrder, IsTheSameWhenTheProgramIsAskedToEndMeanwhile) {
+  std::vector<std::pair<std::int32_t, std::int32_t>> edges;
+  constexpr int n = 4000;
+  std::mt19937 random(5);
+  for (int i = 1; i < n; ++i) {
+    edges.emplace_back(i, i - 1);
+    if (i > 60) edges.emplace_back(i, i - 60 + static_cast<int>(random() % 3));
+  }
+  const std::vector<std::int32_t> order = fill_reducing_order(n, edges);
+  const auto count = [](int) { terminations = terminations + 1; };
+  const auto before = std::signal(SIGTERM, count);
+  const pthread_t caller = pthread_self();
+  int sent = 0;
+  for (int delay = 0; delay < 40; ++delay) {
+    std::thread sender([&] {
+      std::this_thread::sleep_for(std::chrono::microseconds(150 * delay));
+      sent += pthread_kill(caller, SIGTERM) == 0;
+    });
+    EXPECT_EQ(fill_reducing_order(n, edges), order) << delay;
+    sender.join();
+  }
+  EXPECT_EQ(sent, 40);
+  EXPECT_EQ(terminations, sent);
+  std::signal(SIGTERM, before);
 }
 
 TEST(Elimination, FindsThePatternOfTheDenseFactor) {
