@@ -164,6 +164,16 @@ std::vector<double> log_ratios(const Times& ms, const std::vector<Group>& groups
   return ratios;
 }
 
+// A zone's change over that of the rest of the frame, less 1; where there is next to no rest, its own.
+double against_rest(const ZoneChange& zone, const ZoneChange& frame) {
+  const bool within = zone.thread == frame.thread;
+  const double before = frame.before_ms - (within ? zone.before_ms : 0);
+  const double after = frame.after_ms - (within ? zone.after_ms : 0);
+  const double least = least_change * frame.before_ms;
+  if (before < least || after < least) return zone.change;
+  return (1 + zone.change) / (after / before) - 1;
+}
+
 // Fills in what the regroupings say of all zones; the first is the frame.
 void test(std::vector<Pooled>& zones, const std::vector<Group>& groups) {
   std::vector<double> clearest(groups.size(), 0.0);  // statistic of all zones, by regrouping
@@ -183,12 +193,16 @@ void test(std::vector<Pooled>& zones, const std::vector<Group>& groups) {
     std::ranges::sort(ratios);
     zone.change.noise = std::expm1(ratios[static_cast<std::size_t>(0.95 * static_cast<double>(ratios.size()))]);
   }
+  const ZoneChange& frame = zones.front().change;
   for (std::size_t z = 0; z < zones.size(); ++z) {
     const auto as_clear = std::ranges::count_if(clearest, [&](double c) { return c >= own[z] * (1 - 1e-12); });
     ZoneChange& change = zones[z].change;
     change.chance = static_cast<double>(as_clear) / static_cast<double>(groups.size());
-    change.named = change.chance <= significance && std::abs(change.change) >= least_change &&
-                   std::abs(change.after_ms - change.before_ms) >= least_share * zones.front().change.before_ms;
+    change.against_rest = z == 0 ? 0 : against_rest(change, frame);
+    const bool its_own =
+        z == 0 || (change.against_rest * change.change > 0 && std::abs(change.against_rest) >= least_against_rest);
+    change.named = change.chance <= significance && std::abs(change.change) >= least_change && its_own &&
+                   std::abs(change.after_ms - change.before_ms) >= least_share * frame.before_ms;
   }
 }
 
@@ -245,8 +259,8 @@ ZoneComparison compare_zones(const ZoneProfile& before, const ZoneProfile& after
 namespace {
 
 std::string row_text(const std::string& name, const ZoneChange& zone) {
-  return fmt::format("  {:<26}{:>9.3f}{:>9.3f}{:>+9.1f} %{:>7.1f} %{:>8.3f}{}\n", name, zone.before_ms, zone.after_ms,
-                     100 * zone.change, 100 * zone.noise, zone.chance,
+  return fmt::format("  {:<26}{:>9.3f}{:>9.3f}{:>+9.1f} %{:>+9.1f} %{:>7.1f} %{:>8.3f}{}\n", name, zone.before_ms,
+                     zone.after_ms, 100 * zone.change, 100 * zone.against_rest, 100 * zone.noise, zone.chance,
                      !zone.named       ? ""
                      : zone.change > 0 ? "  slower"
                                        : "  faster");
@@ -255,8 +269,8 @@ std::string row_text(const std::string& name, const ZoneChange& zone) {
 }  // namespace
 
 std::string comparison_text(const ZoneComparison& c) {
-  std::string text =
-      fmt::format("  {:<26}{:>9}{:>9}{:>11}{:>9}{:>8}\n", "ms a frame", "A", "B", "change", "noise", "chance");
+  std::string text = fmt::format("  {:<26}{:>9}{:>9}{:>11}{:>11}{:>9}{:>8}\n", "ms a frame", "A", "B", "change",
+                                 "to rest", "noise", "chance");
   text += row_text("frame, with all in it", c.frame);
   int named = c.frame.named;
   for (const ZoneChange& zone : c.zones) {
@@ -268,13 +282,16 @@ std::string comparison_text(const ZoneComparison& c) {
   text += fmt::format(
       "\n  {}\n"
       "  A zone's time is that of all its places without the zones within: of each frame the least of the repeats, the "
-      "first\n  frame left out. It is named when it changed by {:g} % or more and by {:g} % of the frame, and of {} "
-      "ways to "
-      "deal the\n  repeats to A and B at most {:g} % show any zone that changes as clearly, each by its own spread.\n",
+      "first\n  frame left out. It is named when it changed by {:g} % or more, by {:g} % or more against the rest of "
+      "the frame, and by\n  {:g} % of the frame, and of {} ways to deal the repeats to A and B at most {:g} % show any "
+      "zone that changes as clearly,\n  each by its own spread.\n",
       named == 0
           ? "No zone became slower or faster beyond the noise."
           : fmt::format("{} became slower or faster beyond the noise.", named == 1 ? "One" : std::to_string(named)),
-      100 * least_change, 100 * least_share, c.regroupings, 100 * significance);
+      100 * least_change, 100 * least_against_rest, 100 * least_share, c.regroupings, 100 * significance);
+  if (c.frame.named && named == 1)
+    text +=
+        "  The frame changed and no zone more than others: the build as a whole, or the machine of those minutes.\n";
   if (!c.same_bits) text += "  The runs end in different states: they did not do the same work.\n";
   return text;
 }
@@ -282,8 +299,9 @@ std::string comparison_text(const ZoneComparison& c) {
 std::string comparison_json(const ZoneComparison& c) {
   using Json = nlohmann::ordered_json;
   const auto row = [](const ZoneChange& z) {
-    return Json{{"thread", z.thread}, {"zone", z.name},   {"before_ms", z.before_ms}, {"after_ms", z.after_ms},
-                {"change", z.change}, {"noise", z.noise}, {"chance", z.chance},       {"named", z.named}};
+    return Json{{"thread", z.thread},     {"zone", z.name},     {"before_ms", z.before_ms},
+                {"after_ms", z.after_ms}, {"change", z.change}, {"against_rest", z.against_rest},
+                {"noise", z.noise},       {"chance", z.chance}, {"named", z.named}};
   };
   Json json = {{"regroupings", c.regroupings},
 

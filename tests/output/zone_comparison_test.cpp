@@ -36,9 +36,9 @@ const std::vector<Leaf> leaves = {
     {"frame/motion files", "motion files", 0.02}};
 
 // slowed: a zone that takes `factor` times as long.
-ZoneProfile made_profile(unsigned seed, const std::string& slowed = "", double factor = 1) {
+ZoneProfile made_profile(unsigned seed, const std::string& slowed = "", double factor = 1, double pace = 1) {
   Machine machine{std::mt19937_64(seed)};
-  const double speed = machine.uniform(0.985, 1.015);  // of the machine, for the whole run
+  const double speed = pace * machine.uniform(0.985, 1.015);  // of the machine, for the whole run
   ZoneProfile profile;
   profile.run.scene = "made";
   profile.run.scene_json = R"({"frames":60,"body":[{"material":{"mu":1}}]})";
@@ -97,6 +97,18 @@ TEST(ZoneComparison, NamesAZoneThatTakesAFifthMoreAndNoOtherZone) {
     }
     EXPECT_TRUE(found);
     EXPECT_NE(comparison_text(result).find("  slower"), std::string::npos);
+  }
+}
+
+TEST(ZoneComparison, TellsAZoneFromASlowMachine) {
+  for (unsigned pair = 0; pair < 20; ++pair) {
+    const ZoneComparison slow = compare_zones(made_profile(2 * pair), made_profile(2 * pair + 1, "", 1, 1.25));
+    EXPECT_EQ(named(slow), std::vector<std::string>{"frame"}) << "pair " << pair << "\n" << comparison_text(slow);
+    EXPECT_NE(comparison_text(slow).find("the build as a whole, or the machine"), std::string::npos);
+    const Leaf& slowed = leaves[pair % 5];
+    const ZoneComparison both =
+        compare_zones(made_profile(2 * pair), made_profile(2 * pair + 1, slowed.path, 1.2, 1.25));
+    EXPECT_EQ(named(both), (std::vector<std::string>{"frame", slowed.name})) << comparison_text(both);
   }
 }
 
