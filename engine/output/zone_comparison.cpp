@@ -200,7 +200,7 @@ void test(std::vector<Pooled>& zones, const std::vector<Group>& groups) {
     change.chance = static_cast<double>(as_clear) / static_cast<double>(groups.size());
     change.against_rest = z == 0 ? 0 : against_rest(change, frame);
     const bool its_own =
-        z == 0 || (change.against_rest * change.change > 0 && std::abs(change.against_rest) >= least_against_rest);
+        z == 0 || (change.against_rest * change.change > 0 && std::abs(change.against_rest) >= least_change);
     change.named = change.chance <= significance && std::abs(change.change) >= least_change && its_own &&
                    std::abs(change.after_ms - change.before_ms) >= least_share * frame.before_ms;
   }
@@ -252,6 +252,9 @@ ZoneComparison compare_zones(const ZoneProfile& before, const ZoneProfile& after
   result.regroupings = static_cast<int>(groups.size());
   result.frame = zones.front().change;
   for (std::size_t z = 1; z < zones.size(); ++z) result.zones.push_back(zones[z].change);
+  const bool any = std::ranges::any_of(result.zones, &ZoneChange::named);
+  result.as_a_whole = result.frame.named && !any;
+  result.frame.named &= any;
   result.same_bits = before.run.state_hash == after.run.state_hash;
   return result;
 }
@@ -282,16 +285,16 @@ std::string comparison_text(const ZoneComparison& c) {
   text += fmt::format(
       "\n  {}\n"
       "  A zone's time is that of all its places without the zones within: of each frame the least of the repeats, the "
-      "first\n  frame left out. It is named when it changed by {:g} % or more, by {:g} % or more against the rest of "
-      "the frame, and by\n  {:g} % of the frame, and of {} ways to deal the repeats to A and B at most {:g} % show any "
+      "first\n  frame left out. It is named when it changed by {:g} % or more, also against the rest of the frame, "
+      "and by\n  {:g} % of the frame, and of {} ways to deal the repeats to A and B at most {:g} % show any "
       "zone that changes as clearly,\n  each by its own spread.\n",
       named == 0
           ? "No zone became slower or faster beyond the noise."
           : fmt::format("{} became slower or faster beyond the noise.", named == 1 ? "One" : std::to_string(named)),
-      100 * least_change, 100 * least_against_rest, 100 * least_share, c.regroupings, 100 * significance);
-  if (c.frame.named && named == 1)
+      100 * least_change, 100 * least_share, c.regroupings, 100 * significance);
+  if (c.as_a_whole)
     text +=
-        "  The frame changed and no zone more than others: the build as a whole, or the machine of those minutes.\n";
+        "  The frame changed as a whole, no zone ahead of the others: the build, or the machine of those minutes.\n";
   if (!c.same_bits) text += "  The runs end in different states: they did not do the same work.\n";
   return text;
 }
@@ -305,6 +308,7 @@ std::string comparison_json(const ZoneComparison& c) {
   };
   Json json = {{"regroupings", c.regroupings},
 
+               {"as_a_whole", c.as_a_whole},
                {"same_bits", c.same_bits},
                {"frame", row(c.frame)}};
   json["zones"] = Json::array();

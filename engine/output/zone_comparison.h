@@ -11,10 +11,9 @@
 namespace supple {
 
 // Of a zone that is named. Less says nothing: memory lies elsewhere in every run, and other programs use its bus.
+// Also against the rest of the frame: a machine that is slower for minutes slows all zones, those that wait for memory
+// up to a tenth more than others.
 constexpr double least_change = 0.1;
-// And against the rest of the frame: a machine that is slower for minutes slows all zones, those that wait for memory
-// up to 6.5 % more than others (measured over 100 pairs of equal builds).
-constexpr double least_against_rest = 0.08;
 // Of the frame: what zones that are tested have of it, and what those that are named changed it by.
 constexpr double least_share = 0.01;
 constexpr double significance = 0.05;      // chance that equal profiles have any zone named
@@ -34,6 +33,8 @@ struct ZoneComparison {
   ZoneChange frame;                                  // as a whole, with all that lies in it
   std::vector<ZoneChange> zones;                     // by name, without what lies in them; those that are large enough
   std::vector<std::string> only_before, only_after;  // zones of that size that the other profile lacks
+  bool as_a_whole =
+      false;  // the frame changed beyond the noise, and no zone ahead of the others: the build, or the machine
   int regroupings = 0;
   bool same_bits = true;  // both end in the same state
 };
