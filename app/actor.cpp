@@ -7,8 +7,8 @@
 #include "baselines/make_rule.h"
 #include "baselines/reference.h"
 #include "output/obj_file.h"
-#include "sim/measures.h"
-#include "sim/step.h"
+#include "sim/model/measures.h"
+#include "sim/solver/step.h"
 
 namespace supple {
 namespace {

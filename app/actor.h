@@ -11,8 +11,8 @@
 #include "scene/assemble.h"
 #include "scene/live.h"
 #include "scene/obstacle.h"
-#include "sim/model_values.h"
-#include "sim/search_rule.h"
+#include "sim/model/model_values.h"
+#include "sim/solver/search_rule.h"
 
 namespace supple {
 

@@ -12,7 +12,7 @@
 #include "output/child_program.h"
 #include "output/run_folder.h"
 #include "render/renderer.h"
-#include "sim/kernels.h"
+#include "base/variants.h"
 
 namespace supple {
 namespace {
@@ -133,7 +133,7 @@ Finding processor() {
 #ifdef __AVX512F__
   look("AVX-512F", __builtin_cpu_supports("avx512f"));
 #endif
-  std::string found = fmt::format("{}; kernels '{}'", cpu_name(), kernels().name);
+  std::string found = fmt::format("{}; kernels '{}'", cpu_name(), variant_name(best_variant()));
   if (!used.empty()) found += fmt::format(", built for {}", fmt::join(used, ", "));
   if (!missing.empty())
     found += fmt::format("; the build needs {}: build it here, or portable", fmt::join(missing, ", "));

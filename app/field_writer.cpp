@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "sim/fields.h"
+#include "sim/solver/fields.h"
 
 namespace supple {
 namespace {

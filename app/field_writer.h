@@ -5,7 +5,7 @@
 #include "output/run_folder.h"
 #include "output/vtu.h"
 #include "scene/assemble.h"
-#include "sim/objective.h"
+#include "sim/solver/objective.h"
 
 namespace supple {
 

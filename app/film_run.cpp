@@ -20,7 +20,7 @@
 #include "output/whole_file.h"
 #include "scene/scene_reader.h"
 #include "scene/warnings.h"
-#include "sim/kernels.h"
+#include "base/variants.h"
 
 namespace supple {
 namespace {
@@ -272,7 +272,7 @@ int run_film(const FilmRequest& request, const std::vector<std::string>& command
   zone.next("begin folder");
   FilmOptions options = options_of(request);
   if (request.last_image_only) options.pictured = {scene.frames - 1};
-  info.kernel_variant = kernels().name;
+  info.kernel_variant = variant_name(best_variant());
   info.threads = options.threads;
   for (const Body& body : bodies) {
     const TetMesh& mesh = body.description.mesh;

@@ -8,7 +8,7 @@
 #include "base/timing.h"
 #include "scene/assemble.h"
 #include "scene/script.h"
-#include "sim/model_values.h"
+#include "sim/model/model_values.h"
 
 namespace supple {
 namespace {

@@ -10,7 +10,7 @@
 #include "scene/assemble.h"
 #include "scene/obstacle.h"
 #include "scene/script.h"
-#include "sim/step.h"
+#include "sim/solver/step.h"
 
 namespace supple {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "sim/step_problem.h"
+#include "sim/solver/step_problem.h"
 
 namespace supple {
 

@@ -10,7 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/state.h"
+#include "sim/model/model.h"
+#include "sim/model/state.h"
 
 namespace supple {
 

@@ -15,7 +15,7 @@
 #include "base/hash.h"
 #include "base/text.h"
 #include "output/run_folder.h"
-#include "sim/kernels.h"
+#include "base/variants.h"
 
 namespace supple {
 
@@ -82,7 +82,7 @@ std::string blas() {
 // What a finished section must have been made with to be kept.
 std::string fingerprint(const BenchSetting& setting) {
   return fmt::format("{}; {}; {}; {}; {}; {} threads; {}; paper meshes: {}", hash_text_form(program_identity()), blas(),
-                     program_version(), build_flags(), kernels().name, setting.threads->count(), cpu_name(),
+                     program_version(), build_flags(), variant_name(best_variant()), setting.threads->count(), cpu_name(),
                      setting.paper_meshes ? "yes" : "no");
 }
 
@@ -101,7 +101,7 @@ ReportPage page_of(const BenchSetting& setting, std::vector<ReportSection> secti
   page.facts = {{"processor", cpu_name()},
                 {"program", program_version()},
                 {"build", build_flags()},
-                {"kernels", kernels().name},
+                {"kernels", variant_name(best_variant())},
                 {"BLAS of Newton's factorisations", blas()},
                 {"threads of the solver", std::to_string(setting.threads->count())},
                 {"paper's meshes", setting.paper_meshes ? "yes, where a table or figure says so" : "not given"}};

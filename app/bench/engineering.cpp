@@ -7,8 +7,8 @@
 #include "app/bench/bench.h"
 #include "baselines/post_projection.h"
 #include "output/profile.h"
-#include "sim/element_view.h"
-#include "sim/measures.h"
+#include "sim/model/element_view.h"
+#include "sim/model/measures.h"
 
 namespace supple {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "app/bench/bench.h"
-#include "sim/measures.h"
+#include "sim/model/measures.h"
 
 namespace supple {
 namespace {

@@ -9,7 +9,7 @@
 #include "base/threads.h"
 #include "scene/assemble.h"
 #include "scene/obstacle.h"
-#include "sim/step.h"
+#include "sim/solver/step.h"
 
 namespace supple {
 

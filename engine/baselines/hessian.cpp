@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "sim/element_view.h"
+#include "sim/model/element_view.h"
 
 namespace supple {
 namespace {
@@ -52,7 +52,7 @@ void element_matrices(const Model& model, Workspace& workspace, const Positions&
     out.numbers.resize(count);
   }
   run_chunks(workspace, chunks, long(model.elements) * 40,
-             [&](int c) { kernels().stiffness(model.chunk(c), x.data(), project, out.numbers.data() + out.first[c]); });
+             [&](int c) { element_kernels().stiffness(model.chunk(c), x.data(), project, out.numbers.data() + out.first[c]); });
 }
 
 HessianMatrix::HessianMatrix(const Model& model) {

@@ -4,7 +4,7 @@
 
 #include <Eigen/SparseCore>
 
-#include "sim/objective.h"
+#include "sim/solver/objective.h"
 
 namespace supple {
 

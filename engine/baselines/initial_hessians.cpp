@@ -2,7 +2,7 @@
 
 #include <Eigen/SVD>
 
-#include "sim/element_view.h"
+#include "sim/model/element_view.h"
 
 namespace supple {
 namespace {

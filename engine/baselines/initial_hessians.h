@@ -5,7 +5,7 @@
 
 #include "baselines/conjugate_gradients.h"
 #include "baselines/hessian.h"
-#include "sim/lbfgs.h"
+#include "sim/solver/lbfgs.h"
 
 namespace supple {
 

@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "sim/lbfgs.h"
-#include "sim/method.h"
+#include "sim/solver/lbfgs.h"
+#include "sim/model/method.h"
 
 namespace supple {
 

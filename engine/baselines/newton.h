@@ -3,7 +3,7 @@
 
 #include "baselines/conjugate_gradients.h"
 #include "baselines/hessian.h"
-#include "sim/search_rule.h"
+#include "sim/solver/search_rule.h"
 
 namespace supple {
 

@@ -2,7 +2,7 @@
 // paper argues against.
 #pragma once
 
-#include "sim/step.h"
+#include "sim/solver/step.h"
 
 namespace supple {
 

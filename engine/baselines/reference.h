@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "sim/step.h"
+#include "sim/solver/step.h"
 
 namespace supple {
 

@@ -6,6 +6,7 @@
 #include "geometry/skin.h"
 #include "scene/keyed_motion.h"
 #include "scene/scene_def.h"
+#include "sim/model/state.h"
 
 namespace supple {
 
@@ -48,11 +49,7 @@ DrawnBody drawn_body(const SceneDef& scene, const Body& body);
 // Where a body starts; handled vertices at rest.
 State start_state(const Model& model, const Body& body);
 
-// What keys move handled vertices from: rest, or where a handle grabbed them.
-struct Anchors {
-  Positions points;           // by Model::handled [m]
-  std::vector<Vec3> centers;  // what keys turn about, by handle [m]
-};
+// What keys move handled vertices from where nothing has been grabbed.
 Anchors rest_anchors(const Model& model, const Body& body);
 // A handle closes on its vertices where they are.
 void grab(const Model& model, int handle, const Positions& x, Anchors& anchors);

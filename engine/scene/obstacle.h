@@ -3,7 +3,7 @@
 
 #include "geometry/skin.h"
 #include "scene/keyed_motion.h"
-#include "sim/contact.h"
+#include "sim/model/inputs.h"
 
 namespace supple {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "sim/elements/tetrahedron.h"
-#include "sim/material.h"
+#include "sim/materials/material.h"
 
 namespace supple {
 

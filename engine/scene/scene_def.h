@@ -12,8 +12,9 @@
 #include "geometry/shape.h"
 #include "geometry/skin.h"
 #include "scene/start_state.h"
-#include "sim/method.h"
-#include "sim/state.h"
+#include "sim/model/inputs.h"
+#include "sim/model/method.h"
+#include "sim/model/model.h"
 
 namespace supple {
 

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "app/state_file.h"
-#include "sim/step.h"
+#include "sim/solver/step.h"
 #include "support/bodies.h"
 #include "support/stored_problem.h"
 

@@ -8,7 +8,7 @@
 #include <Eigen/Dense>
 
 #include "baselines/make_rule.h"
-#include "sim/element_view.h"
+#include "sim/model/element_view.h"
 #include "support/bodies.h"
 #include "support/deformations.h"
 

@@ -8,7 +8,7 @@
 #include "scene/assemble.h"
 #include "scene/scene_reader.h"
 #include "scene/warnings.h"
-#include "sim/measures.h"
+#include "sim/model/measures.h"
 #include "support/film.h"
 #include "support/objective_checks.h"
 

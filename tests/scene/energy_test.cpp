@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "sim/measures.h"
+#include "sim/model/measures.h"
 #include "support/film.h"
 
 namespace supple {

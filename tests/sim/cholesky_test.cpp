@@ -1,4 +1,5 @@
-#include "sim/cholesky.h"
+#include "base/variants.h"
+#include "sim/linear/cholesky.h"
 
 #include <gtest/gtest.h>
 
@@ -236,9 +237,7 @@ TEST(CholeskyFactor, NamesTheUnknownWhosePivotIsNotPositive) {
 // Every instruction set, all sizes around its registers: the pivots' columns against a dense factor, the rest against
 // what a dense elimination leaves.
 TEST(Kernels, EliminateDenseFronts) {
-  int variants = 0;
-  const Kernels* const* tables = kernel_variants(variants);
-  for (int v = 0; v < variants; ++v) {
+  for (int v = 0; v < runnable_variants(); ++v) {
     for (int size = 1; size < 42; ++size) {
       for (const int pivots : {1, 2, 3, 4, 5, 9, size / 2, size}) {
         if (pivots < 1 || pivots > size) continue;
@@ -249,14 +248,14 @@ TEST(Kernels, EliminateDenseFronts) {
         for (int j = 0; j < size; ++j) {
           for (int i = j; i < size; ++i) front[j * stride + i] = full(i, j);
         }
-        ASSERT_EQ(tables[v]->eliminate(front.data(), stride, size, pivots), -1);
+        ASSERT_EQ(linear_kernels(v).eliminate(front.data(), stride, size, pivots), -1);
         const Eigen::MatrixXd lower = full.llt().matrixL();
         const auto left = lower.leftCols(pivots);
         const Eigen::MatrixXd update = full - left * left.transpose();
         for (int j = 0; j < size; ++j) {
           for (int i = j; i < size; ++i)
             EXPECT_NEAR(front[j * stride + i], j < pivots ? lower(i, j) : update(i, j), 1e-11 * size)
-                << tables[v]->name << ": " << size << ", " << pivots << " at " << i << ", " << j;
+                << variant_name(v) << ": " << size << ", " << pivots << " at " << i << ", " << j;
           for (long i = size; i < stride; ++i) EXPECT_EQ(front[j * stride + i], 0.0);
         }
       }

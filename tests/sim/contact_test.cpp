@@ -1,6 +1,6 @@
 // Contact with rigid colliders: energies and their derivatives, directions, momentum, tunnelling, overlaps, rest,
 // friction.
-#include "sim/contact.h"
+#include "sim/contact/contact.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 
 #include "geometry/tetrahedralize.h"
 #include "geometry/triangle_solid.h"
-#include "sim/step.h"
+#include "sim/solver/step.h"
 #include "support/bodies.h"
 #include "support/surfaces.h"
 

@@ -1,11 +1,11 @@
 // Fields against closed forms, and against the numbers that the solver itself uses.
-#include "sim/fields.h"
+#include "sim/solver/fields.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "sim/measures.h"
+#include "sim/model/measures.h"
 #include "support/bodies.h"
 
 namespace supple {

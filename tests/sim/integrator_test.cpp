@@ -2,7 +2,7 @@
 // and the physics they are chosen for.
 #include <gtest/gtest.h>
 
-#include "sim/measures.h"
+#include "sim/model/measures.h"
 #include "support/bodies.h"
 #include "support/objective_checks.h"
 

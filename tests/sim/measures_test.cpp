@@ -1,10 +1,11 @@
-#include "sim/measures.h"
+#include "base/variants.h"
+#include "sim/model/measures.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/SVD>
 
-#include "sim/element_view.h"
+#include "sim/model/element_view.h"
 #include "support/bodies.h"
 
 namespace supple {
@@ -12,19 +13,17 @@ namespace {
 
 // By every instruction set: largest stretch and volume of each element against a singular value decomposition.
 void expect_stretches(const Model& model, const Positions& x) {
-  int variants = 0;
-  const Kernels* const* tables = kernel_variants(variants);
-  for (int v = 0; v < variants; ++v) {
+  for (int v = 0; v < runnable_variants(); ++v) {
     for (std::size_t c = 0; c < model.chunks.size(); ++c) {
       const Model::ChunkRange& range = model.chunks[c];
       std::vector<double> largest(range.blocks * block_width), volume(range.blocks * block_width);
-      tables[v]->stretches(model.chunk(static_cast<int>(c)), x.data(), largest.data(), volume.data());
+      element_kernels(v).stretches(model.chunk(static_cast<int>(c)), x.data(), largest.data(), volume.data());
       for_each_element(model, range, [&](const ElementView& element) {
         const int lane = element.lane - range.first_block * block_width;
         const Mat3 f = deformation_gradient(x, element);
         const Eigen::JacobiSVD<Mat3> svd(f);
-        EXPECT_NEAR(largest[lane], svd.singularValues()[0], 1e-7 * svd.singularValues()[0]) << tables[v]->name;
-        EXPECT_NEAR(volume[lane], f.determinant(), 1e-12 * std::pow(svd.singularValues()[0], 3)) << tables[v]->name;
+        EXPECT_NEAR(largest[lane], svd.singularValues()[0], 1e-7 * svd.singularValues()[0]) << variant_name(v);
+        EXPECT_NEAR(volume[lane], f.determinant(), 1e-12 * std::pow(svd.singularValues()[0], 3)) << variant_name(v);
       });
     }
   }

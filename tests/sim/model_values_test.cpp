@@ -1,7 +1,7 @@
 // A model whose numbers change while it lives is the model that would be built anew.
 #include <gtest/gtest.h>
 
-#include "sim/model_values.h"
+#include "sim/model/model_values.h"
 #include "support/bodies.h"
 
 namespace supple {

@@ -1,5 +1,5 @@
 // The time step as a whole: derivatives of the objective, equivalences, conservation, determinism.
-#include "sim/step.h"
+#include "sim/solver/step.h"
 
 #include <gtest/gtest.h>
 

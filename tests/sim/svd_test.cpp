@@ -1,5 +1,5 @@
 // The SIMD singular value decomposition against what its header promises, on ten million matrices of every kind.
-#include "sim/svd.h"
+#include "sim/elements/svd.h"
 
 #include <gtest/gtest.h>
 

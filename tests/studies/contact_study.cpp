@@ -11,8 +11,8 @@
 #include "scene/assemble.h"
 #include "scene/obstacle.h"
 #include "scene/scene_reader.h"
-#include "sim/measures.h"
-#include "sim/step.h"
+#include "sim/model/measures.h"
+#include "sim/solver/step.h"
 
 using namespace supple;
 

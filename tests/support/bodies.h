@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/step.h"
+#include "sim/solver/step.h"
 
 namespace supple::test {
 

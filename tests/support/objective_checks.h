@@ -3,7 +3,9 @@
 
 #include <string>
 
-#include "sim/state.h"
+#include "sim/model/inputs.h"
+#include "sim/model/model.h"
+#include "sim/model/state.h"
 
 namespace supple::test {
 

@@ -2,7 +2,7 @@
 // Kavan 2013, "Fast simulation of mass-spring systems").
 #pragma once
 
-#include "sim/small_matrix.h"
+#include "sim/materials/small_matrix.h"
 
 namespace supple {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "sim/materials/parameters.h"
-#include "sim/svd.h"
+#include "sim/elements/svd.h"
 
 namespace supple {
 

@@ -5,7 +5,7 @@
 // Derivatives of the material with respect to stretches come from its own formula (dual.h).
 #pragma once
 
-#include "sim/dual.h"
+#include "sim/elements/dual.h"
 #include "sim/elements/tetrahedron.h"
 
 namespace supple {

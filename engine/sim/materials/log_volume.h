@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "sim/small_matrix.h"
+#include "sim/materials/small_matrix.h"
 
 namespace supple {
 

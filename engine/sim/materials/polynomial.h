@@ -5,7 +5,7 @@
 #include <array>
 
 #include "sim/materials/parameters.h"
-#include "sim/small_matrix.h"
+#include "sim/materials/small_matrix.h"
 
 namespace supple {
 

@@ -3,7 +3,7 @@
 // or S is cheaper where there is one.
 #pragma once
 
-#include "sim/small_matrix.h"
+#include "sim/materials/small_matrix.h"
 
 namespace supple {
 

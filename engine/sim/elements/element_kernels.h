@@ -1,0 +1,50 @@
+// The loops over elements, as a table of functions that is compiled once for each instruction set (base/variants.h).
+// All take plain arrays. Not here: what the loops are for (solver/objective.h, model/measures.h).
+#pragma once
+
+#include <cstdint>
+
+#include "sim/elements/element.h"
+#include "sim/materials/material.h"
+
+namespace supple {
+
+// Elements are stored in blocks of this many, whatever the register width: field by field, one element a lane.
+constexpr int block_width = 8;
+
+// A run of blocks of one kind and material with its own short list of vertices: small enough that its positions and
+// forces stay in the first-level cache, and the unit of work of a thread.
+struct ElementChunk {
+  ElementKind kind;
+  const Material* material;  // of tetrahedra
+  const Fibre* fibre;        // of tetrahedra; null: none
+  int blocks;
+  int vertices;                 // of the list
+  const std::int32_t* vertex;   // the list: mesh vertices
+  const std::uint16_t* corner;  // blocks x corners x block_width indices into the list
+  const double* field;          // blocks x fields x block_width: what the kind needs to know of an element
+};
+
+struct ElementKernels {
+  // Energies by element [J] into energy (blocks x block_width); returns the sum of energy - previous (previous may be
+  // null: 0). With force != null also the gradient by list vertex into force (vertices x 3) [N]. local: scratch of
+  // vertices x 3.
+  double (*elements)(const ElementChunk& chunk, const double* x, const double* previous, double* energy, double* force,
+                     double* local);
+
+  // Second derivatives of each element's energy, or the nearest positive semi-definite ones: by lane, the packed lower
+  // triangle over the coordinates of all corners but the first (stiffness_numbers of them), whose rows follow from
+  // translations. [N/m]
+  void (*stiffness)(const ElementChunk& chunk, const double* x, bool project, double* out);
+
+  // By lane: the largest stretch, and the volume over that at rest, negative where an element is inverted.
+  void (*stretches)(const ElementChunk& chunk, const double* x, double* largest, double* volume);
+};
+
+constexpr int stiffness_numbers(ElementKind kind) { return kind == ElementKind::tetrahedron ? 45 : 6; }
+
+// Of the widest variant that this machine can run, or of one of those that it can (base/variants.h).
+const ElementKernels& element_kernels();
+const ElementKernels& element_kernels(int variant);
+
+}  // namespace supple

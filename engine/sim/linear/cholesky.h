@@ -1,0 +1,84 @@
+// Sparse Cholesky of a symmetric positive definite matrix: ordered by CHOLMOD, numbers by fronts of our own
+// (multifrontal; the bits depend on the matrix and the instruction set, on no BLAS and no number of threads), solves by
+// our own panels for three right-hand sides at once. The only place that knows CHOLMOD. Not thread-safe against itself:
+// build on one thread.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <Eigen/SparseCore>
+
+#include "base/aligned.h"
+#include "base/types.h"
+#include "sim/linear/elimination.h"
+#include "sim/linear/linear_kernels.h"
+
+namespace supple {
+
+// An order of elimination with little fill (nested dissection): order[k] is the k-th unknown to be eliminated.
+// edges: pairs of different unknowns below `count` that share a matrix entry, each at least once.
+std::vector<std::int32_t> fill_reducing_order(int count,
+                                              const std::vector<std::pair<std::int32_t, std::int32_t>>& edges);
+
+enum class Precision { single_precision, double_precision };
+
+class CholeskyFactor {
+ public:
+  CholeskyFactor() = default;
+  CholeskyFactor(const Eigen::SparseMatrix<double>& matrix, Precision precision) { factorize(matrix, precision); }
+
+  // Factors a lower triangle (compressed, nothing stored above the diagonal) in the order given. A matrix with the
+  // pattern of the last one, in its precision, costs the numbers alone. Throws RunError when it is not positive
+  // definite, naming the column; the factor then solves nothing.
+  void factorize(const Eigen::SparseMatrix<double>& matrix, Precision precision);
+
+  int size() const { return size_; }
+  std::int64_t stored_numbers() const { return static_cast<std::int64_t>(single_.size() + double_.size()); }
+
+  // x = A^-1 b for b and x with `size` rows, interleaved. scratch: 4 * size doubles.
+  void solve(const double* b, double* x, double* scratch) const;
+
+ private:
+  bool has_pattern_of(const Eigen::SparseMatrix<double>& matrix) const;
+  void analyze(const Eigen::SparseMatrix<double>& matrix);
+  template <class T>
+  void store_panels(int node, const double* front, AlignedVector<T>& out) const;
+  PanelsView view() const;
+
+  int size_ = 0;
+  Precision precision_ = Precision::double_precision;
+  std::vector<int> outer_, inner_;  // the pattern that was analysed
+  Elimination elimination_;
+  std::vector<std::int32_t> first_panel_;  // by supernode; one more entry than supernodes
+  std::vector<std::int32_t> first_column_, width_, rows_;
+  std::vector<std::int64_t> first_row_, first_value_;
+  AlignedVector<float> single_;
+  AlignedVector<double> double_;
+};
+
+// A factor that is made anew for each matrix of one pattern: for Newton's method and others whose matrix changes. The
+// pattern is analysed once; numbers by CHOLMOD's supernodal code and its BLAS (one thread), whose last bits depend on
+// the BLAS.
+class ChangingFactor {
+ public:
+  ChangingFactor();
+  ~ChangingFactor();
+  ChangingFactor(ChangingFactor&&) noexcept;
+  ChangingFactor& operator=(ChangingFactor&&) noexcept;
+
+  // Lower triangle; what stands above the diagonal is ignored. Unknowns come in an order of little fill already.
+  void analyze(const Eigen::SparseMatrix<double>& matrix);
+  // False when the matrix is not positive definite; the factor then cannot be used.
+  bool factorize(const Eigen::SparseMatrix<double>& matrix);
+  // x = A^-1 b
+  void solve(const double* b, double* x);
+  std::int64_t stored_numbers() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace supple

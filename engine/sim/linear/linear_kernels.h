@@ -1,0 +1,44 @@
+// The loops of linear algebra, as a table of functions that is compiled once for each instruction set
+// (base/variants.h). All take plain arrays. Not here: what the loops are for (cholesky.h, solver/lbfgs.h).
+#pragma once
+
+#include <cstdint>
+
+namespace supple {
+
+constexpr int panel_width = 8;
+
+// A Cholesky factor cut into panels of adjacent columns with one row pattern. Row-major: each row of a panel holds its
+// `width` values.
+struct PanelsView {
+  int panels;
+  const std::int32_t* first_column;  // by panel
+  const std::int32_t* width;         // by panel, 1 to panel_width
+  const std::int64_t* first_row;     // by panel, into rows; panels + 1 entries
+  const std::int32_t* rows;          // below the triangle
+  const std::int64_t* first_value;  // by panel, into values: triangle (width x width, inverted diagonal), then the rows
+  const void* values;               // float or double
+};
+
+struct LinearKernels {
+  // Eliminates the first `pivots` columns of a dense symmetric front of `size` rows: its lower triangle, column-major,
+  // a column of `stride` numbers (a multiple of 8 and no less than size; those below the front must be 0 and stay so).
+  // They become columns of L, the others what elimination leaves of them (the update matrix). Above the diagonal
+  // anything may stand afterwards. Returns the first pivot that is not positive, or -1.
+  int (*eliminate)(double* front, long stride, int size, int pivots);
+
+  // Solves L L^T x = b in place for four interleaved right-hand sides (n x 4), by panels of up to panel_width columns.
+  void (*solve_float)(const PanelsView& panels, float* x);
+  void (*solve_double)(const PanelsView& panels, double* x);
+
+  // dots[i] = a_i . b over [begin, end)
+  void (*dots)(const double* const* a, int count, const double* b, long begin, long end, double* dots);
+  // r += sum_i c_i a_i over [begin, end)
+  void (*add_scaled)(const double* const* a, const double* c, int count, double* r, long begin, long end);
+};
+
+// Of the widest variant that this machine can run, or of one of those that it can (base/variants.h).
+const LinearKernels& linear_kernels();
+const LinearKernels& linear_kernels(int variant);
+
+}  // namespace supple

@@ -1,0 +1,45 @@
+// A model's elements one by one, out of their SIMD blocks: for whoever has time.
+#pragma once
+
+#include "sim/model/model.h"
+
+namespace supple {
+
+// Corners in the model's numbering.
+struct ElementView : ElementRecord {
+  int lane;  // over all blocks
+};
+
+// Calls visit(ElementView) for each element of a chunk in the order of lanes; padding is left out.
+template <class Visit>
+void for_each_element(const Model& model, const Model::ChunkRange& range, const Visit& visit) {
+  const std::int32_t* list = model.chunk_vertex.data() + range.first_vertex;
+  const int corners = corners_of(range.kind), fields = fields_of(range.kind);
+  for (int place = 0; place < range.blocks * block_width; ++place) {
+    const int at = range.first_block * block_width + place;
+    if (model.element_of_lane[at] < 0) continue;
+    ElementView element{{range.kind, range.region, model.element_of_lane[at], {}, {}}, at};
+    const std::size_t block = place / block_width, lane = place % block_width;
+    for (int k = 0; k < corners; ++k)
+      element.corner[k] = list[model.corner[range.first_corner + (block * corners + k) * block_width + lane]];
+    for (int i = 0; i < fields; ++i)
+      element.field[i] = model.field[range.first_field + (block * fields + i) * block_width + lane];
+    visit(element);
+  }
+}
+
+// Of all chunks, one behind the other.
+template <class Visit>
+void for_each_element(const Model& model, const Visit& visit) {
+  for (const Model::ChunkRange& range : model.chunks) for_each_element(model, range, visit);
+}
+
+// F of a tetrahedron.
+inline Mat3 deformation_gradient(const Positions& x, const ElementView& element) {
+  Mat3 edges, inverse;
+  for (int k = 0; k < 3; ++k) edges.col(k) = (x.row(element.corner[k + 1]) - x.row(element.corner[0])).transpose();
+  for (int i = 0; i < 9; ++i) inverse(i / 3, i % 3) = element.field[i];
+  return edges * inverse;
+}
+
+}  // namespace supple

@@ -1,0 +1,78 @@
+// What comes from outside for one step of one body: gravity, targets of handles, colliders and how they move, and the
+// settings of the solver, which may change from step to step.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "geometry/shape.h"
+
+namespace supple {
+
+// A rigid obstacle, in its own frame.
+struct Collider {
+  std::string name;
+  Shape shape;
+  double thickness = 0;  // of a layer around it that already pushes [m]
+  double friction = 0;   // Coulomb's coefficient
+};
+
+// From the collider's frame to the world, when a step starts and when it ends.
+struct ColliderMotion {
+  Eigen::Isometry3d start = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d end = Eigen::Isometry3d::Identity();
+};
+
+// What becomes of L-BFGS' pairs when the contacts change: the planes of the iteration that made a pair are not those in
+// force later.
+enum class ContactHistory {
+  frozen,   // both gradients with the planes of the iteration that made the pair
+  current,  // the rest of t, and 2 k_c n n^T s for each contact that is in force now
+  dropped,  // no pair across a change of the set
+};
+
+// How search directions see contacts, which A does not hold.
+enum class ContactDirection {
+  ignored,   // as the paper
+  diagonal,  // normal motion of touching vertices by its own stiffness
+  low_rank,  // (A + contacts)^-1 by the Woodbury identity
+};
+
+struct ContactSettings {
+  double stiffness = 1e4;  // k_c over m_i / h^2
+  double push_out = 1;     // fastest way out of an overlap [body sizes / s]
+  double stick = 1e-3;     // friction is whole above this speed [body sizes / s]
+  ContactHistory history = ContactHistory::current;
+  ContactDirection direction = ContactDirection::low_rank;
+};
+
+enum class LineSearch { armijo, wolfe, none };
+const char* text_of(LineSearch search);  // as scene files spell it
+
+// Settings that may change between steps.
+struct SolverSettings {
+  int iterations = 10;
+  int history = 5;  // window m of L-BFGS; 0 is plain quasi-Newton
+  LineSearch line_search = LineSearch::armijo;
+  double armijo = 0.3;      // gamma
+  double target_error = 0;  // stop when the error estimate falls below; 0: do all iterations
+  ContactSettings contact;
+};
+
+// All that comes from outside for one step of one body.
+struct FrameInputs {
+  Vec3 gravity = Vec3(0, -9.81, 0);  // [m/s^2]
+  Positions targets;                 // at the end of the step, by Model::handled [m]
+  Positions middle_targets;          // at its middle; only for implicit midpoint [m]
+  SolverSettings solver;
+  const std::vector<Collider>* colliders = nullptr;   // null or empty: nothing to touch, and nothing is paid for it
+  std::vector<ColliderMotion> collider_motions = {};  // of each over the step
+};
+
+inline bool has_colliders(const FrameInputs& inputs) {
+  return inputs.colliders != nullptr && !inputs.colliders->empty();
+}
+
+}  // namespace supple

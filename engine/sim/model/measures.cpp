@@ -1,0 +1,114 @@
+#include "sim/model/measures.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <utility>
+
+#include "sim/elements/element_kernels.h"
+
+namespace supple {
+namespace {
+
+// The value above which values of a given weight lie, of pairs of value and weight. Only the top is sorted.
+double weighted_top(std::vector<std::pair<double, double>>& pairs, double weight_above) {
+  for (std::size_t count = pairs.size() / 256 + 64;; count *= 2) {
+    const auto end = pairs.begin() + static_cast<std::ptrdiff_t>(std::min(count, pairs.size()));
+    std::partial_sort(pairs.begin(), end, pairs.end(), std::greater<>());
+    double above = 0, value = 0;
+    for (auto pair = pairs.begin(); pair != end; ++pair) {
+      value = pair->first;
+      above += pair->second;
+      if (above > weight_above) return value;
+    }
+    if (end == pairs.end()) return value;
+  }
+}
+
+}  // namespace
+
+Deformation deformation(const Model& model, const Positions& x) {
+  std::vector<std::pair<double, double>> stretches;  // stretch, weight
+  std::vector<double> inverted;                      // their volumes
+  stretches.reserve(model.elements);
+  std::vector<double> largest, ratio;
+  double total = 0, volume = 0;
+  int solids = 0;
+  for (std::size_t c = 0; c < model.chunks.size(); ++c) {
+    const Model::ChunkRange& range = model.chunks[c];
+    const std::size_t lanes = std::size_t(range.blocks) * block_width;
+    largest.resize(lanes);
+    ratio.resize(lanes);
+    element_kernels().stretches(model.chunk(static_cast<int>(c)), x.data(), largest.data(), ratio.data());
+    const bool solid = range.kind == ElementKind::tetrahedron;
+    const std::size_t fields = fields_of(range.kind), weight_field = solid ? 9 : 0;
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      if (model.element_of_lane[range.first_block * std::size_t(block_width) + lane] < 0) continue;  // padding
+      const std::size_t block = lane / block_width * fields + weight_field;
+      const double weight = model.field[range.first_field + block * block_width + lane % block_width];
+      if (solid && ratio[lane] < 0) inverted.push_back(weight);
+      if (solid) volume += weight;
+      solids += solid;
+      stretches.emplace_back(largest[lane], weight);
+      total += weight;
+    }
+  }
+  Deformation result;
+  if (solids > 0) {
+    const double least = 1e-6 * volume / solids;
+    result.inverted =
+        static_cast<int>(std::count_if(inverted.begin(), inverted.end(), [least](double v) { return v > least; }));
+  }
+  result.stretch = weighted_top(stretches, 0.001 * total);
+  return result;
+}
+
+Energies energies(const Model& model, const State& state, const Vec3& gravity, Workspace& w) {
+  Energies result;
+  for (int v = 0; v < model.free; ++v) {
+    result.kinetic += 0.5 * model.mass[v] * state.v.row(v).squaredNorm();
+    result.gravitational -= model.mass[v] * (state.x.row(v) - model.rest.row(v)).dot(gravity);
+  }
+  result.elastic = elastic_energy(model, w, state.x);
+  return result;
+}
+
+double jiggle(const Model& model, const Positions& x, const Eigen::Isometry3d& motion) {
+  double furthest2 = 0;
+  for (int v = 0; v < model.vertices; ++v) {
+    furthest2 = std::max(furthest2, (motion * Vec3(model.rest.row(v)) - Vec3(x.row(v))).squaredNorm());
+  }
+  return std::sqrt(furthest2) / model.size;
+}
+
+double penetration(const std::vector<Collider>& colliders, const std::vector<ColliderMotion>& motions,
+                   const Positions& x, const Triangles& triangles) {
+  double deepest = 0;
+  for (std::size_t c = 0; c < colliders.size(); ++c) {
+    const Shape& shape = colliders[c].shape;
+    const Eigen::Isometry3d to_local = motions[c].end.inverse();
+    const double certainty = shape.certainty();
+    for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+      Vec3 corner[3];
+      for (int k = 0; k < 3; ++k) corner[k] = to_local * Vec3(x.row(triangles(t, k)));
+      const Vec3 center = (corner[0] + corner[1] + corner[2]) / 3;
+      double reach = 0;
+      for (const Vec3& p : corner) reach = std::max(reach, (p - center).norm());
+      const double at_center = shape.distance(center);
+      if (certainty * at_center > reach) continue;
+      const auto look = [&](const Vec3& p) {
+        if (shape.distance(p) < -deepest) deepest = std::max(deepest, -shape.closest(p).distance);
+      };
+      look(center);
+      for (int k = 0; k < 3; ++k) {
+        look(corner[k]);
+        look(0.5 * (corner[k] + corner[(k + 1) % 3]));
+      }
+    }
+  }
+  return deepest;
+}
+
+}  // namespace supple

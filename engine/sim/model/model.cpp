@@ -1,0 +1,154 @@
+#include "sim/model/model.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "sim/model/model_values.h"
+
+namespace supple {
+namespace {
+
+constexpr int blocks_a_chunk =
+    32;  // 256 elements and about 130 vertices: positions and forces fit the first-level cache
+
+void number_vertices(Model& model, const BodyDescription& body, const std::vector<char>& held) {
+  std::vector<std::int32_t> compact(model.vertices, -1), free_input;
+  for (std::int32_t v = 0; v < model.vertices; ++v) {
+    if (held[v]) continue;
+    compact[v] = static_cast<std::int32_t>(free_input.size());
+    free_input.push_back(v);
+  }
+  model.free = static_cast<int>(free_input.size());
+  std::vector<std::pair<std::int32_t, std::int32_t>> edges;
+  const auto join = [&](std::int32_t from, std::int32_t to) {
+    if (compact[from] >= 0 && compact[to] >= 0) edges.emplace_back(compact[from], compact[to]);
+  };
+  for (Eigen::Index e = 0; e < body.mesh.tets.rows(); ++e) {
+    for (int a = 0; a < 4; ++a) {
+      for (int b = a + 1; b < 4; ++b) join(body.mesh.tets(e, a), body.mesh.tets(e, b));
+    }
+  }
+  for (const Spring& spring : body.springs) join(spring.from, spring.to);
+  for (const std::int32_t i : fill_reducing_order(model.free, edges)) model.input_of.push_back(free_input[i]);
+  for (std::int32_t v = 0; v < model.vertices; ++v) {
+    if (held[v]) model.input_of.push_back(v);
+  }
+  model.internal_of.resize(model.vertices);
+  for (std::int32_t i = 0; i < model.vertices; ++i) model.internal_of[model.input_of[i]] = i;
+  model.rest.resize(model.vertices, 3);
+  for (std::int32_t i = 0; i < model.vertices; ++i) model.rest.row(i) = body.mesh.rest.row(model.input_of[i]);
+}
+
+// The vertices of some elements, each once.
+std::vector<std::int32_t> vertices_of(const ElementRecord* begin, const ElementRecord* end) {
+  std::vector<std::int32_t> list;
+  for (const ElementRecord* e = begin; e != end; ++e)
+    list.insert(list.end(), e->corner.begin(), e->corner.begin() + corners_of(e->kind));
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+  return list;
+}
+
+// Packs elements of one kind and region into one chunk. Padding repeats the first element without its weight: finite,
+// and worth nothing. local: scratch by vertex.
+void pack_chunk(Model& model, const ElementRecord* begin, const ElementRecord* end, std::vector<std::int32_t>& local) {
+  const int corners = corners_of(begin->kind), fields = fields_of(begin->kind);
+  const auto count = static_cast<int>(end - begin);
+  const std::vector<std::int32_t> list = vertices_of(begin, end);
+  const int blocks = (count + block_width - 1) / block_width;
+  const Model::ChunkRange chunk{
+      begin->kind,      begin->region,       model.blocks,      blocks, int(model.chunk_vertex.size()),
+      int(list.size()), model.corner.size(), model.field.size()};
+  for (int i = 0; i < chunk.vertices; ++i) local[list[i]] = i;
+  model.chunk_vertex.insert(model.chunk_vertex.end(), list.begin(), list.end());
+  model.largest_chunk = std::max(model.largest_chunk, chunk.vertices);
+  model.blocks += blocks;
+  model.corner.resize(chunk.first_corner + std::size_t(blocks) * corners * block_width);
+  model.field.resize(chunk.first_field + std::size_t(blocks) * fields * block_width);
+  for (int place = 0; place < blocks * block_width; ++place) {
+    const bool padding = place >= count;
+    const ElementRecord& element = begin[padding ? 0 : place];
+    const std::size_t block = place / block_width, lane = place % block_width;
+    for (int k = 0; k < corners; ++k) {
+      model.corner[chunk.first_corner + (block * corners + k) * block_width + lane] =
+          static_cast<std::uint16_t>(local[element.corner[k]]);
+    }
+    for (int i = 0; i < fields; ++i) {
+      model.field[chunk.first_field + (block * fields + i) * block_width + lane] =
+          padding && i == fields - 1 ? 0 : element.field[i];
+    }
+    model.element_of_lane.push_back(padding ? -1 : element.input);
+  }
+  model.chunks.push_back(chunk);
+}
+
+void pack_elements(Model& model, const std::vector<ElementRecord>& elements) {
+  model.elements = static_cast<int>(elements.size());
+  std::vector<std::int32_t> local(model.vertices, -1);
+  for (std::size_t begin = 0; begin < elements.size();) {
+    std::size_t end = begin;
+    while (end < elements.size() && elements[end].kind == elements[begin].kind &&
+           elements[end].region == elements[begin].region && end - begin < blocks_a_chunk * block_width)
+      ++end;
+    pack_chunk(model, &elements[begin], elements.data() + end, local);
+    begin = end;
+  }
+  std::vector<std::vector<std::int32_t>> slots(model.free);
+  for (std::size_t slot = 0; slot < model.chunk_vertex.size(); ++slot) {
+    if (model.chunk_vertex[slot] < model.free)
+      slots[model.chunk_vertex[slot]].push_back(static_cast<std::int32_t>(slot));
+  }
+  model.slot_begin.push_back(0);
+  for (const auto& list : slots) {
+    model.slots.insert(model.slots.end(), list.begin(), list.end());
+    model.slot_begin.push_back(static_cast<std::int32_t>(model.slots.size()));
+  }
+}
+
+}  // namespace
+
+ElementChunk Model::chunk(int index) const {
+  const ChunkRange& c = chunks[index];
+  const bool solid = c.kind == ElementKind::tetrahedron;
+  return {c.kind,
+          solid ? &materials[c.region] : nullptr,
+          solid && !fibres.empty() && fibres[c.region].kappa > 0 ? &fibres[c.region] : nullptr,
+          c.blocks,
+          c.vertices,
+          chunk_vertex.data() + c.first_vertex,
+          corner.data() + c.first_corner,
+          field.data() + c.first_field};
+}
+
+Model build_model(const BodyDescription& body) {
+  Model model;
+  model.name = body.name;
+  model.vertices = static_cast<int>(body.mesh.rest.rows());
+  model.size = bounds_of(body.mesh.rest).diagonal();
+  for (const int region : body.mesh.regions) SUPPLE_CHECK(std::size_t(region), <, body.materials.size());
+  for (const Spring& spring : body.springs) SUPPLE_CHECK(std::max(spring.from, spring.to), <, model.vertices);
+
+  std::vector<char> held(model.vertices, 0), taken(model.vertices, 0);
+  for (const Handle& handle : body.handles) {
+    for (const std::int32_t v : handle.vertices) {
+      if (taken[v])
+        throw InputError(body.name,
+                         fmt::format("handle '{}' holds a vertex that another handle holds already", handle.name));
+      taken[v] = 1;
+      held[v] = handle.spring <= 0;
+    }
+  }
+  if (std::count(held.begin(), held.end(), 0) == 0)
+    throw InputError(body.name, "every vertex is held: nothing is left to move");
+  number_vertices(model, body, held);
+  for (std::size_t h = 0; h < body.handles.size(); ++h) {
+    for (const std::int32_t v : body.handles[h].vertices)
+      model.handled.push_back({model.internal_of[v], static_cast<std::int32_t>(h)});
+  }
+  ModelValues values(model, body);
+  pack_elements(model, values.elements());
+  values.set(model, body);
+  return model;
+}
+
+}  // namespace supple

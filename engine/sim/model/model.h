@@ -1,0 +1,128 @@
+// A body, constant while it is stepped: elements in SIMD blocks, masses, handles and the factor of A = M/h^2 + L (Liu
+// et al. 2017, section 3.3). Not here: where the body is (State), what drives it (FrameInputs). Vertices are
+// renumbered: free ones first, in the factor's order of elimination (so that solves permute nothing), then those that
+// hard handles hold. Elements are sorted by material and by their first vertex.
+#pragma once
+
+#include <string>
+
+#include "geometry/mesh.h"
+#include "sim/elements/element_kernels.h"
+#include "sim/elements/element_records.h"
+#include "sim/linear/cholesky.h"
+#include "sim/materials/material.h"
+
+namespace supple {
+
+// Vertices that follow a motion from outside.
+struct Handle {
+  std::string name;
+  std::vector<std::int32_t> vertices;  // of the mesh, in its own numbering; one vertex belongs to one handle
+  double spring = 0;  // stiffness of each vertex's spring to its target [N/m]; 0: hard, the rows are eliminated
+  bool holds = true;  // springs that have been let go pull at nothing until they hold again
+};
+
+enum class Integrator { backward_euler, implicit_midpoint };
+
+// What a step minimises: w/(2 h^2) |x - y|^2_M + e E(theta x + (1 - theta) q), with y = q + h v + f h^2 M^-1 f_ext.
+// Backward Euler is equation 3; implicit midpoint evaluates forces halfway (Hairer, Lubich, Wanner 2006, "Geometric
+// numerical integration", section II.1).
+struct TimeScheme {
+  double inertia, energy, theta, force;  // w, e, theta, f
+};
+constexpr TimeScheme scheme_of(Integrator integrator) {
+  return integrator == Integrator::backward_euler ? TimeScheme{1, 1, 1, 1} : TimeScheme{2, 2, 0.5, 0.5};
+}
+
+// What a model is built from.
+struct BodyDescription {
+  std::string name;
+  TetMesh mesh;                     // in its place in the world at rest
+  std::vector<Material> materials;  // by region tag of the elements
+  std::vector<Fibre> fibres;        // by region tag; empty: none
+  std::vector<Spring> springs;      // beside the tetrahedra or, for cloth, instead of them
+  double density = 1000;            // of the tetrahedra [kg/m^3]
+  std::vector<double> point_mass;   // by vertex, on top of the tetrahedra's [kg]; empty: none
+  std::vector<Handle> handles;
+  double time_step = 1.0 / 30;  // h [s]
+  Integrator integrator = Integrator::backward_euler;
+  double damping = 0;                                 // beta of stiffness-proportional damping [s]
+  StretchInterval fit;                                // equation 11
+  Precision precision = Precision::single_precision;  // of the factor, hence of search directions
+};
+
+struct Model {
+  std::uint64_t id = 0;  // new whenever its numbers are set, so that whoever remembers something of it knows
+  std::string name;
+  int vertices = 0;  // n
+  int free = 0;      // vertices that the solver moves: 0 .. free-1
+  double time_step = 0;
+  double size = 0;                        // diagonal of the rest bounding box [m]
+  Positions rest;                         // n x 3 [m]
+  std::vector<double> mass;               // n [kg]
+  double total_mass = 0;                  // of the free vertices [kg]
+  std::vector<std::int32_t> input_of;     // vertex of the input file by ours
+  std::vector<std::int32_t> internal_of;  // ours by vertex of the input file
+
+  Integrator integrator = Integrator::backward_euler;
+  TimeScheme scheme = scheme_of(Integrator::backward_euler);
+  bool energy_may_be_negative = false;
+  double mean_stiffness = 0;  // trace of L over the number of elements [N/m]
+
+  std::vector<Material> materials;         // by region
+  std::vector<Fibre> fibres;               // by region; empty: none
+  std::vector<SystemStiffness> stiffness;  // k by region
+
+  // Elements, in blocks of block_width; layouts as in ElementChunk.
+  int elements = 0;
+  int blocks = 0;
+  std::vector<std::int32_t> element_of_lane;  // input's element of the chunk's kind by lane; -1 for padding
+  std::vector<std::uint16_t> corner;
+  AlignedVector<double> field;
+  std::vector<std::int32_t> chunk_vertex;  // all chunks' lists, one behind the other
+  struct ChunkRange {
+    ElementKind kind;
+    int region;
+    int first_block, blocks;
+    int first_vertex, vertices;  // in chunk_vertex
+    std::size_t first_corner, first_field;
+  };
+  std::vector<ChunkRange> chunks;
+  int largest_chunk = 0;  // vertices
+
+  // Where each free vertex stands in the chunks' lists: slots[slot_begin[v] .. slot_begin[v+1]).
+  std::vector<std::int32_t> slot_begin;
+  std::vector<std::int32_t> slots;
+
+  struct HandleVertex {
+    std::int32_t vertex;
+    std::int32_t handle;
+  };
+  std::vector<HandleVertex> handled;  // the order of FrameInputs::targets
+  struct Coupling {                   // an entry of A between a free vertex and one that a hard handle holds
+    std::int32_t free;
+    std::int32_t held;
+    double value;
+  };
+  std::vector<Coupling> couplings;  // sorted by free vertex
+  std::vector<double> spring;       // by free vertex [N/m]; empty when all handles are hard
+  bool free_floating = false;       // nothing holds it: A has the translations as known eigenvectors
+
+  // beta/h L over all vertices, by row; empty without damping. [N/m]
+  struct SparseRows {
+    std::vector<std::int32_t> begin;  // n + 1
+    std::vector<std::int32_t> column;
+    std::vector<double> value;
+  };
+  SparseRows damping;
+
+  std::vector<double> diagonal;  // of A, by free vertex [N/m]
+  CholeskyFactor factor;         // of A = w M/h^2 + (e theta^2 + beta/h) L + springs of handles, over the free vertices
+
+  ElementChunk chunk(int index) const;
+};
+
+// Throws RunError (with the body's name) when A cannot be factored, InputError when the description contradicts itself.
+Model build_model(const BodyDescription& description);
+
+}  // namespace supple

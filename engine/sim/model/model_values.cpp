@@ -1,0 +1,211 @@
+#include "sim/model/model_values.h"
+
+#include <algorithm>
+#include <atomic>
+#include <numeric>
+
+#include "base/error.h"
+
+namespace supple {
+namespace {
+
+// Corners in the model's numbering, in the order in which they are packed: by kind and region, then by first vertex.
+void sort_elements(const Model& model, std::vector<ElementRecord>& elements) {
+  for (ElementRecord& element : elements) {
+    for (int k = 0; k < corners_of(element.kind); ++k) element.corner[k] = model.internal_of[element.corner[k]];
+  }
+  const auto key = [](const ElementRecord& e) {
+    const auto end = e.corner.begin() + corners_of(e.kind);
+    return std::tuple(e.kind, e.region, *std::min_element(e.corner.begin(), end), e.input);
+  };
+  std::sort(elements.begin(), elements.end(),
+            [&](const ElementRecord& a, const ElementRecord& b) { return key(a) < key(b); });
+}
+
+// The pattern of L over all vertices, both triangles, diagonal included.
+Eigen::SparseMatrix<double> pattern_of(const Model& model, const std::vector<ElementRecord>& elements) {
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(elements.size() * 16 + model.vertices);
+  for (int v = 0; v < model.vertices; ++v) entries.emplace_back(v, v, 0.0);
+  for (const ElementRecord& element : elements) {
+    for (int a = 0; a < corners_of(element.kind); ++a) {
+      for (int b = 0; b < corners_of(element.kind); ++b)
+        entries.emplace_back(element.corner[a], element.corner[b], 0.0);
+    }
+  }
+  Eigen::SparseMatrix<double> matrix(model.vertices, model.vertices);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+// Springs' stiffness stands among the packed fields.
+void set_spring_fields(Model& model, const std::vector<Spring>& springs) {
+  for (const Model::ChunkRange& chunk : model.chunks) {
+    if (chunk.kind != ElementKind::spring) continue;
+    for (int place = 0; place < chunk.blocks * block_width; ++place) {
+      const std::size_t block = place / block_width, lane = place % block_width;
+      const std::int32_t input = model.element_of_lane[std::size_t(chunk.first_block) * block_width + place];
+      if (input < 0) continue;  // padding, which is worth nothing
+      double* field = &model.field[chunk.first_field + block * SpringElement::fields * block_width + lane];
+      field[0] = springs[input].length;
+      field[block_width] = springs[input].stiffness;
+    }
+  }
+}
+
+void set_masses(Model& model, const BodyDescription& body) {
+  model.mass.assign(model.vertices, 0.0);
+  for (Eigen::Index e = 0; e < body.mesh.tets.rows(); ++e) {
+    const double quarter = body.density * tet_volume(body.mesh, e) / 4;
+    for (int k = 0; k < 4; ++k) model.mass[model.internal_of[body.mesh.tets(e, k)]] += quarter;
+  }
+  if (!body.point_mass.empty()) SUPPLE_CHECK(body.point_mass.size(), ==, std::size_t(model.vertices));
+  for (std::size_t v = 0; v < body.point_mass.size(); ++v) model.mass[model.internal_of[v]] += body.point_mass[v];
+  model.total_mass = std::accumulate(model.mass.begin(), model.mass.begin() + model.free, 0.0);
+}
+
+void set_handle_springs(Model& model, const BodyDescription& body) {
+  model.spring.clear();
+  model.free_floating = model.free == model.vertices;
+  for (const auto& [vertex, h] : model.handled) {
+    const Handle& handle = body.handles[h];
+    if (handle.spring <= 0) continue;
+    if (model.spring.empty()) model.spring.assign(model.free, 0.0);
+    if (!handle.holds) continue;
+    model.spring[vertex] = handle.spring;
+    model.free_floating = false;
+  }
+}
+
+}  // namespace
+
+namespace {
+
+std::size_t pairs_of(const ElementRecord& element) {
+  return static_cast<std::size_t>(corners_of(element.kind)) * static_cast<std::size_t>(corners_of(element.kind));
+}
+
+// values[place] += weight G^T G, corner by corner.
+void add_term(const SystemTerm& term, int corners, const std::int32_t* place, double* values) {
+  for (int a = 0; a < corners; ++a) {
+    for (int b = 0; b < corners; ++b) {
+      double product = 0;
+      for (int i = 0; i < 3; ++i) product += term.row[a][i] * term.row[b][i];
+      values[place != nullptr ? place[a * corners + b] : a * corners + b] += term.weight * product;
+    }
+  }
+}
+
+// Of A: what inertia and the springs of handles add to L [N/m].
+double diagonal_part(const Model& model, std::int32_t v) {
+  const double held =
+      model.spring.empty() ? 0 : model.scheme.energy * model.scheme.theta * model.scheme.theta * model.spring[v];
+  return model.scheme.inertia * model.mass[v] / (model.time_step * model.time_step) + held;
+}
+
+}  // namespace
+
+ModelValues::ModelValues(const Model& model, const BodyDescription& body)
+    : elements_(element_records(body.mesh, body.springs)) {
+  sort_elements(model, elements_);
+  elastic_ = pattern_of(model, elements_);
+  place_.reserve(elements_.size() * 16);
+  for (const ElementRecord& element : elements_) {
+    share_.resize(place_.size() + pairs_of(element));
+    add_term(unit_term(element), corners_of(element.kind), nullptr, &share_[place_.size()]);
+    for (int a = 0; a < corners_of(element.kind); ++a) {
+      const int column = element.corner[a];
+      const int* begin = elastic_.innerIndexPtr() + elastic_.outerIndexPtr()[column];
+      const int* end = elastic_.innerIndexPtr() + elastic_.outerIndexPtr()[column + 1];
+      for (int b = 0; b < corners_of(element.kind); ++b)
+        place_.push_back(
+            static_cast<std::int32_t>(std::lower_bound(begin, end, element.corner[b]) - elastic_.innerIndexPtr()));
+    }
+  }
+}
+
+// L = sum_e V_e k_e G_e^T G_e (equation 8 of the paper with its k).
+void ModelValues::add_up_elastic(const Model& model) {
+  double* values = elastic_.valuePtr();
+  std::fill(values, values + elastic_.nonZeros(), 0.0);
+  std::size_t at = 0;
+  for (const ElementRecord& element : elements_) {
+    const bool solid = element.kind == ElementKind::tetrahedron;
+    const std::size_t first = at;
+    const double k = solid ? model.stiffness[element.region].k : element.field[1];
+    for (const std::size_t end = at + pairs_of(element); at < end; ++at) values[place_[at]] += k * share_[at];
+    if (solid && !model.fibres.empty()) {
+      const Fibre& fibre = model.fibres[element.region];
+      if (fibre.kappa > 0) add_term(fibre_term(element, fibre), corners_of(element.kind), &place_[first], values);
+    }
+  }
+}
+
+// A over the free vertices, its lower triangle; what couples them to held vertices goes to model.couplings, and what
+// damping needs to model.damping.
+Eigen::SparseMatrix<double> ModelValues::system_matrix(Model& model, double damping) const {
+  const double h = model.time_step, drag = damping / h;
+  const double stiffness = model.scheme.energy * model.scheme.theta * model.scheme.theta + drag;
+  model.mean_stiffness = elastic_.diagonal().sum() / static_cast<double>(elements_.size());
+  model.couplings.clear();
+  model.damping = {};
+  if (damping > 0) model.damping.begin.push_back(0);
+  Eigen::SparseMatrix<double> matrix(model.free, model.free);
+  matrix.reserve(elastic_.nonZeros() / 2 + model.free);
+  for (int column = 0; column < model.vertices; ++column) {
+    if (column < model.free) matrix.startVec(column);
+    for (Eigen::SparseMatrix<double>::InnerIterator entry(elastic_, column); entry; ++entry) {
+      const auto row = static_cast<std::int32_t>(entry.row());
+      const double own = row == column && row < model.free ? diagonal_part(model, row) : 0;
+      if (column < model.free && row >= column && row < model.free)
+        matrix.insertBack(row, column) = own + stiffness * entry.value();
+      if (column < model.free && row >= model.free)
+        model.couplings.push_back({column, row, stiffness * entry.value()});  // L is symmetric
+      if (damping > 0) {
+        model.damping.column.push_back(row);
+        model.damping.value.push_back(drag * entry.value());
+      }
+    }
+    if (damping > 0) model.damping.begin.push_back(static_cast<std::int32_t>(model.damping.column.size()));
+  }
+  matrix.finalize();
+  return matrix;
+}
+
+void ModelValues::set(Model& model, const BodyDescription& body) {
+  static std::atomic<std::uint64_t> settings{0};
+  model.id = ++settings;
+  model.time_step = body.time_step;
+  model.integrator = body.integrator;
+  model.scheme = scheme_of(body.integrator);
+  model.materials = body.materials;
+  model.fibres.clear();
+  if (std::any_of(body.fibres.begin(), body.fibres.end(), [](const Fibre& f) { return f.kappa > 0; })) {
+    SUPPLE_CHECK(body.fibres.size(), ==, body.materials.size());
+    model.fibres = body.fibres;
+  }
+  model.stiffness.clear();
+  model.energy_may_be_negative = false;
+  for (const Material& material : model.materials) {
+    model.stiffness.push_back(system_stiffness(material, body.fit));
+    model.energy_may_be_negative |= may_be_negative(material);
+  }
+  SUPPLE_CHECK(elements_.size(), ==, std::size_t(body.mesh.tets.rows()) + body.springs.size());
+  for (ElementRecord& element : elements_) {
+    if (element.kind == ElementKind::spring) element.field[1] = body.springs[element.input].stiffness;
+  }
+  set_spring_fields(model, body.springs);
+  set_masses(model, body);
+  set_handle_springs(model, body);
+  add_up_elastic(model);
+  try {
+    const Eigen::SparseMatrix<double> system = system_matrix(model, body.damping);
+    const Eigen::VectorXd diagonal = system.diagonal();
+    model.diagonal.assign(diagonal.begin(), diagonal.end());
+    model.factor.factorize(system, body.precision);
+  } catch (const RunError& error) {
+    throw RunError(fmt::format("body '{}': {}", body.name, error.what()));
+  }
+}
+
+}  // namespace supple

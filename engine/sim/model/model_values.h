@@ -1,0 +1,32 @@
+// The numbers of a model that its structure does not fix: materials, masses, stiffnesses, time step, and what follows
+// from them, A and its factor. Made when a model is built, and again when a parameter changes while the body moves.
+#pragma once
+
+#include "sim/model/model.h"
+
+namespace supple {
+
+class ModelValues {
+ public:
+  // Of a model whose vertices are numbered. Elements are sorted by kind and region, then by first vertex, corners in
+  // the model's numbering.
+  ModelValues(const Model& model, const BodyDescription& body);
+
+  const std::vector<ElementRecord>& elements() const { return elements_; }
+
+  // Whatever the description says now, in place; numbering and packing stay. Mesh, ends of springs, and
+  // handles' vertices and hardness must be those of the description that the model was built from. Throws RunError when
+  // A cannot be factored; the model then must not be stepped.
+  void set(Model& model, const BodyDescription& body);
+
+ private:
+  void add_up_elastic(const Model& model);
+  Eigen::SparseMatrix<double> system_matrix(Model& model, double damping) const;
+
+  std::vector<ElementRecord> elements_;
+  Eigen::SparseMatrix<double> elastic_;  // L over all vertices, both triangles [N/m]
+  std::vector<std::int32_t> place_;      // of each element's pairs of corners among its numbers
+  std::vector<double> share_;            // what each adds there, for k = 1 [m], or a spring's stiffness of 1
+};
+
+}  // namespace supple

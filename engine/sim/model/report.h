@@ -1,0 +1,61 @@
+// What a step tells of itself: times by phase, iterations, how far it came, why it ended.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/types.h"
+
+namespace supple {
+
+// What the report says of contacts.
+struct ContactCounts {
+  int touching = 0;  // pairs of vertex and collider, at the end
+  int changes = 0;   // pairs that came or went, over all iterations
+  int cycles = 0;    // iterations that brought the set of the one before last back
+};
+
+enum class StopReason { iterations, round_off, target_error, line_search_failed };
+const char* text_of(StopReason reason);
+
+struct StepFailure {
+  std::string phase;
+  int vertex = -1;   // of the input file
+  std::string what;  // "the position is not finite"
+};
+
+// One iteration, for who looks closer; or, with alpha = 0, a new start from where the body was.
+struct IterationRecord {
+  double elapsed_ms = 0;     // since the step was entered
+  double decrease = 0;       // of g [J]
+  double alpha = 1;          // step length
+  struct Full {              // of the full step, alpha = 1
+    bool decreases = true;   // as Armijo's test asks
+    double slope_ratio = 0;  // slope there over slope at the iterate
+  } full;
+};
+
+struct StepReport {
+  double step_ms = 0;      // entry to return
+  double evaluate_ms = 0;  // energies and gradients
+  double solve_ms = 0;     // A d = r
+  double lbfgs_ms = 0;     // recursions
+  double collide_ms = 0;   // finding contacts; 0 without colliders
+  double other_ms = 0;     // the rest; the five add up to step_ms
+  double start_ms = 0;     // until the first iterate was evaluated
+  int iterations = 0;
+  int line_search = 0;                   // trial evaluations
+  std::vector<double> objective;         // g by iteration, the start first; reserved by the workspace [J]
+  std::vector<IterationRecord> history;  // by iteration
+  double decrease = 0;                   // g(start) - g(end), summed without cancellation [J]
+  double remaining_estimate = 0;         // g(end) - g*, continuing the decreases as they shrank [J]
+  double error_estimate = 0;             // of equation 12, from that
+  double slope = 0;                      // tr(grad^T d) of the last direction [J]
+  StopReason stop_reason = StopReason::iterations;
+  ContactCounts contacts;
+  Vec3 contact_force = Vec3::Zero();  // of all colliders on the body, at the end of the step [N]
+  bool failed = false;
+  StepFailure failure;
+};
+
+}  // namespace supple

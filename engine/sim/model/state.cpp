@@ -1,0 +1,25 @@
+#include "sim/model/state.h"
+
+#include "base/hash.h"
+#include "base/trace.h"
+#include "sim/model/model.h"
+
+namespace supple {
+
+State rest_state(const Model& model) { return {model.rest, Positions::Zero(model.vertices, 3), 0, {}}; }
+
+Positions in_input_order(const Model& model, const Positions& internal) {
+  Positions result(model.vertices, 3);
+  for (int i = 0; i < model.vertices; ++i) result.row(model.input_of[i]) = internal.row(i);
+  return result;
+}
+
+std::uint64_t state_hash(const Model& model, const State& state) {
+  const Zone zone("hash");
+  Positions both(2 * model.vertices, 3);
+  both.topRows(model.vertices) = in_input_order(model, state.x);
+  both.bottomRows(model.vertices) = in_input_order(model, state.v);
+  return hash_bytes(both.data(), sizeof(double) * both.size());
+}
+
+}  // namespace supple

@@ -1,0 +1,103 @@
+#include "sim/solver/fields.h"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sim/model/element_view.h"
+
+namespace supple {
+namespace {
+
+double von_mises(const Mat3& f, const Mat3& piola) {
+  const double volume = f.determinant();
+  if (volume == 0) return std::numeric_limits<double>::quiet_NaN();
+  const Mat3 cauchy = piola * f.transpose() / volume;
+  const Mat3 deviator = cauchy - cauchy.trace() / 3 * Mat3::Identity();
+  return std::sqrt(1.5) * deviator.norm();
+}
+
+// One material's elements, one by one.
+template <class M>
+void add_tetrahedra(const Model& model, const Model::ChunkRange& range, const M& material, const Fibre* fibre,
+                    const Positions& x, ElementFields& fields) {
+  for_each_element(model, range, [&](const ElementView& element) {
+    const Mat3 f = deformation_gradient(x, element);
+    Matrix3<double> at, stress;
+    Mat3 piola;
+    for (int i = 0; i < 9; ++i) at.m[i] = f(i / 3, i % 3);
+    double density = density_of(material, at, stress);
+    if (fibre != nullptr) density += add_fibre(*fibre, at, stress);
+    for (int i = 0; i < 9; ++i) piola(i / 3, i % 3) = stress.m[i];
+    const Svd3<double> parts = svd(at);
+    fields.stretch.row(element.input) << parts.s[0], parts.s[1], parts.s[2];
+    fields.von_mises[element.input] = von_mises(f, piola);
+    fields.energy[element.input] = density;
+  });
+}
+
+void add_springs(const Model& model, const Model::ChunkRange& range, const Positions& x, ElementFields& fields) {
+  for_each_element(model, range, [&](const ElementView& element) {
+    double ends[2][3], field[SpringElement::fields], force[1][3];
+    for (int k = 0; k < 2; ++k) {
+      for (int i = 0; i < 3; ++i) ends[k][i] = x(element.corner[k], i);
+    }
+    std::copy_n(element.field.begin(), SpringElement::fields, field);
+    const double energy = SpringElement{}.energy(ends, field, force);
+    for (int k = 0; k < 2; ++k) fields.spring_energy[model.input_of[element.corner[k]]] += 0.5 * energy;
+  });
+}
+
+}  // namespace
+
+ElementFields element_fields(const Model& model, const Positions& x) {
+  ElementFields fields;
+  int solids = 0;
+  for_each_element(model, [&](const ElementView& element) { solids += element.kind == ElementKind::tetrahedron; });
+  fields.stretch.resize(solids, 3);
+  fields.von_mises.resize(solids);
+  fields.energy.resize(solids);
+  if (solids < model.elements) fields.spring_energy.assign(model.vertices, 0.0);
+  for (std::size_t c = 0; c < model.chunks.size(); ++c) {
+    const Model::ChunkRange& range = model.chunks[c];
+    if (range.kind == ElementKind::spring) {
+      add_springs(model, range, x, fields);
+      continue;
+    }
+    const Fibre* fibre = model.chunk(static_cast<int>(c)).fibre;
+    std::visit([&](const auto& material) { add_tetrahedra(model, range, material, fibre, x, fields); },
+               model.materials[range.region]);
+  }
+  return fields;
+}
+
+Positions contact_forces(const Model& model, const Workspace& workspace, const Positions& x) {
+  Positions force = Positions::Zero(model.vertices, 3);
+  add_contacts(workspace.contact.found, workspace.contact.stick_length, x, nullptr, workspace.direction, &force, -1);
+  return in_input_order(model, force);
+}
+
+std::vector<std::array<double, 2>> triangle_stretches(const Positions& rest, const Positions& x,
+                                                      const Triangles& triangles) {
+  using Edges = Eigen::Matrix<double, 3, 2>;
+  const auto edges = [&](const Positions& points, Eigen::Index t) {
+    Edges e;
+    for (int k = 0; k < 2; ++k) e.col(k) = (points.row(triangles(t, k + 1)) - points.row(triangles(t, 0))).transpose();
+    return e;
+  };
+  std::vector<std::array<double, 2>> stretches(triangles.rows());
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    // Squared stretches are the eigenvalues of (E^T E)(R^T R)^-1, with the edges E now and R at rest.
+    const Edges r = edges(rest, t), e = edges(x, t);
+    const Eigen::Matrix2d ratio = (e.transpose() * e) * (r.transpose() * r).inverse();
+    const double half = 0.5 * ratio.trace();
+    const double apart = std::sqrt(std::max(0.0, half * half - ratio.determinant()));
+    stretches[t] = {std::sqrt(half + apart), std::sqrt(std::max(0.0, half - apart))};
+    if (!ratio.allFinite()) stretches[t].fill(std::numeric_limits<double>::quiet_NaN());
+  }
+  return stretches;
+}
+
+}  // namespace supple

@@ -1,0 +1,33 @@
+// Fields over a body at a pose, for who looks at them in another program: stretches, stress, energy density, contact
+// forces. Evaluated by the materials' own formulas, outside the step. Not here: numbers for a whole body (measures.h).
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "sim/solver/objective.h"
+
+namespace supple {
+
+struct ElementFields {
+  // By tetrahedron of the input; empty without any.
+  Positions stretch;              // signed singular values of F, the largest first, m x 3
+  std::vector<double> von_mises;  // of Cauchy's stress P F^T / det F, fibres included; NaN where det F = 0 [Pa]
+  std::vector<double> energy;     // density, over rest volume, fibres included [J/m^3]
+  // By vertex of the input, half of each spring's at each end; empty without springs.
+  std::vector<double> spring_energy;  // [J]
+};
+
+// x: in the model's order.
+ElementFields element_fields(const Model& model, const Positions& x);
+
+// What colliders do to each vertex at the end of the workspace's last step, friction included, by vertex of the input,
+// n x 3 [N]. x: where that step ended, in the model's order.
+Positions contact_forces(const Model& model, const Workspace& workspace, const Positions& x);
+
+// The two stretches of each triangle in its plane, the larger one first. rest, x: n x 3 in the order of the triangles'
+// indices; a triangle without area at rest has NaN.
+std::vector<std::array<double, 2>> triangle_stretches(const Positions& rest, const Positions& x,
+                                                      const Triangles& triangles);
+
+}  // namespace supple

@@ -1,0 +1,199 @@
+#include "sim/solver/lbfgs.h"
+
+#include <algorithm>
+#include <array>
+
+#include "base/timing.h"
+#include "base/trace.h"
+#include "sim/linear/linear_kernels.h"
+#include "sim/contact/contact_direction.h"
+
+namespace supple {
+namespace {
+
+constexpr int most_pairs = 128;
+constexpr long numbers_a_chunk = 3L * vertices_a_chunk;
+
+using Pointers = std::array<const double*, most_pairs>;
+using Numbers = std::array<double, most_pairs>;
+
+// result[i] = a_i . b, chunk by chunk, so that the sums do not depend on threads.
+void dot_all(const Model& model, Workspace& workspace, const Pointers& a, int count, const double* b, double* result) {
+  if (count == 0) return;
+  const int chunks = vertex_chunks(model);
+  double* partial = workspace.partial.data();
+  run_chunks(workspace, chunks, long(model.free) * count, [&](int c) {
+    linear_kernels().dots(a.data(), count, b, c * numbers_a_chunk, std::min(3L * model.free, (c + 1) * numbers_a_chunk),
+                   partial + c * count);
+  });
+  std::fill(result, result + count, 0.0);
+  for (int c = 0; c < chunks; ++c) {
+    for (int i = 0; i < count; ++i) result[i] += partial[c * count + i];
+  }
+}
+
+void add_all(const Model& model, Workspace& workspace, const Pointers& a, const double* factors, int count, double* r) {
+  if (count == 0) return;
+  run_chunks(workspace, vertex_chunks(model), long(model.free) * count, [&](int c) {
+    linear_kernels().add_scaled(a.data(), factors, count, r, c * numbers_a_chunk,
+                         std::min(3L * model.free, (c + 1) * numbers_a_chunk));
+  });
+}
+
+// The share of normal forces in all pairs, t_i += K s_i, when that is kept apart (ContactHistory::current). Friction is
+// not in it: its stiffness falls as it slides, and pairs tell how.
+class ContactPairs {
+ public:
+  ContactPairs(const Model& model, const ContactSettings& settings, Workspace& w, const Pointers& s, int count)
+      : correction_(w.correction) {
+    stiff_directions(model, w);
+    if (settings.history != ContactHistory::current || count == 0 || correction_.normals == 0) return;
+    count_ = count;
+    normals_ = correction_.normals;
+    correction_.along.resize(normals_ * count);
+    correction_.products.assign(std::size_t(count) * count, 0.0);
+    for (std::size_t k = 0; k < normals_; ++k) {
+      const StiffDirection& stiff = correction_.wanted[k];
+      double* along = &correction_.along[k * count];
+      for (int i = 0; i < count; ++i)
+        along[i] = Eigen::Map<const Vec3>(s[i] + 3 * std::size_t(stiff.vertex)).dot(stiff.axis);
+      for (int i = 0; i < count; ++i) {
+        for (int j = 0; j < count; ++j) correction_.products[i * count + j] += stiff.stiffness * along[i] * along[j];
+      }
+    }
+  }
+
+  // s_i . K s_j
+  double product(int i, int j) const { return count_ > 0 ? correction_.products[i * count_ + j] : 0; }
+
+  // r += sum factor_i K s_i
+  void add(const double* factors, Positions& r) const {
+    for (std::size_t k = 0; k < normals_; ++k) {
+      const StiffDirection& stiff = correction_.wanted[k];
+      double sum = 0;
+      for (int i = 0; i < count_; ++i) sum += factors[i] * correction_.along[k * count_ + i];
+      r.row(stiff.vertex) += stiff.stiffness * sum * stiff.axis.transpose();
+    }
+  }
+
+  // K s_i . z
+  double dot(int i, const Positions& z) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < normals_; ++k) {
+      const StiffDirection& stiff = correction_.wanted[k];
+      sum += stiff.stiffness * correction_.along[k * count_ + i] * z.row(stiff.vertex).dot(stiff.axis);
+    }
+    return sum;
+  }
+
+ private:
+  ContactCorrection& correction_;
+  int count_ = 0;
+  std::size_t normals_ = 0;
+};
+
+}  // namespace
+
+double search_direction(const Model& model, const FrameInputs& inputs, Workspace& workspace, const PairHistory& history,
+                        InitialInverse& initial) {
+  Stopwatch watch;
+  Zone zone("L-BFGS");
+  const int count = history.count;
+  Pointers s{}, t{};
+  for (int i = 0; i < count; ++i) {
+    s[i] = workspace.step_pairs[history.place(i)].data();
+    t[i] = workspace.gradient_pairs[history.place(i)].data();
+  }
+  const ContactPairs contacts(model, inputs.solver.contact, workspace, s, count);
+  // s_i . t_j of the i-th and j-th newest pairs
+  const auto product = [&](int i, int j) {
+    return workspace.products[history.place(i) * history.window + history.place(j)] + contacts.product(i, j);
+  };
+
+  // The recursion's inner products change as r and z do; with the products of the pairs among themselves at hand, one
+  // pass over the vectors gives them all, and one more applies the result.
+  Positions& r = workspace.direction;
+  r = workspace.gradient;
+  Numbers alpha{}, against{}, factor{};
+  dot_all(model, workspace, s, count, r.data(), against.data());
+  for (int i = 0; i < count; ++i) {
+    double left = against[i];
+    for (int j = 0; j < i; ++j) left -= alpha[j] * product(i, j);
+    alpha[i] = left / product(i, i);
+    factor[i] = -alpha[i];
+  }
+  add_all(model, workspace, t, factor.data(), count, r.data());
+  contacts.add(factor.data(), r);
+  workspace.report.lbfgs_ms += watch.lap_ms();
+
+  zone.next("solve");
+  Positions& z = workspace.trial_gradient;  // free until the next trial
+  initial.apply(model, inputs, workspace, r, z);
+  r = z;
+  workspace.report.solve_ms += watch.lap_ms();
+
+  zone.next("L-BFGS");
+  dot_all(model, workspace, t, count, r.data(), against.data());
+  for (int i = 0; i < count; ++i) against[i] += contacts.dot(i, r);
+  for (int i = count - 1; i >= 0; --i) {
+    double beta = against[i];
+    for (int j = count - 1; j > i; --j) beta += factor[j] * product(j, i);
+    factor[i] = alpha[i] - beta / product(i, i);
+  }
+  add_all(model, workspace, s, factor.data(), count, r.data());
+  r = -r;
+  workspace.report.lbfgs_ms += watch.lap_ms();
+  zone.next("solve");
+  const bool bent = initial.bend(model, inputs, workspace);
+  workspace.report.solve_ms += watch.lap_ms();
+  zone.next("L-BFGS");
+  double slope = 0;
+  Pointers gradient{workspace.gradient.data()};
+  dot_all(model, workspace, gradient, 1, r.data(), &slope);
+  if (bent && !(slope < 0)) {
+    r = workspace.correction.unbent;
+    dot_all(model, workspace, gradient, 1, r.data(), &slope);
+  }
+  workspace.report.lbfgs_ms += watch.lap_ms();
+  return slope;
+}
+
+void remember_pair(const Model& model, const ContactSettings& contact, Workspace& workspace, PairHistory& history) {
+  if (history.window == 0) return;
+  const int next = (history.newest + 1) % history.window;
+  Positions& s = workspace.step_pairs[next];
+  Positions& t = workspace.gradient_pairs[next];
+  s = workspace.trial.topRows(model.free) - workspace.x.topRows(model.free);
+  t = workspace.trial_gradient - workspace.gradient;
+  if (contact.history == ContactHistory::current && !workspace.contact.earlier.empty()) {
+    // Both gradients have the planes that the search went by.
+    add_normal_forces(workspace.contact.earlier, workspace.trial, 1, t);
+    add_normal_forces(workspace.contact.earlier, workspace.x, -1, t);
+  }
+
+  Pointers other{s.data(), t.data()};
+  double of_t[2];  // s.t and t.t
+  dot_all(model, workspace, other, 2, t.data(), of_t);
+  double of_s = 0;
+  dot_all(model, workspace, other, 1, s.data(), &of_s);
+  // Curvature along s that is negative or lost in round-off would spoil the matrix: Nocedal and Wright 2006,
+  // section 7.2, skip such pairs.
+  if (!(of_t[0] > 1e-10 * std::sqrt(of_s * of_t[1]))) {
+    // The place that was overwritten held the oldest pair of a full window.
+    if (history.count == history.window) --history.count;
+    return;
+  }
+  history.newest = next;
+  history.count = std::min(history.count + 1, history.window);
+
+  Pointers all{};
+  Numbers with{};
+  for (int i = 0; i < history.count; ++i) all[i] = workspace.step_pairs[history.place(i)].data();
+  dot_all(model, workspace, all, history.count, t.data(), with.data());
+  for (int i = 0; i < history.count; ++i) workspace.products[history.place(i) * history.window + next] = with[i];
+  for (int i = 0; i < history.count; ++i) all[i] = workspace.gradient_pairs[history.place(i)].data();
+  dot_all(model, workspace, all, history.count, s.data(), with.data());
+  for (int i = 0; i < history.count; ++i) workspace.products[next * history.window + history.place(i)] = with[i];
+}
+
+}  // namespace supple

@@ -1,0 +1,86 @@
+// Search directions of algorithm 2: the two-loop recursion of L-BFGS with A = M/h^2 + L as the initial Hessian (Liu et
+// al. 2017, section 4.2).
+#pragma once
+
+#include "sim/solver/search_rule.h"
+
+namespace supple {
+
+// The pairs (s, t) kept so far live in the workspace's ring; this is the ring's bookkeeping. Made anew each step.
+struct PairHistory {
+  int window = 0;
+  int count = 0;
+  int newest = -1;
+
+  // The i-th newest pair's place in the ring.
+  int place(int i) const { return (newest - i + 2 * window) % window; }
+  void clear() { count = 0; }
+  // False when there was nothing to forget.
+  bool forget() {
+    const bool some = count > 0;
+    count = 0;
+    return some;
+  }
+};
+
+// The inverse of the initial Hessian, A0^-1.
+class InitialInverse {
+ public:
+  virtual ~InitialInverse() = default;
+  // As SearchRule has them.
+  virtual void begin(const Model&, const FrameInputs&, Workspace&) {}
+  virtual void accepted(const Model&, const FrameInputs&, Workspace&) {}
+  // z = A0^-1 r for the free vertices; overwrites r.
+  virtual void apply(const Model& model, const FrameInputs& inputs, Workspace& workspace, Positions& r,
+                     Positions& z) = 0;
+  // After the recursion: may bend workspace.direction and returns true then.
+  virtual bool bend(const Model&, const FrameInputs&, Workspace&) { return false; }
+};
+
+// workspace.direction = -H grad with H the L-BFGS approximation of the inverse Hessian; returns tr(grad^T d). Adds the
+// milliseconds of the solve and of the rest to the report.
+double search_direction(const Model& model, const FrameInputs& inputs, Workspace& workspace, const PairHistory& history,
+                        InitialInverse& initial);
+
+// Keeps s = trial - x and t = trial_gradient - gradient (without the normal forces of contacts, when their stiffness is
+// added anew each time) as the newest pair when tr(s^T t) is safely positive.
+void remember_pair(const Model& model, const ContactSettings& contact, Workspace& workspace, PairHistory& history);
+
+// L-BFGS from any initial Hessian, which must outlive it. The window is the settings'.
+class LbfgsRule : public SearchRule {
+ public:
+  explicit LbfgsRule(InitialInverse& initial) : initial_(initial) {}
+
+  void begin(const Model& model, const FrameInputs& inputs, Workspace& workspace) override {
+    history_ = {inputs.solver.history, 0, -1};
+    initial_.begin(model, inputs, workspace);
+  }
+  double direction(const Model& model, const FrameInputs& inputs, Workspace& workspace) override {
+    return search_direction(model, inputs, workspace, history_, initial_);
+  }
+  void accepted(const Model& model, const FrameInputs& inputs, Workspace& workspace) override {
+    initial_.accepted(model, inputs, workspace);
+    remember_pair(model, inputs.solver.contact, workspace, history_);
+  }
+  void contacts_changed(const FrameInputs& inputs) override {
+    if (inputs.solver.contact.history == ContactHistory::dropped) history_.clear();
+  }
+  bool forget() override { return history_.forget(); }
+
+ private:
+  InitialInverse& initial_;
+  PairHistory history_;
+};
+
+// The paper's: A = M/h^2 + L, which never changes, by its factor; contacts as contact_direction.h has it.
+class SystemInverse final : public InitialInverse {
+ public:
+  void apply(const Model& model, const FrameInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override {
+    apply_inverse(model, workspace, inputs.solver.contact, r, z);
+  }
+  bool bend(const Model& model, const FrameInputs& inputs, Workspace& workspace) override {
+    return foresee_contacts(model, inputs.solver.contact, workspace);
+  }
+};
+
+}  // namespace supple

@@ -1,0 +1,170 @@
+#include "sim/solver/line_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sim/solver/first_iterate.h"
+
+namespace supple {
+namespace {
+
+constexpr int most_halvings = 30;
+constexpr int most_refusals = 5;  // of trial points for the contacts found there
+constexpr double round_off = std::numeric_limits<double>::epsilon();
+constexpr double curvature_share =
+    0.9;  // gamma_2 of the strong Wolfe conditions (Nocedal and Wright 2006, section 3.1)
+
+// Armijo's test; where the decrease drowns in round-off, its equivalent by slopes, which does not subtract large
+// numbers (Hager and Zhang 2005, "A new conjugate gradient method with guaranteed descent and an efficient line
+// search", equation 4.1).
+bool decreases_by_slope(const Change& change, double slope, double armijo, double noise) {
+  return change.value <= noise && change.slope <= (2 * armijo - 1) * slope;
+}
+
+// Contacts at a trial point that the planes of the search accepted: kept unless they make it worse than where the
+// search began, which it could not see. Friction, whose normal forces are lagged, has no say in that.
+bool contacts_accept(const Model& model, const FrameInputs& inputs, Workspace& w, double change, double noise) {
+  if (!has_colliders(inputs)) return true;
+  find_contacts_timed(model, inputs, w.trial, w);
+  const double jump = contact_energy(w.contact.found, w.trial) - contact_energy(w.contact.earlier, w.trial);
+  return jump <= 0 || change + jump <= noise;
+}
+
+// Tries alpha = 1, 1/2, ...
+Search backtrack(const Model& model, const FrameInputs& inputs, Workspace& w, double slope, double objective,
+                 Change& change, IterationRecord& record) {
+  const SolverSettings& solver = inputs.solver;
+  const double noise = noise_of(model, objective, extent_of(model, w));
+  double alpha = 1;
+  int refused = 0;
+  for (int halving = 0; halving <= most_halvings; ++halving, alpha /= 2) {
+    set_trial(model, w, alpha);
+    const bool by_slope = -alpha * slope < noise / solver.armijo;
+    // The first trial nearly always succeeds: its gradient is the next iterate's. After a rejection the energy alone
+    // decides.
+    const bool with_gradient = halving == 0 || by_slope;
+    change = evaluate(model, w, w.trial, w.trial_energy, with_gradient ? &w.trial_gradient : nullptr, &w.x, &w.energy);
+    ++w.report.line_search;
+    record.alpha = alpha;
+    const bool accepted = by_slope ? decreases_by_slope(change, slope, solver.armijo, noise)
+                                   : change.value <= solver.armijo * alpha * slope;
+    if (halving == 0) record.full = {accepted, change.slope / slope};
+    if (!accepted || !std::isfinite(change.value)) {
+      // Where slopes drown too, shorter steps only repeat the noise. A thousandth of it is next to nothing of a
+      // distance.
+      if (by_slope && -slope < 1e-3 * noise) return Search::exhausted;
+      continue;
+    }
+    if (!with_gradient) change = evaluate(model, w, w.trial, w.trial_energy, &w.trial_gradient, &w.x, &w.energy);
+    // A shorter step helps against contacts that the planes did not foresee, not where the energy itself jumps (a
+    // vertex that goes round an edge).
+    if (!contacts_accept(model, inputs, w, change.value, noise) && ++refused < most_refusals) {
+      w.contact.found.swap(w.contact.earlier);
+      continue;
+    }
+    return Search::found;
+  }
+  return Search::failed;
+}
+
+// A trial of a search by slopes.
+struct Trial {
+  double alpha, value, slope;
+};
+
+// The strong Wolfe conditions by bracketing and zooming (Nocedal and Wright 2006, algorithms 3.5 and 3.6; the minimiser
+// of the cubic through both ends, kept off them). Every trial costs a gradient.
+class WolfeSearch {
+ public:
+  WolfeSearch(const Model& model, const FrameInputs& inputs, Workspace& w, double slope, Change& change,
+              IterationRecord& record)
+      : model_(model), inputs_(inputs), w_(w), slope_(slope), change_(change), record_(record) {}
+
+  Search run() {
+    Trial before{0, 0, slope_};
+    double alpha = 1;
+    for (int i = 0; i < 12; ++i, alpha *= 2) {
+      const Trial at = evaluate_at(alpha);
+      if (i == 0) record_.full = {enough(at), at.slope / slope_};
+      if (!enough(at) || (i > 0 && at.value >= before.value)) return zoom(before, at);
+      if (flat(at)) return Search::found;
+      if (at.slope >= 0) return zoom(at, before);
+      before = at;
+    }
+    return Search::found;
+  }
+
+ private:
+  Trial evaluate_at(double alpha) {
+    set_trial(model_, w_, alpha);
+    change_ = evaluate(model_, w_, w_.trial, w_.trial_energy, &w_.trial_gradient, &w_.x, &w_.energy);
+    ++w_.report.line_search;
+    record_.alpha = alpha;
+    if (!std::isfinite(change_.value)) return {alpha, std::numeric_limits<double>::infinity(), 0};
+    return {alpha, change_.value, change_.slope};
+  }
+  bool enough(const Trial& t) const { return t.value <= inputs_.solver.armijo * t.alpha * slope_; }
+  bool flat(const Trial& t) const { return std::abs(t.slope) <= -curvature_share * slope_; }
+
+  Search zoom(Trial low, Trial high) {
+    for (int i = 0; i < most_halvings; ++i) {
+      const Trial at = evaluate_at(between(low, high));
+      if (!enough(at) || at.value >= low.value) {
+        high = at;
+      } else {
+        if (flat(at)) return Search::found;
+        if (at.slope * (high.alpha - low.alpha) >= 0) high = low;
+        low = at;
+      }
+      if (std::abs(high.alpha - low.alpha) < 1e-8) break;
+    }
+    if (low.alpha <= 0) return Search::failed;
+    evaluate_at(low.alpha);
+    return Search::found;
+  }
+
+  static double between(const Trial& a, const Trial& b) {
+    const double width = b.alpha - a.alpha;
+    double at = 0.5;
+    if (std::isfinite(b.value)) {
+      const double d1 = a.slope + b.slope - 3 * (b.value - a.value) / width;
+      const double under = d1 * d1 - a.slope * b.slope;
+      if (under >= 0) {
+        const double d2 = std::copysign(std::sqrt(under), width);
+        at = 1 - (b.slope + d2 - d1) / (b.slope - a.slope + 2 * d2);
+      }
+    }
+    if (!(at > 0.1)) at = 0.1;
+    return a.alpha + std::min(at, 0.9) * width;
+  }
+
+  const Model& model_;
+  const FrameInputs& inputs_;
+  Workspace& w_;
+  double slope_;
+  Change& change_;
+  IterationRecord& record_;
+};
+
+}  // namespace
+
+double extent_of(const Model& model, const Workspace& w) { return w.x.topRows(model.free).cwiseAbs().maxCoeff(); }
+
+bool below_resolution(const Model& model, const Workspace& w) {
+  const double extent = extent_of(model, w);
+  return w.direction.cwiseAbs().maxCoeff() <= 4 * round_off * std::max(extent, model.size);
+}
+
+Search search_line(const Model& model, const FrameInputs& inputs, Workspace& w, double slope, double objective,
+                   Change& change, IterationRecord& record) {
+  if (inputs.solver.line_search == LineSearch::wolfe &&
+      -slope > noise_of(model, objective, extent_of(model, w)) / inputs.solver.armijo) {
+    const Search search = WolfeSearch(model, inputs, w, slope, change, record).run();
+    if (search == Search::found && has_colliders(inputs)) find_contacts_timed(model, inputs, w.trial, w);
+    return search;
+  }
+  return backtrack(model, inputs, w, slope, objective, change, record);
+}
+
+}  // namespace supple

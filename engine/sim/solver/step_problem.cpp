@@ -1,0 +1,41 @@
+#include "sim/solver/step_problem.h"
+
+#include "base/error.h"
+#include "sim/solver/first_iterate.h"
+
+namespace supple {
+
+StepProblem problem_of(const BodyDescription& body, const Model& model, const FrameInputs& inputs, const State& state) {
+  SUPPLE_CHECK(body.mesh.rest.rows(), ==, model.vertices);
+  SUPPLE_CHECK(inputs.targets.rows(), ==, Eigen::Index(model.handled.size()));
+  StepProblem problem;
+  problem.body = body;
+  for (const SystemStiffness& stiffness : model.stiffness) problem.stiffness.push_back(stiffness.k);
+  problem.mass.resize(model.vertices);
+  for (int i = 0; i < model.vertices; ++i) problem.mass[model.input_of[i]] = model.mass[i];
+  problem.time = state.time;
+  problem.gravity = inputs.gravity;
+  Positions y;
+  inertial_prediction(model, inputs, state, y);
+  problem.q = in_input_order(model, state.x);
+  problem.v = in_input_order(model, state.v);
+  problem.y = in_input_order(model, y);
+  problem.hash = state_hash(model, state);
+  problem.solver = inputs.solver;
+  std::vector<Eigen::Index> rows;  // of targets, without those of handles that have let go
+  for (std::size_t i = 0; i < model.handled.size(); ++i) {
+    const Handle& handle = body.handles[model.handled[i].handle];
+    if (!handle.holds) continue;
+    rows.push_back(static_cast<Eigen::Index>(i));
+    problem.handled.push_back({model.input_of[model.handled[i].vertex], handle.spring});
+  }
+  problem.targets = inputs.targets(rows, Eigen::all);
+  if (model.scheme.theta < 1) problem.middle_targets = inputs.middle_targets(rows, Eigen::all);
+  for (std::size_t c = 0; has_colliders(inputs) && c < inputs.colliders->size(); ++c) {
+    const Collider& collider = (*inputs.colliders)[c];
+    problem.colliders.push_back({collider.name, collider.thickness, collider.friction, inputs.collider_motions[c]});
+  }
+  return problem;
+}
+
+}  // namespace supple

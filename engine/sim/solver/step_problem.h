@@ -1,0 +1,42 @@
+// One step's problem by itself: all that g of equation 3 depends on before anything is touched, in the order of the
+// input file instead of the model's. For comparing solvers on stored states, and for other programs. Not here: files
+// (app/).
+#pragma once
+
+#include "sim/model/inputs.h"
+#include "sim/model/model.h"
+#include "sim/model/state.h"
+
+namespace supple {
+
+struct StepProblem {
+  BodyDescription body;           // mesh, materials, fibres, springs, h, integrator, damping
+  std::vector<double> stiffness;  // k of equation 11 by region, which damping takes [Pa]
+  std::vector<double> mass;       // by vertex [kg]
+  double time = 0;                // at the start of the step [s]
+  Vec3 gravity = Vec3::Zero();    // [m/s^2]
+  Positions q, v, y;              // start, its velocities, and where inertia alone leads, n x 3 [m], [m/s], [m]
+  std::uint64_t hash = 0;         // state_hash of q and v
+  SolverSettings solver;
+
+  struct Handled {
+    std::int32_t vertex;
+    double spring;  // to its target [N/m]; 0: held there, and no unknown
+  };
+  std::vector<Handled> handled;
+  Positions targets;         // at the end of the step, by `handled` [m]
+  Positions middle_targets;  // halfway, where implicit midpoint's springs end [m]; empty for backward Euler
+
+  struct Obstacle {
+    std::string name;
+    double thickness;  // [m]
+    double friction;
+    ColliderMotion motion;
+  };
+  std::vector<Obstacle> colliders;
+};
+
+// Of the step that starts at `state` with these inputs. body: what the model was built from.
+StepProblem problem_of(const BodyDescription& body, const Model& model, const FrameInputs& inputs, const State& state);
+
+}  // namespace supple
