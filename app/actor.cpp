@@ -8,6 +8,7 @@
 #include "baselines/reference.h"
 #include "output/obj_file.h"
 #include "sim/model/measures.h"
+#include "sim/solver/energies.h"
 #include "sim/solver/step.h"
 
 namespace supple {

@@ -58,4 +58,16 @@ class Threads {
   std::atomic<int> next_chunk_{0};
 };
 
+// Runs chunks on the threads (null: on the calling one) where there is enough work to be worth waking them. work: a
+// rough count of operations.
+template <class Body>
+void run_chunks(Threads* threads, int chunks, long work, const Body& body) {
+  constexpr long worth_sharing = 40000;  // of the order of 20 microseconds; below, waking a thread costs as much
+  if (threads != nullptr && work > worth_sharing) {
+    threads->run(chunks, body);
+  } else {
+    for (int chunk = 0; chunk < chunks; ++chunk) body(chunk);
+  }
+}
+
 }  // namespace supple

@@ -26,15 +26,16 @@ Eigen::MatrixXd full(const SparseMatrix& lower) {
 Eigen::MatrixXd by_differences(const Model& model, Workspace& w, double step) {
   const int count = 3 * model.free;
   Eigen::MatrixXd hessian(count, count);
-  const Positions x = w.x;
-  Positions plus(model.free, 3), minus(model.free, 3);
+  const Positions x = w.current.x;
+  w.trial.contacts = w.current.contacts;
   for (int i = 0; i < count; ++i) {
-    w.trial = x;
-    w.trial.data()[i] += step;
-    evaluate(model, w, w.trial, w.trial_energy, &plus, nullptr, nullptr);
-    w.trial.data()[i] -= 2 * step;
-    evaluate(model, w, w.trial, w.trial_energy, &minus, nullptr, nullptr);
-    const Positions difference = (plus - minus) / (2 * step);
+    w.trial.x = x;
+    w.trial.x.data()[i] += step;
+    evaluate(model, w, w.trial, Wanted::gradient);
+    const Positions plus = w.trial.gradient;
+    w.trial.x.data()[i] -= 2 * step;
+    evaluate(model, w, w.trial, Wanted::gradient);
+    const Positions difference = (plus - w.trial.gradient) / (2 * step);
     hessian.col(i) = Eigen::Map<const Eigen::VectorXd>(difference.data(), count);
   }
   return 0.5 * (hessian + hessian.transpose());
@@ -60,7 +61,7 @@ struct OneTetrahedron {
   }
   void deform(const Mat3& f) {
     const Vec3 corner = model.rest.row(3);
-    for (int v = 0; v < 4; ++v) w.x.row(v) = (corner + f * (Vec3(model.rest.row(v)) - corner)).transpose();
+    for (int v = 0; v < 4; ++v) w.current.x.row(v) = (corner + f * (Vec3(model.rest.row(v)) - corner)).transpose();
   }
   Model model;
   Workspace w;
@@ -151,7 +152,7 @@ TEST(Hessian, OfAWholeBodyIsTheDerivativeOfItsGradient) {
       FrameInputs inputs = test::still_inputs(model);
       inputs.middle_targets = inputs.targets;
       begin_step(model, inputs, state, w);
-      w.x.topRows(model.free) = test::shaken(w.x, 0.01, 3).topRows(model.free);
+      w.current.x.topRows(model.free) = test::shaken(w.current.x, 0.01, 3).topRows(model.free);
       HessianMatrix hessian(model);
       hessian.assemble(model, w, false);
       const Eigen::MatrixXd found = by_differences(model, w, 1e-6);
@@ -170,12 +171,12 @@ TEST(Hessian, OfSpringsAndContactsIsTheDerivativeOfTheGradient) {
   const State state = rest_state(model);
   const FrameInputs inputs = test::still_inputs(model);
   begin_step(model, inputs, state, w);
-  w.x = test::shaken(w.x, 0.02, 5);
+  w.current.x = test::shaken(w.current.x, 0.02, 5);
   w.contact.stick_length = 1e-3;
   for (int v = 0; v < 5; ++v) {
     Contact contact{v, 0, Vec3(0.6, 0, 0.8), 0, 1e3, 0.01};
-    contact.offset = contact.normal.dot(w.x.row(v)) + 0.01;  // in it
-    w.contact.found.push_back(contact);
+    contact.offset = contact.normal.dot(w.current.x.row(v)) + 0.01;  // in it
+    w.current.contacts.push_back(contact);
   }
   HessianMatrix hessian(model);
   hessian.assemble(model, w, false);

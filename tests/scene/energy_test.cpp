@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "sim/model/measures.h"
+#include "sim/solver/energies.h"
 #include "support/film.h"
 
 namespace supple {

@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 
+#include "baselines/reference.h"
 #include "geometry/tetrahedralize.h"
 #include "geometry/triangle_solid.h"
 #include "sim/solver/step.h"
@@ -82,12 +83,12 @@ TEST(Contact, GradientIsTheDerivativeOfTheEnergyWithPlanesAsTheyStand) {
   play.state.v.rowwise() = Eigen::RowVector3d(2, -1.5, 1);
   play.w.prepare(play.model, play.inputs.solver);
   begin_step(play.model, play.inputs, play.state, play.w);
-  find_contacts(play.model, play.inputs, play.w.x, play.w);
-  const std::vector<Contact>& found = play.w.contact.found;
+  find_contacts_of(play.model, play.inputs, play.w, play.w.current);
+  const std::vector<Contact>& found = play.w.current.contacts;
   EXPECT_GT(std::count_if(found.begin(), found.end(), [](const Contact& c) { return c.depth > 0; }), 3);
   EXPECT_GT(std::count_if(found.begin(), found.end(), [](const Contact& c) { return c.friction > 0; }), 3);
   const double stick = play.w.contact.stick_length;
-  Positions& x = play.w.x;
+  Positions& x = play.w.current.x;
   Positions gradient = Positions::Zero(play.model.free, 3);
   const Positions direction = shaken(Positions::Zero(play.model.free, 3), 1, 6);
   const ContactChange at = add_contacts(found, stick, x, nullptr, direction, &gradient);
@@ -118,10 +119,10 @@ TEST(Contact, PlanesGiveTheDerivativeOfTheEnergyFoundAnew) {
     play.state.v.rowwise() = Eigen::RowVector3d(0.1, -0.9, 0.05);
     play.w.prepare(play.model, play.inputs.solver);
     begin_step(play.model, play.inputs, play.state, play.w);
-    const Positions x = play.w.x, direction = shaken(Positions::Zero(play.model.free, 3), 1, 6);
-    find_contacts(play.model, play.inputs, x, play.w);
+    const Positions x = play.w.current.x, direction = shaken(Positions::Zero(play.model.free, 3), 1, 6);
+    find_contacts_of(play.model, play.inputs, play.w, play.w.current);
     Positions gradient = Positions::Zero(play.model.free, 3);
-    const double slope = add_contacts(play.w.contact.found, 1, x, nullptr, direction, &gradient).slope;
+    const double slope = add_contacts(play.w.current.contacts, 1, x, nullptr, direction, &gradient).slope;
     ASSERT_NE(slope, 0) << name;
     double best = 1e300;
     for (const double h : {1e-6, 1e-7}) {
@@ -139,8 +140,9 @@ TEST(Contact, LowRankDirectionsSolveTheSystemWithContacts) {
   play.state.v.rowwise() = Eigen::RowVector3d(0.3, -0.5, 0);
   play.w.prepare(play.model, play.inputs.solver);
   begin_step(play.model, play.inputs, play.state, play.w);
-  find_contacts(play.model, play.inputs, play.w.x, play.w);
-  stiff_directions(play.model, play.w);
+  find_contacts_of(play.model, play.inputs, play.w, play.w.current);
+  find_stiff_directions(play.model, play.w.current.contacts, play.w.current.x, play.w.contact.stick_length,
+                        play.w.correction);
   ASSERT_GT(play.w.correction.wanted.size(), 8u);
   const int n = play.model.free;
   Eigen::MatrixXd inverse(3 * n, 3 * n);  // of A
@@ -157,7 +159,7 @@ TEST(Contact, LowRankDirectionsSolveTheSystemWithContacts) {
   r = shaken(Positions::Zero(n, 3), 1, 2);
   const Eigen::VectorXd wanted = system.ldlt().solve(Eigen::Map<Eigen::VectorXd>(r.data(), 3 * n));
   ContactSettings settings;
-  apply_inverse(play.model, play.w, settings, r, z);
+  apply_inverse(play.model, settings, play.w.correction, play.w.solve_scratch, r, z);
   // Single precision in the small system; double around it.
   EXPECT_LT((Eigen::Map<Eigen::VectorXd>(z.data(), 3 * n) - wanted).norm(), 1e-4 * wanted.norm());
 }
@@ -177,7 +179,7 @@ TEST(Contact, MomentumChangesByTheImpulsesOfGravityAndContacts) {
       const Vec3 before = momentum();
       const StepReport& report = play.advance();
       EXPECT_GT(report.contacts.touching, 0) << frame;
-      const Vec3 left = play.w.gradient.colwise().sum().transpose();  // of a minimum: zero
+      const Vec3 left = play.w.current.gradient.colwise().sum().transpose();  // of a minimum: zero
       const Vec3 impulse = h * (play.model.total_mass * play.inputs.gravity + report.contact_force);
       const double scale = before.norm() + impulse.norm();
       EXPECT_LT((momentum() - before - impulse - h * left).norm(), 1e-9 * scale) << frame;

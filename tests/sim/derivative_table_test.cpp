@@ -207,12 +207,13 @@ TEST(Derivatives, NetForceAndTorqueOfAWholeBodyVanishAtEveryIteration) {
       // The elastic part of the gradient, where the step ended.
       begin_step(model, inputs, start, w);
       const Positions y = w.y;
-      evaluate(model, w, state.x, w.energy, &w.gradient, nullptr, nullptr);
+      w.current.x = state.x;
+      evaluate(model, w, w.current, Wanted::gradient);
       Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
       double forces = 0, torques = 0;
       for (int v = 0; v < model.vertices; ++v) {
         const double weight = model.mass[v] / (model.time_step * model.time_step);
-        const Vec3 f = w.gradient.row(v) - weight * (state.x.row(v) - y.row(v)), x = state.x.row(v);
+        const Vec3 f = w.current.gradient.row(v) - weight * (state.x.row(v) - y.row(v)), x = state.x.row(v);
         force += f;
         torque += x.cross(f);
         forces += f.norm();

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/model/measures.h"
+#include "sim/solver/energies.h"
 #include "support/bodies.h"
 #include "support/objective_checks.h"
 
@@ -54,13 +55,14 @@ TEST(Integrators, TheSystemMatrixIsTheHessianOfTheQuadraticPart) {
     begin_step(model, inputs, state, w);
     // A uniform stretch, symmetric, so that R stays the identity everywhere.
     const double strain = 1e-4;
-    w.x = model.rest;
-    w.x.col(0) *= 1 + strain;
-    w.x.col(1) *= 1 - 0.5 * strain;
-    evaluate(model, w, w.x, w.energy, &w.gradient, nullptr, nullptr);
+    w.current.x = model.rest;
+    w.current.x.col(0) *= 1 + strain;
+    w.current.x.col(1) *= 1 - 0.5 * strain;
+    evaluate(model, w, w.current, Wanted::gradient);
     Positions solved(model.free, 3);
-    model.factor.solve(w.gradient.data(), solved.data(), w.solve_scratch.data());
-    EXPECT_LT((solved - (w.x - model.rest).topRows(model.free)).norm(), 1e-6 * (w.x - model.rest).norm());
+    model.factor.solve(w.current.gradient.data(), solved.data(), w.solve_scratch.data());
+    EXPECT_LT((solved - (w.current.x - model.rest).topRows(model.free)).norm(),
+              1e-6 * (w.current.x - model.rest).norm());
   }
 }
 
@@ -196,10 +198,11 @@ TEST(Springs, AndFibresAreWholeInTheSystemMatrix) {
     const StepReport& report = step(model, inputs, state, w);
     const double gained = report.objective.front() - report.objective.back();
     begin_step(model, inputs, rest_state(model), w);
-    evaluate(model, w, state.x, w.energy, &w.gradient, nullptr, nullptr);
+    w.current.x = state.x;
+    evaluate(model, w, w.current, Wanted::gradient);
     Positions left(model.free, 3);
-    model.factor.solve(w.gradient.data(), left.data(), w.solve_scratch.data());
-    EXPECT_LT(w.gradient.cwiseProduct(left).sum(), 1e-6 * std::max(gained, 1e-12)) << body.name;
+    model.factor.solve(w.current.gradient.data(), left.data(), w.solve_scratch.data());
+    EXPECT_LT(w.current.gradient.cwiseProduct(left).sum(), 1e-6 * std::max(gained, 1e-12)) << body.name;
   }
 }
 

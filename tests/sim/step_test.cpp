@@ -116,7 +116,7 @@ TEST(Step, WithWindowZeroOnAsRigidAsPossibleEqualsLocalGlobalAndNeverRejectsATri
       Workspace w;
       w.prepare(model, inputs.solver);
       begin_step(model, inputs, state, w);
-      const Positions y = in_input_order(model, w.y), start = in_input_order(model, w.x);
+      const Positions y = in_input_order(model, w.y), start = in_input_order(model, w.current.x);
       const StepReport& report = step(model, inputs, state, w);
       EXPECT_EQ(report.line_search, iterations);
       const Positions expected = local_global(body, y, start, iterations);
@@ -349,7 +349,8 @@ TEST(Step, StartsWithTheHandlesDepartureSpreadIntoTheBody) {
   Workspace w;
   w.prepare(model, inputs.solver);
   begin_step(model, inputs, state, w);
-  const double at_y = evaluate(model, w, w.x, w.energy, nullptr, nullptr, nullptr).value;
+  evaluate(model, w, w.current, Wanted::value);
+  const double at_y = w.current.g;
   const StepReport& report = step(model, inputs, state, w);
   EXPECT_LT(report.objective.front(), 0.5 * at_y);
 }

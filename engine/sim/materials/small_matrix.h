@@ -8,14 +8,14 @@
 
 namespace supple {
 
-// a b + c. Fused where the machine can; plain for the oracle.
+// Returns a b + c: fused where the machine can, and plain for the oracle.
 template <class T, class A>
 xsimd::batch<T, A> madd(const xsimd::batch<T, A>& a, const xsimd::batch<T, A>& b, const xsimd::batch<T, A>& c) {
   return xsimd::fma(a, b, c);
 }
 inline double madd(double a, double b, double c) { return a * b + c; }
 
-// yes where the condition holds, lane by lane
+// Returns `yes` where the condition holds and `no` elsewhere, lane by lane.
 template <class T, class A>
 xsimd::batch<T, A> choose(const xsimd::batch_bool<T, A>& condition, const xsimd::batch<T, A>& yes,
                           const xsimd::batch<T, A>& no) {
@@ -48,7 +48,7 @@ V squared_norm(const Matrix3<V>& a) {
   return sum;
 }
 
-// sum of a_ij^2 of a symmetric matrix
+// Returns the sum of all a_ij^2 of a symmetric matrix.
 template <class V>
 V squared_norm(const Symmetric3<V>& a) {
   const V diagonal = madd(a.xx, a.xx, madd(a.yy, a.yy, a.zz * a.zz));
@@ -56,7 +56,7 @@ V squared_norm(const Symmetric3<V>& a) {
   return madd(V(2.0), off, diagonal);
 }
 
-// The matrix of cofactors: d det(a) / d a, finite for singular matrices.
+// Returns the matrix of cofactors, which is d det(a) / d a and finite for singular matrices.
 template <class V>
 Matrix3<V> cofactor(const Matrix3<V>& a) {
   Matrix3<V> c;
@@ -88,7 +88,7 @@ V determinant(const Matrix3<V>& a, const Matrix3<V>& cofactors) {
   return madd(a(0, 0), cofactors(0, 0), madd(a(0, 1), cofactors(0, 1), a(0, 2) * cofactors(0, 2)));
 }
 
-// a^T b where that is known to be symmetric (the stretch of a polar decomposition); the two halves are averaged.
+// Returns a^T b where that is known to be symmetric (the stretch of a polar decomposition), the average of both halves.
 template <class V>
 Symmetric3<V> symmetric_product(const Matrix3<V>& a, const Matrix3<V>& b) {
   const auto entry = [&](int i, int j) { return madd(a(0, i), b(0, j), madd(a(1, i), b(1, j), a(2, i) * b(2, j))); };
@@ -101,7 +101,7 @@ Symmetric3<V> symmetric_product(const Matrix3<V>& a, const Matrix3<V>& b) {
           half * (entry(0, 1) + entry(1, 0))};
 }
 
-// a b for symmetric matrices that commute (powers of one matrix), hence symmetric again.
+// Returns a b for symmetric matrices that commute (powers of one matrix), which is symmetric again.
 template <class V>
 Symmetric3<V> commuting_product(const Symmetric3<V>& a, const Symmetric3<V>& b) {
   return {madd(a.xx, b.xx, madd(a.xy, b.xy, a.xz * b.xz)), madd(a.xy, b.xy, madd(a.yy, b.yy, a.yz * b.yz)),
