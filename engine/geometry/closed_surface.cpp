@@ -161,7 +161,7 @@ Neighbours neighbours(const Numbered& surface, const std::string& name) {
     const Side &a = sides[i], &b = sides[i + 1];
     if (a.low != b.low || a.high != b.high) continue;
     if (i + 2 < sides.size() && sides[i + 2].low == a.low && sides[i + 2].high == a.high) {
-      throw InputError(name, fmt::format("three triangles or more share an edge, among them {}; two may",
+      throw InputError(name, fmt::format("three triangles or more share an edge, among them {}; an edge may have two",
                                          triangle(surface, sides[i + 2].triangle)));
     }
     result[at(a.triangle)][at(a.k)] = {b.triangle, a.upward != b.upward};

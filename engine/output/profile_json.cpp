@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Four digits behind the point are plenty for times; all seventeen are kept where a number may be compared.
+// Four digits after the point are plenty for times; numbers that may be compared keep all seventeen.
 double rounded_ms(double ms) { return std::round(ms * 1e4) / 1e4; }
 
 Json json_of(const BodyRow& body) {
@@ -113,7 +113,7 @@ FrameRow frame_row(const Json& json) {
   return row;
 }
 
-// What the parsers of JSON and of numbers throw becomes a message about the file.
+// Turns what the parsers of JSON and of numbers throw into a message about the file.
 template <class Read>
 auto told_of(const std::string& source, const Read& read) {
   try {

@@ -128,7 +128,7 @@ std::vector<std::size_t> shown_columns(const ReportTable& table) {
   return shown;
 }
 
-// A column is one of numbers when most of its cells begin like one: "12.3", "-4 %", "< 1e-9", "~2x".
+// A column holds numbers when most of its cells begin like one: "12.3", "-4 %", "< 1e-9", "~2x".
 bool holds_numbers(const ReportTable& table, std::size_t column) {
   std::ptrdiff_t numbers = 0, filled = 0;
   for (const auto& row : table.rows) {
@@ -140,7 +140,7 @@ bool holds_numbers(const ReportTable& table, std::size_t column) {
   return 2 * numbers > filled;
 }
 
-// How its cells are set: numbers to the right, short words on one line, long ones in a paragraph.
+// Tells how a column's cells are set: numbers to the right, short words on one line, long ones in a paragraph.
 const char* column_kind(const ReportTable& table, std::size_t column) {
   if (holds_numbers(table, column)) return "number";
   for (const auto& row : table.rows)
@@ -148,7 +148,7 @@ const char* column_kind(const ReportTable& table, std::size_t column) {
   return "short";
 }
 
-// "time, ours [ms]" with the unit in a softer voice
+// Writes "time, ours [ms]" with the unit in a softer colour.
 std::string header_text(const std::string& column) {
   const std::size_t unit = column.rfind(" [");
   if (unit == std::string::npos || column.back() != ']') return markup_text(column);
@@ -156,7 +156,7 @@ std::string header_text(const std::string& column) {
          "</span>";
 }
 
-// Numbers with more digits than the page shows are rounded; others stay as they are.
+// Rounds numbers with more digits than the page shows; other cells stay as they are.
 std::string page_cell(const ReportTable& table, const std::string& cell) {
   if (table.page_digits == 0 || !reads_as_number(cell)) return cell;
   const std::string rounded = number_text(std::stod(cell), table.page_digits);
@@ -193,7 +193,7 @@ std::string table_figure(const ReportTable& table) {
       table.name, markup_text(table.title), table_grid(table), paragraphs(table.note), columns);
 }
 
-// The picture's file as an element of the page: without prolog and outer sizes.
+// Makes the picture's file an element of the page, without its prolog and outer size.
 std::string inlined(const std::string& svg, const std::string& title) {
   const std::size_t box = svg.find("viewBox=\""), begin = svg.find("</title>");
   if (box == std::string::npos || begin == std::string::npos) return "";
@@ -224,7 +224,7 @@ std::string picture_figure(const ReportPicture& picture, const std::filesystem::
       picture.name, markup_text(picture.title), base64_text(bytes), paragraphs(picture.note));
 }
 
-// Of sections apart from tables and plots, whose names are files too.
+// Anchors of sections are kept apart from those of tables and plots, whose names are also file names.
 std::string anchor(const ReportSection& section) { return "section-" + section.name; }
 
 std::string contents(const ReportPage& page) {
@@ -263,7 +263,7 @@ void check_names(const ReportPage& page) {
   }
 }
 
-// A method keeps its looks from plot to plot; what no plot shows together may look alike.
+// A method keeps its look from plot to plot; methods that no plot shows together may look alike.
 void give_looks(ReportPage& page) {
   std::map<std::string, int> looks;
   std::map<std::string, std::set<std::string>> company;
