@@ -40,7 +40,7 @@ AgainstStaying against_staying(const Model& model, const FrameInputs& inputs, co
   w.prepare(model, inputs.solver);
   begin_step(model, inputs, before, w);
   w.x.topRows(model.free) = before.x.topRows(model.free);
-  const auto normal_energy = [&](const Positions& x) {  // friction only takes energy
+  const auto normal_energy = [&](const Positions& x) {  // without friction, which only takes energy
     if (inputs.colliders == nullptr || inputs.colliders->empty()) return 0.0;
     find_contacts(model, inputs, x, w);
     const double energy = contact_energy(w.contact.found, x);
