@@ -248,7 +248,7 @@ double half_thickness(const Primitive& primitive) {
 }
 
 // Follows Newton's steps to the zero set and returns whether they reached it.
-bool land(const ShapeGroup& root, Vec3& t, Slope& slope) {
+bool move_to_zero_set(const ShapeGroup& root, Vec3& t, Slope& slope) {
   constexpr int most_steps = 50;
   for (int step = 0; step < most_steps; ++step) {
     if (std::abs(slope.distance) <= 1e-15 * t.norm()) return true;
@@ -282,7 +282,7 @@ SurfacePoint Shape::closest(const Vec3& point) const {
     return {t, at_point.gradient, at_point.distance};
   t = point;
   slope = at_point;
-  if (!land(root, t, slope)) {  // no surface was found: use the field's distance and normal
+  if (!move_to_zero_set(root, t, slope)) {  // no surface was found: use the field's distance and normal
     const Vec3 normal = unit(at_point.gradient);
     return {point - at_point.distance * normal, normal, at_point.distance};
   }
@@ -296,7 +296,7 @@ SurfacePoint Shape::closest(const Vec3& point) const {
     if (side.norm() <= 1e-10 * (point - t).norm() || side.norm() <= round_off) break;
     Vec3 next = t + length * side;
     Slope there = slope_of(root, next);
-    if (!land(root, next, there) || (point - next).norm() > (point - t).norm()) {
+    if (!move_to_zero_set(root, next, there) || (point - next).norm() > (point - t).norm()) {
       length *= 0.25;
       continue;
     }

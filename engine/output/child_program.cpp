@@ -16,7 +16,7 @@ namespace {
 
 // Waits until the child has written something or ended, or until it is asked to stop. Returns whether it was asked to
 // stop.
-bool stopped_before_words(int output, pid_t child, const std::function<bool()>& stop) {
+bool stopped_before_output(int output, pid_t child, const std::function<bool()>& stop) {
   pollfd waited{output, POLLIN, 0};
   do {
     if (!stop()) continue;
@@ -75,7 +75,7 @@ std::optional<ProgramEnd> run_program(const std::vector<std::string>& words, con
   ProgramEnd finished{0, ""};
   char buffer[4096];
   for (bool asked = false;;) {
-    if (stop && !asked) asked = stopped_before_words(ends[0], child, stop);
+    if (stop && !asked) asked = stopped_before_output(ends[0], child, stop);
     const ssize_t count = ::read(ends[0], buffer, sizeof buffer);
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) break;

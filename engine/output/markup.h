@@ -19,6 +19,6 @@ std::string with_id_prefix(std::string_view markup, const std::string& prefix);
 std::string base64_text(std::span<const std::uint8_t> bytes);
 
 // Counts the code points of UTF-8 text, which are nearly its letters.
-std::size_t count_signs(std::string_view text);
+std::size_t count_code_points(std::string_view text);
 
 }  // namespace supple

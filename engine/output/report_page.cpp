@@ -144,7 +144,7 @@ bool holds_numbers(const ReportTable& table, std::size_t column) {
 const char* column_kind(const ReportTable& table, std::size_t column) {
   if (holds_numbers(table, column)) return "number";
   for (const auto& row : table.rows)
-    if (count_signs(row[column]) > 32) return "long";
+    if (count_code_points(row[column]) > 32) return "long";
   return "short";
 }
 
@@ -264,9 +264,9 @@ void check_names(const ReportPage& page) {
 }
 
 // A method keeps its look from plot to plot; methods that no plot shows together may look alike.
-void give_looks(ReportPage& page) {
+void assign_looks(ReportPage& page) {
   std::map<std::string, int> looks;
-  std::map<std::string, std::set<std::string>> company;
+  std::map<std::string, std::set<std::string>> drawn_together;
   std::vector<PlotSeries*> open;
   for (ReportSection& section : page.sections) {
     for (ReportPlot& plot : section.plots) {
@@ -274,14 +274,14 @@ void give_looks(ReportPage& page) {
         if (series.thick || series.name.empty()) continue;
         if (series.look >= 0) looks.try_emplace(series.name, series.look);
         if (series.look < 0) open.push_back(&series);
-        for (const PlotSeries& other : plot.series) company[series.name].insert(other.name);
+        for (const PlotSeries& other : plot.series) drawn_together[series.name].insert(other.name);
       }
     }
   }
   for (PlotSeries* series : open) {
     if (!looks.count(series->name)) {
       std::set<int> taken;
-      for (const std::string& other : company[series->name])
+      for (const std::string& other : drawn_together[series->name])
         if (const auto place = looks.find(other); place != looks.end()) taken.insert(place->second);
       int look = 0;
       while (taken.count(look)) ++look;
@@ -296,7 +296,7 @@ void give_looks(ReportPage& page) {
 std::vector<std::string> write_page(const ReportPage& given, const std::filesystem::path& folder) {
   check_names(given);
   ReportPage page = given;
-  give_looks(page);
+  assign_looks(page);
   std::vector<std::string> missing;
   std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"

@@ -18,10 +18,10 @@
 namespace supple {
 namespace {
 
-constexpr int width = 900;             // [px]
-constexpr int height_of_axes = 515;    // without the legend [px]
-constexpr int height_of_row = 25;      // of the legend [px]
-constexpr double width_of_sign = 7.3;  // average width of a letter in the legend [px]
+constexpr int width = 900;               // [px]
+constexpr int height_of_axes = 515;      // without the legend [px]
+constexpr int height_of_row = 25;        // of the legend [px]
+constexpr double width_of_letter = 7.3;  // average width of a letter in the legend [px]
 
 // These colours can be told apart by colour-blind eyes: no two share both hue and lightness. The first colours of
 // `thick` and `thin` are those of the films.
@@ -160,8 +160,8 @@ std::string axis_script(char axis, bool log, const Range& data, double low, doub
 
 int legend_columns(const ReportPlot& plot) {
   std::size_t longest = 1;
-  for (const PlotSeries& series : plot.series) longest = std::max(longest, count_signs(series.name));
-  return std::max(1, int((width - 60) / (60 + width_of_sign * double(longest))));
+  for (const PlotSeries& series : plot.series) longest = std::max(longest, count_code_points(series.name));
+  return std::max(1, int((width - 60) / (60 + width_of_letter * double(longest))));
 }
 
 std::string frame_script(const ReportPlot& plot, const std::vector<Points>& points) {
@@ -239,7 +239,7 @@ std::string read_text(const std::filesystem::path& path) {
 }
 
 // Returns what a program wrote, after a colon, or nothing when it wrote nothing.
-std::string said(const std::string& output) {
+std::string after_colon(const std::string& output) {
   const std::size_t first = output.find_first_not_of(" \n"), last = output.find_last_not_of(" \n");
   return first == std::string::npos ? "" : ": " + output.substr(first, last + 1 - first);
 }
@@ -286,8 +286,8 @@ bool write_plot(const ReportPlot& plot, const std::filesystem::path& folder, std
   std::filesystem::remove(script_file, ignored);
   std::filesystem::remove(part, ignored);
   if (!drawn) return refuse("gnuplot is not installed (Debian: gnuplot-nox)");
-  if (drawn->status != 0) return refuse(fmt::format("gnuplot {}{}", how_it_ended(*drawn), said(drawn->output)));
-  if (picture.empty()) return refuse("gnuplot wrote no SVG" + said(drawn->output));
+  if (drawn->status != 0) return refuse(fmt::format("gnuplot {}{}", how_it_ended(*drawn), after_colon(drawn->output)));
+  if (picture.empty()) return refuse("gnuplot wrote no SVG" + after_colon(drawn->output));
   write_whole_file(svg, picture);
   return true;
 }

@@ -174,7 +174,7 @@ TEST(ReportMarkup, EscapesTextAndPrefixesIdsInTagsOnly) {
   EXPECT_EQ(markup_text("a<b & \"c\"\x01'"), "a&lt;b &amp; &quot;c&quot; &#39;");
   EXPECT_EQ(with_id_prefix("<g id='a'> id=\"b\" <use xlink:href='#a' fill=\"url(#c)\"/>", "p-"),
             "<g id='p-a'> id=\"b\" <use xlink:href='#p-a' fill=\"url(#p-c)\"/>");
-  EXPECT_EQ(count_signs("µm²"), 3u);
+  EXPECT_EQ(count_code_points("µm²"), 3u);
 }
 
 TEST(ReportMarkup, WritesBytesAsBase64) {
