@@ -1,4 +1,5 @@
-// Reads every #include of ours and holds it against the arrows of the house; and keeps third parties in their cages.
+// Reads every #include of ours, compares it with the arrows between the folders, and keeps third parties in their
+// cages.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -21,8 +22,8 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"output", {"output", "geometry", "base"}},
 };
 
-// The rooms of engine/sim, and which of them each may look into: solver -> contact -> model -> linear, elements ->
-// materials. A file that lies in none of them may look into all.
+// Lists the rooms of engine/sim, and those that each may include from: solver -> contact -> model -> linear, elements ->
+// materials. A file that lies in none of them may include from all.
 const std::map<std::string, std::set<std::string>> rooms = {
     {"materials", {"materials"}},
     {"elements", {"elements", "materials"}},
@@ -32,7 +33,7 @@ const std::map<std::string, std::set<std::string>> rooms = {
     {"solver", {"solver", "contact", "model", "linear", "elements", "materials"}},
 };
 
-// Headers of third parties, and where they may be seen.
+// Lists headers of third parties, and the files that may include them.
 const std::vector<std::pair<std::regex, std::regex>> cages = {
     {std::regex("cholmod\\.h"), std::regex("engine/sim/linear/cholesky\\.cpp")},
     {std::regex("png\\.h"), std::regex("engine/output/png_file\\.cpp")},
@@ -72,7 +73,7 @@ TEST(House, EveryIncludeFollowsTheArrows) {
     const std::string target = include.name.substr(0, include.name.find('/'));
     if (include.file.starts_with("app/")) continue;
     EXPECT_NE(target, "app") << include.file;
-    if (!allowed.contains(target)) continue;  // not ours
+    if (!allowed.contains(target)) continue;  // not a folder of ours
     const std::string rest = include.file.substr(std::string("engine/").size());
     const std::string folder = rest.substr(0, rest.find('/'));
     ASSERT_TRUE(allowed.contains(folder)) << include.file << " lies in a folder that the house does not have";

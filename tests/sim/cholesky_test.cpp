@@ -1,5 +1,5 @@
-#include "base/variants.h"
 #include "sim/linear/cholesky.h"
+#include "base/variants.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-// A random lower triangle with about `links` entries a column, made positive definite by its diagonal.
+// Makes a random lower triangle with about `links` entries a column, which its diagonal makes positive definite.
 Sparse random_matrix(int size, double links, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> value(-1, 1);
@@ -38,7 +38,8 @@ Sparse random_matrix(int size, double links, unsigned seed) {
   return matrix;
 }
 
-// The 7-point Laplacian of a grid plus a little mass, in an order of little fill or in the grid's own.
+// Makes the 7-point Laplacian of a grid plus a little mass, either in an order with little fill or in the grid's own
+// order.
 Sparse grid_matrix(int n, bool ordered, double mass) {
   const auto at = [&](int x, int y, int z) { return (x * n + y) * n + z; };
   std::vector<std::pair<std::int32_t, std::int32_t>> edges;
@@ -87,14 +88,14 @@ Eigen::MatrixX3d solve(const CholeskyFactor& factor, const Eigen::MatrixX3d& b) 
   return out;
 }
 
-// || A x - b || / || b ||
+// Computes || A x - b || / || b ||.
 double residual(const Sparse& matrix, const CholeskyFactor& factor) {
   const Eigen::MatrixX3d b = Eigen::MatrixX3d::Random(matrix.rows(), 3);
   const Eigen::MatrixX3d x = solve(factor, b);
   return (matrix.selfadjointView<Eigen::Lower>() * x - b).norm() / b.norm();
 }
 
-// All bits of a factor, by what it does to the columns of the identity.
+// Captures all bits of a factor by what it does to the columns of the identity.
 Eigen::MatrixXd inverse(const CholeskyFactor& factor) {
   const int size = factor.size();
   Eigen::MatrixXd out(size, size);
@@ -177,7 +178,7 @@ TEST(Elimination, ComesToChildrenBeforeTheirParents) {
 }
 
 TEST(CholeskyFactor, SolvesWhateverThePattern) {
-  for (const double links : {0.0, 0.3, 0.6, 1.0, 3.0, 20.0}) {  // from a diagonal through forests to nearly dense
+  for (const double links : {0.0, 0.3, 0.6, 1.0, 3.0, 20.0}) {  // from diagonal over forests to nearly dense
     for (const int size : {1, 2, 3, 7, 8, 9, 40, 150}) {
       const Sparse matrix = random_matrix(size, links, static_cast<unsigned>(size));
       EXPECT_LT(residual(matrix, CholeskyFactor(matrix, Precision::double_precision)), 1e-13) << size << " " << links;
@@ -195,7 +196,7 @@ TEST(CholeskyFactor, AgreesWithADenseFactorOnGrids) {
     const CholeskyFactor factor(matrix, Precision::double_precision);
     EXPECT_LT((inverse(factor) - exact).norm() / exact.norm(), 1e-13);
   }
-  // The order pays: less is stored than in the grid's own.
+  // The order pays: less is stored than in the grid's own order.
   const auto stored = [](bool ordered) {
     return CholeskyFactor(grid_matrix(14, ordered, 0.01), Precision::double_precision).stored_numbers();
   };
@@ -208,7 +209,7 @@ TEST(CholeskyFactor, OfNewNumbersIsTheFactorMadeAnew) {
     CholeskyFactor factor(first, precision);
     factor.factorize(second, precision);
     EXPECT_EQ(inverse(factor), inverse(CholeskyFactor(second, precision)));
-    // Also in the other precision, and for another pattern.
+    // The same holds in the other precision, and for another pattern.
     factor.factorize(second, Precision::double_precision);
     EXPECT_EQ(inverse(factor), inverse(CholeskyFactor(second, Precision::double_precision)));
     const Sparse other = random_matrix(50, 1.5, 3);
@@ -234,8 +235,8 @@ TEST(CholeskyFactor, NamesTheUnknownWhosePivotIsNotPositive) {
   EXPECT_LT(residual(sound, factor), 1e-13);
 }
 
-// Every instruction set, all sizes around its registers: the pivots' columns against a dense factor, the rest against
-// what a dense elimination leaves.
+// Tests every instruction set with all sizes around its registers: the pivots' columns against a dense factor, the rest
+// against what a dense elimination leaves.
 TEST(Kernels, EliminateDenseFronts) {
   for (int v = 0; v < runnable_variants(); ++v) {
     for (int size = 1; size < 42; ++size) {

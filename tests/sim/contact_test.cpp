@@ -1,4 +1,4 @@
-// Contact with rigid colliders: energies and their derivatives, directions, momentum, tunnelling, overlaps, rest,
+// Tests contact with rigid colliders: energies and their derivatives, directions, momentum, tunnelling, overlaps, rest,
 // friction.
 #include "sim/contact/contact.h"
 
@@ -35,7 +35,7 @@ Eigen::Isometry3d moved_to(const Vec3& place) {
   return pose;
 }
 
-// A cube of n cells a side, 0.2 m, its middle at the origin.
+// Makes a cube of n cells a side, 0.2 m wide, centred at the origin.
 BodyDescription cube(int cells, const Material& material = Corotated{3e4, 6e4}) {
   BodyDescription body;
   body.name = "cube";
@@ -46,7 +46,7 @@ BodyDescription cube(int cells, const Material& material = Corotated{3e4, 6e4}) 
   return body;
 }
 
-// A body among colliders.
+// Holds a body among colliders.
 struct Play {
   Model model;
   std::vector<Collider> colliders;
@@ -102,7 +102,8 @@ TEST(Contact, GradientIsTheDerivativeOfTheEnergyWithPlanesAsTheyStand) {
   EXPECT_LT(best, 1e-6 * std::abs(at.slope));
 }
 
-// With the planes found anew at each point: what the reference minimises is what the planes' gradient belongs to.
+// The planes are found anew at each point, so that what the reference minimises is what the planes' gradient belongs
+// to.
 TEST(Contact, PlanesGiveTheDerivativeOfTheEnergyFoundAnew) {
   Shape blend = shape_of(Sphere{0.2});
   blend.root.parts.push_back({Capsule{Vec3(0, 0, 0), Vec3(0.3, 0, 0), 0.1}});
@@ -134,7 +135,7 @@ TEST(Contact, PlanesGiveTheDerivativeOfTheEnergyFoundAnew) {
   }
 }
 
-// (A + K)^-1 by the Woodbury identity against a dense inverse of A + K.
+// Compares (A + K)^-1 by the Woodbury identity with a dense inverse of A + K.
 TEST(Contact, LowRankDirectionsSolveTheSystemWithContacts) {
   Play play(bar(Corotated{1e4, 3e4}, Held::hard_end), {{"ground", ground, 0, 0.5}}, Vec3(0, 0.001, 0));
   play.state.v.rowwise() = Eigen::RowVector3d(0.3, -0.5, 0);
@@ -145,7 +146,7 @@ TEST(Contact, LowRankDirectionsSolveTheSystemWithContacts) {
                         play.w.correction);
   ASSERT_GT(play.w.correction.wanted.size(), 8u);
   const int n = play.model.free;
-  Eigen::MatrixXd inverse(3 * n, 3 * n);  // of A
+  Eigen::MatrixXd inverse(3 * n, 3 * n);  // the inverse of A
   Positions r(n, 3), z(n, 3);
   for (int column = 0; column < 3 * n; ++column) {
     r.setZero();
@@ -160,7 +161,7 @@ TEST(Contact, LowRankDirectionsSolveTheSystemWithContacts) {
   const Eigen::VectorXd wanted = system.ldlt().solve(Eigen::Map<Eigen::VectorXd>(r.data(), 3 * n));
   ContactSettings settings;
   apply_inverse(play.model, settings, play.w.correction, play.w.solve_scratch, r, z);
-  // Single precision in the small system; double around it.
+  // The small system is solved in single precision, the rest in double.
   EXPECT_LT((Eigen::Map<Eigen::VectorXd>(z.data(), 3 * n) - wanted).norm(), 1e-4 * wanted.norm());
 }
 
@@ -179,7 +180,7 @@ TEST(Contact, MomentumChangesByTheImpulsesOfGravityAndContacts) {
       const Vec3 before = momentum();
       const StepReport& report = play.advance();
       EXPECT_GT(report.contacts.touching, 0) << frame;
-      const Vec3 left = play.w.current.gradient.colwise().sum().transpose();  // of a minimum: zero
+      const Vec3 left = play.w.current.gradient.colwise().sum().transpose();  // zero at a minimum
       const Vec3 impulse = h * (play.model.total_mass * play.inputs.gravity + report.contact_force);
       const double scale = before.norm() + impulse.norm();
       EXPECT_LT((momentum() - before - impulse - h * left).norm(), 1e-9 * scale) << frame;
@@ -195,7 +196,7 @@ TEST(Contact, NothingGoesThroughAtAnySpeedUpToItsSizeAStep) {
   struct Obstacle {
     std::string name;
     Shape shape;
-    double top;  // its surface's height on the y axis
+    double top;  // height of its surface on the y axis
   };
   const std::vector<Obstacle> obstacles = {
       {"plane", ground, 0},
@@ -213,11 +214,11 @@ TEST(Contact, NothingGoesThroughAtAnySpeedUpToItsSizeAStep) {
         play.advance();
         deepest = std::max(deepest, play.deepest(0));
         if (!obstacle.name.starts_with("plate") && obstacle.name != "box") continue;
-        // Below the middle of a plate is through.
+        // A body below the middle of a plate has passed through it.
         EXPECT_GT(play.state.x.col(1).minCoeff(), 0) << obstacle.name << " at " << speed << " m/s, frame " << frame;
       }
       EXPECT_LT(deepest, 0.02 * size) << obstacle.name << " at " << speed << " m/s";
-      if (!obstacle.name.starts_with("torus")) {  // off whose tube it slides
+      if (!obstacle.name.starts_with("torus")) {  // it slides off the torus's tube
         EXPECT_GT(play.center().y(), obstacle.top) << obstacle.name << " at " << speed << " m/s";
       }
       RecordProperty(obstacle.name + fmt::format(" {:.3g}", speed), fmt::format("{:.2e}", deepest / size));
@@ -225,7 +226,7 @@ TEST(Contact, NothingGoesThroughAtAnySpeedUpToItsSizeAStep) {
   }
 }
 
-// The collider comes to the body, thin and fast.
+// The collider comes to the body, and it is thin and fast.
 TEST(Contact, APlateThatMovesFastIsNotLetThrough) {
   Play play(cube(3), {{"plate", shape_of(Box{Vec3(1, 0.002, 1), 0})}});
   play.inputs.gravity.setZero();
@@ -241,7 +242,7 @@ TEST(Contact, APlateThatMovesFastIsNotLetThrough) {
 TEST(Contact, ColliderThatTurnsCarriesWhatStandsOnIt) {
   Play play(cube(2), {{"disc", shape_of(Cylinder{1, 0.05, 0}), 0, 1.0}}, Vec3(0.5, 0.1501, 0));
   play.inputs.solver.iterations = 30;
-  const double turn = 0.02;  // a step
+  const double turn = 0.02;  // the collider's turn in a step
   for (int frame = 0; frame < 40; ++frame) {
     play.inputs.collider_motions[0].start = Eigen::AngleAxisd(turn * frame, Vec3::UnitY());
     play.inputs.collider_motions[0].end = Eigen::AngleAxisd(turn * (frame + 1), Vec3::UnitY());
@@ -264,7 +265,7 @@ TEST(Contact, OverlapsArePushedOutNoFasterThanAllowed) {
   for (const auto& [name, shape] : shapes) {
     const double x = name == "torus" ? 0.5 : 0,
                  top = shape.distance(Vec3(x, 10, 0)) > 9 ? 10 - shape.distance(Vec3(x, 10, 0)) : 0;
-    for (const double sunk : {0.1, 0.22}) {  // half and wholly inside
+    for (const double sunk : {0.1, 0.22}) {  // half inside and wholly inside
       Play play(cube(3), {{name, shape}}, Vec3(x, top + 0.1 - sunk, 0.01));
       play.inputs.gravity.setZero();
       double fastest = 0;
@@ -277,7 +278,7 @@ TEST(Contact, OverlapsArePushedOutNoFasterThanAllowed) {
       }
       ASSERT_TRUE(play.state.x.allFinite());
       EXPECT_LT(play.deepest(0), 0.01 * play.model.size) << name << ", sunk by " << sunk;
-      // What is pushed also swings; a few times the limit is not an explosion.
+      // A body that is pushed also swings; a few times the limit is not an explosion.
       EXPECT_LT(fastest, 4 * play.inputs.solver.contact.push_out * play.model.size) << name << ", sunk by " << sunk;
     }
   }
@@ -289,7 +290,7 @@ TEST(Contact, ABodyAtRestStaysAtRestForAMinute) {
   const Vec3 settled = play.center();
   double fastest = 0;
   int changes = 0;
-  std::uint64_t set = 0;  // of who touches
+  std::uint64_t set = 0;  // hash of the vertices that touch
   for (int frame = 300; frame < 1800; ++frame) {
     const StepReport& report = play.advance();
     fastest = std::max(fastest, play.fastest());
@@ -341,7 +342,7 @@ TEST(Contact, SameBitsWhateverTheWorkspaceDidBefore) {
   fresh.state = rest_state(fresh.model);  // the same workspace, which now knows what it touched
   fresh.state.x.rowwise() += Eigen::RowVector3d(0.1, 0.42, 0);
   EXPECT_EQ(hashes(fresh, 20), expected);
-  // From a snapshot in the middle of contact.
+  // Starts from a snapshot in the middle of contact.
   Play snapshot(body, colliders);
   snapshot.state = fresh.state;
   EXPECT_GT(fresh.w.contact.counts.touching, 0);

@@ -1,5 +1,6 @@
-// Every element kind with every material: forces against differences of energies, and what rigid motion, Newton's third
-// law and the conservation of angular momentum demand. The table of the worst errors is kept in docs/derivatives.md.
+// Tests every element kind with every material: forces against differences of energies, and against what rigid motion,
+// Newton's third law and the conservation of angular momentum demand. The table of the worst errors is kept in
+// docs/derivatives.md.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -21,7 +22,7 @@ using test::kinds;
 using test::random_rotation;
 using test::uniform;
 
-// An element: its energy, and its force on all corners, at a deformation gradient applied to its rest shape.
+// Describes an element by its energy and its force on all corners, at a deformation gradient applied to its rest shape.
 using Corners = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 struct Subject {
   std::string element, material;
@@ -95,7 +96,7 @@ std::vector<Subject> subjects() {
   return list;
 }
 
-// The best of several steps: a large one sees curvature, a small one round-off.
+// Returns the best of several steps: a large step sees curvature, a small one round-off.
 double difference_error(const Subject& subject, const Corners& x, std::mt19937& random) {
   std::normal_distribution<double> normal;
   Corners direction(x.rows(), 3), force;
@@ -115,7 +116,7 @@ double difference_error(const Subject& subject, const Corners& x, std::mt19937& 
 
 struct Row {
   std::string element, material;
-  std::vector<double> derivative;  // by kind
+  std::vector<double> derivative;  // worst error, for each kind of deformation
   double rigid = 0, net_force = 0, net_torque = 0;
 };
 
@@ -204,7 +205,7 @@ TEST(Derivatives, NetForceAndTorqueOfAWholeBodyVanishAtEveryIteration) {
       State state = start;
       Workspace w;
       step(model, inputs, state, w);
-      // The elastic part of the gradient, where the step ended.
+      // The force is the elastic part of the gradient at the end of the step.
       begin_step(model, inputs, start, w);
       const Positions y = w.y;
       w.current.x = state.x;

@@ -1,5 +1,5 @@
-// Implicit midpoint, stiffness-proportional damping, springs and fibres: objectives that are derivatives of each other,
-// and the physics they are chosen for.
+// Tests implicit midpoint, stiffness-proportional damping, springs and fibres: their objectives and gradients must
+// agree, and they must show the physics that they are chosen for.
 #include <gtest/gtest.h>
 
 #include "sim/model/measures.h"
@@ -41,7 +41,8 @@ TEST(Integrators, GradientAndDifferencesAgreeForEveryObjective) {
 // The matrix of the model must be the second derivative of g where g is quadratic.
 TEST(Integrators, TheSystemMatrixIsTheHessianOfTheQuadraticPart) {
   for (const Integrator integrator : {Integrator::backward_euler, Integrator::implicit_midpoint}) {
-    // As-rigid-as-possible with k = 2 mu: near rest, for a deformation without rotation, g is quadratic with A.
+    // The material is as-rigid-as-possible with k = 2 mu: near rest, for a deformation without rotation, g is quadratic
+    // with A.
     BodyDescription body = bar(AsRigidAsPossible{1e4}, Held::spring_end);
     body.integrator = integrator;
     body.damping = 0.01;
@@ -53,7 +54,7 @@ TEST(Integrators, TheSystemMatrixIsTheHessianOfTheQuadraticPart) {
     w.prepare(model, inputs.solver);
     State state = rest_state(model);
     begin_step(model, inputs, state, w);
-    // A uniform stretch, symmetric, so that R stays the identity everywhere.
+    // A uniform, symmetric stretch keeps R the identity everywhere.
     const double strain = 1e-4;
     w.current.x = model.rest;
     w.current.x.col(0) *= 1 + strain;
@@ -151,7 +152,7 @@ TEST(Integrators, EveryStepOfEveryObjectiveIsNoWorseThanStaying) {
     const Model model = build_model(body);
     FrameInputs inputs = still_inputs(model);
     inputs.middle_targets = inputs.targets;
-    inputs.solver.iterations = 1;  // too few on purpose
+    inputs.solver.iterations = 1;  // deliberately too few
     State state = rest_state(model);
     state.x.topRows(model.free) = test::shaken(model.rest, 0.05, 3).topRows(model.free);
     Workspace w;
@@ -164,7 +165,7 @@ TEST(Integrators, EveryStepOfEveryObjectiveIsNoWorseThanStaying) {
   }
 }
 
-// A mass of 2 kg on a spring of 1 m and 40 N/m.
+// Makes a mass of 2 kg on a spring of 1 m and 40 N/m.
 BodyDescription weight_on_a_spring() {
   BodyDescription body;
   body.name = "spring";
@@ -179,9 +180,9 @@ BodyDescription weight_on_a_spring() {
 }
 
 TEST(Springs, AndFibresAreWholeInTheSystemMatrix) {
-  // Both are linear along their own direction: one plain quasi-Newton iteration lands where nothing is left to gain. A
-  // softer or stiffer matrix would fall short or overshoot.
-  // Fibres along y in a box that is pulled along y by its weight; the base is as good as absent.
+  // Both are linear along their own direction, so one plain quasi-Newton iteration must end at the minimum; a softer or
+  // stiffer matrix would fall short or overshoot. The fibres run along y in a box that its weight pulls along y; the
+  // base material is so soft that it does not count.
   BodyDescription fibre = bar(AsRigidAsPossible{1e-6}, Held::nothing);
   fibre.fibres = {Fibre{1e4, {0, 1, 0}}};
   fibre.handles = {Handle{"top", {}, 0}};

@@ -43,7 +43,7 @@ AgainstStaying against_staying(const Model& model, const FrameInputs& inputs, co
   w.prepare(model, inputs.solver);
   begin_step(model, inputs, before, w);
   w.current.x.topRows(model.free) = before.x.topRows(model.free);
-  const auto normal_energy = [&](const Positions& x) {  // friction only takes energy
+  const auto normal_energy = [&](const Positions& x) {  // without friction, which only takes energy
     if (!has_colliders(inputs)) return 0.0;
     std::vector<Contact> found;
     find_contacts(model, inputs, x, nullptr, w.contact, found);
