@@ -136,25 +136,24 @@ void CholeskyFactor::store_panels(int s, const double* columns, AlignedVector<T>
   for (int panel = first_panel_[s]; panel < first_panel_[s + 1]; ++panel) {
     const int first = first_column_[panel] - node.first, width = width_[panel];
     T* target = out.data() + first_value_[panel];
-    const double* column[panel_width];  // at the front's first row, were it stored above the strip's diagonal too
-    std::int64_t block[panel_width];
-    for (int j = 0; j < width; ++j) {
-      const int strip = (first + j) / block_rows;
-      block[j] = std::int64_t(block_rows) * strip_width(front, strip);
-      column[j] = columns + strip_begin(front, strip) + (first + j) % block_rows * block_rows - strip * block[j];
+    for (int from = 0, to = 0; from < width; from = to) {  // columns of one strip
+      const int strip = (first + from) / block_rows, block = block_rows * strip_width(front, strip);
+      to = std::min(width, (strip + 1) * block_rows - first);
+      const double* column = columns + strip_begin(front, strip) + (first + from) % block_rows * block_rows;
+      const auto store_rows = [&](int row, int end) {
+        for (int place = padded_place(front, row); row < end; ++row, ++place) {
+          const double* source = column + (place / block_rows - strip) * block + place % block_rows;
+          T* stored = target + std::int64_t(row - first) * width;
+          for (int j = from; j < to; ++j) stored[j] = static_cast<T>(source[(j - from) * block_rows]);
+        }
+      };
+      store_rows(first + from, front.pivots);
+      store_rows(front.pivots, front.pivots + front.rows);
+      for (int j = from; j < to; ++j) {
+        for (int i = 0; i < j; ++i) target[i * width + j] = 0;
+        target[j * width + j] = static_cast<T>(1 / column[(j - from) * block_rows + (first + j) % block_rows]);
+      }
     }
-    const auto store_row = [&](int row, int count) {
-      const int place = padded_place(front, first + row);
-      for (int j = 0; j < count; ++j)
-        target[row * width + j] = static_cast<T>(column[j][place / block_rows * block[j] + place % block_rows]);
-    };
-    for (int i = 0; i < width; ++i) {
-      store_row(i, i);
-      const int place = first + i;
-      target[i * width + i] = static_cast<T>(1 / column[i][place / block_rows * block[i] + place % block_rows]);
-      std::fill(target + i * width + i + 1, target + (i + 1) * width, T(0));
-    }
-    for (int i = width; i < front.pivots + front.rows - first; ++i) store_row(i, width);
   }
 }
 

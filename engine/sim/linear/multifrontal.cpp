@@ -7,9 +7,16 @@
 namespace supple {
 namespace {
 
-// Of a padded row within a strip, from the strip's diagonal block.
-std::int64_t place_in_strip(int row, int strip, int width) {
-  return std::int64_t(row / block_rows - strip) * (block_rows * width) + row % block_rows;
+// Of a padded row in the column that begins a strip, counted from where row 0 would stand.
+std::int32_t place_in_strip(std::int32_t row, int width) {
+  return (row & ~(block_rows - 1)) * width + (row & (block_rows - 1));
+}
+
+// Where the padded row 0 of a column would stand.
+double* column_of(FrontShape front, double* columns, int column) {
+  const int strip = column / block_rows;
+  return columns + strip_begin(front, strip) + column % block_rows * block_rows -
+         std::int64_t(strip) * block_rows * strip_width(front, strip);
 }
 
 }  // namespace
@@ -39,20 +46,17 @@ int Multifrontal::eliminate(const Eigen::SparseMatrix<double>& matrix, int s, do
 void Multifrontal::assemble(const Eigen::SparseMatrix<double>& matrix, int s, double* columns, double* update) {
   const Supernode& node = elimination_.nodes[s];
   const FrontShape front = node.front();
-  const std::int64_t stride = padded_rows(front.rows);
   std::fill_n(columns, column_numbers(front), 0.0);
-  for (std::int64_t j = 0; j < front.rows; ++j) {
-    const std::int64_t begin = j / block_rows * block_rows;
-    std::fill(update + j * stride + begin, update + (j + 1) * stride, 0.0);
-  }
+  std::fill_n(update, update_numbers(front), 0.0);
   for (int j = 0; j < front.pivots; ++j) place_[node.first + j] = j;
   const std::int32_t* rows = elimination_.rows.data() + node.first_row;
-  for (int i = 0; i < front.rows; ++i) place_[rows[i]] = padded_place(front, front.pivots + i);
+  const int below = strips_of(front) * block_rows;
+  for (int i = 0; i < front.rows; ++i) place_[rows[i]] = below + i;
   for (int j = 0; j < front.pivots; ++j) {
-    const int strip = j / block_rows, width = strip_width(front, strip);
-    double* column = columns + strip_begin(front, strip) + j % block_rows * block_rows;
+    const int width = strip_width(front, j / block_rows);
+    double* column = column_of(front, columns, j);
     for (Eigen::SparseMatrix<double>::InnerIterator entry(matrix, node.first + j); entry; ++entry) {
-      if (entry.row() >= node.first + j) column[place_in_strip(place_[entry.row()], strip, width)] = entry.value();
+      if (entry.row() >= node.first + j) column[place_in_strip(place_[entry.row()], width)] = entry.value();
     }
   }
   while (!waiting_.empty() && elimination_.nodes[waiting_.back()].parent == s) {
@@ -69,17 +73,15 @@ void Multifrontal::add_update(const Supernode& parent, const Supernode& child, d
   const double* from = stack_[child.level % 2].data() + stacked_[child.level % 2];
   const std::int32_t* rows = elimination_.rows.data() + child.first_row;
   target_.resize(count);
+  in_strip_.resize(count);
   for (int i = 0; i < count; ++i) target_[i] = place_[rows[i]];
   int j = 0;
-  for (int strip = -1, width = 0; j < count && target_[j] < front.pivots; ++j, from += child_stride) {
-    if (const int next = target_[j] / block_rows; next != strip) {
-      strip = next;
-      width = strip_width(front, strip);
-      in_strip_.resize(count);
-      for (int i = j; i < count; ++i)
-        in_strip_[i] = static_cast<std::int32_t>(place_in_strip(target_[i], strip, width));
+  for (int width = 0; j < count && target_[j] < front.pivots; ++j, from += child_stride) {
+    if (const int next = strip_width(front, target_[j] / block_rows); next != width) {
+      width = next;
+      for (int i = j; i < count; ++i) in_strip_[i] = place_in_strip(target_[i], width);
     }
-    double* column = columns + strip_begin(front, strip) + target_[j] % block_rows * block_rows;
+    double* column = column_of(front, columns, target_[j]);
     for (int i = j; i < count; ++i) column[in_strip_[i]] += from[i];
   }
   const int first = strips_of(front) * block_rows;
