@@ -4,6 +4,7 @@
 
 #include <Eigen/SparseCore>
 
+#include "sim/linear/changing_factor.h"
 #include "sim/solver/workspace.h"
 
 namespace supple {
