@@ -14,8 +14,8 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/text.h"
-#include "output/run_folder.h"
 #include "base/variants.h"
+#include "output/run_folder.h"
 
 namespace supple {
 
@@ -82,8 +82,8 @@ std::string blas() {
 // What a finished section must have been made with to be kept.
 std::string fingerprint(const BenchSetting& setting) {
   return fmt::format("{}; {}; {}; {}; {}; {} threads; {}; paper meshes: {}", hash_text_form(program_identity()), blas(),
-                     program_version(), build_flags(), variant_name(best_variant()), setting.threads->count(), cpu_name(),
-                     setting.paper_meshes ? "yes" : "no");
+                     program_version(), build_flags(), variant_name(best_variant()), setting.threads->count(),
+                     cpu_name(), setting.paper_meshes ? "yes" : "no");
 }
 
 ReportPage page_of(const BenchSetting& setting, std::vector<ReportSection> sections) {
