@@ -25,7 +25,7 @@ void add_up(BodyRow& row, const StepReport& report) {
   row.objective_start = report.objective.empty() ? 0 : report.objective.front();
   row.objective_end = report.objective.empty() ? 0 : report.objective.back();
   row.error_estimate = report.error_estimate;
-  row.stop_reason = text_of(report.stop_reason);
+  row.stop_reason = name_of(report.stop_reason);
   if (!row.contact) return;
   row.contact->collide_ms += report.collide_ms;
   row.contact->contacts = report.contacts.touching;

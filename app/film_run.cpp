@@ -88,7 +88,7 @@ FilmOptions options_of(const FilmRequest& request) {
   film.save_states = request.save_states;
   film.images = !request.no_images;
   film.video = !request.no_video;
-  film.gl = request.gl == "egl" ? GlChoice::egl : request.gl == "osmesa" ? GlChoice::osmesa : GlChoice::automatic;
+  film.gl = *value_named<GlChoice>(request.gl);
   film.quiet = request.quiet;
   film.shaders = shaders_folder();
   film.font = caption_font();
@@ -211,7 +211,7 @@ void add_film_options(CLI::App& verb, FilmRequest& request) {
   verb.add_flag("--no-images", request.no_images, "simulate only");
   verb.add_flag("--trace", request.trace,
                 "where every thread's time went, for chrome://tracing or Perfetto: trace.json");
-  verb.add_option("--gl", request.gl, "auto, osmesa or egl")->check(CLI::IsMember({"auto", "osmesa", "egl"}));
+  verb.add_option("--gl", request.gl, word_list(all_names<GlChoice>()))->check(CLI::IsMember(all_names<GlChoice>()));
   verb.add_option("--checkpoint-every", request.checkpoint_every,
                   "frames between checkpoints, from which a film can be resumed; 0 makes none")
       ->check(CLI::Range(0, 1000000))

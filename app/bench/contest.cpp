@@ -10,14 +10,10 @@
 namespace supple {
 
 SearchRule& Contest::rule_of(const Contestant& contestant) {
-  const auto same = [&](const Prepared& p) {
-    return p.method == contestant.method && p.settings.chebyshev_radius == contestant.rule.chebyshev_radius &&
-           p.settings.chebyshev_delay == contestant.rule.chebyshev_delay;
-  };
+  const auto same = [&](const Prepared& p) { return p.method == contestant.method; };
   const auto at = std::find_if(prepared_.begin(), prepared_.end(), same);
   if (at != prepared_.end()) return *at->rule;
-  prepared_.push_back(
-      {contestant.method, contestant.rule, make_rule(contestant.method, subject_.model, contestant.rule)});
+  prepared_.push_back({contestant.method, make_rule(contestant.method, subject_.model)});
   return *prepared_.back().rule;
 }
 
@@ -95,6 +91,7 @@ FrameInputs Contest::inputs_of(const BenchState& state, const Contestant& contes
   inputs.solver.iterations = contestant.iterations;
   inputs.solver.history = contestant.history;
   inputs.solver.line_search = contestant.line_search;
+  inputs.solver.chebyshev = contestant.chebyshev;
   inputs.solver = settings_of(contestant.method, inputs.solver);
   return inputs;
 }
@@ -127,16 +124,16 @@ double time_to(const Outcome& outcome, double whole, double tolerance) {
   return std::numeric_limits<double>::infinity();
 }
 
-RuleSettings trained_chebyshev(Contest& contest, const BenchState& training) {
-  RuleSettings best;
+ChebyshevSettings trained_chebyshev(Contest& contest, const BenchState& training) {
+  ChebyshevSettings best{10, 0.99};
   double most = -std::numeric_limits<double>::infinity();
   for (const double radius : {0.8, 0.9, 0.95, 0.97, 0.98, 0.99, 0.995, 0.999}) {
     Contestant contestant{"", Method::chebyshev, 30};
-    contestant.rule.chebyshev_radius = radius;
+    contestant.chebyshev = {best.delay, radius};
     const Outcome outcome = contest.run(training, {contestant}, 0).front();
     if (outcome.failed || outcome.gained.back() <= most) continue;
     most = outcome.gained.back();
-    best.chebyshev_radius = radius;
+    best.radius = radius;
   }
   return best;
 }

@@ -15,7 +15,7 @@ struct Contestant {
   int iterations = 10;
   int history = 5;
   LineSearch line_search = LineSearch::armijo;
-  RuleSettings rule = {};
+  ChebyshevSettings chebyshev = {};
 };
 
 // How one contestant did on one state. Lists go by iteration, the first iterate first.
@@ -64,7 +64,6 @@ class Contest {
   Workspace workspace_, reference_workspace_;
   struct Prepared {
     Method method;
-    RuleSettings settings;
     std::unique_ptr<SearchRule> rule;
   };
   std::vector<Prepared> prepared_;
@@ -79,7 +78,7 @@ double last_error(const Outcome& outcome, double whole);
 // The first time at which the error is at most `tolerance`; infinity when it never is [ms].
 double time_to(const Outcome& outcome, double whole, double tolerance);
 
-// The radius that makes Chebyshev's method best after 30 iterations on a training state.
-RuleSettings trained_chebyshev(Contest& contest, const BenchState& training);
+// The radius that makes Chebyshev's method best after 30 iterations on a training state, with the delay of Wang 2015.
+ChebyshevSettings trained_chebyshev(Contest& contest, const BenchState& training);
 
 }  // namespace supple

@@ -141,7 +141,7 @@ ReportSection bench_contact(const BenchSetting& setting) {
     int inverted = 0;
   };
   const std::vector<Contestant> contestants = {{"ours", Method::quasi_newton, 10},
-                                               {"contacts in the matrix", Method::contact_matrix, 10},
+                                               {"contacts in the matrix", Method::lbfgs_from(StartMatrix::contact), 10},
                                                {"Newton, 1 iteration", Method::newton, 1},
                                                {"Newton, 5 iterations", Method::newton, 5}};
   std::vector<Row> rows;

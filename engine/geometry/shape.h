@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/names.h"
 #include "geometry/source_file.h"
 #include "geometry/triangle_solid.h"
 
@@ -59,6 +60,11 @@ using Primitive =
     std::variant<Sphere, Ellipsoid, Capsule, RoundCone, Box, Cylinder, Torus, HalfSpace, ClosedSurface, ShapeGroup>;
 
 enum class Combine { add, cut, intersect };
+template <>
+struct Names<Combine> {
+  static constexpr std::array table = {Name{Combine::add, "add"}, Name{Combine::cut, "cut"},
+                                       Name{Combine::intersect, "intersect"}};
+};
 
 // Describes one step in building a shape: the field so far is combined with this part.
 struct ShapePart {

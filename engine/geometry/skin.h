@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "base/names.h"
 #include "geometry/mesh.h"
 #include "geometry/shape.h"
 
@@ -13,6 +14,11 @@ constexpr int max_paint_layers = 8;
 
 // Names what is printed on a body, in squares of one size, so that its strain can be seen.
 enum class Pattern { none, grid, checks };
+template <>
+struct Names<Pattern> {
+  static constexpr std::array table = {Name{Pattern::none, "none"}, Name{Pattern::grid, "grid"},
+                                       Name{Pattern::checks, "checks"}};
+};
 
 struct Skin {
   TriMesh rest;                  // in the body's rest frame

@@ -6,9 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "base/names.h"
+
 namespace supple {
 
 enum class GlChoice { automatic, osmesa, egl };
+template <>
+struct Names<GlChoice> {
+  static constexpr std::array table = {Name{GlChoice::automatic, "auto"}, Name{GlChoice::osmesa, "osmesa"},
+                                       Name{GlChoice::egl, "egl"}};
+};
 
 class GlContext {
  public:

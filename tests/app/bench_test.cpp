@@ -64,12 +64,27 @@ TEST(Bench, TheReferenceIsBelowEveryMethodsEnd) {
   Contest contest(subject, threads);
   const BenchState state = states_of(subject, {20}, folder.path, threads).front();
   std::vector<Contestant> contestants;
-  for (const MethodInfo& info : methods) contestants.push_back({std::string(info.name), info.method, 40});
+  for (const Method& method : compared_methods()) contestants.push_back({name_of(method), method, 40});
   const std::vector<Outcome> outcomes = contest.run(state, contestants, 0);
   const Minimum lowest = contest.reference(state, outcomes);
   for (const Outcome& outcome : outcomes) {
     if (outcome.failed) continue;
     EXPECT_LE(outcome.gained.back(), lowest.below_y * (1 + 1e-12)) << outcome.label;
+  }
+}
+
+// At the default ten iterations, with the default delay and radius.
+TEST(Bench, ChebyshevIsNearerToTheMinimumThanProjectiveDynamicsOnTheTwistingBar) {
+  const TemporaryFolder folder;
+  const Subject subject({"twisting-bar", "bar", {"body.bar.box.cells=[14, 5, 5]"}});
+  Threads threads(1);
+  Contest contest(subject, threads);
+  for (const BenchState& state : states_of(subject, {40, 70, 100}, folder.path, threads)) {
+    const std::vector<Outcome> outcomes =
+        contest.run(state, {{"chebyshev", Method::chebyshev}, {"projective dynamics", Method::projective_dynamics}}, 0);
+    EXPECT_GT((outcomes[0].x - outcomes[1].x).cwiseAbs().maxCoeff(), 0);
+    const double whole = contest.reference(state, outcomes).below_y;
+    EXPECT_LT(last_error(outcomes[0], whole), 0.8 * last_error(outcomes[1], whole)) << "frame " << state.frame;
   }
 }
 

@@ -215,19 +215,63 @@ TEST(Methods, AllReachTheMinimumOfOneStep) {
   State solved = before;
   Workspace w;
   const double lowest = step(model, inputs, solved, w).objective.back();
-  for (const MethodInfo& info : methods) {
-    const auto rule = make_rule(info.method, model);
+  for (const Method& method : compared_methods()) {
+    const std::string name = name_of(method);
+    const auto rule = make_rule(method, model);
     FrameInputs own = inputs;
-    own.solver = settings_of(info.method, own.solver);
+    own.solver = settings_of(method, own.solver);
     own.solver.line_search = LineSearch::armijo;
     State after = before;
     Workspace scratch;
     const StepReport& report = step(model, own, after, scratch, *rule);
-    ASSERT_FALSE(report.failed) << info.name;
-    EXPECT_NEAR(report.objective.back(), lowest, 1e-9 * (report.objective.front() - lowest)) << info.name;
-    EXPECT_LT((after.x - solved.x).cwiseAbs().maxCoeff(), 1e-6 * model.size) << info.name;
-    fmt::print("{:24} {:5} iterations, {:5} trials\n", info.name, report.iterations, report.line_search);
+    ASSERT_FALSE(report.failed) << name;
+    EXPECT_NEAR(report.objective.back(), lowest, 1e-9 * (report.objective.front() - lowest)) << name;
+    EXPECT_LT((after.x - solved.x).cwiseAbs().maxCoeff(), 1e-6 * model.size) << name;
+    fmt::print("{:24} {:5} iterations, {:5} trials\n", name, report.iterations, report.line_search);
   }
+}
+
+// Each entry of the table of forms that compared_methods() does not have: a matrix by itself.
+TEST(Methods, EveryCombinationOfPartsReachesTheMinimum) {
+  const Model model = build_model(test::bar(NeoHookean{2e4, 4e4}, Held::hard_end, Precision::double_precision, 2));
+  FrameInputs inputs = test::still_inputs(model);
+  inputs.solver.iterations = 5000;
+  State before = rest_state(model);
+  before.x.topRows(model.free) = test::shaken(before.x, 0.01, 7).topRows(model.free);
+  State solved = before;
+  Workspace w;
+  const double lowest = step(model, inputs, solved, w).objective.back();
+  int count = 0;
+  for (const MethodForm& form : method_forms) {
+    for (const Preconditioner preconditioner : form.preconditioner) {
+      for (const Acceleration acceleration : form.acceleration) {
+        for (const Safeguard safeguard : form.safeguard) {
+          const Method method{form.matrix,  form.linear, form.linear == LinearSolver::cg ? 7 : 0, 0, preconditioner,
+                              acceleration, safeguard};
+          const auto rule = make_rule(method, model);
+          FrameInputs own = inputs;
+          own.solver = settings_of(method, own.solver);
+          own.solver.line_search = LineSearch::armijo;
+          State after = before;
+          Workspace scratch;
+          const StepReport& report = step(model, own, after, scratch, *rule);
+          ASSERT_FALSE(report.failed) << name_of(method);
+          EXPECT_NEAR(report.objective.back(), lowest, 1e-8 * (report.objective.front() - lowest)) << name_of(method);
+          ++count;
+        }
+      }
+    }
+  }
+  EXPECT_EQ(count, 24);
+}
+
+TEST(Methods, PartsThatDoNotGoTogetherMakeNoRule) {
+  const Model model = build_model(test::bar(NeoHookean{2e4, 4e4}, Held::hard_end, Precision::double_precision, 2));
+  EXPECT_THROW((void)make_rule({.matrix = StartMatrix::identity, .linear = LinearSolver::cg}, model), InputError);
+  EXPECT_THROW((void)make_rule({.matrix = StartMatrix::hessian, .acceleration = Acceleration::none}, model),
+               InputError);
+  EXPECT_THROW((void)make_rule({.linear = LinearSolver::cg, .preconditioner = Preconditioner::jacobi}, model),
+               InputError);
 }
 
 TEST(Methods, NewtonConvergesQuadratically) {

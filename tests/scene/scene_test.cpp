@@ -224,6 +224,7 @@ std::vector<DocumentedKey> all_keys() {
   for (const std::string& model : test::model_names()) materials.push_back("{ model = \"" + model + "\" }");
   for (const std::string& material : materials) {
     Config config = Config::parse(fmt::format(R"([solver]
+method = {{ matrix = "system" }}
 [solver.contact]
 [[body]]
 shape = "shapes/squirrel.toml"

@@ -307,7 +307,7 @@ TEST_F(Replay, WarnsOfRampsThatAnotherChangeBreaksOff) {
   };
   const std::string ramp = "[[change]]\nt = 0.5\nover = 1\npath = 'body.bar.material.mu'\nvalue = 2e4\n";
   const std::string says =
-      " s on this change has its way with body.bar.material.mu; the ramp of line 6 (0.5 to 1.5 s) ends there, "
+      " s on this change sets body.bar.material.mu; the ramp of line 6 (0.5 to 1.5 s) ends there, "
       "unfinished\n";
   EXPECT_EQ(warned(ramp + "[[change]]\nt = 1\nover = 0.2\npath = 'body.bar.material.mu'\nvalue = 3e4\n"),
             ":11:9: from 1" + says);

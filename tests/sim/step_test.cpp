@@ -201,7 +201,7 @@ TEST(Step, ConvergesToAnErrorOf1e12WithoutStalling) {
       const StepReport& report = step(model, inputs, state, w);
       ASSERT_FALSE(report.failed);
       EXPECT_EQ(report.stop_reason, StopReason::round_off)
-          << name_of(material) << ": " << text_of(report.stop_reason) << " after " << report.iterations;
+          << name_of(material) << ": " << name_of(report.stop_reason) << " after " << report.iterations;
       EXPECT_LT(Reference(model).step_error(model, inputs, before, state, reference).value_or(1), 1e-12)
           << name_of(material);
     }

@@ -11,6 +11,7 @@
 #include <Eigen/SparseCore>
 
 #include "base/aligned.h"
+#include "base/names.h"
 #include "base/types.h"
 #include "sim/linear/elimination.h"
 #include "sim/linear/linear_kernels.h"
@@ -23,6 +24,11 @@ std::vector<std::int32_t> fill_reducing_order(int count,
                                               const std::vector<std::pair<std::int32_t, std::int32_t>>& edges);
 
 enum class Precision { single_precision, double_precision };
+template <>
+struct Names<Precision> {
+  static constexpr std::array table = {Name{Precision::single_precision, "single"},
+                                       Name{Precision::double_precision, "double"}};
+};
 
 class CholeskyFactor {
  public:

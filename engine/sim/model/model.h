@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "base/names.h"
 #include "geometry/mesh.h"
 #include "sim/elements/element_kernels.h"
 #include "sim/elements/element_records.h"
@@ -23,6 +24,11 @@ struct Handle {
 };
 
 enum class Integrator { backward_euler, implicit_midpoint };
+template <>
+struct Names<Integrator> {
+  static constexpr std::array table = {Name{Integrator::backward_euler, "backward-euler"},
+                                       Name{Integrator::implicit_midpoint, "implicit-midpoint"}};
+};
 
 // What a step minimises: w/(2 h^2) |x - y|^2_M + e E(theta x + (1 - theta) q), with y = q + h v + f h^2 M^-1 f_ext.
 // Backward Euler is equation 3; implicit midpoint evaluates forces halfway (Hairer, Lubich, Wanner 2006, "Geometric

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/names.h"
 #include "base/types.h"
 
 namespace supple {
@@ -16,7 +17,12 @@ struct ContactCounts {
 };
 
 enum class StopReason { iterations, round_off, target_error, line_search_failed };
-const char* text_of(StopReason reason);
+template <>
+struct Names<StopReason> {
+  static constexpr std::array table = {
+      Name{StopReason::iterations, "iterations"}, Name{StopReason::round_off, "round-off"},
+      Name{StopReason::target_error, "target error"}, Name{StopReason::line_search_failed, "line search failed"}};
+};
 
 struct StepFailure {
   std::string phase;
