@@ -1,5 +1,5 @@
 // closed_surface of surface_file.h, one step a function. Triangles keep the number that they came with, for messages.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
