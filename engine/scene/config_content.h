@@ -1,6 +1,11 @@
 // What a Config owns; only for config.cpp and config_values.cpp, which know the TOML parser.
 #pragma once
 
+// The parser takes its assertions for a part of handling malformed files, and without them promises the compiler that
+// they hold. They stay in any build.
+#undef NDEBUG
+#include <cassert>
+
 #include <toml++/toml.h>
 
 #include "scene/config.h"
