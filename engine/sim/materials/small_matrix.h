@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 
 namespace supple {
 
@@ -19,16 +20,14 @@ V madd(const V& a, const V& b, const V& c) {
 // yes where the condition holds, lane by lane
 inline double choose(bool condition, double yes, double no) { return condition ? yes : no; }
 template <class Condition, class V>
-V choose(const Condition& condition, const V& yes, const V& no) {
+requires(!std::is_arithmetic_v<Condition>) V choose(const Condition& condition, const V& yes, const V& no) {
   return select(condition, yes, no);
 }
 
 // Whether the condition holds in any lane.
 inline bool some(bool condition) { return condition; }
 template <class Condition>
-bool some(const Condition& condition) {
-  return any(condition);
-}
+requires(!std::is_arithmetic_v<Condition>) bool some(const Condition& condition) { return any(condition); }
 
 template <class V>
 struct Matrix3 {
