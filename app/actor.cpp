@@ -1,6 +1,6 @@
 #include "app/actor.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "app/state_file.h"
 #include "base/trace.h"

@@ -2,7 +2,7 @@
 // (SUPPLE_CHECK prints both values). A numerical failure is neither; it is returned in a step's report.
 #pragma once
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <stdexcept>
 #include <string>

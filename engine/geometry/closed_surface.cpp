@@ -1,6 +1,6 @@
 // Implements closed_surface of surface_file.h, one function for each step. Triangles keep the number that they had in
 // the file, for messages.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>

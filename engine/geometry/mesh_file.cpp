@@ -1,6 +1,6 @@
 #include "geometry/mesh_file.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "output/json_difference.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <map>

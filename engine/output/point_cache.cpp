@@ -1,6 +1,6 @@
 #include "output/point_cache.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <unistd.h>
 

@@ -1,6 +1,6 @@
 #include "output/run_folder.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>

@@ -1,6 +1,6 @@
 #include "output/run_record.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <fstream>

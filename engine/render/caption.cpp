@@ -1,6 +1,6 @@
 #include "render/caption.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <ft2build.h>
 #include FT_FREETYPE_H
 

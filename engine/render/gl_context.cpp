@@ -4,7 +4,7 @@
 #include <EGL/eglext.h>
 #include <GL/osmesa.h>
 #include <dlfcn.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "base/error.h"
 

@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <cmath>
+#include <xsimd/xsimd.hpp>
 
 #include "base/variants.h"
 #include "sim/elements/tetrahedron.h"

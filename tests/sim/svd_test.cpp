@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <random>
+#include <xsimd/xsimd.hpp>
 
 #include "base/types.h"
 

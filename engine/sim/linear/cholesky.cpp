@@ -3,7 +3,7 @@
 // Leaves out the declarations of CHOLMOD's modules under the GPL: nothing here can call them.
 #define NGPL
 #include <cholmod.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
