@@ -1,6 +1,6 @@
 #include "app/actor.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "app/state_file.h"
 #include "base/trace.h"
@@ -8,6 +8,7 @@
 #include "baselines/reference.h"
 #include "output/obj_file.h"
 #include "sim/model/measures.h"
+#include "sim/solver/energies.h"
 #include "sim/solver/step.h"
 
 namespace supple {

@@ -1,4 +1,4 @@
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -67,7 +67,7 @@ Dense hessian_at(const Subject& subject, const Positions& x) {
   ElementMatrices elements;
   HessianMatrix hessian(subject.model);
   element_matrices(subject.model, scratch, x, false, elements);
-  hessian.assemble(subject.model, elements, {}, x);
+  hessian.assemble(subject.model, elements, {}, 0, x);
   return dense_of(hessian.matrix());
 }
 

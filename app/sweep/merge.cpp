@@ -1,6 +1,6 @@
 #include "app/sweep/merge.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "app/sweep/point.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>

@@ -55,10 +55,10 @@ class ChebyshevRule final : public SearchRule {
   void begin(const Model&, const FrameInputs&, Workspace&) override { iteration_ = 0; }
 
   double direction(const Model& model, const FrameInputs& inputs, Workspace& w) override {
-    Positions& scratch = w.trial_gradient;
-    scratch = w.gradient;
-    stiff_directions(model, w);
-    apply_inverse(model, w, inputs.solver.contact, scratch, w.direction);
+    const Stretch stretch(w.clock, Phase::solve, "solve");
+    w.scratch = w.current.gradient;
+    find_stiff_directions(model, w.current.contacts, w.current.x, w.contact.stick_length, w.correction);
+    apply_inverse(model, inputs.solver.contact, w.correction, w.solve_scratch, w.scratch, w.direction);
     w.direction = -w.direction;
     const auto [delay, radius] = inputs.solver.chebyshev;
     const double rho2 = radius * radius;
@@ -71,12 +71,13 @@ class ChebyshevRule final : public SearchRule {
     }
     // omega (x_{k+1} - x_{k-1}) + x_{k-1} - x_k with x_{k+1} = x_k + q
     if (iteration_ > 0)
-      w.direction = omega_ * w.direction + (omega_ - 1) * (w.x.topRows(model.free) - before_.topRows(model.free));
-    return (w.gradient.array() * w.direction.array()).sum();
+      w.direction =
+          omega_ * w.direction + (omega_ - 1) * (w.current.x.topRows(model.free) - before_.topRows(model.free));
+    return (w.current.gradient.array() * w.direction.array()).sum();
   }
 
   void accepted(const Model&, const FrameInputs&, Workspace& w) override {
-    before_ = w.x;
+    before_ = w.current.x;
     ++iteration_;
   }
 

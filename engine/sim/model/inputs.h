@@ -12,15 +12,15 @@
 
 namespace supple {
 
-// A rigid obstacle, in its own frame.
+// A rigid obstacle, described in its own frame.
 struct Collider {
   std::string name;
   Shape shape;
   double thickness = 0;  // of a layer around it that already pushes [m]
-  double friction = 0;   // Coulomb's coefficient
+  double friction = 0;   // coefficient of Coulomb's law
 };
 
-// From the collider's frame to the world, when a step starts and when it ends.
+// A collider's pose, from its frame to the world, when a step starts and when it ends.
 struct ColliderMotion {
   Eigen::Isometry3d start = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d end = Eigen::Isometry3d::Identity();

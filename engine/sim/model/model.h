@@ -15,7 +15,7 @@
 
 namespace supple {
 
-// Vertices that follow a motion from outside.
+// Some vertices that follow a motion given from outside.
 struct Handle {
   std::string name;
   std::vector<std::int32_t> vertices;  // of the mesh, in its own numbering; one vertex belongs to one handle
@@ -58,7 +58,7 @@ struct BodyDescription {
 };
 
 struct Model {
-  std::uint64_t id = 0;  // new whenever its numbers are set, so that whoever remembers something of it knows
+  std::uint64_t id = 0;  // changes whenever its numbers are set, so that what was derived from them can be renewed
   std::string name;
   int vertices = 0;  // n
   int free = 0;      // vertices that the solver moves: 0 .. free-1
@@ -85,7 +85,7 @@ struct Model {
   std::vector<std::int32_t> element_of_lane;  // input's element of the chunk's kind by lane; -1 for padding
   std::vector<std::uint16_t> corner;
   AlignedVector<double> field;
-  std::vector<std::int32_t> chunk_vertex;  // all chunks' lists, one behind the other
+  std::vector<std::int32_t> chunk_vertex;  // all chunks' lists, one after the other
   struct ChunkRange {
     ElementKind kind;
     int region;
@@ -96,7 +96,7 @@ struct Model {
   std::vector<ChunkRange> chunks;
   int largest_chunk = 0;  // vertices
 
-  // Where each free vertex stands in the chunks' lists: slots[slot_begin[v] .. slot_begin[v+1]).
+  // The places of each free vertex in the chunks' lists are slots[slot_begin[v] .. slot_begin[v+1]).
   std::vector<std::int32_t> slot_begin;
   std::vector<std::int32_t> slots;
 
