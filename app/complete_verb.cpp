@@ -1,10 +1,12 @@
 // What a shell asks while a command is typed. The answer comes from the command line's own description, so there is no
 // second list of verbs and options to keep.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 
 #include "app/verbs.h"
 #include "base/console.h"
+#include "film/places.h"
 
 namespace supple {
 namespace {

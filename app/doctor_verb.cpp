@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -8,11 +9,12 @@
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/text.h"
+#include "base/variants.h"
+#include "film/places.h"
 #include "geometry/surface_file.h"
 #include "output/child_program.h"
 #include "output/run_folder.h"
 #include "render/renderer.h"
-#include "base/variants.h"
 
 namespace supple {
 namespace {

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 #include <thread>
@@ -8,6 +9,7 @@
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
+#include "film/places.h"
 #include "geometry/mesh_file.h"
 
 namespace supple {

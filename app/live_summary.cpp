@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "app/summary.h"
-#include "app/verbs.h"
 #include "base/text.h"
 #include "base/timing.h"
+#include "film/places.h"
 #include "scene/assemble.h"
 #include "scene/script.h"
 #include "sim/model/model_values.h"

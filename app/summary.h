@@ -16,8 +16,8 @@ std::string mesh_summary(const TetMesh& mesh);
 // frames are simulated, on this many threads, and nothing is written. Throws InputError as loading a scene does.
 std::string scene_summary(const std::filesystem::path& file, int threads);
 
-// What of a scene or replay may change while it runs: path, type, unit, value, what is allowed, what a change costs. A
-// new factor is timed. Throws InputError as loading a scene does.
+// The values of a scene or replay that may change while it runs: path, type, unit, value, what is allowed, what a
+// change costs. A new factor is timed. Throws InputError as loading a scene does.
 std::string live_summary(const std::filesystem::path& file);
 
 // What was run, how it ended, times, and the files that are there.

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <set>
 
-#include "app/sweep/contact_sheet.h"
 #include "app/sweep/sweep_tables.h"
-#include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
+#include "film/contact_sheet.h"
+#include "film/places.h"
 #include "output/report_page.h"
 #include "output/run_folder.h"
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -12,8 +11,8 @@ namespace supple {
 
 struct RunRecord {
   std::filesystem::path folder;
-  nlohmann::ordered_json info;  // run.json
-  std::vector<FrameRow> rows;   // profile.json; empty while a run has not come to its end
+  std::string info_json;       // run.json: a JSON object
+  std::vector<FrameRow> rows;  // profile.json; empty while a run has not come to its end
   bool has_profile = false;
 
   std::filesystem::path motion(const std::string& body) const { return folder / "motion" / (body + ".pc2"); }

@@ -285,6 +285,21 @@ DrawnBody drawn_body(const SceneDef& scene, const Body& body) {
   return drawn;
 }
 
+namespace {
+
+// What keys move handled vertices from where nothing has been grabbed, and which handles hold as the film starts.
+Anchors rest_anchors(const Model& model, const Body& body) {
+  Anchors anchors;
+  anchors.points.resize(model.handled.size(), 3);
+  for (std::size_t i = 0; i < model.handled.size(); ++i)
+    anchors.points.row(i) = model.rest.row(model.handled[i].vertex);
+  for (const KeyedMotion& motion : body.motions) anchors.centers.push_back(motion.center);
+  for (const HandleDef& def : body.def.handles) anchors.holds.push_back(!def.grabs || def.holds_at(0));
+  return anchors;
+}
+
+}  // namespace
+
 State start_state(const Model& model, const Body& body) {
   State state = rest_state(model);
   const Positions start = start_positions(body.def.start, body.description.mesh.rest, body.seed, body.description.name);
@@ -297,16 +312,8 @@ State start_state(const Model& model, const Body& body) {
     state.x.row(vertex) = model.rest.row(vertex);
     state.v.row(vertex).setZero();
   }
+  state.anchors = rest_anchors(model, body);
   return state;
-}
-
-Anchors rest_anchors(const Model& model, const Body& body) {
-  Anchors anchors;
-  anchors.points.resize(model.handled.size(), 3);
-  for (std::size_t i = 0; i < model.handled.size(); ++i)
-    anchors.points.row(i) = model.rest.row(model.handled[i].vertex);
-  for (const KeyedMotion& motion : body.motions) anchors.centers.push_back(motion.center);
-  return anchors;
 }
 
 void grab(const Model& model, int handle, const Positions& x, Anchors& anchors) {

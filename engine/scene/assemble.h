@@ -40,25 +40,23 @@ struct Body {
 // once.
 std::vector<Body> assemble(const SceneDef& scene);
 
-// Takes over what may change while a body moves (live.h) from the scene's definition of it. Throws InputError.
+// Applies what may change while a body moves (live.h), as the scene's definition of it now says. Throws InputError.
 void update_body(Body& body, const SceneDef& scene, const BodyDef& def);
 
-// Only for pictures; separate because a run without images does not pay for it.
+// What is drawn of a body. It is made apart from the body, so that a run without images does not pay for it.
 DrawnBody drawn_body(const SceneDef& scene, const Body& body);
 
-// Where a body starts; handled vertices at rest.
+// Where a body starts: handled vertices are at rest, and handles move them from there.
 State start_state(const Model& model, const Body& body);
 
-// What keys move handled vertices from where nothing has been grabbed.
-Anchors rest_anchors(const Model& model, const Body& body);
-// A handle closes on its vertices where they are.
+// A handle grabs its vertices where they are: its keys move them from there.
 void grab(const Model& model, int handle, const Positions& x, Anchors& anchors);
 
 // Targets of all handled vertices, by model.handled. change: how much of a change that is spread over the frame is
 // done, 0 to 1.
 void handle_targets(const Model& model, const Body& body, const Anchors& anchors, double time, double change,
                     Positions& targets);
-// Of a body whose handles grab nothing, and whose definition does not change.
+// The same for a body whose handles grab nothing and whose definition does not change.
 void handle_targets(const Model& model, const Body& body, double time, Positions& targets);
 
 }  // namespace supple

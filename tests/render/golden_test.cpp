@@ -4,8 +4,8 @@
 // failing test leaves its candidate in the build folder.
 #include <gtest/gtest.h>
 
-#include "app/draw_scene.h"
-#include "app/verbs.h"
+#include "film/draw_scene.h"
+#include "film/places.h"
 #include "output/png_file.h"
 #include "render/renderer.h"
 #include "scene/scene_reader.h"
