@@ -1,6 +1,6 @@
 #include "app/film_run.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -99,12 +99,6 @@ bool say_verdict(const FilmCommand& command, const StateVerifier& verifier, int 
 
 }  // namespace
 
-GlChoice gl_choice(const std::string& word) {
-  for (const GlChoice choice : {GlChoice::egl, GlChoice::osmesa})
-    if (word == text_of(choice)) return choice;
-  return GlChoice::automatic;
-}
-
 void add_film_options(CLI::App& verb, FilmCommand& command) {
   FilmPlan& plan = command.plan;
   verb.add_option("--out", plan.out, "folder for the results [out/NAME]");
@@ -132,8 +126,9 @@ void add_film_options(CLI::App& verb, FilmCommand& command) {
       "--no-images", [&plan] { plan.pictures = FilmPictures::none; }, "simulate only");
   verb.add_flag("--trace", plan.trace, "where every thread's time went, for chrome://tracing or Perfetto: trace.json");
   verb.add_option_function<std::string>(
-          "--gl", [&plan](const std::string& word) { plan.gl = gl_choice(word); }, "auto, osmesa or egl")
-      ->check(CLI::IsMember({"auto", "osmesa", "egl"}));
+          "--gl", [&plan](const std::string& word) { plan.gl = *value_named<GlChoice>(word); },
+          word_list(all_names<GlChoice>()))
+      ->check(CLI::IsMember(all_names<GlChoice>()));
   verb.add_option("--checkpoint-every", plan.checkpoint_every,
                   "frames between checkpoints, from which a film can be resumed; 0 makes none")
       ->check(CLI::Range(0, 1000000))

@@ -27,9 +27,6 @@ struct FilmArgument {
 };
 void add_film(CLI::App& verb, const FilmArgument& argument, Action& action, const std::vector<std::string>& words);
 
-// "auto", "osmesa" or "egl".
-GlChoice gl_choice(const std::string& word);
-
 // What is known of a run once it is over, for a caller that looks closer.
 struct FilmRecord {
   RunInfo info;

@@ -1,7 +1,7 @@
 // supple: films of soft bodies from scene files. Exit status: 0 done, 1 the run failed, 2 the input is wrong, 130
 // interrupted.
 #include <fcntl.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>

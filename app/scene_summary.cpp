@@ -66,9 +66,9 @@ std::string body_text(const SceneDef& scene, Body& body, const CollisionSet& set
   }
   text += fmt::format("  mass that moves {:.4g} kg\n", model.total_mass);
   for (std::size_t h = 0; h < body.description.handles.size(); ++h) text += handle_text(body, h);
-  text += fmt::format("  solver          {}, {} iterations a step, {} numbers in the factor\n",
-                      info_of(body.def.solver.method).name, body.def.solver.settings.iterations,
-                      model.factor.stored_numbers());
+  text +=
+      fmt::format("  solver          {}, {} iterations a step, {} numbers in the factor\n",
+                  name_of(body.def.solver.method), body.def.solver.settings.iterations, model.factor.stored_numbers());
   return text + fmt::format("  costs           {}\n", cost_text(scene, body, model, set, threads));
 }
 
@@ -76,7 +76,7 @@ std::string body_text(const SceneDef& scene, Body& body, const CollisionSet& set
 std::string course_text(const TimedChange& change) {
   if (change.over <= 0) return fmt::format("becomes {}", printable(change.to.whole_text()));
   return fmt::format("from {} to {} over {:g} s, {}{}", change.from->whole_text(), change.to.whole_text(), change.over,
-                     change.ease == Ease::smooth ? "smooth" : "linear", change.by_ratio ? " by ratio" : "");
+                     name_of(change.ease), change.by == RampRule::ratio ? " by ratio" : "");
 }
 
 // The frames in which a change is at work, and what must be made anew in each of them.

@@ -1,4 +1,4 @@
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
 #include <optional>
@@ -9,6 +9,7 @@
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "film/places.h"
 #include "scene/scene_reader.h"
 
@@ -100,7 +101,7 @@ void add_options(CLI::App& verb, SweepOptions& options) {
   CLI::Option* images =
       verb.add_flag("--images", options.images, "film every point; otherwise the last frame is drawn");
   verb.add_flag("--no-images", options.no_images, "simulate only")->excludes(images);
-  verb.add_option("--gl", request.gl, "auto, osmesa or egl")->check(CLI::IsMember({"auto", "osmesa", "egl"}));
+  verb.add_option("--gl", request.gl, word_list(all_names<GlChoice>()))->check(CLI::IsMember(all_names<GlChoice>()));
   verb.add_flag("--quiet", request.quiet, "say nothing but errors");
 }
 

@@ -1,5 +1,6 @@
 #version 330 core
-// Clay with painted layers. A layer's border is the zero of its interpolated distance, so it is sharp however coarse the surface is.
+// The material is clay with painted layers. A layer's border is the zero of its interpolated distance, so it is sharp
+// however coarse the surface is.
 #include "film.glsl"
 #include "lighting.glsl"
 in vec3 world;
@@ -24,7 +25,8 @@ vec4 surface() {
   return material;
 }
 
-// The printed pattern's factor on the colour, filtered over the pixel so that it neither flickers nor breaks into dots.
+// Computes the factor of the printed pattern on the colour, filtered over the pixel so that it neither flickers nor
+// breaks into dots.
 float print() {
   if (printed == 0) return 1.0;
   vec2 pixel_size = max(fwidth(squares), vec2(1e-6));
@@ -34,14 +36,14 @@ float print() {
     vec2 line = clamp((half_line + 0.5 * pixel_size - away) / pixel_size, 0.0, 1.0) * min(vec2(1.0), 2.0 * half_line / pixel_size + 0.3);
     return 1.0 - 0.55 * max(line.x, line.y);
   }
-  // A chequerboard as the product of two square waves, each integrated over the pixel (box filter).
+  // The chequerboard is the product of two square waves, each integrated over the pixel (box filter).
   vec2 low = 0.5 * (squares - 0.5 * pixel_size), high = 0.5 * (squares + 0.5 * pixel_size);
   vec2 wave = (abs(fract(high) - 0.5) - abs(fract(low) - 0.5)) / (0.5 * pixel_size);
   return 1.0 - 0.09 * (1.0 + wave.x * wave.y);
 }
 
 void main() {
-  if (world.y < -1e-4) discard;  // under the ground, which is drawn on its own
+  if (world.y < -1e-4) discard;  // below the ground, which is drawn on its own
   vec3 n = normalize(world_normal);
   vec3 v = normalize(eye - world);
   if (dot(n, v) < 0.0 && !gl_FrontFacing) n = -n;
@@ -49,7 +51,8 @@ void main() {
   vec3 albedo = material.rgb * print();
   float gloss = material.a;
 
-  // A little wrap makes clay of plastic: light bleeds past the terminator, reddened by the material's own colour.
+  // A little wrapping makes plastic look like clay: light bleeds past the terminator, reddened by the material's own
+  // colour.
   float facing = dot(n, key_direction);
   float lit = shadow(world, n);
   float wrapped = max((facing + 0.25) / 1.25, 0.0);
@@ -67,7 +70,7 @@ void main() {
   float power = mix(12.0, 420.0, gloss * gloss);
   float fresnel = 0.04 + 0.96 * pow(1.0 - max(dot(v, h), 0.0), 5.0);
   light += key_color * fresnel * lit * (power + 8.0) / 25.0 * pow(max(dot(n, h), 0.0), power) * gloss;
-  // The sky's reflection, for what is wet.
+  // Wet surfaces also reflect the sky.
   light += sky_color * gloss * gloss * (0.04 + 0.5 * pow(1.0 - max(dot(n, v), 0.0), 5.0)) * open * smoothstep(-0.2, 0.6, reflect(-v, n).y);
   pixel = film(light);
 }

@@ -1,8 +1,8 @@
-// From linear light to the screen.
+// Converts linear light to screen colours.
 uniform float exposure;
 
-// Filmic curve: a toe and a shoulder (Narkowicz 2015, "ACES filmic tone mapping curve"), at an exposure that brings a white under full light
-// to about 0.8.
+// Applies a filmic curve with a toe and a shoulder (Narkowicz 2015, "ACES filmic tone mapping curve"), at an exposure
+// that brings a white under full light to about 0.8.
 vec3 filmic(vec3 light) {
   vec3 x = 0.62 * exposure * light;
   return clamp((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);

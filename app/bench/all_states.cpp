@@ -1,4 +1,4 @@
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -41,15 +41,15 @@ std::vector<MethodTimes> all_methods() {
           {{"Chebyshev", Method::chebyshev, 300}},
           {{"Newton", Method::newton, 15}},
           {{"Newton, shifted", Method::newton_shifted, 20}},
-          {{"Newton, 5 CG", Method::newton_cg5, 60}},
-          {{"Newton, 15 CG", Method::newton_cg15, 40}},
+          {{"Newton, 5 CG", Method::newton_cg(5), 60}},
+          {{"Newton, 15 CG", Method::newton_cg(15), 40}},
           {{"Gast et al.", Method::gast, 20}},
-          {{"ours, 15 CG", Method::quasi_newton_cg15, 100}},
-          {{"identity", Method::lbfgs_identity, 200}},
-          {{"rest pose", Method::lbfgs_rest, 200}},
-          {{"rest pose, warped", Method::lbfgs_warped, 200}},
-          {{"frame's start", Method::lbfgs_frame, 40}},
-          {{"15 CG, ichol of ours", Method::lbfgs_frame_cg15_ours, 40}}};
+          {{"ours, 15 CG", Method::quasi_newton_cg(15), 100}},
+          {{"identity", Method::lbfgs_from(StartMatrix::identity), 200}},
+          {{"rest pose", Method::lbfgs_from(StartMatrix::rest_hessian), 200}},
+          {{"rest pose, warped", Method::lbfgs_from(StartMatrix::warped_rest_hessian), 200}},
+          {{"frame's start", Method::lbfgs_from(StartMatrix::frame_hessian), 40}},
+          {{"15 CG, ichol of ours", Method::frame_cg(15, Preconditioner::system), 40}}};
 }
 
 constexpr double tolerances[] = {1e-1, 1e-2, 1e-3, 1e-4, 1e-6};
@@ -154,12 +154,12 @@ ReportSection bench_profiles(const BenchSetting& setting) {
     say_doing(setting, fmt::format("{}, {} ({})", choice.scene, choice.body, subject.size_text()));
     SolverComparison comparison(subject, *setting.threads);
     std::vector<BenchState> states = states_of(subject, {6, 12, 18, 30, 42, 54, 66}, setting);
-    const RuleSettings chebyshev = trained_chebyshev(comparison, states[1]);
+    const ChebyshevSettings chebyshev = trained_chebyshev(comparison, states[1]);
     states.erase(states.begin() + 1);  // it was for training
     std::vector<SolverEntry> entries;
     for (const MethodTimes& method : list) {
       entries.push_back(method.entry);
-      entries.back().rule = chebyshev;
+      entries.back().chebyshev = chebyshev;
     }
     for (const BenchState& state : states) {
       const std::vector<Outcome> outcomes = comparison.run(state, entries, 1, 200);
@@ -220,8 +220,8 @@ ReportSection bench_scenes(const BenchSetting& setting) {
                                         {"Projective Dynamics", Method::projective_dynamics, 100},
                                         {"Chebyshev", Method::chebyshev, 100},
                                         {"Newton", Method::newton, 12},
-                                        {"Newton, 15 CG", Method::newton_cg15, 40}};
-    entries[2].rule = trained_chebyshev(comparison, states.front());
+                                        {"Newton, 15 CG", Method::newton_cg(15), 40}};
+    entries[2].chebyshev = trained_chebyshev(comparison, states.front());
     const std::vector<Outcome> outcomes = comparison.run(state, entries, 2, 2000);
     const Minimum lowest = comparison.reference(state, outcomes);
     ReportPlot plot{fmt::format("scene-{}-{}", choice.scene, choice.body),
@@ -265,12 +265,13 @@ ReportSection bench_minima(const BenchSetting& setting) {
                                             {"spline-spheres", "a"},
                                             {"spline-spheres", "b"},
                                             {"thin-sheet", "sheet"}};
-  const std::vector<SolverEntry> entries = {{"ours", Method::quasi_newton, 5000, 20},
-                                            {"Newton", Method::newton, 150},
-                                            {"Newton, shifted", Method::newton_shifted, 400},
-                                            {"Newton, 15 CG", Method::newton_cg15, 2000},
-                                            {"Gast et al.", Method::gast, 400},
-                                            {"frame's start", Method::lbfgs_frame, 1000, 20}};
+  const std::vector<SolverEntry> entries = {
+      {"ours", Method::quasi_newton, 5000, 20},
+      {"Newton", Method::newton, 150},
+      {"Newton, shifted", Method::newton_shifted, 400},
+      {"Newton, 15 CG", Method::newton_cg(15), 2000},
+      {"Gast et al.", Method::gast, 400},
+      {"frame's start", Method::lbfgs_from(StartMatrix::frame_hessian), 1000, 20}};
   int same = 0, other = 0, unfinished = 0;
   for (const SubjectChoice& choice : picks) {
     Subject subject(choice);
@@ -289,7 +290,7 @@ ReportSection bench_minima(const BenchSetting& setting) {
         unfinished += !equal && !elsewhere;
         table.rows.push_back({choice.scene, choice.body, std::to_string(state.frame), outcome.label,
                               std::to_string(outcome.iterations),
-                              outcome.failed ? "failed" : text_of(outcome.stop_reason), number_text(away),
+                              std::string(outcome.failed ? "failed" : name_of(outcome.stop_reason)), number_text(away),
                               number_text(last_error(outcome, lowest.below_y)),
                               equal       ? "same"
                               : elsewhere ? "another minimum"

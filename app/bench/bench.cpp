@@ -1,7 +1,6 @@
 #include "app/bench/sections.h"
 
-#include <dlfcn.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include "base/hash.h"
 #include "base/interrupts.h"
 #include "base/text.h"
+#include "base/timing.h"
 #include "base/variants.h"
 #include "output/run_folder.h"
 
@@ -73,20 +73,9 @@ const std::vector<Benchmark>& benchmarks() {
 
 namespace {
 
-// The BLAS that Newton's factorisations use.
-std::string blas() {
-  Dl_info info{};
-  void* symbol = dlsym(RTLD_DEFAULT, "dgemm_");
-  if (symbol == nullptr || dladdr(symbol, &info) == 0 || info.dli_fname == nullptr) return "unknown";
-  std::error_code error;
-  const std::filesystem::path file = std::filesystem::canonical(info.dli_fname, error);
-  if (error) return info.dli_fname;
-  return (file.parent_path().filename() / file.filename()).string();  // Debian has a folder for each BLAS
-}
-
 // What a finished section must have been made with to be kept.
 std::string fingerprint(const BenchSetting& setting) {
-  return fmt::format("{}; {}; {}; {}; {}; {} threads; {}; paper meshes: {}", hash_text_form(program_identity()), blas(),
+  return fmt::format("{}; {}; {}; {}; {} threads; {}; paper meshes: {}", hash_text_form(program_identity()),
                      program_version(), build_flags(), variant_name(best_variant()), setting.threads->count(),
                      cpu_name(), setting.paper_meshes ? "yes" : "no");
 }
@@ -107,7 +96,6 @@ ReportPage page_of(const BenchSetting& setting, std::vector<ReportSection> secti
                 {"program", program_version()},
                 {"build", build_flags()},
                 {"kernels", variant_name(best_variant())},
-                {"BLAS of Newton's factorisations", blas()},
                 {"threads of the solver", std::to_string(setting.threads->count())},
                 {"paper's meshes", setting.paper_meshes ? "yes, where a table or figure says so" : "not given"}};
   page.sections = std::move(sections);

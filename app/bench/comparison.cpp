@@ -10,13 +10,10 @@
 namespace supple {
 
 SearchRule& SolverComparison::rule_of(const SolverEntry& entry) {
-  const auto same = [&](const Prepared& p) {
-    return p.method == entry.method && p.settings.chebyshev_radius == entry.rule.chebyshev_radius &&
-           p.settings.chebyshev_delay == entry.rule.chebyshev_delay;
-  };
+  const auto same = [&](const Prepared& p) { return p.method == entry.method; };
   const auto at = std::find_if(prepared_.begin(), prepared_.end(), same);
   if (at != prepared_.end()) return *at->rule;
-  prepared_.push_back({entry.method, entry.rule, make_rule(entry.method, subject_.model, entry.rule)});
+  prepared_.push_back({entry.method, make_rule(entry.method, subject_.model)});
   return *prepared_.back().rule;
 }
 
@@ -105,6 +102,7 @@ FrameInputs SolverComparison::inputs_of(const BenchState& state, const SolverEnt
   inputs.solver.iterations = entry.iterations;
   inputs.solver.history = entry.history;
   inputs.solver.line_search = entry.line_search;
+  inputs.solver.chebyshev = entry.chebyshev;
   inputs.solver = settings_of(entry.method, inputs.solver);
   return inputs;
 }
@@ -137,16 +135,16 @@ double time_to(const Outcome& outcome, double whole, double tolerance) {
   return std::numeric_limits<double>::infinity();
 }
 
-RuleSettings trained_chebyshev(SolverComparison& comparison, const BenchState& training) {
-  RuleSettings best;
+ChebyshevSettings trained_chebyshev(SolverComparison& comparison, const BenchState& training) {
+  ChebyshevSettings best{10, 0.99};
   double most = -std::numeric_limits<double>::infinity();
   for (const double radius : {0.8, 0.9, 0.95, 0.97, 0.98, 0.99, 0.995, 0.999}) {
     SolverEntry entry{"", Method::chebyshev, 30};
-    entry.rule.chebyshev_radius = radius;
+    entry.chebyshev = {best.delay, radius};
     const Outcome outcome = comparison.run(training, {entry}, 0).front();
     if (outcome.failed || outcome.gained.back() <= most) continue;
     most = outcome.gained.back();
-    best.chebyshev_radius = radius;
+    best.radius = radius;
   }
   return best;
 }

@@ -17,7 +17,7 @@ struct SolverEntry {
   int iterations = 10;
   int history = 5;
   LineSearch line_search = LineSearch::armijo;
-  RuleSettings rule = {};
+  ChebyshevSettings chebyshev = {};
 };
 
 // The result of one solver on one state. Lists go by iteration, the first iterate first.
@@ -68,7 +68,6 @@ class SolverComparison {
   Workspace workspace_, reference_workspace_;
   struct Prepared {
     Method method;
-    RuleSettings settings;
     std::unique_ptr<SearchRule> rule;
   };
   std::vector<Prepared> prepared_;
@@ -84,7 +83,8 @@ double last_error(const Outcome& outcome, double whole);
 // The first time at which the error is at most `tolerance`; infinity when it never is [ms].
 double time_to(const Outcome& outcome, double whole, double tolerance);
 
-// Finds the radius that makes Chebyshev's method best after 30 iterations on a training state.
-RuleSettings trained_chebyshev(SolverComparison& comparison, const BenchState& training);
+// Finds the radius that makes Chebyshev's method best after 30 iterations on a training state, with the delay of
+// Wang 2015.
+ChebyshevSettings trained_chebyshev(SolverComparison& comparison, const BenchState& training);
 
 }  // namespace supple

@@ -1,4 +1,4 @@
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -74,7 +74,7 @@ ReportSection compare(const BenchSetting& setting, const std::string& name, cons
   SolverComparison comparison(subject, *setting.threads);
   const std::vector<BenchState> states = states_of(subject, {60, example_frame}, setting);
   for (SolverEntry& entry : entries) {
-    if (entry.method == Method::chebyshev) entry.rule = trained_chebyshev(comparison, states[0]);
+    if (entry.method == Method::chebyshev) entry.chebyshev = trained_chebyshev(comparison, states[0]);
   }
   const std::vector<Outcome> outcomes = comparison.run(states[1], entries, 5);
   const Minimum lowest = comparison.reference(states[1], outcomes);
@@ -105,10 +105,10 @@ ReportSection bench_figure8(const BenchSetting& setting) {
   return compare(
       setting, "figure8", "Figure 8: initial Hessians",
       {{"ours", Method::quasi_newton, 100},
-       {"scaled identity", Method::lbfgs_identity, 100},
-       {"rest pose", Method::lbfgs_rest, 100},
-       {"rest pose, warped", Method::lbfgs_warped, 100},
-       {"frame's start", Method::lbfgs_frame, 40},
+       {"scaled identity", Method::lbfgs_from(StartMatrix::identity), 100},
+       {"rest pose", Method::lbfgs_from(StartMatrix::rest_hessian), 100},
+       {"rest pose, warped", Method::lbfgs_from(StartMatrix::warped_rest_hessian), 100},
+       {"frame's start", Method::lbfgs_from(StartMatrix::frame_hessian), 40},
        {"Newton", Method::newton, 12}},
       "ours",
       "L-BFGS with m = 5 from each. The paper's order by time: ours, then the warped rest pose, the rest pose "
@@ -128,11 +128,11 @@ ReportSection bench_figure16(const BenchSetting& setting) {
   return compare(
       setting, "figure16", "Figure 16: direct solves and conjugate gradients",
       {{"ours", Method::quasi_newton, 100},
-       {"ours, 5 CG", Method::quasi_newton_cg5, 100},
-       {"ours, 15 CG", Method::quasi_newton_cg15, 100},
+       {"ours, 5 CG", Method::quasi_newton_cg(5), 100},
+       {"ours, 15 CG", Method::quasi_newton_cg(15), 100},
        {"Newton", Method::newton, 12},
-       {"Newton, 5 CG", Method::newton_cg5, 100},
-       {"Newton, 15 CG", Method::newton_cg15, 100},
+       {"Newton, 5 CG", Method::newton_cg(5), 100},
+       {"Newton, 15 CG", Method::newton_cg(15), 100},
        {"Gast et al.", Method::gast, 40}},
       "ours",
       "Preconditioners are Jacobi. In the paper conjugate gradients are slower than the direct solve in both "
@@ -142,11 +142,11 @@ ReportSection bench_figure16(const BenchSetting& setting) {
 ReportSection bench_figure17(const BenchSetting& setting) {
   return compare(setting, "figure17", "Figure 17: preconditioners",
                  {{"ours", Method::quasi_newton, 100},
-                  {"frame's start, direct", Method::lbfgs_frame, 40},
-                  {"5 CG, ichol of rest pose", Method::lbfgs_frame_cg5_rest, 60},
-                  {"15 CG, ichol of rest pose", Method::lbfgs_frame_cg15_rest, 60},
-                  {"5 CG, ichol of ours", Method::lbfgs_frame_cg5_ours, 60},
-                  {"15 CG, ichol of ours", Method::lbfgs_frame_cg15_ours, 60}},
+                  {"frame's start, direct", Method::lbfgs_from(StartMatrix::frame_hessian), 40},
+                  {"5 CG, ichol of rest pose", Method::frame_cg(5, Preconditioner::rest), 60},
+                  {"15 CG, ichol of rest pose", Method::frame_cg(15, Preconditioner::rest), 60},
+                  {"5 CG, ichol of ours", Method::frame_cg(5, Preconditioner::system), 60},
+                  {"15 CG, ichol of ours", Method::frame_cg(15, Preconditioner::system), 60}},
                  "ours",
                  "L-BFGS from the Hessian of the frame's start, solved with preconditioned conjugate gradients. In the "
                  "paper our matrix is the better preconditioner of the two.");

@@ -1,10 +1,11 @@
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include "app/bench/sections.h"
+#include "base/timing.h"
 #include "baselines/post_projection.h"
 #include "output/profile.h"
 #include "sim/model/element_view.h"
@@ -94,12 +95,12 @@ ReportSection bench_ablation(const BenchSetting& setting) {
   add("the same in float", least_ms(7, [&] { energy = plain_evaluation<float>(elements, x, mu, force_float); }));
   Workspace workspace;
   workspace.prepare(model, {});
-  Positions gradient(model.free, 3);
   State at = state.before;
   begin_step(model, subject.inputs(state), at, workspace);
+  workspace.current.x = x;
   energy = elastic_energy(model, workspace, x);
   add("ours: no SVD, elements side by side in vector registers, with inertia and gathering",
-      least_ms(15, [&] { evaluate(model, workspace, x, workspace.trial_energy, &gradient, nullptr, nullptr); }));
+      least_ms(15, [&] { evaluate(model, workspace, workspace.current, Wanted::gradient); }));
   add("the same, energy alone", least_ms(15, [&] { energy = elastic_energy(model, workspace, x); }));
   section.tables.push_back(std::move(table));
 
@@ -140,7 +141,7 @@ ReportSection bench_contact(const BenchSetting& setting) {
     int inverted = 0;
   };
   const std::vector<SolverEntry> entries = {{"ours", Method::quasi_newton, 10},
-                                            {"contacts in the matrix", Method::contact_matrix, 10},
+                                            {"contacts in the matrix", Method::lbfgs_from(StartMatrix::contact), 10},
                                             {"Newton, 1 iteration", Method::newton, 1},
                                             {"Newton, 5 iterations", Method::newton, 5}};
   std::vector<Row> rows;

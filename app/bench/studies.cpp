@@ -1,4 +1,4 @@
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -177,13 +177,13 @@ ReportSection bench_hanging(const BenchSetting& setting) {
       subject.size_text(), solved(tip, 0), solved(tip, 1), solved(tip, 2));
   ReportTable table{"hanging", "The tip by method"};
   table.columns = {"method", "iterations", "a step [ms]", "tip x [m]", "tip y [m]", "from the solved one [mm]"};
-  for (const MethodInfo& info : methods) {
-    if (info.method == Method::contact_matrix) continue;
-    const bool newton = info.method == Method::newton || info.method == Method::newton_shifted;
+  for (const Method& method : compared_methods()) {
+    if (method.matrix == StartMatrix::contact) continue;
+    const bool newton = method == Method::newton || method == Method::newton_shifted;
     for (const int iterations : newton ? std::vector<int>{1, 2} : std::vector<int>{5, 10, 20}) {
-      const Played played = play(subject, info.method, iterations, frames, *setting.threads);
+      const Played played = play(subject, method, iterations, frames, *setting.threads);
       const Eigen::RowVector3d at = played.x.row(tip);
-      table.rows.push_back({std::string(info.name), std::to_string(iterations), number_text(played.ms_a_frame),
+      table.rows.push_back({name_of(method), std::to_string(iterations), number_text(played.ms_a_frame),
                             number_text(at.x(), 4), number_text(at.y(), 4),
                             number_text(1000 * (at - solved.row(tip)).norm())});
     }

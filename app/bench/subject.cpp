@@ -1,6 +1,6 @@
 #include "app/bench/subject.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 

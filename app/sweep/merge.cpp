@@ -1,6 +1,6 @@
 #include "app/sweep/merge.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +50,7 @@ std::filesystem::path last_picture(const std::filesystem::path& folder) {
 // Of a grid of two or more, a row holds the values of the last path, if they fit.
 int sheet_columns(const SweepDef& sweep, std::size_t pictures) {
   const std::size_t last = sweep.axes.back().values.size();
-  if (sweep.mode == SweepDef::Mode::grid && sweep.axes.size() > 1 && last > 1 && last <= 8) return int(last);
+  if (sweep.mode == SweepMode::grid && sweep.axes.size() > 1 && last > 1 && last <= 8) return int(last);
   return std::clamp(int(std::ceil(std::sqrt(double(pictures)))), 1, 10);
 }
 
@@ -95,9 +95,9 @@ ReportPage page_of(const SweepRequest& request, const std::string& title, const 
   for (const PointResult& result : results) done += result.outcome.end == PointEnd::done;
   ReportPage page;
   page.title = title;
-  page.lead = fmt::format("{} points, {} done. Point by point: {}.", results.size(), done,
-                          request.sweep.mode == SweepDef::Mode::grid ? "every combination of the values"
-                                                                     : "the lists of values side by side");
+  page.lead = fmt::format(
+      "{} points, {} done. Point by point: {}.", results.size(), done,
+      request.sweep.mode == SweepMode::grid ? "every combination of the values" : "the lists of values side by side");
   page.facts = {{"scene", request.file.string()},
                 {"processor", distinct(results, &PointResult::cpu)},
                 {"kernels", distinct(results, &PointResult::kernels)},

@@ -1,6 +1,6 @@
 #include "app/sweep/point.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -73,7 +73,7 @@ FilmPlan film_of(const SweepRequest& request, std::size_t point) {
   film.pictures = request.pictures;
   film.video = request.pictures == FilmPictures::all;
   film.checkpoint_every = 0;
-  film.gl = gl_choice(request.gl);
+  film.gl = *value_named<GlChoice>(request.gl);
   film.quiet = request.quiet;
   return film;
 }

@@ -1,6 +1,6 @@
 #include "app/sweep/run_points.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <sys/wait.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Vectors whose storage starts on a cache line, for code that loads whole SIMD registers.
+// Defines vectors whose storage starts on a cache line, for code that loads whole SIMD registers.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// Words for the terminal. A closed or full standard stream must not end a run: what cannot be said is left unsaid.
-// Colour is for terminals alone: the words that a line of trouble begins with, nothing else.
+// These functions write to the terminal. A closed or full standard stream must not end a run: text that cannot be
+// written is dropped. Colour appears on terminals alone, and only on the word that a line of trouble begins with.
 #pragma once
 
 #include <cstdio>
@@ -8,14 +8,14 @@
 
 namespace supple {
 
-// Writes the text; on a terminal that may be coloured, highlighted.
+// Writes the text, highlighted if the stream is a terminal that may be coloured.
 void say(std::FILE* stream, std::string_view text);
 
-// "supple:" (bold red) and "warning:" (bold) marked where a line begins with them.
+// Marks "supple:" (bold red) and "warning:" (bold) wherever a line begins with them.
 std::string highlighted(std::string_view text);
 
-// Whether to colour: a terminal, no NO_COLOR (https://no-color.org: set and not empty), and TERM other than "dumb".
-// The last two as in the environment; null: not set.
+// Tells whether to colour: on a terminal, without NO_COLOR (https://no-color.org: set and not empty), and with a TERM
+// other than "dumb". The last two arguments are the environment's values; null means that the variable is not set.
 bool may_colour(bool terminal, const char* no_color, const char* term);
 
 }  // namespace supple

@@ -1,8 +1,8 @@
-// The two ways in which something can be wrong: input from outside (InputError: places and what is allowed) and a
-// mistake of ours (SUPPLE_CHECK: both values). A numerical failure is neither; it is returned in a step's report.
+// Two things can be wrong: the input from outside (InputError names the places and what is allowed), or our own code
+// (SUPPLE_CHECK prints both values). A numerical failure is neither; it is returned in a step's report.
 #pragma once
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <stdexcept>
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace supple {
 
-// One thing that is wrong with an input. Lines and columns count from 1; 0 means "the file as a whole".
+// Describes one thing that is wrong with an input. Lines and columns count from 1; 0 means "the file as a whole".
 struct Problem {
   std::string source;  // file name, or the command-line option that set the value
   int line = 0;
@@ -22,7 +22,7 @@ struct Problem {
   std::string text() const;
 };
 
-// Input that cannot be used. Holds every problem that was found, not only the first; exit status 2.
+// Reports input that cannot be used. It holds every problem that was found, not only the first; the exit status is 2.
 class InputError : public std::runtime_error {
  public:
   explicit InputError(std::vector<Problem> problems);
@@ -34,7 +34,8 @@ class InputError : public std::runtime_error {
   std::vector<Problem> problems_;
 };
 
-// A run that cannot go on (a full disk, a lost renderer, numbers that left the finite range); exit status 1.
+// Reports a run that cannot continue (a full disk, a lost renderer, numbers that are no longer finite); the exit status
+// is 1.
 class RunError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -44,7 +45,8 @@ class RunError : public std::runtime_error {
 
 }  // namespace supple
 
-// States what must hold between two values; prints both when it does not. For mistakes of ours, never for input.
+// States what must hold between two values and prints both when it does not. It is meant for mistakes of ours, never
+// for input.
 #define SUPPLE_CHECK(left, op, right)                                                                     \
   do {                                                                                                    \
     const auto& check_left = (left);                                                                      \

@@ -1,4 +1,4 @@
-// XXH64 over bytes: the identity of states and files. Doubles are hashed as little-endian bytes.
+// XXH64 over bytes identifies states and files. Doubles are hashed as little-endian bytes.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@ namespace supple {
 std::uint64_t hash_bytes(const void* bytes, std::size_t count, std::uint64_t seed = 0);
 inline std::uint64_t hash_text(std::string_view text) { return hash_bytes(text.data(), text.size()); }
 
-// Sixteen hexadecimal digits.
+// Writes the hash as sixteen hexadecimal digits.
 std::string hash_text_form(std::uint64_t hash);
 
 }  // namespace supple

@@ -1,5 +1,5 @@
-// A bounded queue between two stages: a full one makes the producer wait, so a slow disk slows a run and never drops a
-// frame.
+// A bounded queue connects two stages. When it is full, the producer waits, so a slow disk slows a run and never drops
+// a frame.
 #pragma once
 
 #include <condition_variable>
@@ -16,7 +16,7 @@ class BoundedQueue {
  public:
   explicit BoundedQueue(std::size_t capacity) : capacity_(capacity) {}
 
-  // Waits for room. False when the queue was closed: the item is dropped because nobody will take it.
+  // Waits for room. Returns false when the queue was closed: the item is then dropped because nobody will take it.
   bool push(Item item) {
     std::unique_lock lock(mutex_);
     room_.wait(lock, [this] { return closed_ || items_.size() < capacity_; });
@@ -26,7 +26,7 @@ class BoundedQueue {
     return true;
   }
 
-  // Waits for an item. Empty when the queue was closed and has run dry.
+  // Waits for an item. Returns nothing when the queue was closed and all its items were taken.
   std::optional<Item> pop() {
     std::unique_lock lock(mutex_);
     ready_.wait(lock, [this] { return closed_ || !items_.empty(); });
@@ -37,7 +37,7 @@ class BoundedQueue {
     return item;
   }
 
-  // No more items will come; what is queued can still be taken.
+  // Says that no more items will come; those in the queue can still be taken.
   void close() {
     const std::lock_guard lock(mutex_);
     closed_ = true;

@@ -1,12 +1,13 @@
-// Signals that ask the program to end, kept away from code that must not meet them.
+// Keeps signals that ask the program to end away from code that must not receive them.
 #pragma once
 
 #include <csignal>
 
 namespace supple {
 
-// While one lives, this thread takes no SIGINT, SIGTERM and SIGHUP, and threads that it starts never do: another thread
-// takes them, or they wait. What is done with SIGTERM and SIGABRT is put back at the end.
+// While one of these objects lives, SIGINT, SIGTERM and SIGHUP are blocked in its thread, and for good in the threads
+// that it starts: another thread receives them, or they stay pending. The destructor restores the handlers of SIGTERM
+// and SIGABRT, which code in between may have replaced.
 class SignalsWait {
  public:
   SignalsWait() {

@@ -6,7 +6,7 @@
 namespace supple {
 
 Threads::Threads(int count) {
-  const SignalsWait meanwhile;  // workers leave them to the caller
+  const SignalsWait meanwhile;  // workers never receive the signals that end the program; the caller does
   for (int i = 1; i < count; ++i) workers_.emplace_back([this, i] { work(i); });
 }
 
@@ -37,7 +37,7 @@ void Threads::run_shared(int chunks, Call call, const void* context) {
   take_chunks(call, context, chunks);
   const Zone zone("wait for workers");
   std::unique_lock lock(mutex_);
-  call_ = nullptr;  // who has not entered by now stays out
+  call_ = nullptr;  // a worker that has not entered the job by now stays out
   work_done_.wait(lock, [this] { return running_ == 0; });
 }
 

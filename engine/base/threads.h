@@ -1,7 +1,7 @@
-// A small pool that runs numbered chunks of work. Chunks are fixed by the caller, never by the number of threads, and
-// each chunk writes only its own output: so the same bits come out however many threads take part. Waiting threads
-// sleep. The calling thread takes chunks itself and a worker that wakes late finds nothing to do, so a core that
-// somebody else holds costs a little, not a barrier.
+// A small pool runs numbered chunks of work. The caller fixes the chunks, never the number of threads, and each chunk
+// writes only its own output, so the same bits come out however many threads take part. Waiting threads sleep. The
+// calling thread takes chunks itself, and a worker that wakes late finds nothing to do; a core that another process
+// occupies therefore costs a little time but holds up no barrier.
 #pragma once
 
 #include <atomic>
@@ -16,7 +16,7 @@ namespace supple {
 
 class Threads {
  public:
-  // count: threads that take part, the caller included; at least 1.
+  // count: the number of threads that take part, including the caller; at least 1.
   explicit Threads(int count = 1);
   ~Threads();
   Threads(const Threads&) = delete;
@@ -24,7 +24,7 @@ class Threads {
 
   int count() const { return static_cast<int>(workers_.size()) + 1; }
 
-  // Calls body(chunk) once for each chunk in [0, chunks) and returns when all are done. body must not throw; nothing is
+  // Calls body(chunk) once for each chunk in [0, chunks) and returns when all are done. body must not throw. Nothing is
   // allocated.
   template <class Body>
   void run(int chunks, const Body& body) {
@@ -49,13 +49,25 @@ class Threads {
   std::condition_variable work_ready_;
   std::condition_variable work_done_;
   Call call_ = nullptr;            // the job in progress, guarded by mutex_; null between jobs
-  const void* context_ = nullptr;  // its body
-  const char* zone_ = nullptr;     // that it was asked for in, for traces
+  const void* context_ = nullptr;  // the body of that job
+  const char* zone_ = nullptr;     // the zone that the job was requested in, for traces
   int chunks_ = 0;
-  int running_ = 0;               // workers inside the job
+  int running_ = 0;               // number of workers inside the job
   unsigned long generation_ = 0;  // counts jobs, so that a worker enters each at most once
   bool stopping_ = false;
   std::atomic<int> next_chunk_{0};
 };
+
+// Runs chunks on the threads (null: on the calling one) where there is enough work to be worth waking them. work: a
+// rough count of operations.
+template <class Body>
+void run_chunks(Threads* threads, int chunks, long work, const Body& body) {
+  constexpr long worth_sharing = 40000;  // of the order of 20 microseconds; below, waking a thread costs as much
+  if (threads != nullptr && work > worth_sharing) {
+    threads->run(chunks, body);
+  } else {
+    for (int chunk = 0; chunk < chunks; ++chunk) body(chunk);
+  }
+}
 
 }  // namespace supple

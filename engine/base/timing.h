@@ -1,5 +1,5 @@
-// Wall-clock durations in milliseconds. Never a source of decisions: nothing that changes a result may depend on a
-// clock.
+// Measures wall-clock durations in milliseconds. They are never a source of decisions: nothing that changes a result
+// may depend on a clock.
 #pragma once
 
 #include <chrono>
@@ -10,7 +10,7 @@ class Stopwatch {
  public:
   double elapsed_ms() const { return std::chrono::duration<double, std::milli>(Clock::now() - start_).count(); }
 
-  // Milliseconds since the start or the last lap, and starts the next one.
+  // Returns the milliseconds since the start or the last lap, and starts the next lap.
   double lap_ms() {
     const Clock::time_point now = Clock::now();
     const double ms = std::chrono::duration<double, std::milli>(now - start_).count();

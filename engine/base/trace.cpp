@@ -11,7 +11,7 @@ namespace supple {
 namespace {
 
 constexpr std::size_t events_a_chunk = 4096;      // 256 kB
-constexpr std::size_t events_a_thread = 1 << 22;  // 256 MB; what comes later is lost, and counted
+constexpr std::size_t events_a_thread = 1 << 22;  // 256 MB; later events are dropped, and counted
 
 std::int64_t now_ns() {
   using namespace std::chrono;
@@ -20,12 +20,13 @@ std::int64_t now_ns() {
 
 struct Chunk {
   std::array<TraceEvent, events_a_chunk> events;
-  std::atomic<std::size_t> count{0};  // events that may be read
+  std::atomic<std::size_t> count{0};  // number of events that may be read
   std::atomic<Chunk*> next{nullptr};
 };
 
-// The zones of one thread, which alone puts them in; whoever holds the registry's lock may take them out meanwhile.
-// Neither waits for the other: chunks only grow, and the one that is being filled is left to its writer.
+// Holds the zones of one thread. Only that thread adds zones; meanwhile, a thread that holds the registry's lock may
+// take them out. Neither waits for the other: chunks only grow, and the chunk that is being filled is left to its
+// writer.
 class Buffer {
  public:
   Buffer(const char* thread_name, int thread_number) : name(thread_name), number(thread_number) {}
@@ -49,7 +50,7 @@ class Buffer {
     last_->count.store(at + 1, std::memory_order_release);
   }
 
-  // Moves all that ended since `since` to `into`.
+  // Moves all events that began at `since` or later to `into`.
   void take(std::int64_t since, ThreadTrace& into) {
     Chunk* chunk = first_ != nullptr ? first_ : entry_.load(std::memory_order_acquire);
     while (chunk != nullptr) {
@@ -69,8 +70,8 @@ class Buffer {
 
   const char* const name;
   const int number;
-  std::atomic<bool> ended{false};  // its thread has
-  bool done = false;               // and all is taken out
+  std::atomic<bool> ended{false};  // whether its thread has ended
+  bool done = false;               // whether all its events were taken out as well
 
  private:
   bool grow() {
@@ -83,10 +84,10 @@ class Buffer {
     return true;
   }
 
-  Chunk* last_ = nullptr;               // the writer's
-  std::atomic<Chunk*> entry_{nullptr};  // the first of all
-  Chunk* first_ = nullptr;              // the reader's: the first that it has not taken as a whole
-  std::size_t read_ = 0;                // events of it that it has taken
+  Chunk* last_ = nullptr;               // the chunk that the writer fills
+  std::atomic<Chunk*> entry_{nullptr};  // the very first chunk, where the reader begins
+  Chunk* first_ = nullptr;              // the first chunk that the reader has not yet taken as a whole
+  std::size_t read_ = 0;                // number of events of first_ that the reader has taken
   std::atomic<std::size_t> chunks_{0};
   std::atomic<long> lost_{0};
 };
@@ -97,13 +98,13 @@ struct Registry {
   std::int64_t start_ns = 0;
 };
 
-// Never destroyed: threads may end after static objects.
+// The registry is never destroyed, because threads may end after static objects.
 Registry& registry() {
   static Registry& instance = *new Registry;
   return instance;
 }
 
-// What a thread knows of itself. Trivial, so that reaching it costs nothing.
+// Holds what a thread knows of itself. The type is trivial, so that access costs nothing.
 struct ThreadState {
   const char* name;
   int number;
@@ -113,7 +114,7 @@ struct ThreadState {
 };
 constinit thread_local ThreadState self{};
 
-// The thread's share in its buffer, given back when it ends.
+// Holds the thread's share in its buffer and gives it back when the thread ends.
 struct Share {
   std::shared_ptr<Buffer> buffer;
   ~Share() {

@@ -1,5 +1,5 @@
-// The vocabulary that every folder shares: arrays of points and of indices. Not here: anything that knows what a point
-// is for.
+// Defines the vocabulary that every folder shares: arrays of points and of indices. Nothing here knows what a point is
+// for.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,15 +10,15 @@ namespace supple {
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 
-// One row a vertex, interleaved in memory (x0 y0 z0 x1 ...), so that a vertex is one cache line's worth of neighbours.
-// [m]
+// Holds one row for each vertex, interleaved in memory (x0 y0 z0 x1 ...), so that a vertex shares its cache
+// line with the next ones. [m]
 using Positions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
 using Triangles =
     Eigen::Matrix<std::int32_t, Eigen::Dynamic, 3, Eigen::RowMajor>;  // vertex indices, anticlockwise from outside
 using Tetrahedra = Eigen::Matrix<std::int32_t, Eigen::Dynamic, 4, Eigen::RowMajor>;  // det[x1-x0, x2-x0, x3-x0] > 0
 
-// An axis-aligned box; empty while any lower bound exceeds its upper one.
+// An axis-aligned box; it is empty while any lower bound exceeds its upper one.
 struct Bounds {
   Vec3 lower = Vec3::Constant(1e300);
   Vec3 upper = Vec3::Constant(-1e300);

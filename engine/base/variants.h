@@ -1,5 +1,6 @@
-// The instruction sets that the hot loops are compiled for, from the narrowest to the widest, and which of them this
-// machine can run. Each table of loops (sim/elements, sim/linear) has one entry for each variant, in this order.
+// Lists the instruction sets that the hot loops are compiled for, from the narrowest to the widest, and tells which of
+// them this machine can run. Each table of loops (sim/elements, sim/linear) has one entry for each variant, in this
+// order.
 #pragma once
 
 #ifdef SUPPLE_PORTABLE
@@ -8,17 +9,18 @@
 #define SUPPLE_VARIANTS(F) F(native)
 #endif
 
-// The name of a table of loops that is compiled for SUPPLE_VARIANT: SUPPLE_TABLE(linear) is linear_kernels_native.
+// Forms the name of a table of loops that is compiled for SUPPLE_VARIANT: SUPPLE_TABLE(linear) is
+// linear_kernels_native.
 #define SUPPLE_JOINED(kind, variant) kind##_kernels_##variant
 #define SUPPLE_NAME(kind, variant) SUPPLE_JOINED(kind, variant)
 #define SUPPLE_TABLE(kind) SUPPLE_NAME(kind, SUPPLE_VARIANT)
 
 namespace supple {
 
-// How many variants this machine can run: those with the places 0 to count - 1. At least one.
+// Counts the variants that this machine can run: those with the places 0 to count - 1. There is at least one.
 int runnable_variants();
 
-// The variant that is used: the widest that runs.
+// Returns the variant that is used: the widest one that this machine can run.
 inline int best_variant() { return runnable_variants() - 1; }
 
 const char* variant_name(int place);

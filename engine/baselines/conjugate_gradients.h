@@ -10,8 +10,8 @@ struct CgScratch {
   Eigen::VectorXd residual, precond, search, product;
 };
 
-// x = about H^-1 b after at most `iterations`, or once |r| <= tolerance |b|. Where p^T H p <= 0 is met, stops with what
-// there is, or with the preconditioned b when that is nothing yet (Gast et al. 2015, "Optimization integrator for
+// Brings x near H^-1 b by at most `iterations`, fewer once |r| <= tolerance |b|. Where p^T H p <= 0 is met, stops with
+// the x so far, or with the preconditioned b when that is nothing yet (Gast et al. 2015, "Optimization integrator for
 // large time steps", section 4). multiply(v, result), precondition(r, z) on Eigen vectors.
 template <class Multiply, class Precondition>
 int conjugate_gradients(const Eigen::VectorXd& b, Eigen::VectorXd& x, int iterations, double tolerance,

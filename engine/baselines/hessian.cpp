@@ -8,15 +8,15 @@
 namespace supple {
 namespace {
 
-// Pairs (a, b), a >= b, of an element's corners.
+// Counts the pairs (a, b), a >= b, of an element's corners.
 constexpr int pairs_of(int corners) { return corners * (corners + 1) / 2; }
 
 double packed(const double* numbers, int i, int j) {
   return i >= j ? numbers[i * (i + 1) / 2 + j] : numbers[j * (j + 1) / 2 + i];
 }
 
-// The element's full 3 c x 3 c matrix from its packed one: the first corner's rows and columns are minus the sums of
-// the others'.
+// Expands the element's packed matrix to the full one, 3 c x 3 c: the first corner's rows and columns are minus the
+// sums of the others'.
 void unpack(const double* numbers, int corners, double (&full)[12][12]) {
   const int inner = 3 * (corners - 1);
   for (int i = 0; i < inner; ++i) {
@@ -51,8 +51,9 @@ void element_matrices(const Model& model, Workspace& workspace, const Positions&
     }
     out.numbers.resize(count);
   }
-  run_chunks(workspace, chunks, long(model.elements) * 40,
-             [&](int c) { element_kernels().stiffness(model.chunk(c), x.data(), project, out.numbers.data() + out.first[c]); });
+  run_chunks(workspace.threads, chunks, long(model.elements) * 40, [&](int c) {
+    element_kernels().stiffness(model.chunk(c), x.data(), project, out.numbers.data() + out.first[c]);
+  });
 }
 
 HessianMatrix::HessianMatrix(const Model& model) {
@@ -123,8 +124,8 @@ double* HessianMatrix::block(std::int32_t row, std::int32_t column) {
   return matrix_.valuePtr() + 9 * std::size_t(block_begin_[column]) + 3 * (at - begin);
 }
 
-void HessianMatrix::assemble(const Model& model, const ElementMatrices& elements, const ContactWork& contacts,
-                             const Positions& x) {
+void HessianMatrix::assemble(const Model& model, const ElementMatrices& elements, const std::vector<Contact>& contacts,
+                             double stick_length, const Positions& x) {
   double* values = matrix_.valuePtr();
   std::fill(values, values + matrix_.nonZeros(), 0.0);
   const double scale = model.scheme.energy * model.scheme.theta * model.scheme.theta;
@@ -168,24 +169,21 @@ void HessianMatrix::assemble(const Model& model, const ElementMatrices& elements
       if (row >= v && row < model.free) add(row, v, model.damping.value[k] * Mat3::Identity());
     }
   }
-  for (const Contact& contact : contacts.found) {
+  for (const Contact& contact : contacts) {
     const Mat3 along = contact.normal * contact.normal.transpose();
     Mat3 part = Mat3::Zero();
     if (contact.normal.dot(x.row(contact.vertex)) < contact.offset) part += 2 * contact.stiffness * along;
-    if (contact.friction > 0)
-      part += friction_stiffness(contact, x, contacts.stick_length) * (Mat3::Identity() - along);
+    if (contact.friction > 0) part += friction_stiffness(contact, x, stick_length) * (Mat3::Identity() - along);
     add(contact.vertex, contact.vertex, part);
   }
 }
 
 void HessianMatrix::assemble(const Model& model, Workspace& workspace, bool project) {
-  if (model.scheme.theta < 1) {
-    workspace.middle = model.scheme.theta * workspace.x + (1 - model.scheme.theta) * workspace.q;
-    element_matrices(model, workspace, workspace.middle, project, scratch_);
-  } else {
-    element_matrices(model, workspace, workspace.x, project, scratch_);
-  }
-  assemble(model, scratch_, workspace.contact, workspace.x);
+  const Positions& x = workspace.current.x;
+  const double theta = model.scheme.theta;
+  if (theta < 1) workspace.middle = theta * x + (1 - theta) * workspace.q;
+  element_matrices(model, workspace, theta < 1 ? workspace.middle : x, project, scratch_);
+  assemble(model, scratch_, workspace.current.contacts, workspace.contact.stick_length, x);
 }
 
 void HessianMatrix::multiply(const double* v, double* result) const {

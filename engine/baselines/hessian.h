@@ -4,19 +4,20 @@
 
 #include <Eigen/SparseCore>
 
-#include "sim/solver/objective.h"
+#include "sim/linear/changing_factor.h"
+#include "sim/solver/workspace.h"
 
 namespace supple {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-// Element matrices: the packed lower triangle of each lane (kernels.h), chunks behind each other.
+// Element matrices: the packed lower triangle of each lane (element_kernels.h), chunk after chunk.
 struct ElementMatrices {
   AlignedVector<double> numbers;
   std::vector<std::size_t> first;  // by chunk
 };
 
-// Second derivatives of the elements' energies at x, or the nearest positive semi-definite ones [N/m].
+// Finds the second derivatives of the elements' energies at x, or the nearest positive semi-definite ones [N/m].
 void element_matrices(const Model& model, Workspace& workspace, const Positions& x, bool project, ElementMatrices& out);
 
 class HessianMatrix {
@@ -28,15 +29,17 @@ class HessianMatrix {
 
   // Sums up: w M/h^2, handles' springs and damping always, element matrices as given, and the contacts in force at x,
   // friction with the stiffness of its secant.
-  void assemble(const Model& model, const ElementMatrices& elements, const ContactWork& contacts, const Positions& x);
+  // `stick_length`: friction is whole above this slip [m].
+  void assemble(const Model& model, const ElementMatrices& elements, const std::vector<Contact>& contacts,
+                double stick_length, const Positions& x);
 
-  // d^2 g at workspace.x with the contacts found there; with `project` each element's is projected first.
+  // d^2 g at workspace.current with the contacts found there; with `project` each element's is projected first.
   void assemble(const Model& model, Workspace& workspace, bool project);
 
   // result = H v, both of 3 n_free numbers.
   void multiply(const double* v, double* result) const;
 
-  // Adds to the diagonal [N/m].
+  // Adds an amount to the diagonal [N/m].
   void shift(double amount);
 
  private:
@@ -58,7 +61,7 @@ class HessianMatrix {
 // size mends it. Throws RunError when none does.
 void factorize_projected(HessianMatrix& hessian, ChangingFactor& factor);
 
-// A over the free vertices, all of it (both triangles) [N/m].
+// Returns A over the free vertices, both triangles [N/m].
 SparseMatrix system_matrix_of(const Model& model);
 
 }  // namespace supple

@@ -9,7 +9,7 @@ namespace {
 
 Eigen::Map<Eigen::VectorXd> vector_of(Positions& p) { return {p.data(), p.size()}; }
 
-// The rotation of a polar decomposition, det R = 1.
+// Returns the rotation of a polar decomposition, with det R = 1.
 Mat3 rotation_of(const Mat3& f) {
   const Eigen::JacobiSVD<Mat3> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Mat3 u = svd.matrixU();
@@ -17,7 +17,7 @@ Mat3 rotation_of(const Mat3& f) {
   return u * svd.matrixV().transpose();
 }
 
-// Of the elements around each free vertex, weighted by volume.
+// Finds the mean rotation of the elements around each free vertex, weighted by volume.
 void vertex_rotations(const Model& model, const Positions& x, std::vector<Mat3>& rotation) {
   rotation.assign(model.free, Mat3::Zero());
   for_each_element(model, [&](const ElementView& element) {
@@ -30,7 +30,7 @@ void vertex_rotations(const Model& model, const Positions& x, std::vector<Mat3>&
   for (Mat3& r : rotation) r = r.isZero(0) ? Mat3(Mat3::Identity()) : rotation_of(r);
 }
 
-// r_i <- R_i r_i, or R_i^T r_i.
+// Replaces r_i by R_i r_i, or by R_i^T r_i.
 void turn(const std::vector<Mat3>& rotation, bool back, Positions& r) {
   for (std::size_t v = 0; v < rotation.size(); ++v) {
     const Vec3 row = r.row(static_cast<Eigen::Index>(v));
@@ -44,15 +44,15 @@ HessianMatrix rest_hessian(const Model& model) {
   ElementMatrices elements;
   Workspace scratch;
   element_matrices(model, scratch, model.rest, true, elements);
-  hessian.assemble(model, elements, {}, model.rest);
+  hessian.assemble(model, elements, {}, 0, model.rest);
   return hessian;
 }
 
 }  // namespace
 
 void IdentityInverse::accepted(const Model& model, const FrameInputs&, Workspace& w) {
-  const auto s = w.trial.topRows(model.free) - w.x.topRows(model.free);
-  const auto t = w.trial_gradient - w.gradient;
+  const auto s = w.trial.x.topRows(model.free) - w.current.x.topRows(model.free);
+  const auto t = w.trial.gradient - w.current.gradient;
   const double st = s.cwiseProduct(t).sum(), tt = t.squaredNorm();
   if (st > 1e-10 * std::sqrt(s.squaredNorm() * tt)) scale_ = st / tt;
 }
@@ -77,7 +77,7 @@ void RestInverse::apply(const Model&, const FrameInputs&, Workspace&, Positions&
 }
 
 void WarpedInverse::begin(const Model& model, const FrameInputs&, Workspace& w) {
-  vertex_rotations(model, w.x, rotation_);
+  vertex_rotations(model, w.current.x, rotation_);
 }
 
 void WarpedInverse::apply(const Model& model, const FrameInputs& inputs, Workspace& w, Positions& r, Positions& z) {
@@ -175,7 +175,7 @@ void HechtInverse::begin(const Model& model, const FrameInputs&, Workspace& w) {
         }
       }
     });
-    hessian_.assemble(model, turned_, w.contact, w.x);
+    hessian_.assemble(model, turned_, w.current.contacts, w.contact.stick_length, w.current.x);
     factorize_projected(hessian_, factor_);
   }
   warp_.resize(now_.size());
@@ -196,7 +196,7 @@ ContactMatrixInverse::ContactMatrixInverse(const Model& model)
 
 void ContactMatrixInverse::apply(const Model& model, const FrameInputs&, Workspace& w, Positions& r, Positions& z) {
   std::fill(stiffness_.begin(), stiffness_.end(), 0.0);
-  for (const Contact& contact : w.contact.found) {
+  for (const Contact& contact : w.current.contacts) {
     if (contact.depth > 0) stiffness_[contact.vertex] += 2 * contact.stiffness;
   }
   if (stiffness_ != factored_) {

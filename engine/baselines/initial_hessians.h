@@ -5,6 +5,7 @@
 
 #include "baselines/conjugate_gradients.h"
 #include "baselines/hessian.h"
+#include "sim/model/method.h"
 #include "sim/solver/lbfgs.h"
 
 namespace supple {
@@ -57,7 +58,6 @@ class FrameInverse final : public InitialInverse {
 // The same by conjugate gradients with an incomplete Cholesky factor of the rest pose's Hessian or of M/h^2 + L.
 class FrameCgInverse final : public InitialInverse {
  public:
-  enum class Preconditioner { rest, ours };
   FrameCgInverse(const Model& model, Preconditioner preconditioner, int iterations);
   void begin(const Model& model, const FrameInputs& inputs, Workspace& workspace) override;
   void apply(const Model& model, const FrameInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;

@@ -1,19 +1,38 @@
 #include "baselines/make_rule.h"
 
-#include <algorithm>
+#include <utility>
 
+#include "base/error.h"
 #include "baselines/initial_hessians.h"
 #include "baselines/newton.h"
 
 namespace supple {
 namespace {
 
-// L-BFGS together with the initial Hessian that it starts from.
-template <class Inverse>
+std::unique_ptr<InitialInverse> initial_inverse(const Method& method, const Model& model) {
+  const bool cg = method.linear == LinearSolver::cg;
+  switch (method.matrix) {
+    case StartMatrix::system:
+      if (cg) return std::make_unique<SystemCgInverse>(model, method.inner_iterations);
+      return std::make_unique<SystemInverse>();
+    case StartMatrix::identity: return std::make_unique<IdentityInverse>();
+    case StartMatrix::rest_hessian: return std::make_unique<RestInverse>(model);
+    case StartMatrix::warped_rest_hessian: return std::make_unique<WarpedInverse>(model);
+    case StartMatrix::frame_hessian:
+      if (cg) return std::make_unique<FrameCgInverse>(model, method.preconditioner, method.inner_iterations);
+      return std::make_unique<FrameInverse>(model);
+    case StartMatrix::hecht: return std::make_unique<HechtInverse>(model);
+    case StartMatrix::contact: return std::make_unique<ContactMatrixInverse>(model);
+    case StartMatrix::hessian: break;  // Newton's rules hold theirs, which no pairs of L-BFGS correct
+  }
+  return nullptr;
+}
+
+// L-BFGS together with the initial Hessian that it starts from. Without pairs (settings_of) the direction is that
+// Hessian's alone.
 class LbfgsFrom final : public SearchRule {
  public:
-  template <class... Arguments>
-  explicit LbfgsFrom(const Arguments&... arguments) : inverse_(arguments...), rule_(inverse_) {}
+  explicit LbfgsFrom(std::unique_ptr<InitialInverse> inverse) : inverse_(std::move(inverse)), rule_(*inverse_) {}
   void begin(const Model& model, const FrameInputs& inputs, Workspace& w) override { rule_.begin(model, inputs, w); }
   double direction(const Model& model, const FrameInputs& inputs, Workspace& w) override {
     return rule_.direction(model, inputs, w);
@@ -25,7 +44,7 @@ class LbfgsFrom final : public SearchRule {
   bool forget() override { return rule_.forget(); }
 
  private:
-  Inverse inverse_;
+  std::unique_ptr<InitialInverse> inverse_;
   LbfgsRule rule_;
 };
 
@@ -33,96 +52,79 @@ class LbfgsFrom final : public SearchRule {
 // and position-based dynamics"; Liu et al. 2017, algorithm 3). After an ascent it starts anew.
 class ChebyshevRule final : public SearchRule {
  public:
-  explicit ChebyshevRule(const RuleSettings& settings) : settings_(settings) {}
-
   void begin(const Model&, const FrameInputs&, Workspace&) override { iteration_ = 0; }
 
   double direction(const Model& model, const FrameInputs& inputs, Workspace& w) override {
-    Positions& scratch = w.trial_gradient;
-    scratch = w.gradient;
-    stiff_directions(model, w);
-    apply_inverse(model, w, inputs.solver.contact, scratch, w.direction);
+    const Stretch stretch(w.clock, Phase::solve, "solve");
+    w.scratch = w.current.gradient;
+    find_stiff_directions(model, w.current.contacts, w.current.x, w.contact.stick_length, w.correction);
+    apply_inverse(model, inputs.solver.contact, w.correction, w.solve_scratch, w.scratch, w.direction);
     w.direction = -w.direction;
-    const double rho2 = settings_.chebyshev_radius * settings_.chebyshev_radius;
-    if (iteration_ < settings_.chebyshev_delay) {
+    const auto [delay, radius] = inputs.solver.chebyshev;
+    const double rho2 = radius * radius;
+    if (iteration_ < delay) {
       omega_ = 1;
-    } else if (iteration_ == settings_.chebyshev_delay) {
+    } else if (iteration_ == delay) {
       omega_ = 2 / (2 - rho2);
     } else {
       omega_ = 4 / (4 - rho2 * omega_);
     }
     // omega (x_{k+1} - x_{k-1}) + x_{k-1} - x_k with x_{k+1} = x_k + q
     if (iteration_ > 0)
-      w.direction = omega_ * w.direction + (omega_ - 1) * (w.x.topRows(model.free) - before_.topRows(model.free));
-    return (w.gradient.array() * w.direction.array()).sum();
+      w.direction =
+          omega_ * w.direction + (omega_ - 1) * (w.current.x.topRows(model.free) - before_.topRows(model.free));
+    return (w.current.gradient.array() * w.direction.array()).sum();
   }
 
   void accepted(const Model&, const FrameInputs&, Workspace& w) override {
-    before_ = w.x;
+    before_ = w.current.x;
     ++iteration_;
   }
 
   bool forget() override { return std::exchange(iteration_, 0) > 0; }
 
  private:
-  RuleSettings settings_;
   int iteration_ = 0;
   double omega_ = 1;
   Positions before_;
 };
 
-constexpr int gast_iterations = 100;     // at most; indefiniteness or the tolerance usually come first
-constexpr double gast_tolerance = 0.05;  // of the residual
+std::unique_ptr<SearchRule> newton_rule(const Method& method, const Model& model) {
+  const bool project = method.safeguard == Safeguard::projection;
+  if (method.linear == LinearSolver::cg)
+    return std::make_unique<NewtonCgRule>(model, project, method.inner_iterations, method.inner_tolerance);
+  return std::make_unique<NewtonRule>(model, project ? Definite::projected : Definite::shifted);
+}
 
 }  // namespace
 
-std::unique_ptr<SearchRule> make_rule(Method method, const Model& model, const RuleSettings& settings) {
-  using Preconditioner = FrameCgInverse::Preconditioner;
-  switch (method) {
-    case Method::quasi_newton:
-    case Method::projective_dynamics: return std::make_unique<LbfgsFrom<SystemInverse>>();
-    case Method::chebyshev: return std::make_unique<ChebyshevRule>(settings);
-    case Method::newton: return std::make_unique<NewtonRule>(model, Definite::projected);
-    case Method::newton_shifted: return std::make_unique<NewtonRule>(model, Definite::shifted);
-    case Method::newton_cg5: return std::make_unique<NewtonCgRule>(model, true, 5, 0.0);
-    case Method::newton_cg15: return std::make_unique<NewtonCgRule>(model, true, 15, 0.0);
-    case Method::gast: return std::make_unique<NewtonCgRule>(model, false, gast_iterations, gast_tolerance);
-    case Method::quasi_newton_cg5: return std::make_unique<LbfgsFrom<SystemCgInverse>>(model, 5);
-    case Method::quasi_newton_cg15: return std::make_unique<LbfgsFrom<SystemCgInverse>>(model, 15);
-    case Method::lbfgs_identity: return std::make_unique<LbfgsFrom<IdentityInverse>>();
-    case Method::lbfgs_rest: return std::make_unique<LbfgsFrom<RestInverse>>(model);
-    case Method::lbfgs_warped: return std::make_unique<LbfgsFrom<WarpedInverse>>(model);
-    case Method::lbfgs_frame: return std::make_unique<LbfgsFrom<FrameInverse>>(model);
-    case Method::lbfgs_frame_cg5_rest:
-      return std::make_unique<LbfgsFrom<FrameCgInverse>>(model, Preconditioner::rest, 5);
-    case Method::lbfgs_frame_cg15_rest:
-      return std::make_unique<LbfgsFrom<FrameCgInverse>>(model, Preconditioner::rest, 15);
-    case Method::lbfgs_frame_cg5_ours:
-      return std::make_unique<LbfgsFrom<FrameCgInverse>>(model, Preconditioner::ours, 5);
-    case Method::lbfgs_frame_cg15_ours:
-      return std::make_unique<LbfgsFrom<FrameCgInverse>>(model, Preconditioner::ours, 15);
-    case Method::hecht: return std::make_unique<LbfgsFrom<HechtInverse>>(model);
-    case Method::contact_matrix: return std::make_unique<LbfgsFrom<ContactMatrixInverse>>(model);
-  }
-  return nullptr;
+std::unique_ptr<SearchRule> make_rule(const Method& method, const Model& model) {
+  if (const auto problem = problem_of(method)) throw InputError("method", problem->message);
+  if (method.acceleration == Acceleration::chebyshev) return std::make_unique<ChebyshevRule>();
+  if (method.matrix == StartMatrix::hessian) return newton_rule(method, model);
+  return std::make_unique<LbfgsFrom>(initial_inverse(method, model));
 }
 
-SolverSettings settings_of(Method method, SolverSettings settings) {
-  switch (method) {
-    case Method::projective_dynamics:
-    case Method::chebyshev:
-    case Method::newton:
-    case Method::newton_shifted:
-    case Method::newton_cg5:
-    case Method::newton_cg15:
-    case Method::gast: settings.history = 0; break;
-    case Method::hecht:
-      settings.history = 0;
-      settings.line_search = LineSearch::none;
-      break;
-    default: break;
-  }
+SolverSettings settings_of(const Method& method, SolverSettings settings) {
+  if (method.acceleration != Acceleration::lbfgs) settings.history = 0;
+  if (method.matrix == StartMatrix::hecht) settings.line_search = LineSearch::none;
   return settings;
+}
+
+std::vector<Method> compared_methods() {
+  std::vector<Method> methods;
+  for (const ShortName& entry : short_names) methods.push_back(entry.method);
+  methods.push_back(Method::newton_shifted);
+  for (const StartMatrix matrix : {StartMatrix::identity, StartMatrix::rest_hessian, StartMatrix::warped_rest_hessian,
+                                   StartMatrix::frame_hessian, StartMatrix::contact})
+    methods.push_back(Method::lbfgs_from(matrix));
+  for (const int iterations : {5, 15}) {
+    methods.push_back(Method::quasi_newton_cg(iterations));
+    methods.push_back(Method::newton_cg(iterations));
+    for (const Preconditioner preconditioner : {Preconditioner::rest, Preconditioner::system})
+      methods.push_back(Method::frame_cg(iterations, preconditioner));
+  }
+  return methods;
 }
 
 }  // namespace supple

@@ -1,23 +1,23 @@
-// The solvers that the paper compares with, as rules for directions: one each.
+// The solvers that the paper compares with, built from the parts of a Method: each is a rule for search directions.
 #pragma once
 
 #include <memory>
+#include <vector>
 
-#include "sim/solver/lbfgs.h"
 #include "sim/model/method.h"
+#include "sim/solver/lbfgs.h"
 
 namespace supple {
 
-// What some rules want to know.
-struct RuleSettings {
-  double chebyshev_radius = 0.99;  // rho, from training
-  int chebyshev_delay = 10;        // S: no acceleration in the first S iterations
-};
+// Prepares all that does not change from step to step (patterns, rest pose, factors). Throws InputError when the parts
+// do not go together (problem_of).
+std::unique_ptr<SearchRule> make_rule(const Method& method, const Model& model);
 
-// Prepares all that does not change from step to step (patterns, rest pose, factors).
-std::unique_ptr<SearchRule> make_rule(Method method, const Model& model, const RuleSettings& settings = {});
+// Settings that belong to a method whatever a scene says: only L-BFGS has a history, and Hecht's method has no line
+// search.
+SolverSettings settings_of(const Method& method, SolverSettings settings);
 
-// Settings that belong to a method whatever a scene says: no history for Newton's kin, no line search for Hecht's.
-SolverSettings settings_of(Method method, SolverSettings settings);
+// The paper's method and all that the paper compares it with.
+std::vector<Method> compared_methods();
 
 }  // namespace supple

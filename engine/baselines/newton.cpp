@@ -1,16 +1,13 @@
 #include "baselines/newton.h"
 
 #include "base/error.h"
-#include "base/timing.h"
 
 namespace supple {
 namespace {
 
 constexpr int most_tries = 60;  // doublings of the shift
 
-double slope_of(const Model& model, const Workspace& w) {
-  return (w.gradient.topRows(model.free).array() * w.direction.topRows(model.free).array()).sum();
-}
+double slope_of(const Workspace& w) { return (w.current.gradient.array() * w.direction.array()).sum(); }
 
 }  // namespace
 
@@ -19,7 +16,7 @@ NewtonRule::NewtonRule(const Model& model, Definite definite) : definite_(defini
 }
 
 double NewtonRule::direction(const Model& model, const FrameInputs&, Workspace& w) {
-  const Stopwatch watch;
+  const Stretch stretch(w.clock, Phase::solve, "Newton");
   hessian_.assemble(model, w, definite_ == Definite::projected);
   if (definite_ == Definite::projected) {
     factorize_projected(hessian_, factor_);
@@ -36,20 +33,19 @@ double NewtonRule::direction(const Model& model, const FrameInputs&, Workspace& 
     }
     shift_ = shift;
   }
-  factor_.solve(w.gradient.data(), w.direction.data());
+  factor_.solve(w.current.gradient.data(), w.direction.data());
   w.direction = -w.direction;
-  w.report.solve_ms += watch.elapsed_ms();
-  return slope_of(model, w);
+  return slope_of(w);
 }
 
 NewtonCgRule::NewtonCgRule(const Model& model, bool project, int iterations, double tolerance)
     : project_(project), iterations_(iterations), tolerance_(tolerance), hessian_(model) {}
 
 double NewtonCgRule::direction(const Model& model, const FrameInputs&, Workspace& w) {
-  const Stopwatch watch;
+  const Stretch stretch(w.clock, Phase::solve, "Newton");
   hessian_.assemble(model, w, project_);
   const Eigen::Index count = 3 * model.free;
-  right_ = -Eigen::Map<const Eigen::VectorXd>(w.gradient.data(), count);
+  right_ = -Eigen::Map<const Eigen::VectorXd>(w.current.gradient.data(), count);
   diagonal_ = hessian_.matrix().diagonal();
   // An unprojected diagonal may be negative; its size is what scales.
   diagonal_ = diagonal_.cwiseAbs().cwiseMax(1e-12 * diagonal_.cwiseAbs().maxCoeff());
@@ -58,8 +54,7 @@ double NewtonCgRule::direction(const Model& model, const FrameInputs&, Workspace
       [&](const Eigen::VectorXd& v, Eigen::VectorXd& result) { hessian_.multiply(v.data(), result.data()); },
       [&](const Eigen::VectorXd& r, Eigen::VectorXd& z) { z = r.cwiseQuotient(diagonal_); }, scratch_);
   Eigen::Map<Eigen::VectorXd>(w.direction.data(), count) = solution_;
-  w.report.solve_ms += watch.elapsed_ms();
-  return slope_of(model, w);
+  return slope_of(w);
 }
 
 }  // namespace supple

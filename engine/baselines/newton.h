@@ -1,4 +1,4 @@
-// Newton's method and its kin: the Hessian anew in each iteration.
+// Newton's method and its relatives, which evaluate the Hessian anew in each iteration.
 #pragma once
 
 #include "baselines/conjugate_gradients.h"
@@ -26,7 +26,7 @@ class NewtonRule final : public SearchRule {
   double shift_ = 0;
 };
 
-// By conjugate gradients with a Jacobi preconditioner; unprojected, they stop at indefiniteness.
+// Solves by conjugate gradients with a Jacobi preconditioner; without projection they stop at indefiniteness.
 class NewtonCgRule final : public SearchRule {
  public:
   NewtonCgRule(const Model& model, bool project, int iterations, double tolerance);

@@ -1,12 +1,14 @@
 #include "baselines/post_projection.h"
 
+#include "base/timing.h"
+
 namespace supple {
 
 const StepReport& step_then_project(const Model& model, const FrameInputs& inputs, State& state, Workspace& w) {
-  FrameInputs oblivious = inputs;
-  oblivious.colliders = nullptr;
+  FrameInputs without_colliders = inputs;
+  without_colliders.colliders = nullptr;
   const State before = state;
-  const StepReport& report = step(model, oblivious, state, w);
+  const StepReport& report = step(model, without_colliders, state, w);
   if (report.failed || inputs.colliders == nullptr) return report;
   const Stopwatch watch;
   for (std::size_t c = 0; c < inputs.colliders->size(); ++c) {

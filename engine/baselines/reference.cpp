@@ -9,10 +9,10 @@ namespace {
 
 constexpr int newton_iterations = 100;
 constexpr int first_iterations = 300;  // of L-BFGS before it: cheap, and near a minimum in contact often all it takes
-constexpr int check_iterations = 300;  // of L-BFGS behind it
+constexpr int check_iterations = 300;  // of L-BFGS after it
 constexpr int slow_iterations = 5000;  // of L-BFGS where Newton's line search gives up (a crease of the contact set)
-// A direction's slope bounds what it can still gain to within a small factor; this is far below the digits that anybody
-// reads.
+// A direction's slope bounds what it can still gain to within a small factor; this is far below the digits that a
+// report shows.
 constexpr double digits = 1e-12;
 
 FrameInputs thorough(const FrameInputs& inputs, int iterations, int history) {
@@ -39,16 +39,23 @@ struct Reference::Parts {
 Reference::Reference(const Model& model) : parts_(std::make_unique<Parts>(model)) {}
 Reference::~Reference() = default;
 
+double contact_energy_at(const Model& model, const FrameInputs& inputs, const Positions& x, Workspace& w) {
+  if (!has_colliders(inputs)) return 0;
+  std::vector<Contact> found;
+  find_contacts(model, inputs, x, w.threads, w.contact, found);
+  return add_contacts(found, w.contact.stick_length, x, nullptr, w.direction, nullptr).value;
+}
+
 double gained(const Model& model, const FrameInputs& inputs, const State& before, const Positions& x, Workspace& w) {
   w.prepare(model, inputs.solver);
   begin_step(model, inputs, before, w);
   // Summed as a difference; y with its handles at their targets, whatever the solver started from.
-  const double contacts_at_start = contact_energy_at(model, inputs, w.x, w);
-  evaluate(model, w, w.x, w.energy, nullptr, nullptr, nullptr);
-  w.trial.topRows(model.free) = x.topRows(model.free);
-  const double change = evaluate(model, w, w.trial, w.trial_energy, nullptr, &w.x, &w.energy).value;
-  const double contacts = contacts_at_start - contact_energy_at(model, inputs, w.trial, w);
-  w.x.swap(w.trial);
+  const double contacts_at_start = contact_energy_at(model, inputs, w.current.x, w);
+  evaluate(model, w, w.current, Wanted::value);
+  w.trial.x.topRows(model.free) = x.topRows(model.free);
+  const double change = evaluate_trial(model, w, Wanted::value).value;
+  const double contacts = contacts_at_start - contact_energy_at(model, inputs, w.trial.x, w);
+  std::swap(w.current, w.trial);
   return contacts - change;
 }
 
@@ -67,7 +74,7 @@ Minimum Reference::minimum(const Model& model, const FrameInputs& inputs, const 
   minimize(model, gave_up ? thorough(inputs, slow_iterations, 20) : by_lbfgs, w, enough);
   result.below_end = w.report.decrease;
   result.below_y = reached + result.below_end;
-  result.x = w.x;
+  result.x = w.current.x;
   parts_->hessian.assemble(model, w, false);
   result.positive_definite = parts_->factor.factorize(parts_->hessian.matrix());
   return result;
@@ -76,8 +83,10 @@ Minimum Reference::minimum(const Model& model, const FrameInputs& inputs, const 
 std::optional<double> Reference::step_error(const Model& model, const FrameInputs& inputs, const State& before,
                                             const State& after, Workspace& w) {
   const Minimum lowest = minimum(model, inputs, before, after.x, w);
-  const double start = evaluate(model, w, w.y, w.trial_energy, nullptr, nullptr, nullptr).value;
-  const double noise = 2 * noise_of(model, start, before.x.cwiseAbs().maxCoeff());
+  w.trial.x = w.y;
+  w.trial.contacts = w.current.contacts;
+  evaluate(model, w, w.trial, Wanted::value);
+  const double noise = 2 * noise_of(model, w.trial.g, before.x.cwiseAbs().maxCoeff());
   if (!(lowest.below_y > noise)) return std::nullopt;
   return lowest.below_end / lowest.below_y;
 }

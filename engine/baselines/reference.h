@@ -8,7 +8,7 @@
 
 namespace supple {
 
-// The lowest objective that can be found below a point.
+// The lowest point that can be found below a point.
 struct Minimum {
   double below_y = 0;    // g(y) - g*, a sum of small differences [J]
   double below_end = 0;  // g(x) - g* of the point that the search began at [J]
@@ -40,8 +40,11 @@ class Reference {
   std::unique_ptr<Parts> parts_;
 };
 
+// Energy, friction included, of the contacts found anew at x, after begin_step [J].
+double contact_energy_at(const Model& model, const FrameInputs& inputs, const Positions& x, Workspace& workspace);
+
 // g(y) - g(x) of a step from `before`, handles at their targets, each point with the contacts found there [J]. Leaves
-// x in workspace.x.
+// x in workspace.current.x.
 double gained(const Model& model, const FrameInputs& inputs, const State& before, const Positions& x,
               Workspace& workspace);
 

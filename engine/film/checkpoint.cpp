@@ -1,6 +1,6 @@
 #include "film/checkpoint.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cstring>
 #include <fstream>

@@ -1,6 +1,6 @@
 #include "film/field_writer.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "base/error.h"
 #include "sim/solver/fields.h"

@@ -1,6 +1,6 @@
 #include "film/film_identity.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -63,7 +63,7 @@ std::string identity_of(const RunInfo& info, const Script& script, const std::ve
       {"kernels", info.kernel_variant},
       {"cpu", cpu_name()},
       {"images", plan.pictures != FilmPictures::none},
-      {"gl", text_of(plan.gl)},
+      {"gl", name_of(plan.gl)},
       {"vtu", plan.fields_every},
       {"meshes", meshes},
       {"files", files_of(script, bodies)},

@@ -40,14 +40,4 @@ struct FilmPlan {
   bool quiet = false;  // no progress and no remarks
 };
 
-// As the command line and a checkpoint's identity spell it.
-constexpr const char* text_of(GlChoice choice) {
-  switch (choice) {
-    case GlChoice::egl: return "egl";
-    case GlChoice::osmesa: return "osmesa";
-    case GlChoice::automatic: break;
-  }
-  return "auto";
-}
-
 }  // namespace supple

@@ -1,11 +1,12 @@
 #include "film/filmed_body.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "base/trace.h"
 #include "film/state_file.h"
 #include "output/obj_file.h"
 #include "sim/model/measures.h"
+#include "sim/solver/energies.h"
 
 namespace supple {
 namespace {
@@ -21,7 +22,7 @@ void add_up(BodyRow& row, const StepReport& report) {
   row.objective_start = report.objective.empty() ? 0 : report.objective.front();
   row.objective_end = report.objective.empty() ? 0 : report.objective.back();
   row.error_estimate = report.error_estimate;
-  row.stop_reason = text_of(report.stop_reason);
+  row.stop_reason = name_of(report.stop_reason);
   if (!row.contact) return;
   row.contact->collide_ms += report.collide_ms;
   row.contact->contacts = report.contacts.touching;

@@ -1,6 +1,6 @@
 #include "film/frame_cost.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace supple {
 

@@ -1,7 +1,7 @@
 // How far a film has come, for people.
 #pragma once
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include "base/console.h"

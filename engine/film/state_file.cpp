@@ -1,6 +1,6 @@
 #include "film/state_file.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -49,42 +49,24 @@ Json regions_json(const StepProblem& problem) {
   return regions;
 }
 
-const char* text_of(ContactHistory history) {
-  switch (history) {
-    case ContactHistory::frozen: return "frozen";
-    case ContactHistory::current: return "current";
-    case ContactHistory::dropped: return "dropped";
-  }
-  return "";
-}
-
-const char* text_of(ContactDirection direction) {
-  switch (direction) {
-    case ContactDirection::ignored: return "ignored";
-    case ContactDirection::diagonal: return "diagonal";
-    case ContactDirection::low_rank: return "low-rank";
-  }
-  return "";
-}
-
 // The keys of a scene's [solver].
 Json solver_json(const StepProblem& problem) {
   const SolverSettings& s = problem.solver;
   const ContactSettings& c = s.contact;
   return {{"iterations", s.iterations},
           {"history", s.history},
-          {"line_search", text_of(s.line_search)},
+          {"line_search", name_of(s.line_search)},
           {"armijo", s.armijo},
           {"target_error", s.target_error},
           {"fit_from", problem.body.fit.start},
           {"fit_to", problem.body.fit.end},
-          {"factor", problem.body.precision == Precision::single_precision ? "single" : "double"},
+          {"factor", name_of(problem.body.precision)},
           {"contact",
            {{"stiffness", c.stiffness},
             {"push_out", c.push_out},
             {"stick", c.stick},
-            {"history", text_of(c.history)},
-            {"direction", text_of(c.direction)}}}};
+            {"history", name_of(c.history)},
+            {"direction", name_of(c.direction)}}}};
 }
 
 Json json_of(const Eigen::Isometry3d& pose) {
@@ -106,7 +88,7 @@ Json state_json(const StepLabel& label, const StepProblem& problem) {
                {"step", label.step},
                {"time", problem.time},
                {"time_step", body.time_step},
-               {"integrator", body.integrator == Integrator::backward_euler ? "backward-euler" : "implicit-midpoint"},
+               {"integrator", name_of(body.integrator)},
                {"damping", body.damping},
                {"gravity", json_of(problem.gravity)},
                {"vertices", body.mesh.rest.rows()},

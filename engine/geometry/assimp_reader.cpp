@@ -1,4 +1,4 @@
-// The program supple-read-surface: reads one file through assimp and writes its triangles to standard output
+// The program supple-read-surface reads one file through assimp and writes its triangles to standard output
 // (surface_stream.h). It is a program of its own because assimp may crash or never end on a broken file.
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -32,7 +32,8 @@ void limit(decltype(RLIMIT_AS) resource, rlim_t soft, rlim_t hard) {
   ::setrlimit(resource, &value);
 }
 
-// Broken files can send assimp round in circles, so the time goes by the size; a sound file needs a tenth of this.
+// A broken file can send assimp into an endless loop, so the time is limited, in proportion to the file's size; a sound
+// file needs a tenth of it.
 rlim_t seconds_for(const char* path) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
@@ -40,7 +41,7 @@ rlim_t seconds_for(const char* path) {
 }
 
 void limit_this_process(const char* path) {
-  // The address sanitizer reserves terabytes of addresses.
+  // The address sanitizer reserves terabytes of address space, so its builds have no limit here.
 #ifndef __SANITIZE_ADDRESS__
   limit(RLIMIT_AS, rlim_t(2) << 30, rlim_t(2) << 30);
 #endif
@@ -58,7 +59,7 @@ int refuse(std::string reason) {
   return std::fflush(stdout) == 0 ? 0 : 1;
 }
 
-// Empty when all is well.
+// Returns what is wrong with the mesh, or nothing when all is well.
 std::string append(const aiMesh& mesh, Soup& soup) {
   const auto first = std::int64_t(soup.positions.size() / 3);
   if (first + std::int64_t(mesh.mNumVertices) > stream::most_vertices) return "it has more than 15 million vertices";

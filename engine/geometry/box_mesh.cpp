@@ -15,7 +15,8 @@ TetMesh box_mesh(const Vec3& extent, const Eigen::Vector3i& cells) {
       }
     }
   }
-  // Kuhn's six tetrahedra: one for each order in which the three axes can be walked from the low to the high corner.
+  // These are Kuhn's six tetrahedra: one for each order in which the three axes can be walked from the low to the high
+  // corner.
   constexpr int walks[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
   mesh.tets.resize(6 * cells.cast<Eigen::Index>().prod(), 4);
   Eigen::Index row = 0;
@@ -26,9 +27,8 @@ TetMesh box_mesh(const Vec3& extent, const Eigen::Vector3i& cells) {
           int step[3] = {0, 0, 0};
           for (int corner = 0; corner < 4; ++corner) {
             if (corner > 0) step[walk[corner - 1]] = 1;
-            const auto at = [](int cell, int s) {
-              return cell + (cell % 2 == 0 ? s : 1 - s);
-            };  // mirrored in odd cells
+            // The walk is mirrored in odd cells.
+            const auto at = [](int cell, int s) { return cell + (cell % 2 == 0 ? s : 1 - s); };
             mesh.tets(row, corner) = name(at(i, step[0]), at(j, step[1]), at(k, step[2]));
           }
           if (tet_volume(mesh, row) < 0) std::swap(mesh.tets(row, 2), mesh.tets(row, 3));

@@ -1,5 +1,6 @@
-// closed_surface of surface_file.h, one step a function. Triangles keep the number that they came with, for messages.
-#include <fmt/format.h>
+// Implements closed_surface of surface_file.h, one function for each step. Triangles keep the number that they had in
+// the file, for messages.
+#include <fmt/core.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -20,7 +21,7 @@ constexpr double largest_hole_share = 0.02;
 
 struct Numbered {
   TriMesh mesh;
-  std::vector<Eigen::Index> number;  // of each triangle in the file, from 1
+  std::vector<Eigen::Index> number;  // the number of each triangle in the file, from 1
 };
 
 std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
@@ -33,7 +34,7 @@ Vec3 area_vector(const TriMesh& mesh, Eigen::Index t) {
 
 std::string place(const Vec3& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z()); }
 
-// "triangle 17 at (x, y, z)"
+// Gives "triangle 17 at (x, y, z)".
 std::string triangle(const Numbered& surface, Eigen::Index t) {
   const Vec3 middle = (corner(surface.mesh, t, 0) + corner(surface.mesh, t, 1) + corner(surface.mesh, t, 2)) / 3;
   return fmt::format("triangle {} at {}", surface.number[at(t)], place(middle));
@@ -51,14 +52,15 @@ void check_numbers(const TriMesh& raw, const std::string& name) {
       const Vec3 p = raw.points.row(v);
       if (!p.allFinite())
         throw InputError(name, fmt::format("vertex {} of triangle {} is not finite: {}", k + 1, t + 1, place(p)));
-      // Beyond these, products of lengths leave the range of doubles.
+      // Beyond this limit, products of lengths leave the range of doubles.
       if (p.cwiseAbs().maxCoeff() > 1e50)
         throw InputError(name, fmt::format("vertex {} of triangle {} is beyond 1e50: {}", k + 1, t + 1, place(p)));
     }
   }
 }
 
-// Vertices at one position become one, numbered as triangles first name them; those that none names are dropped.
+// Makes vertices at one position a single one, numbers them in the order in which the triangles name them, and drops
+// those that no triangle names.
 TriMesh merged(const TriMesh& raw) {
   std::vector<std::int32_t> order(at(raw.points.rows()));
   std::iota(order.begin(), order.end(), 0);
@@ -104,7 +106,7 @@ Numbered without_flat_triangles(const Numbered& surface, std::vector<std::string
     double longest = 0;
     for (int k = 0; k < 3; ++k)
       longest = std::max(longest, (corner(mesh, t, k) - corner(mesh, t, (k + 1) % 3)).squaredNorm());
-    if (area_vector(mesh, t).norm() > 1e-15 * longest) kept.push_back(t);  // less is round-off
+    if (area_vector(mesh, t).norm() > 1e-15 * longest) kept.push_back(t);  // a smaller area is round-off
   }
   const Eigen::Index dropped = mesh.triangles.rows() - std::ssize(kept);
   if (dropped > 0) notes->push_back(fmt::format("{} triangles without area were left out", dropped));
@@ -129,10 +131,10 @@ Numbered without_repeated_triangles(const Numbered& surface, std::vector<std::st
   return subset(surface, kept);
 }
 
-// What each triangle has across its edges k to k + 1.
+// Describes what a triangle has across its edge from corner k to k + 1.
 struct Neighbour {
-  Eigen::Index triangle = -1;  // -1: the edge is open
-  bool alike = false;          // runs through the edge the other way round, as neighbours should
+  Eigen::Index triangle = -1;  // -1 means that the edge is open
+  bool alike = false;          // whether the neighbour runs through the edge the other way round, as it should
 };
 using Neighbours = std::vector<std::array<Neighbour, 3>>;
 
@@ -159,7 +161,7 @@ Neighbours neighbours(const Numbered& surface, const std::string& name) {
     const Side &a = sides[i], &b = sides[i + 1];
     if (a.low != b.low || a.high != b.high) continue;
     if (i + 2 < sides.size() && sides[i + 2].low == a.low && sides[i + 2].high == a.high) {
-      throw InputError(name, fmt::format("three triangles or more share an edge, among them {}; two may",
+      throw InputError(name, fmt::format("three triangles or more share an edge, among them {}; an edge may have two",
                                          triangle(surface, sides[i + 2].triangle)));
     }
     result[at(a.triangle)][at(a.k)] = {b.triangle, a.upward != b.upward};
@@ -168,16 +170,17 @@ Neighbours neighbours(const Numbered& surface, const std::string& name) {
   return result;
 }
 
-// Triangles connected through edges, and what is known of them.
+// Holds the triangles that are connected through edges, and what is known of them.
 struct Component {
   std::vector<Eigen::Index> triangles;
   double area = 0;    // [m^2]
-  double volume = 0;  // as most of the file's triangles face [m^3]
-  int sense = 1;      // -1: a cavity
+  double volume = 0;  // signed by the way in which most of its area faces in the file [m^3]
+  int sense = 1;      // -1 for a cavity
   Bounds box;
 };
 
-// Turned over or not, so that all of a component face alike, and alike to the larger part of its area in the file.
+// Says which triangles are turned over so that all of a component face alike, in the way of the larger part of its area
+// in the file.
 struct Flood {
   std::vector<Component> components;
   std::vector<char> turned;
@@ -228,13 +231,14 @@ Flood flood(const Numbered& surface, const Neighbours& next, const std::string& 
 
 struct Hole {
   Eigen::Index edges = 0;
-  Eigen::Index triangle = -1;  // one at its rim
+  Eigen::Index triangle = -1;  // one of the triangles at its rim
   Vec3 rim_sum = Vec3::Zero();
   double length = 0, area = 0;
   Vec3 middle() const { return length > 0 ? Vec3(rim_sum / length) : rim_sum; }
 };
 
-// Open edges of a component, grouped by the vertices that they share; the area is that of a fan about the middle.
+// Finds the holes of a component: its open edges, grouped by the vertices that they share. A hole's area is that of the
+// fan of triangles about its middle.
 std::vector<Hole> holes(const TriMesh& mesh, const Neighbours& next, const Component& component) {
   std::vector<std::pair<Eigen::Index, int>> open;
   for (const Eigen::Index t : component.triangles)
@@ -318,7 +322,8 @@ bool encloses(const Bounds& outer, const Bounds& inner) {
   return (outer.lower.array() <= inner.lower.array()).all() && (outer.upper.array() >= inner.upper.array()).all();
 }
 
-// Every corner of `inner` within `outer`, by the winding number. The solid is made at the first need.
+// Tells whether every corner of `inner` lies within `outer`, by the winding number. The solid is built when it is first
+// needed.
 bool encloses(const TriMesh& mesh, const Component& outer, const Component& inner,
               std::vector<TriangleSolid>& solid_of_outer) {
   if (!encloses(outer.box, inner.box)) return false;
@@ -334,7 +339,8 @@ bool encloses(const TriMesh& mesh, const Component& outer, const Component& inne
   });
 }
 
-// Outward, except that a component within another one stays turned against it if the file has it so: a cavity.
+// Turns every component outward, except for cavities: a component within another one keeps facing against it if it does
+// so in the file.
 void decide_senses(const TriMesh& mesh, std::vector<Component>& components) {
   std::vector<std::size_t> order(components.size());
   std::iota(order.begin(), order.end(), 0);
@@ -344,7 +350,7 @@ void decide_senses(const TriMesh& mesh, std::vector<Component>& components) {
   std::vector<std::vector<TriangleSolid>> solids(components.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
     Component& inner = components[order[i]];
-    for (std::size_t j = i; j-- > 0;) {  // the smallest that holds it
+    for (std::size_t j = i; j-- > 0;) {  // finds the smallest one that holds it
       const Component& outer = components[order[j]];
       if (!encloses(mesh, outer, inner, solids[order[j]])) continue;
       inner.sense = (inner.volume < 0) == (outer.volume < 0) ? outer.sense : -outer.sense;

@@ -33,7 +33,7 @@ ClothMesh cloth_grid(const Eigen::Vector2d& extent, const Eigen::Vector2i& cells
 
 ClothMesh cloth_of(TriMesh surface) {
   ClothMesh cloth;
-  std::map<VertexPair, std::vector<std::int32_t>> opposite;  // of each edge, the third corners of its triangles
+  std::map<VertexPair, std::vector<std::int32_t>> opposite;  // the third corners of the triangles at each edge
   for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t) {
     for (int k = 0; k < 3; ++k) {
       VertexPair edge{surface.triangles(t, k), surface.triangles(t, (k + 1) % 3)};

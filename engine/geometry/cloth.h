@@ -1,5 +1,5 @@
-// What a piece of cloth is woven from: its vertices, its drawn triangles, and which pairs of vertices are joined. Not
-// here: how stiff the threads are (scene/), what a spring does (sim/elements/spring.h).
+// Describes what a piece of cloth is made of: its vertices, its drawn triangles, and the pairs of vertices that are
+// joined. It does not say how stiff the threads are (scene/) or what a spring does (sim/elements/spring.h).
 #pragma once
 
 #include <array>
@@ -13,20 +13,21 @@ using VertexPair = std::array<std::int32_t, 2>;
 
 struct ClothMesh {
   TriMesh surface;
-  std::vector<VertexPair> edges;      // along the threads; of a triangle mesh, all its edges
-  std::vector<VertexPair> diagonals;  // of a grid: one a cell, alternating
-  std::vector<VertexPair> bends;  // across an edge: every other vertex of a grid's rows and columns, the far corners of
-                                  // two triangles
+  std::vector<VertexPair> edges;      // along the threads of a grid; all edges of a triangle mesh
+  std::vector<VertexPair> diagonals;  // one for each cell of a grid, in alternating directions
+  // Pairs that resist bending: every other vertex of a grid's rows and columns; in a triangle mesh, the far corners of
+  // two triangles that share an edge.
+  std::vector<VertexPair> bends;
 };
 
-// A grid of cells.x() by cells.y() in the plane z = 0, from the origin to `extent` [m], its diagonals alternating like
-// a chequerboard so that no direction is preferred (Liu et al. 2013, "Fast simulation of mass-spring systems").
+// Builds a grid of cells.x() by cells.y() in the plane z = 0, from the origin to `extent` [m]. Its diagonals alternate
+// like a chequerboard so that no direction is preferred (Liu et al. 2013, "Fast simulation of mass-spring systems").
 ClothMesh cloth_grid(const Eigen::Vector2d& extent, const Eigen::Vector2i& cells);
 
-// A shell of any triangle mesh.
+// Makes a shell of any triangle mesh.
 ClothMesh cloth_of(TriMesh surface);
 
-// By vertex, a third of the area of its triangles. [m^2]
+// Gives each vertex a third of the area of its triangles. [m^2]
 std::vector<double> vertex_areas(const TriMesh& surface);
 
 }  // namespace supple

@@ -10,7 +10,7 @@
 namespace supple {
 namespace {
 
-// The face opposite to each vertex, outward for a positive element.
+// Lists the face opposite to each vertex, oriented outward for a positive element.
 constexpr int opposite_face[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
 struct FaceUse {
@@ -138,7 +138,7 @@ Manifoldness manifoldness(const TetMesh& mesh) {
     if (end - i != 2) ++result.bad_edges;
     i = end;
   }
-  // Around a manifold vertex the opposite edges (b, c) form one closed loop.
+  // Around a manifold vertex, the opposite edges (b, c) form one closed loop.
   for (auto& fan : around) {
     if (fan.empty()) continue;
     std::size_t steps = 0;

@@ -1,4 +1,5 @@
-// Tetrahedral and triangle meshes: positions and index matrices, nothing more, and what can be said of them.
+// Defines tetrahedral and triangle meshes, which are positions and index matrices and nothing more, and functions that
+// measure and cut them.
 #pragma once
 
 #include <vector>
@@ -10,7 +11,7 @@ namespace supple {
 struct TetMesh {
   Positions rest;            // rest positions, n x 3 [m]
   Tetrahedra tets;           // m x 4
-  std::vector<int> regions;  // tag of each element; empty: all 0
+  std::vector<int> regions;  // tag of each element; when empty, all are 0
 };
 
 struct TriMesh {
@@ -18,10 +19,10 @@ struct TriMesh {
   Triangles triangles;  // m x 3
 };
 
-// What a mesh is like, for `supple info` and for warnings.
+// Describes a mesh for `supple info` and for warnings.
 struct MeshQuality {
-  double volume = 0;               // of all elements [m^3]
-  double smallest_volume = 0;      // over the mean volume
+  double volume = 0;               // of all elements together [m^3]
+  double smallest_volume = 0;      // smallest element volume over the mean volume
   double smallest_dihedral = 180;  // [degrees]
   double largest_dihedral = 0;     // [degrees]
 };
@@ -29,25 +30,26 @@ struct MeshQuality {
 double tet_volume(const TetMesh& mesh, Eigen::Index element);
 MeshQuality quality(const TetMesh& mesh);
 
-// Faces that belong to one element, outward; the indices are the mesh's vertices.
+// Returns the faces that belong to one element only, oriented outward, with the mesh's own vertex indices.
 Triangles boundary_faces(const Tetrahedra& tets);
 
-// A boundary without loose ends: each edge on exactly two faces, the faces around each vertex one fan; all elements in
-// one piece.
+// Counts what keeps a boundary from being a manifold. On a manifold, each edge has exactly two faces, the faces around
+// each vertex form one fan, and all elements are in one piece.
 struct Manifoldness {
   int bad_edges = 0;
   int bad_vertices = 0;
-  int pieces = 0;  // parts connected through faces
+  int pieces = 0;  // number of parts that are connected through faces
 };
 Manifoldness manifoldness(const TetMesh& mesh);
 
-// The piece of a mesh that remains when only the flagged elements are kept; vertices that nobody uses are dropped.
+// Returns the part of a mesh that remains when only the flagged elements are kept; vertices that no element uses are
+// dropped.
 TetMesh submesh(const TetMesh& mesh, const std::vector<char>& keep);
 
-// For each element the label of its face-connected piece, counted from 0 in order of the first element.
+// Labels each element with its face-connected piece; pieces are counted from 0 in the order of their first elements.
 std::vector<int> face_connected_pieces(const Tetrahedra& tets);
 
-// The whole mesh scaled and moved: q = scale * p + offset.
+// Scales and moves the whole mesh: q = scale * p + offset.
 void transform(TetMesh& mesh, double scale, const Vec3& offset);
 
 }  // namespace supple

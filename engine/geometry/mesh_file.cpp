@@ -1,6 +1,6 @@
 #include "geometry/mesh_file.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -18,12 +18,12 @@ namespace {
 
 constexpr std::uintmax_t largest_file = 1u << 30;
 
-// Words of a text with their line numbers; '#' starts a comment.
+// Splits a text into words and keeps their line numbers; '#' starts a comment.
 class Words {
  public:
   Words(std::string text, std::string name) : text_(std::move(text)), name_(std::move(name)) {}
 
-  // Empty at the end.
+  // Returns the next word, or an empty one at the end.
   std::string_view next() {
     for (; at_ < text_.size(); ++at_) {
       const char c = text_[at_];
@@ -59,7 +59,7 @@ class Words {
     return value;
   }
 
-  // A section's count, refused when the rest of the file could not hold that many rows.
+  // Reads a section's count and refuses it when the rest of the file could not hold that many rows.
   Eigen::Index count(std::string_view section, std::size_t fewest_bytes_a_row) {
     const auto value = number<long long>(fmt::format("the number of {}", section));
     if (value < 0 || static_cast<unsigned long long>(value) > bytes_left() / fewest_bytes_a_row + 1) {
@@ -95,7 +95,7 @@ struct Lines {
   std::vector<int> tets, triangles;
 };
 
-// A file as it stands, indices checked.
+// Holds a file as it stands; its indices have been checked.
 struct Sections {
   MeshFile file;
   Triangles triangles;
@@ -118,7 +118,7 @@ void check_duplicates(const TetMesh& mesh, const Lines& lines, const std::string
   }
 }
 
-// All elements are made positive when all are negative; a mixture is refused.
+// Turns all elements over when all are negative; a mixture of orientations is refused.
 void orient(MeshFile& file, const Lines& lines, const std::string& name) {
   TetMesh& mesh = file.mesh;
   const double edge = bounds_of(mesh.rest).diagonal();
@@ -126,7 +126,7 @@ void orient(MeshFile& file, const Lines& lines, const std::string& name) {
   for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
     const double volume = tet_volume(mesh, e);
     const int line = lines.tets[static_cast<std::size_t>(e)];
-    // 1e-18 of the box's cube: a flat element in double coordinates; the flattest sliver in use has 1e-14.
+    // An element below 1e-18 of the box's cube is flat in double coordinates; the flattest sliver in use has 1e-14.
     if (!(std::abs(volume) > 1e-18 * edge * edge * edge))
       throw InputError({Problem{name, line, 0, "the element has no volume"}});
     if (volume < 0) {
@@ -154,7 +154,7 @@ void drop_unused(MeshFile& file) {
   file.notes.push_back(fmt::format("{} vertices belong to no element, and have been left out", unused));
 }
 
-// Rows of `columns` vertex indices and a reference; row(i, indices, reference) takes each.
+// Reads rows of `columns` vertex indices and a reference, and passes each to row(i, indices, reference).
 template <class Row>
 void read_rows(Words& words, const char* what, int columns, Eigen::Index vertices, std::vector<int>& lines,
                const Row& row) {
@@ -178,7 +178,7 @@ void read_rows(Words& words, const char* what, int columns, Eigen::Index vertice
   }
 }
 
-// Sections that say nothing here: rows of integers, skipped whole.
+// Skips a section that is of no use here: rows of integers.
 void skip_section(Words& words, std::string_view section) {
   struct Skipped {
     std::string_view name;

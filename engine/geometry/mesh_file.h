@@ -1,5 +1,5 @@
-// MEDIT text files (.mesh): the tetrahedral meshes that come from outside. Everything read is checked; everything
-// refused names file and line. Not here: surfaces and scenes.
+// Reads and writes MEDIT text files (.mesh), in which tetrahedral meshes come from outside. Everything that is read is
+// checked; every refusal names the file and the line. Closed surfaces (surface_file.h) and scenes are read elsewhere.
 #pragma once
 
 #include <filesystem>
@@ -12,20 +12,21 @@ namespace supple {
 
 struct MeshFile {
   TetMesh mesh;
-  std::vector<std::string>
-      notes;  // what was changed or is odd, in words: orientation turned, vertices that nobody uses
+  // Remarks on what was changed or is odd, such as a turned orientation or vertices that no element uses.
+  std::vector<std::string> notes;
 };
 
-// Region tags are the file's element references. Throws InputError: not a mesh, counts that the file does not hold,
-// indices out of range, numbers that are not finite, elements without volume or listed twice, elements of both
-// orientations.
+// Reads a tetrahedral mesh; its region tags are the file's element references. Throws InputError when the file is not a
+// mesh, announces more rows than it holds, or has indices out of range, numbers that are not finite, elements without
+// volume, elements listed twice, or elements of both orientations.
 MeshFile read_mesh(const std::filesystem::path& path);
 
-// The Triangles of a file, for cloth; its elements are not looked at. Vertices that no triangle uses are left out.
-// Throws InputError: as above, triangles without area or listed twice.
+// Reads the Triangles of a file, for cloth, and ignores its elements. Vertices that no triangle uses are left out.
+// Throws InputError as above, and for triangles without area or listed twice.
 TriMesh read_surface(const std::filesystem::path& path);
 
-// Seventeen significant digits, so that reading gives the same doubles back. Throws RunError when the disk does.
+// Writes seventeen significant digits, so that reading gives the same doubles back. Throws RunError when the file
+// cannot be written.
 void write_mesh(const std::filesystem::path& path, const TetMesh& mesh);
 
 }  // namespace supple

@@ -15,7 +15,7 @@ int shared_corners(const Triangles& faces, Eigen::Index a, Eigen::Index b) {
   return shared;
 }
 
-// The faces around a vertex, grouped into fans that hang together by edges.
+// Groups the faces around a vertex into fans that are connected through edges.
 std::vector<FaceList> fans_of(const Triangles& faces, FaceList open) {
   std::vector<FaceList> fans;
   while (!open.empty()) {
@@ -36,7 +36,7 @@ std::vector<FaceList> fans_of(const Triangles& faces, FaceList open) {
   return fans;
 }
 
-// An edge with four faces joins two fans into one that visits a neighbour more than twice.
+// Finds edges with four faces: such an edge joins two fans into one that visits a neighbour more than twice.
 bool visits_an_edge_too_often(const Triangles& faces, const FaceList& fan, std::int32_t vertex) {
   std::vector<std::int32_t> neighbours;
   for (const Eigen::Index f : fan) {
@@ -51,7 +51,7 @@ bool visits_an_edge_too_often(const Triangles& faces, const FaceList& fan, std::
   return false;
 }
 
-// Faces of the smaller side wherever the boundary touches itself.
+// Returns the faces on the smaller side of each place where the boundary touches itself.
 FaceList touching_faces(const TetMesh& mesh, const Triangles& faces) {
   std::vector<FaceList> faces_at(mesh.rest.rows());
   for (Eigen::Index f = 0; f < faces.rows(); ++f) {
@@ -70,7 +70,7 @@ FaceList touching_faces(const TetMesh& mesh, const Triangles& faces) {
   return touching;
 }
 
-// Clears the flag of each face's element. False when there is none.
+// Clears the flag of each face's element. Returns false when there is no such face.
 bool drop_elements_of(const TetMesh& mesh, const Triangles& faces, const FaceList& touching, std::vector<char>& keep) {
   if (touching.empty()) return false;
   std::vector<FaceList> tets_at(mesh.rest.rows());

@@ -1,12 +1,12 @@
-// What a lattice cut leaves behind now and then: crumbs, and places where the surface touches itself.
+// Removes what a cut lattice sometimes contains: loose crumbs, and places where the surface touches itself.
 #pragma once
 
 #include "geometry/mesh.h"
 
 namespace supple {
 
-// The largest face-connected piece, with the elements removed at which its boundary is not a manifold (the smaller side
-// of each touch).
+// Returns the largest face-connected piece, without the elements at which its boundary is not a manifold (the smaller
+// side of each place where it touches itself).
 TetMesh one_manifold_piece(TetMesh mesh);
 
 }  // namespace supple

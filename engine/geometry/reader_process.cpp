@@ -22,10 +22,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A running child and the pipe from its standard output; both end with the object.
+// Owns a running child and the pipe from its standard output; both end with the object.
 class Child {
  public:
-  // posix_spawn, because this process may have threads and a GL context that a fork would copy half.
+  // The child is started by posix_spawn, because a fork would copy only half of a process with threads and a GL
+  // context.
   Child(const std::filesystem::path& program, const std::filesystem::path& file) {
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0) refuse_start(program, file, errno);
@@ -35,7 +36,8 @@ class Child {
     posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
     posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
-    // In a process group of its own: Ctrl-C on the terminal is for the parent, and no crash of the reader.
+    // The child has a process group of its own: Ctrl-C on the terminal is meant for the parent and must not look like a
+    // crash of the reader.
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
@@ -62,7 +64,7 @@ class Child {
 
   int output() const { return output_; }
 
-  // The status of waitpid; -1 when it is still running at the deadline.
+  // Returns the status that waitpid gives, or -1 when the child is still running at the deadline.
   int wait_until(Clock::time_point deadline) {
     for (;;) {
       int status = 0;

@@ -1,4 +1,5 @@
-// Runs a reader as a child process that may crash, hang or write without end. Not here: what its bytes mean.
+// Runs a reader as a child process that may crash, hang or write without end. What its bytes mean is decided elsewhere
+// (surface_file.h).
 #pragma once
 
 #include <cstddef>
@@ -12,8 +13,8 @@ struct ReaderLimits {
   std::size_t bytes = std::size_t(1) << 30;  // of output
 };
 
-// What `program file` writes to its standard output. The child is gone when this returns or throws. Throws InputError
-// about `file`: the program cannot be run, crashed, failed, took too long or wrote too much.
+// Returns what `program file` writes to its standard output. The child has ended when this returns or throws. Throws
+// InputError about `file` when the program cannot be run, crashed, failed, took too long or wrote too much.
 std::string run_reader(const std::filesystem::path& program, const std::filesystem::path& file,
                        const ReaderLimits& limits = {});
 

@@ -9,13 +9,14 @@ namespace {
 
 constexpr double far_away = 1e9;
 
-// std::hypot guards against overflow that cannot happen here, and takes several times as long.
+// std::hypot guards against an overflow that cannot happen here, and takes several times as long.
 double length(double x, double y) { return std::sqrt(x * x + y * y); }
 
-// The primitives' distances: Quilez, "Distance functions" (iquilezles.org/articles/distfunctions).
+// The primitives' distances follow Quilez, "Distance functions" (iquilezles.org/articles/distfunctions).
 double primitive_distance(const Sphere& s, const Vec3& p) { return p.norm() - s.radius; }
 
-// First-order distance k0 (k0 - 1) / k1: the sign is exact, the value is near the surface and a little short elsewhere.
+// Computes the first-order distance k0 (k0 - 1) / k1: its sign is exact; its value is accurate near the surface and
+// slightly too small elsewhere.
 double primitive_distance(const Ellipsoid& e, const Vec3& p) {
   const double k0 = p.cwiseQuotient(e.radii).norm();
   const double k1 = p.cwiseQuotient(e.radii.cwiseProduct(e.radii)).norm();
@@ -182,7 +183,7 @@ void find_region(const ShapeGroup& group, const Vec3& point, int inherited, Near
 
 }  // namespace
 
-Melted smooth_min(double a, double b, double blend) {
+Blended smooth_min(double a, double b, double blend) {
   if (blend <= 0) return {std::min(a, b), b < a ? 1.0 : 0.0};
   const double h = std::max(blend - std::abs(a - b), 0.0) / blend;
   return {std::min(a, b) - 0.25 * blend * h * h, b < a ? 1 - 0.5 * h : 0.5 * h};

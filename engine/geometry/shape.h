@@ -1,7 +1,8 @@
-// A solid described by a signed distance field: primitives, rigid transforms, mirrored copies, unions, cuts and smooth
-// blends. One description serves for meshing at any resolution, for colliding and for drawing. Not here: files (scene/)
-// and meshes. The distance is negative inside. It is exact outside for single primitives other than the ellipsoid, and
-// a bound of the right sign after blends and cuts; its zero set is always exact.
+// A shape is a solid described by a signed distance field: primitives, rigid transforms, mirrored copies, unions, cuts
+// and smooth blends. One description serves for meshing at any resolution, for collisions and for drawing. Files
+// (scene/) and meshes (mesh.h) lie elsewhere. The distance is negative inside. Outside, it is exact for single
+// primitives other than the ellipsoid, and a bound of the right sign after blends and cuts; its zero set is always
+// exact.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -11,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/names.h"
 #include "geometry/source_file.h"
 #include "geometry/triangle_solid.h"
 
@@ -26,7 +28,7 @@ struct Capsule {  // the points within `radius` of a segment
   Vec3 from, to;
   double radius;
 };
-struct RoundCone {  // the hull of two spheres
+struct RoundCone {  // the convex hull of two spheres
   Vec3 from, to;
   double from_radius, to_radius;
 };
@@ -58,65 +60,72 @@ using Primitive =
     std::variant<Sphere, Ellipsoid, Capsule, RoundCone, Box, Cylinder, Torus, HalfSpace, ClosedSurface, ShapeGroup>;
 
 enum class Combine { add, cut, intersect };
+template <>
+struct Names<Combine> {
+  static constexpr std::array table = {Name{Combine::add, "add"}, Name{Combine::cut, "cut"},
+                                       Name{Combine::intersect, "intersect"}};
+};
 
-// One step of a shape: the field so far is combined with this part.
+// Describes one step in building a shape: the field so far is combined with this part.
 struct ShapePart {
   Primitive primitive;
   Eigen::Isometry3d to_local = Eigen::Isometry3d::Identity();  // from the parent's frame
-  double scale = 1;                                            // local lengths times scale are the parent's
-  bool mirror_x = false;                                       // also present at x -> -x of the parent's frame
+  double scale = 1;       // local lengths times scale are lengths in the parent's frame
+  bool mirror_x = false;  // whether a copy lies at x -> -x of the parent's frame
   Combine combine = Combine::add;
-  double blend = 0;  // width over which the surfaces melt into each other [m]
+  double blend = 0;  // width over which the surfaces blend into each other [m]
   int region = 0;    // tag of the elements inside; 0 is untagged
 
-  // Distance of the part alone in its parent's frame.
+  // Returns the distance of this part alone, in its parent's frame.
   double distance(const Vec3& point) const;
 };
 
 double distance(const Primitive& primitive, const Vec3& point);
 
-// Of two fields that melt into each other: the smaller one, lowered by at most blend / 4 where they are equal (a
-// quadratic polynomial smooth minimum), and the share of b in its gradient.
-struct Melted {
+// Blends two fields: `value` is the smaller one, lowered by at most blend / 4 where they are equal (a quadratic
+// polynomial smooth minimum); `share` is the share of b in the gradient.
+struct Blended {
   double value;
   double share;
 };
-Melted smooth_min(double a, double b, double blend);
+Blended smooth_min(double a, double b, double blend);
 
-// A layer of colour on the drawn skin: where a field is negative. Never part of the geometry.
+// A layer of colour lies on the drawn skin where its field is negative. It is never part of the geometry.
 struct PaintLayer {
   std::string name;
   Vec3 color;    // sRGB, 0 to 1
   double gloss;  // 0 matt to 1 wet
-  double soft;   // width of the border [m]
+  double soft;   // width of its soft border [m]
   ShapeGroup area;
 };
 
 struct Shape {
   ShapeGroup root;
   std::vector<std::string> regions = {""};  // names by tag; the first is untagged
-  Vec3 color = Vec3(0.8, 0.6, 0.4);         // sRGB of what no layer covers
+  Vec3 color = Vec3(0.8, 0.6, 0.4);         // sRGB colour where no layer lies
   std::vector<PaintLayer> paint;            // later layers lie over earlier ones
-  std::vector<std::string> notes;           // what reading its files had to say
-  std::vector<SourceFile> files;            // that it was read from
+  std::vector<std::string> notes;           // remarks made while its files were read
+  std::vector<SourceFile> files;            // the files that it was read from
 
   double distance(const Vec3& point) const;
   Vec3 gradient(const Vec3& point, double step) const;  // central differences over +-step
   Bounds bounds() const;                                // conservative; unbounded shapes give an extent above 1e6
 
-  // The surface's closest point. Exact for single primitives; elsewhere a point of the surface whose normal leads to
-  // `point` (but at edges), found by iteration from the field: the closest one where the depth is below the surface's
-  // radius of curvature. Where the field's slope leads to no surface, as between parts that are cut off from each
-  // other, the distance and normal are the field's.
+  // Returns the surface's closest point. It is exact for single primitives. For other shapes, it is found from the
+  // field by iteration: a point of the surface whose normal leads to `point` (except at edges), and the closest such
+  // point where the depth is below the surface's radius of curvature. Where the field's slope leads to no surface, as
+  // between parts that are cut off from each other, the distance and normal are the field's.
   SurfacePoint closest(const Vec3& point) const;
 
-  // The distance to the surface is at least this times |distance(point)|: 1 but for ellipsoids.
+  // Returns a factor c such that the distance to the surface is at least c |distance(point)|; it is 1 except for
+  // ellipsoids.
   double certainty() const;
 
-  // Nothing shorter than twice this goes through, but across edges; 0 where that is not known.
+  // A way shorter than twice this length cannot lead through the solid, except across its edges; 0 where the length is
+  // not known.
   double half_thickness() const;
 
-  // The tag of the last tagged part that holds the point; outside all parts, that of the nearest one.
+  // Returns the tag of the last tagged part that holds the point; outside all parts, the tag of the nearest one.
   int region(const Vec3& point) const;
 };
 

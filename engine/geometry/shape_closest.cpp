@@ -1,4 +1,4 @@
-// Gradients of a shape's field, and its closest points.
+// Computes gradients of a shape's field, and its closest points.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -13,19 +13,19 @@ struct Slope {
   Vec3 gradient;
 };
 
-// v / |v|; where there is no direction (a sphere's centre), any will do.
+// Returns v / |v|, or the second argument where v has no direction (at a sphere's centre any one will do).
 Vec3 unit(const Vec3& v, const Vec3& otherwise = Vec3::UnitY()) {
   const double length = v.norm();
   return length > 1e-300 ? Vec3(v / length) : otherwise;
 }
 
-// Some direction across an axis.
+// Returns some direction at right angles to an axis.
 Vec3 across(const Vec3& axis) {
   return unit(axis.cross(std::abs(axis.x()) < std::abs(axis.y()) ? Vec3::UnitX() : Vec3::UnitY()), Vec3::UnitX());
 }
 
-// The direction from an axis through the origin to p; any one across it where p is on the axis but for round-off, whose
-// direction means nothing.
+// Returns the direction from an axis through the origin to p. Where p lies on the axis up to round-off, whose direction
+// means nothing, it returns any direction at right angles to the axis.
 Vec3 off_axis(const Vec3& p, const Vec3& axis) {
   const Vec3 along = unit(axis);
   const Vec3 radial = p - p.dot(along) * along;
@@ -34,7 +34,8 @@ Vec3 off_axis(const Vec3& p, const Vec3& axis) {
 
 Slope slope_of(const ShapeGroup& group, const Vec3& p);
 
-// Gradients of the primitives' distances: unit vectors, of the ellipsoid only on its surface.
+// These are the gradients of the primitives' distances: unit vectors, except that the ellipsoid's has unit length only
+// on its surface.
 Vec3 gradient_of(const Sphere&, const Vec3& p) { return unit(p); }
 
 Vec3 gradient_of(const Ellipsoid& e, const Vec3& p) {
@@ -44,7 +45,7 @@ Vec3 gradient_of(const Ellipsoid& e, const Vec3& p) {
   const double thinnest = e.radii.minCoeff(&thin);
   if (k1 < 1e-300) return Vec3::Unit(thin);
   const Vec3 of_k0 = p.cwiseQuotient(squares) / k0;
-  if (k0 < 1 && k0 * thinnest < k1) return thinnest * of_k0;  // where its distance is cut off
+  if (k0 < 1 && k0 * thinnest < k1) return thinnest * of_k0;  // here its distance is cut off
   const Vec3 of_k1 = p.cwiseQuotient(squares.cwiseProduct(squares)) / k1;
   return ((2 * k0 - 1) * of_k0 - k0 * (k0 - 1) / k1 * of_k1) / k1;
 }
@@ -58,7 +59,7 @@ Vec3 gradient_of(const Capsule& c, const Vec3& p) {
 }
 
 // The distance is the smallest |p - c(s)| - r(s) over the balls s in [0, 1] between the ends; the gradient points away
-// from the ball that it belongs to.
+// from the ball that gives the minimum.
 Vec3 gradient_of(const RoundCone& c, const Vec3& p) {
   const Vec3 axis = c.to - c.from;
   const double length = axis.norm();
@@ -105,7 +106,7 @@ Vec3 gradient_of(const ShapeGroup& group, const Vec3& p) { return slope_of(group
 
 Slope slope_of(const ShapePart& part, const Vec3& p) {
   if (const auto* surface = std::get_if<ClosedSurface>(&part.primitive); surface != nullptr && !part.mirror_x) {
-    const SurfacePoint at = surface->solid->closest(part.to_local * p / part.scale);  // one question for both
+    const SurfacePoint at = surface->solid->closest(part.to_local * p / part.scale);  // one query gives both
     return {part.scale * at.distance, part.to_local.linear().transpose() * at.normal};
   }
   const auto local = [&part](const Vec3& point) { return Vec3(part.to_local * point / part.scale); };
@@ -128,28 +129,28 @@ Slope slope_of(const ShapePart& part, const Vec3& p) {
 }
 
 Slope slope_of(const ShapeGroup& group, const Vec3& p) {
-  Slope slope = {1e9, Vec3::UnitY()};  // of nothing, as in distance()
+  Slope slope = {1e9, Vec3::UnitY()};  // the field of an empty group, as in distance()
   for (const ShapePart& how : group.parts) {
     const Slope part = slope_of(how, p);
-    const double field_sign = how.combine == Combine::add ? 1 : -1;       // of the field so far in the minimum
-    const double part_sign = how.combine == Combine::intersect ? -1 : 1;  // of the part
-    const Melted melted = smooth_min(field_sign * slope.distance, part_sign * part.distance, how.blend);
-    slope.distance = field_sign * melted.value;
-    slope.gradient = (1 - melted.share) * slope.gradient + field_sign * part_sign * melted.share * part.gradient;
+    const double field_sign = how.combine == Combine::add ? 1 : -1;       // sign of the field so far in the minimum
+    const double part_sign = how.combine == Combine::intersect ? -1 : 1;  // sign of the part's field
+    const Blended blended = smooth_min(field_sign * slope.distance, part_sign * part.distance, how.blend);
+    slope.distance = field_sign * blended.value;
+    slope.gradient = (1 - blended.share) * slope.gradient + field_sign * part_sign * blended.share * part.gradient;
   }
   return slope;
 }
 
-// Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid" (2013): the closest point is
-// r_i^2 p_i / (r_i^2 - r_min^2 + s), where s > 0 puts it on the surface. Newton's method on 1 / |q| finds s from below
-// without stepping over it.
+// The method is that of Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid" (2013): the
+// closest point is r_i^2 p_i / (r_i^2 - r_min^2 + s), where s > 0 puts it on the surface. Newton's method on 1 / |q|
+// finds s from below without stepping over it.
 SurfacePoint closest_of(const Ellipsoid& e, const Vec3& p) {
   const Vec3 squares = e.radii.cwiseProduct(e.radii);
-  const Vec3 y = (p.array().abs() < 1e-150).select(0, p.array().abs());  // products with it don't vanish
+  const Vec3 y = (p.array().abs() < 1e-150).select(0, p.array().abs());  // so that products with y don't vanish
   Eigen::Index thin;
   const Vec3 above = squares.array() - squares.minCoeff(&thin);  // r_i^2 - r_min^2
-  double s = (e.radii.cwiseProduct(y) - above).maxCoeff();       // one coordinate alone is on the surface
-  Vec3 q = Vec3::Zero();                                         // the closest point over the radii
+  double s = (e.radii.cwiseProduct(y) - above).maxCoeff();       // puts one coordinate alone on the surface
+  Vec3 q = Vec3::Zero();                                         // the closest point divided by the radii
   constexpr int most_steps = 50;
   for (int step = 0; step < most_steps; ++step) {
     double slope = 0;
@@ -163,7 +164,8 @@ SurfacePoint closest_of(const Ellipsoid& e, const Vec3& p) {
     if (next <= s) break;
     s = next;
   }
-  // In the middle of the thinnest axis, too deep for the others: as far above as below.
+  // Here p lies in the middle plane of the thinnest axis, so deep that the other two coordinates stay inside: the
+  // surface is as near above as below.
   if (y[thin] <= 0 && q.squaredNorm() < 1) q[thin] = std::sqrt(1 - q.squaredNorm());
   q = unit(q);
   Vec3 point, normal;
@@ -183,7 +185,7 @@ SurfacePoint closest_of(const Kind& primitive, const Vec3& p) {
 }
 SurfacePoint closest_of(const ClosedSurface& s, const Vec3& p) { return s.solid->closest(p); }
 
-// Of one primitive and nothing else: exact.
+// Handles a shape that is a single primitive, for which the closest point is exact.
 std::optional<SurfacePoint> closest_of_one(const ShapeGroup& group, const Vec3& p) {
   if (group.parts.size() != 1) return std::nullopt;
   const ShapePart& part = group.parts.front();
@@ -206,8 +208,8 @@ double certainty_of(const ShapeGroup& group) {
       std::any_of(group.parts.begin(), group.parts.end(), [](const ShapePart& part) { return part.blend > 0; });
   double least = 1;
   for (const ShapePart& part : group.parts) {
-    // Between (k0 - 1) r_min and (k0 - 1) r_max, with k0 as in the ellipsoid's distance. In a blend what counts is how
-    // fast the field changes, which is up to (r_max / r_min)^2.
+    // The distance lies between (k0 - 1) r_min and (k0 - 1) r_max, with k0 as in the ellipsoid's distance. In a blend,
+    // what counts is how fast the field changes, which is up to (r_max / r_min)^2.
     if (const auto* e = std::get_if<Ellipsoid>(&part.primitive)) {
       const double ratio = e->radii.minCoeff() / e->radii.maxCoeff();
       least = std::min(least, blended ? ratio * ratio : ratio);
@@ -217,7 +219,7 @@ double certainty_of(const ShapeGroup& group) {
   return least;
 }
 
-// Half the thickness of a solid at its thinnest, 0 where that is not known.
+// Returns half the thickness of a solid at its thinnest place, or 0 where it is not known.
 double half_thickness(const Primitive& primitive);
 
 double thinnest_of(const ShapeGroup& group) {
@@ -245,8 +247,8 @@ double half_thickness(const Primitive& primitive) {
   return std::visit(Visitor{}, primitive);
 }
 
-// Newton's steps to the zero set; whether they got there.
-bool land(const ShapeGroup& root, Vec3& t, Slope& slope) {
+// Follows Newton's steps to the zero set and returns whether they reached it.
+bool move_to_zero_set(const ShapeGroup& root, Vec3& t, Slope& slope) {
   constexpr int most_steps = 50;
   for (int step = 0; step < most_steps; ++step) {
     if (std::abs(slope.distance) <= 1e-15 * t.norm()) return true;
@@ -256,7 +258,7 @@ bool land(const ShapeGroup& root, Vec3& t, Slope& slope) {
   return std::abs(slope.distance) <= 1e-12 * t.norm();
 }
 
-// The part of a way in the tangent plane.
+// Returns the part of the vector `way` that lies in the tangent plane.
 Vec3 side_of(const Vec3& way, const Slope& slope) {
   const Vec3 normal = unit(slope.gradient);
   return way - way.dot(normal) * normal;
@@ -273,18 +275,19 @@ SurfacePoint Shape::closest(const Vec3& point) const {
   const double sign = at_point.distance < 0 ? -1 : 1;
   Vec3 t = point - at_point.distance * at_point.gradient;
   Slope slope = slope_of(root, t);
-  // The field nowhere rises faster than the distance: a point of the surface as far away as it says is the closest.
+  // The field nowhere rises faster than the distance, so a point of the surface that lies as far away as the field says
+  // is the closest one.
   const double round_off = 1e-14 * (point.norm() + t.norm());
   if (std::abs(slope.distance) <= round_off && std::abs(at_point.gradient.squaredNorm() - 1) < 1e-12)
     return {t, at_point.gradient, at_point.distance};
   t = point;
   slope = at_point;
-  if (!land(root, t, slope)) {  // no surface in sight: as the field has it
+  if (!move_to_zero_set(root, t, slope)) {  // no surface was found: use the field's distance and normal
     const Vec3 normal = unit(at_point.gradient);
     return {point - at_point.distance * normal, normal, at_point.distance};
   }
-  // Along the tangent plane until the normal leads to the point. A step that leads further away, as from beyond the
-  // surface's radius of curvature or over an edge, is made shorter; the others' lengths are those of Barzilai and
+  // Walks along the tangent plane until the normal leads to the point. A step that leads further away, as from beyond
+  // the surface's radius of curvature or over an edge, is shortened; the other steps have the lengths of Barzilai and
   // Borwein, "Two-point step size gradient methods" (1988).
   constexpr int most_steps = 40;
   double length = 1;
@@ -293,7 +296,7 @@ SurfacePoint Shape::closest(const Vec3& point) const {
     if (side.norm() <= 1e-10 * (point - t).norm() || side.norm() <= round_off) break;
     Vec3 next = t + length * side;
     Slope there = slope_of(root, next);
-    if (!land(root, next, there) || (point - next).norm() > (point - t).norm()) {
+    if (!move_to_zero_set(root, next, there) || (point - next).norm() > (point - t).norm()) {
       length *= 0.25;
       continue;
     }

@@ -8,7 +8,7 @@
 namespace supple {
 namespace {
 
-// A dense grid of samples over a box with one cell of air around it.
+// Holds samples of the field on a dense grid over a box, with one cell of air around it.
 struct SampleGrid {
   Vec3 origin;
   double cell;
@@ -26,8 +26,8 @@ SampleGrid sample(const Shape& shape, double cell) {
   grid.field.resize(std::size_t(grid.points.x()) * grid.points.y() * grid.points.z());
   for (int k = 0; k < grid.points.z(); ++k) {
     for (int j = 0; j < grid.points.y(); ++j) {
-      // A distance field cannot change faster than the point moves: far from the surface most samples follow from the
-      // last one.
+      // A distance field cannot change faster than the point moves, so far from the surface most samples follow from
+      // the last one.
       double known = 0;
       int skip = 0;
       for (int i = 0; i < grid.points.x(); ++i) {
@@ -57,8 +57,8 @@ Vec3 onto_surface(const Shape& shape, Vec3 point, double cell) {
   return (point - start).norm() < cell ? point : start;
 }
 
-// Openness of the sky over a point: how far the field falls short of free space along the normal (Evans 2006, "Fast
-// approximations for global illumination on dynamic scenes", with the shape's own field).
+// Estimates how open the sky over a point is, by how far the field falls short of free space along the normal (Evans
+// 2006, "Fast approximations for global illumination on dynamic scenes", with the shape's own field).
 float openness(const Shape& shape, const Vec3& point, const Vec3& normal, double size) {
   double blocked = 0, weight = 0.55;
   for (int ring = 1; ring <= 5; ++ring) {
@@ -160,7 +160,7 @@ Skin skin_of(const Shape& shape, double cell) {
 }
 
 Embedding embed(const Positions& points, const TetMesh& mesh) {
-  // Elements by grid cell, each in every cell that its box touches.
+  // Each element is listed in every grid cell that its box touches.
   const Bounds box = bounds_of(mesh.rest);
   const double cell = std::max(1e-12, 1.5 * std::cbrt(box.extent().prod() / std::max<double>(1, mesh.tets.rows())));
   const Eigen::Vector3i cells = (box.extent() / cell).array().floor().cast<int>() + 1;
@@ -193,7 +193,8 @@ Embedding embed(const Positions& points, const TetMesh& mesh) {
     const Vec3 point = points.row(v);
     const Eigen::Vector3i center = cell_of(point);
     double best = -1e300;
-    // Rings of cells until one holds elements, and one ring more: the nearest element may lie across a cell's border.
+    // Searches rings of cells until one holds elements, and one ring more, because the nearest element may lie across a
+    // cell's border.
     int rings_left = -1;
     for (int ring = 0; rings_left != 0; ++ring) {
       for (int k = std::max(0, center.z() - ring); k <= std::min(cells.z() - 1, center.z() + ring); ++k) {

@@ -1,4 +1,5 @@
-// A file that a scene is made of, known again by what was read of it: comments in it, or where it lies, change nothing.
+// Identifies a file that a scene is made of by what was read from it: neither comments in the file nor its place change
+// the identity.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +11,10 @@ namespace supple {
 
 struct SourceFile {
   std::filesystem::path path;
-  std::uint64_t hash = 0;  // XXH64 of what was read
+  std::uint64_t hash = 0;  // XXH64 of the content that was read
 };
 
-// As read: before anything is turned, scaled, renamed or renumbered.
+// The mesh must be as it was read: not yet turned, scaled, renamed or renumbered.
 SourceFile source_of(const std::filesystem::path& path, const TetMesh& mesh);
 SourceFile source_of(const std::filesystem::path& path, const TriMesh& mesh);
 

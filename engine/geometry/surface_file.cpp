@@ -71,9 +71,10 @@ std::filesystem::path surface_reader_program() {
   std::error_code error;
   const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
   for (const std::filesystem::path& place :
-       {folder / "supple-read-surface", folder / SUPPLE_LIBEXEC_FROM_BIN / "supple-read-surface"})
+       {folder / "supple-read-surface", folder / SUPPLE_LIBEXEC_FROM_BIN / "supple-read-surface",
+        std::filesystem::path(SUPPLE_SURFACE_READER)})
     if (std::filesystem::is_regular_file(place, error)) return place;
-  return SUPPLE_SURFACE_READER;
+  return SUPPLE_INSTALLED_READER;  // of a program elsewhere that uses the library
 }
 
 TriMesh read_closed_surface(const std::filesystem::path& path, std::vector<std::string>* notes) {

@@ -1,4 +1,4 @@
-// A point of a solid's surface, as seen from somewhere.
+// Describes the point of a solid's surface that is closest to a query point.
 #pragma once
 
 #include "base/types.h"
@@ -8,7 +8,7 @@ namespace supple {
 struct SurfacePoint {
   Vec3 point;       // the surface's closest point [m]
   Vec3 normal;      // of unit length, from inside to outside
-  double distance;  // to it, negative inside [m]
+  double distance;  // from the query point, negative inside [m]
 };
 
 }  // namespace supple

@@ -8,15 +8,15 @@
 namespace supple {
 namespace {
 
-constexpr double crease = 0.64;  // cosine of 50 degrees: faces that meet at more do not share a normal
+constexpr double crease = 0.64;  // cosine of 50 degrees: faces that meet at a larger angle do not share a normal
 
 struct Corner {
   std::int32_t face;
-  int place;  // 0 to 2
+  int place;  // the corner's place in its triangle, 0 to 2
 };
 
-// Groups the corners at one vertex: faces that share an edge there without a crease belong together. Returns a label by
-// corner.
+// Groups the corners at one vertex: faces that share an edge there without a crease belong together. Returns a label
+// for each corner.
 std::vector<int> groups_of(const std::vector<Corner>& corners, const Triangles& triangles, const Positions& normals) {
   std::vector<int> label(corners.size());
   std::iota(label.begin(), label.end(), 0);
@@ -24,7 +24,7 @@ std::vector<int> groups_of(const std::vector<Corner>& corners, const Triangles& 
     while (label[i] != i) i = label[i];
     return i;
   };
-  std::map<std::int32_t, std::vector<int>> by_neighbour;  // the edge's other end -> corners
+  std::map<std::int32_t, std::vector<int>> by_neighbour;  // from the edge's other end to its corners
   for (std::size_t i = 0; i < corners.size(); ++i) {
     for (int step = 1; step <= 2; ++step)
       by_neighbour[triangles(corners[i].face, (corners[i].place + step) % 3)].push_back(static_cast<int>(i));

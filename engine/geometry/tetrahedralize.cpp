@@ -10,20 +10,20 @@
 namespace supple {
 namespace {
 
-// Fractions of an edge within which a cut point pulls its lattice point onto the surface: the pair for which the
-// paper's computer search proves the dihedral angles (Labelle and Shewchuk 2007, section 4, uniform tetrahedra).
+// A cut point within these fractions of an edge pulls its lattice point onto the surface. They are the pair for which
+// the paper's computer search proves the dihedral angles (Labelle and Shewchuk 2007, section 4, uniform tetrahedra).
 constexpr double snap_long = 0.24999;
 constexpr double snap_short = 0.41189;
 
-// Lattice coordinates count half spacings: even triples are cell corners, odd triples cell centres.
+// Lattice coordinates count half spacings: even triples are cell corners, odd triples are cell centres.
 using Site = std::array<int, 3>;
 
 constexpr Site forward_edges[7] = {{2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 1, 1}, {-1, 1, 1}, {1, -1, 1}, {-1, -1, 1}};
-constexpr int long_edges = 3;  // the first three
+constexpr int long_edges = 3;  // the first three are the long ones
 
-class Stuffing {
+class IsosurfaceStuffing {
  public:
-  Stuffing(const Shape& shape, double spacing, const Vec3& shift) : shape_(shape), spacing_(spacing) {
+  IsosurfaceStuffing(const Shape& shape, double spacing, const Vec3& shift) : shape_(shape), spacing_(spacing) {
     const Bounds box = shape.bounds();
     origin_ = box.lower - (1.5 * Vec3::Ones() + shift) * spacing;
     for (int axis = 0; axis < 3; ++axis) {
@@ -89,7 +89,8 @@ class Stuffing {
     for_each_site([&](const Site& s) { field_[id(s)] = shape_.distance(lattice_position(s)); });
   }
 
-  // The cut's parameter along a -> b by bisection with the secant's first guess; a and b have opposite signs.
+  // Finds the cut's parameter along a -> b by bisection, starting from the secant's guess; the field has opposite signs
+  // at a and b.
   double find_cut(const Site& a, const Site& b) const {
     const Vec3 from = lattice_position(a), to = lattice_position(b);
     double low = 0, high = 1;
@@ -120,7 +121,8 @@ class Stuffing {
     return {s[0] + sign * edge[0], s[1] + sign * edge[1], s[2] + sign * edge[2]};
   }
 
-  // Calls visit(slot of the edge, the other end, the cut's fraction from s) for each cut edge of s.
+  // Calls visit(slot of the edge, the other end, the cut's fraction from s, the edge's direction) for each cut edge of
+  // s.
   template <class Visit>
   void for_each_cut(const Site& s, const Visit& visit) {
     for (int e = 0; e < 7; ++e) {
@@ -181,9 +183,9 @@ class Stuffing {
     return -1;
   }
 
-  // On a face with a, b inside and c outside the kept quadrilateral is (a, b, bc, ac). True: its diagonal is a-bc;
-  // false: b-ac. Both elements at a face decide alike. With both cuts on short edges the lattice's parity decides;
-  // otherwise the diagonal leaves from the cut on the long edge.
+  // On a face with a and b inside and c outside, the kept quadrilateral is (a, b, bc, ac). Returns true when its
+  // diagonal is a-bc, false when it is b-ac. Both elements at a face decide alike. With both cuts on short edges, the
+  // lattice's parity decides; otherwise the diagonal starts at the cut on the long edge.
   static bool diagonal_from_first(const Site& a, const Site& b, const Site& c) {
     if (is_long(a, b)) {
       std::size_t axis = 0;
@@ -195,7 +197,7 @@ class Stuffing {
 
   void add(int a, int b, int c, int d) { tets_.push_back({a, b, c, d}); }
 
-  // The pyramid over the quadrilateral (a, b, b_cut, a_cut).
+  // Adds the pyramid over the quadrilateral (a, b, b_cut, a_cut).
   void add_pyramid(int apex, int a, int b, int b_cut, int a_cut, bool from_a) {
     if (from_a) {
       add(apex, a, b, b_cut);
@@ -207,7 +209,8 @@ class Stuffing {
   }
 
   void emit_three_inside(std::array<Site, 3> in, const Site& out) {
-    // in[0]: the one joined to `out` by the long edge. Both diagonals on its side leave from the long cut.
+    // in[0] becomes the corner that the long edge joins to `out`. Both diagonals on its side start at the cut on that
+    // edge.
     for (std::size_t k = 1; k < 3; ++k) {
       if (is_long(in[k], out)) std::swap(in[0], in[k]);
     }
@@ -221,9 +224,8 @@ class Stuffing {
     const int va = vertex(a), vb = vertex(b);
     if (!is_long(a, b) && !is_long(a, c)) std::swap(c, d);
     const int ac = cut_vertex(a, c), ad = cut_vertex(a, d), bc = cut_vertex(b, c), bd = cut_vertex(b, d);
-    if (!is_long(
-            a,
-            b)) {  // a-c and b-d are long: diagonals b-ac and a-bd, which leave ac-bd as the only one for the surface
+    if (!is_long(a, b)) {
+      // Here a-c and b-d are long: the diagonals are b-ac and a-bd, which leave ac-bd as the only one for the surface.
       add(va, ac, ad, bd);
       add(va, vb, ac, bd);
       add(vb, ac, bc, bd);
@@ -304,16 +306,16 @@ class Stuffing {
   const double spacing_;
   Vec3 origin_;
   std::array<int, 3> cells_{};
-  std::vector<double> field_;     // distance by site; 0 where the site was moved onto the surface
-  std::vector<Vec3> moved_;       // displacement by site [m]
-  std::vector<double> cut_;       // fraction by forward edge, or no_cut
-  std::vector<int> cut_vertex_;   // vertex by forward edge, or -1
-  std::vector<int> site_vertex_;  // vertex by site, or -1
+  std::vector<double> field_;     // distance at each site; 0 where the site was moved onto the surface
+  std::vector<Vec3> moved_;       // displacement of each site [m]
+  std::vector<double> cut_;       // fraction at which each forward edge is cut, or no_cut
+  std::vector<int> cut_vertex_;   // vertex on each forward edge, or -1
+  std::vector<int> site_vertex_;  // vertex at each site, or -1
   std::vector<Eigen::RowVector3d> vertices_;
   std::vector<std::array<int, 4>> tets_;
 };
 
-// The share of the bounding box that the shape fills, from a coarse grid of samples.
+// Estimates the share of the bounding box that the shape fills, from a coarse grid of samples.
 double sampled_volume(const Shape& shape, const Bounds& box) {
   constexpr int samples = 24;
   int inside = 0;
@@ -331,7 +333,7 @@ double sampled_volume(const Shape& shape, const Bounds& box) {
 }  // namespace
 
 TetMesh stuff_lattice(const Shape& shape, double spacing, const Vec3& shift) {
-  TetMesh mesh = one_manifold_piece(Stuffing(shape, spacing, shift).run());
+  TetMesh mesh = one_manifold_piece(IsosurfaceStuffing(shape, spacing, shift).run());
   mesh.regions.resize(static_cast<std::size_t>(mesh.tets.rows()));
   for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
     Vec3 centroid = Vec3::Zero();
@@ -351,14 +353,14 @@ TetMesh tetrahedralize(const Shape& shape, int vertices, const std::string& sour
   if (volume <= 0)
     throw InputError(source, "the shape has no inside: its parts cut each other away, or are too thin to mesh");
 
-  // Two lattice points a cell, and about as many again on the surface of a small body: a guess that the iteration
-  // corrects.
+  // The first guess of the spacing counts two lattice points for each cell; a small body has about as many again on its
+  // surface, which the iteration corrects.
   double spacing = std::cbrt(2 * volume / vertices);
   TetMesh best;
   const auto miss = [&](const TetMesh& mesh) { return std::abs(static_cast<double>(mesh.rest.rows()) / vertices - 1); };
   for (int attempt = 0; attempt < 24; ++attempt) {
-    // After six attempts at the same alignment the lattice itself is shifted: small bodies change by whole layers of
-    // vertices.
+    // After six attempts at the same alignment the lattice itself is shifted, because small bodies gain and lose whole
+    // layers of vertices at once.
     const Vec3 shift = Vec3(0.31, 0.17, 0.43) * (attempt < 6 ? 0.0 : 0.37 * attempt);
     TetMesh mesh = stuff_lattice(shape, spacing, shift - Vec3(shift.array().floor()));
     const double count = std::max<double>(static_cast<double>(mesh.rest.rows()), 1.0);
@@ -371,7 +373,7 @@ TetMesh tetrahedralize(const Shape& shape, int vertices, const std::string& sour
         source, fmt::format("cannot be meshed with {} vertices (nearest: {}): its thinnest part needs more of them",
                             vertices, best.rest.rows()));
   }
-  // Far below the sampled volume (whose own error is a few per cent), whole parts are missing.
+  // With a volume far below the sampled one (whose own error is a few per cent), whole parts are missing.
   const double share = quality(best).volume / volume;
   if (share < 0.85) {
     throw InputError(

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// The tree is balanced, so that 2^31 triangles make 15 levels; each leaves at most three siblings behind.
+// The tree is balanced, so that 2^31 triangles make 15 levels; each level leaves at most three siblings on the stack.
 constexpr int stack_size = 64;
 
 template <class L>
@@ -42,11 +42,11 @@ double half_area(const Bounds& box) {
   return e.x() * e.y() + e.y() * e.z() + e.z() * e.x();
 }
 
-// The edges, as their triangles run through them, that no neighbour runs through the other way.
+// Returns the edges, in the direction of their triangle, that no neighbour runs through in the other direction.
 std::vector<std::pair<std::int32_t, std::int32_t>> open_edges(const Triangles& triangles) {
   struct Edge {
     std::int32_t low, high;
-    int turn;  // 1 from low to high
+    int turn;  // 1 if it runs from low to high
     bool operator<(const Edge& other) const { return std::tie(low, high) < std::tie(other.low, other.high); }
   };
   std::vector<Edge> edges;
@@ -68,7 +68,8 @@ std::vector<std::pair<std::int32_t, std::int32_t>> open_edges(const Triangles& t
   return open;
 }
 
-// Signed solid angle over 4 pi: Van Oosterom and Strackee, The solid angle of a plane triangle, 1983, equation 8.
+// Computes the signed solid angle over 4 pi: Van Oosterom and Strackee, The solid angle of a plane triangle, 1983,
+// equation 8.
 double winding_of_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double la = a.norm(), lb = b.norm(), lc = c.norm();
   const double y = a.dot(b.cross(c));
@@ -78,7 +79,8 @@ double winding_of_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 }  // namespace
 
-// Splits at the middle, along the axis that leaves the two smallest boxes, into counts that fill the leaves.
+// Builds the tree. It splits at the middle, along the axis that leaves the two smallest boxes, into counts that fill
+// the leaves.
 class TriangleSolid::Builder {
  public:
   explicit Builder(TriangleSolid& solid) : solid_(solid), order_(std::size_t(solid.surface_.triangles.rows())) {
@@ -133,7 +135,7 @@ class TriangleSolid::Builder {
       set(leaf.a, k, a);
       set(leaf.ab, k, b - a);
       set(leaf.ac, k, c - a);
-      // An edge without length has one point, whatever its parameter.
+      // An edge without length has one point, whatever its parameter, so any finite factor will do.
       const auto inverse = [](const Vec3& e) { return e.squaredNorm() > 0 ? 1 / e.squaredNorm() : 0.0; };
       leaf.inverse_ab[k] = inverse(b - a);
       leaf.inverse_ac[k] = inverse(c - a);
@@ -174,8 +176,8 @@ class TriangleSolid::Builder {
     return std::int32_t(index);
   }
 
-  // The leading term of Barill, Dickson, Schmidt, Levin, Jacobson, Fast winding numbers for soups and clouds, 2018,
-  // section 3.
+  // Computes the leading term of Barill, Dickson, Schmidt, Levin, Jacobson, Fast winding numbers for soups and clouds,
+  // 2018, section 3.
   void summarise(Part part, int lane, Dipoles& dipoles) const {
     Vec3 sum = Vec3::Zero(), area = Vec3::Zero();
     double weight = 0;
@@ -202,7 +204,8 @@ class TriangleSolid::Builder {
 
 TriangleSolid::TriangleSolid(TriMesh surface) : surface_(std::move(surface)), bounds_(bounds_of(surface_.points)) {
   SUPPLE_CHECK(surface_.triangles.rows(), >, 0);
-  // 1e-11 leaves the direction of (p - t) four good digits: both carry the round-off of the coordinates.
+  // Both ends of (p - t) carry the round-off of the coordinates; at 1e-11 of their size, its direction keeps four good
+  // digits.
   on_surface_ = 1e-11 * std::max(bounds_.lower.cwiseAbs().maxCoeff(), bounds_.upper.cwiseAbs().maxCoeff());
   close_holes();
   normals_.resize(surface_.triangles.rows(), 3);
@@ -214,7 +217,7 @@ TriangleSolid::TriangleSolid(TriMesh surface) : surface_(std::move(surface)), bo
   Builder(*this).build();
 }
 
-// Any one apex will do: open edges form closed lines, so that their triangles' other sides cancel.
+// Any single apex will do: open edges form closed lines, so that the other sides of these triangles cancel.
 void TriangleSolid::close_holes() {
   const auto open = open_edges(surface_.triangles);
   Vec3 apex = Vec3::Zero();
@@ -222,9 +225,9 @@ void TriangleSolid::close_holes() {
   for (const auto& [from, to] : open) lids_.push_back({surface_.points.row(to), surface_.points.row(from), apex});
 }
 
-// Ericson, Real-Time Collision Detection, 2005, section 5.1.5, for four triangles at once. Instead of choosing a region
-// first, the three edges and, where it lies within, the foot on the plane are all tried: every candidate is a point of
-// the triangle, so that round-off in a sliver's plane can't make it look nearer than it is.
+// Follows Ericson, Real-Time Collision Detection, 2005, section 5.1.5, for four triangles at once. Instead of choosing
+// a region first, it tries all three edges and, where it lies within, the foot on the plane: every candidate is a point
+// of the triangle, so that round-off in a sliver's plane can't make it look nearer than it is.
 void TriangleSolid::nearest_in_leaf(const Vec3& p, std::int32_t index, Nearest& best) const {
   const Leaf& leaf = leaves_[std::size_t(index)];
   const Lanes3 ap{p.x() - leaf.a.x, p.y() - leaf.a.y, p.z() - leaf.a.z};
@@ -249,7 +252,7 @@ void TriangleSolid::nearest_in_leaf(const Vec3& p, std::int32_t index, Nearest& 
   consider_edge(Lanes::Zero(), (d2 * leaf.inverse_ac).max(0).min(1));
   const Lanes of_c = (along_bc * leaf.inverse_bc).max(0).min(1);
   consider_edge(1 - of_c, of_c);
-  // The foot on the plane, and once more for what round-off left, which in slivers is much.
+  // The foot on the plane is corrected once for what round-off left, which in slivers is much.
   Lanes s = dot(leaf.to_v, ap), t = dot(leaf.to_w, ap);
   const Lanes3 rest = offset(s, t);
   s += dot(leaf.to_v, rest);
@@ -261,7 +264,7 @@ void TriangleSolid::nearest_in_leaf(const Vec3& p, std::int32_t index, Nearest& 
     if (squared[k] < best.squared) best = {squared[k], index, k, v[k], w[k]};
 }
 
-// Branch and bound, nearer child first.
+// Searches by branch and bound, the nearer child first.
 TriangleSolid::Nearest TriangleSolid::nearest(const Vec3& p) const {
   struct Entry {
     double squared;
@@ -286,7 +289,7 @@ TriangleSolid::Nearest TriangleSolid::nearest(const Vec3& p) const {
     const int first = top;
     for (int k = 0; k < width; ++k) {
       if (!(squared[k] < best.squared)) continue;
-      int place = top++;  // furthest below
+      int place = top++;  // keeps the furthest child lowest on the stack
       for (; place > first && stack[std::size_t(place - 1)].squared < squared[k]; --place)
         stack[std::size_t(place)] = stack[std::size_t(place - 1)];
       stack[std::size_t(place)] = {squared[k], node.child[std::size_t(k)]};
@@ -296,9 +299,9 @@ TriangleSolid::Nearest TriangleSolid::nearest(const Vec3& p) const {
 }
 
 double TriangleSolid::winding_number(const Vec3& p) const {
-  // A part counts as far beyond twice its radius: section 3.2 of the same paper.
+  // A part counts as far beyond twice its radius, as in section 3.2 of the same paper.
   constexpr double far = 2;
-  // Below round-off, and where squares would overflow.
+  // At this distance the result is below round-off, and further away squares would overflow.
   if ((p - bounds_.center()).cwiseAbs().maxCoeff() > 1e12 * (bounds_.diagonal() + on_surface_)) return 0;
   std::array<std::int32_t, stack_size> stack;
   int top = 0;
@@ -321,7 +324,7 @@ double TriangleSolid::winding_number(const Vec3& p) const {
     const Lanes reach = far * dipoles.radius;
     const Lanes seen = dot(dipoles.area, d) / (squared * squared.sqrt() * (4 * std::numbers::pi));
     for (int k = 0; k < width; ++k) {
-      if (node.lower.x[k] > node.upper.x[k]) continue;  // no child
+      if (node.lower.x[k] > node.upper.x[k]) continue;  // there is no child here
       if (squared[k] > reach[k] * reach[k]) {
         sum += seen[k];
       } else {
@@ -332,10 +335,10 @@ double TriangleSolid::winding_number(const Vec3& p) const {
   return sum;
 }
 
-// How the triangle meets the ray from p: +1 where the ray leaves through it, -1 where it enters, 0 where it passes by.
-// Projected along the ray, the triangle winds around p by the sum over its edges of what crosses the level of p beyond
-// p. That side is computed from the edge's lower to its upper end, the same for both neighbours, so that round-off
-// can't let a ray slip between two triangles or count both.
+// Tells how the triangle meets the ray from p: +1 where the ray leaves through it, -1 where it enters, 0 where it
+// passes by. Seen along the ray, the triangle's winding around p is a sum over those edges that cross the level of p on
+// the far side of p. That side is computed from the edge's lower to its upper end, the same for both neighbours, so
+// that round-off can't let a ray slip between two triangles or count both.
 int TriangleSolid::crossing(const Vec3& p, const Corners& corners, int axis, int direction) {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
   int turns = 0;
@@ -362,8 +365,8 @@ int TriangleSolid::crossing(const Vec3& p, const Corners& corners, int axis, int
   return direction * turns;
 }
 
-// The winding number of a point in the box, once the holes have their lids, which is a whole number: signed crossings
-// of the axis-parallel ray to the nearest side of the box.
+// Computes the winding number of a point in the box for the surface whose holes are closed by lids. It is a whole
+// number: the signed crossings of the axis-parallel ray to the nearest side of the box.
 int TriangleSolid::crossings(const Vec3& p) const {
   int axis = 0, direction = 1;
   double shortest = infinity;
@@ -377,7 +380,7 @@ int TriangleSolid::crossings(const Vec3& p) const {
       }
     }
   }
-  Vec3 lower = p, upper = p;  // the ray
+  Vec3 lower = p, upper = p;  // the ray's box
   (direction > 0 ? upper : lower)[axis] = direction * infinity;
   std::array<std::int32_t, stack_size> stack;
   int top = 0;
@@ -403,7 +406,7 @@ int TriangleSolid::crossings(const Vec3& p) const {
 
 bool TriangleSolid::inside(const Vec3& p) const {
   if ((p.array() < bounds_.lower.array()).any() || (p.array() > bounds_.upper.array()).any()) return false;
-  // Lids cost their time at every query; past this many the tree is faster.
+  // Lids cost time in every query; with more than this many, the tree is faster.
   constexpr std::size_t most_lids = 32;
   if (lids_.size() > most_lids) return winding_number(p) > 0.5;
   double of_lids = 0;
@@ -412,7 +415,8 @@ bool TriangleSolid::inside(const Vec3& p) const {
 }
 
 SurfacePoint TriangleSolid::closest(const Vec3& p) const {
-  // From very far away all points of the surface are equally far in round-off, and squares overflow: look from nearer.
+  // Seen from very far away, all points of the surface are equally distant up to round-off, and squares overflow, so
+  // the query starts from a nearer point.
   const Vec3 from_center = p - bounds_.center();
   const double far = 1e12 * (bounds_.diagonal() + on_surface_), away = from_center.cwiseAbs().maxCoeff();
   const Nearest found = nearest(away > far ? Vec3(bounds_.center() + from_center / away * far) : p);

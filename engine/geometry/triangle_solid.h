@@ -1,7 +1,7 @@
-// The solid inside a closed triangle surface: closest points and signed distances, for colliding and as a shape. Not
-// here: files, and the checks that make a surface closed (surface_file.h); small holes are tolerated. The sign is that
-// of the generalised winding number (Jacobson, Kavan, Sorkine-Hornung, Robust inside-outside segmentation using
-// generalized winding numbers, 2013): inside where it exceeds 1/2, so that overlapping parts are a union.
+// The solid inside a closed triangle surface answers closest points and signed distances, for collisions and as a
+// shape. Files, and the checks that make a surface closed, are in surface_file.h; small holes are tolerated. The sign
+// is that of the generalised winding number (Jacobson, Kavan, Sorkine-Hornung, Robust inside-outside segmentation using
+// generalized winding numbers, 2013): a point is inside where it exceeds 1/2, so that overlapping parts form a union.
 #pragma once
 
 #include <array>
@@ -13,23 +13,23 @@
 
 namespace supple {
 
-// Constant after construction; queries may run on any number of threads and give the same bits on each.
+// The object is constant after construction; queries may run on any number of threads and give the same bits on each.
 class TriangleSolid {
  public:
-  // Expects triangles with area, oriented outward, whose coordinates are within +-1e50 (closed_surface sees to that).
+  // The triangles must have an area, face outward, and have coordinates within +-1e50 (closed_surface sees to that).
   explicit TriangleSolid(TriMesh surface);
 
-  // For any finite point. The distance is exact up to round-off of the surface's coordinates.
+  // Accepts any finite point. The distance is exact up to round-off of the surface's coordinates.
   SurfacePoint closest(const Vec3& p) const;
 
-  // Near parts exactly, far ones as dipoles; accurate to about 0.1.
+  // Sums near parts exactly and far ones as dipoles; the result is accurate to about 0.1.
   double winding_number(const Vec3& p) const;
 
   const Bounds& bounds() const { return bounds_; }
   const TriMesh& surface() const { return surface_; }
 
  private:
-  // A tree with four children a node and up to four triangles a leaf, one a vector lane.
+  // The tree has four children a node and up to four triangles a leaf, one in each vector lane.
   static constexpr int width = 4;
   using Lanes = Eigen::Array<double, width, 1>;
   struct Lanes3 {
@@ -37,22 +37,22 @@ class TriangleSolid {
   };
   struct Node {
     Lanes3 lower, upper;                    // boxes of the children; empty where there is no child [m]
-    std::array<std::int32_t, width> child;  // a node, or a leaf as its complement
+    std::array<std::int32_t, width> child;  // index of a node, or the complement of a leaf's index
   };
-  struct Dipoles {  // the children seen from afar
+  struct Dipoles {  // the children as seen from afar
     Lanes3 center;  // mean of the triangles, weighted by area [m]
     Lanes3 area;    // sum of their area vectors [m^2]
-    Lanes radius;   // no corner is further from the centre [m]
+    Lanes radius;   // distance from the centre to the furthest corner [m]
   };
   struct Leaf {
     Lanes3 a, ab, ac;                          // a corner, and the edges from it [m]
     Lanes inverse_ab, inverse_ac, inverse_bc;  // 1 / squared length [1/m^2]
     Lanes bc_start;                            // bc . ab [m^2]
     Lanes3 to_v, to_w;                         // v and w of a point's foot on the plane, by their dot product [1/m]
-    std::array<std::int32_t, width> triangle;  // a short leaf repeats its first
+    std::array<std::int32_t, width> triangle;  // a short leaf repeats its first triangle
     int count;
   };
-  struct Nearest {  // a + v ab + w ac of a leaf's lane
+  struct Nearest {  // the point a + v ab + w ac of a leaf's lane
     double squared;
     std::int32_t leaf;
     int lane;
@@ -74,12 +74,12 @@ class TriangleSolid {
 
   TriMesh surface_;
   Bounds bounds_;
-  double on_surface_ = 0;      // nearer than this, a query has no direction of its own [m]
-  std::vector<Corners> lids_;  // triangles that would close the holes: only the sign knows them
+  double on_surface_ = 0;      // nearer than this, the vector to a query point has no reliable direction [m]
+  std::vector<Corners> lids_;  // triangles that would close the holes; they matter to the sign alone
   std::vector<Node> nodes_;
-  std::vector<Dipoles> dipoles_;  // of nodes_
+  std::vector<Dipoles> dipoles_;  // one for each of nodes_
   std::vector<Leaf> leaves_;
-  Positions normals_;  // of triangles, unit
+  Positions normals_;  // unit normals of the triangles
 };
 
 }  // namespace supple

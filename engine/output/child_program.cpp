@@ -1,7 +1,7 @@
 #include "output/child_program.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -14,8 +14,9 @@ namespace supple {
 
 namespace {
 
-// Waits until the child has said something or ended, or until it is asked to stop; the last is told.
-bool stopped_before_words(int output, pid_t child, const std::function<bool()>& stop) {
+// Waits until the child has written something or ended, or until it is asked to stop. Returns whether it was asked to
+// stop.
+bool stopped_before_output(int output, pid_t child, const std::function<bool()>& stop) {
   pollfd waited{output, POLLIN, 0};
   do {
     if (!stop()) continue;
@@ -27,12 +28,12 @@ bool stopped_before_words(int output, pid_t child, const std::function<bool()>& 
 
 constexpr int cannot_start = 127;
 
-// In the child, which may have been forked off one of many threads: system calls alone. parent: with whom it ends; 0:
-// nobody.
+// Runs in the child, which may have been forked off one of many threads, so it makes system calls alone. parent: the
+// process with which the child shall end; 0 for none.
 [[noreturn]] void become_program(const std::vector<char*>& arguments, int output, pid_t parent,
                                  const sigset_t& signals) {
-  // Ctrl-C on the terminal is ours to handle: an encoder finishes what it has, so a child stands in a process group of
-  // its own.
+  // The child stands in a process group of its own: we handle Ctrl-C on the terminal, and an encoder shall finish what
+  // it has.
   ::setpgid(0, 0);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction action {};
@@ -42,7 +43,7 @@ constexpr int cannot_start = 127;
     ::sigaction(signal, &action, nullptr);
   }
   if (parent != 0) ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (parent != 0 && ::getppid() != parent) ::_exit(cannot_start);  // it has ended before that
+  if (parent != 0 && ::getppid() != parent) ::_exit(cannot_start);  // the parent has already ended
   ::dup2(::open("/dev/null", O_RDONLY | O_CLOEXEC), 0);
   ::dup2(output, 1);
   ::dup2(output, 2);
@@ -62,7 +63,7 @@ std::optional<ProgramEnd> run_program(const std::vector<std::string>& words, con
   const pid_t parent = ::getpid();
   sigset_t all, before;
   sigfillset(&all);
-  ::pthread_sigmask(SIG_SETMASK, &all, &before);  // no signal meets our handlers in the child
+  ::pthread_sigmask(SIG_SETMASK, &all, &before);  // no signal reaches our handlers in the child
   const pid_t child = ::fork();
   if (child == 0) become_program(arguments, ends[1], stop ? parent : 0, before);
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
@@ -74,7 +75,7 @@ std::optional<ProgramEnd> run_program(const std::vector<std::string>& words, con
   ProgramEnd finished{0, ""};
   char buffer[4096];
   for (bool asked = false;;) {
-    if (stop && !asked) asked = stopped_before_words(ends[0], child, stop);
+    if (stop && !asked) asked = stopped_before_output(ends[0], child, stop);
     const ssize_t count = ::read(ends[0], buffer, sizeof buffer);
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) break;

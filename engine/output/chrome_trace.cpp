@@ -1,6 +1,6 @@
 #include "output/chrome_trace.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <iterator>
@@ -10,12 +10,12 @@
 namespace supple {
 namespace {
 
-// Names of bodies are free text, and may have been cut within a letter.
+// Names of bodies are free text, and may have been cut in the middle of a letter.
 std::string quoted(const std::string& text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-// Whole nanoseconds, so that zones nest in the file as they did in time.
+// Keeps whole nanoseconds, so that zones nest in the file as they did in time.
 std::string microseconds(std::int64_t ns) { return fmt::format("{}.{:03}", ns / 1000, ns % 1000); }
 
 std::string arguments(const TraceEvent& event) {

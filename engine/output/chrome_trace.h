@@ -1,5 +1,5 @@
-// Traces as chrome://tracing and Perfetto read them: one track a thread, zones as complete events ("X") in microseconds
-// since the first, threads' names as metadata ("M").
+// Writes traces as chrome://tracing and Perfetto read them: one track for each thread, zones as complete events ("X")
+// in microseconds since the first one, and the threads' names as metadata ("M").
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace supple {
 
-// JSON, an event a line. The number of a zone becomes the argument "frame", its subject "body"; zones that found no
-// room are counted in otherData.lost_zones.
+// Returns JSON, one event a line. The number of a zone becomes the argument "frame", its subject becomes "body"; zones
+// that were dropped for lack of room are counted in otherData.lost_zones.
 std::string chrome_trace(const std::vector<ThreadTrace>& threads);
 
 }  // namespace supple

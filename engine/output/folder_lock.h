@@ -1,6 +1,6 @@
 // Keeps a folder to one process, because two runs that write into one folder destroy each other's results. The lock is
-// the system's, on the folder itself: it leaves no file behind, and ends with the process however that ends. Not here:
-// machines that share a disk, each of which may know of its own locks only.
+// the system's, on the folder itself: it leaves no file behind, and ends with the process however that ends. It does
+// not protect against other machines that share the disk: each of them may know of its own locks only.
 #pragma once
 
 #include <filesystem>
@@ -9,15 +9,15 @@ namespace supple {
 
 class FolderLock {
  public:
-  // Makes the folder if there is none. Holds nothing where that fails, or where the disk knows no locks. Throws
-  // InputError when another process has the folder.
+  // Makes the folder if there is none. The object holds no lock where that fails, or where the disk supports none.
+  // Throws InputError when another process holds the lock.
   explicit FolderLock(const std::filesystem::path& folder);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
  private:
-  int folder_;  // its file descriptor; negative: none
+  int folder_;  // its file descriptor; negative without a lock
 };
 
 }  // namespace supple

@@ -1,6 +1,6 @@
 #include "output/json_difference.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <map>
@@ -20,7 +20,7 @@ std::string name_of(const Json& element) {
   return named ? element["name"].get<std::string>() : "";
 }
 
-// Members and elements by the last word of their path.
+// Lists members and elements by the last word of their path.
 using Children = std::vector<std::pair<std::string, const Json*>>;
 
 Children children_of(const Json& value) {

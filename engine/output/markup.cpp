@@ -52,7 +52,7 @@ std::string with_id_prefix(std::string_view markup, const std::string& prefix) {
   return result;
 }
 
-std::size_t count_signs(std::string_view text) {
+std::size_t count_code_points(std::string_view text) {
   return std::size_t(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }

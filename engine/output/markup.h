@@ -1,4 +1,4 @@
-// Text, and pictures as text, inside HTML and SVG.
+// Prepares text, and pictures given as text, for HTML and SVG.
 #pragma once
 
 #include <cstdint>
@@ -8,16 +8,17 @@
 
 namespace supple {
 
-// With & < > " ' escaped, fit for elements and attributes. Control characters but tab and line feed become spaces.
+// Escapes & < > " ', so that the text fits elements and attributes. Control characters other than tab and line feed
+// become spaces.
 std::string markup_text(std::string_view text);
 
-// The markup with `prefix` before every id and every reference to one.
+// Puts `prefix` before every id in the markup and before every reference to one.
 std::string with_id_prefix(std::string_view markup, const std::string& prefix);
 
-// Bytes as RFC 4648's base64, for data: addresses.
+// Encodes bytes in the base64 of RFC 4648, for data: addresses.
 std::string base64_text(std::span<const std::uint8_t> bytes);
 
-// Letters of UTF-8 text, or nearly: code points.
-std::size_t count_signs(std::string_view text);
+// Counts the code points of UTF-8 text, which are nearly its letters.
+std::size_t count_code_points(std::string_view text);
 
 }  // namespace supple

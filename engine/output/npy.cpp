@@ -18,7 +18,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "arrays are copied to files as they lie in memory");
 
 constexpr std::string_view signature = "\x93NUMPY";
-constexpr std::size_t preamble = 10;   // signature, two bytes of version, two of the header's length
+constexpr std::size_t preamble = 10;   // signature, two bytes of version, two bytes of the header's length
 constexpr std::size_t alignment = 64;  // of the values in the file
 
 template <class T>
@@ -46,7 +46,7 @@ void write(const std::filesystem::path& path, NpyShape shape, std::span<const T>
   write_whole_file(path, std::string_view(file));
 }
 
-// The header: a Python dictionary of exactly three keys, in any order.
+// Reads the header: a Python dictionary with exactly three keys, in any order.
 class HeaderReader {
  public:
   HeaderReader(std::string file, std::string_view text) : file_(std::move(file)), text_(text) {}
@@ -163,7 +163,7 @@ NpyArray<T> read(const std::filesystem::path& path) {
     throw InputError(name, fmt::format("holds numbers of type '{}' where '{}' is read", header.type, type_name<T>));
   const std::size_t given = bytes.size() - preamble - length;
   const auto [dimensions, rows, columns] = header.shape;
-  // Counts that no file could hold must not overflow on the way to the comparison.
+  // A shape that no file could hold must not overflow before it is compared.
   constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max() / std::int64_t{sizeof(T)};
   const bool countable = columns == 0 || rows <= most / columns;
   const std::size_t wanted = countable ? std::size_t(rows * columns) * sizeof(T) : 0;

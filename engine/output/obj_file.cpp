@@ -1,6 +1,6 @@
 #include "output/obj_file.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <iterator>
 

@@ -1,5 +1,5 @@
-// Surfaces as Wavefront OBJ: what other programs put a body's motion on. Vertices stand in the order of the mesh, those
-// inside it too, so that a point cache of the same mesh fits them one by one.
+// Writes surfaces as Wavefront OBJ, on which other programs put a body's motion. All vertices of the mesh are written
+// in its order, including those inside, so that a point cache of the same mesh fits them one by one.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,8 @@
 
 namespace supple {
 
-// Nine significant digits, which is what point caches hold. Whole or not there. Throws RunError when the disk refuses.
+// Writes nine significant digits, as many as point caches hold. The file is either whole or not there. Throws RunError
+// when the disk refuses.
 void write_obj(const std::filesystem::path& path, const Positions& points, const Triangles& triangles);
 
 }  // namespace supple

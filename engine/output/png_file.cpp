@@ -1,6 +1,6 @@
 #include "output/png_file.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <png.h>
 #include <fstream>
 #include <string_view>

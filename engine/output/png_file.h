@@ -1,5 +1,5 @@
-// PNG images. Level 3 without row filters: several times faster than libpng's defaults on rendered frames, and hardly
-// larger. The only place that knows libpng.
+// Reads and writes PNG images. Level 3 without row filters is several times faster than libpng's defaults on rendered
+// frames, and hardly larger. This is the only place that knows libpng.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace supple {
 
-// 8-bit RGB, rows from the top. Written under a temporary name and renamed: a file that exists is whole. Throws
-// RunError (the disk).
+// Writes 8-bit RGB, rows from the top. The file is written under a temporary name and renamed, so that a file that
+// exists is whole. Throws RunError when the disk refuses.
 void write_png(const std::filesystem::path& path, int width, int height, std::span<const std::uint8_t> rgb);
 
 struct PngImage {
@@ -18,10 +18,10 @@ struct PngImage {
   std::vector<std::uint8_t> rgb;
 };
 
-// Any PNG as 8-bit RGB. Throws InputError.
+// Reads any PNG as 8-bit RGB. Throws InputError when it cannot.
 PngImage read_png(const std::filesystem::path& path);
 
-// Whether a file begins and ends as a PNG does; what lies between is not read.
+// Tells whether a file begins and ends as a PNG does, without reading what lies between.
 bool looks_whole(const std::filesystem::path& png);
 
 }  // namespace supple

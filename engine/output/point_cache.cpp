@@ -1,6 +1,6 @@
 #include "output/point_cache.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <unistd.h>
 
@@ -12,7 +12,7 @@
 namespace supple {
 namespace {
 
-// The header of a PC2 file, little-endian.
+// Describes the header of a PC2 file, little-endian.
 struct Header {
   char signature[12];
   std::int32_t version;
@@ -24,7 +24,7 @@ struct Header {
 static_assert(sizeof(Header) == 32);
 constexpr char signature[12] = "POINTCACHE2";
 
-// One row a vertex, as the file has them.
+// Holds one row for each vertex, as the file does.
 using FilePoints = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
 }  // namespace
@@ -42,20 +42,20 @@ PointCacheWriter::PointCacheWriter(const std::filesystem::path& path, int points
     : path_(path), file_(std::fopen(path.c_str(), kept_frames > 0 ? "r+b" : "wb")), points_(points) {
   if (!file_) fail(kept_frames > 0 ? "be opened" : "be created");
   if (kept_frames > 0) {
-    go_on_behind(kept_frames);
+    continue_after(kept_frames);
     return;
   }
-  // One sample a frame: the rate counts frames of the film between samples.
+  // The file holds one sample for each frame: the rate counts frames of the film between samples.
   Header header{{}, 1, points, 0.0f, 1.0f, 0};
   std::memcpy(header.signature, signature, sizeof signature);
   if (std::fwrite(&header, sizeof header, 1, file_.get()) != 1) fail("be written");
 }
 
-void PointCacheWriter::go_on_behind(int frames) {
+void PointCacheWriter::continue_after(int frames) {
   Header header{};
   const auto size = static_cast<std::int64_t>(sizeof header + sizeof(float) * 3 * std::size_t(points_) * frames);
   if (!point_cache_has(path_, points_, frames))
-    throw RunError(fmt::format("{}: does not have the {} frames to go on from", path_.string(), frames));
+    throw RunError(fmt::format("{}: does not have the {} frames after which to continue", path_.string(), frames));
   if (std::fread(&header, sizeof header, 1, file_.get()) != 1) fail("be read");
   header.samples = frames_ = frames;
   if (std::fseek(file_.get(), 0, SEEK_SET) != 0 || std::fwrite(&header, sizeof header, 1, file_.get()) != 1 ||
@@ -91,7 +91,7 @@ PointCacheReader::PointCacheReader(const std::filesystem::path& path) : path_(pa
     refuse("is not a PC2 point cache");
   if (header.version != 1) refuse(fmt::format("is of version {}; this program reads version 1", header.version));
   if (header.points < 0 || header.samples < 0)
-    refuse(fmt::format("is damaged: its header tells {} points and {} frames", header.points, header.samples));
+    refuse(fmt::format("is damaged: its header says {} points and {} frames", header.points, header.samples));
   points_ = header.points;
   frames_ = header.samples;
   const std::uintmax_t frame = 3 * sizeof(float) * std::uintmax_t(points_);

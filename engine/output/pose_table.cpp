@@ -1,6 +1,6 @@
 #include "output/pose_table.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -18,7 +18,7 @@ std::optional<std::int64_t> pose_table_bytes(const std::filesystem::path& path, 
   std::int64_t bytes = 0;
   std::string line;
   for (int i = 0; i <= rows; ++i) {
-    if (!std::getline(file, line) || file.eof()) return std::nullopt;  // a whole row has an end
+    if (!std::getline(file, line) || file.eof()) return std::nullopt;  // a whole row ends with a line feed
     bytes += std::int64_t(line.size()) + 1;
   }
   return bytes;
@@ -32,7 +32,8 @@ PoseTableWriter::PoseTableWriter(const std::filesystem::path& path, int kept_row
   check(file_ != nullptr);
   if (kept_rows > 0) {
     const std::optional<std::int64_t> bytes = pose_table_bytes(path, kept_rows);
-    if (!bytes) throw RunError(fmt::format("{}: does not have the {} rows to go on from", path.string(), kept_rows));
+    if (!bytes)
+      throw RunError(fmt::format("{}: does not have the {} rows after which to continue", path.string(), kept_rows));
     check(ftruncate(fileno(file_.get()), off_t(*bytes)) == 0 && std::fseek(file_.get(), 0, SEEK_END) == 0);
   } else {
     say(file_.get(), "frame,collider,x,y,z,qw,qx,qy,qz\n");

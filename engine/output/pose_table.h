@@ -1,4 +1,5 @@
-// Rigid motions as a table: a row a frame and collider, for whoever wants to place them in another program.
+// Writes rigid motions as a table, one row for each frame and collider, so that another program can place the
+// colliders.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -13,15 +14,15 @@
 
 namespace supple {
 
-// Of the heading and the first rows of a table; nothing where it has fewer.
+// Returns the number of bytes of the heading and the first rows of a table, or nothing where it has fewer rows.
 std::optional<std::int64_t> pose_table_bytes(const std::filesystem::path& path, int rows);
 
 class PoseTableWriter {
  public:
-  // Starts a file, or goes on behind the first rows of one. Throws RunError when it cannot be written, or has fewer.
+  // Starts a file, or continues one after its first rows. Throws RunError when it cannot be written, or has fewer rows.
   explicit PoseTableWriter(const std::filesystem::path& path, int kept_rows = 0);
 
-  // Position [m] and rotation as a quaternion, from the collider's frame to the world.
+  // Writes the position [m] and the rotation as a quaternion, from the collider's frame to the world.
   void add(int frame, const std::string& name, const Eigen::Isometry3d& pose);
 
  private:

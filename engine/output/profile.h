@@ -1,5 +1,5 @@
-// What a run took, frame by frame, as profile.json and as a table on the terminal. Plain rows: filled in by whoever has
-// the numbers.
+// Holds what a run took, frame by frame, for profile.json and for a table on the terminal. The rows are plain data; the
+// caller fills them in.
 #pragma once
 
 #include <array>
@@ -11,13 +11,13 @@
 
 namespace supple {
 
-// Contact with colliders; absent where a scene has none.
+// Describes the contact with colliders; it is absent where a scene has none.
 struct ContactRow {
   double collide_ms = 0;
   int contacts = 0;        // vertices in contact at the end of the frame
-  int changes = 0;         // that came or went, over the frame's iterations
-  int cycles = 0;          // iterations that brought the set of the one before last back
-  double penetration = 0;  // the deepest point of the surface, over size
+  int changes = 0;         // vertices that came into contact or left it, over the frame's iterations
+  int cycles = 0;          // iterations that restored the contact set of the one before last
+  double penetration = 0;  // the surface's largest depth inside a collider, over the body's size
 };
 
 struct BodyRow {
@@ -28,10 +28,10 @@ struct BodyRow {
   double error_estimate = 0;
   bool error_measured = false;
   std::optional<double> error;                  // equation 12; null where the start is already the minimum to round-off
-  double stretch = 0;                           // volume-weighted 99.9th percentile of the largest stretch
+  double stretch = 0;                           // 99.9th percentile of the largest stretch, weighted by volume
   std::optional<std::array<double, 3>> energy;  // kinetic, elastic, gravitational [J]; only when the scene asks for it
-  std::optional<int> inverted;                  // tetrahedra inside out; only for solids
-  std::optional<double> jiggle;                 // over size; only for bodies with a handle
+  std::optional<int> inverted;                  // number of inverted tetrahedra; only for solids
+  std::optional<double> jiggle;                 // jiggle of the body over its size; only for bodies with a handle
   std::optional<ContactRow> contact;
   std::string stop_reason;
 };
@@ -40,7 +40,7 @@ struct FrameRow {
   int frame = 0;
   double time_s = 0;
   double step_ms = 0;
-  std::optional<double> change_ms;  // taking over what a replay changes; absent where it changes nothing
+  std::optional<double> change_ms;  // time to apply what a replay changes; absent where it changes nothing
   std::optional<double> draw_ms, render_ms, encode_ms;  // absent without images
   std::uint64_t state_hash = 0;
   std::vector<BodyRow> bodies;
@@ -50,11 +50,11 @@ struct Distribution {
   double p50 = 0, p95 = 0, p99 = 0, max = 0, mean = 0, total = 0;
 };
 
-// Nearest-rank percentiles; zeros for an empty list.
+// Computes nearest-rank percentiles; an empty list gives zeros.
 Distribution distribution_of(std::vector<double> values);
 
-// The stages of a frame that were used, in the order in which they run; the first frame is left out (it compiles
-// shaders and warms caches).
+// Summarises the stages of a frame that were used, in the order in which they run. The first frame is left out of
+// `rest`, because it compiles shaders and warms caches.
 struct StageSummary {
   std::string stage;
   double first = 0;
@@ -62,15 +62,15 @@ struct StageSummary {
 };
 std::vector<StageSummary> summarize(const std::vector<FrameRow>& rows);
 
-// Rows as text (profile_json.cpp): all of a run's, and one as a line of its own.
+// Writes rows as text (profile_json.cpp): all rows of a run, or one row as a line of its own.
 std::string profile_json(const std::vector<FrameRow>& rows);
 std::string row_line(const FrameRow& row);
 
-// The other way round. Throws InputError naming the file where it cannot be read or is not such a text.
+// Reads rows back. Throws InputError naming the file where it cannot be read or is not such a text.
 FrameRow row_of_line(const std::string& line, const std::string& source);
 std::vector<FrameRow> read_profile(const std::filesystem::path& path);
 
-// A table for people: stages, then solver figures by body.
+// Gives a table for people: the stages, then the solver's figures by body.
 std::string profile_table(const std::vector<FrameRow>& rows);
 
 }  // namespace supple

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Four digits behind the point are plenty for times; all seventeen are kept where a number may be compared.
+// Four digits after the point are plenty for times; numbers that may be compared keep all seventeen.
 double rounded_ms(double ms) { return std::round(ms * 1e4) / 1e4; }
 
 Json json_of(const BodyRow& body) {
@@ -113,9 +113,9 @@ FrameRow frame_row(const Json& json) {
   return row;
 }
 
-// What the parsers of JSON and of numbers throw becomes a message about the file.
+// Turns what the parsers of JSON and of numbers throw into a message about the file.
 template <class Read>
-auto told_of(const std::string& source, const Read& read) {
+auto as_input_errors(const std::string& source, const Read& read) {
   try {
     return read();
   } catch (const nlohmann::json::exception&) {
@@ -130,13 +130,13 @@ auto told_of(const std::string& source, const Read& read) {
 std::string row_line(const FrameRow& row) { return json_of(row).dump(); }
 
 FrameRow row_of_line(const std::string& line, const std::string& source) {
-  return told_of(source, [&] { return frame_row(Json::parse(line)); });
+  return as_input_errors(source, [&] { return frame_row(Json::parse(line)); });
 }
 
 std::vector<FrameRow> read_profile(const std::filesystem::path& path) {
   std::ifstream file(path);
   if (!file) throw InputError(path.string(), "cannot be read");
-  return told_of(path.string(), [&] {
+  return as_input_errors(path.string(), [&] {
     std::vector<FrameRow> rows;
     const Json document = Json::parse(file);
     for (const Json& frame : document.at("frames")) rows.push_back(frame_row(frame));

@@ -1,6 +1,6 @@
 #include "output/report_page.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <fstream>
@@ -128,7 +128,7 @@ std::vector<std::size_t> shown_columns(const ReportTable& table) {
   return shown;
 }
 
-// A column is one of numbers when most of its cells begin like one: "12.3", "-4 %", "< 1e-9", "~2x".
+// A column holds numbers when most of its cells begin like one: "12.3", "-4 %", "< 1e-9", "~2x".
 bool holds_numbers(const ReportTable& table, std::size_t column) {
   std::ptrdiff_t numbers = 0, filled = 0;
   for (const auto& row : table.rows) {
@@ -140,15 +140,15 @@ bool holds_numbers(const ReportTable& table, std::size_t column) {
   return 2 * numbers > filled;
 }
 
-// How its cells are set: numbers to the right, short words on one line, long ones in a paragraph.
+// Tells how a column's cells are set: numbers to the right, short words on one line, long ones in a paragraph.
 const char* column_kind(const ReportTable& table, std::size_t column) {
   if (holds_numbers(table, column)) return "number";
   for (const auto& row : table.rows)
-    if (count_signs(row[column]) > 32) return "long";
+    if (count_code_points(row[column]) > 32) return "long";
   return "short";
 }
 
-// "time, ours [ms]" with the unit in a softer voice
+// Writes "time, ours [ms]" with the unit in a softer colour.
 std::string header_text(const std::string& column) {
   const std::size_t unit = column.rfind(" [");
   if (unit == std::string::npos || column.back() != ']') return markup_text(column);
@@ -156,7 +156,7 @@ std::string header_text(const std::string& column) {
          "</span>";
 }
 
-// Numbers with more digits than the page shows are rounded; others stay as they are.
+// Rounds numbers with more digits than the page shows; other cells stay as they are.
 std::string page_cell(const ReportTable& table, const std::string& cell) {
   if (table.page_digits == 0 || !reads_as_number(cell)) return cell;
   const std::string rounded = number_text(std::stod(cell), table.page_digits);
@@ -193,7 +193,7 @@ std::string table_figure(const ReportTable& table) {
       table.name, markup_text(table.title), table_grid(table), paragraphs(table.note), columns);
 }
 
-// The picture's file as an element of the page: without prolog and outer sizes.
+// Makes the picture's file an element of the page, without its prolog and outer size.
 std::string inlined(const std::string& svg, const std::string& title) {
   const std::size_t box = svg.find("viewBox=\""), begin = svg.find("</title>");
   if (box == std::string::npos || begin == std::string::npos) return "";
@@ -224,7 +224,7 @@ std::string picture_figure(const ReportPicture& picture, const std::filesystem::
       picture.name, markup_text(picture.title), base64_text(bytes), paragraphs(picture.note));
 }
 
-// Of sections apart from tables and plots, whose names are files too.
+// Anchors of sections are kept apart from those of tables and plots, whose names are also file names.
 std::string anchor(const ReportSection& section) { return "section-" + section.name; }
 
 std::string contents(const ReportPage& page) {
@@ -263,10 +263,10 @@ void check_names(const ReportPage& page) {
   }
 }
 
-// A method keeps its looks from plot to plot; what no plot shows together may look alike.
-void give_looks(ReportPage& page) {
+// A method keeps its look from plot to plot; methods that no plot shows together may look alike.
+void assign_looks(ReportPage& page) {
   std::map<std::string, int> looks;
-  std::map<std::string, std::set<std::string>> company;
+  std::map<std::string, std::set<std::string>> drawn_together;
   std::vector<PlotSeries*> open;
   for (ReportSection& section : page.sections) {
     for (ReportPlot& plot : section.plots) {
@@ -274,14 +274,14 @@ void give_looks(ReportPage& page) {
         if (series.thick || series.name.empty()) continue;
         if (series.look >= 0) looks.try_emplace(series.name, series.look);
         if (series.look < 0) open.push_back(&series);
-        for (const PlotSeries& other : plot.series) company[series.name].insert(other.name);
+        for (const PlotSeries& other : plot.series) drawn_together[series.name].insert(other.name);
       }
     }
   }
   for (PlotSeries* series : open) {
     if (!looks.count(series->name)) {
       std::set<int> taken;
-      for (const std::string& other : company[series->name])
+      for (const std::string& other : drawn_together[series->name])
         if (const auto place = looks.find(other); place != looks.end()) taken.insert(place->second);
       int look = 0;
       while (taken.count(look)) ++look;
@@ -296,7 +296,7 @@ void give_looks(ReportPage& page) {
 std::vector<std::string> write_page(const ReportPage& given, const std::filesystem::path& folder) {
   check_names(given);
   ReportPage page = given;
-  give_looks(page);
+  assign_looks(page);
   std::vector<std::string> missing;
   std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"

@@ -1,6 +1,6 @@
 #include "output/report_plot.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
@@ -18,13 +18,13 @@
 namespace supple {
 namespace {
 
-constexpr int width = 900;             // [px]
-constexpr int height_of_axes = 515;    // without the legend [px]
-constexpr int height_of_row = 25;      // of the legend [px]
-constexpr double width_of_sign = 7.3;  // of the legend's letters, on average [px]
+constexpr int width = 900;               // [px]
+constexpr int height_of_axes = 515;      // without the legend [px]
+constexpr int height_of_row = 25;        // of the legend [px]
+constexpr double width_of_letter = 7.3;  // average width of a letter in the legend [px]
 
-// Told apart by colour-blind eyes: no two have both hue and lightness in common. The first colours of `thick` and
-// `thin` are those of the films.
+// These colours can be told apart by colour-blind eyes: no two share both hue and lightness. The first colours of
+// `thick` and `thin` are those of the films.
 constexpr std::array thick_colors = {"#d9822b", "#a63603", "#f2b134"};
 constexpr std::array thin_colors = {"#4c78a8", "#59a14f", "#222222", "#56b4e9",
                                     "#aa4499", "#999933", "#882255", "#9a9a9a"};
@@ -60,7 +60,7 @@ std::vector<Look> looks_of(const ReportPlot& plot) {
   return looks;
 }
 
-// Points of a series that can be drawn.
+// Holds the points of a series that can be drawn.
 struct Points {
   std::vector<double> x, y;
 };
@@ -88,7 +88,7 @@ std::string plot_csv(const ReportPlot& plot) {
   return csv_text(records);
 }
 
-// gnuplot neither expands nor unescapes anything between single quotes. Control characters have no place in an SVG.
+// Between single quotes, gnuplot neither expands nor unescapes anything. Control characters have no place in an SVG.
 std::string quoted(const std::string& text) {
   std::string result = "'";
   for (const char c : text) {
@@ -100,7 +100,7 @@ std::string quoted(const std::string& text) {
 
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  bool whole = true;  // all values are whole numbers
+  bool whole = true;  // whether all values are whole numbers
 };
 
 Range range_of(const std::vector<Points>& all, std::vector<double> Points::*values) {
@@ -113,7 +113,7 @@ Range range_of(const std::vector<Points>& all, std::vector<double> Points::*valu
   return range;
 }
 
-// Of a logarithmic axis that shows less than two decades, where gnuplot would label too few ticks.
+// Places the ticks of a logarithmic axis that shows less than two decades, where gnuplot would label too few.
 std::string close_ticks(char axis, double low, double high) {
   const double decades = std::log10(high / low);
   std::vector<double> digits = {1, 2, 5};
@@ -136,7 +136,7 @@ std::string linear_axis(char axis, const Range& data, double low, double high) {
   return script;
 }
 
-// Range and ticks of an axis; `low` and `high` are the plot's wishes.
+// Writes the range and ticks of an axis; `low` and `high` are what the plot asks for.
 std::string axis_script(char axis, bool log, const Range& data, double low, double high) {
   if (!log) return linear_axis(axis, data, low, high);
   const bool wide = std::log10(data.high) - std::log10(data.low) > 1.5;
@@ -160,8 +160,8 @@ std::string axis_script(char axis, bool log, const Range& data, double low, doub
 
 int legend_columns(const ReportPlot& plot) {
   std::size_t longest = 1;
-  for (const PlotSeries& series : plot.series) longest = std::max(longest, count_signs(series.name));
-  return std::max(1, int((width - 60) / (60 + width_of_sign * double(longest))));
+  for (const PlotSeries& series : plot.series) longest = std::max(longest, count_code_points(series.name));
+  return std::max(1, int((width - 60) / (60 + width_of_letter * double(longest))));
 }
 
 std::string frame_script(const ReportPlot& plot, const std::vector<Points>& points) {
@@ -194,13 +194,14 @@ std::string style_script(ReportPlot::Style style, const Look& look, std::size_t 
     return fmt::format("with points linecolor '{}' {} pointsize {}", look.color, marker,
                        look.line_width > 2 ? 1.1 : 0.8);
   if (style == ReportPlot::Style::steps) return "with steps " + line;
-  // Few points are marked all; of many, about eight a curve, which tell curves apart where colour does not.
+  // A curve of few points has a marker on each; a curve of many has about eight, which tell curves apart where colour
+  // does not.
   const std::size_t interval = count <= 12 ? 1 : count / 8;
   return fmt::format("with linespoints {} {} pointsize {} pointinterval {}", line, marker,
                      look.line_width > 2 ? 0.8 : 0.6, interval);
 }
 
-// What a series' group is called in the picture, in the order of plotting.
+// Holds gnuplot's script, and the names of the picture's groups in the order of plotting.
 struct Script {
   std::string text;
   std::vector<std::string> groups;
@@ -225,7 +226,7 @@ Script plot_script(const ReportPlot& plot, const std::vector<Points>& points, co
     script.text += "END_OF_SERIES\n";
     add(i, true);
   }
-  // The legend keeps the order of the series, and yet the thick ones lie on top.
+  // The legend keeps the order of the series, although the thick ones are drawn last, on top.
   for (std::size_t i = 0; i < points.size(); ++i)
     if (plot.series[i].thick && !points[i].x.empty()) add(i, false);
   script.text += items + "\n";
@@ -237,8 +238,8 @@ std::string read_text(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// What a program said, after a colon; nothing when it was silent.
-std::string said(const std::string& output) {
+// Returns what a program wrote, after a colon, or nothing when it wrote nothing.
+std::string after_colon(const std::string& output) {
   const std::size_t first = output.find_first_not_of(" \n"), last = output.find_last_not_of(" \n");
   return first == std::string::npos ? "" : ": " + output.substr(first, last + 1 - first);
 }
@@ -247,7 +248,7 @@ void replace_first(std::string& text, const std::string& from, const std::string
   if (const std::size_t at = text.find(from); at != std::string::npos) text.replace(at, from.size(), to);
 }
 
-// Ids that no other picture on a page has, and titles for people.
+// Gives the picture ids that no other picture on a page has, and titles for people.
 std::string named_svg(const ReportPlot& plot, const std::vector<std::string>& groups, std::string svg) {
   const std::size_t title = svg.find("<title>"), end = svg.find("</desc>");
   if (title == std::string::npos || end == std::string::npos) return "";
@@ -285,8 +286,8 @@ bool write_plot(const ReportPlot& plot, const std::filesystem::path& folder, std
   std::filesystem::remove(script_file, ignored);
   std::filesystem::remove(part, ignored);
   if (!drawn) return refuse("gnuplot is not installed (Debian: gnuplot-nox)");
-  if (drawn->status != 0) return refuse(fmt::format("gnuplot {}{}", how_it_ended(*drawn), said(drawn->output)));
-  if (picture.empty()) return refuse("gnuplot wrote no SVG" + said(drawn->output));
+  if (drawn->status != 0) return refuse(fmt::format("gnuplot {}{}", how_it_ended(*drawn), after_colon(drawn->output)));
+  if (picture.empty()) return refuse("gnuplot wrote no SVG" + after_colon(drawn->output));
   write_whole_file(svg, picture);
   return true;
 }

@@ -1,6 +1,6 @@
 #include "output/report_table.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +32,7 @@ std::string csv_field(const std::string& field) {
   return quoted + "\"";
 }
 
-// Reads records off a text and knows the place it has come to.
+// Reads records from a text and keeps track of the line and column.
 class CsvReader {
  public:
   CsvReader(std::string text, std::string name) : text_(std::move(text)), name_(std::move(name)) {}
@@ -98,7 +98,8 @@ class CsvReader {
   int line_ = 1, column_ = 1;
 };
 
-// A number, true, false or a list of them as what it says; empty: null; else the text.
+// Converts a cell: a number, true, false or a list of them becomes that value, an empty cell becomes null, and anything
+// else stays text.
 Json json_of(const std::string& cell) {
   if (cell.empty()) return nullptr;
   const bool may_say_more = reads_as_number(cell) || cell == "true" || cell == "false" || cell.front() == '[';
@@ -115,7 +116,7 @@ std::string number_text(double value, int digits) {
   const int decimals = std::max(digits, 1) - 1;
   const std::string scientific = fmt::format("{:.{}e}", value, decimals);
   const std::size_t e = scientific.find('e');
-  const int exponent = std::stoi(scientific.substr(e + 1));  // of the rounded value: 9.996 counts as 10.0
+  const int exponent = std::stoi(scientific.substr(e + 1));  // the exponent of the rounded value: 9.996 counts as 10.0
   if (exponent < -3 || exponent > 5) return fmt::format("{}e{}", scientific.substr(0, e), exponent);
   return fmt::format("{:.{}f}", value, std::max(0, decimals - exponent));
 }

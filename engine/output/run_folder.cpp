@@ -1,6 +1,6 @@
 #include "output/run_folder.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -35,18 +35,19 @@ std::string build_flags() { return SUPPLE_BUILD_FLAGS; }
 
 namespace {
 
-constexpr const char* part_suffix = ".part";  // of a file in the making
+constexpr const char* part_suffix = ".part";  // marks a file that is still being written
 
 bool all_digits(std::string_view text) { return text.find_first_not_of("0123456789") == std::string_view::npos; }
 
-// Of a picture's file its frame; of files that no run writes, nothing.
+// Returns the frame of a picture's file, and nothing for a file that no run writes.
 std::optional<long> frame_of(const std::filesystem::path& file) {
   const std::string stem = file.stem().string();
   if (file.extension() != ".png" || stem.size() < 6 || stem.size() > 9 || !all_digits(stem)) return std::nullopt;
   return std::stol(stem);
 }
 
-// Whether a run writes files of such names there. They come without the suffix of a file in the making.
+// These functions tell whether a run writes files of such names in the folder. They are given the name without the
+// suffix of an unfinished file.
 bool is_motion(const std::filesystem::path& file) {
   return file.extension() == ".pc2" || file.extension() == ".obj" || file == "colliders.csv";
 }
@@ -54,7 +55,7 @@ bool is_field(const std::filesystem::path& file) { return file.extension() == ".
 bool is_checkpoint(const std::filesystem::path& file) { return file == "state" || file == "rows.jsonl"; }
 bool is_state(const std::filesystem::path& file) { return file.extension() == ".npy" || file == "state.json"; }
 
-// What else is there belongs to somebody.
+// Removes a run's own files; anything else in the folder belongs to the user and stays.
 template <class IsOwn>
 void remove_own(const std::filesystem::path& folder, const IsOwn& is_own) {
   std::error_code error;
@@ -74,7 +75,7 @@ void remove_frames_from(const std::filesystem::path& frames, int first) {
   });
 }
 
-// The folders BODY-NNNNNN.
+// Removes the folders BODY-NNNNNN.
 void remove_states(const std::filesystem::path& states) {
   std::error_code error;
   std::vector<std::filesystem::path> own;
@@ -87,11 +88,11 @@ void remove_states(const std::filesystem::path& states) {
   }
   for (const std::filesystem::path& state : own) {
     remove_own(state, is_state);
-    std::filesystem::remove(state, error);  // unless there is more in it
+    std::filesystem::remove(state, error);  // fails when the folder holds anything else
   }
 }
 
-// What a run has left, but for run.json.
+// Removes what a run has left, except for run.json.
 void remove_run(const std::filesystem::path& run) {
   remove_own(run / "motion", is_motion);
   remove_own(run / "fields", is_field);
@@ -102,7 +103,7 @@ void remove_run(const std::filesystem::path& run) {
   }
 }
 
-// Whether nothing is there but what a run makes at its very beginning.
+// Tells whether the folder holds only what a run makes at its very beginning.
 bool is_beginning_of_run(const std::filesystem::path& path) {
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(path, error)) {
@@ -134,7 +135,7 @@ RunFolder::RunFolder(const std::filesystem::path& path, int kept_frames) : path_
   }
   make_folder(path);
   if (kept_frames == 0) {
-    // First: from now on the folder is known as a run's, and what is in it counts no more.
+    // run.json comes first: from now on the folder is known as a run's, and its old contents no longer count.
     write_whole_file(path / "run.json", std::string_view("{}\n"));
     remove_own(path / "checkpoint", is_checkpoint);
     remove_run(path);
@@ -177,7 +178,7 @@ std::string info_json(const RunInfo& info) {
   if (!info.replay_json.empty()) json["replay"] = nlohmann::ordered_json::parse(info.replay_json, nullptr, false);
   if (!info.resumed.empty()) json["resumed_at"] = info.resumed;
   if (!info.video.empty()) json["video"] = info.video;
-  // File names need not be UTF-8; JSON must be.
+  // File names need not be UTF-8, but JSON must be.
   return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 

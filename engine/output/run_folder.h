@@ -1,5 +1,5 @@
-// The folder that a run leaves behind: run.json, frames/, video.mp4, motion/, profile.json, checkpoint/, and states/
-// and fields/ if asked.
+// Manages the folder that a run leaves behind: run.json, frames/, video.mp4, motion/, profile.json and checkpoint/, and
+// states/ and fields/ if they are asked for.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@
 namespace supple {
 
 struct RunInfo {
-  std::vector<std::string> command;  // as it was called
+  std::vector<std::string> command;  // the command line
   std::string scene_file;
-  std::string scene_json;   // the scene as the film starts, after --set
-  std::string replay_json;  // of a replay, its file; else empty
+  std::string scene_json;   // the scene at the start of the film, after --set
+  std::string replay_json;  // the file of a replay, else empty
   struct Mesh {
     std::string body, source, hash;
     int vertices = 0, elements = 0;
@@ -22,20 +22,20 @@ struct RunInfo {
   std::string kernel_variant;
   int threads = 1;
   std::string gl_backend, gl_renderer, gl_version;  // empty without images
-  int frames = 0;                                   // finished
-  std::vector<int> resumed;                         // at these frames
-  std::string video;                                // its file, or why there is none
-  std::string ended;                                // "done", "interrupted" or the failure
+  int frames = 0;                                   // number of finished frames
+  std::vector<int> resumed;                         // frames at which it was resumed
+  std::string video;                                // name of its file, or why there is none
+  std::string ended;                                // "done", "interrupted" or the failure's message
 };
 
-// As run.json has it.
+// Writes the information as run.json holds it.
 std::string info_json(const RunInfo& info);
 
 class RunFolder {
  public:
-  // Makes the folder, or takes over one that an earlier run left: its results are removed, but for what belongs to its
-  // first frames when that run is to go on. Files that no run writes stay where they are. Throws InputError when the
-  // folder holds something else, RunError when it cannot be made.
+  // Makes the folder, or takes over one that an earlier run left. That run's results are removed, except for what
+  // belongs to its first `kept_frames` frames, after which it is to continue. Files that no run writes stay where they
+  // are. Throws InputError when the folder holds something else, RunError when it cannot be made.
   explicit RunFolder(const std::filesystem::path& path, int kept_frames = 0);
 
   const std::filesystem::path& path() const { return path_; }
@@ -49,9 +49,9 @@ class RunFolder {
   std::filesystem::path fields(const std::string& body, int frame) const;
   std::filesystem::path field_collection(const std::string& body) const { return fields() / (body + ".pvd"); }
   std::filesystem::path video() const { return path_ / "video.mp4"; }
-  std::filesystem::path trace() const { return path_ / "trace.json"; }  // if asked
+  std::filesystem::path trace() const { return path_ / "trace.json"; }  // written if it is asked for
   std::filesystem::path checkpoint() const { return checkpoint_of(path_); }
-  std::filesystem::path rows() const { return path_ / "checkpoint" / "rows.jsonl"; }  // of profile.json, so far
+  std::filesystem::path rows() const { return path_ / "checkpoint" / "rows.jsonl"; }  // rows of profile.json so far
   static std::filesystem::path checkpoint_of(const std::filesystem::path& run) { return run / "checkpoint" / "state"; }
 
   void write_info(const RunInfo& info) const;
@@ -61,10 +61,10 @@ class RunFolder {
   std::filesystem::path path_;
 };
 
-// Version of the program and how it was built, as run.json has them.
+// These functions give the program's version and how it was built, as run.json holds them.
 std::string program_version();
 std::string build_flags();
-std::uint64_t program_identity();  // XXH64 of the program's file: another build has another one
-std::string cpu_name();            // of this machine; "unknown" where the system does not tell
+std::uint64_t program_identity();  // XXH64 of the program's file, so that every build has another one
+std::string cpu_name();            // name of this machine's processor; "unknown" where the system does not tell
 
 }  // namespace supple

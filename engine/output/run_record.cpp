@@ -1,6 +1,6 @@
 #include "output/run_record.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <fstream>
@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Tables are made by body: each frame must have those of the first, with contact or without.
+// Tables are made by body, so each frame must have the bodies of the first one, and the same ones with contact.
 void check_bodies(const std::vector<FrameRow>& rows, const std::string& source) {
   for (const FrameRow& row : rows) {
     const bool same = std::ranges::equal(row.bodies, rows.front().bodies, [](const BodyRow& a, const BodyRow& b) {

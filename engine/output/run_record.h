@@ -1,4 +1,4 @@
-// A folder that a run left, read back: what run.json and profile.json say. Not here: writing them (run_folder.h).
+// Reads back a folder that a run left: what run.json and profile.json say. run_folder.h writes them.
 #pragma once
 
 #include <filesystem>
@@ -11,17 +11,17 @@ namespace supple {
 
 struct RunRecord {
   std::filesystem::path folder;
-  std::string info_json;       // run.json: a JSON object
-  std::vector<FrameRow> rows;  // profile.json; empty while a run has not come to its end
+  std::string info_json;       // contents of run.json, a JSON object
+  std::vector<FrameRow> rows;  // contents of profile.json; empty until a run has ended
   bool has_profile = false;
 
   std::filesystem::path motion(const std::string& body) const { return folder / "motion" / (body + ".pc2"); }
-  // How the run ended, as run.json has it: "done", "interrupted", "running" or the failure.
+  // Tells how the run ended, as run.json says: "done", "interrupted", "running" or the failure.
   std::string ended() const;
 };
 
-// Throws InputError naming the folder or file: there is no such folder, no run.json in it, or one of the two files is
-// damaged. A folder without profile.json is read; has_profile tells.
+// Throws InputError naming the folder or file when there is no such folder, no run.json in it, or one of the two files
+// is damaged. A folder without profile.json is read; has_profile tells.
 RunRecord read_run(const std::filesystem::path& folder);
 
 }  // namespace supple

@@ -1,6 +1,6 @@
 #include "output/video.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cstdlib>
 

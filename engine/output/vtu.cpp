@@ -1,6 +1,6 @@
 #include "output/vtu.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <bit>
 #include <cstring>

@@ -1,6 +1,6 @@
-// Fields over meshes as ParaView reads them: VTK's XML files of unstructured grids (.vtu) and collections of them over
-// time (.pvd). Numbers are inline base64 of little-endian bytes, each array behind its length as UInt64 ("VTK file
-// formats", section XML). Not here: what the fields mean.
+// Writes fields over meshes as ParaView reads them: VTK's XML files of unstructured grids (.vtu), and collections of
+// them over time (.pvd). Numbers are inline base64 of little-endian bytes, each array after its length as UInt64 ("VTK
+// file formats", section XML). What the fields mean is not known here.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace supple {
 
-// Values row by row, `components` a point or cell.
+// Holds values row by row, `components` for each point or cell.
 struct VtuArray {
   std::string name;
   int components = 1;
@@ -23,18 +23,18 @@ struct VtuArray {
       values;
 };
 
-// Cells by their number of corners: three of a triangle, four of a tetrahedron.
+// Describes cells by their corners: three make a triangle, four a tetrahedron.
 struct VtuGrid {
   std::span<const double> points;         // x y z by point [m]
-  std::span<const std::int32_t> corners;  // of each cell, into points
+  std::span<const std::int32_t> corners;  // of each cell, as indices of points
   int corners_a_cell = 4;
   std::vector<VtuArray> point_data, cell_data;
 };
 
-// Whole or not there. Throws RunError when the disk refuses.
+// Writes the grid. The file is either whole or not there. Throws RunError when the disk refuses.
 void write_vtu(const std::filesystem::path& path, const VtuGrid& grid);
 
-// Which file shows which time; files beside the collection, by name.
+// Says which file shows which time; the files lie beside the collection and are given by name.
 struct PvdEntry {
   double time_s;
   std::string file;

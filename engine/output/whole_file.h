@@ -1,4 +1,4 @@
-// Files that exist are whole: written under a temporary name beside their place, then renamed.
+// Writes files so that those that exist are whole: under a temporary name in the same folder, and then renamed.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace supple {
 
-// Throws RunError naming the file and the system's reason; a temporary file is not left behind.
+// Throws RunError naming the file and the system's reason; no temporary file is left behind.
 void write_whole_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 void write_whole_file(const std::filesystem::path& path, std::string_view text);
 

@@ -1,6 +1,6 @@
 #include "output/zone_comparison.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,19 +14,20 @@ namespace supple {
 namespace {
 
 constexpr int most_regroupings = 2000;
-constexpr double least_spread = 0.002;  // of a zone's change; no clock and cache is steadier between two processes
+// A zone's change is taken to spread at least this much: clocks and caches are no steadier between two processes.
+constexpr double least_spread = 0.002;
 
 using Times = std::vector<std::vector<double>>;  // by repeat, then by frame
-using Group = std::vector<int>;                  // repeats, in order
+using Group = std::vector<int>;                  // places of repeats, in order
 
-// A zone's repeats of both profiles, those before first.
+// Holds a zone's repeats of both profiles; those of the profile before come first.
 struct Pooled {
   ZoneChange change;
   Times ms;
 };
 
-// The least time of each frame over a group of repeats, summed over frames but the first, which warms caches. The work
-// of a frame is the same in every repeat, so whatever exceeds the least is the machine's doing.
+// Takes the least time of each frame over a group of repeats, and sums it over all frames but the first, which warms
+// caches. The work of a frame is the same in every repeat, so whatever exceeds the least is the machine's doing.
 double least_time(const Times& ms, const Group& group) {
   double sum = 0;
   const std::size_t frames = ms.front().size();
@@ -46,8 +47,8 @@ Group complement(const Group& group, int of) {
   return rest;
 }
 
-// The ways to choose `count` of `of` repeats: all of them, or as many as are enough, always the same. The first is
-// 0, 1, ..., as they were measured.
+// Lists the ways to choose `count` of `of` repeats: all of them, or a number that is enough, always the same ones. The
+// first is 0, 1, ..., as the repeats were measured.
 std::vector<Group> regroupings(int of, int count) {
   std::vector<Group> groups;
   Group group(count);
@@ -84,14 +85,16 @@ Times pooled(const Times& before, const Times& after) {
   return all;
 }
 
-// Of all places where a zone lies, the sum without the zones within: a part of the code is as slow in all of them.
+// Holds one zone's own time, without the zones within, summed over all places where it occurs: a change to that part of
+// the code shows in all of them.
 struct Part {
   std::string thread, name;
   Times ms;
 };
 
-// The zone that a zone's time counts to; empty when it is not tested. Waiting for workers belongs to who asked for
-// their work: they do it in its place. Which worker does how much is chance, and waiting for another stage is no work.
+// Returns the zone to which a zone's time counts, or nothing when it is not tested. Waiting for workers counts to the
+// zone that requested their work, because they work in its place. How much each worker does is chance, and waiting for
+// another stage is no work.
 std::string part_of(const ZoneTimes& zone) {
   if (zone.thread == "worker") return "";
   if (zone.name() == "wait for workers") return ZoneTimes{"", zone.path.substr(0, zone.path.rfind('/'))}.name();
@@ -130,8 +133,8 @@ bool large_enough(const ZoneProfile& profile, const Part* part) {
   return least_time(part->ms, all) >= least_share * least_time(profile.zones.front().ms, all);
 }
 
-// The frame, and the parts that are large enough in either profile and there in both; the others' names go to the
-// result.
+// Collects the frame, and the parts that occur in both profiles and are large enough in one of them. The names of those
+// that occur in one profile only go to the result.
 std::vector<Pooled> tested_zones(const ZoneProfile& before, const ZoneProfile& after, ZoneComparison& result) {
   const ZoneTimes &frame_before = before.zones.front(), &frame_after = after.zones.front();
   const std::vector<Part> parts_before = parts_of(before), parts_after = parts_of(after);
@@ -152,19 +155,20 @@ std::vector<Pooled> tested_zones(const ZoneProfile& before, const ZoneProfile& a
   return tested;
 }
 
-// log(after / before) of a zone, by regrouping.
+// Computes log(after / before) of a zone for each regrouping.
 std::vector<double> log_ratios(const Times& ms, const std::vector<Group>& groups) {
   std::vector<double> ratios;
   for (const Group& group : groups) {
     const double before = least_time(ms, group);
     const double after = least_time(ms, complement(group, static_cast<int>(ms.size())));
-    // A zone that takes no time at all on one side changes beyond measure.
+    // The change of a zone that takes no time at all on one side is beyond measure, so a bound stands for it.
     ratios.push_back(before > 0 && after > 0 ? std::log(after / before) : before > 0 ? -50 : after > 0 ? 50 : 0);
   }
   return ratios;
 }
 
-// A zone's change over that of the rest of the frame, less 1; where there is next to no rest, its own.
+// Computes a zone's change relative to that of the rest of the frame, less 1; where there is next to no rest, its own
+// change.
 double against_rest(const ZoneChange& zone, const ZoneChange& frame) {
   const bool within = zone.thread == frame.thread;
   const double before = frame.before_ms - (within ? zone.before_ms : 0);
@@ -174,10 +178,10 @@ double against_rest(const ZoneChange& zone, const ZoneChange& frame) {
   return (1 + zone.change) / (after / before) - 1;
 }
 
-// Fills in what the regroupings say of all zones; the first is the frame.
+// Fills in what the regroupings say of all zones; the first one is the frame.
 void test(std::vector<Pooled>& zones, const std::vector<Group>& groups) {
-  std::vector<double> clearest(groups.size(), 0.0);  // statistic of all zones, by regrouping
-  std::vector<double> own;                           // as measured, by zone
+  std::vector<double> clearest(groups.size(), 0.0);  // the largest statistic of all zones, for each regrouping
+  std::vector<double> own;                           // each zone's statistic as measured
   for (Pooled& zone : zones) {
     std::vector<double> ratios = log_ratios(zone.ms, groups);
     double squares = 0;
@@ -284,17 +288,18 @@ std::string comparison_text(const ZoneComparison& c) {
   for (const std::string& path : c.only_after) text += fmt::format("  only in B: {}\n", path);
   text += fmt::format(
       "\n  {}\n"
-      "  A zone's time is that of all its places without the zones within: of each frame the least of the repeats, the "
-      "first\n  frame left out. It is named when it changed by {:g} % or more, also against the rest of the frame, "
-      "and by\n  {:g} % of the frame, and of {} ways to deal the repeats to A and B at most {:g} % show any "
-      "zone that changes as clearly,\n  each by its own spread.\n",
+      "  A zone's time is summed over all its places, without the zones within: the least of the repeats for each "
+      "frame, without\n  the first frame. A zone is named when it changed by {:g} % or more, also against the rest of "
+      "the frame, and by {:g} % of\n  the frame or more, and when, of {} ways to deal the repeats to A and B, at most "
+      "{:g} % show any zone that changes as\n  clearly, measured by its own spread.\n",
       named == 0
           ? "No zone became slower or faster beyond the noise."
           : fmt::format("{} became slower or faster beyond the noise.", named == 1 ? "One" : std::to_string(named)),
       100 * least_change, 100 * least_share, c.regroupings, 100 * significance);
   if (c.as_a_whole)
     text +=
-        "  The frame changed as a whole, no zone ahead of the others: the build, or the machine of those minutes.\n";
+        "  The frame changed as a whole, and no zone more than the others: the cause is the build, or the state of the "
+        "machine\n  during those minutes.\n";
   if (!c.same_bits) text += "  The runs end in different states: they did not do the same work.\n";
   return text;
 }

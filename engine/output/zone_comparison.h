@@ -1,6 +1,6 @@
-// Two profiles of one run, zone by zone, by their names: what became slower or faster, and whether that is beyond the
-// noise. The test is a permutation test with the largest statistic of all zones (Westfall and Young 1993,
-// "Resampling-based multiple testing"); docs/profiling.md tells it in words.
+// Compares two profiles of one run, zone by zone, by the zones' names: what became slower or faster, and whether that
+// is beyond the noise. The test is a permutation test with the largest statistic of all zones (Westfall and Young 1993,
+// "Resampling-based multiple testing"); docs/profiling.md explains it in words.
 #pragma once
 
 #include <string>
@@ -10,42 +10,45 @@
 
 namespace supple {
 
-// Of a zone that is named. Less says nothing: memory lies elsewhere in every run, and other programs use its bus.
-// Also against the rest of the frame: a machine that is slower for minutes slows all zones, those that wait for memory
-// up to a tenth more than others.
+// A zone that is named changed by at least this much. A smaller change says nothing: memory lies elsewhere in every
+// run, and other programs use the memory bus. It must also have changed this much against the rest of the frame: a
+// machine that is slower for minutes slows all zones, and those that wait for memory up to a tenth more than others.
 constexpr double least_change = 0.1;
-// Of the frame: what zones that are tested have of it, and what those that are named changed it by.
+// This share of the frame is the least that a tested zone takes, and the least by which a named zone changed it.
 constexpr double least_share = 0.01;
-constexpr double significance = 0.05;      // chance that equal profiles have any zone named
-constexpr int least_repeats_compared = 4;  // fewer cannot reach that: 4 and 4 can be regrouped in 70 ways
+constexpr double significance = 0.05;  // chance that any zone is named although the profiles are equal
+// With fewer repeats no result can be significant: 4 and 4 can be regrouped in 70 ways.
+constexpr int least_repeats_compared = 4;
 
 struct ZoneChange {
   std::string thread, name;
   double before_ms = 0, after_ms = 0;  // a frame
   double change = 0;                   // after over before, less 1
-  double against_rest = 0;             // the same over that of the rest of the frame; of the frame 0
-  double noise = 0;                    // what 95 % of the regroupings stay below
+  double against_rest = 0;             // the same divided by that of the rest of the frame; 0 for the frame
+  double noise = 0;                    // 95 % of the regroupings stay below this
   double chance = 1;                   // share of regroupings in which any zone changes as clearly
   bool named = false;
 };
 
 struct ZoneComparison {
-  ZoneChange frame;                                  // as a whole, with all that lies in it
+  ZoneChange frame;                                  // the whole frame, with all that lies in it
   std::vector<ZoneChange> zones;                     // by name, without what lies in them; those that are large enough
   std::vector<std::string> only_before, only_after;  // zones of that size that the other profile lacks
-  bool as_a_whole =
-      false;  // the frame changed beyond the noise, and no zone ahead of the others: the build, or the machine
+  // Whether the frame changed beyond the noise, and no zone more than the others: the cause is the build or the
+  // machine.
+  bool as_a_whole = false;
   int regroupings = 0;
   bool same_bits = true;  // both end in the same state
 };
 
-// What two profiles would have to have in common, as sentences that name both; empty when they can be compared.
+// Lists what two profiles would have to have in common but have not, as sentences that name both; empty when they can
+// be compared.
 std::vector<std::string> differences(const ProfiledRun& before, const ProfiledRun& after);
 
-// Both have differences() that are empty, and least_repeats_compared.
+// Expects profiles without differences() and with at least least_repeats_compared repeats each.
 ZoneComparison compare_zones(const ZoneProfile& before, const ZoneProfile& after);
 
-// For people, with the test in words.
+// Explains the comparison to people, with the test in words.
 std::string comparison_text(const ZoneComparison& comparison);
 std::string comparison_json(const ZoneComparison& comparison);
 

@@ -1,6 +1,6 @@
 #include "output/zone_table.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -14,7 +14,7 @@ constexpr double least_shown = 0.001;  // share of the frame below which zones h
 
 using Times = std::vector<std::vector<double>>;
 
-// The frames that count: all but the first, unless there is no other.
+// Returns the first frame that counts: the first of all is left out, unless it is the only one.
 std::size_t first_counted(const ZoneProfile& profile) { return profile.run.frames > 1 ? 1 : 0; }
 
 std::vector<double> counted(const ZoneProfile& profile, const Times& ms) {
@@ -59,7 +59,7 @@ std::string indented(const std::string& path) {
   return std::string(2 * depth, ' ') + path.substr(path.rfind('/') + 1);
 }
 
-// The table of zones without its heading.
+// Writes the table of zones without its heading.
 std::string zone_rows(const std::vector<ZoneSummary>& rows) {
   const std::string& frame_thread = rows.front().thread;
   std::string text = row_of("frame", rows.front());
@@ -85,10 +85,9 @@ std::string zone_rows(const std::vector<ZoneSummary>& rows) {
 
 std::string deadline_text(const Deadline& deadline) {
   return fmt::format(
-      "  Deadline {:.1f} ms: of {} frames {} are late by wall time (a frame's begin to its end on the thread that "
-      "makes "
-      "it,\n  waiting for later stages included), {} by work (its step, draw list, render and encode one after the "
-      "other).\n",
+      "  Deadline {:.1f} ms: of {} frames {} are late by wall time (from a frame's begin to its end on the thread that "
+      "makes it,\n  including the wait for later stages), {} by work (the sum of its step, draw list, render and "
+      "encode).\n",
       deadline.ms, deadline.frames, deadline.late_wall, deadline.late_work);
 }
 
@@ -170,7 +169,7 @@ std::string zone_table(const ZoneProfile& profile) {
   std::string text = fmt::format("  {:<34}{:>7}{:>9}{:>9}{:>9}{:>9}{:>9}{:>10}{:>8}{:>8}\n", "ms a frame", "calls",
                                  "p50", "p95", "p99", "max", "first", "total s", "share %", "self %");
   text += zone_rows(summarize(profile));
-  text += fmt::format("\n  {} of {} together; the first frame of each stands apart.\n",
+  text += fmt::format("\n  {} of {} together; the first frame of each is shown apart.\n",
                       count_text(profile.repeats, "repeat"), count_text(profile.run.frames, "frame"));
   return text + setup_text(profile) + deadline_text(deadline_of(profile)) + slow_text(profile);
 }

@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* frame_zone = "frame";
 
-// The frames of a run, in order; empty when the thread makes none.
+// Returns the frames of a run in order, or nothing when the thread makes none.
 std::vector<const TraceEvent*> frames_of(const ThreadTrace& thread) {
   std::vector<const TraceEvent*> frames;
   for (const TraceEvent& event : thread.events) {
@@ -18,7 +18,7 @@ std::vector<const TraceEvent*> frames_of(const ThreadTrace& thread) {
   return frames;
 }
 
-// The number of the frame that was being made then; -1 before the first and after the last.
+// Returns the number of the frame that was being made at that time; -1 before the first and after the last.
 int frame_at(const std::vector<const TraceEvent*>& frames, std::int64_t ns) {
   const auto after = std::ranges::upper_bound(frames, ns, {}, [](const TraceEvent* f) { return f->begin_ns; });
   if (after == frames.begin() || ns > frames.back()->end_ns) return -1;
@@ -121,7 +121,7 @@ ZoneProfile ZoneCollector::result() const {
 }
 
 void add_repeats(const ZoneProfile& more, ZoneProfile& profile) {
-  const std::vector<double> idle(profile.run.frames, 0.0);  // of a zone that did not run in some repeats
+  const std::vector<double> idle(profile.run.frames, 0.0);  // the times of a zone in repeats where it did not run
   for (const ZoneTimes& zone : more.zones) {
     const bool known = std::any_of(profile.zones.begin(), profile.zones.end(),
                                    [&](const ZoneTimes& z) { return z.thread == zone.thread && z.path == zone.path; });
@@ -129,7 +129,7 @@ void add_repeats(const ZoneProfile& more, ZoneProfile& profile) {
     ZoneTimes added{zone.thread, zone.path, 0};
     added.ms.assign(profile.repeats, idle);
     added.self_ms.assign(profile.repeats, idle);
-    // Behind what lies in the same zone as it, so that parents stay before children.
+    // The zone comes after those that lie in the same zone as it, so that parents stay before children.
     const std::string parent =
         zone.path.substr(0, zone.path.find_last_of('/') == std::string::npos ? 0 : zone.path.find_last_of('/'));
     const auto sibling = std::find_if(profile.zones.rbegin(), profile.zones.rend(), [&](const ZoneTimes& z) {

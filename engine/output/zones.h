@@ -1,5 +1,5 @@
-// Where a film's time went, zone by zone and frame by frame, over repeats of the same run: from traces, as zones.json,
-// and as a table. docs/profiling.md explains it to users.
+// Tells where a film's time went, zone by zone and frame by frame, over repeats of the same run: from traces, as
+// zones.json, and as a table. docs/profiling.md explains it to users.
 #pragma once
 
 #include <filesystem>
@@ -10,34 +10,35 @@
 
 namespace supple {
 
-// What was run: all that two profiles must have in common to be compared, and what they may differ in.
+// Describes what was run: what two profiles must have in common to be compared, and what may differ.
 struct ProfiledRun {
   std::string scene;                                        // its name
   std::string scene_json;                                   // as resolved after --set
-  std::string replay_json;                                  // of a replay, its file; else empty
+  std::string replay_json;                                  // the file of a replay, else empty
   std::vector<std::pair<std::string, std::string>> meshes;  // body and XXH64
   int frames = 0;
   double fps = 0;
   int threads = 1;
-  std::string pictures;  // what draws them; empty without
+  std::string pictures;  // what draws them; empty when none are drawn
   std::string cpu, kernels;
   std::string version, build;  // may differ
   std::string state_hash;      // of the last frame; may differ
 };
 
-// A zone, under all that it lies in. Frames of a zone that did not run hold zeros.
+// Holds the times of a zone, which is identified by all the zones that it lies in. Frames in which it did not run hold
+// zeros.
 struct ZoneTimes {
-  std::string thread;                             // of those that do the same, such as workers, the sum
+  std::string thread;                             // threads with the same task, such as workers, are summed
   std::string path;                               // "frame/step/iterate/direction"
-  double calls = 0;                               // a frame, on average
+  double calls = 0;                               // calls in a frame, on average
   std::vector<std::vector<double>> ms = {};       // by repeat, then by frame
   std::vector<std::vector<double>> self_ms = {};  // without the zones within
 
   int depth() const;
-  std::string name() const;  // the last of the path
+  std::string name() const;  // the last part of the path
 };
 
-// What runs once, before the frames or after them.
+// Holds the times of what runs once, before the frames or after them.
 struct SetupTimes {
   std::string name;
   std::vector<double> ms;  // by repeat
@@ -47,11 +48,11 @@ struct ZoneProfile {
   ProfiledRun run;
   int repeats = 0;
   std::vector<SetupTimes> setup;
-  // The thread that makes the frames first: the frame as a whole, then what lies in it, parents before children.
+  // The thread that makes the frames comes first: the frame as a whole, then what lies in it, parents before children.
   std::vector<ZoneTimes> zones;
 };
 
-// Adds repeats one by one; result() may be asked for once there is one.
+// Collects repeats one by one; result() may be called once there is one.
 class ZoneCollector {
  public:
   explicit ZoneCollector(ProfiledRun run);
@@ -62,7 +63,7 @@ class ZoneCollector {
  private:
   struct Node {
     std::string thread, name;
-    int parent;  // -1: none
+    int parent;  // -1 when it has none
     long calls = 0;
     std::vector<std::vector<double>> ms, self_ms;
   };
@@ -75,10 +76,10 @@ class ZoneCollector {
   std::vector<Node> nodes_;  // parents before children
 };
 
-// Takes the repeats of another profile of the same run to those that are there.
+// Adds the repeats of another profile of the same run to this profile's.
 void add_repeats(const ZoneProfile& more, ZoneProfile& profile);
 
-// zones.json. Reading throws InputError naming the file where it cannot be read or is not such a text.
+// Writes and reads zones.json. Reading throws InputError naming the file where it cannot be read or is not such a text.
 std::string zones_json(const ZoneProfile& profile);
 ZoneProfile read_zones(const std::filesystem::path& path);
 

@@ -13,7 +13,7 @@ using ByRepeat = std::vector<std::vector<double>>;
 
 constexpr const char* format_name = "supple zones 1";
 
-// Tenths of microseconds.
+// Rounds to tenths of microseconds.
 double rounded_ms(double ms) { return std::round(ms * 1e4) / 1e4; }
 
 Json rounded(const std::vector<double>& list) {
@@ -63,7 +63,7 @@ ByRepeat times_of(const Json& json, const ZoneProfile& profile, const std::strin
   auto times = json.get<ByRepeat>();
   bool fits = static_cast<int>(times.size()) == profile.repeats;
   for (const std::vector<double>& frames : times) fits &= static_cast<int>(frames.size()) == profile.run.frames;
-  if (!fits) throw InputError(source, "the times of a zone are not as many as there are repeats and frames");
+  if (!fits) throw InputError(source, "a zone does not have one time for each repeat and frame");
   return times;
 }
 
@@ -98,7 +98,7 @@ std::string zones_json(const ZoneProfile& profile) {
                              {"ms", rounded(zone.ms)},
                              {"self_ms", rounded(zone.self_ms)}});
   }
-  // File names need not be UTF-8; JSON must be.
+  // File names need not be UTF-8, but JSON must be.
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

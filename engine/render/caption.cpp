@@ -1,6 +1,6 @@
 #include "render/caption.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <ft2build.h>
 #include FT_FREETYPE_H
 
@@ -11,7 +11,7 @@
 namespace supple {
 namespace {
 
-// Code points of UTF-8; broken bytes become U+FFFD.
+// Splits UTF-8 into code points; broken bytes become U+FFFD.
 std::vector<char32_t> code_points(const std::string& text) {
   std::vector<char32_t> points;
   for (std::size_t i = 0; i < text.size();) {

@@ -1,4 +1,4 @@
-// Words as grey bitmaps, by FreeType.
+// Draws words as grey bitmaps, with FreeType.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ struct CaptionBitmap {
   std::vector<std::uint8_t> coverage;  // rows from the top, 0 to 255
 };
 
-// Throws RunError when the font cannot be used. text is UTF-8; pixels: the em's height.
+// Draws a text in UTF-8; pixels: the height of the font's em. Throws RunError when the font cannot be used.
 CaptionBitmap draw_caption(const std::string& font_file, const std::string& text, int pixels);
 
 }  // namespace supple

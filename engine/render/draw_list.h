@@ -1,4 +1,5 @@
-// What there is to draw, as plain arrays: no GL in it and no physics. A Stage is given once; a DrawList once a frame.
+// Says what there is to draw, as plain arrays, without GL and without physics. A Stage is given once, a DrawList for
+// each frame.
 #pragma once
 
 #include <array>
@@ -19,42 +20,42 @@ struct PaintColor {
 
 enum class Printed { grid, checks };
 
-// A surface whose vertices move and whose other attributes stay.
+// A surface whose vertices move while its other attributes stay.
 struct DrawMesh {
-  std::string label;                         // caption; empty: none
+  std::string label;                         // caption; none when empty
   std::vector<std::uint32_t> triangles;      // vertex indices, three a triangle, anticlockwise from outside
-  std::vector<float> occlusion;              // by vertex: 1 open sky to 0 none
+  std::vector<float> occlusion;              // by vertex, from 1 (open sky) to 0 (no sky)
   std::vector<std::array<float, 8>> paint;   // by vertex: signed distance to each layer, negative where it covers
-  std::vector<std::array<float, 2>> square;  // by vertex: place in a printed pattern, in squares; empty: no pattern
+  std::vector<std::array<float, 2>> square;  // by vertex: place in a printed pattern, in squares; no pattern when empty
   Printed printed = Printed::grid;
-  bool two_sided = false;          // cloth, and bodies that may be inside out
-  Vec3 color;                      // sRGB of the uncovered surface
-  double gloss = 0.25;             // of the uncovered surface
+  bool two_sided = false;          // for cloth, and for bodies that may be inside out
+  Vec3 color;                      // sRGB colour of the uncovered surface
+  double gloss = 0.25;             // gloss of the uncovered surface
   std::vector<PaintColor> layers;  // at most 8
-  Bounds rest;                     // where it starts: captions stand below it, cameras frame it [m]
-  bool framed = true;              // lights, shadows and cameras care about it: not of planes without end
+  Bounds rest;                     // bounds at the start: captions stand below them, cameras frame them [m]
+  bool framed = true;              // whether lights, shadows and cameras cover it; false for planes without end
 };
 
 struct Stage {
   std::vector<DrawMesh> meshes;
   int width = 1280, height = 720;  // pixels
-  int samples = 4;                 // of antialiasing
+  int samples = 4;                 // samples a pixel, for antialiasing
   Vec3 ground = Vec3::Ones();      // sRGB
   Vec3 background = Vec3::Ones();  // sRGB
   double exposure = 1;
-  std::string font;  // file; empty: no captions
+  std::string font;  // font file; no captions when empty
 };
 
 struct Camera {
   Vec3 eye = Vec3(0, 0, 3), target = Vec3::Zero();  // [m]
-  double fov_deg = 30;                              // vertical
+  double fov_deg = 30;                              // vertical field of view
 };
 
 struct DrawList {
   Camera camera;
   std::vector<std::vector<float>> positions;                  // by mesh: x y z by vertex [m]
-  std::vector<std::pair<std::size_t, DrawMesh>> renewed;      // meshes that take the place of the stage's from now on
-  std::vector<std::pair<std::size_t, std::string>> captions;  // of meshes, from now on
+  std::vector<std::pair<std::size_t, DrawMesh>> renewed;      // meshes that replace the stage's from now on
+  std::vector<std::pair<std::size_t, std::string>> captions;  // captions of meshes from now on
 };
 
 struct Image {

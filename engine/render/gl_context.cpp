@@ -4,7 +4,7 @@
 #include <EGL/eglext.h>
 #include <GL/osmesa.h>
 #include <dlfcn.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "base/error.h"
 
@@ -120,7 +120,7 @@ std::string GlContext::open_egl() {
   return "";
 }
 
-// The library stays open: Mesa's worker threads may outlive the context by a moment.
+// The library stays open, because Mesa's worker threads may outlive the context by a moment.
 GlContext::~GlContext() {
   if (display_ != nullptr) {
     symbol<decltype(&eglMakeCurrent)>(library_, "eglMakeCurrent")(display_, EGL_NO_SURFACE, EGL_NO_SURFACE,

@@ -1,19 +1,26 @@
-// An OpenGL 3.3 core context without a window: OSMesa, or a surfaceless EGL display (Mesa dropped OSMesa in 25.1). The
-// libraries are opened at run time, so that a machine without either still simulates.
+// Makes an OpenGL 3.3 core context without a window, through OSMesa or a surfaceless EGL display (Mesa dropped OSMesa
+// in 25.1). The libraries are opened at run time, so that a machine without either still simulates.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "base/names.h"
+
 namespace supple {
 
 enum class GlChoice { automatic, osmesa, egl };
+template <>
+struct Names<GlChoice> {
+  static constexpr std::array table = {Name{GlChoice::automatic, "auto"}, Name{GlChoice::osmesa, "osmesa"},
+                                       Name{GlChoice::egl, "egl"}};
+};
 
 class GlContext {
  public:
-  // Makes the context current on the calling thread, which must be the one that draws and destroys it. Throws RunError
-  // saying what was tried, and which packages provide it.
+  // Makes the context current on the calling thread, which must be the one that draws with it and destroys it. Throws
+  // RunError saying what was tried, and which packages provide it.
   explicit GlContext(GlChoice choice);
   ~GlContext();
   GlContext(const GlContext&) = delete;
@@ -24,16 +31,16 @@ class GlContext {
   const char* backend() const { return backend_; }
 
  private:
-  // Each returns an empty text, or why it did not work.
+  // Each of these returns an empty text, or why it did not work.
   std::string open_osmesa();
   std::string open_egl();
 
   const char* backend_ = "";
   Function (*resolve_)(const char*) = nullptr;
   void* library_ = nullptr;
-  void* display_ = nullptr;  // EGL's
+  void* display_ = nullptr;  // EGL's display
   void* context_ = nullptr;
-  std::vector<std::uint8_t> buffer_;  // OSMesa draws its default framebuffer here; ours is another one
+  std::vector<std::uint8_t> buffer_;  // OSMesa's default framebuffer, which is not the one that we draw to
 };
 
 }  // namespace supple

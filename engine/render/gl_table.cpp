@@ -1,6 +1,6 @@
 #include "render/gl_table.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "base/error.h"
 #include "render/gl_context.h"

@@ -1,4 +1,4 @@
-// The OpenGL 3.3 core functions that the renderer calls, filled at run time from whatever context there is.
+// Lists the OpenGL 3.3 core functions that the renderer calls. The table is filled at run time from the context.
 #pragma once
 
 #include <GL/glcorearb.h>
@@ -82,7 +82,7 @@ struct GlTable {
 // Throws RunError naming the first function that the context does not have.
 GlTable load_gl(const GlContext& context);
 
-// Throws RunError when GL has recorded an error, saying what was being done.
+// Throws RunError when GL has recorded an error, and says what was being done.
 void check_gl(const GlTable& gl, const char* doing);
 
 }  // namespace supple

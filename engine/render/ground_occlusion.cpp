@@ -24,7 +24,7 @@ const std::vector<float>& GroundOcclusion::compute(const std::vector<std::vector
       low = std::min(low, std::max(points[i + 1], static_cast<float>(0.35 * cell)));
     }
   }
-  // The share of the sky behind a patch at height y, seen from a point at distance d beside it: y^2 dA / (pi (d^2 +
+  // A patch at height y, seen from a point at distance d beside it, covers this share of the sky: y^2 dA / (pi (d^2 +
   // y^2)^2).
   std::fill(open_.begin(), open_.end(), 1.0f);
   const int radius = std::max(1, static_cast<int>(reach_ / cell));

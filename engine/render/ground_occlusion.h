@@ -1,5 +1,5 @@
-// How much of the sky the bodies take from the ground below them: the contact shadow that seats a figure. Computed on a
-// grid from the surface's vertices, each frame.
+// Computes how much of the sky the bodies hide from the ground below them: the contact shadow that makes a figure look
+// as if it stood there. Each frame, it is computed on a grid from the surface's vertices.
 #pragma once
 
 #include <vector>
@@ -10,12 +10,12 @@ namespace supple {
 
 class GroundOcclusion {
  public:
-  static constexpr int cells = 128;  // a side
+  static constexpr int cells = 128;  // number of cells along each side
 
-  // Covers a square of the ground.
+  // Covers a square of the ground around the stage.
   GroundOcclusion(const Bounds& stage, double largest_body);
 
-  // Open sky by cell, 1 to 0, row by row along z, for surfaces given by their vertices (x y z).
+  // Returns the open sky by cell, from 1 to 0, row by row along z, for surfaces given by their vertices (x y z).
   const std::vector<float>& compute(const std::vector<std::vector<float>>& positions);
 
   double origin_x() const { return origin_x_; }
@@ -24,7 +24,7 @@ class GroundOcclusion {
 
  private:
   double origin_x_, origin_z_, extent_, reach_;  // [m]
-  std::vector<float> lowest_;                    // height of the lowest surface by cell; huge when none [m]
+  std::vector<float> lowest_;                    // height of the lowest surface by cell; huge where there is none [m]
   std::vector<float> open_;
 };
 

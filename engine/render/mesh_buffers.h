@@ -1,4 +1,4 @@
-// A drawn surface in OpenGL's memory: positions and normals that change each frame, and what stays.
+// Holds a drawn surface in OpenGL's memory: positions and normals that change each frame, and attributes that stay.
 #pragma once
 
 #include "render/draw_list.h"
@@ -13,7 +13,7 @@ struct MeshBuffers {
   std::vector<float> normal_data;
 };
 
-// Positions and normals are uploaded later.
+// Makes the buffers; positions and normals are uploaded later.
 MeshBuffers make_mesh_buffers(const GlTable& gl, const DrawMesh& mesh);
 void delete_mesh_buffers(const GlTable& gl, const MeshBuffers& mesh);
 

@@ -1,6 +1,6 @@
 #include "render/renderer.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ double linear_of(double srgb) { return srgb <= 0.04045 ? srgb / 12.92 : std::pow
 
 Vec3 linear_of(const Vec3& srgb) { return {linear_of(srgb.x()), linear_of(srgb.y()), linear_of(srgb.z())}; }
 
-// With the ground below what hangs in the air, where its shadow falls.
+// Includes the ground below bodies that hang in the air, because their shadows fall there.
 Bounds stage_bounds(const Stage& stage) {
   Bounds box;
   for (const DrawMesh& mesh : stage.meshes) {
@@ -155,7 +155,8 @@ void Renderer::make_targets() {
   }
 }
 
-// Some software rasterisers take a multisampled framebuffer and leave it blank, without an error.
+// Some software rasterisers accept a multisampled framebuffer and leave it blank, without an error; a triangle drawn
+// into it shows whether this one does.
 void Renderer::check_test_triangle() {
   gl_.BindFramebuffer(GL_FRAMEBUFFER, bodies_.framebuffer);
   gl_.Viewport(0, 0, stage_.width, stage_.height);
@@ -184,11 +185,11 @@ void Renderer::check_test_triangle() {
 
 void Renderer::make_label(std::size_t m) {
   const DrawMesh& mesh = stage_.meshes[m];
-  gl_.DeleteTextures(1, &labels_[m].texture);  // 0 is no texture and not an error
+  gl_.DeleteTextures(1, &labels_[m].texture);  // deleting texture 0 is no error
   labels_[m] = {};
   if (stage_.font.empty() || mesh.label.empty()) return;
   const int pixels = std::max(9, static_cast<int>(std::lround(stage_.height / 32.0)));
-  // On the ground: what hangs in the air moves below where it starts.
+  // The caption stands on the ground: a body that hangs in the air moves to a place below its start.
   const CaptionBitmap bitmap = draw_caption(stage_.font, mesh.label, pixels);
   Label label{0, bitmap.width, bitmap.height,
               Vec3(mesh.rest.center().x(), std::min(mesh.rest.lower.y(), 0.0), mesh.rest.upper.z())};
@@ -229,13 +230,14 @@ void Renderer::upload(const DrawList& list) {
                  open.data());
 }
 
-// An orthographic map that covers the stage with room for motion; fixed for a whole film, so that shadows do not swim.
+// The map is orthographic and covers the stage with room for motion; it is fixed for a whole film, so that shadows do
+// not swim.
 void Renderer::draw_shadow_map() {
   const Vec3 center = bounds_.center();
   const double radius = 0.5 * bounds_.diagonal() + 0.45 * largest_body_;
   Eigen::Matrix4f project = Eigen::Matrix4f::Identity();
   project(0, 0) = project(1, 1) = static_cast<float>(1 / radius);
-  project(2, 2) = static_cast<float>(-1 / radius);  // depths radius to 3 radius before the light's eye
+  project(2, 2) = static_cast<float>(-1 / radius);  // covers depths from radius to 3 radius before the light's eye
   project(2, 3) = -2;
   light_matrix_ = project * look_at(center + 2 * radius * key_direction_, center);
 
@@ -253,7 +255,7 @@ void Renderer::draw_shadow_map() {
 }
 
 void Renderer::draw_mesh(std::size_t m) {
-  // Closed bodies hide their far sides, and small triangles are what costs.
+  // Closed bodies hide their far sides, which need not be drawn; small triangles are what costs time.
   if (stage_.meshes[m].two_sided) {
     gl_.Disable(GL_CULL_FACE);
   } else {
@@ -275,8 +277,8 @@ void Renderer::set_lights(GLuint program, const Camera& camera) const {
   gl_.Uniform1f(uniform(program, "exposure"), static_cast<float>(stage_.exposure));
   gl_.Uniform1f(uniform(program, "shadow_softness"),
                 static_cast<float>(0.018 * largest_body_ / (0.5 * bounds_.diagonal() + 0.45 * largest_body_)));
-  // Along the normal, so that a surface does not shade itself: as far as a squirrel's head of 0.7 m needs, for its
-  // size.
+  // The offset runs along the normal, so that a surface does not shade itself. It is what a squirrel's head of 0.7 m
+  // needs, in proportion to the body's size.
   gl_.Uniform1f(uniform(program, "shadow_offset"), static_cast<float>(0.0058 * largest_body_));
   gl_.UniformMatrix4fv(uniform(program, "light_matrix"), 1, GL_FALSE, light_matrix_.data());
   gl_.Uniform1i(uniform(program, "shadow_map"), 0);
@@ -322,7 +324,7 @@ void Renderer::draw_bodies(const Camera& camera) {
                       GL_NEAREST);
 }
 
-// The ground has no edges of its own: it is drawn with one sample a pixel, at a fraction of the cost, and the bodies
+// The ground has no edges of its own, so it is drawn with one sample a pixel, at a fraction of the cost, and the bodies
 // are laid over it.
 void Renderer::draw_ground(const Camera& camera) {
   const double aspect = static_cast<double>(stage_.width) / stage_.height;
@@ -352,7 +354,7 @@ void Renderer::draw_ground(const Camera& camera) {
 
 void Renderer::lay_bodies_over_ground() {
   gl_.Enable(GL_BLEND);
-  gl_.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);  // resolved samples are weighted by their coverage already
+  gl_.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);  // the resolved samples are already weighted by their coverage
   gl_.UseProgram(layer_program_);
   gl_.Uniform1i(uniform(layer_program_, "layer"), 0);
   gl_.BindTexture(GL_TEXTURE_2D, layer_texture_);
@@ -373,7 +375,8 @@ void Renderer::draw_labels(const Camera& camera) {
     const Eigen::Vector4f clip =
         view * Eigen::Vector4f(float(label.anchor.x()), float(label.anchor.y()), float(label.anchor.z()), 1);
     if (clip.w() <= 0) continue;
-    // Whole pixels, so that the letters stay sharp; below the body, or at the bottom edge when there is no room.
+    // Positions are whole pixels, so that the letters stay sharp. The caption stands below the body, or at the bottom
+    // edge when there is no room.
     const double x = std::round((clip.x() / clip.w() * 0.5 + 0.5) * stage_.width - 0.5 * label.width);
     const double below = (clip.y() / clip.w() * 0.5 + 0.5) * stage_.height - 0.035 * stage_.height;
     const double y = std::round(std::max(below - label.height, 0.01 * stage_.height));

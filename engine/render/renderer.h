@@ -1,5 +1,5 @@
 // Draws a stage with OpenGL 3.3: key light with shadow map, fill, rim and sky light, a ground that fades into the
-// background, captions. All functions are called on the thread that made the renderer.
+// background, and captions. All functions are called on the thread that made the renderer.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -16,7 +16,8 @@ namespace supple {
 
 class Renderer {
  public:
-  // Throws RunError: no context, a broken one (checked with a test triangle), shaders that do not compile.
+  // Throws RunError when there is no context, when the context is broken (a test triangle shows it), and when shaders
+  // do not compile.
   Renderer(const Stage& stage, GlChoice choice, const std::filesystem::path& shaders);
   ~Renderer();
   Renderer(const Renderer&) = delete;
@@ -30,7 +31,7 @@ class Renderer {
 
  private:
   struct Target {
-    GLuint framebuffer = 0, color = 0, depth = 0;  // depth only where bodies are drawn
+    GLuint framebuffer = 0, color = 0, depth = 0;  // depth exists only where bodies are drawn
   };
   struct Label {
     GLuint texture = 0;
@@ -64,8 +65,8 @@ class Renderer {
   GLuint layer_texture_ = 0;
   GLuint shadow_framebuffer_ = 0, shadow_texture_ = 0, occlusion_texture_ = 0, empty_array_ = 0;
   std::vector<MeshBuffers> meshes_;
-  std::vector<Label> labels_;  // by mesh
-  Bounds bounds_;              // of the stage at rest, widened: what lights and shadows cover
+  std::vector<Label> labels_;  // one for each mesh
+  Bounds bounds_;              // bounds of the stage at rest, widened; lights and shadows cover them
   double largest_body_ = 1;
   GroundOcclusion occlusion_;
   Eigen::Matrix4f light_matrix_ = Eigen::Matrix4f::Identity();

@@ -1,4 +1,4 @@
-// GLSL programs from files in shaders/.
+// Compiles GLSL programs from files in shaders/.
 #pragma once
 
 #include <filesystem>

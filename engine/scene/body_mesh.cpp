@@ -26,7 +26,7 @@ Loaded loaded_box(const BoxDef& def) {
   return loaded;
 }
 
-// A file's element references become tags 0, 1, ...: reference 0 stays the untagged body.
+// Turns the element references of a file into the tags 0, 1, ... Reference 0 is the body without a tag.
 void name_references(Loaded& loaded) {
   std::map<int, int> tag = {{0, 0}};
   loaded.regions = {""};

@@ -1,4 +1,4 @@
-// The mesh that a body's definition names: read, or made of a shape, a box or a grid.
+// The mesh that a body's definition names. It is read from a file, or made from a shape, a box or a grid.
 #pragma once
 
 #include <map>
@@ -18,7 +18,7 @@ struct Loaded {
   TriMesh skin;  // of a body made from a surface, as it was read
 };
 
-// Meshes that several bodies share are read or made once.
+// Reads or makes each mesh once, also when several bodies share it.
 class MeshCache {
  public:
   // Throws InputError.

@@ -5,88 +5,11 @@
 
 #include "base/text.h"
 #include "scene/material_reader.h"
+#include "scene/solver_reader.h"
+#include "scene/start_reader.h"
 
 namespace supple {
-namespace {
-
-void read_contact(const ConfigTable& table, ContactSettings& contact) {
-  contact.stiffness = table.number({"stiffness", "", "k_c of a touching vertex, over m / h^2"}, contact.stiffness,
-                                   Range::above(0, 1e8));
-  contact.push_out =
-      table.number({"push_out", "1/s", "fastest way out of a deep overlap, in the body's sizes a second"},
-                   contact.push_out, Range::positive());
-  contact.stick = table.number({"stick", "1/s", "slip above which friction is whole, in the body's sizes a second"},
-                               contact.stick, Range::positive());
-  const std::vector<std::string> histories = {"frozen", "current", "dropped"};
-  contact.history = static_cast<ContactHistory>(
-      std::find(histories.begin(), histories.end(),
-                table.choice({"history", "",
-                              "L-BFGS pairs across a change of contacts: both gradients with the planes of "
-                              "their iteration, the contacts in force now, or no pair"},
-                             histories[static_cast<int>(contact.history)], histories)) -
-      histories.begin());
-  const std::vector<std::string> directions = {"ignored", "diagonal", "low-rank"};
-  contact.direction = static_cast<ContactDirection>(
-      std::find(directions.begin(), directions.end(),
-                table.choice({"direction", "", "what search directions make of contacts"},
-                             directions[static_cast<int>(contact.direction)], directions)) -
-      directions.begin());
-}
-
-}  // namespace
-
-SolverDef read_solver(const ConfigTable& table, const SolverDef& defaults) {
-  SolverDef solver = defaults;
-  SolverSettings& s = solver.settings;
-  StretchInterval& fit = solver.fit;
-  Precision& precision = solver.precision;
-  std::vector<std::string> names;
-  for (const MethodInfo& method : methods) names.emplace_back(method.name);
-  solver.method =
-      methods[std::find(names.begin(), names.end(),
-                        table.choice({"method", "", "how a step is solved; all but quasi-newton are for comparison"},
-                                     std::string(info_of(solver.method).name), names)) -
-              names.begin()]
-          .method;
-  s.iterations =
-      table.integer({"iterations", "",
-                     "quasi-Newton iterations a step, at most; a step that ends worse than staying descends once more"},
-                    s.iterations, Range::between(1, 10000));
-  s.history =
-      table.integer({"history", "", "window m of L-BFGS; 0 is plain quasi-Newton"}, s.history, Range::between(0, 100));
-  const std::string search =
-      table.choice({"line_search", "", "how a step length is accepted; none takes every full step"},
-                   text_of(s.line_search), {"armijo", "wolfe", "none"});
-  s.line_search = search == "armijo" ? LineSearch::armijo : search == "wolfe" ? LineSearch::wolfe : LineSearch::none;
-  s.armijo = table.number({"armijo", "", "gamma of the sufficient decrease"}, s.armijo, Range::above(0, 0.5));
-  s.target_error =
-      table.number({"target_error", "", "stop once the solver's own error estimate is below; 0 does all iterations"},
-                   s.target_error, Range::between(0, 1));
-  const Vec3 interval = {fit.start, fit.end, 0};
-  fit.start = table.number({"fit_from", "", "start of the stretch interval of equation 11"}, interval.x(),
-                           Range::between(0.01, 0.999));
-  fit.end = table.number({"fit_to", "", "end of the stretch interval of equation 11"}, interval.y(),
-                         Range::between(1.001, 10));
-  if (const auto contact = table.table({"contact", "", "with colliders"})) read_contact(*contact, s.contact);
-  const std::string digits = table.choice(
-      {"factor", "", "precision of the factor of M/h^2 + L, hence of directions; energies are always double"},
-      precision == Precision::single_precision ? "single" : "double", {"single", "double"});
-  precision = digits == "single" ? Precision::single_precision : Precision::double_precision;
-  const std::string integrator = table.choice(
-      {"integrator", "", "backward Euler damps and is stable; implicit midpoint keeps energy and may fail"},
-      solver.integrator == Integrator::backward_euler ? "backward-euler" : "implicit-midpoint",
-      {"backward-euler", "implicit-midpoint"});
-  solver.integrator = integrator == "backward-euler" ? Integrator::backward_euler : Integrator::implicit_midpoint;
-  solver.damping =
-      table.number({"damping", "s", "beta of stiffness-proportional damping; also slows turning as a whole"},
-                   solver.damping, Range::at_least(0));
-  return solver;
-}
-
-Ease read_ease(const ConfigTable& table) {
-  return table.choice({"ease", "", "how keys are joined"}, "smooth", {"smooth", "linear"}) == "smooth" ? Ease::smooth
-                                                                                                       : Ease::linear;
-}
+Ease read_ease(const ConfigTable& table) { return table.word<Ease>({"ease", "", "how keys are joined"}, Ease::smooth); }
 
 std::vector<MotionKey> read_keys(const ConfigTable& table, const char* turn) {
   std::vector<MotionKey> keys;
@@ -116,17 +39,21 @@ Selection read_selection(const ConfigTable& handle) {
       handle.complain("'select' is missing: such as select = { box = [[0, 0, 0], [1, 0.1, 1]] }");
     return s;
   }
+  using Kind = Selection::Kind;
+  const auto key_of = [](Kind kind, const char* meaning) { return Key{name_of(kind).data(), "", meaning}; };
   int given = 0;
-  if (table->has("region")) {
+  const auto pick = [&](Kind kind) {
     ++given;
-    s.kind = Selection::Kind::region;
-    s.region = table->text({"region", "", "all vertices of elements with this tag"}, std::nullopt);
+    s.kind = kind;
+  };
+  if (table->has(name_of(Kind::region).data())) {
+    pick(Kind::region);
+    s.region = table->text(key_of(Kind::region, "all vertices of elements with this tag"), std::nullopt);
   }
-  if (table->has("box")) {
-    ++given;
-    s.kind = Selection::Kind::box;
+  if (table->has(name_of(Kind::box).data())) {
+    pick(Kind::box);
     const std::vector<Vec3> corners =
-        table->vectors({"box", "", "lower and upper corner, relative to the rest bounding box (0 to 1)"}, 2);
+        table->vectors(key_of(Kind::box, "lower and upper corner, relative to the rest bounding box (0 to 1)"), 2);
     if (corners.size() == 2) {
       s.lower = corners[0];
       s.upper = corners[1];
@@ -134,20 +61,18 @@ Selection read_selection(const ConfigTable& handle) {
         table->complain("box", "box: the first corner must be the lower one");
     }
   }
-  if (const auto sphere = table->table({"sphere", "", "vertices in a ball"})) {
-    ++given;
-    s.kind = Selection::Kind::sphere;
+  if (const auto sphere = table->table(key_of(Kind::sphere, "vertices in a ball"))) {
+    pick(Kind::sphere);
     s.center = sphere->vector({"center", "", "relative to the rest bounding box (0 to 1)"}, std::nullopt);
     s.radius = sphere->number({"radius", "", "relative to the longest side"}, std::nullopt, Range::positive());
   }
-  if (const auto plane = table->table({"plane", "", "vertices on one side of a plane"})) {
-    ++given;
-    s.kind = Selection::Kind::plane;
+  if (const auto plane = table->table(key_of(Kind::plane, "vertices on one side of a plane"))) {
+    pick(Kind::plane);
     s.center = plane->vector({"point", "", "relative to the rest bounding box (0 to 1)"}, std::nullopt);
     s.normal = plane->vector({"normal", "", "points to the side that is picked"}, std::nullopt);
     if (s.normal.norm() < 1e-9) plane->complain("normal", "normal: must not be zero");
   }
-  if (given != 1) table->complain("a selection is one of region, box, sphere or plane");
+  if (given != 1) table->complain(fmt::format("a selection is one of {}", word_list(all_names<Kind>())));
   return s;
 }
 
@@ -226,16 +151,20 @@ std::optional<ClothDef> read_cloth(const ConfigTable& body) {
   return cloth;
 }
 
-// What is printed where nothing else is said: a grid on boxes, checks on cloth.
+// Reads the printed pattern. The default is a grid on boxes and checks on cloth.
 Pattern read_pattern(const ConfigTable& table, const BodyDef& body) {
-  const std::string pattern =
+  const std::string usual = "usual";
+  std::vector<std::string> words = all_names<Pattern>();
+  words.insert(words.begin(), usual);
+  const std::string word =
       table.choice({"pattern", "",
                     "printed squares that show how it is strained; usual: a grid on boxes, checks on cloth, else none"},
-                   "usual", {"usual", "none", "grid", "checks"});
-  if (!body.shape.empty() && (pattern == "grid" || pattern == "checks"))
+                   usual, {words});
+  if (word == usual) return body.box ? Pattern::grid : body.cloth ? Pattern::checks : Pattern::none;
+  const Pattern pattern = *value_named<Pattern>(word);
+  if (!body.shape.empty() && pattern != Pattern::none)
     table.complain("pattern", "pattern: shapes have layers of paint instead");
-  if (pattern == "usual") return body.box ? Pattern::grid : body.cloth ? Pattern::checks : Pattern::none;
-  return pattern == "grid" ? Pattern::grid : pattern == "checks" ? Pattern::checks : Pattern::none;
+  return pattern;
 }
 
 void refuse_substances(const ConfigTable& table) {
@@ -255,7 +184,7 @@ void read_substances(const ConfigTable& table, BodyDef& body) {
   }
 }
 
-// A body's name is one of files too, with up to 16 bytes behind it, and file systems end at 255.
+// Files are named after bodies, with up to 16 more bytes, and file systems allow 255.
 void check_name(const ConfigTable& table, const std::string& name) {
   constexpr std::size_t longest = 200;
   const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };

@@ -1,4 +1,4 @@
-// Bodies of a scene file: what they are, how they are held, how they are solved.
+// Bodies of a scene file: what they are made of, where they start, and what holds them.
 #pragma once
 
 #include "scene/config.h"
@@ -6,14 +6,12 @@
 
 namespace supple {
 
-// Keys that are absent keep their defaults.
-SolverDef read_solver(const ConfigTable& table, const SolverDef& defaults);
-
 Ease read_ease(const ConfigTable& table);
 
 // The list `keys`, in order of time; `turn` says what its rotations are about.
 std::vector<MotionKey> read_keys(const ConfigTable& table, const char* turn);
 
+// `defaults`: of the body's solver, from the scene's table.
 BodyDef read_body(const ConfigTable& table, const SolverDef& defaults);
 
 }  // namespace supple

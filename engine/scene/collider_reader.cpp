@@ -7,7 +7,7 @@
 namespace supple {
 namespace {
 
-// A shape file by its name, or a part as in shape files.
+// Reads a shape: the name of a shape file, or a table that is one part as in shape files.
 Shape read_collider_shape(const ConfigTable& table) {
   const Key key = {"shape", "", "a shape file, or a part as in one, such as { sphere = { radius = 0.5 } }"};
   Shape ball;

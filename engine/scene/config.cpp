@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "base/text.h"
-#include "scene/config_content.h"
+#include "scene/toml_document.h"
 
 namespace supple {
 namespace {
@@ -25,7 +25,8 @@ std::vector<std::string> words_of(const std::string& path) {
   throw InputError({Problem{place.source, place.line, place.column, std::move(message)}});
 }
 
-// Lists of tables whose elements go by their names, or by their list's: bodies, colliders, a body's handles.
+// Whether a path stands at a list of tables whose elements are entered by their names: bodies, colliders and a body's
+// handles.
 bool is_named_list(const std::vector<std::string>& path, std::size_t depth) {
   return depth == 0 ? path[0] == "body" || path[0] == "collider" : path[0] == "body" && path[depth] == "handles";
 }
@@ -40,7 +41,8 @@ std::string one_of(const std::string& list) { return list == "handles" ? "handle
 
 using Places = std::map<const toml::node*, toml::source_region>;
 
-// The table that the last word of a path stands in; tables on the way are made, elements of lists found by name.
+// Finds the table that the last word of a path stands in. Tables on the way are made; elements of lists are found by
+// their names.
 toml::table& enter(toml::table& document, Places& places, const std::vector<std::string>& path, const Problem& place) {
   toml::table* table = &document;
   for (std::size_t depth = 0; depth + 1 < path.size(); ++depth) {
@@ -253,66 +255,5 @@ std::string Config::as_json() const {
   out << toml::json_formatter(content_->document);
   return out.str();
 }
-
-ConfigTable::ConfigTable(Config* config, const toml::table* table, std::string path, std::string generic)
-    : config_(config), table_(table), path_(std::move(path)), generic_(std::move(generic)) {
-  config_->content_->asked.try_emplace(table_);
-}
-
-namespace {
-
-std::string joined(const std::string& path, const char* name) { return path.empty() ? name : path + "." + name; }
-
-}  // namespace
-
-// name: of an element, with its dot; behind: what a list's generic path ends in.
-ConfigTable ConfigTable::inner(const Key& key, const toml::table& table, const std::string& name,
-                               const char* behind) const {
-  return ConfigTable(config_, &table, joined(path_, key.name) + name, joined(generic_, key.name) + behind);
-}
-
-bool ConfigTable::has(const char* key) const {
-  config_->content_->asked[table_].push_back(key);
-  return table_->contains(key);
-}
-
-std::vector<std::string> ConfigTable::keys() const {
-  std::vector<std::string> names;
-  for (const auto& [key, node] : *table_) names.emplace_back(key.str());
-  return names;
-}
-
-const toml::node* ConfigTable::find(const Key& key, const char* type, std::string fallback, std::string allowed) const {
-  config_->content_->asked[table_].push_back(key.name);
-  const toml::node* node = table_->get(key.name);
-  const std::string generic = joined(generic_, key.name);
-  auto& known = config_->content_->known;
-  KnownKey key_here{joined(path_, key.name),
-                    generic,
-                    type,
-                    allowed,
-                    key.unit,
-                    key.meaning,
-                    node != nullptr ? shown(*node) : fallback};
-  const bool seen =
-      std::any_of(known.rbegin(), known.rend(), [&](const KnownKey& k) { return k.path == key_here.path; });
-  if (!seen) known.push_back(std::move(key_here));
-  auto& documented = config_->content_->documented;
-  const bool listed = std::any_of(documented.begin(), documented.end(),
-                                  [&](const DocumentedKey& d) { return d.path == generic && d.type == type; });
-  if (!listed) documented.push_back({generic, type, std::move(fallback), std::move(allowed), key.unit, key.meaning});
-  return node;
-}
-
-Problem ConfigTable::place(const char* key, std::string message) const {
-  const toml::node* node = key != nullptr ? table_->get(key) : nullptr;
-  return config_->content_->place(node != nullptr ? node : table_, std::move(message));
-}
-
-void ConfigTable::complain(const char* key, const std::string& message) const {
-  config_->complain(place(key, message));
-}
-
-void ConfigTable::complain(const std::string& message) const { config_->complain(place(nullptr, message)); }
 
 }  // namespace supple

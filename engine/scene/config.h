@@ -1,7 +1,7 @@
 // A parsed TOML file in which every value knows its file, line and column, and in which a key that nobody asked for is
 // an error. Problems are collected, not thrown one by one: a reader asks for all that it needs, then calls finish().
-// The readers' questions are also the documentation: each key is asked for with its unit and meaning. The only place
-// that knows the TOML parser.
+// The readers' questions are also the documentation: each key is asked for with its unit and meaning. No other part of
+// the program knows the TOML parser, and only toml_document.h includes it.
 #pragma once
 
 #include <filesystem>
@@ -12,9 +12,11 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "base/error.h"
+#include "base/names.h"
 #include "base/types.h"
 
 namespace toml {
@@ -26,7 +28,7 @@ class table;
 
 namespace supple {
 
-// What a key is called, in which unit it is given and what it means; ends up in docs/scene-format.md.
+// A key's name, unit and meaning, as docs/scene-format.md lists them.
 struct Key {
   const char* name;
   const char* unit;
@@ -47,9 +49,16 @@ struct Range {
   std::string text() const;
 };
 
+// The words that a key may have.
+struct Words {
+  std::vector<std::string> allowed;
+  // Words of earlier versions, each with what is written in its place now.
+  std::vector<std::pair<std::string, std::string>> former = {};
+};
+
 // One row of the documentation: a key that some reader asked for.
 struct DocumentedKey {
-  std::string path;  // with [] behind lists: body[].handles[].stiffness
+  std::string path;  // a list is followed by []: body[].handles[].stiffness
   std::string type;
   std::string fallback;  // the default, or "required"
   std::string allowed;
@@ -57,27 +66,37 @@ struct DocumentedKey {
   std::string meaning;
 };
 
-// One key of one table of a file, where it stands or could stand: body.soft.material.mu.
+// One key of one table of a file, whether the file gives it or leaves it to the default.
 struct KnownKey {
-  std::string path;     // as --set takes it
+  std::string path;     // as --set takes it: body.soft.material.mu
   std::string generic;  // as in DocumentedKey
   std::string type, allowed, unit, meaning;
-  std::string value;  // as it stands, or the default
+  std::string value;  // what the file gives, or the default
 };
 
-// A value of a file, whatever its type; knows where it stood.
+// How a value gets from one number to another.
+enum class RampRule {
+  difference,  // (1 - s) from + s to
+  ratio,       // from^(1-s) to^s
+};
+template <>
+struct Names<RampRule> {
+  static constexpr std::array table = {Name{RampRule::difference, "difference"}, Name{RampRule::ratio, "ratio"}};
+};
+
+// A value of any type, which knows where it stood in its file.
 class ConfigValue {
  public:
-  std::string text() const;        // shortened to what fits into a message
+  std::string text() const;        // shortened so that it fits into a message
   std::string whole_text() const;  // all of it, as people read it: words without quotes
   bool is_list_or_number() const;
-  // Numbers, or lists of them (of lists, ...) of one form: what a ramp can lead through.
+  // Whether a ramp can lead from one to the other: both are numbers, or lists (of lists, ...) of numbers of one form.
   bool joins(const ConfigValue& other) const;
   bool all_positive() const;
-  // Of a default as KnownKey has it; nothing where that is only words.
+  // Reads a default as KnownKey has it. Nothing when that is a description in words.
   static std::optional<ConfigValue> parse(const std::string& text);
-  // (1 - s) from + s to, number by number; by_ratio: from^(1-s) to^s; whole: rounded.
-  static ConfigValue between(const ConfigValue& from, const ConfigValue& to, double s, bool by_ratio, bool whole);
+  // What lies at a share `s` of the way, 0 to 1, number by number; whole: rounded.
+  static ConfigValue between(const ConfigValue& from, const ConfigValue& to, double s, RampRule by, bool whole);
 
  private:
   friend class Config;
@@ -87,14 +106,14 @@ class ConfigValue {
   std::shared_ptr<const Content> content_;
 };
 
-// A value out of a list, to be put elsewhere.
+// One value of a list, which will be put elsewhere.
 struct ListedValue {
   ConfigValue value;
   std::string text;  // whole, as people read it: words without quotes
   Problem place;     // where it stands
 };
 
-// What a table of lists has for one path: "a.b" = [...] or a.b = [...].
+// A path with a list of values: "a.b" = [...] or a.b = [...].
 struct PathList {
   std::string path;
   std::vector<ListedValue> values;
@@ -102,12 +121,12 @@ struct PathList {
 };
 
 class ConfigTable;
-struct KnownSurfaces;  // read once for a Config and its copies (shape_reader.cpp)
+struct KnownSurfaces;  // surfaces that a Config and its copies have read already (shape_reader.cpp)
 
 class Config {
  public:
-  // Throws InputError: no such file, larger than 1 MB, or not TOML. `assets`: where relative paths are looked up
-  // second.
+  // Throws InputError when there is no such file, when it is larger than 1 MB or when it is not TOML. Relative paths in
+  // it are looked up beside the file first, then in `assets`.
   static Config load(const std::filesystem::path& path, const std::filesystem::path& assets);
   static Config parse(std::string_view text, const std::string& name, const std::filesystem::path& assets);
   Config(Config&&) noexcept;
@@ -118,16 +137,16 @@ class Config {
   // body.soft.material.mu. Setting one key of an exclusive group removes the others. Throws InputError.
   void set(const std::string& assignment, const std::vector<std::set<std::string>>& exclusive);
 
-  // The same with a value of another file; `place` is where messages about the path point.
+  // Does the same with a value of another file. Messages about the path point to `place`.
   void put(const std::string& path, const ConfigValue& value, const Problem& place,
            const std::vector<std::set<std::string>>& exclusive);
-  // Nothing where the path leads nowhere.
+  // Nothing when no value has this path.
   std::optional<ConfigValue> value_at(const std::string& path) const;
   // Appends a table of another file to a list of tables that may not be there yet.
   void append(const std::string& list_path, const ConfigValue& table, const Problem& place);
-  // Takes a key off the root, if it is there.
+  // Removes a key of the root table, if it is there.
   void remove(const char* key);
-  // The document as it stands, without what was asked of it.
+  // Copies the document, but neither the problems nor the record of the keys that readers asked for.
   Config copy() const;
 
   ConfigTable root();
@@ -136,9 +155,9 @@ class Config {
 
   // Throws InputError with all problems, unknown keys among them, in the order of their lines.
   void finish();
-  // The problems so far, unknown keys among them; empties the list.
+  // Returns the problems so far, unknown keys among them, and empties the list.
   std::vector<Problem> take_problems();
-  // The problems so far, without a word on keys that nobody has asked for yet.
+  // The problems so far. Keys that no reader has asked for yet are not among them.
   const std::vector<Problem>& complaints() const;
 
   const std::vector<DocumentedKey>& documented() const;
@@ -156,22 +175,36 @@ class Config {
   std::unique_ptr<Content> content_;
 };
 
-// A view of one table of a Config; valid while that lives.
+// A view of one table of a Config, which must outlive it.
 class ConfigTable {
  public:
-  // Whether the key stands here; it counts as known to the reader.
+  // Whether the table has the key. The key then counts as known to the reader.
   bool has(const char* key) const;
-  // Keys as they stand, for tables whose keys are names that the user chose.
+  // The keys in the order of the file, for tables whose keys are names that the user chose.
   std::vector<std::string> keys() const;
 
-  // Each returns the value, or the default when the key is absent or wrong (and then the problem is recorded). Without
-  // a default the key is required.
+  // Each of these returns the value. When the key is absent or wrong it returns the default, and records the problem. A
+  // key without a default is required.
   double number(const Key& key, std::optional<double> fallback, const Range& range) const;
   int integer(const Key& key, std::optional<int> fallback, const Range& range) const;
   bool boolean(const Key& key, bool fallback) const;
   std::string text(const Key& key, std::optional<std::string> fallback) const;
-  std::string choice(const Key& key, std::optional<std::string> fallback,
-                     const std::vector<std::string>& allowed) const;
+  std::string choice(const Key& key, std::optional<std::string> fallback, const Words& words) const;
+  // A value of an enum by its name.
+  template <Named E>
+  E word(const Key& key, std::optional<E> fallback) const {
+    std::optional<std::string> usual;
+    if (fallback) usual = name_of(*fallback);
+    return *value_named<E>(choice(key, std::move(usual), {all_names<E>()}));
+  }
+  // Nothing when the key is absent or wrong. `fallback`: in words, for the documentation.
+  template <Named E>
+  std::optional<E> word_if_given(const Key& key, const char* fallback) const {
+    return value_named<E>(choice_if_given(key, fallback, {all_names<E>()}));
+  }
+  // A word, or a table with its own keys; nothing when the key is absent or wrong. `fallback`: as a file would have it.
+  std::optional<std::variant<std::string, ConfigTable>> word_or_table(const Key& key, const std::string& fallback,
+                                                                      const Words& words) const;
   Vec3 vector(const Key& key, std::optional<Vec3> fallback, const Range& range = Range::any()) const;
   std::optional<double> number_if_given(const Key& key, const Range& range) const;
   std::optional<Vec3> vector_if_given(const Key& key, const Range& range = Range::any()) const;
@@ -184,15 +217,15 @@ class ConfigTable {
   // A path that exists, found beside the file that names it or among the assets; empty when absent or wrong.
   std::filesystem::path file(const Key& key) const;
 
-  // Of any type, which is for the caller to judge.
+  // A value of any type, which the caller must judge.
   std::optional<ConfigValue> value(const Key& key, const char* fallback = "required") const;
 
-  // The whole table but for one key; all of it counts as known to the reader.
+  // The whole table without one key. All its keys count as known to the reader.
   ConfigValue all_but(const char* key) const;
 
   std::optional<ConfigTable> table(const Key& key, const char* fallback = "none") const;
   std::vector<ConfigTable> tables(const Key& key) const;
-  // All lists in this table, whose keys are paths, in the order in which they stand.
+  // All lists in this table, whose keys are paths, in the order of the file.
   std::vector<PathList> path_lists() const;
   // A number, or nothing when the key is absent or says `word`.
   std::optional<double> number_or_word(const Key& key, const char* word, const Range& range) const;
@@ -200,7 +233,7 @@ class ConfigTable {
   // Records a problem at a key's value, or at this table.
   void complain(const char* key, const std::string& message) const;
   void complain(const std::string& message) const;
-  // Where a key (or this table) stands, for messages that come later.
+  // The place of a key (or of this table), for messages that are written later.
   Problem place(const char* key, std::string message) const;
   Config& config() const { return *config_; }
 
@@ -209,11 +242,13 @@ class ConfigTable {
   ConfigTable(Config* config, const toml::table* table, std::string path, std::string generic);
   const toml::node* find(const Key& key, const char* type, std::string fallback, std::string allowed) const;
   void wrong(const Key& key, const toml::node& node, const std::string& allowed) const;
+  std::string choice_if_given(const Key& key, const char* fallback, const Words& words) const;
+  bool is_one_of(const Words& words, const Key& key, const toml::node& node) const;
 
   Config* config_;
   const toml::table* table_;
 
-  ConfigTable inner(const Key& key, const toml::table& table, const std::string& name, const char* behind) const;
+  ConfigTable inner(const Key& key, const toml::table& table, const std::string& name, const char* suffix) const;
 
   std::string path_;     // as --set takes it
   std::string generic_;  // as in DocumentedKey

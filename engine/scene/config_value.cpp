@@ -1,9 +1,10 @@
-// Values of any type: how they are shown, and what lies between two of them.
+// ConfigValue: values of any type, how they are shown, and what lies between two of them; and what a ConfigTable hands
+// out as such values.
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 
-#include "scene/config_content.h"
+#include "scene/toml_document.h"
 
 namespace supple {
 namespace {
@@ -31,16 +32,15 @@ bool only_positive(const toml::node& node) {
   return true;
 }
 
-void append_between(const toml::node& a, const toml::node& b, double s, bool by_ratio, bool whole, toml::array& out) {
+void append_between(const toml::node& a, const toml::node& b, double s, RampRule by, bool whole, toml::array& out) {
   if (const toml::array* first = a.as_array()) {
     toml::array list;
-    for (std::size_t i = 0; i < first->size(); ++i)
-      append_between((*first)[i], (*b.as_array())[i], s, by_ratio, whole, list);
+    for (std::size_t i = 0; i < first->size(); ++i) append_between((*first)[i], (*b.as_array())[i], s, by, whole, list);
     out.push_back(std::move(list));
     return;
   }
   const double from = *number_of(a), to = *number_of(b);
-  const double value = by_ratio ? from * std::pow(to / from, s) : from + s * (to - from);
+  const double value = by == RampRule::ratio ? from * std::pow(to / from, s) : from + s * (to - from);
   if (whole) {
     out.push_back(static_cast<std::int64_t>(std::llround(value)));
   } else {
@@ -54,7 +54,7 @@ std::shared_ptr<const toml::node> clone(const toml::node& node) {
   return result;
 }
 
-// The whole value, words without quotes.
+// The whole value as people read it: words have no quotes.
 std::string people_form(const toml::node& node) {
   std::string text;
   if (const toml::array* list = node.as_array()) {
@@ -74,7 +74,7 @@ struct FoundList {
   const toml::node* node;
 };
 
-// What stands in a table of lists; tables inside spell the paths of theirs.
+// Collects the values of a table whose keys are paths. Tables in it stand for paths with dots.
 void find_lists(const toml::table& table, const std::string& prefix, std::vector<FoundList>& found) {
   for (const auto& [key, node] : table) {
     const std::string path = prefix.empty() ? std::string(key.str()) : prefix + "." + std::string(key.str());
@@ -120,10 +120,10 @@ bool ConfigValue::is_list_or_number() const { return content_->node->is_number()
 bool ConfigValue::joins(const ConfigValue& other) const { return of_one_form(*content_->node, *other.content_->node); }
 bool ConfigValue::all_positive() const { return only_positive(*content_->node); }
 
-ConfigValue ConfigValue::between(const ConfigValue& from, const ConfigValue& to, double s, bool by_ratio, bool whole) {
+ConfigValue ConfigValue::between(const ConfigValue& from, const ConfigValue& to, double s, RampRule by, bool whole) {
   if (s >= 1) return to;  // exactly
   toml::array result;
-  append_between(*from.content_->node, *to.content_->node, s, by_ratio, whole, result);
+  append_between(*from.content_->node, *to.content_->node, s, by, whole, result);
   auto content = std::make_shared<Content>();
   content->node = clone(result[0]);
   content->places.assign(to.content_->places.begin(), to.content_->places.begin() + !to.content_->places.empty());

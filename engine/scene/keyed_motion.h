@@ -1,4 +1,4 @@
-// Rigid motions given by keys.
+// Rigid motions that are given by keys.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -7,7 +7,7 @@
 
 namespace supple {
 
-// Where what stands still in the scene file is at a time.
+// Moves an object that the scene file places at rest.
 struct KeyedMotion {
   Vec3 center = Vec3::Zero();  // what keys turn about [m]
   Ease ease = Ease::smooth;

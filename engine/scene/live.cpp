@@ -7,14 +7,14 @@ namespace supple {
 namespace {
 
 struct LivePattern {
-  std::string_view path;  // it and all that is below it
+  std::string_view path;  // covers itself and all that is below it
   ChangeCost cost;
 };
 
 constexpr ChangeCost nothing{}, new_factor{true, false, false}, new_rule{false, true, false},
     new_surface{false, false, true};
 
-// The first that fits decides. A body's solver has the keys of the scene's.
+// The first pattern that covers a path decides. The solver of a body has the same keys as that of the scene.
 constexpr auto patterns = std::to_array<LivePattern>({
     {"gravity", nothing},
     {"substeps", new_factor},
@@ -47,7 +47,7 @@ constexpr auto patterns = std::to_array<LivePattern>({
     {"camera", nothing},
 });
 
-// At or below a pattern.
+// Whether a path is the pattern itself or lies below it.
 bool covers(std::string_view pattern, std::string_view path) {
   return path == pattern || (path.starts_with(pattern) && path[pattern.size()] == '.');
 }
@@ -62,7 +62,7 @@ std::optional<ChangeCost> cost_of_generic(std::string_view path) {
   return std::nullopt;
 }
 
-// Entries of most lists have no names, and go by their list's.
+// Whether a path leads into an entry of a list whose entries have no names, and are called like the list.
 bool names_no_entry(const std::string& path) {
   std::istringstream words(path);
   for (std::string before, word; std::getline(words, word, '.'); before = word) {
@@ -101,13 +101,14 @@ std::optional<ChangeCost> cost_of_change(const std::string& path) { return cost_
 std::vector<LiveKey> live_keys(const Config& config) {
   std::vector<LiveKey> result;
   for (const KnownKey& key : config.known()) {
-    if (key.type == "table" || key.type == "list of tables") continue;  // their keys are listed
+    if (key.type == "table" || key.type == "list of tables") continue;  // their keys are listed one by one
     if (names_no_entry(key.path)) continue;  // keys and parts of a shape: their list changes as a whole
-    if (key.generic == "body[].handles[].stiffness" && key.value.find("hard") != std::string::npos) continue;  // stays
+    if (key.generic == "body[].handles[].stiffness" && key.value.find("hard") != std::string::npos)
+      continue;  // a hard handle stays hard
     const auto cost = cost_of_change(key.path);
     if (!cost) continue;
     result.push_back({key, *cost});
-    constexpr std::string_view hard = "\"hard\" or ";  // springs stay springs
+    constexpr std::string_view hard = "\"hard\" or ";  // a spring cannot become hard
     if (key.allowed.starts_with(hard)) result.back().key.allowed.erase(0, hard.size());
   }
   return result;

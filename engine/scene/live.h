@@ -1,4 +1,4 @@
-// Which values of a scene may change while its film runs, and what a change asks for.
+// The values of a scene that may change while its film runs, and what must be made anew when they do.
 #pragma once
 
 #include <optional>
@@ -9,23 +9,23 @@
 
 namespace supple {
 
-// What must be made anew when a value changes; nothing for most.
+// What must be made anew when a value changes. For most values that is nothing.
 struct ChangeCost {
   bool factor = false;   // A and its factor: the body's stiffness, mass or time step
-  bool rule = false;     // the method's own state
+  bool rule = false;     // what the method keeps from step to step
   bool surface = false;  // the drawn surface of a collider
 
   ChangeCost& operator|=(const ChangeCost& other);
-  const char* text() const;  // for people; empty for nothing
+  const char* text() const;  // for people; empty when nothing is made anew
 };
 
-// Of a path as --set takes it ("body.soft.material.mu"); nothing where the value is fixed for a film.
+// The cost of a change of a path as --set takes it ("body.soft.material.mu"). Nothing when the value cannot change.
 std::optional<ChangeCost> cost_of_change(const std::string& path);
 
-// "body[].material.mu" of "body.soft.material.mu".
+// Replaces the names of list elements: "body[].material.mu" for "body.soft.material.mu".
 std::string generic_path(const std::string& path);
 
-// The live values of a scene that has been read, in the order in which its readers asked for them.
+// The values of a scene that may change, in the order in which its readers asked for them.
 struct LiveKey {
   KnownKey key;
   ChangeCost cost;

@@ -16,7 +16,7 @@ const std::vector<std::string>& material_names() {
   return names;
 }
 
-// Young's modulus and Poisson's ratio in the place of a model's own parameters.
+// Reads Young's modulus and Poisson's ratio, which can replace a model's own parameters. Nothing when they are absent.
 std::optional<Lame> read_lame(const ConfigTable& table) {
   const auto young = table.number_if_given(
       {"young", "Pa", "Young's modulus at small strains, with poisson in the place of the model's parameters"},
@@ -26,8 +26,8 @@ std::optional<Lame> read_lame(const ConfigTable& table) {
       table.complain("poisson", "poisson: only together with young, in the place of the model's parameters");
     return std::nullopt;
   }
-  // At 0.5 lambda is infinite; above 0.495 nothing here resolves it. Below 0 lambda is negative, and some energies have
-  // no lower bound.
+  // At 0.5 lambda is infinite, and above 0.495 no mesh of this program resolves it. Below 0 lambda is negative, and
+  // some energies have no lower bound.
   return Lame::from_young(
       *young, table.number({"poisson", "", "Poisson's ratio, with young"}, std::nullopt, Range::between(0, 0.495)));
 }
@@ -35,7 +35,7 @@ std::optional<Lame> read_lame(const ConfigTable& table) {
 SplineCurve read_curve(const ConfigTable& table, const Key& key) {
   std::vector<ControlPoint> points;
   for (const auto& [at, value] : table.pairs(key, 2, SplineCurve::most_points)) {
-    // Nearer than a millionth, slopes lose their digits.
+    // Slopes lose their digits between points that are nearer than a millionth.
     if (!points.empty() && at < points.back().at + 1e-6) {
       table.complain(key.name, fmt::format("{}: control points must stand in ascending order ({:g} follows {:g})",
                                            key.name, at, points.back().at));
@@ -46,11 +46,11 @@ SplineCurve read_curve(const ConfigTable& table, const Key& key) {
   return points.empty() ? SplineCurve() : SplineCurve(std::move(points));
 }
 
-// The curves, or one of the presets that are sampled from Neo-Hookean parameters.
+// Reads the curves, or one of the presets, which are sampled from Neo-Hookean parameters.
 Spline read_spline(const ConfigTable& table) {
   const std::string preset =
       table.choice({"preset", "", "of a spline: A resists compression more than Neo-Hookean, B tension"}, "none",
-                   {"none", "A", "B"});
+                   {{"none", "A", "B"}});
   if (preset != "none") {
     const auto young = read_lame(table);
     Lame lame{1, 0};
@@ -97,7 +97,7 @@ M read_parameters(const ConfigTable& table) {
   return read;
 }
 
-// Whether nothing required is missing, so that a complaint about the values makes sense.
+// Whether all required parameters are given. Otherwise a complaint about their values would make no sense.
 template <class M>
 bool all_given(const ConfigTable& table) {
   if (table.has("young")) return true;
@@ -134,7 +134,7 @@ Material material_of(const ConfigTable& table, std::string_view model, std::inde
 void read_preset(const ConfigTable& owner, SubstanceDef& substance) {
   std::vector<std::string> names;
   for (const MaterialPreset& preset : material_presets) names.emplace_back(preset.name);
-  const std::string name = owner.choice({"material", "", "what the body is made of: a preset"}, names.front(), names);
+  const std::string name = owner.choice({"material", "", "what the body is made of: a preset"}, names.front(), {names});
   for (const MaterialPreset& preset : material_presets) {
     if (name != preset.name) continue;
     substance.material = preset.material();
@@ -171,7 +171,7 @@ SubstanceDef read_substance(const ConfigTable& owner) {
     read_preset(owner, substance);
   } else if (const auto table =
                  owner.table({"material", "", "the energy and its parameters, or a preset"}, "required")) {
-    const std::string model = table->choice({"model", "", "the energy"}, std::nullopt, material_names());
+    const std::string model = table->choice({"model", "", "the energy"}, std::nullopt, {material_names()});
     substance.material = material_of(*table, model, std::make_index_sequence<std::variant_size_v<Material>>());
   } else if (!owner.has("material")) {
     owner.complain(

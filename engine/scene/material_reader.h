@@ -9,8 +9,8 @@ namespace supple {
 // Reads `material` (and `fibre`) of a body or a region.
 SubstanceDef read_substance(const ConfigTable& owner);
 
-// A preset as tables say it: { model = "neo-hookean", young = ..., poisson = ... }, and what else it brings. Empty when
-// there is none of this name.
+// The table that a preset stands for, { model = "neo-hookean", young = ..., poisson = ... }, and the other values that
+// it sets. Empty when no preset has this name.
 std::string preset_in_full(const std::string& name);
 
 }  // namespace supple

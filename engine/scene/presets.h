@@ -1,4 +1,5 @@
-// Materials by everyday names, so that a first scene just works: real units, soft enough for thirty steps a second.
+// Materials by everyday names, so that a first scene just works. Units are real, and the materials are soft enough for
+// thirty steps a second.
 #pragma once
 
 #include <array>
@@ -14,7 +15,7 @@ struct MaterialPreset {
   const char* name;
   const char* meaning;
   double young, poisson;  // [Pa]
-  double density;         // where the body does not give one [kg/m^3]
+  double density;         // of bodies that do not give one [kg/m^3]
   double fibre;           // kappa along the body's y axis; 0: none [Pa]
   Material (*law)(const Lame&);
 

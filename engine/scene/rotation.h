@@ -1,4 +1,4 @@
-// Angles as scene files give them.
+// Rotations from angles as scene files give them.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -8,7 +8,7 @@
 
 namespace supple {
 
-// Degrees about the fixed axes x, then y, then z.
+// Turns by these degrees about the fixed axes x, then y, then z.
 inline Eigen::Quaterniond rotation_from_degrees(const Vec3& degrees) {
   const Vec3 angle = degrees * (std::numbers::pi / 180);
   return Eigen::AngleAxisd(angle.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(angle.y(), Vec3::UnitY()) *

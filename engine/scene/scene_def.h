@@ -1,5 +1,5 @@
 // A scene as its file describes it: plain nested structs with defaults, SI units, angles in degrees where the name says
-// so. Nothing is built yet (assemble.h), and nothing here knows TOML.
+// so. Nothing is built yet (assemble.h), and nothing here knows scene files or TOML (scene_reader.h).
 #pragma once
 
 #include <filesystem>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/names.h"
 #include "geometry/shape.h"
 #include "geometry/skin.h"
 #include "scene/start_state.h"
@@ -18,7 +19,7 @@
 
 namespace supple {
 
-// A box, ball, half space or region that picks vertices of a body, in coordinates relative to its rest bounding box (0
+// Picks vertices of a body by a box, ball, half space or region. Coordinates are relative to the rest bounding box (0
 // to 1 along each axis).
 struct Selection {
   enum class Kind { region, box, sphere, plane } kind = Kind::box;
@@ -27,7 +28,14 @@ struct Selection {
   Vec3 center = Vec3::Zero();                       // sphere; a point of the plane
   double radius = 0;                                // sphere; relative to the longest side
   Vec3 normal = Vec3::UnitY();                      // plane: picks the side that it points to
-  Problem place;                                    // where it stands, for messages that come when the mesh is known
+  Problem place;                                    // in the file, for messages once the mesh is known
+};
+
+template <>
+struct Names<Selection::Kind> {
+  using Kind = Selection::Kind;
+  static constexpr std::array table = {Name{Kind::region, "region"}, Name{Kind::box, "box"},
+                                       Name{Kind::sphere, "sphere"}, Name{Kind::plane, "plane"}};
 };
 
 struct MotionKey {
@@ -37,22 +45,27 @@ struct MotionKey {
 };
 
 enum class Ease { smooth, linear };
+template <>
+struct Names<Ease> {
+  static constexpr std::array table = {Name{Ease::smooth, "smooth"}, Name{Ease::linear, "linear"}};
+};
 
 struct HandleDef {
   std::string name;
   Selection select;
   double spring = 0;  // 0: hard [N/m]
-  // A handle that grabs holds from one time to another, and its keys count from where its vertices are then [s].
+  // A handle that grabs holds its vertices from one time to another [s]. Its keys are relative to where the vertices
+  // are when it begins to hold them.
   bool grabs = false;
   double from = 0, until = std::numeric_limits<double>::infinity();
   Ease ease = Ease::smooth;
   std::vector<MotionKey> keys;
 
-  // Whether it holds in a step that starts at a time [s].
+  // Whether it holds its vertices in a step that starts at a time [s].
   bool holds_at(double time) const { return time >= from - 1e-9 && time < until - 1e-9; }
 };
 
-// What a part is made of.
+// The material of a body or of one of its regions.
 struct SubstanceDef {
   Material material = Polynomial{1};
   Fibre fibre;                          // its direction in the frame of the mesh or shape
@@ -79,7 +92,7 @@ struct ClothDef {
   double stretch = 0, shear = 0, bend = 0;  // stiffness of a spring [N/m]
 };
 
-// How a body is solved.
+// How the steps of a body are solved.
 struct SolverDef {
   Method method = Method::quasi_newton;
   SolverSettings settings;
@@ -92,7 +105,7 @@ struct SolverDef {
 struct BodyDef {
   std::string name;
   std::string label;
-  // One of the five. A mesh file's regions are named by their reference numbers.
+  // One of these five gives the mesh. The regions of a mesh file are named by their reference numbers.
   std::filesystem::path shape;
   std::filesystem::path surface;
   std::filesystem::path mesh;

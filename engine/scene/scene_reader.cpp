@@ -5,6 +5,7 @@
 
 #include "scene/body_reader.h"
 #include "scene/collider_reader.h"
+#include "scene/solver_reader.h"
 #include "scene/sweep.h"
 
 namespace supple {
@@ -55,7 +56,7 @@ SceneDef read_scene(Config& config) {
     scene.camera.margin = camera->number({"margin", "", "air around the bodies when they are framed"},
                                          scene.camera.margin, Range::between(0.5, 10));
   }
-  if (const auto look = root.table({"look", "", "the stage"})) {
+  if (const auto look = root.table({"look", "", "ground, background and light"})) {
     scene.look.ground =
         look->vector({"ground", "sRGB", "colour of the ground"}, scene.look.ground, Range::between(0, 1));
     scene.look.background = look->vector({"background", "sRGB", "colour that the ground fades into"},

@@ -1,4 +1,5 @@
-// From a parsed file to a SceneDef. docs/scene-format.md lists what is read here; a test keeps the two the same.
+// Makes a SceneDef from a parsed file. docs/scene-format.md lists all keys that are read here, and a test compares the
+// two.
 #pragma once
 
 #include "scene/config.h"
@@ -6,14 +7,14 @@
 
 namespace supple {
 
-// Problems are recorded in the config; the result is usable only if there are none.
+// Records problems in the config. The result may be used only if there are none.
 SceneDef read_scene(Config& config);
 
-// Loads a file, applies "path=value" settings in order, reads. Throws InputError with all problems.
+// Loads a file, applies the "path=value" settings in order, and reads the scene. Throws InputError with all problems.
 SceneDef load_scene(const std::filesystem::path& path, const std::filesystem::path& assets,
                     const std::vector<std::string>& settings, std::string* resolved_json = nullptr);
 
-// Keys of which a body has one: setting one removes the others.
+// Groups of keys of which a table may have one: setting one removes the others of its group.
 const std::vector<std::set<std::string>>& exclusive_keys();
 
 }  // namespace supple

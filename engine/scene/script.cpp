@@ -11,7 +11,7 @@
 namespace supple {
 namespace {
 
-// A time by its seconds or its frame.
+// A time, given in seconds or as a frame.
 double read_time(const ConfigTable& table, double fps, const Key& seconds, const Key& frames, bool required) {
   const auto in_seconds = table.number_if_given(seconds, Range::at_least(0));
   std::optional<double> in_frames;
@@ -39,9 +39,9 @@ std::optional<TimedChange> read_change(const ConfigTable& table, double fps) {
       read_time(table, fps, {"t", "s", "when it begins"}, {"frame", "", "the frame that it begins with"}, true);
   const double over = read_time(table, fps, {"over", "s", "how long it takes; without it the value jumps"},
                                 {"frames", "", "how many frames it takes"}, false);
-  const std::string ease = table.choice({"ease", "", "how a ramp starts and ends"}, "smooth", {"smooth", "linear"});
-  const std::string by = table.choice({"by", "", "a ramp adds the same or multiplies by the same in equal times"},
-                                      "difference", {"difference", "ratio"});
+  const Ease ease = table.word<Ease>({"ease", "", "how a ramp starts and ends"}, Ease::smooth);
+  const RampRule by = table.word<RampRule>({"by", "", "a ramp adds the same or multiplies by the same in equal times"},
+                                           RampRule::difference);
   const auto from = table.value({"from", "", "where a ramp begins; the value that is in force then"}, "none");
   const auto to = table.value({"value", "", "what it becomes"});
   if (!to || !table.has("path")) return std::nullopt;
@@ -52,17 +52,7 @@ std::optional<TimedChange> read_change(const ConfigTable& table, double fps) {
     return std::nullopt;
   }
   if (from && over <= 0) table.complain("from", "from: of ramps, which have an 'over' or 'frames'");
-  return TimedChange{path,
-                     object_of(path),
-                     at,
-                     over,
-                     ease == "smooth" ? Ease::smooth : Ease::linear,
-                     by == "ratio",
-                     false,
-                     *cost,
-                     from,
-                     *to,
-                     table.place("value", "")};
+  return TimedChange{path, object_of(path), at, over, ease, by, false, *cost, from, *to, table.place("value", "")};
 }
 
 }  // namespace
@@ -81,10 +71,10 @@ Config Script::Parts::document_at(double time, std::size_t count, std::optional<
     const TimedChange& change = changes[i];
     const auto done = change.done_at(time);
     if (i == left_out || !done) continue;
-    document.put(change.path,
-                 change.over > 0 ? ConfigValue::between(*change.from, change.to, *done, change.by_ratio, change.whole)
-                                 : change.to,
-                 change.place, exclusive_keys());
+    document.put(
+        change.path,
+        change.over > 0 ? ConfigValue::between(*change.from, change.to, *done, change.by, change.whole) : change.to,
+        change.place, exclusive_keys());
   }
   return document;
 }
@@ -109,7 +99,7 @@ Script::~Script() = default;
 
 namespace {
 
-// Where a replay's scene is: the name of one that ships, or a file beside the replay.
+// Loads the scene that a replay names: one that ships, by its name, or a file beside the replay.
 Config load_replayed_scene(Config& replay, const std::filesystem::path& assets) {
   const ConfigTable root = replay.root();
   const Key key = {"scene", "", "a scene file, or the name of one that ships"};
@@ -137,7 +127,7 @@ void open_tables(Config& document) {
   }
 }
 
-// The scene as the replay starts with it, and its changes.
+// Reads the scene that the replay starts with, and the changes.
 void Script::Parts::read_replay(const std::filesystem::path& assets, const std::vector<std::string>& settings) {
   scene_file = load_replayed_scene(*replay, assets);
   const ConfigTable root = replay->root();
@@ -163,8 +153,8 @@ void Script::Parts::read_replay(const std::filesystem::path& assets, const std::
   start = read_scene(plain);
   const std::vector<Problem> of_scene = plain.take_problems();
   open_tables(plain);
-  (void)read_scene(plain);  // for the kinds of all keys
-  for (const ConfigTable& table : root.tables({"change", "", "a value on its way to another"})) {
+  (void)read_scene(plain);  // so that the types of all keys are known
+  for (const ConfigTable& table : root.tables({"change", "", "a value that changes while the film runs"})) {
     auto change = read_change(table, start.fps);
     if (!change) continue;
     change->whole = is_whole_number(plain, change->path);
@@ -214,22 +204,23 @@ SceneDef Script::scene_at(int frame) const {
 
 namespace {
 
-// Whether a change of one path leaves nothing of one of another.
+// Whether a change of `path` overwrites all that a change of `other` does.
 bool replaces(const std::string& path, const std::string& other) {
   return other.starts_with(path) && (other.size() == path.size() || other[path.size()] == '.');
 }
 
-// Ramps that another change cuts off: from its beginning on only that one counts.
+// Warns of ramps that are cut off by a later change of the same value.
 void warn_of_broken_ramps(const std::vector<TimedChange>& changes, std::vector<Problem>& list) {
   for (std::size_t i = 0; i < changes.size(); ++i) {
     const TimedChange& ramp = changes[i];
     for (std::size_t j = i + 1; j < changes.size() && changes[j].at < ramp.at + ramp.over - time_tolerance; ++j) {
       const TimedChange& later = changes[j];
       if (!replaces(later.path, ramp.path)) continue;
-      list.push_back({later.place.source, later.place.line, later.place.column,
-                      fmt::format("from {:g} s on this change has its way with {}; the ramp of line {} ({:g} to {:g} "
-                                  "s) ends there, unfinished",
-                                  later.at, ramp.path, ramp.place.line, ramp.at, ramp.at + ramp.over)});
+      list.push_back(
+          {later.place.source, later.place.line, later.place.column,
+           fmt::format("from {:g} s on this change sets {}; the ramp of line {} ({:g} to {:g} s) ends there, "
+                       "unfinished",
+                       later.at, ramp.path, ramp.place.line, ramp.at, ramp.at + ramp.over)});
       break;
     }
   }

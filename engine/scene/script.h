@@ -1,5 +1,5 @@
-// What a film is told to do, frame by frame: a scene, and timed changes of its values (a replay). The scene of a frame
-// is a function of its number alone, so that a film may go on anywhere.
+// The input of a film, frame by frame: a scene, and timed changes of its values (a replay). The scene of a frame is a
+// function of the frame's number alone, so that a film can be resumed at any frame.
 #pragma once
 
 #include "scene/live.h"
@@ -7,28 +7,29 @@
 
 namespace supple {
 
-// One value on its way to another.
+// A change of one value while the film runs.
 struct TimedChange {
   std::string path;    // as --set takes it
-  std::string object;  // name of the body or collider that it is of; empty: of the whole scene
+  std::string object;  // the name of the body or collider that the value belongs to; empty: the whole scene
   double at = 0;       // when it begins [s]
   double over = 0;     // how long it takes; 0: a jump [s]
   Ease ease = Ease::smooth;
-  bool by_ratio = false;
-  bool whole = false;  // only whole numbers on the way
+  RampRule by = RampRule::difference;
+  bool whole = false;  // the values of a ramp are rounded to whole numbers
   ChangeCost cost;
-  std::optional<ConfigValue> from;  // of ramps
+  std::optional<ConfigValue> from;  // where a ramp begins
   ConfigValue to;
   Problem place;
 
-  // How much of it is done at a time [s], 0 to 1; nothing while it has not begun.
+  // The share of the change that is done at a time [s], 0 to 1. Nothing before it begins.
   std::optional<double> done_at(double time) const;
 };
 
 class Script {
  public:
-  // A scene's file, or a replay's: one that names its `scene`. Settings are --set's, over the scene as the film starts.
-  // sweep_point: of the scene's sweep, which has as many. Throws InputError with all that is wrong at any time.
+  // Loads a scene file, or a replay, which is a file that names its `scene`. `settings` are those of --set, and apply
+  // to the scene as the film starts. `sweep_point` is a point of the scene's sweep. Throws InputError with all that is
+  // wrong at any time of the film.
   static Script load(const std::filesystem::path& path, const std::filesystem::path& assets,
                      const std::vector<std::string>& settings, std::optional<std::size_t> sweep_point = {});
   Script(Script&&) noexcept;
@@ -38,16 +39,16 @@ class Script {
   const SceneDef& scene() const;  // as the film starts
   const std::vector<TimedChange>& changes() const;
 
-  // The changes that are at work between the start and the end of a frame.
+  // The changes that change a value between the start and the end of a frame.
   std::vector<const TimedChange*> at_work(int frame) const;
-  // The scene at the end of a frame; its start when no change is at work.
+  // The scene at the end of a frame. Without a change at work this is the scene as the frame starts.
   SceneDef scene_at(int frame) const;
 
-  // What is legal and does nothing, or not all of what it says.
+  // Changes and handles that are legal, but that do nothing in this film or less than they say.
   std::vector<Problem> warnings() const;
 
   std::string scene_json() const;   // as the film starts
-  std::string replay_json() const;  // the replay's own file; empty for a scene
+  std::string replay_json() const;  // the file of the replay itself; empty for a scene
   std::vector<LiveKey> live() const;
 
  private:

@@ -1,4 +1,4 @@
-// What is wrong with the changes of a replay: all of it at once, each told where the replay has it.
+// Checks the changes of a replay. All problems are found at once, and each message points to a line of the replay.
 #include <algorithm>
 #include <iterator>
 #include <tuple>
@@ -17,7 +17,7 @@ std::vector<Problem> problems_of(Config document) {
   return document.take_problems();
 }
 
-// Those of a list that another one does not have.
+// The problems of a list that are not in the other one.
 std::vector<Problem> beyond(const std::vector<Problem>& list, const std::vector<Problem>& other) {
   std::vector<Problem> rest;
   for (const Problem& problem : list) {
@@ -41,9 +41,9 @@ Problem at(const TimedChange& change, std::string message) {
   return {change.place.source, change.place.line, change.place.column, std::move(message)};
 }
 
-// What a change makes wrong: in the replay as it stands there; elsewhere, where nobody has changed anything, told at
-// the change.
-std::vector<Problem> told_at(const TimedChange& change, const std::vector<Problem>& made) {
+// The problems that a change causes, as messages that point into the replay. A problem that shows at another place, in
+// a file that the change does not touch, is described at the change.
+std::vector<Problem> as_caused_by(const TimedChange& change, const std::vector<Problem>& made) {
   std::vector<Problem> own;
   std::string elsewhere;
   for (const Problem& problem : made) {
@@ -61,12 +61,12 @@ std::vector<Problem> told_at(const TimedChange& change, const std::vector<Proble
 
 }  // namespace
 
-void Script::Parts::tell(std::vector<Problem> more) {
+void Script::Parts::add_problems(std::vector<Problem> more) {
   problems.insert(problems.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
-void Script::Parts::tell(Problem problem, const std::string& when, Told& told) {
-  if (!told.places.insert(place_text(problem)).second) return;
+void Script::Parts::report(Problem problem, const std::string& when, Reported& reported) {
+  if (!reported.places.insert(place_text(problem)).second) return;
   problem.message += when;
   problems.push_back(std::move(problem));
 }
@@ -80,7 +80,7 @@ bool Script::Parts::put(Config& document, const std::string& path, const ConfigV
     const auto stands = table.ends_with(".material") ? document.value_at(table) : std::nullopt;
     const std::string preset = stands ? preset_in_full(stands->whole_text()) : "";
     if (preset.empty()) {
-      tell(error.problems());
+      add_problems(error.problems());
     } else {
       problems.push_back(
           {place.source, place.line, place.column,
@@ -92,14 +92,14 @@ bool Script::Parts::put(Config& document, const std::string& path, const ConfigV
   }
 }
 
-// Takes out the changes whose paths lead nowhere.
+// Removes the changes whose paths lead nowhere.
 void Script::Parts::put_each() {
   Config document = scene_file.copy();
   std::erase_if(changes,
                 [&](const TimedChange& change) { return !put(document, change.path, change.to, change.place); });
 }
 
-// What a path says, or leaves to the default.
+// The value at a path, or its default.
 std::optional<ConfigValue> Script::Parts::value_at(const std::string& path, Config document) const {
   if (auto value = document.value_at(path)) return value;
   open_tables(document);
@@ -110,7 +110,7 @@ std::optional<ConfigValue> Script::Parts::value_at(const std::string& path, Conf
   return std::nullopt;
 }
 
-// Where a ramp begins. Returns why it cannot be one.
+// Finds the value at which a ramp begins. Returns the reasons why it cannot be a ramp.
 std::vector<Problem> Script::Parts::prepare(TimedChange& ramp, std::size_t index) const {
   const auto before = [&] { return document_at(ramp.at + at_start, index); };
   if (!ramp.from) ramp.from = value_at(ramp.path, before());
@@ -118,7 +118,7 @@ std::vector<Problem> Script::Parts::prepare(TimedChange& ramp, std::size_t index
     Config over = before();
     over.put(ramp.path, ramp.to, ramp.place, exclusive_keys());
     const std::vector<Problem> made = beyond(problems_of(std::move(over)), problems_of(before()));
-    if (!made.empty()) return told_at(ramp, made);
+    if (!made.empty()) return as_caused_by(ramp, made);
     return {at(ramp, fmt::format("{} has no value in the scene to begin with: give the ramp a 'from'", ramp.path))};
   }
   if (!ramp.from->joins(ramp.to)) {
@@ -127,7 +127,7 @@ std::vector<Problem> Script::Parts::prepare(TimedChange& ramp, std::size_t index
                                  ramp.from->text(), ramp.to.text(),
                                  only_jumps ? ". Words and tables jump: leave out 'over' or 'frames'" : ""))};
   }
-  if (ramp.by_ratio && !(ramp.from->all_positive() && ramp.to.all_positive()))
+  if (ramp.by == RampRule::ratio && !(ramp.from->all_positive() && ramp.to.all_positive()))
     return {at(ramp, "by = \"ratio\": only between positive numbers")};
   return {};
 }
@@ -138,17 +138,17 @@ void Script::Parts::prepare_ramps() {
     if (wrong.empty()) {
       ++i;
     } else {
-      tell(std::move(wrong));
+      add_problems(std::move(wrong));
       changes.erase(changes.begin() + std::ptrdiff_t(i));
     }
   }
 }
 
-// Reads the scene as it is at a time.
-void Script::Parts::check_at(double time, const std::string& when, Told& told) {
+// Reads the scene as it is at a time, and reports its problems.
+void Script::Parts::check_at(double time, const std::string& when, Reported& reported) {
   std::vector<Problem> found = problems_of(document_at(time, changes.size()));
   std::erase_if(found, [&](const Problem& problem) {
-    return told.places.contains(place_text(problem)) || told.texts.contains(problem.text());
+    return reported.places.contains(place_text(problem)) || reported.texts.contains(problem.text());
   });
   for (std::size_t i = changes.size(); i-- > 0 && !found.empty();) {
     if (!changes[i].done_at(time)) continue;
@@ -156,27 +156,27 @@ void Script::Parts::check_at(double time, const std::string& when, Told& told) {
     try {
       made = beyond(found, problems_of(document_at(time, changes.size(), i)));
     } catch (const InputError&) {
-      continue;  // others lead into what this one puts there
+      continue;  // the paths of other changes lead into the value of this one
     }
     if (made.empty()) continue;
-    for (const Problem& problem : made) told.texts.insert(problem.text());
-    for (Problem& problem : told_at(changes[i], made)) tell(std::move(problem), when, told);
+    for (const Problem& problem : made) reported.texts.insert(problem.text());
+    for (Problem& problem : as_caused_by(changes[i], made)) report(std::move(problem), when, reported);
     found = beyond(found, made);
   }
-  for (Problem& problem : found) tell(std::move(problem), when, told);
+  for (Problem& problem : found) report(std::move(problem), when, reported);
 }
 
 void Script::Parts::check_changes() {
   try {
     put_each();
     prepare_ramps();
-    Told told;
-    check_at(at_start, "", told);
+    Reported reported;
+    check_at(at_start, "", reported);
     for (int frame = 0; frame < start.frames && problems.size() < most_problems; ++frame) {
       if (std::any_of(changes.begin(), changes.end(), [&](const TimedChange& c) { return at_work(c, frame); }))
-        check_at((frame + 1) / start.fps, fmt::format(" (first in frame {})", frame), told);
+        check_at((frame + 1) / start.fps, fmt::format(" (first in frame {})", frame), reported);
     }
-  } catch (const InputError& error) {  // a change that lost one it rests on
+  } catch (const InputError& error) {  // a change depends on one that was removed
     if (problems.empty()) throw;
   }
   if (problems.empty()) return;

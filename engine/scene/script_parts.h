@@ -1,4 +1,4 @@
-// What a Script owns; only for script.cpp, which reads it, and script_check.cpp, which finds what is wrong with it.
+// What a Script owns. Only script.cpp, which reads it, and script_check.cpp, which checks it, include this.
 #pragma once
 
 #include <set>
@@ -7,44 +7,47 @@
 
 namespace supple {
 
-constexpr double time_tolerance = 1e-9;          // of times that are given as seconds and counted in frames [s]
-constexpr double at_start = 2 * time_tolerance;  // jumps at 0 are in force before the first frame [s]
+// Times are given in seconds and counted in frames; they are equal when they differ by less than this [s].
+constexpr double time_tolerance = 1e-9;
+// The time of the film's start, at which jumps at 0 are in force already [s].
+constexpr double at_start = 2 * time_tolerance;
 
 struct Script::Parts {
   std::optional<Config> replay;
-  Config scene_file;  // before any change
+  Config scene_file;  // the scene before any change
   SceneDef start;
   std::vector<TimedChange> changes;  // in the order of their beginnings
   std::vector<Problem> problems;     // of the replay, while it is read
 
-  // The scene with the first `count` changes; one of them may be left out.
+  // The scene at a time, with the first `count` changes. One of them can be left out.
   Config document_at(double time, std::size_t count, std::optional<std::size_t> left_out = {}) const;
   bool at_work(const TimedChange& change, int frame) const;
   SceneDef read(Config& document) const;
-  // Throws InputError when the scene cannot be read; what is wrong with the replay itself goes to `problems`.
+  // Throws InputError when the scene cannot be read. Problems of the replay itself are added to `problems`.
   void read_replay(const std::filesystem::path& assets, const std::vector<std::string>& settings);
 
-  // Puts a value of the replay into a document; false when its path leads nowhere, and then `problems` says so.
+  // Puts a value of the replay into a document. Returns false, and adds to `problems`, when its path leads nowhere.
   bool put(Config& document, const std::string& path, const ConfigValue& value, const Problem& place);
 
-  // All that is wrong with the changes. Those that are wrong are taken out, so that others can be looked at. Finds out
-  // where ramps begin, and how the scene starts. Throws InputError with this and all earlier problems.
+  // Finds all problems of the changes, the values at which ramps begin, and the scene at the start. A change that has a
+  // problem is removed, so that the others can still be checked. Throws InputError with all problems, earlier ones too.
   void check_changes();
 
  private:
-  struct Told {
+  // Problems that have been reported, by their places and their texts: each is reported once.
+  struct Reported {
     std::set<std::string> places, texts;
   };
-  void tell(std::vector<Problem> more);
-  void tell(Problem problem, const std::string& when, Told& told);
+  void add_problems(std::vector<Problem> more);
+  void report(Problem problem, const std::string& when, Reported& reported);
   void put_each();
   void prepare_ramps();
   std::vector<Problem> prepare(TimedChange& ramp, std::size_t index) const;
-  void check_at(double time, const std::string& when, Told& told);
+  void check_at(double time, const std::string& when, Reported& reported);
   std::optional<ConfigValue> value_at(const std::string& path, Config document) const;
 };
 
-// Tables that a scene may leave out, so that their keys are asked for too.
+// Adds the tables that a scene may leave out, so that readers ask for their keys too.
 void open_tables(Config& document);
 
 }  // namespace supple

@@ -37,7 +37,7 @@ double read_round(const ConfigTable& table, double largest) {
   return std::min(round, largest);
 }
 
-// A replay reads a scene's document again and again; the files that it names stay.
+// A replay reads a scene's document again for every frame; the surfaces that it names are read once.
 std::shared_ptr<KnownSurfaces> known_surfaces(Config& config) {
   if (!config.surfaces()) config.surfaces() = std::make_shared<KnownSurfaces>();
   return config.surfaces();
@@ -92,7 +92,7 @@ std::optional<Primitive> read_primitive(const ConfigTable& part, Shape& shape, i
         t->number({"radius", "m", "from the centre to the middle of the tube"}, std::nullopt, lengths);
     result = Torus{radius, t->number({"tube", "m", "the tube's radius"}, std::nullopt, lengths)};
   }
-  if (const auto t = part.table({"half_space", "", "everything behind a plane"})) {
+  if (const auto t = part.table({"half_space", "", "everything on one side of a plane"})) {
     const Vec3 normal = t->vector({"normal", "", "points out of the solid"}, std::nullopt);
     if (normal.norm() < 1e-9) t->complain("normal", "normal: must not be zero");
     result = HalfSpace{
@@ -119,7 +119,7 @@ std::optional<Primitive> read_primitive(const ConfigTable& part, Shape& shape, i
   return result;
 }
 
-// There is nothing yet that a first part could be cut from.
+// Refuses a first part that cuts or intersects: there is no solid yet that it could be applied to.
 void need_solid(const ConfigTable& table, const ShapePart& first) {
   if (first.combine != Combine::add)
     table.complain("op", "op: the first part must be added; there is nothing to cut or intersect yet");
@@ -148,9 +148,7 @@ ShapePart read_part(const ConfigTable& table, Shape& shape, int depth) {
   part.to_local = to_parent.inverse();
   part.scale = table.number({"scale", "", "enlarges the part about its origin"}, 1.0, Range::above(0, 1e6));
   part.mirror_x = table.boolean({"mirror", "", "the part also stands at -x"}, false);
-  const std::string op =
-      table.choice({"op", "", "how the part joins what came before"}, "add", {"add", "cut", "intersect"});
-  part.combine = op == "cut" ? Combine::cut : op == "intersect" ? Combine::intersect : Combine::add;
+  part.combine = table.word<Combine>({"op", "", "how the part joins what came before"}, Combine::add);
   part.blend =
       table.number({"blend", "m", "width over which the surfaces melt into each other"}, 0.0, Range::at_least(0));
   const std::string region = table.text({"region", "", "tag of the elements inside"}, "");
@@ -187,7 +185,7 @@ Shape read_shape(const ConfigTable& table) {
     paint.color = read_color(layer, Vec3(0.2, 0.2, 0.2));
     paint.gloss = layer.number({"gloss", "", "0 matt to 1 wet"}, 0.2, Range::between(0, 1));
     paint.soft = layer.number({"soft", "m", "width of the layer's border"}, 0.0, Range::at_least(0));
-    Shape area;  // but for its files, only its parts count
+    Shape area;  // only its parts and its files are used
     paint.area = read_parts(layer, {"part", "", "where the colour is"}, area, 0);
     shape.files.insert(shape.files.end(), area.files.begin(), area.files.end());
     shape.paint.push_back(std::move(paint));

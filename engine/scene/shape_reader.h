@@ -12,10 +12,10 @@ Shape read_shape(const ConfigTable& table);
 // Reads a table that is one part, such as { sphere = { radius = 1 } }.
 Shape read_single_part(const ConfigTable& table);
 
-// The solid inside a closed surface's file (OBJ, PLY, STL, glTF, OFF). Throws InputError.
+// Reads a file with a closed surface (OBJ, PLY, STL, glTF, OFF); the shape is the solid inside. Throws InputError.
 Shape load_surface(const std::filesystem::path& path);
 
-// Loads and reads a shape file; throws InputError with all problems. Closed surfaces that `user` has read already are
+// Loads and reads a shape file. Throws InputError with all problems. Closed surfaces that `user` has read already are
 // not read again.
 Shape load_shape(const std::filesystem::path& path, const std::filesystem::path& assets, Config* user = nullptr);
 

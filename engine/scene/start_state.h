@@ -1,5 +1,6 @@
-// Where a body starts: at rest, or deformed on purpose, to see it recover. Not here: motion from outside (handles).
-// A new start state is a struct with a key, read() and place(), and an entry in StartDef.
+// Where a body starts: at rest, or deformed on purpose, to see it recover. Not here: motion from outside (handles), and
+// how scene files say it (start_reader.h). A new start state is a struct with place(), an entry in StartDef, and a
+// reader.
 #pragma once
 
 #include <cstdint>
@@ -8,20 +9,19 @@
 #include <variant>
 
 #include "base/types.h"
-#include "scene/config.h"
 
 namespace supple {
 
-// What a start state is relative to: the body at rest, in its place in the world.
+// The body at rest, in its place in the world: start states are relative to it.
 struct RestFrame {
   Bounds box;
   Vec3 center = Vec3::Zero();  // of the box [m]
 };
 
-// Uniform numbers that are the same on every machine and library.
-class Dice {
+// Uniformly distributed random numbers that are the same on every machine and library.
+class UniformNumbers {
  public:
-  explicit Dice(std::uint64_t seed) : engine_(seed) {}
+  explicit UniformNumbers(std::uint64_t seed) : engine_(seed) {}
   double between(double low, double high) {
     return low + (high - low) * 0x1p-53 * static_cast<double>(engine_() >> 11);
   }
@@ -31,51 +31,40 @@ class Dice {
 };
 
 struct AtRest {
-  static constexpr const char* key = "rest";
-  Vec3 place(const Vec3& rest, const RestFrame&, Dice&) const { return rest; }
+  Vec3 place(const Vec3& rest, const RestFrame&, UniformNumbers&) const { return rest; }
 };
 
 struct Stretched {
-  static constexpr const char* key = "stretch";
   Vec3 factors;
-  static Stretched read(const ConfigTable& table);
-  Vec3 place(const Vec3& rest, const RestFrame& frame, Dice&) const;
+  Vec3 place(const Vec3& rest, const RestFrame& frame, UniformNumbers&) const;
 };
 
 struct Rotated {
-  static constexpr const char* key = "turn_deg";
   Mat3 rotation;
-  static Rotated read(const ConfigTable& table);
-  Vec3 place(const Vec3& rest, const RestFrame& frame, Dice&) const;
+  Vec3 place(const Vec3& rest, const RestFrame& frame, UniformNumbers&) const;
 };
 
-struct Twisted {  // about the longest axis of the box, by the angle from end to end
-  static constexpr const char* key = "twist_deg";
+// Turned about the longest axis of the box, by this angle from one end to the other.
+struct Twisted {
   double degrees;
-  static Twisted read(const ConfigTable& table);
-  Vec3 place(const Vec3& rest, const RestFrame& frame, Dice&) const;
+  Vec3 place(const Vec3& rest, const RestFrame& frame, UniformNumbers&) const;
 };
 
-struct Random {  // every vertex anywhere in a box around the centre
-  static constexpr const char* key = "random";
+// Every vertex is put anywhere in a box around the centre.
+struct Random {
   Vec3 extent;  // [m]
-  static Random read(const ConfigTable& table);
-  Vec3 place(const Vec3& rest, const RestFrame& frame, Dice& dice) const;
+  Vec3 place(const Vec3& rest, const RestFrame& frame, UniformNumbers& numbers) const;
 };
 
-struct Flattened {  // onto the ground plane's direction, a line along x, or a point
-  static constexpr const char* key = "flatten";
+// Pressed onto a level plane, a line along x, or a point.
+struct Flattened {
   Vec3 kept;  // 1 for the coordinates that stay
-  static Flattened read(const ConfigTable& table);
-  Vec3 place(const Vec3& rest, const RestFrame& frame, Dice&) const;
+  Vec3 place(const Vec3& rest, const RestFrame& frame, UniformNumbers&) const;
 };
 
 using StartDef = std::variant<AtRest, Stretched, Rotated, Twisted, Random, Flattened>;
 
-// The table `start` of a body; rest without it.
-StartDef read_start(const ConfigTable& body);
-
-// All points of a body where it starts. The dice follow from the scene's seed and the body's name.
+// Where all points of a body start. The random numbers follow from the scene's seed and the body's name.
 Positions start_positions(const StartDef& start, const Positions& rest, std::uint64_t seed, const std::string& body);
 
 }  // namespace supple

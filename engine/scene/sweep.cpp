@@ -19,7 +19,7 @@ void check_paths(const SweepDef& sweep, Config& config) {
   for (const PathList& axis : sweep.axes) {
     if (!seen.insert(axis.path).second) complain(axis, fmt::format("'{}' is listed twice", axis.path));
     if (axis.path == "sweep" || axis.path.starts_with("sweep.")) complain(axis, "a sweep cannot vary itself");
-    if (sweep.mode == SweepDef::Mode::list && axis.values.size() != sweep.axes.front().values.size())
+    if (sweep.mode == SweepMode::list && axis.values.size() != sweep.axes.front().values.size())
       complain(axis, fmt::format("{}: {} values; '{}' has {}, and in mode \"list\" all have the same number", axis.path,
                                  axis.values.size(), sweep.axes.front().path, sweep.axes.front().values.size()));
   }
@@ -50,7 +50,7 @@ std::string point_text(const SweepDef& sweep, std::size_t point) {
   return text;
 }
 
-// What is wrong with the scene of one point.
+// The problems of the scene at one point.
 std::vector<Problem> problems_of_point(const Config& base, const SweepDef& sweep, std::size_t point) {
   try {
     Config config = base.copy();
@@ -66,18 +66,18 @@ std::vector<Problem> problems_of_point(const Config& base, const SweepDef& sweep
 
 std::size_t SweepDef::points() const {
   if (axes.empty()) return 0;
-  if (mode == Mode::list) return axes.front().values.size();
+  if (mode == SweepMode::list) return axes.front().values.size();
   std::size_t count = 1;
   for (const PathList& axis : axes) {
     count *= axis.values.size();
-    if (count > most_sweep_points) return most_sweep_points + 1;  // as good as any, and cannot overflow
+    if (count > most_sweep_points) return most_sweep_points + 1;  // too many in any case; counting on could overflow
   }
   return count;
 }
 
 std::vector<std::size_t> SweepDef::choice(std::size_t point) const {
   std::vector<std::size_t> chosen(axes.size(), point);
-  if (mode == Mode::list) return chosen;
+  if (mode == SweepMode::list) return chosen;
   for (std::size_t a = axes.size(); a-- > 0;) {
     chosen[a] = point % axes[a].values.size();
     point /= axes[a].values.size();
@@ -97,10 +97,9 @@ SweepDef read_sweep(const ConfigTable& root) {
   const auto table =
       root.table({"sweep", "", "the scene with other values, point by point; only `supple sweep` uses it"});
   if (!table) return sweep;
-  const std::string mode = table->choice(
+  sweep.mode = table->word<SweepMode>(
       {"mode", "", "grid: every combination, the first path slowest; list: the first values, the second ones, ..."},
-      "grid", {"grid", "list"});
-  sweep.mode = mode == "list" ? SweepDef::Mode::list : SweepDef::Mode::grid;
+      SweepMode::grid);
   const auto values = table->table(
       {"values", "", "lists of values by path, the paths as in --set: \"body.soft.material.mu\" = [1e4, 4e4]"},
       "required");

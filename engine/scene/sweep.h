@@ -1,5 +1,5 @@
-// A sweep: one scene with other values in some places, point by point. The [sweep] table of a scene file says which;
-// here they are counted and put into the scene. Nothing here runs anything.
+// A sweep: one scene with other values in some places, point by point. The [sweep] table of a scene file lists the
+// values; here the points are counted, and their values are put into the scene. Nothing here simulates.
 #pragma once
 
 #include "scene/config.h"
@@ -9,29 +9,38 @@ namespace supple {
 
 constexpr std::size_t most_sweep_points = 100000;
 
+enum class SweepMode {
+  grid,  // every combination of the lists' values
+  list,  // the lists side by side: their first values, their second ones, ...
+};
+template <>
+struct Names<SweepMode> {
+  static constexpr std::array table = {Name{SweepMode::grid, "grid"}, Name{SweepMode::list, "list"}};
+};
+
 struct SweepDef {
-  enum class Mode { grid, list } mode = Mode::grid;  // every combination; or the lists side by side
-  std::vector<PathList> axes;                        // in the order of the file; of a grid the last one varies fastest
+  SweepMode mode = SweepMode::grid;
+  std::vector<PathList> axes;  // in the order of the file; of a grid the last one varies fastest
 
   std::size_t points() const;  // 0 without axes
-  // Of a point: which value of each axis.
+  // The index of the value of each axis at a point.
   std::vector<std::size_t> choice(std::size_t point) const;
-  // Of a point: the values as people read them, an axis each.
+  // The value of each axis at a point, as people read it.
   std::vector<std::string> values(std::size_t point) const;
 };
 
-// The [sweep] table of a scene; one without axes where there is none. Problems are recorded in the config.
+// Reads the [sweep] table of a scene. Without that table the result has no axes. Problems are recorded in the config.
 SweepDef read_sweep(const ConfigTable& root);
 
-// Loads a file's sweep after "path=value" settings, which must leave what the sweep varies alone. Throws InputError:
-// also when the scene as it stands cannot be read, and when it has no sweep.
+// Loads the sweep of a file after "path=value" settings, which must not set a value that the sweep varies. Throws
+// InputError, also when the scene itself cannot be read and when it has no sweep.
 SweepDef load_sweep(const std::filesystem::path& path, const std::filesystem::path& assets,
                     const std::vector<std::string>& settings);
 
-// Puts a point's values into a scene's document, and takes its sweep off. Throws InputError where a path is refused.
+// Puts the values of a point into a scene's document, and removes its sweep. Throws InputError when a path is refused.
 void put_sweep_point(Config& config, std::size_t point);
 
-// The document of a point's scene, as run.json has it.
+// The document of the scene at a point, as it is written to run.json.
 std::string sweep_point_json(const std::filesystem::path& path, const std::filesystem::path& assets,
                              const std::vector<std::string>& settings, const SweepDef& sweep, std::size_t point);
 

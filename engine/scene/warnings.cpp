@@ -11,12 +11,25 @@ Problem at(const Problem& place, std::string message) {
   return {place.source, place.line, place.column, std::move(message)};
 }
 
-// Laws in F alone and springs have no force across a body that is flat in two directions: it would stay so.
+// Whether a body starts as a line or a point, and has a material whose forces cannot leave it: laws in F alone and
+// springs have no force across a body that is flat in two directions.
 bool stays_flat(const Body& body) {
   const auto* flat = std::get_if<Flattened>(&body.def.start);
   if (flat == nullptr || flat->kept.sum() > 1.5) return false;
   return body.def.cloth ||
          std::visit([](const auto& m) { return m.needs == Needs::gradient; }, body.def.substance.material);
+}
+
+// Warns of a delay that leaves no iteration to be accelerated.
+void warn_of_delay(const Body& body, std::vector<Problem>& list) {
+  const SolverDef& solver = body.def.solver;
+  const int delay = solver.settings.chebyshev.delay, iterations = solver.settings.iterations;
+  if (solver.method.acceleration != Acceleration::chebyshev || delay < iterations) return;
+  list.push_back(at(body.def.place,
+                    fmt::format("body '{}' is solved by chebyshev, whose acceleration begins after {} iterations, and "
+                                "a step has {}: this is projective-dynamics; make chebyshev_delay smaller than "
+                                "iterations",
+                                body.def.name, delay, iterations)));
 }
 
 void warn_of_substance(const Body& body, std::vector<Problem>& list) {
@@ -44,7 +57,7 @@ double crossing_number(const Body& body) {
   double stiffness =
       system_stiffness(body.def.substance.material, body.def.solver.fit).k + body.def.substance.fibre.kappa;
   double density = body.description.density;
-  if (body.def.cloth) {  // a sheet: tension by width over mass by area
+  if (body.def.cloth) {  // for a sheet: tension by width, over mass by area
     const std::vector<double>& points = body.description.point_mass;
     const std::vector<double> areas = vertex_areas({body.description.mesh.rest, body.cloth.surface.triangles});
     stiffness = body.def.cloth->stretch;
@@ -92,6 +105,7 @@ std::vector<Problem> warnings(const SceneDef& scene, const std::vector<Body>& bo
                                                     body.def.name, body.def.solver.settings.iterations, crossing)));
     }
     warn_of_substance(body, list);
+    warn_of_delay(body, list);
     for (const Body& other : bodies) {
       if (&other == &body) break;
       const Bounds b = bounds_of(other.description.mesh.rest);

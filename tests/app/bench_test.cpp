@@ -64,7 +64,7 @@ TEST(Bench, TheReferenceIsBelowEveryMethodsEnd) {
   SolverComparison comparison(subject, threads);
   const BenchState state = states_of(subject, {20}, folder.path, threads).front();
   std::vector<SolverEntry> entries;
-  for (const MethodInfo& info : methods) entries.push_back({std::string(info.name), info.method, 40});
+  for (const Method& method : compared_methods()) entries.push_back({name_of(method), method, 40});
   const std::vector<Outcome> outcomes = comparison.run(state, entries, 0);
   const Minimum lowest = comparison.reference(state, outcomes);
   for (const Outcome& outcome : outcomes) {
@@ -94,6 +94,21 @@ TEST(Bench, SectionsSurviveTheirFiles) {
   EXPECT_TRUE(back->plots[0].series[0].thick);
   EXPECT_FALSE(read_section(folder.path / "s.json", "another machine"));
   EXPECT_FALSE(read_section(folder.path / "none.json", "this machine"));
+}
+
+// At the default ten iterations, with the default delay and radius.
+TEST(Bench, ChebyshevIsNearerToTheMinimumThanProjectiveDynamicsOnTheTwistingBar) {
+  const TemporaryFolder folder;
+  Subject subject({"twisting-bar", "bar", {"body.bar.box.cells=[14, 5, 5]"}});
+  Threads threads(1);
+  SolverComparison comparison(subject, threads);
+  for (const BenchState& state : states_of(subject, {40, 70, 100}, folder.path, threads)) {
+    const std::vector<Outcome> outcomes = comparison.run(
+        state, {{"chebyshev", Method::chebyshev}, {"projective dynamics", Method::projective_dynamics}}, 0);
+    EXPECT_GT((outcomes[0].x - outcomes[1].x).cwiseAbs().maxCoeff(), 0);
+    const double whole = comparison.reference(state, outcomes).below_y;
+    EXPECT_LT(last_error(outcomes[0], whole), 0.8 * last_error(outcomes[1], whole)) << "frame " << state.frame;
+  }
 }
 
 // Table II: our matrix does not see how a body is turned, the rest pose's does.

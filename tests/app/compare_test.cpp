@@ -76,7 +76,7 @@ TEST(PointCache, RefusesDamagedFilesByName) {
   EXPECT_EQ(refusal(other), "is of version 2; this program reads version 1");
   other = whole;
   other[31] = char(0x80);
-  EXPECT_TRUE(refusal(other).starts_with("is damaged: its header tells 2 points and -"));
+  EXPECT_TRUE(refusal(other).starts_with("is damaged: its header says 2 points and -"));
   other = whole;
   const float nan = std::numeric_limits<float>::quiet_NaN();
   std::memcpy(other.data() + 32 + 24 + 4, &nan, 4);

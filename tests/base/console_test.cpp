@@ -1,4 +1,4 @@
-// Colour on the terminal: which words, and when not at all.
+// Tests colour on the terminal: which words are coloured, and when none are.
 #include "base/console.h"
 
 #include <fcntl.h>
@@ -25,7 +25,7 @@ TEST(Console, ColoursTerminalsAloneAndOnlyThoseThatWantIt) {
   EXPECT_FALSE(may_colour(true, nullptr, nullptr));
 }
 
-// What the other end of a terminal gets to read.
+// Returns what the other end of a terminal reads.
 std::string seen_on_terminal(const char* text) {
   const int reading = posix_openpt(O_RDWR | O_NOCTTY);
   if (reading < 0 || grantpt(reading) != 0 || unlockpt(reading) != 0) return "no terminal";

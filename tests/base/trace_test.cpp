@@ -78,7 +78,7 @@ TEST(Trace, KeepsWhatBeganWhileItWasOnAndNothingElse) {
     const Zone open("open");
     EXPECT_TRUE(stop_trace().empty());
   }
-  start_trace();  // what ended after the last trace is not in this one
+  start_trace();  // zones that end after the last trace are not in this one
   { const Zone zone("zone"); }
   threads = stop_trace();
   ASSERT_EQ(threads.size(), 1u);
@@ -86,7 +86,7 @@ TEST(Trace, KeepsWhatBeganWhileItWasOnAndNothingElse) {
 }
 
 TEST(Trace, TakesEveryZoneOfEveryThreadAlsoOfThoseThatHaveEnded) {
-  constexpr int zones = 10000;  // more than a chunk
+  constexpr int zones = 10000;  // more than one chunk of events
   start_trace();
   std::vector<std::thread> threads;
   for (int t = 1; t <= 3; ++t) {
@@ -135,7 +135,7 @@ TEST(Trace, WorkersSayForWhichZoneTheyWork) {
     Threads threads(2);
     const Zone zone("evaluate");
     std::atomic<int> inside{0};
-    // Neither of two chunks ends before both have begun: so the worker has one.
+    // Neither of the two chunks ends before both have begun, so one of them is the worker's.
     threads.run(2, [&](int) {
       ++inside;
       while (inside.load() < 2) std::this_thread::yield();

@@ -1,5 +1,5 @@
-// Second derivatives: elements and the assembled matrix against differences of the gradient, projections against a
-// dense eigenvalue clamp, and the directions that are made of them.
+// Tests second derivatives: elements and the assembled matrix against differences of the gradient, projections against
+// a dense eigenvalue clamp, and the directions that are computed from them.
 #include "baselines/hessian.h"
 
 #include <fmt/format.h>
@@ -22,25 +22,26 @@ Eigen::MatrixXd full(const SparseMatrix& lower) {
   return dense;
 }
 
-// The Hessian of g by central differences of its gradient, in steps of `step`.
+// Computes the Hessian of g by central differences of its gradient, in steps of `step`.
 Eigen::MatrixXd by_differences(const Model& model, Workspace& w, double step) {
   const int count = 3 * model.free;
   Eigen::MatrixXd hessian(count, count);
-  const Positions x = w.x;
-  Positions plus(model.free, 3), minus(model.free, 3);
+  const Positions x = w.current.x;
+  w.trial.contacts = w.current.contacts;
   for (int i = 0; i < count; ++i) {
-    w.trial = x;
-    w.trial.data()[i] += step;
-    evaluate(model, w, w.trial, w.trial_energy, &plus, nullptr, nullptr);
-    w.trial.data()[i] -= 2 * step;
-    evaluate(model, w, w.trial, w.trial_energy, &minus, nullptr, nullptr);
-    const Positions difference = (plus - minus) / (2 * step);
+    w.trial.x = x;
+    w.trial.x.data()[i] += step;
+    evaluate(model, w, w.trial, Wanted::gradient);
+    const Positions plus = w.trial.gradient;
+    w.trial.x.data()[i] -= 2 * step;
+    evaluate(model, w, w.trial, Wanted::gradient);
+    const Positions difference = (plus - w.trial.gradient) / (2 * step);
     hessian.col(i) = Eigen::Map<const Eigen::VectorXd>(difference.data(), count);
   }
   return 0.5 * (hessian + hessian.transpose());
 }
 
-// One tetrahedron, its first vertex held, at a given deformation gradient.
+// Sets up one tetrahedron at a given deformation gradient; its first vertex is held.
 struct OneTetrahedron {
   explicit OneTetrahedron(const Material& material, const Fibre& fibre = {}) {
     BodyDescription body;
@@ -51,7 +52,7 @@ struct OneTetrahedron {
     body.mesh.tets << 0, 1, 2, 3;
     body.materials = {material};
     if (fibre.kappa > 0) body.fibres = {fibre};
-    body.density = 1e-6;  // inertia must not hide what the element does
+    body.density = 1e-6;  // so low that inertia does not hide what the element does
     body.time_step = 1;
     body.handles = {{"corner", {0}, 0}};
     model = build_model(body);
@@ -60,14 +61,14 @@ struct OneTetrahedron {
   }
   void deform(const Mat3& f) {
     const Vec3 corner = model.rest.row(3);
-    for (int v = 0; v < 4; ++v) w.x.row(v) = (corner + f * (Vec3(model.rest.row(v)) - corner)).transpose();
+    for (int v = 0; v < 4; ++v) w.current.x.row(v) = (corner + f * (Vec3(model.rest.row(v)) - corner)).transpose();
   }
   Model model;
   Workspace w;
 };
 
-// A difference over a kink of a formula says nothing; seams of materials are measure zero, cancelling stretches are not
-// met by these kinds.
+// A difference across a kink of a formula says nothing. The seams of materials have measure zero, and these kinds of
+// deformation have no cancelling stretches.
 TEST(Hessian, OfEveryMaterialIsTheDerivativeOfItsGradient) {
   std::mt19937 random(1);
   for (const Material& material : test::all_materials()) {
@@ -98,7 +99,8 @@ TEST(Hessian, ProjectionIsTheNearestPositiveSemidefiniteMatrix) {
   std::mt19937 random(2);
   for (const Material& material : test::all_materials()) {
     OneTetrahedron subject(material);
-    // The clamp is of the density's Hessian over F: with rest edges along the axes, F's entries are the corners' own.
+    // The clamp is that of the density's Hessian over F: with rest edges along the axes, F's entries are the corners'
+    // own coordinates.
     BodyDescription unit;
     unit.name = "unit";
     unit.mesh.rest.resize(4, 3);
@@ -151,7 +153,7 @@ TEST(Hessian, OfAWholeBodyIsTheDerivativeOfItsGradient) {
       FrameInputs inputs = test::still_inputs(model);
       inputs.middle_targets = inputs.targets;
       begin_step(model, inputs, state, w);
-      w.x.topRows(model.free) = test::shaken(w.x, 0.01, 3).topRows(model.free);
+      w.current.x.topRows(model.free) = test::shaken(w.current.x, 0.01, 3).topRows(model.free);
       HessianMatrix hessian(model);
       hessian.assemble(model, w, false);
       const Eigen::MatrixXd found = by_differences(model, w, 1e-6);
@@ -170,12 +172,12 @@ TEST(Hessian, OfSpringsAndContactsIsTheDerivativeOfTheGradient) {
   const State state = rest_state(model);
   const FrameInputs inputs = test::still_inputs(model);
   begin_step(model, inputs, state, w);
-  w.x = test::shaken(w.x, 0.02, 5);
+  w.current.x = test::shaken(w.current.x, 0.02, 5);
   w.contact.stick_length = 1e-3;
   for (int v = 0; v < 5; ++v) {
     Contact contact{v, 0, Vec3(0.6, 0, 0.8), 0, 1e3, 0.01};
-    contact.offset = contact.normal.dot(w.x.row(v)) + 0.01;  // in it
-    w.contact.found.push_back(contact);
+    contact.offset = contact.normal.dot(w.current.x.row(v)) + 0.01;  // the vertex lies inside the plane
+    w.current.contacts.push_back(contact);
   }
   HessianMatrix hessian(model);
   hessian.assemble(model, w, false);
@@ -202,7 +204,7 @@ TEST(Hessian, SystemMatrixIsWhatTheModelHasFactored) {
   }
 }
 
-// Every method, given time, comes to where ours comes, or says that it fell behind.
+// Given enough iterations, every method reaches the minimum that ours reaches.
 TEST(Methods, AllReachTheMinimumOfOneStep) {
   const Model model = build_model(test::bar(NeoHookean{2e4, 4e4}, Held::hard_end, Precision::double_precision, 2));
   FrameInputs inputs = test::still_inputs(model);
@@ -213,19 +215,63 @@ TEST(Methods, AllReachTheMinimumOfOneStep) {
   State solved = before;
   Workspace w;
   const double lowest = step(model, inputs, solved, w).objective.back();
-  for (const MethodInfo& info : methods) {
-    const auto rule = make_rule(info.method, model);
+  for (const Method& method : compared_methods()) {
+    const std::string name = name_of(method);
+    const auto rule = make_rule(method, model);
     FrameInputs own = inputs;
-    own.solver = settings_of(info.method, own.solver);
+    own.solver = settings_of(method, own.solver);
     own.solver.line_search = LineSearch::armijo;
     State after = before;
     Workspace scratch;
     const StepReport& report = step(model, own, after, scratch, *rule);
-    ASSERT_FALSE(report.failed) << info.name;
-    EXPECT_NEAR(report.objective.back(), lowest, 1e-9 * (report.objective.front() - lowest)) << info.name;
-    EXPECT_LT((after.x - solved.x).cwiseAbs().maxCoeff(), 1e-6 * model.size) << info.name;
-    fmt::print("{:24} {:5} iterations, {:5} trials\n", info.name, report.iterations, report.line_search);
+    ASSERT_FALSE(report.failed) << name;
+    EXPECT_NEAR(report.objective.back(), lowest, 1e-9 * (report.objective.front() - lowest)) << name;
+    EXPECT_LT((after.x - solved.x).cwiseAbs().maxCoeff(), 1e-6 * model.size) << name;
+    fmt::print("{:24} {:5} iterations, {:5} trials\n", name, report.iterations, report.line_search);
   }
+}
+
+// Each entry of the table of forms that compared_methods() does not have: a matrix by itself.
+TEST(Methods, EveryCombinationOfPartsReachesTheMinimum) {
+  const Model model = build_model(test::bar(NeoHookean{2e4, 4e4}, Held::hard_end, Precision::double_precision, 2));
+  FrameInputs inputs = test::still_inputs(model);
+  inputs.solver.iterations = 5000;
+  State before = rest_state(model);
+  before.x.topRows(model.free) = test::shaken(before.x, 0.01, 7).topRows(model.free);
+  State solved = before;
+  Workspace w;
+  const double lowest = step(model, inputs, solved, w).objective.back();
+  int count = 0;
+  for (const MethodForm& form : method_forms) {
+    for (const Preconditioner preconditioner : form.preconditioner) {
+      for (const Acceleration acceleration : form.acceleration) {
+        for (const Safeguard safeguard : form.safeguard) {
+          const Method method{form.matrix,  form.linear, form.linear == LinearSolver::cg ? 7 : 0, 0, preconditioner,
+                              acceleration, safeguard};
+          const auto rule = make_rule(method, model);
+          FrameInputs own = inputs;
+          own.solver = settings_of(method, own.solver);
+          own.solver.line_search = LineSearch::armijo;
+          State after = before;
+          Workspace scratch;
+          const StepReport& report = step(model, own, after, scratch, *rule);
+          ASSERT_FALSE(report.failed) << name_of(method);
+          EXPECT_NEAR(report.objective.back(), lowest, 1e-8 * (report.objective.front() - lowest)) << name_of(method);
+          ++count;
+        }
+      }
+    }
+  }
+  EXPECT_EQ(count, 24);
+}
+
+TEST(Methods, PartsThatDoNotGoTogetherMakeNoRule) {
+  const Model model = build_model(test::bar(NeoHookean{2e4, 4e4}, Held::hard_end, Precision::double_precision, 2));
+  EXPECT_THROW((void)make_rule({.matrix = StartMatrix::identity, .linear = LinearSolver::cg}, model), InputError);
+  EXPECT_THROW((void)make_rule({.matrix = StartMatrix::hessian, .acceleration = Acceleration::none}, model),
+               InputError);
+  EXPECT_THROW((void)make_rule({.linear = LinearSolver::cg, .preconditioner = Preconditioner::jacobi}, model),
+               InputError);
 }
 
 TEST(Methods, NewtonConvergesQuadratically) {
@@ -242,7 +288,7 @@ TEST(Methods, NewtonConvergesQuadratically) {
   EXPECT_EQ(report.stop_reason, StopReason::round_off);
 }
 
-// Nocedal and Wright 2006, equations 3.7.
+// The conditions are those of Nocedal and Wright 2006, equations 3.7.
 TEST(LineSearch, WolfeStepsSatisfyBothConditions) {
   const Model model = build_model(test::bar(NeoHookean{2e4, 4e4}, Held::hard_end, Precision::double_precision, 2));
   FrameInputs inputs = test::still_inputs(model);
@@ -255,7 +301,7 @@ TEST(LineSearch, WolfeStepsSatisfyBothConditions) {
   ASSERT_GT(report.iterations, 5);
   for (std::size_t k = 1; k < report.objective.size(); ++k) EXPECT_LT(report.objective[k], report.objective[k - 1]);
   for (const IterationRecord& record : report.history) {
-    if (record.alpha == 0) continue;  // a new start from where the body was
+    if (record.alpha == 0) continue;  // the step began again from the body's last position
     EXPECT_GT(record.alpha, 0);
     const bool full_step_does = record.full.decreases && std::abs(record.full.slope_ratio) <= 0.9;
     EXPECT_TRUE(!full_step_does || record.alpha == 1);

@@ -1,4 +1,4 @@
-// Cloth: which vertices are joined, on grids and on any triangle mesh; surfaces read from files.
+// Tests cloth: which vertices are joined, on grids and on any triangle mesh, and surfaces read from files.
 #include "geometry/cloth.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ TEST(Cloth, GridsAlternateTheirDiagonalsAndSkipOneVertexToBend) {
   };
   for (const VertexPair& edge : cloth.edges) EXPECT_NEAR(length(edge), 2, 1e-12);
   for (const VertexPair& bend : cloth.bends) EXPECT_NEAR(length(bend), 4, 1e-12);
-  // Neighbouring cells' diagonals lean to different sides.
+  // The diagonals of neighbouring cells lean to different sides.
   const auto leans_right = [&](const VertexPair& d) {
     const Eigen::RowVector3d across = cloth.surface.points.row(d[1]) - cloth.surface.points.row(d[0]);
     return across.x() * across.y() > 0;
@@ -44,7 +44,7 @@ TEST(Cloth, OfATriangleMeshJoinsEdgesOnceAndFarCornersAcrossThem) {
   const TetMesh box = box_mesh(Vec3(1, 1, 1), Eigen::Vector3i(2, 2, 2));
   const Triangles faces = boundary_faces(box.tets);
   const ClothMesh cloth = cloth_of({box.rest, faces});
-  EXPECT_EQ(cloth.edges.size(), static_cast<std::size_t>(faces.rows()) * 3 / 2);  // closed: each edge of two triangles
+  EXPECT_EQ(cloth.edges.size(), static_cast<std::size_t>(faces.rows()) * 3 / 2);  // two triangles share each edge
   EXPECT_EQ(cloth.bends.size(), cloth.edges.size());
   EXPECT_TRUE(cloth.diagonals.empty());
   const std::set<VertexPair> unique(cloth.edges.begin(), cloth.edges.end());
@@ -85,14 +85,14 @@ TEST(Skin, KeepsCreasesSharpAndPrintsSquaresAlongTheFaces) {
   const TetMesh box = box_mesh(Vec3(2, 1, 1), Eigen::Vector3i(4, 2, 2));
   std::vector<std::int32_t> vertex_of;
   const Skin skin = skin_of_surface(box.rest, boundary_faces(box.tets), 0.5, vertex_of);
-  // Each of the six faces has vertices of its own: 2 of 5 x 3, 2 of 5 x 3, 2 of 3 x 3.
+  // Each of the six faces has its own vertices: 2 of 5 x 3, 2 of 5 x 3, 2 of 3 x 3.
   EXPECT_EQ(skin.rest.points.rows(), 2 * 15 + 2 * 15 + 2 * 9);
   ASSERT_EQ(skin.square.size(), vertex_of.size());
   for (std::size_t v = 0; v < vertex_of.size(); ++v) {
     EXPECT_EQ(skin.rest.points.row(v), box.rest.row(vertex_of[v]));
     for (const float at : skin.square[v]) EXPECT_NEAR(at, std::round(at), 1e-5);  // cells of 0.5 m are squares of 0.5 m
   }
-  // Cloth is flat: nothing is doubled.
+  // Cloth is flat, so no vertex is doubled.
   const ClothMesh cloth = cloth_grid({1, 1}, {3, 3});
   EXPECT_EQ(skin_of_surface(cloth.surface.points, cloth.surface.triangles, 0, vertex_of).rest.points.rows(), 16);
 }

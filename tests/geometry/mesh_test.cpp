@@ -1,4 +1,4 @@
-// Shapes, tetrahedra made from them, mesh files as untrusted input, embedded skins.
+// Tests shapes, tetrahedra made from them, mesh files as untrusted input, and embedded skins.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -25,7 +25,7 @@ Shape shape_of(const Primitive& primitive) {
 Shape squirrel() { return load_shape(test::assets / "shapes" / "squirrel.toml", test::assets); }
 
 TEST(Shape, PrimitivesAreExactDistancesOutsideTheirSurface) {
-  // Walking a distance field by its own value lands on the surface, and its slope is 1.
+  // A walk along a distance field by the field's own value ends on the surface, and the field's slope is 1.
   std::mt19937 random(2);
   std::uniform_real_distribution<double> uniform(-2, 2);
   const Primitive primitives[] = {Sphere{0.7},
@@ -233,7 +233,7 @@ TEST(Skin, LiesOnTheSurfaceAndFollowsItsElements) {
   Positions found;
   apply(embedding, moved, found);
   EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 1e-10);
-  EXPECT_GT(embedding.weights.minCoeff(), -3.0);  // nothing hangs far outside its element
+  EXPECT_GT(embedding.weights.minCoeff(), -3.0);  // no vertex lies far outside its element
   for (const float open : skin.occlusion) EXPECT_TRUE(open >= 0 && open <= 1);
 }
 

@@ -1,5 +1,5 @@
-// Closest points of shapes: on the zero set, with the field's distance and slope, for every primitive and for what is
-// made of them; against brute force where the field is no distance.
+// Tests closest points of shapes: they lie on the zero set, at the field's distance and along its slope, for every
+// primitive and every combination; where the field is no distance, they are compared with brute force.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -78,7 +78,7 @@ const std::pair<const char*, Primitive> exact_primitives[] = {
     {"group of one", ball_in_group},
 };
 
-// Every primitive whose field is its distance; as it is, and scaled, turned and moved.
+// Lists every primitive whose field is its distance, both as it is and scaled, turned and moved.
 std::vector<NamedShape> exact_shapes() {
   std::vector<NamedShape> shapes;
   for (const auto& [name, primitive] : exact_primitives) {
@@ -89,7 +89,7 @@ std::vector<NamedShape> exact_shapes() {
   return shapes;
 }
 
-// Of a field that isn't the distance, without edges where two surfaces meet.
+// Lists shapes whose field isn't the distance, without edges where two surfaces meet.
 std::vector<NamedShape> smooth_shapes() {
   const Ellipsoid egg{Vec3(0.9, 0.6, 0.4)};
   ShapePart pair = scaled_and_askew(egg, 0.5);
@@ -111,7 +111,7 @@ std::vector<NamedShape> smooth_shapes() {
        shape_of({part_of(Sphere{0.8}), moved(part_of(Torus{0.8, 0.5}, Combine::intersect, 0.3), Vec3(0.3, 0, 0))})}};
 }
 
-// With edges.
+// Lists such shapes with edges.
 std::vector<NamedShape> edged_shapes() {
   ShapePart pair = scaled_and_askew(Box{Vec3(0.4, 0.3, 0.2), 0}, 1.2);
   pair.mirror_x = true;
@@ -148,7 +148,8 @@ TEST(ShapeClosest, OfExactShapesIsOnTheZeroSetAtTheFieldsDistanceAlongTheNormal)
   }
 }
 
-// With a point of the surface at that distance, this makes it the distance.
+// A point of the surface lies at the distance found; if that changes no faster than the query moves, no point is
+// nearer.
 TEST(ShapeClosest, DistancesOfExactShapesNeverChangeFasterThanTheirPointMoves) {
   for (const auto& [name, shape] : exact_shapes()) {
     std::mt19937 random(2);
@@ -161,8 +162,8 @@ TEST(ShapeClosest, DistancesOfExactShapesNeverChangeFasterThanTheirPointMoves) {
   }
 }
 
-// A thousandth above the surface, or below it where the query is: edges have a slope there, though one that turns by a
-// step's thousandfold.
+// The slope is taken a thousandth above the surface, or below it for a query inside. There the field has a slope even
+// near an edge, though one that turns by up to a thousand times the step.
 TEST(ShapeClosest, NormalsOfExactShapesAreTheFieldsSlope) {
   constexpr double above = 1e-3, step = 1e-6;
   for (const auto& [name, shape] : exact_shapes()) {
@@ -203,7 +204,7 @@ TEST(ShapeClosest, OfSmoothShapesIsOnTheZeroSetAndItsNormalLeadsToThePoint) {
       off_surface = std::max(off_surface, std::abs(shape.distance(found.point)));
       off_distance = std::max(off_distance, std::abs(std::abs(found.distance) - (p - found.point).norm()));
       off_line = std::max(off_line, (found.point + found.distance * found.normal - p).norm());
-      // Just above the surface: on it an ellipsoid's field has a kink.
+      // The query lies just above the surface, because an ellipsoid's field has a kink on it.
       const Vec3 above = found.point + 1e-5 * found.normal;
       off_slope = std::max(off_slope, (shape.gradient(above, 1e-6).normalized() - found.normal).norm());
       off_unit = std::max(off_unit, std::abs(found.normal.norm() - 1));
@@ -281,12 +282,12 @@ TEST(ShapeClosest, OfAnEllipsoidNoSampleOfTheSurfaceIsCloser) {
     const Ellipsoid ellipsoid{radii};
     const Shape shape = shape_of({part_of(ellipsoid)});
     const Positions surface = sampled(ellipsoid, 240, 120);
-    const double curvature_radius = std::pow(radii.minCoeff(), 2) / radii.maxCoeff();  // the smallest
+    const double curvature_radius = std::pow(radii.minCoeff(), 2) / radii.maxCoeff();  // the smallest one
     std::mt19937 random(6);
     double worst = -1, off_surface = 0;
     int inside = 0, outside = 0;
     while (inside < 60 || outside < 300) {
-      // Half of the queries close to the surface.
+      // Half of the queries lie close to the surface.
       Vec3 p = random_in(random, 2 * radii);
       if (outside % 2)
         p *= (1 + std::uniform_real_distribution<double>(-0.1, 0.1)(random)) / p.cwiseQuotient(radii).norm();
@@ -379,7 +380,8 @@ TEST(ShapeClosest, HalfThicknessIsTheThinnestPartsAndNothingLongerHidesInIt) {
   EXPECT_EQ(shape_of({part_of(Sphere{0.8}), part_of(Sphere{0.9}, Combine::intersect)}).half_thickness(), 0);
 }
 
-// Centres, axes, corners and edges in the primitives' own frames, and places that are those but for the last bits.
+// Lists centres, axes, corners and edges in the primitives' own frames, and places that differ from these in the last
+// bits only.
 std::vector<Vec3> awkward_places(const Primitive& primitive) {
   std::vector<Vec3> places = {Vec3::Zero(),         Vec3(1e6, 0, 0),  Vec3(0, -1e6, 0), Vec3(0, 0, 1e6),
                               Vec3(-1e6, 1e6, 3e5), Vec3(0, 0.35, 0), Vec3(0, 0.7, 0),  Vec3(0, -2, 0)};

@@ -1,5 +1,5 @@
-// Surfaces as they come: put right, or refused with the triangle named; and files that are broken in every way, which
-// must neither end this process nor be taken.
+// Tests surfaces as they come: they are repaired, or refused with the triangle's name. Files that are broken in every
+// way must neither end this process nor be accepted.
 #include "geometry/surface_file.h"
 
 #include <fmt/format.h>
@@ -26,7 +26,7 @@ namespace {
 
 using Notes = std::vector<std::string>;
 
-// What is wrong, without the file's name; empty when nothing is.
+// Returns what is wrong, without the file's name, or nothing when all is well.
 template <class Call>
 std::string refusal(const Call& call) {
   try {
@@ -50,7 +50,7 @@ void expect_refusal(const std::string& found, const std::string& part) {
   EXPECT_NE(found.find(part), std::string::npos) << "found: '" << found << "', expected: '" << part << "'";
 }
 
-// Corners in order, whatever the vertices' numbers.
+// Compares the corners in order, whatever the numbers of the vertices.
 void expect_same_triangles(const TriMesh& found, const TriMesh& expected, double tolerance) {
   ASSERT_EQ(found.triangles.rows(), expected.triangles.rows());
   double worst = 0;
@@ -80,7 +80,7 @@ TEST(ClosedSurface, MergesEqualPositionsAndDropsUnusedVertices) {
       soup.triangles(t, k) = std::int32_t(3 * t + k);
     }
   }
-  soup.points.bottomRows(1).setConstant(std::numeric_limits<double>::quiet_NaN());  // nobody names it
+  soup.points.bottomRows(1).setConstant(std::numeric_limits<double>::quiet_NaN());  // no triangle names it
   Notes notes;
   const TriMesh found = closed_surface(soup, "soup", &notes);
   EXPECT_TRUE(notes.empty());
@@ -127,18 +127,18 @@ TEST(ClosedSurface, KeepsCavitiesAndUnitesWhatIsTurnedAlike) {
   EXPECT_NEAR(volume(shell), 1 - 0.125, 1e-12);
   EXPECT_NEAR(volume(core), 1 - 0.125 + 0.008, 1e-12);
   EXPECT_TRUE(notes.empty());
-  // The same files with all triangles the other way round.
+  // These are the same files with all triangles turned the other way round.
   EXPECT_NEAR(volume(test::inside_out(shell)), 1 - 0.125, 1e-12);
   EXPECT_NEAR(volume(test::inside_out(core)), 1 - 0.125 + 0.008, 1e-12);
   EXPECT_EQ(notes.size(), 2u);
-  // What most of a component's triangles say counts, not the first.
+  // The majority of a component's triangles decides, not the first one.
   TriMesh first_turned = shell;
   std::swap(first_turned.triangles(0, 1), first_turned.triangles(0, 2));
   EXPECT_NEAR(volume(first_turned), 1 - 0.125, 1e-12);
-  // In the box of a ring, yet outside of it: no cavity.
+  // A component in the box of a ring, yet outside the ring, is no cavity.
   const TriMesh ring = test::torus_surface(1, 0.4, 20, 10), ball_in_ring = test::inside_out(scaled(0.1));
   EXPECT_NEAR(volume(test::together(ring, ball_in_ring)), volume(ring) + 0.001, 1e-12);
-  // A solid inside a solid, a solid beside one, and one that only overlaps: all outward.
+  // A solid inside another, a solid beside another, and one that only overlaps it all face outward.
   EXPECT_NEAR(volume(test::together(ball, scaled(0.5))), 1.125, 1e-12);
   EXPECT_NEAR(volume(test::together(ball, test::moved(test::inside_out(scaled(0.5)), Vec3(3, 0, 0)))), 1.125, 1e-12);
   EXPECT_NEAR(volume(test::together(ball, test::moved(test::inside_out(scaled(0.5)), Vec3(0.8, 0, 0)))), 1.125, 1e-12);
@@ -158,13 +158,14 @@ TEST(ClosedSurface, RefusesWhatHasNoInsideAndNamesATriangle) {
   expect_refusal(refusal_of(test::without_triangle(box, 4)), "at triangle ");
   TriMesh sheet{box.points, Triangles{{0, 1, 5}, {0, 5, 4}}};
   expect_refusal(refusal_of(sheet), "the surface is open: holes of 100 % of its area, the largest at triangle 2 at (");
-  TriMesh cup = test::sphere_surface(1, 20, 10);  // the lower half
+  TriMesh cup = test::sphere_surface(1, 20, 10);  // only the lower half is kept
   cup.triangles.conservativeResize(180, 3);
   expect_refusal(refusal_of(cup), "the surface is open");
-  TriMesh tube = test::torus_surface(1, 0.2, 20, 10);  // three quarters of a ring: its ends' area vectors do not add up
+  // The area vectors at the ends of three quarters of a ring do not cancel.
+  TriMesh tube = test::torus_surface(1, 0.2, 20, 10);
   tube.triangles.conservativeResize(300, 3);
   expect_refusal(refusal_of(tube), "the surface is open");
-  // A good surface beside an open one does not hide it.
+  // A sound surface beside an open one does not hide it.
   expect_refusal(refusal_of(test::together(test::sphere_surface(100, 20, 10), sheet)), "at triangle 362 at (");
 
   TriMesh fin = box;
@@ -174,7 +175,7 @@ TEST(ClosedSurface, RefusesWhatHasNoInsideAndNamesATriangle) {
   fin.triangles.row(12) << 0, 1, 8;
   expect_refusal(refusal_of(fin), "three triangles or more share an edge, among them triangle 13 at (");
 
-  TriMesh strip{Positions(12, 3), Triangles(12, 3)};  // half a turn in six steps
+  TriMesh strip{Positions(12, 3), Triangles(12, 3)};  // a strip with half a turn in six steps
   for (int i = 0; i < 6; ++i) {
     const double s = i * std::numbers::pi / 3;
     const Vec3 out(std::cos(s), 0, std::sin(s)),
@@ -200,7 +201,7 @@ TEST(ClosedSurface, RefusesWhatHasNoInsideAndNamesATriangle) {
   expect_refusal(refusal_of(TriMesh{box.points, Triangles{{0, 0, 1}}}), "has no triangle with an area");
 }
 
-// The formats, written by hand.
+// These functions write the formats by hand.
 std::string obj_text(const TriMesh& mesh) {
   std::string text;
   for (Eigen::Index v = 0; v < mesh.points.rows(); ++v)
@@ -260,7 +261,7 @@ class SurfaceFile : public ::testing::Test {
     return folder_.path / name;
   }
 
-  // Broken bytes are refused in words or, by luck, still a closed surface; no child stays behind.
+  // Broken bytes are refused in words or happen to be a closed surface; no child process is left.
   void expect_survived(const std::string& name, const std::string& bytes) const {
     const std::string said = refusal_of(write(name, bytes));
     EXPECT_LT(said.size(), 400u);
@@ -336,7 +337,7 @@ TEST_F(SurfaceFile, SurvivesHeadersThatClaimGigabytes) {
 TEST_F(SurfaceFile, SurvivesTruncatedAndCorruptedFiles) {
   const std::string bytes = ply_bytes(ring_), text = ply_text(ring_);
   int cuts = 1;
-  expect_survived("cut.ply", bytes.substr(0, 100));  // in the header: assimp searches its end until time is up
+  expect_survived("cut.ply", bytes.substr(0, 100));  // cut in the header, whose end assimp seeks until its time is up
   for (std::size_t length = 172; length < bytes.size(); length += length < 300 ? 23 : 311, ++cuts)
     expect_survived("cut.ply", bytes.substr(0, length));
   for (std::size_t length = 165; length < text.size() - 20; length += 397, ++cuts)
@@ -369,7 +370,7 @@ TEST_F(SurfaceFile, AReaderThatCrashesHangsFailsOrFloodsIsRefusedAndGone) {
   EXPECT_EQ(says("kill -XCPU $$", {}), "takes too long to read");
   const auto start = std::chrono::steady_clock::now();
   EXPECT_EQ(says("exec sleep 100", {.seconds = 0.2}), "takes too long to read");
-  EXPECT_EQ(says("exec sleep 100 >&-", {.seconds = 0.2}), "takes too long to read");  // closed its output, yet lives
+  EXPECT_EQ(says("exec sleep 100 >&-", {.seconds = 0.2}), "takes too long to read");  // output closed, yet it lives
   EXPECT_EQ(says("exec cat /dev/zero", {.bytes = 3 << 20}), "holds more than 3 MB of triangles");
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(50));
   EXPECT_EQ(refusal([&] { run_reader(folder_.path / "none", "file"); }),

@@ -1,4 +1,4 @@
-// Closest points against brute force, signs against formulas, normals at all places where they could fail.
+// Tests closest points against brute force, signs against formulas, and normals at all places where they could fail.
 #include "geometry/triangle_solid.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace supple {
 namespace {
 
-// The plain version: Ericson, Real-Time Collision Detection, 2005, section 5.1.5, region by region.
+// The plain version follows Ericson, Real-Time Collision Detection, 2005, section 5.1.5, region by region.
 Vec3 closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
   const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp), d6 = ac.dot(cp);
@@ -66,7 +66,7 @@ TEST(TriangleSolid, FindsTheClosestPointThatBruteForceFinds) {
     const char* name;
     TriMesh mesh;
     int queries;
-    // In a sliver round-off leads the plain version to a point of the triangle that isn't the closest.
+    // In a sliver, round-off leads the plain version to a point of the triangle that isn't the closest.
     bool plain_is_exact;
   } cases[] = {{"torus", test::torus_surface(1, 0.4, 63, 16), 20'000, true},
                {"box", test::box_surface(Vec3(1, 0.5, 0.25)), 500'000, true},
@@ -91,7 +91,7 @@ TEST(TriangleSolid, FindsTheClosestPointThatBruteForceFinds) {
   }
 }
 
-// Corners that nearly lie on one line, askew in space: round-off moves the plain version's foot along the needle.
+// The corners nearly lie on one line, askew in space: round-off moves the plain version's foot along the needle.
 TEST(TriangleSolid, FindsPointsOfNeedlesOnThem) {
   Points points(11);
   for (int i = 0; i < 2000; ++i) {
@@ -122,7 +122,7 @@ TEST(TriangleSolid, HasTheSignsOfSphereTorusAndBox) {
   for (int i = 0; i < 100'000; ++i) {
     const Vec3 p = points.in_box(Vec3::Constant(1.5));
     const double to_ball = p.norm() - 1, to_ring = std::hypot(std::hypot(p.x(), p.z()) - 1, p.y()) - 0.4;
-    // Between the faces and the round surface the two differ.
+    // Between the flat faces and the round surface, the two signs differ.
     if (std::abs(to_ball) > 0.01) {
       EXPECT_EQ(ball.closest(p).distance < 0, to_ball < 0) << p.transpose();
     }
@@ -137,7 +137,7 @@ TEST(TriangleSolid, HasTheSignsOfSphereTorusAndBox) {
 }
 
 TEST(TriangleSolid, TheRaysOfQueriesOnTheGridOfTheVerticesSlipNowhere) {
-  // Every ray along an axis runs through vertices, along edges and within faces.
+  // Every ray along an axis runs through vertices, along edges or within faces.
   const TriangleSolid box(test::box_surface(Vec3(1, 1, 1)));
   const TriangleSolid two(test::together(test::moved(test::box_surface(Vec3(1, 1, 1)), Vec3(-1, 0, 0)),
                                          test::moved(test::box_surface(Vec3(0.5, 0.5, 0.5)), Vec3(1, 0.5, 0))));
@@ -165,7 +165,7 @@ TEST(TriangleSolid, TakesOverlapsAsAUnionAndCavitiesAsOutside) {
   const TriangleSolid shell(test::together(ball, hollow));
   EXPECT_GT(shell.closest(Vec3(0.1, 0, 0)).distance, 0.3);
   EXPECT_LT(shell.closest(Vec3(0.7, 0, 0)).distance, -0.1);
-  // The rays of the sign agree with the tree of solid angles.
+  // The rays that decide the sign agree with the tree of solid angles.
   for (const TriangleSolid* solid : {&lens, &shell}) {
     Points points(5);
     for (int i = 0; i < 20'000; ++i) {
@@ -177,7 +177,8 @@ TEST(TriangleSolid, TakesOverlapsAsAUnionAndCavitiesAsOutside) {
   }
 }
 
-// One missing triangle is closed by lids, forty are left to the tree: both must be the winding number.
+// One missing triangle is closed by lids, forty are left to the tree: in both cases the sign must be the winding
+// number's.
 TEST(TriangleSolid, HolesFlipNoSignBeyondTheirNeighbourhood) {
   const TriMesh ball = test::sphere_surface(1, 40, 20);
   TriMesh one = ball, many = ball;
@@ -205,7 +206,7 @@ TEST(TriangleSolid, HolesFlipNoSignBeyondTheirNeighbourhood) {
       EXPECT_EQ(solid.closest(p).distance < 0, from_ball < 0) << p.transpose();
     }
     EXPECT_GT(checked, 25'000);
-    // At the hole itself the sign follows the winding number through 1/2.
+    // At the hole itself, the sign follows the winding number through 1/2.
     EXPECT_LT(solid.closest(0.97 * holes[0]).distance, 0);
     EXPECT_GT(solid.closest(1.03 * holes[0]).distance, 0);
   }
@@ -213,7 +214,7 @@ TEST(TriangleSolid, HolesFlipNoSignBeyondTheirNeighbourhood) {
 
 TEST(TriangleSolid, InTheMouthOfAHoleTheSignIsThatOfTheWindingNumber) {
   TriMesh mesh = test::sphere_surface(1, 20, 10);
-  std::vector<Eigen::Index> kept;  // all but a bent patch
+  std::vector<Eigen::Index> kept;  // all triangles but those of a bent patch
   for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
     if ((mesh.points.row(mesh.triangles(t, 0)) - Eigen::RowVector3d(1, 0, 0)).norm() > 0.4) kept.push_back(t);
   mesh.triangles = Triangles(mesh.triangles(kept, Eigen::all));

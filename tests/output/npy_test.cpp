@@ -14,7 +14,7 @@
 namespace supple {
 namespace {
 
-// A file with this dictionary, as NumPy pads it, and some bytes of values.
+// Makes a file with this dictionary, padded as NumPy does, and some bytes of values.
 std::string file_of(const std::string& dictionary, std::size_t value_bytes) {
   std::string header = dictionary;
   while ((10 + header.size() + 1) % 64 != 0) header += ' ';
@@ -23,7 +23,7 @@ std::string file_of(const std::string& dictionary, std::size_t value_bytes) {
          std::string(value_bytes, '\0');
 }
 
-// What reading a file with these bytes says, without the file's name.
+// Returns what reading a file with these bytes reports, without the file's name.
 std::string complaint_of(const std::string& bytes) {
   const test::TemporaryFolder folder;
   const std::filesystem::path path = folder.path / "a.npy";

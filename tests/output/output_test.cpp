@@ -69,7 +69,7 @@ TEST(PointCache, GoesOnBehindTheFramesItKeepsAndNoOthers) {
   EXPECT_EQ(test::read_file(path), whole);
   EXPECT_THROW(PointCacheWriter(path, 2, 6), RunError);
   EXPECT_THROW(PointCacheWriter(path, 3, 2), RunError);
-  std::filesystem::resize_file(path, 32 + 2 * 24);  // its head still says five
+  std::filesystem::resize_file(path, 32 + 2 * 24);  // its header still says five
   EXPECT_THROW(PointCacheWriter(path, 2, 3), RunError);
   EXPECT_NO_THROW(PointCacheWriter(path, 2, 2));
 }
@@ -96,8 +96,8 @@ TEST(Profile, LeavesOutWhatWasNotUsedAndTheFirstFrame) {
     EXPECT_EQ(json.find(absent), std::string::npos) << absent;
   EXPECT_EQ(summarize(rows)[0].rest.max, 2);
   EXPECT_EQ(summarize(rows)[0].first, 100);
-  EXPECT_EQ(summarize({rows[0]})[0].rest.total, 0);  // a film of one frame has no others
-  rows[0].bodies[0].error_measured = true;           // measured, and not to be had
+  EXPECT_EQ(summarize({rows[0]})[0].rest.total, 0);  // a film of one frame has no further frames
+  rows[0].bodies[0].error_measured = true;           // it was measured, but no error could be computed
   EXPECT_NE(profile_json(rows).find("\"error\": null"), std::string::npos);
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 using Records = std::vector<std::vector<std::string>>;
 
-// PATH is another one while this lives.
+// Replaces PATH while the object lives.
 class OtherPath {
  public:
   explicit OtherPath(const std::string& path) : before_(std::getenv("PATH")) { ::setenv("PATH", path.c_str(), 1); }
@@ -174,7 +174,7 @@ TEST(ReportMarkup, EscapesTextAndPrefixesIdsInTagsOnly) {
   EXPECT_EQ(markup_text("a<b & \"c\"\x01'"), "a&lt;b &amp; &quot;c&quot; &#39;");
   EXPECT_EQ(with_id_prefix("<g id='a'> id=\"b\" <use xlink:href='#a' fill=\"url(#c)\"/>", "p-"),
             "<g id='p-a'> id=\"b\" <use xlink:href='#p-a' fill=\"url(#p-c)\"/>");
-  EXPECT_EQ(count_signs("µm²"), 3u);
+  EXPECT_EQ(count_code_points("µm²"), 3u);
 }
 
 TEST(ReportMarkup, WritesBytesAsBase64) {
@@ -349,7 +349,7 @@ TEST(ReportPage, ASeriesLooksAlikeInAllPlots) {
   ReportPage page = page_of();
   page.sections[1].plots[1].series = {page.sections[1].plots[0].series[2], page.sections[1].plots[0].series[1]};
   write_page(page, folder.path);
-  // Second of the thin ones in the first plot, first in the other.
+  // The method is the second of the thin ones in the first plot, and the first in the other.
   const auto color = [&](const std::string& plot) {
     const std::string svg = test::read_file(folder.path / (plot + ".svg"));
     const std::size_t line = svg.find("<path stroke='rgb(", svg.find("<title>method 2</title>"));

@@ -1,4 +1,4 @@
-// Profiles compared: made ones, with the noise of a shared machine.
+// Tests the comparison of profiles that are made up with the noise of a shared machine.
 #include "output/zone_comparison.h"
 
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@ struct Machine {
   std::mt19937_64 random;
   double uniform(double low, double high) { return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53; }
 
-  // A clean time as a shared machine measures it: a few per cent slower for as long as a repeat lasts, a little jitter
-  // always, and now and then interrupted.
+  // Turns a clean time into what a shared machine measures: a few per cent slower for as long as a repeat lasts, with a
+  // little jitter always, and interrupted now and then.
   double measured(double ms, double slow_spell) {
     double noisy = ms * slow_spell * (1 - 0.015 * std::log(uniform(1e-9, 1)));
     if (uniform(0, 1) < 0.04) noisy += uniform(0, 0.5);
@@ -35,10 +35,10 @@ const std::vector<Leaf> leaves = {
     {"frame/measure", "measure", 0.5},           {"frame/hash", "hash", 0.08},
     {"frame/motion files", "motion files", 0.02}};
 
-// slowed: a zone that takes `factor` times as long.
+// slowed: the zone that takes `factor` times as long.
 ZoneProfile made_profile(unsigned seed, const std::string& slowed = "", double factor = 1, double pace = 1) {
   Machine machine{std::mt19937_64(seed)};
-  const double speed = pace * machine.uniform(0.985, 1.015);  // of the machine, for the whole run
+  const double speed = pace * machine.uniform(0.985, 1.015);  // the machine's speed during the whole run
   ZoneProfile profile;
   profile.run.scene = "made";
   profile.run.scene_json = R"({"frames":60,"body":[{"material":{"mu":1}}]})";

@@ -1,4 +1,4 @@
-// Traces written for other programs, and their zones added up.
+// Tests traces written for other programs, and zones summed from them.
 #include "output/zones.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ TraceEvent event(const char* name, int depth, double begin_ms, double end_ms, in
   return {name, ns(begin_ms), ns(end_ms), depth, number, {}};
 }
 
-// Two frames of 10 ms and one of 20 ms; the second step is interrupted by waiting.
+// Makes two frames of 10 ms and one of 20 ms; the second step is interrupted by waiting.
 std::vector<ThreadTrace> small_trace() {
   ThreadTrace main{"main", 0, {}, 0};
   main.events = {event("read scene", 0, 0, 5), event("frame", 0, 10, 20, 0), event("step", 1, 11, 18),
@@ -73,7 +73,7 @@ TEST(Zones, AddUpByFrameUnderAllThatTheyLieIn) {
   expect_times(zone(profile, "main", "frame/hash").ms[0], {1, 0, 0});
   expect_times(zone(profile, "main", "frame/draw list").ms[0], {0, 0, 0});  // beside the step, not in it
   EXPECT_DOUBLE_EQ(zone(profile, "main", "frame/step/solve").calls, 4.0 / 3);
-  // Zones of other threads count to the frame that they name, or else to the one that is being made.
+  // Zones of other threads count to the frame that they name, or else to the one that is being made at the time.
   expect_times(zone(profile, "render", "render").ms[0], {20, 10, 0});
   expect_times(zone(profile, "worker", "solve").ms[0], {3, 0, 1});
   ASSERT_EQ(profile.setup.size(), 2u);
@@ -131,9 +131,9 @@ TEST(Zones, ComeBackFromTheirFile) {
 TEST(Zones, TableCountsMissedDeadlinesAndNamesSlowFrames) {
   const ZoneProfile profile = small_profile(3);
   const Deadline deadline = deadline_of(profile);
-  EXPECT_EQ(deadline.frames, 6);     // the first of each repeat is left out
-  EXPECT_EQ(deadline.late_wall, 3);  // 20 ms
-  EXPECT_EQ(deadline.late_work, 6);  // 9 + 10 ms and 20 ms
+  EXPECT_EQ(deadline.frames, 6);     // the first frame of each repeat is left out
+  EXPECT_EQ(deadline.late_wall, 3);  // those of 20 ms
+  EXPECT_EQ(deadline.late_work, 6);  // those of 9 + 10 ms and of 20 ms
   const std::vector<SlowFrame> slow = slow_frames(profile, 1);
   ASSERT_EQ(slow.size(), 1u);
   EXPECT_EQ(slow[0].frame, 2);
@@ -151,7 +151,7 @@ TEST(Zones, TableCountsMissedDeadlinesAndNamesSlowFrames) {
   EXPECT_EQ(nlohmann::json::parse(summary_json(profile))["deadline"]["late_work"], 6);
 }
 
-// Begin and end by track of zones that are open.
+// The zones that are open on each track are followed from begin to end.
 TEST(ChromeTrace, IsJsonWhoseZonesNestWithinTheirTracks) {
   std::vector<ThreadTrace> threads = small_trace();
   threads[0].lost = 2;

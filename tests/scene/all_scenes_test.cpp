@@ -1,4 +1,4 @@
-// Every scene that ships: it steps, no step ends worse than staying, and the same bits come out for any number of
+// Tests every scene that ships: it steps, no step ends worse than staying, and the same bits come out for any number of
 // threads. SUPPLE_SCENE_FRAMES sets how many frames are run (4 without it).
 #include <gtest/gtest.h>
 

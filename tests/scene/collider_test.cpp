@@ -1,5 +1,5 @@
-// Colliders of scene files: every key, what is refused in which words, where they are at a time and what is drawn of
-// them; bodies made of surface files.
+// Tests colliders of scene files: every key, what is refused and in which words, where colliders are at a time, and
+// what is drawn of them; also bodies made of surface files.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -17,7 +17,7 @@ namespace {
 
 using Messages = std::vector<std::string>;
 
-// Three lines, so that what is added begins in the fourth.
+// The body takes three lines, so that what is added begins in the fourth.
 const std::string body = "[[body]]\nbox = { extent = [1, 1, 1] }\nmaterial = \"jelly\"\n";
 
 Messages problems_with(const std::string& text) { return test::problems_of(body + text); }
@@ -164,7 +164,7 @@ shape = { box = { extent = [1, 1, 1] } }
   }
 }
 
-// Where the point (1, 0, 0) of the collider is.
+// Returns where the collider's point (1, 0, 0) is.
 Vec3 tip(const Obstacle& obstacle, double time) { return obstacle.pose(time) * Vec3(1, 0, 0); }
 
 TEST(Obstacle, StandsAtItsPositionTurnedAboutItsOrigin) {
@@ -173,7 +173,7 @@ TEST(Obstacle, StandsAtItsPositionTurnedAboutItsOrigin) {
   for (const double time : {0.0, 1.0, 100.0}) {
     EXPECT_LT((still.pose(time) * Vec3(0, 0, 0) - Vec3(1, 2, 3)).norm(), 1e-12);
     EXPECT_LT((tip(still, time) - Vec3(1, 3, 3)).norm(), 1e-12);
-    EXPECT_LT((still.pose(time) * Vec3(0, 1, 0) - Vec3(1, 2, 4)).norm(), 1e-12);  // x first, then z
+    EXPECT_LT((still.pose(time) * Vec3(0, 1, 0) - Vec3(1, 2, 4)).norm(), 1e-12);  // turned about x, then z
   }
 }
 
@@ -275,11 +275,11 @@ TEST(Obstacle, OfABoxItsSurfaceIsDrawnWithEdges) {
       "position = [5, 5, 5]\n");
   const Skin skin = drawn_obstacle(box, around_bodies());
   const Bounds drawn = bounds_of(skin.rest.points);
-  EXPECT_LT((drawn.lower - Vec3(-0.1, -0.2, 0.6)).norm(), 0.01);  // in its own frame
+  EXPECT_LT((drawn.lower - Vec3(-0.1, -0.2, 0.6)).norm(), 0.01);  // in the collider's own frame
   EXPECT_LT((drawn.upper - Vec3(0.1, 0.2, 1.4)).norm(), 0.01);
   const double volume = test::six_volumes(skin.rest) / 6;
   EXPECT_NEAR(volume, 0.2 * 0.4 * 0.8, 0.01 * volume);
-  EXPECT_GT(skin.rest.points.rows(), contour(box.def.shape, 0.8 / 96).points.rows());  // creases have two sides
+  EXPECT_GT(skin.rest.points.rows(), contour(box.def.shape, 0.8 / 96).points.rows());  // creases double vertices
   EXPECT_EQ(skin.occlusion.size(), std::size_t(skin.rest.points.rows()));
   EXPECT_EQ(skin.paint.size(), std::size_t(skin.rest.points.rows()));
 }

@@ -1,17 +1,18 @@
-// The energy of swinging bars by integrator, for docs/energies.svg: what backward Euler loses, what midpoint keeps when
-// it is solved well, and what it does when it is not.
+// Measures the energy of swinging bars by integrator, for docs/energies.svg: what backward Euler loses, what midpoint
+// keeps when it is solved well, and what it does when it is not.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
 
 #include "sim/model/measures.h"
+#include "sim/solver/energies.h"
 #include "support/film.h"
 
 namespace supple {
 namespace {
 
-// Kinetic plus elastic plus gravitational energy by frame.
+// Returns kinetic plus elastic plus gravitational energy, by frame.
 std::vector<double> energy_of(const std::string& body, const std::vector<std::string>& settings, int frames) {
   const test::Film film(test::assets / "scenes" / "integrators.toml", settings);
   std::vector<double> list;

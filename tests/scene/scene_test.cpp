@@ -1,4 +1,4 @@
-// Scene files: what is refused, in which words, and that the documentation lists what the readers ask for.
+// Tests scene files: what is refused and in which words, and that the documentation lists what the readers ask for.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -186,7 +186,7 @@ TEST(KeyedMotion, PassesThroughItsKeysAndStandsStillOutside) {
   EXPECT_LT((end * Vec3(1, 0, 0) - Vec3(1, 1, 0)).norm(), 1e-12);  // the centre moves without turning
   EXPECT_LT((end * Vec3(2, 0, 0) - Vec3(1, 1, -1)).norm(), 1e-12);
   EXPECT_LT((motion.at(1.5) * Vec3(1, 0, 0) - Vec3(1, 0.5, 0)).norm(), 1e-12);
-  EXPECT_LT((motion.at(1.01).translation() - motion.at(1).translation()).norm(), 2e-2);  // starts without a jump
+  EXPECT_LT((motion.at(1.01).translation() - motion.at(1).translation()).norm(), 2e-2);  // no jump at the start
 }
 
 TEST(KeyedMotion, TurnsAllTheWayRound) {
@@ -215,7 +215,8 @@ select = { box = [[0, 0.4, 0], [1, 1, 1]] }
   }
 }
 
-// A scene and a shape that ask for every key there is: each model by its own parameters, and by Young's modulus.
+// Makes a scene and a shape that ask for every key there is; each model is given once by its own parameters and once by
+// Young's modulus.
 std::vector<DocumentedKey> all_keys() {
   std::vector<DocumentedKey> keys;
   std::vector<std::string> materials = {"{ model = \"neo-hookean\", young = 1, poisson = 0 }",
@@ -223,6 +224,7 @@ std::vector<DocumentedKey> all_keys() {
   for (const std::string& model : test::model_names()) materials.push_back("{ model = \"" + model + "\" }");
   for (const std::string& material : materials) {
     Config config = Config::parse(fmt::format(R"([solver]
+method = {{ matrix = "system" }}
 [solver.contact]
 [[body]]
 shape = "shapes/squirrel.toml"
@@ -286,9 +288,9 @@ std::string table_of(const std::vector<DocumentedKey>& keys) {
   std::string table = "| key | default | allowed | unit | meaning |\n|---|---|---|---|---|\n";
   std::set<std::string> seen;
   for (const DocumentedKey& key : keys) {
-    // A region's material, a body's solver: documented once, where they first stand.
+    // The materials of regions and the solvers of bodies are documented once, where such keys first occur.
     if (key.path.find("regions.") != std::string::npos && !key.path.ends_with("regions.NAME")) continue;
-    if (key.path.starts_with("collider[].shape.")) continue;  // a part, as the table of shapes has it
+    if (key.path.starts_with("collider[].shape.")) continue;  // documented as a part in the table of shapes
     if (key.path.starts_with("body[].solver.") || !seen.insert(key.path + key.type).second) continue;
     table += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.path, key.fallback, key.allowed, key.unit, key.meaning);
   }

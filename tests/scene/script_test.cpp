@@ -1,4 +1,4 @@
-// Replays: what a frame's scene is, and what is refused.
+// Tests replays: what the scene of a frame is, and what is refused.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -89,7 +89,7 @@ TEST_F(Replay, RampsLeadThroughWhatLiesBetween) {
   EXPECT_EQ(linear.at_work(30).size() + linear.at_work(44).size(), 4u);
   const Script smooth = script("[[change]]\nt = 1\nover = 0.4\npath = 'gravity'\nvalue = [0, -1.81, 8]\n");
   EXPECT_NEAR(smooth.scene_at(32).gravity.y(), -9.81 + 8 * (0.25 * 0.25 * 2.5),
-              1e-9);  // 3 of 12 frames; the default's y
+              1e-9);  // 3 of 12 frames; y is the default's
   EXPECT_NEAR(smooth.scene_at(35).gravity.z(), 4, 1e-9);
 }
 
@@ -162,7 +162,7 @@ TEST_F(Replay, RefusesWithPlaceAndReason) {
   EXPECT_EQ(refused("[[chnage]]\nt = 1\n"), "r.toml:2:3: unknown key 'chnage'; did you mean 'change'?");
   EXPECT_EQ(refused("[[grab]]\nbody = 'bar'\nname = 'f'\nselect = { box = [[0.9, 0, 0], [1, 1, 1]] }\nfrom = 1\n"),
             "r.toml:2:1: a handle that grabs or lets go needs a number as its stiffness [N/m]");
-  // In the middle of a ramp: the line of its value.
+  // A value that is wrong in the middle of a ramp is reported at its own line.
   EXPECT_EQ(refused("[[change]]\nt = 0.5\nover = 1\npath = 'camera.fov_deg'\nvalue = 500\n").substr(0, 10),
             "r.toml:6:9");
 }
@@ -307,7 +307,7 @@ TEST_F(Replay, WarnsOfRampsThatAnotherChangeBreaksOff) {
   };
   const std::string ramp = "[[change]]\nt = 0.5\nover = 1\npath = 'body.bar.material.mu'\nvalue = 2e4\n";
   const std::string says =
-      " s on this change has its way with body.bar.material.mu; the ramp of line 6 (0.5 to 1.5 s) ends there, "
+      " s on this change sets body.bar.material.mu; the ramp of line 6 (0.5 to 1.5 s) ends there, "
       "unfinished\n";
   EXPECT_EQ(warned(ramp + "[[change]]\nt = 1\nover = 0.2\npath = 'body.bar.material.mu'\nvalue = 3e4\n"),
             ":11:9: from 1" + says);
@@ -315,11 +315,11 @@ TEST_F(Replay, WarnsOfRampsThatAnotherChangeBreaksOff) {
                           "[[change]]\nt = 1.4\npath = 'body.bar.material.mu'\nvalue = 4e4\n"),
             ":10:9: from 1.25" + says);
   EXPECT_EQ(warned(ramp + "[[change]]\nt = 1\npath = 'body.bar.material'\nvalue = 'jelly'\n"), ":10:9: from 1" + says);
-  // One behind the other, and one of another value.
+  // One change begins after the other has ended, and one concerns another value.
   EXPECT_EQ(warned(ramp + "[[change]]\nt = 1.5\npath = 'body.bar.material.mu'\nvalue = 3e4\n"
                           "[[change]]\nt = 1\npath = 'body.bar.material.lambda'\nvalue = 3e4\n"),
             "");
-  // The value that is left behind, and that the ramp does not come back.
+  // The warning is about this: the value jumps at the change, and the ramp does not return.
   const Script broken = script(ramp + "[[change]]\nt = 1\npath = 'body.bar.material.mu'\nvalue = 3e4\n");
   EXPECT_LT(mu_of(broken.scene_at(29)), 2e4);
   EXPECT_EQ(mu_of(broken.scene_at(30)), 3e4);

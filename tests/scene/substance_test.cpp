@@ -1,5 +1,5 @@
-// Materials, fibres, cloth, boxes and start states as scene files give them: what is read, and what is refused with
-// which words.
+// Tests materials, fibres, cloth, boxes and start states of scene files: what is read, and what is refused in which
+// words.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -184,7 +184,8 @@ TEST(StartStates, DeformTheBodyAboutItsMiddle) {
   EXPECT_LT((bounds_of(started("start = { flatten = \"plane\" }")).extent() - Vec3(2, 0, 1)).norm(), 1e-12);
   EXPECT_LT((bounds_of(started("start = { flatten = \"line\" }")).extent() - Vec3(2, 0, 0)).norm(), 1e-12);
   EXPECT_LT(bounds_of(started("start = { flatten = \"point\" }")).diagonal(), 1e-12);
-  // Twisted about x, the longest axis: the ends turn by half the angle, one each way, and the middle stays.
+  // The body is twisted about x, its longest axis: the ends turn by half the angle, in opposite directions, and the
+  // middle stays.
   const Positions twisted = started("start = { twist_deg = 180 }");
   for (Eigen::Index v = 0; v < rest.rows(); ++v) {
     const Vec3 arm = Vec3(rest.row(v)) - middle;
@@ -222,7 +223,7 @@ TEST(StartStates, LeaveHeldVerticesAtRestAndGiveTheOthersTheirVelocity) {
   }
 }
 
-// From random positions a coarse box gets caught in minima of the corotated energy; the hippo does not
+// From random positions, a coarse box gets caught in minima of the corotated energy; the hippo does not
 // (all_scenes_test.cpp).
 TEST(StartStates, BodiesRecoverFromThem) {
   for (const char* start :
@@ -238,7 +239,8 @@ TEST(StartStates, BodiesRecoverFromThem) {
     State state = start_state(model, body);
     Workspace w;
     for (int frame = 0; frame < 300; ++frame) ASSERT_FALSE(step(model, inputs, state, w).failed) << start;
-    // Whole again: every edge of every element as long as at rest. (A mirrored body may recover as it is turned.)
+    // The body has recovered when every edge of every element is as long as at rest. (A mirrored body may recover as
+    // its mirror image turned round.)
     double worst = 0;
     for (Eigen::Index e = 0; e < body.description.mesh.tets.rows(); ++e) {
       const auto at = [&](const Positions& x, int k) { return x.row(body.description.mesh.tets(e, k)); };

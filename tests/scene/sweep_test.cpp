@@ -1,4 +1,4 @@
-// Sweeps as scene files describe them: which points there are, and what is refused where.
+// Tests sweeps as scene files describe them: which points there are, and what is refused where.
 #include "scene/sweep.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ class Sweep : public testing::Test {
     return load_sweep(write(sweep), test::assets, settings);
   }
 
-  // What checking the points says, with the folder left out.
+  // Returns what checking the points reports, without the folder.
   std::string refusal(const std::string& sweep, const std::vector<std::string>& settings = {}) {
     try {
       const std::filesystem::path path = write(sweep);

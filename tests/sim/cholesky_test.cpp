@@ -1,9 +1,11 @@
-#include "base/variants.h"
 #include "sim/linear/cholesky.h"
+#include "base/variants.h"
+#include "sim/linear/changing_factor.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <chrono>
 #include <csignal>
 #include <numeric>
@@ -17,7 +19,7 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-// A random lower triangle with about `links` entries a column, made positive definite by its diagonal.
+// Makes a random lower triangle with about `links` entries a column, which its diagonal makes positive definite.
 Sparse random_matrix(int size, double links, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> value(-1, 1);
@@ -38,7 +40,8 @@ Sparse random_matrix(int size, double links, unsigned seed) {
   return matrix;
 }
 
-// The 7-point Laplacian of a grid plus a little mass, in an order of little fill or in the grid's own.
+// Makes the 7-point Laplacian of a grid plus a little mass, either in an order with little fill or in the grid's own
+// order.
 Sparse grid_matrix(int n, bool ordered, double mass) {
   const auto at = [&](int x, int y, int z) { return (x * n + y) * n + z; };
   std::vector<std::pair<std::int32_t, std::int32_t>> edges;
@@ -87,14 +90,14 @@ Eigen::MatrixX3d solve(const CholeskyFactor& factor, const Eigen::MatrixX3d& b) 
   return out;
 }
 
-// || A x - b || / || b ||
+// Computes || A x - b || / || b ||.
 double residual(const Sparse& matrix, const CholeskyFactor& factor) {
   const Eigen::MatrixX3d b = Eigen::MatrixX3d::Random(matrix.rows(), 3);
   const Eigen::MatrixX3d x = solve(factor, b);
   return (matrix.selfadjointView<Eigen::Lower>() * x - b).norm() / b.norm();
 }
 
-// All bits of a factor, by what it does to the columns of the identity.
+// Captures all bits of a factor by what it does to the columns of the identity.
 Eigen::MatrixXd inverse(const CholeskyFactor& factor) {
   const int size = factor.size();
   Eigen::MatrixXd out(size, size);
@@ -177,7 +180,7 @@ TEST(Elimination, ComesToChildrenBeforeTheirParents) {
 }
 
 TEST(CholeskyFactor, SolvesWhateverThePattern) {
-  for (const double links : {0.0, 0.3, 0.6, 1.0, 3.0, 20.0}) {  // from a diagonal through forests to nearly dense
+  for (const double links : {0.0, 0.3, 0.6, 1.0, 3.0, 20.0}) {  // from diagonal over forests to nearly dense
     for (const int size : {1, 2, 3, 7, 8, 9, 40, 150}) {
       const Sparse matrix = random_matrix(size, links, static_cast<unsigned>(size));
       EXPECT_LT(residual(matrix, CholeskyFactor(matrix, Precision::double_precision)), 1e-13) << size << " " << links;
@@ -195,7 +198,7 @@ TEST(CholeskyFactor, AgreesWithADenseFactorOnGrids) {
     const CholeskyFactor factor(matrix, Precision::double_precision);
     EXPECT_LT((inverse(factor) - exact).norm() / exact.norm(), 1e-13);
   }
-  // The order pays: less is stored than in the grid's own.
+  // The order pays: less is stored than in the grid's own order.
   const auto stored = [](bool ordered) {
     return CholeskyFactor(grid_matrix(14, ordered, 0.01), Precision::double_precision).stored_numbers();
   };
@@ -208,7 +211,7 @@ TEST(CholeskyFactor, OfNewNumbersIsTheFactorMadeAnew) {
     CholeskyFactor factor(first, precision);
     factor.factorize(second, precision);
     EXPECT_EQ(inverse(factor), inverse(CholeskyFactor(second, precision)));
-    // Also in the other precision, and for another pattern.
+    // The same holds in the other precision, and for another pattern.
     factor.factorize(second, Precision::double_precision);
     EXPECT_EQ(inverse(factor), inverse(CholeskyFactor(second, Precision::double_precision)));
     const Sparse other = random_matrix(50, 1.5, 3);
@@ -234,31 +237,222 @@ TEST(CholeskyFactor, NamesTheUnknownWhosePivotIsNotPositive) {
   EXPECT_LT(residual(sound, factor), 1e-13);
 }
 
-// Every instruction set, all sizes around its registers: the pivots' columns against a dense factor, the rest against
-// what a dense elimination leaves.
+// A symmetric matrix of 3 x 3 blocks on a grid in an order of little fill, blocks on the diagonal stored whole, as
+// HessianMatrix stores them; `shift` is added to the diagonal of a positive semi-definite sum.
+Sparse block_matrix(int n, double shift, unsigned seed) {
+  const Sparse pattern = grid_matrix(n, true, 0.0);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> value(-1, 1);
+  const auto size = static_cast<int>(pattern.rows());
+  std::vector<Mat3> diagonal(size, shift * Mat3::Identity());
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto put = [&](int row, int column, const Mat3& block) {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) entries.emplace_back(3 * row + i, 3 * column + j, block(i, j));
+    }
+  };
+  for (int column = 0; column < size; ++column) {
+    for (Sparse::InnerIterator entry(pattern, column); entry; ++entry) {
+      const auto row = static_cast<int>(entry.row());
+      if (row == column) continue;
+      const Mat3 root = Mat3::NullaryExpr([&] { return value(random); });
+      const Mat3 block = root * root.transpose();
+      diagonal[row] += block;
+      diagonal[column] += block;
+      put(row, column, -block);
+    }
+  }
+  for (int i = 0; i < size; ++i) put(i, i, diagonal[i]);
+  Sparse matrix(3 * size, 3 * size);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+Eigen::VectorXd solve(ChangingFactor& factor, const Eigen::VectorXd& b) {
+  Eigen::VectorXd x(b.size());
+  factor.solve(b.data(), x.data());
+  return x;
+}
+
+ChangingFactor factor_of(const Sparse& matrix) {
+  ChangingFactor factor;
+  factor.analyze(matrix);
+  EXPECT_TRUE(factor.factorize(matrix));
+  return factor;
+}
+
+TEST(ChangingFactor, SolvesLikeADenseFactor) {
+  std::vector<Sparse> matrices;
+  for (const int n : {1, 2, 3, 6}) matrices.push_back(block_matrix(n, 0.01, static_cast<unsigned>(n)));
+  for (const double links : {0.0, 0.6, 3.0, 20.0}) {
+    for (const int size : {1, 7, 8, 9, 40, 300}) matrices.push_back(random_matrix(size, links, 3));
+  }
+  for (const Sparse& matrix : matrices) {
+    ChangingFactor factor = factor_of(matrix);
+    const Eigen::VectorXd b = Eigen::VectorXd::Random(matrix.rows());
+    const Eigen::VectorXd exact = dense(matrix).ldlt().solve(b);
+    EXPECT_LT((solve(factor, b) - exact).norm(), 1e-11 * exact.norm()) << matrix.rows();
+    Eigen::VectorXd in_place = b;
+    factor.solve(in_place.data(), in_place.data());
+    EXPECT_EQ(in_place, solve(factor, b));
+    EXPECT_GE(factor.stored_numbers(), matrix.rows());
+  }
+}
+
+TEST(ChangingFactor, OfNewNumbersHasTheBitsOfOneMadeAnew) {
+  const Sparse first = block_matrix(7, 0.01, 1), second = block_matrix(7, 0.5, 2);
+  const Eigen::VectorXd b = Eigen::VectorXd::Random(first.rows());
+  ChangingFactor factor = factor_of(first);
+  const Eigen::VectorXd x = solve(factor, b);
+  const std::int64_t numbers = factor.stored_numbers();
+  ASSERT_TRUE(factor.factorize(second));
+  ChangingFactor anew = factor_of(second);
+  EXPECT_EQ(solve(factor, b), solve(anew, b));
+  ASSERT_TRUE(factor.factorize(first));
+  EXPECT_EQ(solve(factor, b), x);
+  EXPECT_EQ(factor.stored_numbers(), numbers);
+  ChangingFactor moved = std::move(factor);
+  EXPECT_EQ(solve(moved, b), x);
+  ASSERT_TRUE(moved.factorize(second));
+  EXPECT_EQ(solve(moved, b), solve(anew, b));
+}
+
+TEST(ChangingFactor, KnowsWhichMatricesArePositiveDefinite) {
+  const Sparse matrix = block_matrix(5, 0.0, 4);
+  const Eigen::VectorXd b = Eigen::VectorXd::Random(matrix.rows());
+  const Eigen::VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense(matrix)).eigenvalues();
+  const auto shifted = [&](double shift) {
+    Sparse result = matrix;
+    for (int i = 0; i < result.rows(); ++i) result.coeffRef(i, i) += shift;
+    return result;
+  };
+  const Sparse sound = shifted(0.1);
+  ChangingFactor factor = factor_of(sound);
+  const Eigen::VectorXd x = solve(factor, b);
+  // So far below zero that a few eigenvalues, many and all of them are negative (three are 0 without a shift: moving
+  // all vertices alike costs nothing); and just not one.
+  for (const Eigen::Index negative : {3, 4, 7, 100, 374, 375}) {
+    const double next = negative < eigenvalues.size() ? eigenvalues[negative] : 2 * eigenvalues[negative - 1];
+    const Sparse indefinite = shifted(-(eigenvalues[negative - 1] + next) / 2);
+    EXPECT_FALSE(factor.factorize(indefinite)) << negative;
+    ASSERT_TRUE(factor.factorize(sound));
+    EXPECT_EQ(solve(factor, b), x);
+  }
+  EXPECT_TRUE(factor.factorize(shifted(-eigenvalues[0] + 1e-9)));
+  for (const int place : {0, 41, 374}) {
+    Sparse broken = sound;
+    broken.coeffRef(place, place) = std::nan("");
+    EXPECT_FALSE(factor.factorize(broken));
+    broken.coeffRef(place, place) = 0;
+    EXPECT_FALSE(factor.factorize(broken));
+  }
+  ASSERT_TRUE(factor.factorize(sound));
+  EXPECT_EQ(solve(factor, b), x);
+}
+
+// A dense front, and where its numbers stand in the kernels' storage.
+struct StoredFront {
+  FrontShape shape;
+  AlignedVector<double> columns, update;
+
+  StoredFront(const Eigen::MatrixXd& full, int pivots) : shape{pivots, static_cast<int>(full.rows()) - pivots} {
+    columns.resize(column_numbers(shape));
+    update.resize(update_numbers(shape));
+    for (int j = 0; j < full.rows(); ++j) {
+      for (int i = j; i < full.rows(); ++i) number(i, j) = full(i, j);
+    }
+  }
+
+  double& number(int i, int j) {
+    if (j >= shape.pivots) return update[(j - shape.pivots) * padded_rows(shape.rows) + i - shape.pivots];
+    const int strip = j / block_rows, row = padded_place(shape, i);
+    return columns[strip_begin(shape, strip) +
+                   std::int64_t(row / block_rows - strip) * block_rows * strip_width(shape, strip) +
+                   j % block_rows * block_rows + row % block_rows];
+  }
+};
+
+// Plain elimination: column after column, each number loses its products in the order of the pivots.
+void eliminate_plainly(Eigen::MatrixXd& front, int pivots, bool fused) {
+  const auto size = static_cast<int>(front.rows());
+  for (int j = 0; j < size; ++j) {
+    for (int k = 0; k < std::min(j, pivots); ++k) {
+      for (int i = j; i < size; ++i)
+        front(i, j) =
+            fused ? std::fma(-front(j, k), front(i, k), front(i, j)) : front(i, j) - front(j, k) * front(i, k);
+    }
+    if (j < pivots) front.col(j).tail(size - j) *= 1 / std::sqrt(front(j, j));
+  }
+}
+
+// Tests every instruction set with all sizes around its registers and beyond the strips that are taken together: the bits
+// are those of plain elimination, whose pivots' columns agree with a dense factor.
 TEST(Kernels, EliminateDenseFronts) {
+  std::vector<std::pair<int, int>> shapes = {{128, 1}, {129, 40}, {150, 90}, {270, 0}, {264, 24}};  // pivots, rows
+  for (int size = 1; size < 42; ++size) {
+    for (const int pivots : {1, 2, 3, 4, 5, 9, size / 2, size}) {
+      if (pivots >= 1 && pivots <= size) shapes.emplace_back(pivots, size - pivots);
+    }
+  }
+  for (const auto& [pivots, rows] : shapes) {
+    const int size = pivots + rows;
+    const Eigen::MatrixXd random = Eigen::MatrixXd::Random(size, size);
+    const Eigen::MatrixXd full = random * random.transpose() + Eigen::MatrixXd::Identity(size, size);
+    Eigen::MatrixXd fused = full, rounded = full;
+    eliminate_plainly(fused, pivots, true);
+    eliminate_plainly(rounded, pivots, false);
+    const Eigen::MatrixXd lower = full.llt().matrixL();
+    EXPECT_LT((fused - lower).leftCols(pivots).triangularView<Eigen::Lower>().toDenseMatrix().norm(),
+              1e-11 * lower.norm());
+    for (int v = 0; v < runnable_variants(); ++v) {
+      StoredFront front(full, pivots);
+      ASSERT_EQ(linear_kernels(v).eliminate(front.shape, front.columns.data(), front.update.data()), -1);
+      const auto different_from = [&](const Eigen::MatrixXd& plain) {
+        int different = 0;
+        for (int j = 0; j < size; ++j) {
+          for (int i = j; i < size; ++i) different += front.number(i, j) != plain(i, j);
+        }
+        return different;
+      };
+      // Whether products are fused is a matter of the instruction set; all or none are.
+      EXPECT_EQ(std::min(different_from(fused), different_from(rounded)), 0)
+          << variant_name(v) << ": " << pivots << " pivots, " << rows << " rows";
+      StoredFront indefinite(full, pivots);
+      indefinite.number(pivots - 1, pivots - 1) = -1;
+      EXPECT_EQ(linear_kernels(v).eliminate(front.shape, indefinite.columns.data(), indefinite.update.data()),
+                pivots - 1);
+    }
+  }
+}
+
+// Both halves of a solve with one front, against the dense columns of L.
+TEST(Kernels, SolveWithDenseFronts) {
   for (int v = 0; v < runnable_variants(); ++v) {
-    for (int size = 1; size < 42; ++size) {
-      for (const int pivots : {1, 2, 3, 4, 5, 9, size / 2, size}) {
-        if (pivots < 1 || pivots > size) continue;
-        const Eigen::MatrixXd random = Eigen::MatrixXd::Random(size, size);
-        const Eigen::MatrixXd full = random * random.transpose() + Eigen::MatrixXd::Identity(size, size);
-        const long stride = padded_rows(size);
-        AlignedVector<double> front(stride * size, 0.0);
-        for (int j = 0; j < size; ++j) {
-          for (int i = j; i < size; ++i) front[j * stride + i] = full(i, j);
-        }
-        ASSERT_EQ(linear_kernels(v).eliminate(front.data(), stride, size, pivots), -1);
-        const Eigen::MatrixXd lower = full.llt().matrixL();
-        const auto left = lower.leftCols(pivots);
-        const Eigen::MatrixXd update = full - left * left.transpose();
-        for (int j = 0; j < size; ++j) {
-          for (int i = j; i < size; ++i)
-            EXPECT_NEAR(front[j * stride + i], j < pivots ? lower(i, j) : update(i, j), 1e-11 * size)
-                << variant_name(v) << ": " << size << ", " << pivots << " at " << i << ", " << j;
-          for (long i = size; i < stride; ++i) EXPECT_EQ(front[j * stride + i], 0.0);
-        }
-      }
+    for (const auto& [pivots, rows] :
+         std::vector<std::pair<int, int>>{{1, 0}, {1, 1}, {3, 9}, {8, 8}, {9, 30}, {13, 2}, {24, 17}, {40, 0}}) {
+      const int size = pivots + rows;
+      Eigen::MatrixXd lower = Eigen::MatrixXd::Random(size, size);
+      lower.diagonal().array() += 3;
+      StoredFront front(lower, pivots);
+      // The front's rows are every other unknown after its pivots.
+      std::vector<std::int32_t> places;
+      for (int i = 0; i < rows; ++i) places.push_back(pivots + 2 * i + 1);
+      Eigen::VectorXd x = Eigen::VectorXd::Random(size + rows), expected = x;
+      AlignedVector<double> scratch(row_blocks_of(front.shape) * block_rows, 7.0);
+      const auto triangle = lower.topLeftCorner(pivots, pivots).triangularView<Eigen::Lower>();
+      expected.head(pivots) = triangle.solve(x.head(pivots));
+      const Eigen::VectorXd taken = lower.bottomLeftCorner(rows, pivots) * expected.head(pivots);
+      for (int i = 0; i < rows; ++i) expected[places[i]] -= taken[i];
+      linear_kernels(v).solve_down(front.shape, front.columns.data(), places.data(), x.data(), x.data(),
+                                   scratch.data());
+      EXPECT_LT((x - expected).norm(), 1e-12 * expected.norm()) << variant_name(v) << " " << pivots << ", " << rows;
+
+      Eigen::VectorXd below(rows);
+      for (int i = 0; i < rows; ++i) below[i] = expected[places[i]];
+      expected.head(pivots) =
+          triangle.transpose().solve(expected.head(pivots) - lower.bottomLeftCorner(rows, pivots).transpose() * below);
+      linear_kernels(v).solve_up(front.shape, front.columns.data(), places.data(), x.data(), x.data(), scratch.data());
+      EXPECT_LT((x - expected).norm(), 1e-12 * expected.norm()) << variant_name(v) << " " << pivots << ", " << rows;
     }
   }
 }

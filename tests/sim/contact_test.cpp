@@ -1,4 +1,4 @@
-// Contact with rigid colliders: energies and their derivatives, directions, momentum, tunnelling, overlaps, rest,
+// Tests contact with rigid colliders: energies and their derivatives, directions, momentum, tunnelling, overlaps, rest,
 // friction.
 #include "sim/contact/contact.h"
 
@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 
+#include "baselines/reference.h"
 #include "geometry/tetrahedralize.h"
 #include "geometry/triangle_solid.h"
 #include "sim/solver/step.h"
@@ -34,7 +35,7 @@ Eigen::Isometry3d moved_to(const Vec3& place) {
   return pose;
 }
 
-// A cube of n cells a side, 0.2 m, its middle at the origin.
+// Makes a cube of n cells a side, 0.2 m wide, centred at the origin.
 BodyDescription cube(int cells, const Material& material = Corotated{3e4, 6e4}) {
   BodyDescription body;
   body.name = "cube";
@@ -45,7 +46,7 @@ BodyDescription cube(int cells, const Material& material = Corotated{3e4, 6e4}) 
   return body;
 }
 
-// A body among colliders.
+// Holds a body among colliders.
 struct Play {
   Model model;
   std::vector<Collider> colliders;
@@ -82,12 +83,12 @@ TEST(Contact, GradientIsTheDerivativeOfTheEnergyWithPlanesAsTheyStand) {
   play.state.v.rowwise() = Eigen::RowVector3d(2, -1.5, 1);
   play.w.prepare(play.model, play.inputs.solver);
   begin_step(play.model, play.inputs, play.state, play.w);
-  find_contacts(play.model, play.inputs, play.w.x, play.w);
-  const std::vector<Contact>& found = play.w.contact.found;
+  find_contacts_of(play.model, play.inputs, play.w, play.w.current);
+  const std::vector<Contact>& found = play.w.current.contacts;
   EXPECT_GT(std::count_if(found.begin(), found.end(), [](const Contact& c) { return c.depth > 0; }), 3);
   EXPECT_GT(std::count_if(found.begin(), found.end(), [](const Contact& c) { return c.friction > 0; }), 3);
   const double stick = play.w.contact.stick_length;
-  Positions& x = play.w.x;
+  Positions& x = play.w.current.x;
   Positions gradient = Positions::Zero(play.model.free, 3);
   const Positions direction = shaken(Positions::Zero(play.model.free, 3), 1, 6);
   const ContactChange at = add_contacts(found, stick, x, nullptr, direction, &gradient);
@@ -101,7 +102,8 @@ TEST(Contact, GradientIsTheDerivativeOfTheEnergyWithPlanesAsTheyStand) {
   EXPECT_LT(best, 1e-6 * std::abs(at.slope));
 }
 
-// With the planes found anew at each point: what the reference minimises is what the planes' gradient belongs to.
+// The planes are found anew at each point, so that what the reference minimises is what the planes' gradient belongs
+// to.
 TEST(Contact, PlanesGiveTheDerivativeOfTheEnergyFoundAnew) {
   Shape blend = shape_of(Sphere{0.2});
   blend.root.parts.push_back({Capsule{Vec3(0, 0, 0), Vec3(0.3, 0, 0), 0.1}});
@@ -118,10 +120,10 @@ TEST(Contact, PlanesGiveTheDerivativeOfTheEnergyFoundAnew) {
     play.state.v.rowwise() = Eigen::RowVector3d(0.1, -0.9, 0.05);
     play.w.prepare(play.model, play.inputs.solver);
     begin_step(play.model, play.inputs, play.state, play.w);
-    const Positions x = play.w.x, direction = shaken(Positions::Zero(play.model.free, 3), 1, 6);
-    find_contacts(play.model, play.inputs, x, play.w);
+    const Positions x = play.w.current.x, direction = shaken(Positions::Zero(play.model.free, 3), 1, 6);
+    find_contacts_of(play.model, play.inputs, play.w, play.w.current);
     Positions gradient = Positions::Zero(play.model.free, 3);
-    const double slope = add_contacts(play.w.contact.found, 1, x, nullptr, direction, &gradient).slope;
+    const double slope = add_contacts(play.w.current.contacts, 1, x, nullptr, direction, &gradient).slope;
     ASSERT_NE(slope, 0) << name;
     double best = 1e300;
     for (const double h : {1e-6, 1e-7}) {
@@ -133,17 +135,18 @@ TEST(Contact, PlanesGiveTheDerivativeOfTheEnergyFoundAnew) {
   }
 }
 
-// (A + K)^-1 by the Woodbury identity against a dense inverse of A + K.
+// Compares (A + K)^-1 by the Woodbury identity with a dense inverse of A + K.
 TEST(Contact, LowRankDirectionsSolveTheSystemWithContacts) {
   Play play(bar(Corotated{1e4, 3e4}, Held::hard_end), {{"ground", ground, 0, 0.5}}, Vec3(0, 0.001, 0));
   play.state.v.rowwise() = Eigen::RowVector3d(0.3, -0.5, 0);
   play.w.prepare(play.model, play.inputs.solver);
   begin_step(play.model, play.inputs, play.state, play.w);
-  find_contacts(play.model, play.inputs, play.w.x, play.w);
-  stiff_directions(play.model, play.w);
+  find_contacts_of(play.model, play.inputs, play.w, play.w.current);
+  find_stiff_directions(play.model, play.w.current.contacts, play.w.current.x, play.w.contact.stick_length,
+                        play.w.correction);
   ASSERT_GT(play.w.correction.wanted.size(), 8u);
   const int n = play.model.free;
-  Eigen::MatrixXd inverse(3 * n, 3 * n);  // of A
+  Eigen::MatrixXd inverse(3 * n, 3 * n);  // the inverse of A
   Positions r(n, 3), z(n, 3);
   for (int column = 0; column < 3 * n; ++column) {
     r.setZero();
@@ -157,8 +160,8 @@ TEST(Contact, LowRankDirectionsSolveTheSystemWithContacts) {
   r = shaken(Positions::Zero(n, 3), 1, 2);
   const Eigen::VectorXd wanted = system.ldlt().solve(Eigen::Map<Eigen::VectorXd>(r.data(), 3 * n));
   ContactSettings settings;
-  apply_inverse(play.model, play.w, settings, r, z);
-  // Single precision in the small system; double around it.
+  apply_inverse(play.model, settings, play.w.correction, play.w.solve_scratch, r, z);
+  // The small system is solved in single precision, the rest in double.
   EXPECT_LT((Eigen::Map<Eigen::VectorXd>(z.data(), 3 * n) - wanted).norm(), 1e-4 * wanted.norm());
 }
 
@@ -177,7 +180,7 @@ TEST(Contact, MomentumChangesByTheImpulsesOfGravityAndContacts) {
       const Vec3 before = momentum();
       const StepReport& report = play.advance();
       EXPECT_GT(report.contacts.touching, 0) << frame;
-      const Vec3 left = play.w.gradient.colwise().sum().transpose();  // of a minimum: zero
+      const Vec3 left = play.w.current.gradient.colwise().sum().transpose();  // zero at a minimum
       const Vec3 impulse = h * (play.model.total_mass * play.inputs.gravity + report.contact_force);
       const double scale = before.norm() + impulse.norm();
       EXPECT_LT((momentum() - before - impulse - h * left).norm(), 1e-9 * scale) << frame;
@@ -193,7 +196,7 @@ TEST(Contact, NothingGoesThroughAtAnySpeedUpToItsSizeAStep) {
   struct Obstacle {
     std::string name;
     Shape shape;
-    double top;  // its surface's height on the y axis
+    double top;  // height of its surface on the y axis
   };
   const std::vector<Obstacle> obstacles = {
       {"plane", ground, 0},
@@ -211,11 +214,11 @@ TEST(Contact, NothingGoesThroughAtAnySpeedUpToItsSizeAStep) {
         play.advance();
         deepest = std::max(deepest, play.deepest(0));
         if (!obstacle.name.starts_with("plate") && obstacle.name != "box") continue;
-        // Below the middle of a plate is through.
+        // A body below the middle of a plate has passed through it.
         EXPECT_GT(play.state.x.col(1).minCoeff(), 0) << obstacle.name << " at " << speed << " m/s, frame " << frame;
       }
       EXPECT_LT(deepest, 0.02 * size) << obstacle.name << " at " << speed << " m/s";
-      if (!obstacle.name.starts_with("torus")) {  // off whose tube it slides
+      if (!obstacle.name.starts_with("torus")) {  // it slides off the torus's tube
         EXPECT_GT(play.center().y(), obstacle.top) << obstacle.name << " at " << speed << " m/s";
       }
       RecordProperty(obstacle.name + fmt::format(" {:.3g}", speed), fmt::format("{:.2e}", deepest / size));
@@ -223,7 +226,7 @@ TEST(Contact, NothingGoesThroughAtAnySpeedUpToItsSizeAStep) {
   }
 }
 
-// The collider comes to the body, thin and fast.
+// The collider comes to the body, and it is thin and fast.
 TEST(Contact, APlateThatMovesFastIsNotLetThrough) {
   Play play(cube(3), {{"plate", shape_of(Box{Vec3(1, 0.002, 1), 0})}});
   play.inputs.gravity.setZero();
@@ -239,7 +242,7 @@ TEST(Contact, APlateThatMovesFastIsNotLetThrough) {
 TEST(Contact, ColliderThatTurnsCarriesWhatStandsOnIt) {
   Play play(cube(2), {{"disc", shape_of(Cylinder{1, 0.05, 0}), 0, 1.0}}, Vec3(0.5, 0.1501, 0));
   play.inputs.solver.iterations = 30;
-  const double turn = 0.02;  // a step
+  const double turn = 0.02;  // the collider's turn in a step
   for (int frame = 0; frame < 40; ++frame) {
     play.inputs.collider_motions[0].start = Eigen::AngleAxisd(turn * frame, Vec3::UnitY());
     play.inputs.collider_motions[0].end = Eigen::AngleAxisd(turn * (frame + 1), Vec3::UnitY());
@@ -262,7 +265,7 @@ TEST(Contact, OverlapsArePushedOutNoFasterThanAllowed) {
   for (const auto& [name, shape] : shapes) {
     const double x = name == "torus" ? 0.5 : 0,
                  top = shape.distance(Vec3(x, 10, 0)) > 9 ? 10 - shape.distance(Vec3(x, 10, 0)) : 0;
-    for (const double sunk : {0.1, 0.22}) {  // half and wholly inside
+    for (const double sunk : {0.1, 0.22}) {  // half inside and wholly inside
       Play play(cube(3), {{name, shape}}, Vec3(x, top + 0.1 - sunk, 0.01));
       play.inputs.gravity.setZero();
       double fastest = 0;
@@ -275,7 +278,7 @@ TEST(Contact, OverlapsArePushedOutNoFasterThanAllowed) {
       }
       ASSERT_TRUE(play.state.x.allFinite());
       EXPECT_LT(play.deepest(0), 0.01 * play.model.size) << name << ", sunk by " << sunk;
-      // What is pushed also swings; a few times the limit is not an explosion.
+      // A body that is pushed also swings; a few times the limit is not an explosion.
       EXPECT_LT(fastest, 4 * play.inputs.solver.contact.push_out * play.model.size) << name << ", sunk by " << sunk;
     }
   }
@@ -287,7 +290,7 @@ TEST(Contact, ABodyAtRestStaysAtRestForAMinute) {
   const Vec3 settled = play.center();
   double fastest = 0;
   int changes = 0;
-  std::uint64_t set = 0;  // of who touches
+  std::uint64_t set = 0;  // hash of the vertices that touch
   for (int frame = 300; frame < 1800; ++frame) {
     const StepReport& report = play.advance();
     fastest = std::max(fastest, play.fastest());
@@ -339,7 +342,7 @@ TEST(Contact, SameBitsWhateverTheWorkspaceDidBefore) {
   fresh.state = rest_state(fresh.model);  // the same workspace, which now knows what it touched
   fresh.state.x.rowwise() += Eigen::RowVector3d(0.1, 0.42, 0);
   EXPECT_EQ(hashes(fresh, 20), expected);
-  // From a snapshot in the middle of contact.
+  // Starts from a snapshot in the middle of contact.
   Play snapshot(body, colliders);
   snapshot.state = fresh.state;
   EXPECT_GT(fresh.w.contact.counts.touching, 0);

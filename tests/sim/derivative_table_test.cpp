@@ -1,5 +1,6 @@
-// Every element kind with every material: forces against differences of energies, and what rigid motion, Newton's third
-// law and the conservation of angular momentum demand. The table of the worst errors is kept in docs/derivatives.md.
+// Tests every element kind with every material: forces against differences of energies, and against what rigid motion,
+// Newton's third law and the conservation of angular momentum demand. The table of the worst errors is kept in
+// docs/derivatives.md.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -21,7 +22,7 @@ using test::kinds;
 using test::random_rotation;
 using test::uniform;
 
-// An element: its energy, and its force on all corners, at a deformation gradient applied to its rest shape.
+// Describes an element by its energy and its force on all corners, at a deformation gradient applied to its rest shape.
 using Corners = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 struct Subject {
   std::string element, material;
@@ -95,7 +96,7 @@ std::vector<Subject> subjects() {
   return list;
 }
 
-// The best of several steps: a large one sees curvature, a small one round-off.
+// Returns the best of several steps: a large step sees curvature, a small one round-off.
 double difference_error(const Subject& subject, const Corners& x, std::mt19937& random) {
   std::normal_distribution<double> normal;
   Corners direction(x.rows(), 3), force;
@@ -115,7 +116,7 @@ double difference_error(const Subject& subject, const Corners& x, std::mt19937& 
 
 struct Row {
   std::string element, material;
-  std::vector<double> derivative;  // by kind
+  std::vector<double> derivative;  // worst error, for each kind of deformation
   double rigid = 0, net_force = 0, net_torque = 0;
 };
 
@@ -204,15 +205,16 @@ TEST(Derivatives, NetForceAndTorqueOfAWholeBodyVanishAtEveryIteration) {
       State state = start;
       Workspace w;
       step(model, inputs, state, w);
-      // The elastic part of the gradient, where the step ended.
+      // The force is the elastic part of the gradient at the end of the step.
       begin_step(model, inputs, start, w);
       const Positions y = w.y;
-      evaluate(model, w, state.x, w.energy, &w.gradient, nullptr, nullptr);
+      w.current.x = state.x;
+      evaluate(model, w, w.current, Wanted::gradient);
       Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
       double forces = 0, torques = 0;
       for (int v = 0; v < model.vertices; ++v) {
         const double weight = model.mass[v] / (model.time_step * model.time_step);
-        const Vec3 f = w.gradient.row(v) - weight * (state.x.row(v) - y.row(v)), x = state.x.row(v);
+        const Vec3 f = w.current.gradient.row(v) - weight * (state.x.row(v) - y.row(v)), x = state.x.row(v);
         force += f;
         torque += x.cross(f);
         forces += f.norm();

@@ -1,4 +1,4 @@
-// Fields against closed forms, and against the numbers that the solver itself uses.
+// Tests fields against closed forms, and against the numbers that the solver itself uses.
 #include "sim/solver/fields.h"
 
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@ namespace {
 Positions mapped(const Positions& rest, const Mat3& f) { return rest * f.transpose(); }
 
 TEST(Fields, StressOfAUniformlyStretchedBoxIsTheClosedForm) {
-  // Stretched by s along x and by t across, sigma = diag(a, b, b) with Neo-Hookean's
-  // sigma_i = (mu (s_i^2 - 1) + lambda log J) / J; von Mises' stress is |a - b|.
+  // With stretches s along x and t across, sigma = diag(a, b, b) with Neo-Hookean's sigma_i = (mu (s_i^2 - 1) + lambda
+  // log J) / J; von Mises' stress is |a - b|.
   const double mu = 1e4, lambda = 3e4;
   const Model model = build_model(test::bar(NeoHookean{mu, lambda}, test::Held::nothing));
   for (const auto& [s, t] : {std::pair(1.4, 0.9), {0.7, 1.1}, {1.0, 1.0}, {1.2, 1.2}}) {

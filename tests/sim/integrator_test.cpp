@@ -1,8 +1,9 @@
-// Implicit midpoint, stiffness-proportional damping, springs and fibres: objectives that are derivatives of each other,
-// and the physics they are chosen for.
+// Tests implicit midpoint, stiffness-proportional damping, springs and fibres: their objectives and gradients must
+// agree, and they must show the physics that they are chosen for.
 #include <gtest/gtest.h>
 
 #include "sim/model/measures.h"
+#include "sim/solver/energies.h"
 #include "support/bodies.h"
 #include "support/objective_checks.h"
 
@@ -40,7 +41,8 @@ TEST(Integrators, GradientAndDifferencesAgreeForEveryObjective) {
 // The matrix of the model must be the second derivative of g where g is quadratic.
 TEST(Integrators, TheSystemMatrixIsTheHessianOfTheQuadraticPart) {
   for (const Integrator integrator : {Integrator::backward_euler, Integrator::implicit_midpoint}) {
-    // As-rigid-as-possible with k = 2 mu: near rest, for a deformation without rotation, g is quadratic with A.
+    // The material is as-rigid-as-possible with k = 2 mu: near rest, for a deformation without rotation, g is quadratic
+    // with A.
     BodyDescription body = bar(AsRigidAsPossible{1e4}, Held::spring_end);
     body.integrator = integrator;
     body.damping = 0.01;
@@ -52,15 +54,16 @@ TEST(Integrators, TheSystemMatrixIsTheHessianOfTheQuadraticPart) {
     w.prepare(model, inputs.solver);
     State state = rest_state(model);
     begin_step(model, inputs, state, w);
-    // A uniform stretch, symmetric, so that R stays the identity everywhere.
+    // A uniform, symmetric stretch keeps R the identity everywhere.
     const double strain = 1e-4;
-    w.x = model.rest;
-    w.x.col(0) *= 1 + strain;
-    w.x.col(1) *= 1 - 0.5 * strain;
-    evaluate(model, w, w.x, w.energy, &w.gradient, nullptr, nullptr);
+    w.current.x = model.rest;
+    w.current.x.col(0) *= 1 + strain;
+    w.current.x.col(1) *= 1 - 0.5 * strain;
+    evaluate(model, w, w.current, Wanted::gradient);
     Positions solved(model.free, 3);
-    model.factor.solve(w.gradient.data(), solved.data(), w.solve_scratch.data());
-    EXPECT_LT((solved - (w.x - model.rest).topRows(model.free)).norm(), 1e-6 * (w.x - model.rest).norm());
+    model.factor.solve(w.current.gradient.data(), solved.data(), w.solve_scratch.data());
+    EXPECT_LT((solved - (w.current.x - model.rest).topRows(model.free)).norm(),
+              1e-6 * (w.current.x - model.rest).norm());
   }
 }
 
@@ -149,7 +152,7 @@ TEST(Integrators, EveryStepOfEveryObjectiveIsNoWorseThanStaying) {
     const Model model = build_model(body);
     FrameInputs inputs = still_inputs(model);
     inputs.middle_targets = inputs.targets;
-    inputs.solver.iterations = 1;  // too few on purpose
+    inputs.solver.iterations = 1;  // deliberately too few
     State state = rest_state(model);
     state.x.topRows(model.free) = test::shaken(model.rest, 0.05, 3).topRows(model.free);
     Workspace w;
@@ -162,7 +165,7 @@ TEST(Integrators, EveryStepOfEveryObjectiveIsNoWorseThanStaying) {
   }
 }
 
-// A mass of 2 kg on a spring of 1 m and 40 N/m.
+// Makes a mass of 2 kg on a spring of 1 m and 40 N/m.
 BodyDescription weight_on_a_spring() {
   BodyDescription body;
   body.name = "spring";
@@ -177,9 +180,9 @@ BodyDescription weight_on_a_spring() {
 }
 
 TEST(Springs, AndFibresAreWholeInTheSystemMatrix) {
-  // Both are linear along their own direction: one plain quasi-Newton iteration lands where nothing is left to gain. A
-  // softer or stiffer matrix would fall short or overshoot.
-  // Fibres along y in a box that is pulled along y by its weight; the base is as good as absent.
+  // Both are linear along their own direction, so one plain quasi-Newton iteration must end at the minimum; a softer or
+  // stiffer matrix would fall short or overshoot. The fibres run along y in a box that its weight pulls along y; the
+  // base material is so soft that it does not count.
   BodyDescription fibre = bar(AsRigidAsPossible{1e-6}, Held::nothing);
   fibre.fibres = {Fibre{1e4, {0, 1, 0}}};
   fibre.handles = {Handle{"top", {}, 0}};
@@ -196,10 +199,11 @@ TEST(Springs, AndFibresAreWholeInTheSystemMatrix) {
     const StepReport& report = step(model, inputs, state, w);
     const double gained = report.objective.front() - report.objective.back();
     begin_step(model, inputs, rest_state(model), w);
-    evaluate(model, w, state.x, w.energy, &w.gradient, nullptr, nullptr);
+    w.current.x = state.x;
+    evaluate(model, w, w.current, Wanted::gradient);
     Positions left(model.free, 3);
-    model.factor.solve(w.gradient.data(), left.data(), w.solve_scratch.data());
-    EXPECT_LT(w.gradient.cwiseProduct(left).sum(), 1e-6 * std::max(gained, 1e-12)) << body.name;
+    model.factor.solve(w.current.gradient.data(), left.data(), w.solve_scratch.data());
+    EXPECT_LT(w.current.gradient.cwiseProduct(left).sum(), 1e-6 * std::max(gained, 1e-12)) << body.name;
   }
 }
 

@@ -1,10 +1,12 @@
-// Energies against their derivatives, at every kind of deformation; the SIMD kernel against the plain formulas.
+// Tests energies against their derivatives at every kind of deformation, and the SIMD kernel against the plain
+// formulas.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <cmath>
+#include <xsimd/xsimd.hpp>
 
 #include "base/variants.h"
 #include "sim/elements/tetrahedron.h"
@@ -27,7 +29,7 @@ Matrix3<double> plain(const Mat3& f) {
   return m;
 }
 
-// Energy density and first Piola-Kirchhoff stress by the plain path.
+// Computes the energy density and the first Piola-Kirchhoff stress by the plain path.
 double density(const Material& material, const Mat3& f, Mat3* stress) {
   return std::visit(
       [&](const auto& m) {
@@ -42,7 +44,7 @@ double density(const Material& material, const Mat3& f, Mat3* stress) {
 }
 
 TEST(Materials, EnergyIsTheValanisLandelSumOfItsStretches) {
-  // Equation 9 with the table's a, b, c, at random stretches.
+  // Evaluates equation 9 with the table's a, b, c, at random stretches.
   std::mt19937 random(8);
   for (int sample = 0; sample < 100; ++sample) {
     const Vec3 s(uniform(random, 0.4, 2), uniform(random, 0.4, 2), uniform(random, 0.4, 2));
@@ -70,7 +72,7 @@ TEST(Materials, EnergyAndStressVanishAtRestAndUnderRotation) {
     for (int sample = 0; sample < 20; ++sample) {
       Mat3 stress;
       const double energy = density(material, random_rotation(random), &stress);
-      EXPECT_NEAR(energy, 0, 1e-13 * 1e4) << name_of(material);  // moduli are of the size of 1e4
+      EXPECT_NEAR(energy, 0, 1e-13 * 1e4) << name_of(material);  // moduli are about 1e4
       EXPECT_LT(stress.norm(), 1e-13 * 1e4) << name_of(material);
     }
   }
@@ -79,7 +81,7 @@ TEST(Materials, EnergyAndStressVanishAtRestAndUnderRotation) {
 TEST(Materials, NeoHookeanContinuesSmoothlyBelowItsSmallestVolumeRatio) {
   const NeoHookean material{2, 3};
   const double j = LogVolume::smallest_ratio, step = 1e-7;
-  const auto slope = [&](double ratio) {  // dPsi/dJ along F = diag(1, 1, J), less the part mu J of mu/2 tr F^T F
+  const auto slope = [&](double ratio) {  // dPsi/dJ along F = diag(1, 1, J), without the part mu J of mu/2 tr F^T F
     Mat3 f = Mat3::Identity(), stress;
     f(2, 2) = ratio;
     density(material, f, &stress);
@@ -93,7 +95,7 @@ TEST(Materials, NeoHookeanContinuesSmoothlyBelowItsSmallestVolumeRatio) {
 }
 
 TEST(Materials, ForceIsFiniteWhereTheRotationIsNotUnique) {
-  // s2 + s3 = 0: the energy has a kink there.
+  // Where s2 + s3 = 0, the energy has a kink.
   for (const Material& material : all_materials()) {
     for (const Vec3& s : {Vec3(1, 0.5, -0.5), Vec3(1, 0, 0), Vec3(0, 0, 0), Vec3(-1, -1, -1)}) {
       Mat3 stress;
@@ -167,7 +169,7 @@ TEST(Kernels, EveryVariantAgreesWithThePlainFormulas) {
   for (const Material& material : all_materials()) {
     const Model model = build_model(test::bar(material, test::Held::nothing, Precision::double_precision, 2));
     const Positions x = test::shaken(model.rest, 0.04, 3);  // inverts some elements
-    // The plain path: one element after the other.
+    // The plain path evaluates one element after the other.
     double expected = 0;
     Positions force = Positions::Zero(model.vertices, 3);
     const TetMesh mesh = test::bar(material, test::Held::nothing, Precision::double_precision, 2).mesh;

@@ -1,5 +1,5 @@
-#include "base/variants.h"
 #include "sim/model/measures.h"
+#include "base/variants.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,8 @@
 namespace supple {
 namespace {
 
-// By every instruction set: largest stretch and volume of each element against a singular value decomposition.
+// Compares, for every instruction set, the largest stretch and the volume of each element with those of a singular
+// value decomposition.
 void expect_stretches(const Model& model, const Positions& x) {
   for (int v = 0; v < runnable_variants(); ++v) {
     for (std::size_t c = 0; c < model.chunks.size(); ++c) {
@@ -38,7 +39,7 @@ TEST(Measures, StretchesAreSingularValues) {
   for (const unsigned seed : {1u, 2u, 3u}) {
     for (const double amount : {1e-9, 1e-4, 0.02, 1.0}) expect_stretches(model, test::shaken(rest, amount, seed));
   }
-  expect_stretches(model, Positions::Zero(rest.rows(), 3));  // all in one point
+  expect_stretches(model, Positions::Zero(rest.rows(), 3));  // all vertices lie in one point
   Positions flat = rest;
   flat.col(1).setZero();
   expect_stretches(model, flat);

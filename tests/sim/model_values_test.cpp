@@ -1,4 +1,4 @@
-// A model whose numbers change while it lives is the model that would be built anew.
+// Tests that a model whose numbers change while it lives equals the model that would be built anew.
 #include <gtest/gtest.h>
 
 #include "sim/model/model_values.h"
@@ -7,7 +7,7 @@
 namespace supple {
 namespace {
 
-// One step from a shaken rest, as a hash.
+// Returns the hash after one step from a shaken rest state.
 std::uint64_t hash_of_step(const Model& model) {
   State state = rest_state(model);
   const Positions shaken = test::shaken(in_input_order(model, model.rest), 0.01 * model.size, 3);
@@ -18,7 +18,7 @@ std::uint64_t hash_of_step(const Model& model) {
   return state_hash(model, state);
 }
 
-// Changes `body` in place and compares with a model that never was another one.
+// Changes `body` in place and compares it with a model that was built with the new values.
 template <class Change>
 void expect_as_built(BodyDescription body, const Change& change) {
   Model model = build_model(body);
@@ -38,7 +38,7 @@ void expect_as_built(BodyDescription body, const Change& change) {
   EXPECT_EQ(model.couplings.size(), built.couplings.size());
   EXPECT_EQ(hash_of_step(model), hash_of_step(built));
   EXPECT_NE(hash_of_step(model), before);
-  values.set(model, first);  // and back
+  values.set(model, first);  // and changes it back
   EXPECT_EQ(hash_of_step(model), before);
 }
 

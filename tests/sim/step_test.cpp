@@ -1,4 +1,4 @@
-// The time step as a whole: derivatives of the objective, equivalences, conservation, determinism.
+// Tests the time step as a whole: derivatives of the objective, equivalences, conservation, determinism.
 #include "sim/solver/step.h"
 
 #include <gtest/gtest.h>
@@ -28,8 +28,8 @@ TEST(Objective, GradientIsTheDerivativeOfTheValueForEveryMaterialAndHandle) {
   }
 }
 
-// One step of Projective Dynamics as Bouaziz et al. 2014 write it, for as-rigid-as-possible elements: rotations by SVD,
-// then a dense solve.
+// Makes one step of Projective Dynamics as Bouaziz et al. 2014 write it, for as-rigid-as-possible elements: rotations
+// by SVD, then a dense solve.
 Positions local_global(const BodyDescription& body, const Positions& y, Positions x, int iterations) {
   const int n = static_cast<int>(x.rows());
   const double h = body.time_step, mu = std::get<AsRigidAsPossible>(body.materials[0]).mu;
@@ -102,21 +102,22 @@ TEST(Step, WithWindowZeroOnAsRigidAsPossibleEqualsLocalGlobalAndNeverRejectsATri
     const Model model = build_model(body);
     FrameInputs inputs = still_inputs(model);
     inputs.solver.history = 0;
-    inputs.gravity.setZero();  // a handle that falls with its body: the first iterate is then y itself
+    // Without gravity, y leaves the handle where its target is, so that the first iterate is y itself.
+    inputs.gravity.setZero();
     inputs.solver.armijo = 0.5;
     for (const int iterations : {1, 3, 10}) {
       inputs.solver.iterations = iterations;
       State state = rest_state(model);
       state.x = test::shaken(model.rest, 0.01, 1);
       state.v = test::shaken(Positions::Zero(model.vertices, 3), 0.4, 2);
-      for (const Model::HandleVertex& held_vertex : model.handled) {  // a handle at rest: both start from y
+      for (const Model::HandleVertex& held_vertex : model.handled) {  // a handle at rest, so that both start from y
         state.x.row(held_vertex.vertex) = model.rest.row(held_vertex.vertex);
         state.v.row(held_vertex.vertex).setZero();
       }
       Workspace w;
       w.prepare(model, inputs.solver);
       begin_step(model, inputs, state, w);
-      const Positions y = in_input_order(model, w.y), start = in_input_order(model, w.x);
+      const Positions y = in_input_order(model, w.y), start = in_input_order(model, w.current.x);
       const StepReport& report = step(model, inputs, state, w);
       EXPECT_EQ(report.line_search, iterations);
       const Positions expected = local_global(body, y, start, iterations);
@@ -175,12 +176,12 @@ TEST(Step, GravityAloneIsFreeFall) {
   Workspace w;
   const int frames = 30;
   for (int frame = 0; frame < frames; ++frame) step(model, inputs, state, w);
-  // Backward Euler: x_n = x_0 + g h^2 n (n + 1) / 2.
+  // Backward Euler gives x_n = x_0 + g h^2 n (n + 1) / 2.
   const double h = model.time_step, fall = -9.81 * h * h * frames * (frames + 1) / 2;
   EXPECT_LT((state.x.col(1).array() - model.rest.col(1).array() - fall).abs().maxCoeff(), 1e-10);
 }
 
-// A swinging bar some frames into its motion.
+// Returns the state of a swinging bar some frames into its motion.
 State swinging(const Model& model, const FrameInputs& inputs, int frames) {
   State state = rest_state(model);
   Workspace w;
@@ -200,7 +201,7 @@ TEST(Step, ConvergesToAnErrorOf1e12WithoutStalling) {
       const StepReport& report = step(model, inputs, state, w);
       ASSERT_FALSE(report.failed);
       EXPECT_EQ(report.stop_reason, StopReason::round_off)
-          << name_of(material) << ": " << text_of(report.stop_reason) << " after " << report.iterations;
+          << name_of(material) << ": " << name_of(report.stop_reason) << " after " << report.iterations;
       EXPECT_LT(Reference(model).step_error(model, inputs, before, state, reference).value_or(1), 1e-12)
           << name_of(material);
     }
@@ -208,8 +209,8 @@ TEST(Step, ConvergesToAnErrorOf1e12WithoutStalling) {
 }
 
 TEST(Step, DoesNotRejectTrialsForTheRoundOffOfPositions) {
-  // A stiff bar two metres from the origin, swung until it hangs still: positions round to 4e-16 m, which strains its
-  // small elements visibly in g.
+  // The body is a stiff bar two metres from the origin, swung until it hangs still: its positions are rounded to 4e-16
+  // m, which strains its small elements visibly in g.
   BodyDescription body = bar(NeoHookean{1e6, 1e6}, Held::hard_end, Precision::single_precision, 3);
   body.mesh.rest.rowwise() += Eigen::RowVector3d(1.2, 1.2, 1.2);
   const Model model = build_model([&] {
@@ -238,7 +239,7 @@ TEST(Step, IsNeverWorseThanStaying) {
   for (const Material& material : test::all_materials()) {
     const Model model = build_model(bar(material, Held::hard_end, Precision::single_precision));
     FrameInputs inputs = still_inputs(model);
-    inputs.solver.iterations = 1;  // too few on purpose
+    inputs.solver.iterations = 1;  // deliberately too few
     State state = rest_state(model);
     state.x.topRows(model.free) = test::shaken(model.rest, 0.05, 3).topRows(model.free);
     Workspace w;
@@ -306,7 +307,7 @@ TEST(Step, WithoutLineSearchReportsTheVertexWhenTheBodyFliesApart) {
 }
 
 TEST(Step, ErrorEstimateFollowsTheMeasuredError) {
-  // Not a bound: the estimate must be of the error's size, so that it can be used to stop.
+  // The estimate is not a bound, but it must be of the error's size, so that it can be used to stop.
   const Model model = build_model(bar(NeoHookean{2e4, 8e4}, Held::hard_end, Precision::single_precision, 3));
   FrameInputs inputs = still_inputs(model);
   State state = swinging(model, inputs, 10);
@@ -341,7 +342,7 @@ TEST(Step, AllHandlesArriveAtTheirTargets) {
 }
 
 TEST(Step, StartsWithTheHandlesDepartureSpreadIntoTheBody) {
-  // A jerk at the handle by a third of an element: y alone tears the elements beside it.
+  // The handle jumps by a third of an element: y alone tears the elements beside it.
   const Model model = build_model(bar(Corotated{1e4, 3e4}, Held::hard_end, Precision::single_precision, 3));
   FrameInputs inputs = still_inputs(model);
   inputs.targets.col(1).array() += 0.01;
@@ -349,7 +350,8 @@ TEST(Step, StartsWithTheHandlesDepartureSpreadIntoTheBody) {
   Workspace w;
   w.prepare(model, inputs.solver);
   begin_step(model, inputs, state, w);
-  const double at_y = evaluate(model, w, w.x, w.energy, nullptr, nullptr, nullptr).value;
+  evaluate(model, w, w.current, Wanted::value);
+  const double at_y = w.current.g;
   const StepReport& report = step(model, inputs, state, w);
   EXPECT_LT(report.objective.front(), 0.5 * at_y);
 }
@@ -367,7 +369,7 @@ TEST(Cholesky, SolvesInBothPrecisionsAsADenseSolverDoes) {
   single.factor.solve(b.data(), y.data(), scratch.data());
   EXPECT_LT((x - y).norm(), 1e-4 * x.norm());
 
-  // A x = b, with A applied as the second derivative of the quadratic part: M/h^2 x + L x, element by element.
+  // Solves A x = b, with A applied as the second derivative of the quadratic part: M/h^2 x + L x, element by element.
   Positions product(exact.free, 3);
   for (int v = 0; v < exact.free; ++v) product.row(v) = exact.mass[v] / (exact.time_step * exact.time_step) * x.row(v);
   for (Eigen::Index e = 0; e < body.mesh.tets.rows(); ++e) {

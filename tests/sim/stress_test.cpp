@@ -1,5 +1,6 @@
-// Stress of every isotropic material against formulas written down a second time: a', b' and c' of the Valanis-Landel
-// form as docs/method.md tabulates them, and principal stretches in closed form. Also k of equation 11.
+// Tests the stress of every isotropic material against formulas written down a second time: a', b' and c' of the
+// Valanis-Landel form as docs/method.md tabulates them, and principal stretches in closed form. It also tests k of
+// equation 11.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -15,7 +16,7 @@ namespace {
 
 using Function = std::function<double(double)>;
 
-// The derivatives of a, b and c.
+// Holds the derivatives of a, b and c.
 struct Curves {
   Material material;
   Function a, b, c;
@@ -23,7 +24,7 @@ struct Curves {
 
 double nothing(double) { return 0; }
 
-// c' = (lambda log J - linear) / J, straight on below J = 0.1.
+// Returns c' = (lambda log J - linear) / J, continued as a straight line below J = 0.1.
 Function log_volume(double linear, double lambda) {
   return [=](double j) {
     const double at = std::max(j, 0.1);
@@ -32,8 +33,8 @@ Function log_volume(double linear, double lambda) {
   };
 }
 
-// The natural cubic spline a second time: a dense system for its second derivatives, and the symmetric formula (de Boor
-// 2001, "A practical guide to splines", chapter IV).
+// Computes the natural cubic spline a second time: a dense system for its second derivatives, and the symmetric formula
+// (de Boor 2001, "A practical guide to splines", chapter IV).
 Function natural_spline(const std::vector<ControlPoint>& p) {
   const auto n = static_cast<Eigen::Index>(p.size());
   Eigen::MatrixXd system = Eigen::MatrixXd::Identity(n, n);
@@ -101,7 +102,8 @@ TEST(Stress, UniaxialTensionAndCompressionFollowTheClosedForms) {
   for (const Curves& curves : all_curves()) {
     seen.insert(curves.material.index());
     for (double s = 0.05; s < 3; s += 0.05) {
-      // F = diag(s, 1, 1): along, a'(s) + 2 b'(s) + c'(s); across, a'(1) + b'(1) + s b'(s) + s c'(s).
+      // For F = diag(s, 1, 1), the stress along is a'(s) + 2 b'(s) + c'(s), and the stress across is a'(1) + b'(1) + s
+      // b'(s) + s c'(s).
       const double along = curves.a(s) + 2 * curves.b(s) + curves.c(s);
       const double across = curves.a(1) + curves.b(1) + s * curves.b(s) + s * curves.c(s);
       const double scale = std::abs(curves.a(s)) + std::abs(2 * curves.b(s)) + std::abs(curves.c(s)) + 1;
@@ -115,8 +117,8 @@ TEST(Stress, UniaxialTensionAndCompressionFollowTheClosedForms) {
 }
 
 TEST(Stress, SidesThatAreFreeCarryNoStressAtTheStretchThatTheClosedFormSays) {
-  // Uniaxial tension proper: sides at the stretch t where a'(t) + s b'(s t) + t b'(t^2) + s t c'(s t^2) = 0, by
-  // bisection.
+  // This is uniaxial tension proper: bisection finds the stretch t of the sides where a'(t) + s b'(s t) + t b'(t^2) + s
+  // t c'(s t^2) = 0.
   for (const Curves& curves : all_curves()) {
     if (std::holds_alternative<Spline>(curves.material) || std::holds_alternative<StrainLimiting>(curves.material))
       continue;
@@ -140,7 +142,7 @@ TEST(Stress, SimpleShearFollowsTheClosedForms) {
     for (const double gamma : {-1.5, -0.4, 0.05, 0.3, 0.7, 1.0, 2.0}) {
       Mat3 f = Mat3::Identity();
       f(0, 1) = gamma;
-      // Stretches s and 1/s with s - 1/s = gamma, and 1; the volume stays. dPsi/dgamma = P_12.
+      // The stretches are s and 1/s with s - 1/s = gamma, and 1, so the volume stays; dPsi/dgamma = P_12.
       const double s = std::abs(gamma) / 2 + std::sqrt(1 + gamma * gamma / 4), t = 1 / s;
       const double found = stress_at(curves.material, f)(0, 1);
       const double expected =
@@ -150,7 +152,7 @@ TEST(Stress, SimpleShearFollowsTheClosedForms) {
   }
 }
 
-// The exact integral of a function that is a polynomial of degree at most 5 between the seams (Boole's rule).
+// Computes the exact integral of a function that is a polynomial of degree at most 5 between the seams (Boole's rule).
 double integral_between_seams(const Function& f, std::vector<double> seams, double from, double to) {
   seams.push_back(from);
   seams.push_back(to);
@@ -166,7 +168,7 @@ double integral_between_seams(const Function& f, std::vector<double> seams, doub
 TEST(Stiffness, FollowsEquationElevenInClosedFormForEveryMaterial) {
   const double mu = 3, lambda = 5;
   const auto over = [](auto primitive) { return primitive(1.5) - primitive(0.5); };
-  // 12 times the integrals of (s-1)(s - 1/s) and (s-1) log(s)/s over [1/2, 3/2].
+  // These are 12 times the integrals of (s-1)(s - 1/s) and (s-1) log(s)/s over [1/2, 3/2].
   const double by_mu = 12 * over([](double s) { return s * s * s / 3 - s * s / 2 - s + std::log(s); });
   const double by_lambda = 12 * over([](double s) { return s * std::log(s) - s - std::log(s) * std::log(s) / 2; });
   const auto near = [](const Material& material, double expected) {
@@ -181,7 +183,7 @@ TEST(Stiffness, FollowsEquationElevenInClosedFormForEveryMaterial) {
   near(MooneyRivlin{2, 1, lambda}, 4 * by_mu + lambda * by_lambda);  // f = (mu_1 + 2 mu_2)(s - 1/s) + lambda log(s)/s
   near(FixedCorotated{mu, lambda}, 2 * mu + lambda);
   near(StableNeoHookean{mu, lambda}, mu + lambda);
-  // Both sides of a limit: 12 * 2 * integral of e * 2 mu (e - e_1) from e_1 to 1/2.
+  // Both sides of a limit contribute 12 * 2 * integral of e * 2 mu (e - e_1) from e_1 to 1/2.
   const auto limited = [](double m, double e) { return 48 * m * ((0.125 - e * e * e) / 3 - e * (0.25 - e * e) / 2); };
   near(StrainLimiting{mu, 0.84, 1.16, 2, 0.65, 1.35}, limited(mu, 0.16) + limited(2, 0.35));
   EXPECT_EQ(system_stiffness(StrainLimiting{mu, 0.84, 1.16, 2, 0.65, 1.35}).k, 2 * (mu + 2));
@@ -194,14 +196,15 @@ TEST(Stiffness, FollowsEquationElevenInClosedFormForEveryMaterial) {
 }
 
 TEST(Stiffness, HasAFloorUnderMaterialsThatSoften) {
-  // Falls on both sides of rest: the fit is negative, and M/h^2 + L would not be positive definite.
+  // The curve falls on both sides of rest, so the fit is negative, and M/h^2 + L would not be positive definite.
   const Spline falling{SplineCurve({{0.5, 2}, {1, 0}, {1.5, -2}}), {}, {}};
   EXPECT_LT(fitted_stiffness(falling), 0);
   const SystemStiffness floored = system_stiffness(falling);
   EXPECT_TRUE(floored.floored);
   EXPECT_GT(floored.k, 0);
   EXPECT_FALSE(system_stiffness(Polynomial{3}).floored);
-  const Model model = build_model(test::bar(falling, test::Held::hard_end));  // positive definite
+  // Building succeeds only with a positive definite matrix.
+  const Model model = build_model(test::bar(falling, test::Held::hard_end));
   EXPECT_TRUE(model.stiffness[0].floored);
 }
 
@@ -211,7 +214,7 @@ TEST(Materials, SmallStrainsFollowYoungsModulusAndPoissonsRatio) {
   for (const Material& material : {Material(Corotated::from(lame)), Material(StVenantKirchhoff::from(lame)),
                                    Material(NeoHookean::from(lame)), Material(MooneyRivlin::from(lame)),
                                    Material(FixedCorotated::from(lame)), Material(StableNeoHookean::from(lame))}) {
-    // Stretched with sides that give way by Poisson's ratio, the stress along is young * strain and that across none.
+    // When the sides contract by Poisson's ratio, the stress along is young * strain and the stress across is zero.
     const Mat3 stress = stress_at(material, Vec3(1 + strain, 1 - poisson * strain, 1 - poisson * strain).asDiagonal());
     EXPECT_NEAR(stress(0, 0) / (young * strain), 1, 1e-4) << name_of(material);
     EXPECT_NEAR(stress(1, 1) / (young * strain), 0, 1e-4) << name_of(material);
@@ -221,7 +224,7 @@ TEST(Materials, SmallStrainsFollowYoungsModulusAndPoissonsRatio) {
   }
 }
 
-// The curves of figure 6, for docs/stress-curves.svg.
+// Writes the curves of figure 6, for docs/stress-curves.svg.
 TEST(Stress, CurvesAreWrittenForThePlot) {
   const Lame lame{1, 1};
   std::ofstream out(std::filesystem::path(SUPPLE_BUILD_FOLDER) / "stress-curves.csv");
@@ -240,7 +243,7 @@ TEST(Stress, CurvesAreWrittenForThePlot) {
       out << ',' << std::visit([s](const auto& m) { return m.axial_stress(s); }, material);
     out << '\n';
   }
-  // A resists compression more than Neo-Hookean and B tension, and neither differs on the other side.
+  // Spline A resists compression more than Neo-Hookean does, and B tension; on the other side neither differs from it.
   const auto f = [&](int i, double s) {
     return std::visit([s](const auto& m) { return m.axial_stress(s); }, shown[i]);
   };

@@ -1,4 +1,4 @@
-// The SIMD singular value decomposition against what its header promises, on ten million matrices of every kind.
+// Tests the SIMD singular value decomposition against what its header promises, on ten million matrices of every kind.
 #include "sim/elements/svd.h"
 
 #include <gtest/gtest.h>
@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <random>
+#include <xsimd/xsimd.hpp>
 
 #include "base/types.h"
 
@@ -16,7 +17,7 @@ using V = xsimd::batch<double>;
 constexpr int lanes = static_cast<int>(V::size);
 constexpr double eps = 0x1p-52;
 
-// Uniform in [-1, 1); cheap, because ten million matrices take nine of them each.
+// Draws uniform numbers in [-1, 1) cheaply, because ten million matrices take nine of them each.
 class Numbers {
  public:
   double next() {
@@ -67,7 +68,7 @@ const MatrixKind kinds[] = {
 
 struct Worst {
   double residual = 0, orthogonality = 0, determinant = 0;
-  void add(double& mine, double value) const { mine = value <= mine ? mine : value; }  // NaN sticks
+  void add(double& mine, double value) const { mine = value <= mine ? mine : value; }  // also keeps a NaN
 };
 
 void check(const Mat3& f, const Mat3& u, const Vec3& s, const Mat3& v, const char* name, Worst& worst) {

@@ -1,4 +1,4 @@
-// The example of docs/adding-a-material.md: it is on the page as it is compiled here, and right.
+// Tests the example of docs/adding-a-material.md: the page shows it as it is compiled here, and it is right.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -38,7 +38,7 @@ TEST(WorkedExample, IsTheDerivativeOfItsEnergyAndTheSumOverItsStretches) {
     double sum = 0;
     for (const double s : svd(f).s) sum += 3 * std::pow(s - 1, 2) + 50 * std::pow(s - 1, 6);
     EXPECT_NEAR(energy, sum, 1e-11 * (1 + sum));
-    // The same in lanes.
+    // The vector lanes must give the same.
     using V = xsimd::batch<double>;
     Matrix3<V> wide, wide_stress;
     for (int i = 0; i < 9; ++i) wide.m[i] = V(f.m[i]);

@@ -1,6 +1,6 @@
-// What the choices of docs/contact.md cost and gain, on the same states: a scene is played with the defaults, and from
-// each chosen state one step is made with each variant. Prints markdown.
-//   supple_contact_study ASSETS SCENE BODY EVERY FRAMES
+// Measures what the choices of docs/contact.md cost and gain, on the same states: it runs a scene with the defaults,
+// and makes one step with each variant from each chosen state. It prints markdown. Usage: supple_contact_study ASSETS
+// SCENE BODY EVERY FRAMES
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -9,7 +9,7 @@ namespace {
 std::atomic<long> count{0};
 }
 
-// Eigen allocates by malloc, the standard library by operator new, which calls malloc: one hook sees both.
+// Eigen allocates by malloc, and the standard library by operator new, which calls malloc, so one hook sees both.
 #if !defined(__SANITIZE_ADDRESS__)
 extern "C" {
 void* __libc_malloc(std::size_t);

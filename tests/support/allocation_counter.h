@@ -1,10 +1,9 @@
-// Counts calls of operator new and malloc's C++ users in this process, for the tests that nothing is allocated in a
-// step.
+// Counts the allocations of this process, by operator new and by malloc, for the tests that a step allocates nothing.
 #pragma once
 
 namespace supple::test {
 
-// Allocations by this thread and all others since the process started.
+// Returns the number of allocations by all threads since the process started.
 long allocations();
 
 }  // namespace supple::test

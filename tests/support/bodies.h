@@ -1,4 +1,4 @@
-// Small bodies and states that many tests share.
+// Provides small bodies and states that many tests share.
 #pragma once
 
 #include <filesystem>
@@ -14,33 +14,33 @@ namespace supple::test {
 inline const std::filesystem::path source_folder = SUPPLE_SOURCE_FOLDER;
 inline const std::filesystem::path assets = source_folder / "assets";
 
-// The paper's mesh by name; the calling test is skipped by name when there is none (a failure with
-// SUPPLE_REQUIRE_PAPER=1).
+// Finds the paper's mesh of this name. When there is none, the calling test is skipped with that name (with
+// SUPPLE_REQUIRE_PAPER=1 it fails).
 std::optional<std::filesystem::path> paper_mesh(const std::string& name);
 
-// One of each material, with moduli of the same size.
+// Returns one material of each kind, with moduli of the same size.
 std::vector<Material> all_materials();
 
-// Of all materials, as scene files spell them.
+// Returns the names of all materials, as scene files spell them.
 std::vector<std::string> model_names();
 
-// A bar of 4 x 1 x 1 cells, 0.4 m long; its left end can be held.
+// Makes a bar of 4 x 1 x 1 cells, 0.4 m long; its left end can be held.
 enum class Held { nothing, hard_end, spring_end };
 BodyDescription bar(const Material& material, Held held, Precision precision = Precision::double_precision,
                     int cells = 1);
 
-// A free square of cells x cells springs, 0.4 m wide, in the plane z = 0.
+// Makes a free square of cells x cells springs, 0.4 m wide, in the plane z = 0.
 BodyDescription spring_net(int cells);
 
-// Inputs for a body whose handles stay where they rest.
+// Makes inputs for a body whose handles stay where they rest.
 FrameInputs still_inputs(const Model& model);
 
-// Rest positions with every coordinate moved by up to `amount`.
+// Returns rest positions with every coordinate moved by up to `amount`.
 Positions shaken(const Positions& rest, double amount, unsigned seed);
 
 std::string read_file(const std::filesystem::path& path);
 
-// A folder that is removed with the object.
+// Owns a folder that is removed with the object.
 class TemporaryFolder {
  public:
   TemporaryFolder();

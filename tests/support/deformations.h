@@ -1,4 +1,4 @@
-// Deformation gradients of every kind that an element can meet.
+// Provides deformation gradients of every kind that an element can meet.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -14,7 +14,7 @@ inline Mat3 random_rotation(std::mt19937& random) {
   return q.normalized().toRotationMatrix();
 }
 
-// Kinds of stretches, each with the sign of det F on the smallest.
+// Lists kinds of stretches; the smallest stretch has the sign of det F.
 struct Kind {
   const char* name;
   Vec3 (*stretches)(std::mt19937&);

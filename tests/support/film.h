@@ -1,4 +1,4 @@
-// A scene played without pictures.
+// Runs a scene without pictures.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -18,39 +18,42 @@ void expect_derivative_of_objective(const BodyDescription& body, const std::stri
   state.x = shaken(model.rest, 0.01, 3);
   state.v = shaken(Positions::Zero(model.vertices, 3), 1, 5);
   begin_step(model, inputs, state, w);
-  w.x.topRows(model.free) = shaken(model.rest, 0.02, 4).topRows(model.free);
+  w.current.x.topRows(model.free) = shaken(model.rest, 0.02, 4).topRows(model.free);
   w.direction = shaken(Positions::Zero(model.free, 3), 1, 6);
-  const Change at = evaluate(model, w, w.x, w.energy, &w.gradient, nullptr, nullptr);
+  evaluate(model, w, w.current, Wanted::gradient);
+  const double slope = w.current.gradient.cwiseProduct(w.direction).sum();
   const auto value_at = [&](double step) {
-    w.trial = w.x;
-    w.trial.topRows(model.free) += step * w.direction;
-    return evaluate(model, w, w.trial, w.trial_energy, nullptr, nullptr, nullptr).value;
+    set_trial(model, w, step);
+    evaluate(model, w, w.trial, Wanted::value);
+    return w.trial.g;
   };
   double best = 1e300;
   for (const double h : {1e-4, 1e-5, 1e-6, 1e-7})
-    best = std::min(best, std::abs((value_at(h) - value_at(-h)) / (2 * h) - at.slope));
-  EXPECT_LT(best, 1e-6 * std::abs(at.slope)) << name;
+    best = std::min(best, std::abs((value_at(h) - value_at(-h)) / (2 * h) - slope));
+  EXPECT_LT(best, 1e-6 * std::abs(slope)) << name;
   const double value = value_at(1e-3);
-  const double change = evaluate(model, w, w.trial, w.trial_energy, nullptr, &w.x, &w.energy).value;
-  EXPECT_NEAR(change, value - at.value, 1e-11 * std::abs(value)) << name;
+  const Change change = evaluate_trial(model, w, Wanted::gradient);
+  EXPECT_NEAR(change.value, value - w.current.g, 1e-11 * std::abs(value)) << name;
+  const double slope_there = w.trial.gradient.cwiseProduct(w.direction).sum();
+  EXPECT_NEAR(change.slope, slope_there, 1e-11 * std::abs(slope_there)) << name;
 }
 
 AgainstStaying against_staying(const Model& model, const FrameInputs& inputs, const State& before, const State& after) {
   Workspace w;
   w.prepare(model, inputs.solver);
   begin_step(model, inputs, before, w);
-  w.x.topRows(model.free) = before.x.topRows(model.free);
-  const auto normal_energy = [&](const Positions& x) {  // friction only takes energy
-    if (inputs.colliders == nullptr || inputs.colliders->empty()) return 0.0;
-    find_contacts(model, inputs, x, w);
-    const double energy = contact_energy(w.contact.found, x);
-    w.contact.found.clear();
-    return energy;
+  w.current.x.topRows(model.free) = before.x.topRows(model.free);
+  const auto normal_energy = [&](const Positions& x) {  // without friction, which only takes energy
+    if (!has_colliders(inputs)) return 0.0;
+    std::vector<Contact> found;
+    find_contacts(model, inputs, x, nullptr, w.contact, found);
+    return contact_energy(found, x);
   };
-  const double contacts = normal_energy(w.x);
-  const double staying = evaluate(model, w, w.x, w.energy, nullptr, nullptr, nullptr).value + contacts;
-  const double change = evaluate(model, w, after.x, w.trial_energy, nullptr, &w.x, &w.energy).value;
-  return {staying, change + normal_energy(after.x) - contacts};
+  const double contacts = normal_energy(w.current.x);
+  evaluate(model, w, w.current, Wanted::value);
+  w.trial.x = after.x;
+  const double change = evaluate_trial(model, w, Wanted::value).value;
+  return {w.current.g + contacts, change + normal_energy(after.x) - contacts};
 }
 
 }  // namespace supple::test

@@ -1,4 +1,4 @@
-// The objective of a step: against its own differences, and where a step ended against where it began.
+// Checks the objective of a step: against its own differences, and at the step's end against its beginning.
 #pragma once
 
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace supple::test {
 
-// At a random deformed state: the gradient is the derivative of the value, and a difference with a reference is the
-// difference of the values. name: for messages.
+// Checks at a random deformed state that the gradient is the derivative of the value, and that a difference from a
+// reference is the difference of the values. name: for messages.
 void expect_derivative_of_objective(const BodyDescription& body, const std::string& name);
 
 struct AgainstStaying {
-  double staying;  // g(q), the handles at their targets [J]
+  double staying;  // g(q), with the handles at their targets [J]
   double change;   // g(where the step ended) - g(q) [J]
 };
 AgainstStaying against_staying(const Model& model, const FrameInputs& inputs, const State& before, const State& after);

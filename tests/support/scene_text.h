@@ -1,4 +1,4 @@
-// Scenes written in a test.
+// Reads scenes that are written in a test.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace supple::test {
 
-// All that is wrong with a scene called "scene.toml".
+// Returns everything that is wrong with a scene called "scene.toml".
 std::vector<std::string> problems_of(const std::string& text);
 
-// A scene with nothing wrong.
+// Returns the scene of a text in which nothing is wrong.
 SceneDef scene_of(const std::string& text);
 
 }  // namespace supple::test

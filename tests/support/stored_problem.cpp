@@ -13,7 +13,7 @@ namespace {
 
 using Table = StoredProblem::Table;
 
-// Any array of one or two dimensions, as doubles.
+// Reads any array of one or two dimensions, as doubles.
 Table load(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
@@ -40,7 +40,7 @@ double zero(double) { return 0; }
 
 }  // namespace
 
-// w/(2 h^2) |x-y|^2_M + e E(theta x + (1-theta) q) + beta/(2h) tr((x-q)^T L (x-q)).
+// Holds the coefficients of w/(2 h^2) |x-y|^2_M + e E(theta x + (1-theta) q) + beta/(2h) tr((x-q)^T L (x-q)).
 struct StoredProblem::Scheme {
   double h, w, e, theta, beta;
 };
@@ -76,7 +76,7 @@ StoredProblem::Term StoredProblem::sum(const Term& first, const Term& second) {
           [=](double s) { return first.slope(s) + second.slope(s); }};
 }
 
-// -linear log J + lambda/2 log^2 J; below 0.1 the parabola that touches it there to second order.
+// Returns -linear log J + lambda/2 log^2 J; below 0.1 it is the parabola that agrees there to second order.
 StoredProblem::Term StoredProblem::log_volume(double linear, double lambda) {
   const double at = 0.1, log_at = std::log(at);
   const double value = -linear * log_at + lambda / 2 * log_at * log_at, slope = (lambda * log_at - linear) / at;
@@ -93,7 +93,7 @@ StoredProblem::Term StoredProblem::limited(double mu, double low, double high) {
   return {[=](double s) { return mu * beyond(s) * beyond(s); }, [=](double s) { return 2 * mu * beyond(s); }};
 }
 
-// The natural cubic spline through the points is the slope, straight beyond its ends; the value is its integral from 1.
+// The slope is the natural cubic spline through the points, straight beyond its ends; the value is its integral from 1.
 StoredProblem::Term StoredProblem::curve(const nlohmann::json& json) {
   const auto p = json.get<std::vector<std::array<double, 2>>>();
   const auto n = static_cast<Eigen::Index>(p.size());
@@ -145,7 +145,7 @@ StoredProblem::Region StoredProblem::region_of(const nlohmann::json& json) {
   const double mu = number("mu"), lambda = number("lambda"), mu_1 = number("mu_1"), mu_2 = number("mu_2");
   const Term none{zero, zero}, square = power(mu, 1, 2);
   const auto constant = [](double value) { return Term{[=](double) { return value; }, zero}; };
-  // s^2 - 1, times a factor
+  // Returns s^2 - 1, times a factor.
   const auto excess = [&](double factor) { return sum(power(factor, 0, 2), constant(-factor)); };
   Region region{none, none, none};
   if (model == "as-rigid-as-possible") {

@@ -1,5 +1,5 @@
-// g of docs/method.md written down a second time, from nothing but the files of a state's folder: plain loops, Eigen's
-// SVD, the Valanis-Landel functions as the literature tabulates them. No code of the program is used.
+// Writes g of docs/method.md down a second time, from nothing but the files of a state's folder: plain loops, Eigen's
+// SVD, and the Valanis-Landel functions as the literature tabulates them. It uses no code of the program.
 #pragma once
 
 #include <Eigen/Dense>
@@ -23,16 +23,16 @@ class StoredProblem {
 
   struct Value {
     double objective = 0;  // g(x) [J]
-    double size = 0;       // sum of the magnitudes of its terms: what round-off is relative to [J]
+    double size = 0;       // sum of the magnitudes of its terms, to which round-off is relative [J]
     Points gradient;       // n x 3, zero for held vertices [N]
-    int inverted = 0;      // elements turned inside out at x
-    int crushed = 0;       // with det F below 0.1, inverted or not
+    int inverted = 0;      // number of elements that are inverted at x
+    int crushed = 0;       // number of elements with det F below 0.1, inverted or not
   };
-  // Held vertices are put at their targets first.
+  // Evaluates g at x, after held vertices are put at their targets.
   Value at(Points x) const;
 
  private:
-  // A function with its derivative.
+  // Holds a function with its derivative.
   struct Term {
     std::function<double(double)> value, slope;
   };

@@ -1,4 +1,4 @@
-// Closed triangle surfaces whose inside is known by formula.
+// Provides closed triangle surfaces whose inside is known by formula.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace supple::test {
 
-// Around the y axis; 2 * around * across triangles.
+// Makes a torus around the y axis of 2 * around * across triangles.
 inline TriMesh torus_surface(double radius, double tube, int around, int across) {
   TriMesh mesh;
   mesh.points.resize(around * across, 3);
@@ -28,7 +28,7 @@ inline TriMesh torus_surface(double radius, double tube, int around, int across)
   return mesh;
 }
 
-// Rings of latitude and two poles; 2 * around * (rings - 1) triangles.
+// Makes a sphere of rings of latitude and two poles, with 2 * around * (rings - 1) triangles.
 inline TriMesh sphere_surface(double radius, int around, int rings) {
   TriMesh mesh;
   const int middle = rings - 1;
@@ -57,7 +57,7 @@ inline TriMesh sphere_surface(double radius, int around, int rings) {
   return mesh;
 }
 
-// Twelve triangles around the origin.
+// Makes a box of twelve triangles around the origin.
 inline TriMesh box_surface(const Vec3& half) {
   TriMesh mesh;
   mesh.points.resize(8, 3);
@@ -95,7 +95,7 @@ inline TriMesh without_triangle(const TriMesh& mesh, Eigen::Index triangle) {
   return rest;
 }
 
-// Six times the volume that the triangles enclose.
+// Computes six times the volume that the triangles enclose.
 inline double six_volumes(const TriMesh& mesh) {
   double sum = 0;
   for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {

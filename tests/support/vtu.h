@@ -1,5 +1,5 @@
-// A reader of .vtu files of its own, as strict as the writer is plain: well-formed XML of the elements that
-// unstructured grids have, arrays of as many numbers as the file says.
+// Reads .vtu files by code of its own, as strict as the writer is plain: well-formed XML of the elements that
+// unstructured grids have, and arrays of as many numbers as the file says.
 #pragma once
 
 #include <filesystem>
@@ -15,11 +15,11 @@ struct XmlElement {
   std::string text;
   std::vector<XmlElement> children;
 
-  // The only child of this name; an empty element and a failure of the test when there is none or several.
+  // Returns the only child of this name. When there is none or several, it returns an empty element and the test fails.
   const XmlElement& child(const std::string& wanted) const;
 };
 
-// The document's root. Throws std::runtime_error when it is not well-formed.
+// Returns the document's root. Throws std::runtime_error when the document is not well-formed.
 XmlElement read_xml(const std::filesystem::path& path);
 
 struct VtuNumbers {
@@ -32,7 +32,7 @@ struct VtuFile {
   std::map<std::string, VtuNumbers> point_data, cell_data, cell_arrays;  // the last: connectivity, offsets, types
   VtuNumbers position;
 };
-// Throws std::runtime_error when it is not such a file.
+// Throws std::runtime_error when the file is not of this kind.
 VtuFile read_vtu(const std::filesystem::path& path);
 
 }  // namespace supple::test

@@ -16,7 +16,7 @@ struct Dual {
   explicit Dual(double constant) : value(constant), d{V(0.0), V(0.0), V(0.0)} {}
   Dual(const V& v, const V& d0, const V& d1, const V& d2) : value(v), d{d0, d1, d2} {}
 
-  // The variable number `which`.
+  // Makes the variable number `which`.
   static Dual variable(const V& v, int which) {
     Dual x;
     x.value = v;
@@ -24,7 +24,7 @@ struct Dual {
     return x;
   }
 
-  // A function of this with that value and slope here.
+  // Returns a function of this number that has the given value and slope here.
   Dual mapped(const V& at, const V& slope) const { return {at, slope * d[0], slope * d[1], slope * d[2]}; }
 
   friend Dual operator+(const Dual& a, const Dual& b) {

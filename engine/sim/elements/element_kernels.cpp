@@ -90,7 +90,8 @@ double elements(const ElementChunk& chunk, const double* x, const double* previo
   });
 }
 
-// Corners and fields of the elements of one register, and where its first lane stands among the chunk's.
+// Calls visit(corners, fields, first) for the elements of each register; `first` is the place of its first lane among
+// those of the chunk.
 template <class Formula, class Visit>
 void for_each_register(const ElementChunk& chunk, const double* x, const Visit& visit) {
   constexpr int corners = Formula::corners, fields = Formula::fields;

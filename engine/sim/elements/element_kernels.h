@@ -9,7 +9,7 @@
 
 namespace supple {
 
-// Elements are stored in blocks of this many, whatever the register width: field by field, one element a lane.
+// Elements are stored in blocks of this many, whatever the width of the registers: field by field, one element a lane.
 constexpr int block_width = 8;
 
 // A run of blocks of one kind and material with its own short list of vertices: small enough that its positions and
@@ -26,24 +26,25 @@ struct ElementChunk {
 };
 
 struct ElementKernels {
-  // Energies by element [J] into energy (blocks x block_width); returns the sum of energy - previous (previous may be
-  // null: 0). With force != null also the gradient by list vertex into force (vertices x 3) [N]. local: scratch of
-  // vertices x 3.
+  // Writes the energies by element [J] to energy (blocks x block_width); returns the sum of energy - previous (previous
+  // may be null: 0). Where force is not null, writes the gradient by list vertex to it (vertices x 3) [N]. local:
+  // scratch of vertices x 3.
   double (*elements)(const ElementChunk& chunk, const double* x, const double* previous, double* energy, double* force,
                      double* local);
 
-  // Second derivatives of each element's energy, or the nearest positive semi-definite ones: by lane, the packed lower
-  // triangle over the coordinates of all corners but the first (stiffness_numbers of them), whose rows follow from
-  // translations. [N/m]
+  // Writes the second derivatives of each element's energy, or the nearest positive semi-definite ones: by lane, the
+  // packed lower triangle over the coordinates of all corners but the first (stiffness_numbers of them), whose rows
+  // follow from translations [N/m].
   void (*stiffness)(const ElementChunk& chunk, const double* x, bool project, double* out);
 
-  // By lane: the largest stretch, and the volume over that at rest, negative where an element is inverted.
+  // Writes by lane the largest stretch, and the volume over that at rest, which is negative where an element is
+  // inverted.
   void (*stretches)(const ElementChunk& chunk, const double* x, double* largest, double* volume);
 };
 
 constexpr int stiffness_numbers(ElementKind kind) { return kind == ElementKind::tetrahedron ? 45 : 6; }
 
-// Of the widest variant that this machine can run, or of one of those that it can (base/variants.h).
+// Returns the loops of the widest variant that this machine can run, or of any variant that it can (base/variants.h).
 const ElementKernels& element_kernels();
 const ElementKernels& element_kernels(int variant);
 

@@ -1,4 +1,5 @@
-// A body's elements before they are packed into SIMD blocks: what the model's builder sorts, packs and adds up into L.
+// The records of a body's elements before they are packed into SIMD blocks: the model's builder sorts them, packs them
+// and adds them up into L.
 #pragma once
 
 #include <array>
@@ -24,7 +25,7 @@ struct ElementRecord {
   std::array<double, most_fields> field{};
 };
 
-// Tetrahedra first, then springs; corners in the mesh's numbering.
+// Lists the tetrahedra first, then the springs; corners have the mesh's numbering.
 std::vector<ElementRecord> element_records(const TetMesh& mesh, const std::vector<Spring>& springs);
 
 // What an element adds to L = sum_e G_e^T (weight) G_e: rows of G_e^T, one a corner, and their weight [N/m].
@@ -33,10 +34,10 @@ struct SystemTerm {
   double weight;
 };
 
-// Of the material with k = 1 Pa, or of a spring with a stiffness of 1 N/m.
+// Returns the term of a material with k = 1 Pa, or of a spring with a stiffness of 1 N/m.
 SystemTerm unit_term(const ElementRecord& element);
 
-// Of a tetrahedron's fibres.
+// Returns the term of a tetrahedron's fibres.
 SystemTerm fibre_term(const ElementRecord& element, const Fibre& fibre);
 
 }  // namespace supple

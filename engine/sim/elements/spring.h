@@ -10,8 +10,8 @@ struct SpringElement {
   static constexpr int corners = 2;
   static constexpr int fields = 2;  // rest length r [m], stiffness k [N/m]
 
-  // Energy [J]; force becomes dE/dx of corner 1 (that of corner 0 is its negative) [N]. Ends that coincide have no
-  // direction; the force is then zero.
+  // Returns the energy [J]; force becomes dE/dx of corner 1 (that of corner 0 is its negative) [N]. Ends that coincide
+  // have no direction; the force is then zero.
   template <class V>
   V energy(const V (&x)[2][3], const V (&field)[fields], V (&force)[1][3]) const {
     using std::sqrt;
@@ -24,7 +24,7 @@ struct SpringElement {
     return V(0.5) * stiffness * excess * excess;
   }
 
-  // Current over rest length (1 where the rest length is 0), and nothing that could turn inside out.
+  // The stretch is the current over the rest length (1 where the rest length is 0); a spring cannot turn inside out.
   template <class V>
   void stretch(const V (&x)[2][3], const V (&field)[fields], V& largest, V& volume) const {
     using std::sqrt;

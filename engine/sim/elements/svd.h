@@ -1,9 +1,9 @@
 // The singular value decomposition F = U diag(s) V^T of 3 x 3 matrices, one a SIMD lane, with det U = det V = 1: the
-// largest value first, and the smallest carries the sign of det F (Liu et al. 2017, section 3). For materials written
-// in principal stretches. One-sided Jacobi (Hestenes 1958; Demmel and Veselic 1992, "Jacobi's method is more accurate
-// than QR"): the columns of F V are turned pairwise until they are orthogonal, so that nothing is squared and small
-// values keep their digits beside large ones. For every finite F: |U S V^T - F| <= 32 eps |F|, U and V orthogonal to 16
-// eps (tested on ten million matrices).
+// largest value first, and the smallest carries the sign of det F (Liu et al. 2017, section 3). Materials that are
+// written in principal stretches need it. It is one-sided Jacobi (Hestenes 1958; Demmel and Veselic 1992, "Jacobi's
+// method is more accurate than QR"): the columns of F V are turned pairwise until they are orthogonal, so that nothing
+// is squared and small values keep their digits beside large ones. For every finite F: |U S V^T - F| <= 32 eps |F|, U
+// and V orthogonal to 16 eps (tested on ten million matrices).
 #pragma once
 
 #include "sim/materials/small_matrix.h"
@@ -23,14 +23,14 @@ V dot(const V (&a)[3], const V (&b)[3]) {
   return madd(a[0], b[0], madd(a[1], b[1], a[2] * b[2]));
 }
 
-// Columns of F V and of V while they turn.
+// The columns of F V and of V while they are turned.
 template <class V>
 struct Columns {
   V b[3][3];
   V v[3][3];
 };
 
-// Turns columns p and q so that those of F V become orthogonal; true while some lane was not so already.
+// Turns columns p and q so that those of F V become orthogonal; returns true when some lane was not so already.
 template <class V>
 bool turn(Columns<V>& columns, int p, int q) {
   using std::sqrt;
@@ -55,7 +55,7 @@ bool turn(Columns<V>& columns, int p, int q) {
   return true;
 }
 
-// Exchanges two columns where the second is the longer one; the sign keeps det V.
+// Exchanges two columns where the second is the longer one; a change of sign keeps det V.
 template <class V>
 void order(Columns<V>& columns, V (&length2)[3], int p, int q) {
   const auto wrong = length2[p] < length2[q];
@@ -71,7 +71,7 @@ void order(Columns<V>& columns, V (&length2)[3], int p, int q) {
   length2[q] = short_one;
 }
 
-// A unit vector across the unit vector a: the axis that a has least of, made orthogonal.
+// Returns a unit vector orthogonal to the unit vector a: the axis along which a is smallest, made orthogonal.
 template <class V>
 void across(const V (&a)[3], V (&result)[3]) {
   using std::abs;

@@ -1,9 +1,9 @@
 // Linear tetrahedra of any material, with fibres on top where a scene has them. Not here: which material an element has
-// (kernels.cpp dispatches once a chunk).
+// (element_kernels.cpp dispatches once a chunk).
 #pragma once
 
-#include "sim/materials/parameters.h"
 #include "sim/elements/svd.h"
+#include "sim/materials/parameters.h"
 
 namespace supple {
 
@@ -31,7 +31,7 @@ struct Tetrahedron {
     field[9] = determ / 6;
   }
 
-  // Gradients of the four shape functions, the transpose of G_e. [1/m]
+  // Finds the gradients of the four shape functions, the transpose of G_e [1/m].
   static void shape_gradients(const double (&field)[fields], double (&gradient)[4][3]) {
     for (int j = 0; j < 3; ++j) {
       gradient[0][j] = 0;
@@ -43,8 +43,8 @@ struct Tetrahedron {
   }
 };
 
-// F = (current edges) (rest edges)^-1, as in Sifakis and Barbic 2012, "FEM simulation of 3D deformable solids", section
-// 4.
+// Returns F = (current edges) (rest edges)^-1, as in Sifakis and Barbic 2012, "FEM simulation of 3D deformable solids",
+// section 4.
 template <class V>
 Matrix3<V> deformation_gradient(const V (&x)[4][3], const V (&field)[Tetrahedron::fields]) {
   Matrix3<V> f;
@@ -55,7 +55,7 @@ Matrix3<V> deformation_gradient(const V (&x)[4][3], const V (&field)[Tetrahedron
   return f;
 }
 
-// The largest singular value of F: the root of the largest eigenvalue of F^T F, in closed form (Smith 1961,
+// Returns the largest singular value of F: the root of the largest eigenvalue of F^T F, in closed form (Smith 1961,
 // "Eigenvalues of a symmetric 3 x 3 matrix").
 template <class V>
 V largest_stretch(const Matrix3<V>& f) {
@@ -78,7 +78,7 @@ V largest_stretch(const Matrix3<V>& f) {
   return sqrt(max(V(0.0), choose(round, mean, mean + V(2.0) * spread * cos(angle))));
 }
 
-// Energy density and first Piola-Kirchhoff stress of a material at F, by what it needs.
+// Finds the energy density and the first Piola-Kirchhoff stress of a material at F by the decomposition that it needs.
 template <class M, class V>
 V density_of(const M& material, const Matrix3<V>& f, Matrix3<V>& stress) {
   if constexpr (M::needs == Needs::gradient) {
@@ -123,7 +123,8 @@ struct TetrahedronFormula : Tetrahedron {
 
   TetrahedronFormula(const M& m, const Fibre* along) : material(m), fibre(along) {}
 
-  // Energy [J]; force becomes dE/dx of corners 1 to 3 (that of corner 0 is minus their sum), V P (rest edges)^-T [N].
+  // Returns the energy [J]; force becomes dE/dx of corners 1 to 3 (that of corner 0 is minus their sum), V P (rest
+  // edges)^-T [N].
   template <class V>
   V energy(const V (&x)[4][3], const V (&field)[fields], V (&force)[3][3]) const {
     const Matrix3<V> f = deformation_gradient(x, field);
@@ -139,7 +140,7 @@ struct TetrahedronFormula : Tetrahedron {
     return volume * density;
   }
 
-  // Largest stretch and volume over rest volume, signed.
+  // Finds the largest stretch and the signed volume over the rest volume.
   template <class V>
   void stretch(const V (&x)[4][3], const V (&field)[fields], V& largest, V& volume) const {
     const Matrix3<V> f = deformation_gradient(x, field);
@@ -147,7 +148,7 @@ struct TetrahedronFormula : Tetrahedron {
     volume = determinant(f, cofactor(f));
   }
 
-  // tetrahedron_stiffness.h
+  // Defined in tetrahedron_stiffness.h.
   template <class V>
   void stiffness(const V (&x)[4][3], const V (&field)[fields], bool project, V (&out)[45]) const;
 };

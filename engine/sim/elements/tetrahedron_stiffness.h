@@ -1,4 +1,4 @@
-// Second derivatives of a tetrahedron's energy, for Newton's method. In the basis of the singular vectors of F the
+// The second derivatives of a tetrahedron's energy serve Newton's method. In the basis of the singular vectors of F the
 // Hessian of an isotropic density falls apart into a 3 x 3 matrix over the stretches and, for each pair of axes, a flip
 // and a twist (Smith, de Goes, Kim 2019, "Analytic eigensystems for isotropic distortion energies", section 4), so the
 // nearest positive semi-definite matrix (Teran et al. 2005) costs three clamped numbers and a 3 x 3 eigenproblem.
@@ -10,7 +10,7 @@
 
 namespace supple {
 
-// Packed lower triangle of a symmetric matrix.
+// The place of an entry in the packed lower triangle of a symmetric matrix.
 constexpr int packed_index(int row, int column) { return row * (row + 1) / 2 + column; }
 constexpr int packed_size(int rows) { return rows * (rows + 1) / 2; }
 
@@ -71,7 +71,7 @@ void clamp_eigenvalues(V (&h)[3][3]) {
   }
 }
 
-// out += factor b b^T, packed.
+// Adds factor b b^T to `out`, packed.
 template <int n, class V>
 void add_outer(const V& factor, const V (&b)[n], V* out) {
   for (int i = 0; i < n; ++i) {
@@ -83,8 +83,8 @@ void add_outer(const V& factor, const V (&b)[n], V* out) {
 }  // namespace stiffness_detail
 
 // d^2 E / dx^2 of corners 1 to 3 (9 x 9, packed; corner 0 follows from translations), or the nearest positive
-// semi-definite matrix; fibres, too, by their own. Where two stretches cancel (s_i + s_j = 0) a formula in stretches
-// has a kink; the twist is then held at what 1e-8 beside it has. [N/m]
+// semi-definite matrix; fibres are projected on their own. Where two stretches cancel (s_i + s_j = 0) a formula in
+// stretches has a kink; the twist is then held at what 1e-8 beside it has. [N/m]
 template <bool with_fibre, class M, class V>
 void tetrahedron_stiffness(const M& material, const Fibre* fibre, const V (&x)[4][3],
                            const V (&field)[Tetrahedron::fields], bool project, V (&out)[packed_size(9)]) {

@@ -1,8 +1,9 @@
 #include "sim/linear/cholesky.h"
 
+// Leaves out the declarations of CHOLMOD's modules under the GPL: nothing here can call them.
+#define NGPL
 #include <cholmod.h>
-#include <dlfcn.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,21 +11,20 @@
 
 #include "base/error.h"
 #include "base/signals.h"
+#include "sim/linear/multifrontal.h"
 
 namespace supple {
 namespace {
 
-// CHOLMOD's workspace, and its matrices by unique_ptr.
+// CHOLMOD's settings and workspace: it orders by METIS alone, and analyses as much of the factor as that takes.
 struct Cholmod {
   cholmod_common common;
   Cholmod() {
     cholmod_start(&common);
-    common.supernodal = CHOLMOD_SIMPLICIAL;
-    common.final_ll = 1;
-    common.final_pack = 1;
-    common.final_monotonic = 1;
-    common.print = 0;
+    common.supernodal = CHOLMOD_SIMPLICIAL;  // the supernodal analysis is under the GPL
     common.nmethods = 1;
+    common.method[0].ordering = CHOLMOD_METIS;
+    common.print = 0;
     common.try_catch = 1;
   }
   ~Cholmod() { cholmod_finish(&common); }
@@ -37,17 +37,16 @@ struct Cholmod {
   }
 };
 
-// A view of an Eigen matrix's lower triangle.
-cholmod_sparse view_of(const Eigen::SparseMatrix<double>& matrix, int xtype) {
+// The pattern of an Eigen matrix's lower triangle, where it lies.
+cholmod_sparse pattern_of(Eigen::SparseMatrix<double>& matrix) {
   cholmod_sparse view{};
   view.nrow = view.ncol = static_cast<std::size_t>(matrix.rows());
   view.nzmax = static_cast<std::size_t>(matrix.nonZeros());
-  view.p = const_cast<int*>(matrix.outerIndexPtr());
-  view.i = const_cast<int*>(matrix.innerIndexPtr());
-  view.x = const_cast<double*>(matrix.valuePtr());
+  view.p = matrix.outerIndexPtr();
+  view.i = matrix.innerIndexPtr();
   view.stype = -1;
   view.itype = CHOLMOD_INT;
-  view.xtype = xtype;
+  view.xtype = CHOLMOD_PATTERN;
   view.dtype = CHOLMOD_DOUBLE;
   view.sorted = 1;
   view.packed = 1;
@@ -67,9 +66,7 @@ std::vector<std::int32_t> fill_reducing_order(int count,
   if (count == 0) return {};
 
   Cholmod cholmod;
-  cholmod.common.method[0].ordering = CHOLMOD_METIS;
-  cholmod_sparse view = view_of(pattern, CHOLMOD_PATTERN);
-  view.x = nullptr;
+  cholmod_sparse view = pattern_of(pattern);
   // METIS takes SIGTERM for an error of its own and gives up; CHOLMOD then goes on with another order, whose last bits
   // differ, and the signal is lost.
   const SignalsWait meanwhile;
@@ -116,112 +113,46 @@ void CholeskyFactor::analyze(const Eigen::SparseMatrix<double>& matrix) {
   first_value_.push_back(value_count);
 }
 
-namespace {
-
-// What the fronts are made of: the one that is worked on, and the update matrices that wait for their parents.
-class Fronts {
- public:
-  Fronts(const Elimination& elimination, const Eigen::SparseMatrix<double>& matrix)
-      : elimination_(elimination),
-        matrix_(matrix),
-        place_(elimination.size),
-        front_(padded_rows(elimination.largest_front) * elimination.largest_front),
-        stack_(elimination.deepest_stack) {
-    waiting_.reserve(elimination.nodes.size());
-  }
-
-  // The front of a node after elimination of its columns: a column has padded_rows(front()) numbers.
-  const double* eliminate(int s) {
-    const Supernode& node = elimination_.nodes[s];
-    assemble(s);
-    const int failed = linear_kernels().eliminate(front_.data(), padded_rows(node.front()), node.front(), node.width());
-    if (failed >= 0)
-      throw RunError(fmt::format("the stiffness matrix is not positive definite (unknown {})", node.first + failed));
-    if (node.parent >= 0) leave_update(s);
-    return front_.data();
-  }
-
- private:
-  // Of the matrix what the node's columns hold, and what its children left on the stack.
-  void assemble(int s) {
-    const Supernode& node = elimination_.nodes[s];
-    const std::int64_t stride = padded_rows(node.front());
-    std::fill_n(front_.begin(), stride * node.front(), 0.0);
-    for (int j = 0; j < node.width(); ++j) place_[node.first + j] = j;
-    const std::int32_t* rows = &elimination_.rows[node.first_row];
-    for (int i = 0; i < node.row_count; ++i) place_[rows[i]] = node.width() + i;
-    for (int j = 0; j < node.width(); ++j) {
-      for (Eigen::SparseMatrix<double>::InnerIterator entry(matrix_, node.first + j); entry; ++entry)
-        front_[j * stride + place_[entry.row()]] = entry.value();
-    }
-    while (!waiting_.empty() && elimination_.nodes[waiting_.back()].parent == s) {
-      add_update(elimination_.nodes[waiting_.back()], stride);
-      waiting_.pop_back();
-    }
-  }
-
-  void add_update(const Supernode& child, std::int64_t stride) {
-    const std::int64_t child_stride = padded_rows(child.row_count);
-    stacked_ -= child_stride * child.row_count;
-    const double* update = &stack_[stacked_];
-    const std::int32_t* rows = &elimination_.rows[child.first_row];
-    target_.resize(child.row_count);
-    for (int i = 0; i < child.row_count; ++i) target_[i] = place_[rows[i]];
-    for (int j = 0; j < child.row_count; ++j, update += child_stride) {
-      double* column = &front_[target_[j] * stride];
-      for (int i = j; i < child.row_count; ++i) column[target_[i]] += update[i];
-    }
-  }
-
-  void leave_update(int s) {
-    const Supernode& node = elimination_.nodes[s];
-    const std::int64_t stride = padded_rows(node.front()), own_stride = padded_rows(node.row_count);
-    for (int j = 0; j < node.row_count; ++j) {
-      const double* column = &front_[(node.width() + j) * stride + node.width()];
-      std::copy(column + j, column + node.row_count, &stack_[stacked_ + j * own_stride + j]);
-    }
-    stacked_ += own_stride * node.row_count;
-    waiting_.push_back(s);
-  }
-
-  const Elimination& elimination_;
-  const Eigen::SparseMatrix<double>& matrix_;
-  std::vector<std::int32_t> place_, target_, waiting_;  // row of the front by unknown; by row of a child; nodes
-  AlignedVector<double> front_, stack_;
-  std::int64_t stacked_ = 0;  // numbers on the stack
-};
-
-}  // namespace
-
 void CholeskyFactor::factorize(const Eigen::SparseMatrix<double>& matrix, Precision precision) {
   if (!has_pattern_of(matrix)) analyze(matrix);
   precision_ = precision;
   single_.resize(precision == Precision::single_precision ? first_value_.back() : 0);
   double_.resize(precision == Precision::double_precision ? first_value_.back() : 0);
-  Fronts fronts(elimination_, matrix);
+  Multifrontal fronts(elimination_);
+  AlignedVector<double> columns(elimination_.most_column_numbers);
   for (const std::int32_t s : elimination_.order) {
-    const double* front = fronts.eliminate(s);
-    precision == Precision::single_precision ? store_panels(s, front, single_) : store_panels(s, front, double_);
+    const int failed = fronts.eliminate(matrix, s, columns.data());
+    if (failed >= 0) throw RunError(fmt::format("the stiffness matrix is not positive definite (unknown {})", failed));
+    precision == Precision::single_precision ? store_panels(s, columns.data(), single_)
+                                             : store_panels(s, columns.data(), double_);
   }
 }
 
 // Columns of a front become rows of its panels, the diagonal inverted; above it 0.
 template <class T>
-void CholeskyFactor::store_panels(int s, const double* front, AlignedVector<T>& out) const {
+void CholeskyFactor::store_panels(int s, const double* columns, AlignedVector<T>& out) const {
   const Supernode& node = elimination_.nodes[s];
-  const std::int64_t stride = padded_rows(node.front());
+  const FrontShape front = node.front();
   for (int panel = first_panel_[s]; panel < first_panel_[s + 1]; ++panel) {
     const int first = first_column_[panel] - node.first, width = width_[panel];
-    const double* source = front + first * stride + first;
     T* target = out.data() + first_value_[panel];
-    for (int i = 0; i < width; ++i) {
-      for (int j = 0; j < width; ++j)
-        target[i * width + j] = static_cast<T>(j > i    ? 0.0
-                                               : j == i ? 1 / source[j * stride + j]
-                                                        : source[j * stride + i]);
-    }
-    for (int i = width; i < node.front() - first; ++i) {
-      for (int j = 0; j < width; ++j) target[i * width + j] = static_cast<T>(source[j * stride + i]);
+    for (int from = 0, to = 0; from < width; from = to) {  // columns of one strip
+      const int strip = (first + from) / block_rows, block = block_rows * strip_width(front, strip);
+      to = std::min(width, (strip + 1) * block_rows - first);
+      const double* column = columns + strip_begin(front, strip) + (first + from) % block_rows * block_rows;
+      const auto store_rows = [&](int row, int end) {
+        for (int place = padded_place(front, row); row < end; ++row, ++place) {
+          const double* source = column + (place / block_rows - strip) * block + place % block_rows;
+          T* stored = target + std::int64_t(row - first) * width;
+          for (int j = from; j < to; ++j) stored[j] = static_cast<T>(source[(j - from) * block_rows]);
+        }
+      };
+      store_rows(first + from, front.pivots);
+      store_rows(front.pivots, front.pivots + front.rows);
+      for (int j = from; j < to; ++j) {
+        for (int i = 0; i < j; ++i) target[i * width + j] = 0;
+        target[j * width + j] = static_cast<T>(1 / column[(j - from) * block_rows + (first + j) % block_rows]);
+      }
     }
   }
 }
@@ -270,76 +201,6 @@ void CholeskyFactor::solve(const double* b, double* x, double* scratch) const {
   } else {
     solve_interleaved(size_, b, x, scratch, 1.0, [&](double* four) { linear_kernels().solve_double(panels, four); });
   }
-}
-
-struct ChangingFactor::Parts {
-  Cholmod cholmod;
-  cholmod_factor* factor = nullptr;
-  cholmod_dense *solution = nullptr, *y = nullptr, *e = nullptr;  // kept from solve to solve
-  Parts() {
-    cholmod.common.supernodal = CHOLMOD_SUPERNODAL;
-    cholmod.common.method[0].ordering = CHOLMOD_NATURAL;
-    cholmod.common.postorder = 1;
-  }
-  ~Parts() {
-    cholmod_free_dense(&solution, &cholmod.common);
-    cholmod_free_dense(&y, &cholmod.common);
-    cholmod_free_dense(&e, &cholmod.common);
-    cholmod_free_factor(&factor, &cholmod.common);
-  }
-  Parts(const Parts&) = delete;
-  Parts& operator=(const Parts&) = delete;
-};
-
-ChangingFactor::ChangingFactor() = default;
-ChangingFactor::~ChangingFactor() = default;
-ChangingFactor::ChangingFactor(ChangingFactor&&) noexcept = default;
-ChangingFactor& ChangingFactor::operator=(ChangingFactor&&) noexcept = default;
-
-void ChangingFactor::analyze(const Eigen::SparseMatrix<double>& matrix) {
-  parts_ = std::make_unique<Parts>();
-  cholmod_sparse view = view_of(matrix, CHOLMOD_REAL);
-  parts_->factor = cholmod_analyze(&view, &parts_->cholmod.common);
-  if (parts_->factor == nullptr) throw RunError("a matrix could not be analysed: out of memory");
-}
-
-namespace {
-
-// CHOLMOD's supernodal code opens OpenMP's parallel regions for small loops, whose spinning threads cost more than the
-// whole factorisation where cores are shared. No region of this thread becomes active any more.
-void forbid_openmp_threads() {
-  using SetLevels = void (*)(int);
-  static const auto set_levels = reinterpret_cast<SetLevels>(dlsym(RTLD_DEFAULT, "omp_set_max_active_levels"));
-  if (set_levels != nullptr) set_levels(0);
-}
-
-}  // namespace
-
-bool ChangingFactor::factorize(const Eigen::SparseMatrix<double>& matrix) {
-  forbid_openmp_threads();
-  cholmod_sparse view = view_of(matrix, CHOLMOD_REAL);
-  if (!cholmod_factorize(&view, parts_->factor, &parts_->cholmod.common))
-    throw RunError("a matrix could not be factored: out of memory");
-  return parts_->cholmod.common.status != CHOLMOD_NOT_POSDEF && parts_->factor->minor == parts_->factor->n;
-}
-
-void ChangingFactor::solve(const double* b, double* x) {
-  forbid_openmp_threads();
-  cholmod_dense right{};
-  right.nrow = right.nzmax = right.d = parts_->factor->n;
-  right.ncol = 1;
-  right.x = const_cast<double*>(b);
-  right.xtype = CHOLMOD_REAL;
-  right.dtype = CHOLMOD_DOUBLE;
-  Parts& p = *parts_;
-  if (!cholmod_solve2(CHOLMOD_A, p.factor, &right, nullptr, &p.solution, nullptr, &p.y, &p.e, &p.cholmod.common))
-    throw RunError("a linear system could not be solved: out of memory");
-  const double* found = static_cast<const double*>(p.solution->x);
-  std::copy(found, found + p.factor->n, x);
-}
-
-std::int64_t ChangingFactor::stored_numbers() const {
-  return parts_ && parts_->factor ? static_cast<std::int64_t>(parts_->factor->xsize) : 0;
 }
 
 }  // namespace supple

@@ -1,16 +1,17 @@
-// Sparse Cholesky of a symmetric positive definite matrix: ordered by CHOLMOD, numbers by fronts of our own
-// (multifrontal; the bits depend on the matrix and the instruction set, on no BLAS and no number of threads), solves by
-// our own panels for three right-hand sides at once. The only place that knows CHOLMOD. Not thread-safe against itself:
-// build on one thread.
+// Sparse Cholesky of a symmetric positive definite matrix that is solved many times: ordered by CHOLMOD, numbers by
+// fronts of our own (multifrontal.h; the bits depend on the matrix and the instruction set, on no BLAS and no number of
+// threads), solves by our own panels for three right-hand sides at once. The only place that knows CHOLMOD. Not
+// thread-safe against itself: build on one thread. For a matrix that changes with each solve: changing_factor.h.
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <utility>
 #include <vector>
 
 #include <Eigen/SparseCore>
 
 #include "base/aligned.h"
+#include "base/names.h"
 #include "base/types.h"
 #include "sim/linear/elimination.h"
 #include "sim/linear/linear_kernels.h"
@@ -23,6 +24,11 @@ std::vector<std::int32_t> fill_reducing_order(int count,
                                               const std::vector<std::pair<std::int32_t, std::int32_t>>& edges);
 
 enum class Precision { single_precision, double_precision };
+template <>
+struct Names<Precision> {
+  static constexpr std::array table = {Name{Precision::single_precision, "single"},
+                                       Name{Precision::double_precision, "double"}};
+};
 
 class CholeskyFactor {
  public:
@@ -44,7 +50,7 @@ class CholeskyFactor {
   bool has_pattern_of(const Eigen::SparseMatrix<double>& matrix) const;
   void analyze(const Eigen::SparseMatrix<double>& matrix);
   template <class T>
-  void store_panels(int node, const double* front, AlignedVector<T>& out) const;
+  void store_panels(int node, const double* columns, AlignedVector<T>& out) const;
   PanelsView view() const;
 
   int size_ = 0;
@@ -56,29 +62,6 @@ class CholeskyFactor {
   std::vector<std::int64_t> first_row_, first_value_;
   AlignedVector<float> single_;
   AlignedVector<double> double_;
-};
-
-// A factor that is made anew for each matrix of one pattern: for Newton's method and others whose matrix changes. The
-// pattern is analysed once; numbers by CHOLMOD's supernodal code and its BLAS (one thread), whose last bits depend on
-// the BLAS.
-class ChangingFactor {
- public:
-  ChangingFactor();
-  ~ChangingFactor();
-  ChangingFactor(ChangingFactor&&) noexcept;
-  ChangingFactor& operator=(ChangingFactor&&) noexcept;
-
-  // Lower triangle; what stands above the diagonal is ignored. Unknowns come in an order of little fill already.
-  void analyze(const Eigen::SparseMatrix<double>& matrix);
-  // False when the matrix is not positive definite; the factor then cannot be used.
-  bool factorize(const Eigen::SparseMatrix<double>& matrix);
-  // x = A^-1 b
-  void solve(const double* b, double* x);
-  std::int64_t stored_numbers() const;
-
- private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace supple

@@ -29,7 +29,9 @@ ColumnPatterns column_patterns(const Eigen::SparseMatrix<double>& matrix) {
       seen_by[row] = j;
       column.push_back(row);
     };
-    for (Eigen::SparseMatrix<double>::InnerIterator entry(matrix, j); entry; ++entry) see(entry.row());
+    for (Eigen::SparseMatrix<double>::InnerIterator entry(matrix, j); entry; ++entry) {
+      if (entry.row() > j) see(entry.row());
+    }
     for (int child = first_child[j]; child >= 0; child = next_child[child]) {
       for (std::int64_t at = patterns.begin[child] + 1; at < patterns.begin[child + 1]; ++at) see(patterns.rows[at]);
     }
@@ -44,22 +46,21 @@ ColumnPatterns column_patterns(const Eigen::SparseMatrix<double>& matrix) {
   return patterns;
 }
 
-// Children are merged into their parents while the zeros that this stores stay few: the thresholds are CHOLMOD's
-// (nrelax, zrelax), which our solve times confirm to within noise.
-bool worth_merging(int wide, std::int64_t dense, std::int64_t nonzeros) {
+bool worth_merging(const Merging& merging, int wide, std::int64_t dense, std::int64_t nonzeros) {
   const double zeros = static_cast<double>(dense - nonzeros) / static_cast<double>(dense);
-  return zeros <= 0 || wide <= 4 || (wide <= 16 && zeros < 0.8) || (wide <= 48 && zeros < 0.1) || zeros < 0.05;
+  return zeros <= 0 || wide <= merging.always || (wide <= merging.often && zeros < merging.often_zeros) ||
+         (wide <= merging.seldom && zeros < merging.seldom_zeros) || zeros < merging.wide_zeros;
 }
 
-void find_supernodes(const ColumnPatterns& columns, Elimination& out) {
+void find_supernodes(const ColumnPatterns& columns, const Merging& merging, Elimination& out) {
   std::vector<std::int64_t> nonzeros;  // by supernode, without the zeros that merging stores
   for (int j = 0; j < out.size; ++j) {
-    Supernode node{j, j, 0, 0, -1};
+    Supernode node{j, j, 0, 0, -1, 0};
     std::int64_t own = columns.below(j) + 1;
     while (!out.nodes.empty() && columns.parent(out.nodes.back().last) == node.first) {
       const std::int64_t wide = node.last - out.nodes.back().first + 1;
       const std::int64_t dense = wide * (wide + 1) / 2 + wide * columns.below(node.last);
-      if (!worth_merging(static_cast<int>(wide), dense, own + nonzeros.back())) break;
+      if (!worth_merging(merging, static_cast<int>(wide), dense, own + nonzeros.back())) break;
       node.first = out.nodes.back().first;
       own += nonzeros.back();
       out.nodes.pop_back();
@@ -80,7 +81,7 @@ void find_supernodes(const ColumnPatterns& columns, Elimination& out) {
   }
 }
 
-// A postorder, and how much waits on the stack of update matrices while the fronts are worked off in it.
+// A postorder, and how much waits on the stacks of update matrices while the fronts are worked off in it.
 void find_order(Elimination& out) {
   const int count = static_cast<int>(out.nodes.size());
   std::vector<int> first_child(count, -1), next_sibling(count, -1), pending;
@@ -104,26 +105,29 @@ void find_order(Elimination& out) {
       }
     }
   }
+  for (auto s = out.order.rbegin(); s != out.order.rend(); ++s) {
+    if (out.nodes[*s].parent >= 0) out.nodes[*s].level = out.nodes[out.nodes[*s].parent].level + 1;
+  }
   std::vector<std::int64_t> waiting(count, 0);  // by node: what its children left
-  std::int64_t stacked = 0;
+  std::int64_t stacked[2] = {0, 0};
   for (const std::int32_t s : out.order) {
     const Supernode& node = out.nodes[s];
-    out.largest_front = std::max<std::int64_t>(out.largest_front, node.front());
-    stacked -= waiting[s];
-    if (node.parent < 0) continue;
-    const std::int64_t update = padded_rows(node.row_count) * node.row_count;
-    waiting[node.parent] += update;
-    stacked += update;
-    out.deepest_stack = std::max(out.deepest_stack, stacked);
+    out.most_column_numbers = std::max(out.most_column_numbers, column_numbers(node.front()));
+    const std::int64_t update = update_numbers(node.front());
+    std::int64_t& own = stacked[node.level % 2];
+    own += update;
+    out.deepest_stack[node.level % 2] = std::max(out.deepest_stack[node.level % 2], own);
+    stacked[(node.level + 1) % 2] -= waiting[s];
+    if (node.parent >= 0) waiting[node.parent] += update;
   }
 }
 
 }  // namespace
 
-Elimination Elimination::of(const Eigen::SparseMatrix<double>& matrix) {
+Elimination Elimination::of(const Eigen::SparseMatrix<double>& matrix, const Merging& merging) {
   Elimination out;
   out.size = static_cast<int>(matrix.cols());
-  find_supernodes(column_patterns(matrix), out);
+  find_supernodes(column_patterns(matrix), merging, out);
   find_order(out);
   return out;
 }

@@ -1,6 +1,8 @@
 // Compiled once for each instruction set; SUPPLE_VARIANT names it.
 #include "sim/linear/linear_kernels.h"
 
+#include <utility>
+
 #include "base/lanes.h"
 #include "base/variants.h"
 
@@ -11,75 +13,234 @@
 namespace supple {
 namespace {
 
-// Adjacent columns that are brought up to date together: each number loaded from an earlier column serves them all.
-constexpr int strip_width = 4;
+// Elimination works on tiles of row blocks by columns, whose numbers stay in registers while the earlier columns pass
+// by.
+constexpr int block_registers = block_rows / lanes;
+constexpr int tile_blocks = lanes == 8 ? 3 : 1;
+constexpr int tile_columns = lanes == 8 ? 8 : lanes == 4 ? 4 : 2;
 
-// Columns first to first + width of a front lose what the `done` columns of L before them take from them, rows from
-// `first` down (and up to lanes - 1 above, where nobody looks).
-template <int width, int registers>
-void update_rows(double* front, long stride, int first, int done, long row) {
-  double* target = front + first * stride + row;
+// Strips whose columns are taken from all later ones together: what they hold of a large front fits into the cache.
+constexpr int strips_together = 16;
+
+struct Tile {
+  double* numbers;  // of the first row block and column
+  long block_stride, column_stride;
+};
+
+// Takes the strips from first_strip to end_strip from a tile of row blocks from `row_block` down, whose columns' own
+// rows stand in block `column_block` from `offset` on.
+template <int blocks, int width>
+void take_strips(FrontShape front, const double* columns, int first_strip, int end_strip, int row_block,
+                 int column_block, int offset, const Tile& tile) {
+  constexpr int registers = blocks * block_registers;
   Lanes sum[width][registers];
+  double* to[blocks];
+  for (int b = 0; b < blocks; ++b) to[b] = tile.numbers + b * tile.block_stride;
   for (int c = 0; c < width; ++c) {
-    for (int r = 0; r < registers; ++r) sum[c][r] = Lanes::load_aligned(target + c * stride + r * lanes);
+    for (int r = 0; r < registers; ++r)
+      sum[c][r] = Lanes::load_aligned(to[r / block_registers] + c * tile.column_stride + r % block_registers * lanes);
   }
-  const double* source = front + row;
-  const double* scale = front + first;
-  for (int k = 0; k < done; ++k, source += stride, scale += stride) {
-    Lanes known[registers];
-    for (int r = 0; r < registers; ++r) known[r] = Lanes::load_aligned(source + r * lanes);
-    for (int c = 0; c < width; ++c) {
-      const Lanes factor(scale[c]);
-      for (int r = 0; r < registers; ++r) sum[c][r] = fnma(factor, known[r], sum[c][r]);
+  for (int strip = first_strip; strip < end_strip; ++strip) {
+    const int pivots = strip_width(front, strip);
+    const long block = block_rows * pivots;
+    const double* known_numbers = columns + strip_begin(front, strip) + (row_block - strip) * block;
+    const double* scale = columns + strip_begin(front, strip) + (column_block - strip) * block + offset;
+    for (int k = 0; k < pivots; ++k, known_numbers += block_rows, scale += block_rows) {
+      Lanes known[registers];
+      for (int r = 0; r < registers; ++r)
+        known[r] = Lanes::load_aligned(known_numbers + r / block_registers * block + r % block_registers * lanes);
+      for (int c = 0; c < width; ++c) {
+        const Lanes factor(scale[c]);
+        for (int r = 0; r < registers; ++r) sum[c][r] = fnma(factor, known[r], sum[c][r]);
+      }
     }
   }
   for (int c = 0; c < width; ++c) {
-    for (int r = 0; r < registers; ++r) sum[c][r].store_aligned(target + c * stride + r * lanes);
+    for (int r = 0; r < registers; ++r)
+      sum[c][r].store_aligned(to[r / block_registers] + c * tile.column_stride + r % block_registers * lanes);
   }
 }
 
-template <int width>
-void update_strip(double* front, long stride, int first, int done) {
-  long row = first / lanes * lanes;
-  for (; row + 2 * lanes <= stride; row += 2 * lanes) update_rows<width, 2>(front, stride, first, done, row);
-  for (; row < stride; row += lanes) update_rows<width, 1>(front, stride, first, done, row);
+using TakeStrips = void (*)(FrontShape, const double*, int, int, int, int, int, const Tile&);
+
+template <int blocks, int... width>
+constexpr TakeStrips take_strips_of(int columns, std::integer_sequence<int, width...>) {
+  constexpr TakeStrips by_width[] = {take_strips<blocks, width + 1>...};
+  return by_width[columns - 1];
 }
 
-using StripUpdate = void (*)(double*, long, int, int);
+// A front while its pivots are eliminated. Column blocks are counted like row blocks: first the strips, then the update
+// matrix's columns by eights.
+struct DenseFront {
+  FrontShape front;
+  double *columns, *update;
+  int strips, blocks;
+  long update_stride;
 
-// The columns of a strip, which know of all before the strip, become columns of L.
-int factor_strip(double* front, long stride, int first, int width) {
-  for (int j = first; j < first + width; ++j) {
-    double* column = front + j * stride;
-    const long begin = j / lanes * lanes;
-    for (int k = first; k < j; ++k) {
-      const double* known = front + k * stride;
+  int columns_in(int block) const {
+    if (block < strips) return strip_width(front, block);
+    const int left = front.rows - (block - strips) * block_rows;
+    return left < block_rows ? left : block_rows;
+  }
+
+  Tile tile(int row_block, int column_block) const {
+    if (column_block < strips) {
+      const long block = block_rows * strip_width(front, column_block);
+      return {columns + strip_begin(front, column_block) + (row_block - column_block) * block, block, block_rows};
+    }
+    return {update + (column_block - strips) * block_rows * update_stride + (row_block - strips) * block_rows,
+            block_rows, update_stride};
+  }
+
+  // Of `count` row blocks, at most tile_blocks.
+  void take(int first_strip, int end_strip, int row_block, int count, int column_block) const {
+    using Widths = std::make_integer_sequence<int, tile_columns>;
+    const int width = columns_in(column_block);
+    Tile at = tile(row_block, column_block);
+    for (int offset = 0; offset < width; offset += tile_columns) {
+      const int part = width - offset < tile_columns ? width - offset : tile_columns;
+      const TakeStrips take_part = count == 1   ? take_strips_of<1>(part, Widths{})
+                                   : count == 2 ? take_strips_of < tile_blocks < 2 ? 1 : 2 > (part, Widths{})
+                                                : take_strips_of<tile_blocks>(part, Widths{});
+      take_part(front, columns, first_strip, end_strip, row_block, column_block, offset, at);
+      at.numbers += tile_columns * at.column_stride;
+    }
+  }
+};
+
+// The triangle on a strip's diagonal; `inverse` are the reciprocals of what stands on it.
+int factor_triangle(double* triangle, int width, double* inverse) {
+  for (int j = 0; j < width; ++j) {
+    double* column = triangle + j * block_rows;
+    for (int k = 0; k < j; ++k) {
+      const double* known = triangle + k * block_rows;
       const Lanes factor(known[j]);
-      for (long i = begin; i < stride; i += lanes)
+      for (int i = 0; i < block_rows; i += lanes)
         fnma(factor, Lanes::load_aligned(known + i), Lanes::load_aligned(column + i)).store_aligned(column + i);
     }
     if (!(column[j] > 0)) return j;
     const Lanes scale = Lanes(1.0) / sqrt(Lanes(column[j]));
-    for (long i = begin; i < stride; i += lanes) (Lanes::load_aligned(column + i) * scale).store_aligned(column + i);
+    inverse[j] = scale.get(0);
+    for (int i = 0; i < block_rows; i += lanes) (Lanes::load_aligned(column + i) * scale).store_aligned(column + i);
   }
   return -1;
 }
 
-int eliminate(double* front, long stride, int size, int pivots) {
-  static constexpr StripUpdate update[strip_width] = {update_strip<1>, update_strip<2>, update_strip<3>,
-                                                      update_strip<4>};
-  for (int first = 0; first < size;) {
-    const int left = (first < pivots ? pivots : size) - first;
-    const int width = left < strip_width ? left : strip_width;
-    const int done = first < pivots ? first : pivots;
-    if (done > 0) update[width - 1](front, stride, first, done);
-    if (first < pivots) {
-      const int failed = factor_strip(front, stride, first, width);
+// The row blocks below the triangle, which know of all before the strip, become rows of L.
+template <int width>
+void finish_strip(const double* triangle, const double* inverse, double* block, int blocks) {
+  for (int part = 0; part < blocks * block_registers; ++part) {
+    double* numbers = block + part / block_registers * (block_rows * width) + part % block_registers * lanes;
+    Lanes v[width];
+    for (int j = 0; j < width; ++j) v[j] = Lanes::load_aligned(numbers + j * block_rows);
+    for (int k = 0; k < width; ++k) {
+      v[k] = v[k] * Lanes(inverse[k]);
+      v[k].store_aligned(numbers + k * block_rows);
+      for (int j = k + 1; j < width; ++j) v[j] = fnma(Lanes(triangle[k * block_rows + j]), v[k], v[j]);
+    }
+  }
+}
+
+int factor_strip(const DenseFront& e, int strip) {
+  using FinishStrip = void (*)(const double*, const double*, double*, int);
+  static constexpr FinishStrip finish[block_rows] = {finish_strip<1>, finish_strip<2>, finish_strip<3>,
+                                                     finish_strip<4>, finish_strip<5>, finish_strip<6>,
+                                                     finish_strip<7>, finish_strip<8>};
+  double inverse[block_rows];
+  const int width = strip_width(e.front, strip);
+  double* triangle = e.columns + strip_begin(e.front, strip);
+  const int failed = factor_triangle(triangle, width, inverse);
+  if (failed >= 0) return strip * block_rows + failed;
+  finish[width - 1](triangle, inverse, triangle + block_rows * width, e.blocks - strip - 1);
+  return -1;
+}
+
+int eliminate(FrontShape front, double* columns, double* update) {
+  const DenseFront e{front, columns, update, strips_of(front), row_blocks_of(front), padded_rows(front.rows)};
+  for (int first = 0; first < e.strips; first += strips_together) {
+    const int end = first + strips_together < e.strips ? first + strips_together : e.strips;
+    for (int strip = first; strip < end; ++strip) {
+      for (int row = strip; row < e.blocks && strip > first; row += tile_blocks)
+        e.take(first, strip, row, e.blocks - row < tile_blocks ? e.blocks - row : tile_blocks, strip);
+      const int failed = factor_strip(e, strip);
       if (failed >= 0) return failed;
     }
-    first += width;
+    for (int row = end; row < e.blocks; row += tile_blocks) {
+      const int count = e.blocks - row < tile_blocks ? e.blocks - row : tile_blocks;
+      for (int column = end; column < row; ++column) e.take(first, end, row, count, column);
+      for (int below = 0; below < count; ++below) e.take(first, end, row + below, count - below, row + below);
+    }
   }
   return -1;
+}
+
+// Takes a strip times its part of x from the rows below its triangle.
+template <int width>
+void strip_down(const double* triangle, int blocks, double* x) {
+  double own[width];
+  for (int j = 0; j < width; ++j) {
+    own[j] = x[j];
+    for (int k = 0; k < j; ++k) own[j] -= triangle[k * block_rows + j] * own[k];
+    x[j] = own[j] /= triangle[j * block_rows + j];
+  }
+  const double* numbers = triangle + block_rows * width;
+  Lanes known[width];
+  for (int j = 0; j < width; ++j) known[j] = Lanes(own[j]);
+  for (int b = 1; b < blocks; ++b, numbers += block_rows * width) {
+    for (int i = 0; i < block_rows; i += lanes) {
+      Lanes sum = Lanes::load_aligned(x + b * block_rows + i);
+      for (int j = 0; j < width; ++j) sum = fnma(known[j], Lanes::load_aligned(numbers + j * block_rows + i), sum);
+      sum.store_aligned(x + b * block_rows + i);
+    }
+  }
+}
+
+template <int width>
+void strip_up(const double* triangle, int blocks, double* x) {
+  const double* numbers = triangle + block_rows * width;
+  Lanes sum[width];
+  for (int j = 0; j < width; ++j) sum[j] = Lanes(0.0);
+  for (int b = 1; b < blocks; ++b, numbers += block_rows * width) {
+    for (int i = 0; i < block_rows; i += lanes) {
+      const Lanes known = Lanes::load_aligned(x + b * block_rows + i);
+      for (int j = 0; j < width; ++j) sum[j] = fma(known, Lanes::load_aligned(numbers + j * block_rows + i), sum[j]);
+    }
+  }
+  for (int j = width - 1; j >= 0; --j) {
+    double own = x[j] - sum_in_order(sum[j]);
+    for (int k = j + 1; k < width; ++k) own -= triangle[j * block_rows + k] * x[k];
+    x[j] = own / triangle[j * block_rows + j];
+  }
+}
+
+using StripStep = void (*)(const double*, int, double*);
+
+void solve_down(FrontShape front, const double* columns, const std::int32_t* rows, double* own, double* x,
+                double* scratch) {
+  static constexpr StripStep step[block_rows] = {strip_down<1>, strip_down<2>, strip_down<3>, strip_down<4>,
+                                                 strip_down<5>, strip_down<6>, strip_down<7>, strip_down<8>};
+  const int strips = strips_of(front), blocks = row_blocks_of(front);
+  for (int i = 0; i < blocks * block_rows; ++i) scratch[i] = i < front.pivots ? own[i] : 0.0;
+  for (int strip = 0; strip < strips; ++strip)
+    step[strip_width(front, strip) - 1](columns + strip_begin(front, strip), blocks - strip,
+                                        scratch + strip * block_rows);
+  for (int i = 0; i < front.pivots; ++i) own[i] = scratch[i];
+  const double* taken = scratch + strips * block_rows;
+  for (int i = 0; i < front.rows; ++i) x[rows[i]] += taken[i];
+}
+
+void solve_up(FrontShape front, const double* columns, const std::int32_t* rows, double* own, double* x,
+              double* scratch) {
+  static constexpr StripStep step[block_rows] = {strip_up<1>, strip_up<2>, strip_up<3>, strip_up<4>,
+                                                 strip_up<5>, strip_up<6>, strip_up<7>, strip_up<8>};
+  const int strips = strips_of(front), blocks = row_blocks_of(front);
+  for (int i = 0; i < strips * block_rows; ++i) scratch[i] = i < front.pivots ? own[i] : 0.0;
+  double* known = scratch + strips * block_rows;
+  for (int i = 0; i < (blocks - strips) * block_rows; ++i) known[i] = i < front.rows ? x[rows[i]] : 0.0;
+  for (int strip = strips - 1; strip >= 0; --strip)
+    step[strip_width(front, strip) - 1](columns + strip_begin(front, strip), blocks - strip,
+                                        scratch + strip * block_rows);
+  for (int i = 0; i < front.pivots; ++i) own[i] = scratch[i];
 }
 
 // Four right-hand sides side by side: x, y, z and a spare that keeps loads whole.
@@ -196,6 +357,7 @@ void add_scaled(const double* const* a, const double* c, int count, double* r, l
 }  // namespace
 
 extern const LinearKernels SUPPLE_TABLE(linear);
-const LinearKernels SUPPLE_TABLE(linear) = {eliminate, solve<float>, solve<double>, dots, add_scaled};
+const LinearKernels SUPPLE_TABLE(linear) = {eliminate,     solve_down, solve_up,  solve<float>,
+                                            solve<double>, dots,       add_scaled};
 
 }  // namespace supple

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "sim/linear/front_layout.h"
+
 namespace supple {
 
 constexpr int panel_width = 8;
@@ -21,11 +23,18 @@ struct PanelsView {
 };
 
 struct LinearKernels {
-  // Eliminates the first `pivots` columns of a dense symmetric front of `size` rows: its lower triangle, column-major,
-  // a column of `stride` numbers (a multiple of 8 and no less than size; those below the front must be 0 and stay so).
-  // They become columns of L, the others what elimination leaves of them (the update matrix). Above the diagonal
-  // anything may stand afterwards. Returns the first pivot that is not positive, or -1.
-  int (*eliminate)(double* front, long stride, int size, int pivots);
+  // Eliminates the pivots of a dense symmetric front that lies in memory as front_layout.h says, padding and all above
+  // the diagonal set to 0. The columns become columns of L, the update matrix what elimination leaves of the others;
+  // above the diagonal anything may stand afterwards. Each number loses its products one by one in the order of the
+  // pivots. Returns the first pivot that is not positive, or -1.
+  int (*eliminate)(FrontShape front, double* columns, double* update);
+
+  // The part of one front in L x = b, in place, and in L^T x = b. `own`: x at the front's first pivot; rows: by row
+  // below the pivots, into x. scratch: as many numbers as the front has padded rows.
+  void (*solve_down)(FrontShape front, const double* columns, const std::int32_t* rows, double* own, double* x,
+                     double* scratch);
+  void (*solve_up)(FrontShape front, const double* columns, const std::int32_t* rows, double* own, double* x,
+                   double* scratch);
 
   // Solves L L^T x = b in place for four interleaved right-hand sides (n x 4), by panels of up to panel_width columns.
   void (*solve_float)(const PanelsView& panels, float* x);

@@ -18,7 +18,7 @@ struct AsRigidAsPossible {
     return std::array{Parameter<AsRigidAsPossible>{"mu", "Pa", "stiffness", &AsRigidAsPossible::mu, false}};
   }
 
-  // Energy per rest volume [J/m^3]; `slope` becomes dPsi/dS.
+  // Returns the energy per rest volume [J/m^3]; `slope` becomes dPsi/dS.
   template <class V>
   V density(const Symmetric3<V>& s, Symmetric3<V>& slope) const {
     const V one(1.0), two_mu(2 * mu);
@@ -27,7 +27,7 @@ struct AsRigidAsPossible {
     return V(mu) * squared_norm(d);
   }
 
-  // f(s) = a'(s) + 2 b'(s) + c'(s) (equation 10), from a = mu (s-1)^2.
+  // This is f(s) = a'(s) + 2 b'(s) + c'(s) (equation 10) with a = mu (s-1)^2.
   double axial_stress(double s) const { return 2 * mu * (s - 1); }
 };
 

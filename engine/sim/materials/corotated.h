@@ -35,7 +35,7 @@ struct Corotated {
     return madd(V(mu), squared_norm(d), V(0.5) * pressure * trace);
   }
 
-  // From a = mu (s-1)^2 + lambda/2 (s^2 - 6 s + 3), b = lambda s.
+  // This is equation 10 with a = mu (s-1)^2 + lambda/2 (s^2 - 6 s + 3), b = lambda s.
   double axial_stress(double s) const { return 2 * mu * (s - 1) + lambda * (s - 3) + 2 * lambda; }
 };
 

@@ -1,5 +1,5 @@
 // Fixed corotated elasticity (Stomakhin et al. 2012, "Energetically consistent invertible elasticity"): Psi = mu |F -
-// R|^2 + lambda/2 (J - 1)^2. Like corotated near rest, with a volume term that sees inversion.
+// R|^2 + lambda/2 (J - 1)^2. It is like corotated near rest, with a volume term that resists inversion.
 #pragma once
 
 #include <array>
@@ -34,7 +34,7 @@ struct FixedCorotated {
     return madd(V(mu), squared_norm(d), V(0.5) * pressure * excess);
   }
 
-  // From a = mu (s-1)^2, c = lambda/2 (s-1)^2.
+  // This is equation 10 with a = mu (s-1)^2, c = lambda/2 (s-1)^2.
   double axial_stress(double s) const { return (2 * mu + lambda) * (s - 1); }
 };
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int order = 24;  // nodes a panel
 
-// Nodes and weights on [-1, 1] by Newton on the Legendre polynomial.
+// Finds the nodes and weights on [-1, 1] by Newton's method on the Legendre polynomial.
 struct GaussLegendre {
   double node[order];
   double weight[order];
@@ -33,7 +33,7 @@ struct GaussLegendre {
   }
 };
 
-// Where the panels of the quadrature end: at the seams of the stress, so that each panel is smooth.
+// The panels of the quadrature end at the seams of the stress, so that each panel is smooth.
 std::vector<double> panel_ends(const Material& material, const StretchInterval& interval) {
   std::vector<double> ends = std::visit(
       [](const auto& m) -> std::vector<double> {

@@ -1,5 +1,6 @@
-// The closed set of materials. A new one is a header in materials/ (parameters, energy density with its derivative,
-// axial stress) and an entry here; kernels, scene files, the stiffness fit and the derivative tests then know it.
+// This is the closed set of materials. A new one is a header in this folder (parameters, energy density with its
+// derivative, axial stress) and an entry here; kernels, scene files, the stiffness fit and the derivative tests then
+// know it.
 #pragma once
 
 #include <variant>
@@ -24,7 +25,7 @@ inline std::string_view name_of(const Material& material) {
   return std::visit([](const auto& m) { return m.name; }, material);
 }
 
-// Whether some deformation has less energy than rest.
+// Tells whether some deformation has less energy than rest.
 bool may_be_negative(const Material& material);
 
 // The stretch interval of equation 11.
@@ -34,7 +35,7 @@ struct StretchInterval {
 };
 
 // k of equation 11: the slope of the line through rest that fits the axial stress f best over the interval, by
-// Gauss-Legendre quadrature. Can be zero or negative for materials that soften. [Pa]
+// Gauss-Legendre quadrature [Pa]. It can be zero or negative for materials that soften.
 double fitted_stiffness(const Material& material, const StretchInterval& interval = {});
 
 // The k that M/h^2 + L is built with: the fit (or what the material demands instead), but not below the floor. A spline

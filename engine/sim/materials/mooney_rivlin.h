@@ -45,7 +45,7 @@ struct MooneyRivlin {
     return madd(V(0.5 * mu_1), first - V(3.0), madd(V(0.5 * mu_2), squared_norm(cofactors) - V(3.0), volume));
   }
 
-  // From a = mu_1/2 (s^2 - 1), b = mu_2/2 (s^2 - 1) and c.
+  // This is equation 10 with a = mu_1/2 (s^2 - 1), b = mu_2/2 (s^2 - 1) and c.
   double axial_stress(double s) const {
     double slope = 0;
     LogVolume{mu_1 + 2 * mu_2, lambda}.value(s, slope);

@@ -30,7 +30,7 @@ struct NeoHookean {
     return madd(V(0.5 * mu), squared_norm(f) - V(3.0), volume);
   }
 
-  // From a = mu/2 (s^2 - 1) and c.
+  // This is equation 10 with a = mu/2 (s^2 - 1) and c.
   double axial_stress(double s) const {
     double slope = 0;
     LogVolume{mu, lambda}.value(s, slope);

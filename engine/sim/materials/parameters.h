@@ -3,8 +3,8 @@
 //   static M from(const Lame&)          from Young's modulus and Poisson's ratio
 //   const char* problem() const         what is wrong with parameters that are each in range, or null
 //   std::vector<double> seams() const   stretches where the axial stress changes its formula
-//   double system_stiffness() const     k in M/h^2 + L where equation 11 is not meant
-//   bool may_be_negative() const        whether energies below that of rest exist; no without it
+//   double system_stiffness() const     k in M/h^2 + L, in place of equation 11
+//   bool may_be_negative() const        whether some deformation has less energy than rest; without it, none has
 //   static constexpr auto curves()      functions given by control points, as parameters() are numbers
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace supple {
 
-// What a formula is written in; nobody pays for a decomposition that the formula does not use.
+// What a formula needs of F: a decomposition that the formula does not use is not computed.
 enum class Needs {
   gradient,         // F alone: density(F, P)
   stretch,          // S of the polar decomposition F = R S: density(S, dPsi/dS), and P = R dPsi/dS

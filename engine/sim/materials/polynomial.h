@@ -1,5 +1,5 @@
-// The paper's polynomial material: Psi = mu sum (s_i - 1)^4 = mu tr (S - 1)^4. Nothing at small strains, firm at large
-// ones: it jiggles and keeps its shape (Liu et al. 2017, section 4.1 and figure 2).
+// The paper's polynomial material: Psi = mu sum (s_i - 1)^4 = mu tr (S - 1)^4. It resists small strains
+// hardly and large ones firmly, so it jiggles and keeps its shape (Liu et al. 2017, section 4.1 and figure 2).
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ struct Polynomial {
     return V(mu) * squared_norm(d2);
   }
 
-  // From a = mu (s-1)^4.
+  // This is equation 10 with a = mu (s-1)^4.
   double axial_stress(double s) const { return 4 * mu * (s - 1) * (s - 1) * (s - 1); }
 };
 

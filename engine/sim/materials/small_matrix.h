@@ -1,33 +1,33 @@
 // 3 x 3 matrices whose entries may be SIMD registers (one element a lane) or plain doubles (the oracle in the tests),
-// and the polar decomposition that the stretch-based materials need. Included by the kernels and by tests; free of
-// Eigen, so that it can be compiled for several instruction sets in one program.
+// and the polar decomposition that the stretch-based materials need. The operations of a register are found by its
+// type, so that only those who compute with registers include a SIMD library. Free of Eigen, so that it can be compiled
+// for several instruction sets in one program.
 #pragma once
 
 #include <cmath>
-#include <xsimd/xsimd.hpp>
+#include <cstddef>
+#include <type_traits>
 
 namespace supple {
 
-// a b + c. Fused where the machine can; plain for the oracle.
-template <class T, class A>
-xsimd::batch<T, A> madd(const xsimd::batch<T, A>& a, const xsimd::batch<T, A>& b, const xsimd::batch<T, A>& c) {
-  return xsimd::fma(a, b, c);
-}
+// Returns a b + c: fused for registers where the machine can, and plain for the oracle.
 inline double madd(double a, double b, double c) { return a * b + c; }
-
-// yes where the condition holds, lane by lane
-template <class T, class A>
-xsimd::batch<T, A> choose(const xsimd::batch_bool<T, A>& condition, const xsimd::batch<T, A>& yes,
-                          const xsimd::batch<T, A>& no) {
-  return xsimd::select(condition, yes, no);
+template <class V>
+V madd(const V& a, const V& b, const V& c) {
+  return fma(a, b, c);
 }
+
+// Returns `yes` where the condition holds and `no` elsewhere, lane by lane.
 inline double choose(bool condition, double yes, double no) { return condition ? yes : no; }
-
-template <class T, class A>
-bool some(const xsimd::batch_bool<T, A>& condition) {
-  return xsimd::any(condition);
+template <class Condition, class V>
+requires(!std::is_arithmetic_v<Condition>) V choose(const Condition& condition, const V& yes, const V& no) {
+  return select(condition, yes, no);
 }
+
+// Whether the condition holds in any lane.
 inline bool some(bool condition) { return condition; }
+template <class Condition>
+requires(!std::is_arithmetic_v<Condition>) bool some(const Condition& condition) { return any(condition); }
 
 template <class V>
 struct Matrix3 {
@@ -48,7 +48,7 @@ V squared_norm(const Matrix3<V>& a) {
   return sum;
 }
 
-// sum of a_ij^2 of a symmetric matrix
+// Returns the sum of all a_ij^2 of a symmetric matrix.
 template <class V>
 V squared_norm(const Symmetric3<V>& a) {
   const V diagonal = madd(a.xx, a.xx, madd(a.yy, a.yy, a.zz * a.zz));
@@ -56,7 +56,7 @@ V squared_norm(const Symmetric3<V>& a) {
   return madd(V(2.0), off, diagonal);
 }
 
-// The matrix of cofactors: d det(a) / d a, finite for singular matrices.
+// Returns the matrix of cofactors, which is d det(a) / d a and finite for singular matrices.
 template <class V>
 Matrix3<V> cofactor(const Matrix3<V>& a) {
   Matrix3<V> c;
@@ -88,7 +88,7 @@ V determinant(const Matrix3<V>& a, const Matrix3<V>& cofactors) {
   return madd(a(0, 0), cofactors(0, 0), madd(a(0, 1), cofactors(0, 1), a(0, 2) * cofactors(0, 2)));
 }
 
-// a^T b where that is known to be symmetric (the stretch of a polar decomposition); the two halves are averaged.
+// Returns a^T b where that is known to be symmetric (the stretch of a polar decomposition), the average of both halves.
 template <class V>
 Symmetric3<V> symmetric_product(const Matrix3<V>& a, const Matrix3<V>& b) {
   const auto entry = [&](int i, int j) { return madd(a(0, i), b(0, j), madd(a(1, i), b(1, j), a(2, i) * b(2, j))); };
@@ -101,7 +101,7 @@ Symmetric3<V> symmetric_product(const Matrix3<V>& a, const Matrix3<V>& b) {
           half * (entry(0, 1) + entry(1, 0))};
 }
 
-// a b for symmetric matrices that commute (powers of one matrix), hence symmetric again.
+// Returns a b for symmetric matrices that commute (powers of one matrix), which is symmetric again.
 template <class V>
 Symmetric3<V> commuting_product(const Symmetric3<V>& a, const Symmetric3<V>& b) {
   return {madd(a.xx, b.xx, madd(a.xy, b.xy, a.xz * b.xz)), madd(a.xy, b.xy, madd(a.yy, b.yy, a.yz * b.yz)),
@@ -197,16 +197,15 @@ static inline void polar_rotation_jacobi(const double f[9], double r[9]) {
 // iteration falls monotonically. The formula divides by 2 (s1+s2)(s1+s3)(s2+s3); lanes where that is small, or where
 // something overflowed, take the Jacobi path. Elsewhere R is within about 1e-12 of it (the root's own conditioning),
 // and near rest within a few eps.
-template <class T, class A>
-Matrix3<xsimd::batch<T, A>> polar_rotation(const Matrix3<xsimd::batch<T, A>>& f) {
-  using V = xsimd::batch<T, A>;
+template <class V>
+Matrix3<V> polar_rotation(const Matrix3<V>& f) {
   const Matrix3<V> cofactors = cofactor(f);
   const V determ = determinant(f, cofactors);
   const V norm2 = squared_norm(f);
   const V second = squared_norm(cofactors);
   const V two(2.0);
   const V constant = madd(norm2, norm2, V(-4.0) * second);
-  V root = xsimd::sqrt(madd(two, xsimd::sqrt(V(3.0) * second), norm2));
+  V root = sqrt(madd(two, sqrt(V(3.0) * second), norm2));
   auto moving = root > root;
   for (int step = 0; step < 12; ++step) {
     const V square = root * root;
@@ -214,8 +213,8 @@ Matrix3<xsimd::batch<T, A>> polar_rotation(const Matrix3<xsimd::batch<T, A>>& f)
     const V quarter_slope = madd(root, square - norm2, V(-2.0) * determ);
     const V change = V(0.25) * value / quarter_slope;
     root = root - change;
-    moving = xsimd::abs(change) > V(1e-9) * root;  // Newton squares what is left: 1e-9 is followed by round-off
-    if (!xsimd::any(moving)) break;
+    moving = abs(change) > V(1e-9) * root;  // Newton squares what is left: 1e-9 is followed by round-off
+    if (!some(moving)) break;
   }
   const V square = root * root;
   const V denominator = madd(root, square - norm2, V(-2.0) * determ);
@@ -230,14 +229,14 @@ Matrix3<xsimd::batch<T, A>> polar_rotation(const Matrix3<xsimd::batch<T, A>>& f)
   Matrix3<V> r;
   for (int i = 0; i < 9; ++i)
     r.m[i] = madd(weight_f, f.m[i], madd(weight_cofactor, cofactors.m[i], weight_fc * fc.m[i]));
-  if (xsimd::all(safe)) return r;
+  if (!some(!safe)) return r;
 
-  alignas(64) T lanes_f[9][V::size], lanes_r[9][V::size], lanes_safe[V::size];
+  alignas(64) double lanes_f[9][V::size], lanes_r[9][V::size], lanes_safe[V::size];
   for (int i = 0; i < 9; ++i) {
     f.m[i].store_aligned(lanes_f[i]);
     r.m[i].store_aligned(lanes_r[i]);
   }
-  xsimd::select(safe, V(1.0), V(0.0)).store_aligned(lanes_safe);
+  choose(safe, V(1.0), V(0.0)).store_aligned(lanes_safe);
   for (std::size_t lane = 0; lane < V::size; ++lane) {
     if (lanes_safe[lane] != 0) continue;
     double one_f[9], one_r[9];

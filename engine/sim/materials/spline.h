@@ -1,7 +1,7 @@
 // Materials designed by curves (Xu, Sin, Zhu, Barbic 2015, "Nonlinear material design using principal stretches"): a',
 // b' and c' of the Valanis-Landel form are cubic splines through control points. A curve that is not given is zero and
-// costs nothing. Presets A and B of the paper's figure 6: Neo-Hookean with more resistance to compression, or to
-// tension.
+// costs nothing. The presets A and B are those of the paper's figure 6: Neo-Hookean with more resistance to
+// compression, or to tension.
 #pragma once
 
 #include <array>
@@ -18,20 +18,20 @@ struct ControlPoint {
   double value;  // derivative of the energy there [Pa]
 };
 
-// A natural cubic spline: twice continuously differentiable, straight beyond its first and last point. Stands for the
-// derivative of an energy that is zero at 1.
+// A natural cubic spline: twice continuously differentiable, straight beyond its first and last point. It stands for
+// the derivative of an energy that is zero at 1.
 class SplineCurve {
  public:
   static constexpr int most_points = 24;
 
   SplineCurve() = default;
-  // Points in ascending order, two at least.
+  // Takes at least two points, in ascending order.
   explicit SplineCurve(std::vector<ControlPoint> points);
 
   bool empty() const { return points_.empty(); }
   const std::vector<ControlPoint>& points() const { return points_; }
 
-  // The integral of the curve from 1 to x; `slope` becomes the curve itself.
+  // Returns the integral of the curve from 1 to x; `slope` becomes the curve itself.
   template <class V>
   V value(const V& x, V& slope) const {
     Chosen<V> piece{V(points_.front().at), V(pieces_[0].c[0]), V(pieces_[0].c[1]), V(0.0), V(0.0),

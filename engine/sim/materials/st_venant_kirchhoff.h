@@ -1,5 +1,5 @@
-// St. Venant-Kirchhoff material: Psi = mu |E|^2 + lambda/2 tr^2 E, E = (F^T F - 1)/2. Softens under compression and has
-// no resistance to inversion: below a stretch of 1/sqrt(3) it gives way. Here because papers compare with it.
+// St. Venant-Kirchhoff material: Psi = mu |E|^2 + lambda/2 tr^2 E, E = (F^T F - 1)/2. It softens under compression and
+// does not resist inversion: below a stretch of 1/sqrt(3) it gives way. It is here because papers compare with it.
 #pragma once
 
 #include <array>
@@ -35,7 +35,7 @@ struct StVenantKirchhoff {
     return madd(V(mu), squared_norm(e), half * pressure * trace);
   }
 
-  // From a = mu/4 (s^2-1)^2 + lambda/8 (s^4 - 6 s^2 + 3), b = lambda/4 s^2.
+  // This is equation 10 with a = mu/4 (s^2-1)^2 + lambda/8 (s^4 - 6 s^2 + 3), b = lambda/4 s^2.
   double axial_stress(double s) const { return mu * s * (s * s - 1) + lambda / 2 * (s * s * s - 3 * s) + lambda * s; }
 };
 

@@ -1,6 +1,6 @@
 // Stable Neo-Hookean material (Smith, de Goes, Kim 2018, "Stable Neo-Hookean flesh simulation", without the term that
-// regularises the origin): Psi = mu/2 (I_C - 3) - mu (J - 1) + lambda/2 (J - 1)^2. No logarithm, so nothing has to be
-// continued. Its lambda is Lame's plus mu.
+// regularises the origin): Psi = mu/2 (I_C - 3) - mu (J - 1) + lambda/2 (J - 1)^2. There is no logarithm, so
+// nothing has to be continued. Its lambda is Lame's plus mu.
 #pragma once
 
 #include <array>
@@ -39,7 +39,7 @@ struct StableNeoHookean {
     return madd(V(0.5 * mu), squared_norm(f) - V(3.0), excess * madd(V(0.5 * lambda), excess, V(-mu)));
   }
 
-  // From a = mu/2 (s^2 - 1), c = -mu (s-1) + lambda/2 (s-1)^2.
+  // This is equation 10 with a = mu/2 (s^2 - 1), c = -mu (s-1) + lambda/2 (s-1)^2.
   double axial_stress(double s) const { return (mu + lambda) * (s - 1); }
 };
 

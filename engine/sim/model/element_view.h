@@ -1,11 +1,11 @@
-// A model's elements one by one, out of their SIMD blocks: for whoever has time.
+// Visits a model's elements one by one, taken out of their SIMD blocks: for code whose speed does not matter.
 #pragma once
 
 #include "sim/model/model.h"
 
 namespace supple {
 
-// Corners in the model's numbering.
+// Its corners have the model's numbering.
 struct ElementView : ElementRecord {
   int lane;  // over all blocks
 };
@@ -28,13 +28,13 @@ void for_each_element(const Model& model, const Model::ChunkRange& range, const 
   }
 }
 
-// Of all chunks, one behind the other.
+// Visits the elements of all chunks, one chunk after the other.
 template <class Visit>
 void for_each_element(const Model& model, const Visit& visit) {
   for (const Model::ChunkRange& range : model.chunks) for_each_element(model, range, visit);
 }
 
-// F of a tetrahedron.
+// Returns F of a tetrahedron.
 inline Mat3 deformation_gradient(const Positions& x, const ElementView& element) {
   Mat3 edges, inverse;
   for (int k = 0; k < 3; ++k) edges.col(k) = (x.row(element.corner[k + 1]) - x.row(element.corner[0])).transpose();

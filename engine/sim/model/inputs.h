@@ -7,19 +7,20 @@
 
 #include <Eigen/Geometry>
 
+#include "base/names.h"
 #include "geometry/shape.h"
 
 namespace supple {
 
-// A rigid obstacle, in its own frame.
+// A rigid obstacle, described in its own frame.
 struct Collider {
   std::string name;
   Shape shape;
   double thickness = 0;  // of a layer around it that already pushes [m]
-  double friction = 0;   // Coulomb's coefficient
+  double friction = 0;   // coefficient of Coulomb's law
 };
 
-// From the collider's frame to the world, when a step starts and when it ends.
+// A collider's pose, from its frame to the world, when a step starts and when it ends.
 struct ColliderMotion {
   Eigen::Isometry3d start = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d end = Eigen::Isometry3d::Identity();
@@ -32,12 +33,23 @@ enum class ContactHistory {
   current,  // the rest of t, and 2 k_c n n^T s for each contact that is in force now
   dropped,  // no pair across a change of the set
 };
+template <>
+struct Names<ContactHistory> {
+  static constexpr std::array table = {Name{ContactHistory::frozen, "frozen"}, Name{ContactHistory::current, "current"},
+                                       Name{ContactHistory::dropped, "dropped"}};
+};
 
 // How search directions see contacts, which A does not hold.
 enum class ContactDirection {
   ignored,   // as the paper
   diagonal,  // normal motion of touching vertices by its own stiffness
   low_rank,  // (A + contacts)^-1 by the Woodbury identity
+};
+template <>
+struct Names<ContactDirection> {
+  static constexpr std::array table = {Name{ContactDirection::ignored, "ignored"},
+                                       Name{ContactDirection::diagonal, "diagonal"},
+                                       Name{ContactDirection::low_rank, "low-rank"}};
 };
 
 struct ContactSettings {
@@ -49,7 +61,17 @@ struct ContactSettings {
 };
 
 enum class LineSearch { armijo, wolfe, none };
-const char* text_of(LineSearch search);  // as scene files spell it
+template <>
+struct Names<LineSearch> {
+  static constexpr std::array table = {Name{LineSearch::armijo, "armijo"}, Name{LineSearch::wolfe, "wolfe"},
+                                       Name{LineSearch::none, "none"}};
+};
+
+// Chebyshev's semi-iterative acceleration (Wang 2015). docs/bench.md says how the defaults were found.
+struct ChebyshevSettings {
+  int delay = 10;        // S: the first iterations that are not accelerated
+  double radius = 0.99;  // rho: the spectral radius that is assumed of the plain iteration
+};
 
 // Settings that may change between steps.
 struct SolverSettings {
@@ -59,6 +81,7 @@ struct SolverSettings {
   double armijo = 0.3;      // gamma
   double target_error = 0;  // stop when the error estimate falls below; 0: do all iterations
   ContactSettings contact;
+  ChebyshevSettings chebyshev;
 };
 
 // All that comes from outside for one step of one body.

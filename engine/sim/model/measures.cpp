@@ -12,7 +12,8 @@
 namespace supple {
 namespace {
 
-// The value above which values of a given weight lie, of pairs of value and weight. Only the top is sorted.
+// Returns the value above which the values of a given total weight lie. Takes pairs of value and weight, and sorts only
+// the largest ones.
 double weighted_top(std::vector<std::pair<double, double>>& pairs, double weight_above) {
   for (std::size_t count = pairs.size() / 256 + 64;; count *= 2) {
     const auto end = pairs.begin() + static_cast<std::ptrdiff_t>(std::min(count, pairs.size()));
@@ -62,16 +63,6 @@ Deformation deformation(const Model& model, const Positions& x) {
         static_cast<int>(std::count_if(inverted.begin(), inverted.end(), [least](double v) { return v > least; }));
   }
   result.stretch = weighted_top(stretches, 0.001 * total);
-  return result;
-}
-
-Energies energies(const Model& model, const State& state, const Vec3& gravity, Workspace& w) {
-  Energies result;
-  for (int v = 0; v < model.free; ++v) {
-    result.kinetic += 0.5 * model.mass[v] * state.v.row(v).squaredNorm();
-    result.gravitational -= model.mass[v] * (state.x.row(v) - model.rest.row(v)).dot(gravity);
-  }
-  result.elastic = elastic_energy(model, w, state.x);
   return result;
 }
 

@@ -1,71 +1,236 @@
-// The closed set of solvers by name: the paper's method, and what it is compared with. Not here: how they work
-// (lbfgs.h; baselines/make_rule.h).
+// How search directions are found, by its parts: the matrix that a direction starts from, how systems with it are
+// solved, and what an iteration learns from earlier ones. The paper's method and all that it is compared with are
+// combinations of these parts. Not here: how they work (solver/lbfgs.h; baselines/make_rule.h).
 #pragma once
 
 #include <array>
+#include <initializer_list>
+#include <optional>
+#include <string>
 #include <string_view>
+
+#include "base/names.h"
 
 namespace supple {
 
-enum class Method {
-  quasi_newton,
-  projective_dynamics,
-  chebyshev,
-  newton,
-  newton_shifted,
-  newton_cg5,
-  newton_cg15,
-  gast,
-  quasi_newton_cg5,
-  quasi_newton_cg15,
-  lbfgs_identity,
-  lbfgs_rest,
-  lbfgs_warped,
-  lbfgs_frame,
-  lbfgs_frame_cg5_rest,
-  lbfgs_frame_cg15_rest,
-  lbfgs_frame_cg5_ours,
-  lbfgs_frame_cg15_ours,
-  hecht,
-  contact_matrix,
+// The approximation of the Hessian of g that a search direction starts from.
+enum class StartMatrix {
+  system,               // A = M/h^2 + L, constant: the paper's
+  identity,             // (t.t / s.t) I of the last L-BFGS pair (equation 13)
+  rest_hessian,         // M/h^2 + the Hessian of the rest pose
+  warped_rest_hessian,  // the same, turned at each vertex by its rotation (Mueller et al. 2002)
+  frame_hessian,        // the projected Hessian at the first iterate of each step
+  hessian,              // the Hessian at each iterate: Newton's method
+  hecht,                // a warped Hessian that is renewed every other step (Hecht et al. 2012)
+  contact,              // A with the stiffness of contacts on its diagonal, factored anew when they change
+};
+template <>
+struct Names<StartMatrix> {
+  static constexpr std::array table = {Name{StartMatrix::system, "system"},
+                                       Name{StartMatrix::identity, "identity"},
+                                       Name{StartMatrix::rest_hessian, "rest-hessian"},
+                                       Name{StartMatrix::warped_rest_hessian, "warped-rest-hessian"},
+                                       Name{StartMatrix::frame_hessian, "frame-hessian"},
+                                       Name{StartMatrix::hessian, "hessian"},
+                                       Name{StartMatrix::hecht, "hecht"},
+                                       Name{StartMatrix::contact, "contact"}};
 };
 
-struct MethodInfo {
+enum class LinearSolver { direct, cg };  // by a factor, or by conjugate gradients
+template <>
+struct Names<LinearSolver> {
+  static constexpr std::array table = {Name{LinearSolver::direct, "direct"}, Name{LinearSolver::cg, "cg"}};
+};
+
+// Of conjugate gradients.
+enum class Preconditioner {
+  none,    // direct solves have none
+  jacobi,  // the matrix's own diagonal
+  rest,    // an incomplete Cholesky factor of the rest pose's Hessian
+  system,  // an incomplete Cholesky factor of A
+};
+template <>
+struct Names<Preconditioner> {
+  static constexpr std::array table = {Name{Preconditioner::none, "none"}, Name{Preconditioner::jacobi, "jacobi"},
+                                       Name{Preconditioner::rest, "rest"}, Name{Preconditioner::system, "system"}};
+};
+
+// What an iteration learns from earlier ones of the same step.
+enum class Acceleration {
+  none,
+  lbfgs,      // SolverSettings::history pairs
+  chebyshev,  // Chebyshev's semi-iterative method (Wang 2015), SolverSettings::chebyshev
+};
+template <>
+struct Names<Acceleration> {
+  static constexpr std::array table = {Name{Acceleration::none, "none"}, Name{Acceleration::lbfgs, "l-bfgs"},
+                                       Name{Acceleration::chebyshev, "chebyshev"}};
+};
+
+// What is done about a Hessian that is not positive definite.
+enum class Safeguard {
+  none,        // the matrix is positive definite by itself
+  projection,  // each element's Hessian is replaced by the nearest semi-definite one (Teran et al. 2005)
+  shift,       // a multiple of the identity is added until Cholesky succeeds (Martin et al. 2011)
+  curvature,   // conjugate gradients stop where they meet negative curvature (Gast et al. 2015)
+};
+template <>
+struct Names<Safeguard> {
+  static constexpr std::array table = {Name{Safeguard::none, "none"}, Name{Safeguard::projection, "projection"},
+                                       Name{Safeguard::shift, "shift"}, Name{Safeguard::curvature, "curvature"}};
+};
+
+struct Method {
+  StartMatrix matrix = StartMatrix::system;
+  LinearSolver linear = LinearSolver::direct;
+  int inner_iterations = 0;    // of conjugate gradients, at most; 0 for direct solves
+  double inner_tolerance = 0;  // they also stop once the residual is this share of the right-hand side
+  Preconditioner preconditioner = Preconditioner::none;
+  Acceleration acceleration = Acceleration::lbfgs;
+  Safeguard safeguard = Safeguard::none;
+
+  bool operator==(const Method&) const = default;
+
+  // The usual ones, which have short names.
+  static const Method quasi_newton, projective_dynamics, chebyshev, newton, gast, hecht;
+
+  // The paper's with A solved by conjugate gradients.
+  static constexpr Method quasi_newton_cg(int iterations);
+  // Newton's method by conjugate gradients.
+  static constexpr Method newton_cg(int iterations);
+  static const Method newton_shifted;
+  // L-BFGS from another matrix, solved directly.
+  static constexpr Method lbfgs_from(StartMatrix matrix);
+  // L-BFGS from the frame's Hessian, solved by conjugate gradients.
+  static constexpr Method frame_cg(int iterations, Preconditioner preconditioner);
+};
+
+inline constexpr Method Method::quasi_newton = {};
+inline constexpr Method Method::projective_dynamics = {.acceleration = Acceleration::none};
+inline constexpr Method Method::chebyshev = {.acceleration = Acceleration::chebyshev};
+inline constexpr Method Method::newton = {
+    .matrix = StartMatrix::hessian, .acceleration = Acceleration::none, .safeguard = Safeguard::projection};
+inline constexpr Method Method::newton_shifted = {
+    .matrix = StartMatrix::hessian, .acceleration = Acceleration::none, .safeguard = Safeguard::shift};
+inline constexpr Method Method::gast = {.matrix = StartMatrix::hessian,
+                                        .linear = LinearSolver::cg,
+                                        .inner_iterations = 100,  // indefiniteness or the tolerance usually come first
+                                        .inner_tolerance = 0.05,
+                                        .preconditioner = Preconditioner::jacobi,
+                                        .acceleration = Acceleration::none,
+                                        .safeguard = Safeguard::curvature};
+inline constexpr Method Method::hecht = {.matrix = StartMatrix::hecht, .acceleration = Acceleration::none};
+
+constexpr Method Method::quasi_newton_cg(int iterations) {
+  return {.linear = LinearSolver::cg, .inner_iterations = iterations, .preconditioner = Preconditioner::jacobi};
+}
+
+constexpr Method Method::newton_cg(int iterations) {
+  return {.matrix = StartMatrix::hessian,
+          .linear = LinearSolver::cg,
+          .inner_iterations = iterations,
+          .preconditioner = Preconditioner::jacobi,
+          .acceleration = Acceleration::none,
+          .safeguard = Safeguard::projection};
+}
+
+constexpr Method Method::lbfgs_from(StartMatrix matrix) { return {.matrix = matrix}; }
+
+constexpr Method Method::frame_cg(int iterations, Preconditioner preconditioner) {
+  return {.matrix = StartMatrix::frame_hessian,
+          .linear = LinearSolver::cg,
+          .inner_iterations = iterations,
+          .preconditioner = preconditioner};
+}
+
+// The methods that scene files name by one word.
+struct ShortName {
+  std::string_view name;
   Method method;
-  std::string_view name;     // in scene files and tables
-  std::string_view meaning;  // one line
+};
+inline constexpr std::array short_names = {
+    ShortName{"quasi-newton", Method::quasi_newton},
+    ShortName{"projective-dynamics", Method::projective_dynamics},
+    ShortName{"chebyshev", Method::chebyshev},
+    ShortName{"newton", Method::newton},
+    ShortName{"gast", Method::gast},
+    ShortName{"hecht", Method::hecht},
 };
 
-constexpr std::array methods = {
-    MethodInfo{Method::quasi_newton, "quasi-newton", "L-BFGS from M/h^2 + L: the paper's"},
-    MethodInfo{Method::projective_dynamics, "projective-dynamics", "M/h^2 + L alone"},
-    MethodInfo{Method::chebyshev, "chebyshev", "M/h^2 + L with Chebyshev acceleration (Wang 2015)"},
-    MethodInfo{Method::newton, "newton", "Newton, element Hessians projected, direct solve"},
-    MethodInfo{Method::newton_shifted, "newton-shifted", "Newton with a multiple of the identity, direct solve"},
-    MethodInfo{Method::newton_cg5, "newton-cg5", "projected Newton, 5 conjugate gradients (Jacobi)"},
-    MethodInfo{Method::newton_cg15, "newton-cg15", "projected Newton, 15 conjugate gradients (Jacobi)"},
-    MethodInfo{Method::gast, "gast", "Newton, conjugate gradients stopped at indefiniteness (Gast et al. 2015)"},
-    MethodInfo{Method::quasi_newton_cg5, "quasi-newton-cg5", "the paper's, M/h^2 + L by 5 conjugate gradients"},
-    MethodInfo{Method::quasi_newton_cg15, "quasi-newton-cg15", "the paper's, M/h^2 + L by 15 conjugate gradients"},
-    MethodInfo{Method::lbfgs_identity, "lbfgs-identity", "L-BFGS from a scaled identity (equation 13)"},
-    MethodInfo{Method::lbfgs_rest, "lbfgs-rest", "L-BFGS from the Hessian of the rest pose"},
-    MethodInfo{Method::lbfgs_warped, "lbfgs-warped", "the same, warped by each vertex' rotation (Mueller et al. 2002)"},
-    MethodInfo{Method::lbfgs_frame, "lbfgs-frame", "L-BFGS from the Hessian at the frame's start, direct solve"},
-    MethodInfo{Method::lbfgs_frame_cg5_rest, "lbfgs-frame-cg5-rest",
-               "the same by 5 conjugate gradients, incomplete Cholesky of the rest pose's"},
-    MethodInfo{Method::lbfgs_frame_cg15_rest, "lbfgs-frame-cg15-rest",
-               "the same by 15 conjugate gradients, incomplete Cholesky of the rest pose's"},
-    MethodInfo{Method::lbfgs_frame_cg5_ours, "lbfgs-frame-cg5-ours",
-               "the same by 5 conjugate gradients, incomplete Cholesky of M/h^2 + L"},
-    MethodInfo{Method::lbfgs_frame_cg15_ours, "lbfgs-frame-cg15-ours",
-               "the same by 15 conjugate gradients, incomplete Cholesky of M/h^2 + L"},
-    MethodInfo{Method::hecht, "hecht", "warped Hessian renewed every other step (Hecht et al. 2012)"},
-    MethodInfo{Method::contact_matrix, "contact-matrix", "the paper's, contacts in the matrix, factored anew"},
+// Up to three values of one part; the first is the default.
+template <class E>
+class PartChoice {
+ public:
+  constexpr PartChoice(std::initializer_list<E> values) {
+    for (const E value : values) values_[count_++] = value;
+  }
+  constexpr E usual() const { return values_[0]; }
+  constexpr bool contains(E value) const {
+    for (const E allowed : *this) {
+      if (allowed == value) return true;
+    }
+    return false;
+  }
+  constexpr const E* begin() const { return values_.data(); }
+  constexpr const E* end() const { return values_.data() + count_; }
+
+ private:
+  std::array<E, 3> values_{};
+  std::size_t count_ = 0;
 };
+
+// What goes with a matrix and a linear solver. A pair that is not listed does not exist.
+struct MethodForm {
+  StartMatrix matrix;
+  LinearSolver linear;
+  PartChoice<Preconditioner> preconditioner;
+  PartChoice<Acceleration> acceleration;
+  PartChoice<Safeguard> safeguard;
+};
+
+inline constexpr auto method_forms = [] {
+  using enum StartMatrix;
+  using enum Acceleration;
+  constexpr LinearSolver direct = LinearSolver::direct, cg = LinearSolver::cg;
+  constexpr Preconditioner without = Preconditioner::none, jacobi = Preconditioner::jacobi;
+  constexpr Safeguard definite = Safeguard::none;
+  return std::to_array<MethodForm>({
+      {system, direct, {without}, {lbfgs, chebyshev, none}, {definite}},
+      {system, cg, {jacobi}, {lbfgs, none}, {definite}},
+      {identity, direct, {without}, {lbfgs, none}, {definite}},
+      {rest_hessian, direct, {without}, {lbfgs, none}, {definite}},
+      {warped_rest_hessian, direct, {without}, {lbfgs, none}, {definite}},
+      {frame_hessian, direct, {without}, {lbfgs, none}, {definite}},
+      {frame_hessian, cg, {Preconditioner::system, Preconditioner::rest}, {lbfgs, none}, {definite}},
+      {hessian, direct, {without}, {none}, {Safeguard::projection, Safeguard::shift}},
+      {hessian, cg, {jacobi}, {none}, {Safeguard::projection, Safeguard::curvature}},
+      {hecht, direct, {without}, {none}, {definite}},
+      {contact, direct, {without}, {lbfgs, none}, {definite}},
+  });
+}();
+
+// Nothing when the matrix cannot be solved with in this way.
+constexpr const MethodForm* form_of(StartMatrix matrix, LinearSolver linear) {
+  for (const MethodForm& form : method_forms) {
+    if (form.matrix == matrix && form.linear == linear) return &form;
+  }
+  return nullptr;
+}
+
+// Why parts do not go together.
+struct MethodProblem {
+  const char* part;     // as scene files call it
+  std::string message;  // the part, its value and what is allowed in its place
+};
+std::optional<MethodProblem> problem_of(const Method& method);
+
+// For reports: the short name, or the parts that tell it apart, as in "frame-hessian, 5 cg (rest)".
+std::string name_of(const Method& method);
+
+// As a scene file has it: "newton" in quotes, or a table with the parts that are not the default.
+std::string spelling_of(const Method& method);
 
 // Whether a step depends on earlier ones by more than the state.
-constexpr bool remembers_steps(Method method) { return method == Method::hecht; }
-
-constexpr const MethodInfo& info_of(Method method) { return methods[static_cast<std::size_t>(method)]; }
+constexpr bool remembers_steps(const Method& method) { return method.matrix == StartMatrix::hecht; }
 
 }  // namespace supple

@@ -39,7 +39,7 @@ void number_vertices(Model& model, const BodyDescription& body, const std::vecto
   for (std::int32_t i = 0; i < model.vertices; ++i) model.rest.row(i) = body.mesh.rest.row(model.input_of[i]);
 }
 
-// The vertices of some elements, each once.
+// Lists the vertices of some elements, each once.
 std::vector<std::int32_t> vertices_of(const ElementRecord* begin, const ElementRecord* end) {
   std::vector<std::int32_t> list;
   for (const ElementRecord* e = begin; e != end; ++e)
@@ -49,8 +49,8 @@ std::vector<std::int32_t> vertices_of(const ElementRecord* begin, const ElementR
   return list;
 }
 
-// Packs elements of one kind and region into one chunk. Padding repeats the first element without its weight: finite,
-// and worth nothing. local: scratch by vertex.
+// Packs elements of one kind and region into one chunk. Padding repeats the first element without its weight: it is
+// finite and adds nothing. local: scratch by vertex.
 void pack_chunk(Model& model, const ElementRecord* begin, const ElementRecord* end, std::vector<std::int32_t>& local) {
   const int corners = corners_of(begin->kind), fields = fields_of(begin->kind);
   const auto count = static_cast<int>(end - begin);

@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "base/names.h"
 #include "geometry/mesh.h"
 #include "sim/elements/element_kernels.h"
 #include "sim/elements/element_records.h"
@@ -14,7 +15,7 @@
 
 namespace supple {
 
-// Vertices that follow a motion from outside.
+// Some vertices that follow a motion given from outside.
 struct Handle {
   std::string name;
   std::vector<std::int32_t> vertices;  // of the mesh, in its own numbering; one vertex belongs to one handle
@@ -23,6 +24,11 @@ struct Handle {
 };
 
 enum class Integrator { backward_euler, implicit_midpoint };
+template <>
+struct Names<Integrator> {
+  static constexpr std::array table = {Name{Integrator::backward_euler, "backward-euler"},
+                                       Name{Integrator::implicit_midpoint, "implicit-midpoint"}};
+};
 
 // What a step minimises: w/(2 h^2) |x - y|^2_M + e E(theta x + (1 - theta) q), with y = q + h v + f h^2 M^-1 f_ext.
 // Backward Euler is equation 3; implicit midpoint evaluates forces halfway (Hairer, Lubich, Wanner 2006, "Geometric
@@ -52,7 +58,7 @@ struct BodyDescription {
 };
 
 struct Model {
-  std::uint64_t id = 0;  // new whenever its numbers are set, so that whoever remembers something of it knows
+  std::uint64_t id = 0;  // changes whenever its numbers are set, so that what was derived from them can be renewed
   std::string name;
   int vertices = 0;  // n
   int free = 0;      // vertices that the solver moves: 0 .. free-1
@@ -79,7 +85,7 @@ struct Model {
   std::vector<std::int32_t> element_of_lane;  // input's element of the chunk's kind by lane; -1 for padding
   std::vector<std::uint16_t> corner;
   AlignedVector<double> field;
-  std::vector<std::int32_t> chunk_vertex;  // all chunks' lists, one behind the other
+  std::vector<std::int32_t> chunk_vertex;  // all chunks' lists, one after the other
   struct ChunkRange {
     ElementKind kind;
     int region;
@@ -90,7 +96,7 @@ struct Model {
   std::vector<ChunkRange> chunks;
   int largest_chunk = 0;  // vertices
 
-  // Where each free vertex stands in the chunks' lists: slots[slot_begin[v] .. slot_begin[v+1]).
+  // The places of each free vertex in the chunks' lists are slots[slot_begin[v] .. slot_begin[v+1]).
   std::vector<std::int32_t> slot_begin;
   std::vector<std::int32_t> slots;
 

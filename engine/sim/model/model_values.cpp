@@ -38,14 +38,14 @@ Eigen::SparseMatrix<double> pattern_of(const Model& model, const std::vector<Ele
   return matrix;
 }
 
-// Springs' stiffness stands among the packed fields.
+// Writes the stiffness of springs into the packed fields.
 void set_spring_fields(Model& model, const std::vector<Spring>& springs) {
   for (const Model::ChunkRange& chunk : model.chunks) {
     if (chunk.kind != ElementKind::spring) continue;
     for (int place = 0; place < chunk.blocks * block_width; ++place) {
       const std::size_t block = place / block_width, lane = place % block_width;
       const std::int32_t input = model.element_of_lane[std::size_t(chunk.first_block) * block_width + place];
-      if (input < 0) continue;  // padding, which is worth nothing
+      if (input < 0) continue;  // padding has no weight
       double* field = &model.field[chunk.first_field + block * SpringElement::fields * block_width + lane];
       field[0] = springs[input].length;
       field[block_width] = springs[input].stiffness;
@@ -85,7 +85,7 @@ std::size_t pairs_of(const ElementRecord& element) {
   return static_cast<std::size_t>(corners_of(element.kind)) * static_cast<std::size_t>(corners_of(element.kind));
 }
 
-// values[place] += weight G^T G, corner by corner.
+// Adds weight G^T G to the values at their places, corner by corner.
 void add_term(const SystemTerm& term, int corners, const std::int32_t* place, double* values) {
   for (int a = 0; a < corners; ++a) {
     for (int b = 0; b < corners; ++b) {
@@ -96,7 +96,7 @@ void add_term(const SystemTerm& term, int corners, const std::int32_t* place, do
   }
 }
 
-// Of A: what inertia and the springs of handles add to L [N/m].
+// Returns what inertia and the springs of handles add to L in A [N/m].
 double diagonal_part(const Model& model, std::int32_t v) {
   const double held =
       model.spring.empty() ? 0 : model.scheme.energy * model.scheme.theta * model.scheme.theta * model.spring[v];

@@ -8,13 +8,13 @@ namespace supple {
 
 class ModelValues {
  public:
-  // Of a model whose vertices are numbered. Elements are sorted by kind and region, then by first vertex, corners in
+  // Takes a model whose vertices are numbered. Sorts the elements by kind and region, then by first vertex, corners in
   // the model's numbering.
   ModelValues(const Model& model, const BodyDescription& body);
 
   const std::vector<ElementRecord>& elements() const { return elements_; }
 
-  // Whatever the description says now, in place; numbering and packing stay. Mesh, ends of springs, and
+  // Sets all that follows from the description as it is now; numbering and packing stay. The mesh, ends of springs, and
   // handles' vertices and hardness must be those of the description that the model was built from. Throws RunError when
   // A cannot be factored; the model then must not be stepped.
   void set(Model& model, const BodyDescription& body);

@@ -4,19 +4,25 @@
 #include <string>
 #include <vector>
 
+#include "base/names.h"
 #include "base/types.h"
 
 namespace supple {
 
-// What the report says of contacts.
+// How many contacts there are, and how restless they are.
 struct ContactCounts {
   int touching = 0;  // pairs of vertex and collider, at the end
   int changes = 0;   // pairs that came or went, over all iterations
-  int cycles = 0;    // iterations that brought the set of the one before last back
+  int cycles = 0;    // iterations that came back to the set of the one before last
 };
 
 enum class StopReason { iterations, round_off, target_error, line_search_failed };
-const char* text_of(StopReason reason);
+template <>
+struct Names<StopReason> {
+  static constexpr std::array table = {
+      Name{StopReason::iterations, "iterations"}, Name{StopReason::round_off, "round-off"},
+      Name{StopReason::target_error, "target error"}, Name{StopReason::line_search_failed, "line search failed"}};
+};
 
 struct StepFailure {
   std::string phase;
@@ -24,11 +30,11 @@ struct StepFailure {
   std::string what;  // "the position is not finite"
 };
 
-// One iteration, for who looks closer; or, with alpha = 0, a new start from where the body was.
+// One iteration in detail. alpha = 0 marks a new start from where the body was.
 struct IterationRecord {
   double elapsed_ms = 0;     // since the step was entered
   double decrease = 0;       // of g [J]
-  double alpha = 1;          // step length
+  double alpha = 1;          // length of the step along the direction
   struct Full {              // of the full step, alpha = 1
     bool decreases = true;   // as Armijo's test asks
     double slope_ratio = 0;  // slope there over slope at the iterate

@@ -1,11 +1,12 @@
-// Fields over a body at a pose, for who looks at them in another program: stretches, stress, energy density, contact
-// forces. Evaluated by the materials' own formulas, outside the step. Not here: numbers for a whole body (measures.h).
+// Fields over a body at a pose, for other programs to show: stretches, stress, energy density, contact forces. They are
+// evaluated by the materials' own formulas, outside the step. Not here: numbers for a whole body (measures.h).
 #pragma once
 
 #include <array>
 #include <vector>
 
-#include "sim/solver/objective.h"
+#include "sim/model/state.h"
+#include "sim/solver/workspace.h"
 
 namespace supple {
 
@@ -21,8 +22,8 @@ struct ElementFields {
 // x: in the model's order.
 ElementFields element_fields(const Model& model, const Positions& x);
 
-// What colliders do to each vertex at the end of the workspace's last step, friction included, by vertex of the input,
-// n x 3 [N]. x: where that step ended, in the model's order.
+// Returns the force of the colliders on each vertex at the end of the workspace's last step, friction included, by
+// vertex of the input, n x 3 [N]. x: where that step ended, in the model's order.
 Positions contact_forces(const Model& model, const Workspace& workspace, const Positions& x);
 
 // The two stretches of each triangle in its plane, the larger one first. rest, x: n x 3 in the order of the triangles'

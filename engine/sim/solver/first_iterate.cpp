@@ -1,28 +1,25 @@
 #include "sim/solver/first_iterate.h"
 
 #include <optional>
+#include <utility>
 
-#include "base/timing.h"
-#include "base/trace.h"
+#include "base/error.h"
 
 namespace supple {
 namespace {
 
-constexpr double deepest_start = 0.004;  // overlap that a first iterate may have, over the body's size
+constexpr double deepest_start = 0.004;  // the overlap that a first iterate may have, over the body's size
 
 }  // namespace
 
-void find_contacts_timed(const Model& model, const FrameInputs& inputs, const Positions& x, Workspace& w) {
-  const Zone zone("find contacts");
-  const Stopwatch watch;
-  find_contacts(model, inputs, x, w);
-  const double ms = watch.elapsed_ms();
-  w.report.collide_ms += ms;
-  w.report.evaluate_ms -= ms;  // whose stopwatch is running
+void find_contacts_of(const Model& model, const FrameInputs& inputs, Workspace& w, Iterate& iterate) {
+  if (!has_colliders(inputs)) return;
+  const Stretch stretch(w.clock, Phase::collide, "find contacts");
+  find_contacts(model, inputs, iterate.x, w.threads, w.contact, iterate.contacts);
 }
 
 void set_trial(const Model& model, Workspace& w, double alpha) {
-  w.trial.topRows(model.free) = w.x.topRows(model.free) + alpha * w.direction;
+  w.trial.x.topRows(model.free) = w.current.x.topRows(model.free) + alpha * w.direction;
 }
 
 void inertial_prediction(const Model& model, const FrameInputs& inputs, const State& state, Positions& y) {
@@ -30,71 +27,89 @@ void inertial_prediction(const Model& model, const FrameInputs& inputs, const St
   y = (state.x + h * state.v).rowwise() + (model.scheme.force * h * h * inputs.gravity).transpose();
 }
 
-void begin_step(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
-  inertial_prediction(model, inputs, state, w.y);
-  w.start = &state.x;
-  if (needs_start(model)) w.q = state.x;
-  w.contact.found.clear();
-  w.contact.earlier.clear();
-  if (has_colliders(inputs)) {
-    const Zone zone("begin contacts");
-    const Stopwatch watch;
-    begin_contacts(model, inputs, state.x, w);
-    w.report.collide_ms += watch.elapsed_ms();
-  }
-  w.x = w.y;
+namespace {
+
+// Held vertices stand at their targets in both iterates; soft handles pull towards theirs.
+void set_targets(const Model& model, const FrameInputs& inputs, Workspace& w) {
+  const bool midway = model.scheme.theta < 1;
+  SUPPLE_CHECK(inputs.targets.rows(), ==, Eigen::Index(model.handled.size()));
+  if (midway) SUPPLE_CHECK(inputs.middle_targets.rows(), ==, Eigen::Index(model.handled.size()));
   for (std::size_t i = 0; i < model.handled.size(); ++i) {
     const std::int32_t v = model.handled[i].vertex;
     if (v < model.free) {
-      w.target.row(v) = model.scheme.theta < 1 ? inputs.middle_targets.row(i) : inputs.targets.row(i);
+      w.target.row(v) = midway ? inputs.middle_targets.row(i) : inputs.targets.row(i);
     } else {
-      w.x.row(v) = inputs.targets.row(i);
+      w.current.x.row(v) = inputs.targets.row(i);
     }
   }
-  if (model.vertices > model.free)
-    w.trial.bottomRows(model.vertices - model.free) = w.x.bottomRows(model.vertices - model.free);
+  const int held = model.vertices - model.free;
+  if (held > 0) w.trial.x.bottomRows(held) = w.current.x.bottomRows(held);
+}
+
+}  // namespace
+
+void begin_step(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
+  SUPPLE_CHECK(state.x.rows(), ==, model.vertices);
+  SUPPLE_CHECK(state.v.rows(), ==, model.vertices);
+  inertial_prediction(model, inputs, state, w.y);
+  w.start = &state.x;
+  if (needs_start(model)) w.q = state.x;
+  w.current.contacts.clear();
+  w.trial.contacts.clear();
+  if (has_colliders(inputs)) {
+    const Stretch stretch(w.clock, Phase::collide, "begin contacts");
+    begin_contacts(model, inputs, state.x, w.y, w.contact);
+    forget_factor(model, w.correction);
+  }
+  w.current.x = w.y;
+  set_targets(model, inputs, w);
 }
 
 void evaluate_start(const Model& model, const FrameInputs& inputs, Workspace& w) {
-  const Stopwatch watch;
+  const Stretch stretch(w.clock, Phase::evaluate, "evaluate start");
   if (has_colliders(inputs)) {
-    find_contacts_timed(model, inputs, w.x, w);
-    keep_contacts(w.contact);
+    w.trial.contacts.swap(w.current.contacts);
+    find_contacts_of(model, inputs, w, w.current);
+    count_contacts(w.trial.contacts, w.current.contacts, w.contact);
   }
-  w.report.objective.push_back(evaluate(model, w, w.x, w.energy, &w.gradient, nullptr, nullptr).value);
-  w.report.evaluate_ms += watch.elapsed_ms();
+  evaluate(model, w, w.current, Wanted::gradient);
+  w.report.objective.push_back(w.current.g);
 }
 
 namespace {
 
-// The first iterate. The paper starts from y; with rows eliminated, y leaves the elements beside a handle torn by all
-// that the handle did not do freely (its keyed motion, and the fall that it did not take), often by more than their
-// size. So the handles' departure from y is spread into the body by the quadratic model that also gives the directions,
-// A_ff d_f = -A_fh d_h: one solve. docs/results.md says what was measured.
-// Costs an evaluation more, because y stays the first iterate where it is the better one. Returns g(y), the handles at
-// their targets, when the first iterate is another one.
+// Forgets a first iterate that was tried: the step does not start from it.
+void forget_start(Workspace& w) {
+  w.report.objective.clear();
+  forget_counts(w.contact);
+}
+
+// Sets a first iterate that fits the handles. The paper starts from y; with rows eliminated, y leaves the elements
+// beside a handle torn by all that the handle did not do freely (its keyed motion, and the fall that it did not take),
+// often by more than their size. So the handles' departure from y is spread into the body by the quadratic model that
+// also gives the directions, A_ff d_f = -A_fh d_h: one solve. docs/results.md says what was measured. This costs one
+// evaluation more, because y stays the first iterate where it is the better one. Returns g(y), the handles at their
+// targets, when the first iterate is another one.
 std::optional<double> spread_handles(const Model& model, const FrameInputs& inputs, Workspace& w) {
   if (model.couplings.empty()) return std::nullopt;
-  Positions& right = w.gradient;
+  Positions& right = w.scratch;
   right.setZero();
   for (const Model::Coupling& entry : model.couplings) {
-    right.row(entry.free) -= entry.value * (w.x.row(entry.held) - w.y.row(entry.held));
+    right.row(entry.free) -= entry.value * (w.current.x.row(entry.held) - w.y.row(entry.held));
   }
   if (right.isZero(0)) return std::nullopt;
-  Stopwatch watch;
-  Zone zone("solve");
+  Stretch stretch(w.clock, Phase::solve, "solve");
   model.factor.solve(right.data(), w.direction.data(), w.solve_scratch.data());
-  w.report.solve_ms += watch.lap_ms();
-  zone.next("spread handles");
-  if (has_colliders(inputs)) find_contacts_timed(model, inputs, w.x, w);
-  const double at_y = evaluate(model, w, w.x, w.energy, nullptr, nullptr, nullptr).value;
-  w.report.evaluate_ms += watch.lap_ms();
+  stretch.next(Phase::evaluate, "spread handles");
+  find_contacts_of(model, inputs, w, w.current);
+  evaluate(model, w, w.current, Wanted::value);
+  const double at_y = w.current.g;
   set_trial(model, w, 1);
-  w.x.swap(w.trial);
+  std::swap(w.current, w.trial);
   evaluate_start(model, inputs, w);
-  if (w.report.objective.back() <= at_y) return at_y;
-  w.x.swap(w.trial);
-  w.report.objective.clear();
+  if (w.current.g <= at_y) return at_y;
+  std::swap(w.current, w.trial);
+  forget_start(w);
   return std::nullopt;
 }
 
@@ -102,37 +117,31 @@ std::optional<double> spread_handles(const Model& model, const FrameInputs& inpu
 // goes only as far as the first impact and a little further. Returns whether it was stopped.
 bool stop_at_impact(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
   if (!has_colliders(inputs)) return false;
-  const Zone zone("stop at impact");
-  const Stopwatch watch;
-  const double way = free_way(model, inputs, w.x, deepest_start * model.size, w);
-  if (way < 1) w.x.topRows(model.free) = state.x.topRows(model.free) + way * (w.x - state.x).topRows(model.free);
-  w.report.collide_ms += watch.elapsed_ms();
+  const Stretch stretch(w.clock, Phase::collide, "stop at impact");
+  Positions& x = w.current.x;
+  const double way = way_to_impact(model, inputs, x, deepest_start * model.size, w.contact);
+  if (way < 1) x.topRows(model.free) = state.x.topRows(model.free) + way * (x - state.x).topRows(model.free);
   return way < 1;
 }
 
 // A body that rests on something, or slides along it, starts better without the fall that y has in it, which would
 // leave all that it rests on g h^2 deep in its colliders: from q + h v. Costs an evaluation, and only where something
-// touches. Friction as in descend_from_staying.
+// touches. Friction is treated as in
+// descend_from_staying().
 void start_where_better(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
   if (!has_colliders(inputs) || w.contact.counts.touching == 0) return;
-  const Zone zone("start where better");
-  const Stopwatch watch;
-  const double given = w.report.objective.back() - friction_energy(w.contact.found, w.contact.stick_length, w.x);
-  w.trial.topRows(model.free) = (state.x + model.time_step * state.v).topRows(model.free);
-  find_contacts_timed(model, inputs, w.trial, w);
-  const double rubbed = friction_energy(w.contact.found, w.contact.stick_length, w.trial);
-  const double unforced = evaluate(model, w, w.trial, w.trial_energy, &w.trial_gradient, nullptr, nullptr).value;
-  if (unforced - rubbed < given) {
-    w.report.objective.back() = unforced;
-    w.contact.counts = {};
-    keep_contacts(w.contact);
-    w.x.swap(w.trial);
-    w.gradient.swap(w.trial_gradient);
-    w.energy.swap(w.trial_energy);
-  } else {
-    w.contact.found.swap(w.contact.earlier);
-  }
-  w.report.evaluate_ms += watch.elapsed_ms();
+  const Stretch stretch(w.clock, Phase::evaluate, "start where better");
+  const double stick = w.contact.stick_length;
+  const double given = w.current.g - friction_energy(w.current.contacts, stick, w.current.x);
+  w.trial.x.topRows(model.free) = (state.x + model.time_step * state.v).topRows(model.free);
+  find_contacts_of(model, inputs, w, w.trial);
+  const double rubbed = friction_energy(w.trial.contacts, stick, w.trial.x);
+  evaluate(model, w, w.trial, Wanted::gradient);
+  if (!(w.trial.g - rubbed < given)) return;
+  std::swap(w.current, w.trial);
+  w.report.objective.back() = w.current.g;
+  forget_counts(w.contact);
+  count_contacts(w.trial.contacts, w.current.contacts, w.contact);
 }
 
 }  // namespace
@@ -140,11 +149,7 @@ void start_where_better(const Model& model, const FrameInputs& inputs, const Sta
 double set_first_iterate(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
   const std::optional<double> at_y = spread_handles(model, inputs, w);
   const bool stopped = stop_at_impact(model, inputs, state, w);
-  if (stopped) {
-    w.report.objective.clear();
-    w.contact.counts = {};
-    w.contact.set_before = w.contact.set_now = 0;
-  }
+  if (stopped) forget_start(w);
   if (stopped || !at_y) evaluate_start(model, inputs, w);
   start_where_better(model, inputs, state, w);
   return at_y && !stopped ? *at_y - w.report.objective.back() : 0;

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <array>
 
-#include "base/timing.h"
-#include "base/trace.h"
-#include "sim/linear/linear_kernels.h"
 #include "sim/contact/contact_direction.h"
+#include "sim/linear/linear_kernels.h"
+#include "sim/model/vertex_chunks.h"
 
 namespace supple {
 namespace {
@@ -17,14 +16,14 @@ constexpr long numbers_a_chunk = 3L * vertices_a_chunk;
 using Pointers = std::array<const double*, most_pairs>;
 using Numbers = std::array<double, most_pairs>;
 
-// result[i] = a_i . b, chunk by chunk, so that the sums do not depend on threads.
+// Computes result[i] = a_i . b, chunk by chunk, so that the sums do not depend on threads.
 void dot_all(const Model& model, Workspace& workspace, const Pointers& a, int count, const double* b, double* result) {
   if (count == 0) return;
   const int chunks = vertex_chunks(model);
   double* partial = workspace.partial.data();
-  run_chunks(workspace, chunks, long(model.free) * count, [&](int c) {
+  run_chunks(workspace.threads, chunks, long(model.free) * count, [&](int c) {
     linear_kernels().dots(a.data(), count, b, c * numbers_a_chunk, std::min(3L * model.free, (c + 1) * numbers_a_chunk),
-                   partial + c * count);
+                          partial + c * count);
   });
   std::fill(result, result + count, 0.0);
   for (int c = 0; c < chunks; ++c) {
@@ -34,19 +33,19 @@ void dot_all(const Model& model, Workspace& workspace, const Pointers& a, int co
 
 void add_all(const Model& model, Workspace& workspace, const Pointers& a, const double* factors, int count, double* r) {
   if (count == 0) return;
-  run_chunks(workspace, vertex_chunks(model), long(model.free) * count, [&](int c) {
+  run_chunks(workspace.threads, vertex_chunks(model), long(model.free) * count, [&](int c) {
     linear_kernels().add_scaled(a.data(), factors, count, r, c * numbers_a_chunk,
-                         std::min(3L * model.free, (c + 1) * numbers_a_chunk));
+                                std::min(3L * model.free, (c + 1) * numbers_a_chunk));
   });
 }
 
 // The share of normal forces in all pairs, t_i += K s_i, when that is kept apart (ContactHistory::current). Friction is
-// not in it: its stiffness falls as it slides, and pairs tell how.
+// not in it: its stiffness falls as it slides, which the pairs tell.
 class ContactPairs {
  public:
   ContactPairs(const Model& model, const ContactSettings& settings, Workspace& w, const Pointers& s, int count)
       : correction_(w.correction) {
-    stiff_directions(model, w);
+    find_stiff_directions(model, w.current.contacts, w.current.x, w.contact.stick_length, w.correction);
     if (settings.history != ContactHistory::current || count == 0 || correction_.normals == 0) return;
     count_ = count;
     normals_ = correction_.normals;
@@ -63,10 +62,10 @@ class ContactPairs {
     }
   }
 
-  // s_i . K s_j
+  // Returns s_i . K s_j.
   double product(int i, int j) const { return count_ > 0 ? correction_.products[i * count_ + j] : 0; }
 
-  // r += sum factor_i K s_i
+  // Adds sum factor_i K s_i to r.
   void add(const double* factors, Positions& r) const {
     for (std::size_t k = 0; k < normals_; ++k) {
       const StiffDirection& stiff = correction_.wanted[k];
@@ -76,7 +75,7 @@ class ContactPairs {
     }
   }
 
-  // K s_i . z
+  // Returns K s_i . z.
   double dot(int i, const Positions& z) const {
     double sum = 0;
     for (std::size_t k = 0; k < normals_; ++k) {
@@ -96,8 +95,7 @@ class ContactPairs {
 
 double search_direction(const Model& model, const FrameInputs& inputs, Workspace& workspace, const PairHistory& history,
                         InitialInverse& initial) {
-  Stopwatch watch;
-  Zone zone("L-BFGS");
+  Stretch stretch(workspace.clock, Phase::lbfgs, "L-BFGS");
   const int count = history.count;
   Pointers s{}, t{};
   for (int i = 0; i < count; ++i) {
@@ -105,7 +103,7 @@ double search_direction(const Model& model, const FrameInputs& inputs, Workspace
     t[i] = workspace.gradient_pairs[history.place(i)].data();
   }
   const ContactPairs contacts(model, inputs.solver.contact, workspace, s, count);
-  // s_i . t_j of the i-th and j-th newest pairs
+  // Returns s_i . t_j of the i-th and j-th newest pairs
   const auto product = [&](int i, int j) {
     return workspace.products[history.place(i) * history.window + history.place(j)] + contacts.product(i, j);
   };
@@ -113,7 +111,7 @@ double search_direction(const Model& model, const FrameInputs& inputs, Workspace
   // The recursion's inner products change as r and z do; with the products of the pairs among themselves at hand, one
   // pass over the vectors gives them all, and one more applies the result.
   Positions& r = workspace.direction;
-  r = workspace.gradient;
+  r = workspace.current.gradient;
   Numbers alpha{}, against{}, factor{};
   dot_all(model, workspace, s, count, r.data(), against.data());
   for (int i = 0; i < count; ++i) {
@@ -124,15 +122,13 @@ double search_direction(const Model& model, const FrameInputs& inputs, Workspace
   }
   add_all(model, workspace, t, factor.data(), count, r.data());
   contacts.add(factor.data(), r);
-  workspace.report.lbfgs_ms += watch.lap_ms();
 
-  zone.next("solve");
-  Positions& z = workspace.trial_gradient;  // free until the next trial
+  stretch.next(Phase::solve, "solve");
+  Positions& z = workspace.scratch;
   initial.apply(model, inputs, workspace, r, z);
   r = z;
-  workspace.report.solve_ms += watch.lap_ms();
 
-  zone.next("L-BFGS");
+  stretch.next(Phase::lbfgs, "L-BFGS");
   dot_all(model, workspace, t, count, r.data(), against.data());
   for (int i = 0; i < count; ++i) against[i] += contacts.dot(i, r);
   for (int i = count - 1; i >= 0; --i) {
@@ -142,19 +138,16 @@ double search_direction(const Model& model, const FrameInputs& inputs, Workspace
   }
   add_all(model, workspace, s, factor.data(), count, r.data());
   r = -r;
-  workspace.report.lbfgs_ms += watch.lap_ms();
-  zone.next("solve");
+  stretch.next(Phase::solve, "solve");
   const bool bent = initial.bend(model, inputs, workspace);
-  workspace.report.solve_ms += watch.lap_ms();
-  zone.next("L-BFGS");
+  stretch.next(Phase::lbfgs, "L-BFGS");
   double slope = 0;
-  Pointers gradient{workspace.gradient.data()};
+  Pointers gradient{workspace.current.gradient.data()};
   dot_all(model, workspace, gradient, 1, r.data(), &slope);
   if (bent && !(slope < 0)) {
     r = workspace.correction.unbent;
     dot_all(model, workspace, gradient, 1, r.data(), &slope);
   }
-  workspace.report.lbfgs_ms += watch.lap_ms();
   return slope;
 }
 
@@ -163,12 +156,13 @@ void remember_pair(const Model& model, const ContactSettings& contact, Workspace
   const int next = (history.newest + 1) % history.window;
   Positions& s = workspace.step_pairs[next];
   Positions& t = workspace.gradient_pairs[next];
-  s = workspace.trial.topRows(model.free) - workspace.x.topRows(model.free);
-  t = workspace.trial_gradient - workspace.gradient;
-  if (contact.history == ContactHistory::current && !workspace.contact.earlier.empty()) {
+  const Iterate &from = workspace.current, &to = workspace.trial;
+  s = to.x.topRows(model.free) - from.x.topRows(model.free);
+  t = to.gradient - from.gradient;
+  if (contact.history == ContactHistory::current && !from.contacts.empty()) {
     // Both gradients have the planes that the search went by.
-    add_normal_forces(workspace.contact.earlier, workspace.trial, 1, t);
-    add_normal_forces(workspace.contact.earlier, workspace.x, -1, t);
+    add_normal_forces(from.contacts, to.x, 1, t);
+    add_normal_forces(from.contacts, from.x, -1, t);
   }
 
   Pointers other{s.data(), t.data()};

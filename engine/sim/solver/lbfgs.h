@@ -6,7 +6,7 @@
 
 namespace supple {
 
-// The pairs (s, t) kept so far live in the workspace's ring; this is the ring's bookkeeping. Made anew each step.
+// The pairs (s, t) kept so far are in the workspace's ring; this tells where. It is made anew for each step.
 struct PairHistory {
   int window = 0;
   int count = 0;
@@ -15,7 +15,7 @@ struct PairHistory {
   // The i-th newest pair's place in the ring.
   int place(int i) const { return (newest - i + 2 * window) % window; }
   void clear() { count = 0; }
-  // False when there was nothing to forget.
+  // Returns false when there was nothing to forget.
   bool forget() {
     const bool some = count > 0;
     count = 0;
@@ -27,26 +27,25 @@ struct PairHistory {
 class InitialInverse {
  public:
   virtual ~InitialInverse() = default;
-  // As SearchRule has them.
+  // These are called when those of SearchRule are.
   virtual void begin(const Model&, const FrameInputs&, Workspace&) {}
   virtual void accepted(const Model&, const FrameInputs&, Workspace&) {}
-  // z = A0^-1 r for the free vertices; overwrites r.
+  // Computes z = A0^-1 r for the free vertices; overwrites r.
   virtual void apply(const Model& model, const FrameInputs& inputs, Workspace& workspace, Positions& r,
                      Positions& z) = 0;
-  // After the recursion: may bend workspace.direction and returns true then.
+  // Called after the recursion: may bend workspace.direction and returns true then.
   virtual bool bend(const Model&, const FrameInputs&, Workspace&) { return false; }
 };
 
-// workspace.direction = -H grad with H the L-BFGS approximation of the inverse Hessian; returns tr(grad^T d). Adds the
-// milliseconds of the solve and of the rest to the report.
+// Sets workspace.direction to -H grad with H the L-BFGS approximation of the inverse Hessian; returns tr(grad^T d).
 double search_direction(const Model& model, const FrameInputs& inputs, Workspace& workspace, const PairHistory& history,
                         InitialInverse& initial);
 
-// Keeps s = trial - x and t = trial_gradient - gradient (without the normal forces of contacts, when their stiffness is
-// added anew each time) as the newest pair when tr(s^T t) is safely positive.
+// Keeps s and t, the differences of positions and gradients of trial and current iterate (without the normal forces of
+// contacts, when their stiffness is added anew each time), as the newest pair when tr(s^T t) is safely positive.
 void remember_pair(const Model& model, const ContactSettings& contact, Workspace& workspace, PairHistory& history);
 
-// L-BFGS from any initial Hessian, which must outlive it. The window is the settings'.
+// L-BFGS from any initial Hessian, which must outlive it. The settings say the window.
 class LbfgsRule : public SearchRule {
  public:
   explicit LbfgsRule(InitialInverse& initial) : initial_(initial) {}
@@ -72,14 +71,16 @@ class LbfgsRule : public SearchRule {
   PairHistory history_;
 };
 
-// The paper's: A = M/h^2 + L, which never changes, by its factor; contacts as contact_direction.h has it.
+// The paper's initial Hessian: A = M/h^2 + L, which never changes, by its factor, with contacts as in
+// contact_direction.h.
 class SystemInverse final : public InitialInverse {
  public:
   void apply(const Model& model, const FrameInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override {
-    apply_inverse(model, workspace, inputs.solver.contact, r, z);
+    apply_inverse(model, inputs.solver.contact, workspace.correction, workspace.solve_scratch, r, z);
   }
   bool bend(const Model& model, const FrameInputs& inputs, Workspace& workspace) override {
-    return foresee_contacts(model, inputs.solver.contact, workspace);
+    return foresee_contacts(model, inputs.solver.contact, workspace.current.contacts, workspace.current.x,
+                            workspace.correction, workspace.solve_scratch, workspace.direction);
   }
 };
 

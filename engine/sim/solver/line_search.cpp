@@ -15,27 +15,28 @@ constexpr double round_off = std::numeric_limits<double>::epsilon();
 constexpr double curvature_share =
     0.9;  // gamma_2 of the strong Wolfe conditions (Nocedal and Wright 2006, section 3.1)
 
-// Armijo's test; where the decrease drowns in round-off, its equivalent by slopes, which does not subtract large
-// numbers (Hager and Zhang 2005, "A new conjugate gradient method with guaranteed descent and an efficient line
+// Applies Armijo's test; where the decrease drowns in round-off, its equivalent by slopes, which does not subtract
+// large numbers (Hager and Zhang 2005, "A new conjugate gradient method with guaranteed descent and an efficient line
 // search", equation 4.1).
 bool decreases_by_slope(const Change& change, double slope, double armijo, double noise) {
   return change.value <= noise && change.slope <= (2 * armijo - 1) * slope;
 }
 
-// Contacts at a trial point that the planes of the search accepted: kept unless they make it worse than where the
-// search began, which it could not see. Friction, whose normal forces are lagged, has no say in that.
+// Finds the contacts at the trial point, which the planes of the search accepted. They are kept unless they make it
+// worse than where the search began, which it could not see. Friction, whose normal forces are lagged, does not
+// count here.
 bool contacts_accept(const Model& model, const FrameInputs& inputs, Workspace& w, double change, double noise) {
   if (!has_colliders(inputs)) return true;
-  find_contacts_timed(model, inputs, w.trial, w);
-  const double jump = contact_energy(w.contact.found, w.trial) - contact_energy(w.contact.earlier, w.trial);
+  find_contacts_of(model, inputs, w, w.trial);
+  const double jump = contact_energy(w.trial.contacts, w.trial.x) - contact_energy(w.current.contacts, w.trial.x);
   return jump <= 0 || change + jump <= noise;
 }
 
 // Tries alpha = 1, 1/2, ...
-Search backtrack(const Model& model, const FrameInputs& inputs, Workspace& w, double slope, double objective,
-                 Change& change, IterationRecord& record) {
+Search backtrack(const Model& model, const FrameInputs& inputs, Workspace& w, double slope, Change& change,
+                 IterationRecord& record) {
   const SolverSettings& solver = inputs.solver;
-  const double noise = noise_of(model, objective, extent_of(model, w));
+  const double noise = noise_of(model, w.current.g, extent_of(model, w));
   double alpha = 1;
   int refused = 0;
   for (int halving = 0; halving <= most_halvings; ++halving, alpha /= 2) {
@@ -44,7 +45,7 @@ Search backtrack(const Model& model, const FrameInputs& inputs, Workspace& w, do
     // The first trial nearly always succeeds: its gradient is the next iterate's. After a rejection the energy alone
     // decides.
     const bool with_gradient = halving == 0 || by_slope;
-    change = evaluate(model, w, w.trial, w.trial_energy, with_gradient ? &w.trial_gradient : nullptr, &w.x, &w.energy);
+    change = evaluate_trial(model, w, with_gradient ? Wanted::gradient : Wanted::value);
     ++w.report.line_search;
     record.alpha = alpha;
     const bool accepted = by_slope ? decreases_by_slope(change, slope, solver.armijo, noise)
@@ -56,30 +57,34 @@ Search backtrack(const Model& model, const FrameInputs& inputs, Workspace& w, do
       if (by_slope && -slope < 1e-3 * noise) return Search::exhausted;
       continue;
     }
-    if (!with_gradient) change = evaluate(model, w, w.trial, w.trial_energy, &w.trial_gradient, &w.x, &w.energy);
+    if (!with_gradient) change = evaluate_trial(model, w, Wanted::gradient);
     // A shorter step helps against contacts that the planes did not foresee, not where the energy itself jumps (a
     // vertex that goes round an edge).
-    if (!contacts_accept(model, inputs, w, change.value, noise) && ++refused < most_refusals) {
-      w.contact.found.swap(w.contact.earlier);
-      continue;
-    }
+    if (!contacts_accept(model, inputs, w, change.value, noise) && ++refused < most_refusals) continue;
     return Search::found;
   }
   return Search::failed;
 }
 
-// A trial of a search by slopes.
+// A trial point of a search by slopes.
 struct Trial {
   double alpha, value, slope;
 };
 
 // The strong Wolfe conditions by bracketing and zooming (Nocedal and Wright 2006, algorithms 3.5 and 3.6; the minimiser
-// of the cubic through both ends, kept off them). Every trial costs a gradient.
+// of the cubic through both ends, kept off them). Every trial costs a gradient. A point whose contacts are refused, as
+// in backtrack(), is one that is too far away.
 class WolfeSearch {
  public:
   WolfeSearch(const Model& model, const FrameInputs& inputs, Workspace& w, double slope, Change& change,
               IterationRecord& record)
-      : model_(model), inputs_(inputs), w_(w), slope_(slope), change_(change), record_(record) {}
+      : model_(model),
+        inputs_(inputs),
+        w_(w),
+        slope_(slope),
+        noise_(noise_of(model, w.current.g, extent_of(model, w))),
+        change_(change),
+        record_(record) {}
 
   Search run() {
     Trial before{0, 0, slope_};
@@ -88,6 +93,7 @@ class WolfeSearch {
       const Trial at = evaluate_at(alpha);
       if (i == 0) record_.full = {enough(at), at.slope / slope_};
       if (!enough(at) || (i > 0 && at.value >= before.value)) return zoom(before, at);
+      if (!contacts_accept(at)) return zoom(before, at);
       if (flat(at)) return Search::found;
       if (at.slope >= 0) return zoom(at, before);
       before = at;
@@ -98,7 +104,7 @@ class WolfeSearch {
  private:
   Trial evaluate_at(double alpha) {
     set_trial(model_, w_, alpha);
-    change_ = evaluate(model_, w_, w_.trial, w_.trial_energy, &w_.trial_gradient, &w_.x, &w_.energy);
+    change_ = evaluate_trial(model_, w_, Wanted::gradient);
     ++w_.report.line_search;
     record_.alpha = alpha;
     if (!std::isfinite(change_.value)) return {alpha, std::numeric_limits<double>::infinity(), 0};
@@ -106,11 +112,14 @@ class WolfeSearch {
   }
   bool enough(const Trial& t) const { return t.value <= inputs_.solver.armijo * t.alpha * slope_; }
   bool flat(const Trial& t) const { return std::abs(t.slope) <= -curvature_share * slope_; }
+  bool contacts_accept(const Trial& at) {
+    return supple::contacts_accept(model_, inputs_, w_, at.value, noise_) || ++refused_ >= most_refusals;
+  }
 
   Search zoom(Trial low, Trial high) {
     for (int i = 0; i < most_halvings; ++i) {
       const Trial at = evaluate_at(between(low, high));
-      if (!enough(at) || at.value >= low.value) {
+      if (!enough(at) || at.value >= low.value || !contacts_accept(at)) {
         high = at;
       } else {
         if (flat(at)) return Search::found;
@@ -121,6 +130,7 @@ class WolfeSearch {
     }
     if (low.alpha <= 0) return Search::failed;
     evaluate_at(low.alpha);
+    find_contacts_of(model_, inputs_, w_, w_.trial);
     return Search::found;
   }
 
@@ -143,28 +153,29 @@ class WolfeSearch {
   const FrameInputs& inputs_;
   Workspace& w_;
   double slope_;
+  double noise_;
+  int refused_ = 0;  // trial points, for the contacts found there
   Change& change_;
   IterationRecord& record_;
 };
 
 }  // namespace
 
-double extent_of(const Model& model, const Workspace& w) { return w.x.topRows(model.free).cwiseAbs().maxCoeff(); }
+double extent_of(const Model& model, const Workspace& w) {
+  return w.current.x.topRows(model.free).cwiseAbs().maxCoeff();
+}
 
 bool below_resolution(const Model& model, const Workspace& w) {
   const double extent = extent_of(model, w);
   return w.direction.cwiseAbs().maxCoeff() <= 4 * round_off * std::max(extent, model.size);
 }
 
-Search search_line(const Model& model, const FrameInputs& inputs, Workspace& w, double slope, double objective,
-                   Change& change, IterationRecord& record) {
-  if (inputs.solver.line_search == LineSearch::wolfe &&
-      -slope > noise_of(model, objective, extent_of(model, w)) / inputs.solver.armijo) {
-    const Search search = WolfeSearch(model, inputs, w, slope, change, record).run();
-    if (search == Search::found && has_colliders(inputs)) find_contacts_timed(model, inputs, w.trial, w);
-    return search;
-  }
-  return backtrack(model, inputs, w, slope, objective, change, record);
+Search search_line(const Model& model, const FrameInputs& inputs, Workspace& w, double slope, Change& change,
+                   IterationRecord& record) {
+  const double noise = noise_of(model, w.current.g, extent_of(model, w));
+  if (inputs.solver.line_search == LineSearch::wolfe && -slope > noise / inputs.solver.armijo)
+    return WolfeSearch(model, inputs, w, slope, change, record).run();
+  return backtrack(model, inputs, w, slope, change, record);
 }
 
 }  // namespace supple

@@ -1,6 +1,7 @@
 // How far along a direction the next iterate lies.
 #pragma once
 
+#include "sim/model/inputs.h"
 #include "sim/solver/objective.h"
 
 namespace supple {
@@ -11,11 +12,11 @@ enum class Search {
   exhausted,  // what the direction promises is below what the gradient's own round-off decides
 };
 
-// Searches from workspace.x along workspace.direction (of this slope [J]; g there is `objective` [J]) as the settings
-// say. Leaves the accepted point, its gradient and energies in the trial arrays, with the planes of the search; the
-// contacts found there wait in workspace.contact.found. `record` gets the step length and how the full step did.
-Search search_line(const Model& model, const FrameInputs& inputs, Workspace& workspace, double slope, double objective,
-                   Change& change, IterationRecord& record);
+// Searches from the current iterate along workspace.direction (of this slope [J]) as the settings say. Leaves the
+// accepted point in workspace.trial, with gradient and energies by the contacts of the current iterate and, in its
+// contacts, those found there. `record` gets the step length and how the full step did.
+Search search_line(const Model& model, const FrameInputs& inputs, Workspace& workspace, double slope, Change& change,
+                   IterationRecord& record);
 
 // A direction too short to change the positions' last bits: nothing is left to gain. Also true of the round-off of a
 // body at rest, which must not be integrated into a drift.

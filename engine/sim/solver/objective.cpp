@@ -4,40 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "base/trace.h"
+#include "sim/model/vertex_chunks.h"
 
 namespace supple {
-
-void Workspace::prepare(const Model& model, const SolverSettings& solver) {
-  const std::size_t most_values = 2 * (std::size_t(solver.iterations) + 1);  // a step may descend twice
-  if (report.objective.capacity() < most_values) report.objective.reserve(most_values);
-  if (report.history.capacity() < most_values) report.history.reserve(most_values);
-  if (prepared_for_ == model.id && window_ >= solver.history) return;
-  if (prepared_for_ != model.id) correction = {};
-  prepared_for_ = model.id;
-  window_ = std::max(window_, solver.history);
-  y.resize(model.vertices, 3);
-  x.resize(model.vertices, 3);
-  trial.resize(model.vertices, 3);
-  q.resize(needs_start(model) ? model.vertices : 0, 3);
-  middle.resize(model.scheme.theta < 1 ? model.vertices : 0, 3);
-  if (!model.spring.empty()) target.resize(model.free, 3);
-  gradient.resize(model.free, 3);
-  trial_gradient.resize(model.free, 3);
-  direction.resize(model.free, 3);
-  energy.resize(std::size_t(model.blocks) * block_width);
-  trial_energy.resize(energy.size());
-  force.resize(model.chunk_vertex.size() * 3);
-  local.resize(std::size_t(model.chunks.size()) * model.largest_chunk * 3);
-  solve_scratch.resize(std::size_t(model.free) * 4);
-  const std::size_t chunks = std::max<std::size_t>(model.chunks.size(), vertex_chunks(model));
-  partial.resize(chunks * (2 * window_ + 4));
-  step_pairs.resize(window_);
-  gradient_pairs.resize(window_);
-  for (Positions& pair : step_pairs) pair.resize(model.free, 3);
-  for (Positions& pair : gradient_pairs) pair.resize(model.free, 3);
-  products.resize(std::size_t(window_) * window_);
-}
 
 namespace {
 
@@ -69,6 +38,15 @@ struct VertexTerms {
     for (std::int32_t k = model.damping.begin[v]; k < model.damping.begin[v + 1]; ++k) {
       const std::size_t at = 3 * std::size_t(model.damping.column[k]);
       for (int c = 0; c < 3; ++c) sum[c] += model.damping.value[k] * (p[at + c] - w.q.data()[at + c]);
+    }
+  }
+
+  // Adds what the damping of held vertices contributes to the value.
+  void add_held_drag(double& value) const {
+    for (int v = model.free; v < model.vertices; ++v) {
+      double of_point[3];
+      drag(v, point, of_point);
+      for (int k = 0; k < 3; ++k) value += 0.5 * (point[3 * std::size_t(v) + k] - w.q(v, k)) * of_point[k];
     }
   }
 
@@ -116,19 +94,19 @@ struct VertexTerms {
   }
 };
 
-// Energies and forces of all elements; returns e times the sum of energies, or of their differences.
-double evaluate_elements(const Model& model, Workspace& workspace, const Positions& point,
-                         AlignedVector<double>& energy, bool with_force,
-                         const AlignedVector<double>* reference_energy) {
+// Energies and forces of all elements at `place`; returns e times the sum of energies, or of their differences from
+// those of a reference (null: none).
+double evaluate_elements(const Model& model, Workspace& workspace, const Positions& place,
+                         AlignedVector<double>& energy, Wanted wanted, const AlignedVector<double>* reference) {
   const ElementKernels& kernel = element_kernels();
   const int chunks = static_cast<int>(model.chunks.size());
   double* partial = workspace.partial.data();
-  run_chunks(workspace, chunks, long(model.elements) * 4, [&](int c) {
+  run_chunks(workspace.threads, chunks, long(model.elements) * 4, [&](int c) {
     const Model::ChunkRange& range = model.chunks[c];
     const std::size_t first = std::size_t(range.first_block) * block_width;
     partial[c] = kernel.elements(
-        model.chunk(c), point.data(), reference_energy != nullptr ? reference_energy->data() + first : nullptr,
-        energy.data() + first, with_force ? workspace.force.data() + 3 * std::size_t(range.first_vertex) : nullptr,
+        model.chunk(c), place.data(), reference != nullptr ? reference->data() + first : nullptr, energy.data() + first,
+        wanted == Wanted::gradient ? workspace.force.data() + 3 * std::size_t(range.first_vertex) : nullptr,
         workspace.local.data() + std::size_t(c) * model.largest_chunk * 3);
   });
   double sum = 0;
@@ -136,41 +114,12 @@ double evaluate_elements(const Model& model, Workspace& workspace, const Positio
   return model.scheme.energy * sum;
 }
 
-}  // namespace
-
-// What round-off hides in a difference of objectives. Sums lose some eps of the objective itself. More is lost before:
-// a position's last bit, eps times its distance from the origin, strains an element by that over its edge, and the
-// stress works on it; over all elements, at random, that is the square root of their energy times their mean stiffness.
-double noise_of(const Model& model, double objective, double extent) {
-  return std::numeric_limits<double>::epsilon() *
-         (32 * std::abs(objective) + 4 * extent * std::sqrt(2 * std::abs(objective) * model.mean_stiffness));
-}
-
-double elastic_energy(const Model& model, Workspace& workspace, const Positions& x) {
-  return evaluate_elements(model, workspace, x, workspace.trial_energy, false, nullptr) / model.scheme.energy;
-}
-
-bool needs_start(const Model& model) { return model.scheme.theta < 1 || !model.damping.begin.empty(); }
-
-Change evaluate(const Model& model, Workspace& workspace, const Positions& point, AlignedVector<double>& energy,
-                Positions* gradient, const Positions* reference, const AlignedVector<double>* reference_energy) {
-  const Zone zone("evaluate");
-  const double theta = model.scheme.theta;
-  if (theta < 1) workspace.middle = theta * point + (1 - theta) * workspace.q;
-  Change change{evaluate_elements(model, workspace, theta < 1 ? workspace.middle : point, energy, gradient != nullptr,
-                                  reference_energy),
-                0};
-
+// Adds the vertices' terms, and gathers the whole gradient: theirs and the elements' forces.
+void add_vertices(const Model& model, Workspace& workspace, const VertexTerms& terms, Positions* gradient,
+                  Change& change) {
   const int chunks = vertex_chunks(model);
-  const VertexTerms terms{model,
-                          workspace,
-                          point.data(),
-                          reference != nullptr ? reference->data() : nullptr,
-                          model.scheme.inertia / (model.time_step * model.time_step),
-                          !model.spring.empty(),
-                          !model.damping.begin.empty()};
   double* partial = workspace.partial.data();
-  run_chunks(workspace, chunks, long(model.free) * (gradient != nullptr ? 6 : 2), [&](int c) {
+  run_chunks(workspace.threads, chunks, long(model.free) * (gradient != nullptr ? 6 : 2), [&](int c) {
     double value = 0, slope = 0;
     const int end = std::min(model.free, (c + 1) * vertices_a_chunk);
     for (int v = c * vertices_a_chunk; v < end; ++v) {
@@ -196,20 +145,62 @@ Change evaluate(const Model& model, Workspace& workspace, const Positions& point
     change.value += partial[2 * c];
     change.slope += partial[2 * c + 1];
   }
-  if (terms.damped && reference == nullptr) {  // what held vertices add to the value
-    for (int v = model.free; v < model.vertices; ++v) {
-      double of_point[3];
-      terms.drag(v, point.data(), of_point);
-      for (int k = 0; k < 3; ++k) change.value += 0.5 * (point(v, k) - workspace.q(v, k)) * of_point[k];
-    }
-  }
-  if (!workspace.contact.found.empty()) {
-    const ContactChange contacts = add_contacts(workspace.contact.found, workspace.contact.stick_length, point,
-                                                reference, workspace.direction, gradient);
+}
+
+// g at an iterate with the contacts of `planes`, or its difference from g at a reference (null: none).
+Change evaluate_against(const Model& model, Workspace& workspace, Iterate& at, const std::vector<Contact>& planes,
+                        const Iterate* reference, Wanted wanted) {
+  const Stretch stretch(workspace.clock, Phase::evaluate, "evaluate");
+  const double theta = model.scheme.theta;
+  if (theta < 1) workspace.middle = theta * at.x + (1 - theta) * workspace.q;
+  Change change{evaluate_elements(model, workspace, theta < 1 ? workspace.middle : at.x, at.energy, wanted,
+                                  reference != nullptr ? &reference->energy : nullptr),
+                0};
+  Positions* gradient = wanted == Wanted::gradient ? &at.gradient : nullptr;
+  const Positions* reference_x = reference != nullptr ? &reference->x : nullptr;
+  const VertexTerms terms{model,
+                          workspace,
+                          at.x.data(),
+                          reference != nullptr ? reference_x->data() : nullptr,
+                          model.scheme.inertia / (model.time_step * model.time_step),
+                          !model.spring.empty(),
+                          !model.damping.begin.empty()};
+  add_vertices(model, workspace, terms, gradient, change);
+  if (terms.damped && reference == nullptr) terms.add_held_drag(change.value);
+  if (!planes.empty()) {
+    const ContactChange contacts =
+        add_contacts(planes, workspace.contact.stick_length, at.x, reference_x, workspace.direction, gradient);
     change.value += contacts.value;
     change.slope += contacts.slope;
   }
   return change;
+}
+
+}  // namespace
+
+bool needs_start(const Model& model) { return model.scheme.theta < 1 || !model.damping.begin.empty(); }
+
+void evaluate(const Model& model, Workspace& workspace, Iterate& iterate, Wanted wanted) {
+  iterate.g = evaluate_against(model, workspace, iterate, iterate.contacts, nullptr, wanted).value;
+}
+
+Change evaluate_trial(const Model& model, Workspace& workspace, Wanted wanted) {
+  const Change change =
+      evaluate_against(model, workspace, workspace.trial, workspace.current.contacts, &workspace.current, wanted);
+  workspace.trial.g = workspace.current.g + change.value;
+  return change;
+}
+
+// Sums lose some eps of the objective itself. More is lost before: a position's last bit, eps times its distance from
+// the origin, strains an element by that over its edge, and the stress works on it; over all elements, at random, that
+// is the square root of their energy times their mean stiffness.
+double noise_of(const Model& model, double objective, double extent) {
+  return std::numeric_limits<double>::epsilon() *
+         (32 * std::abs(objective) + 4 * extent * std::sqrt(2 * std::abs(objective) * model.mean_stiffness));
+}
+
+double elastic_energy(const Model& model, Workspace& workspace, const Positions& x) {
+  return evaluate_elements(model, workspace, x, workspace.trial.energy, Wanted::value, nullptr) / model.scheme.energy;
 }
 
 }  // namespace supple

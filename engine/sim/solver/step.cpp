@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "base/timing.h"
 #include "base/trace.h"
 #include "sim/solver/lbfgs.h"
 #include "sim/solver/line_search.h"
@@ -13,9 +12,9 @@
 namespace supple {
 namespace {
 
-// What the remaining decreases would add up to if they went on as they did since objective[first]: the numerator of
-// equation 12 seen from inside [J]. Decreases of quasi-Newton iterations shrink unevenly, so the ratio is averaged over
-// the last three. Too few to tell: as much again as was gained.
+// Estimates what the remaining decreases would add up to if they went on as they did since objective[first]: the
+// numerator of equation 12, without a reference [J]. Decreases of quasi-Newton iterations shrink unevenly, so the ratio
+// is averaged over the last three. Where there are too few, the estimate is as much again as was gained.
 double estimate_remaining(const StepReport& report, std::size_t first) {
   const std::vector<double>& g = report.objective;
   const std::size_t steps = g.size() - 1 - first;
@@ -28,7 +27,7 @@ double estimate_remaining(const StepReport& report, std::size_t first) {
   return last * ratio / (1 - ratio);
 }
 
-// The share that is left of all that there was to gain from `start`.
+// Returns the share that is left of all that there was to gain.
 double as_error(double remaining, double gained) {
   return remaining > 0 ? remaining / (std::max(gained, 0.0) + remaining) : 0;
 }
@@ -47,16 +46,17 @@ int first_bad_vertex(const Model& model, const Positions& x) {
   return model.input_of[worst];
 }
 
-// The objective of a body that flies apart: many times what it takes to move all of it by its own size in one step.
+// Tells whether an objective is that of a body that flies apart: many times what it takes to move all of it by its own
+// size in one step.
 bool absurd(const Model& model, double objective, double start) {
   const double speed = model.size / model.time_step;
   return !std::isfinite(objective) || objective > 1e6 * (0.5 * model.total_mass * speed * speed + std::abs(start));
 }
 
-void fail(const Model& model, Workspace& w, const char* phase, const Positions& x, double objective) {
+void fail(const Model& model, Workspace& w, const char* phase, double objective) {
   w.report.failed = true;
   w.report.failure.phase = phase;
-  w.report.failure.vertex = first_bad_vertex(model, x);
+  w.report.failure.vertex = first_bad_vertex(model, w.current.x);
   w.report.failure.what =
       std::isfinite(objective) ? "the objective has grown beyond all bounds" : "a number is no longer finite";
 }
@@ -66,93 +66,94 @@ struct Descent {
   double slope = 0;
 };
 
-// A direction that leads downhill: what the rule says, or what it says once it has forgotten what it learned.
+// Finds a direction that leads downhill: the rule's, or the rule's once it has forgotten what it learned.
 Descent next_direction(const Model& model, const FrameInputs& inputs, Workspace& w, SearchRule& rule) {
-  const Zone zone("direction");
+  const Stretch stretch(w.clock, Phase::other, "direction");
   for (;;) {
-    const double slope = rule.direction(model, inputs, w);
+    const double slope = w.report.slope = rule.direction(model, inputs, w);
     if (below_resolution(model, w)) return {true, slope};
     if (slope < 0) return {false, slope};
     if (!rule.forget()) return {true, slope};
   }
 }
 
+// Looks along the direction for the next iterate, and leaves it in the trial iterate. A search that fails is repeated
+// once along the direction of a rule that has forgotten what it learned.
+Search find_next(const Model& model, const FrameInputs& inputs, Workspace& w, SearchRule& rule, double slope,
+                 Change& change, IterationRecord& record) {
+  const Stretch stretch(w.clock, Phase::evaluate, "line search");
+  if (inputs.solver.line_search == LineSearch::none) {
+    set_trial(model, w, 1);
+    change = evaluate_trial(model, w, Wanted::gradient);
+    ++w.report.line_search;
+    find_contacts_of(model, inputs, w, w.trial);
+    return Search::found;
+  }
+  const Search search = search_line(model, inputs, w, slope, change, record);
+  if (search != Search::failed || !rule.forget()) return search;
+  const Descent plain = next_direction(model, inputs, w, rule);
+  return plain.done ? Search::exhausted : search_line(model, inputs, w, plain.slope, change, record);
+}
+
 // The contacts found at the trial point take the place of those that the search went by: in the gradient there, and in
 // the objective by what is returned.
 double take_contacts(Workspace& w) {
-  ContactWork& work = w.contact;
+  const double stick = w.contact.stick_length;
+  Iterate& to = w.trial;
   double jump = 0;
-  jump -= add_contacts(work.earlier, work.stick_length, w.trial, nullptr, w.direction, &w.trial_gradient, -1).value;
-  jump += add_contacts(work.found, work.stick_length, w.trial, nullptr, w.direction, &w.trial_gradient).value;
-  keep_contacts(work);
+  jump -= add_contacts(w.current.contacts, stick, to.x, nullptr, w.direction, &to.gradient, -1).value;
+  jump += add_contacts(to.contacts, stick, to.x, nullptr, w.direction, &to.gradient).value;
+  count_contacts(w.current.contacts, to.contacts, w.contact);
   return jump;
 }
 
-// The iterations of algorithm 1 from x, whose evaluation is at hand.
+// Makes the trial iterate the current one.
+void accept(const Model& model, const FrameInputs& inputs, Workspace& w, SearchRule& rule, Change change,
+            IterationRecord& record) {
+  const Stretch stretch(w.clock, Phase::lbfgs, "accept");
+  rule.accepted(model, inputs, w);
+  if (has_colliders(inputs)) {
+    const int changes = w.contact.counts.changes;
+    change.value += take_contacts(w);
+    if (w.contact.counts.changes != changes) rule.contacts_changed(inputs);
+  }
+  w.trial.g = w.current.g + change.value;
+  std::swap(w.current, w.trial);
+  ++w.report.iterations;
+  w.report.objective.push_back(w.current.g);
+  w.report.decrease -= change.value;
+  record.decrease = -change.value;
+  record.elapsed_ms = w.clock.elapsed_ms();
+  w.report.history.push_back(record);
+}
+
+// The iterations of algorithm 1 from the current iterate, whose evaluation is at hand.
 void iterate(const Model& model, const FrameInputs& inputs, Workspace& w, SearchRule& rule, double enough) {
   const SolverSettings& solver = inputs.solver;
   StepReport& report = w.report;
-  Stopwatch watch;
   const std::size_t first = report.objective.size() - 1;
-  const double start = report.objective.back();
-  double objective = start;
+  const double start = w.current.g;
   report.remaining_estimate = 0;
-  if (!std::isfinite(objective)) return fail(model, w, "evaluate", w.x, objective);
+  if (!std::isfinite(start)) return fail(model, w, "evaluate", start);
   rule.begin(model, inputs, w);
 
   report.stop_reason = StopReason::iterations;
   for (report.iterations = 0; report.iterations < solver.iterations;) {
-    watch.lap_ms();
     const Descent descent = next_direction(model, inputs, w, rule);
-    report.slope = descent.slope;
-    if (!std::isfinite(descent.slope)) return fail(model, w, "solve", w.x, descent.slope);
+    if (!std::isfinite(descent.slope)) return fail(model, w, "solve", descent.slope);
     if (descent.done || -descent.slope <= enough) {
       report.stop_reason = StopReason::round_off;
       break;
     }
-    watch.lap_ms();
-    Zone zone("line search");
     Change change{};
     IterationRecord record;
-    if (solver.line_search == LineSearch::none) {
-      set_trial(model, w, 1);
-      change = evaluate(model, w, w.trial, w.trial_energy, &w.trial_gradient, &w.x, &w.energy);
-      ++report.line_search;
-      if (has_colliders(inputs)) find_contacts_timed(model, inputs, w.trial, w);
-    } else {
-      Search search = search_line(model, inputs, w, descent.slope, objective, change, record);
-      report.evaluate_ms += watch.lap_ms();
-      if (search == Search::failed && rule.forget()) {
-        const Descent plain = next_direction(model, inputs, w, rule);
-        report.slope = plain.slope;
-        watch.lap_ms();
-        search = plain.done ? Search::exhausted : search_line(model, inputs, w, plain.slope, objective, change, record);
-      }
-      if (search != Search::found) {
-        report.stop_reason = search == Search::exhausted ? StopReason::round_off : StopReason::line_search_failed;
-        break;
-      }
+    const Search search = find_next(model, inputs, w, rule, descent.slope, change, record);
+    if (search != Search::found) {
+      report.stop_reason = search == Search::exhausted ? StopReason::round_off : StopReason::line_search_failed;
+      break;
     }
-    report.evaluate_ms += watch.lap_ms();
-    zone.next("accept");
-    rule.accepted(model, inputs, w);
-    if (has_colliders(inputs)) {
-      const int changes = w.contact.counts.changes;
-      change.value += take_contacts(w);
-      if (w.contact.counts.changes != changes) rule.contacts_changed(inputs);
-    }
-    objective += change.value;
-    ++report.iterations;
-    report.objective.push_back(objective);
-    report.decrease -= change.value;
-    if (absurd(model, objective, start)) return fail(model, w, "line search", w.trial, objective);
-    w.x.swap(w.trial);
-    w.gradient.swap(w.trial_gradient);
-    w.energy.swap(w.trial_energy);
-    record.decrease = -change.value;
-    record.elapsed_ms = w.since_entry.elapsed_ms();
-    report.history.push_back(record);
-    report.lbfgs_ms += watch.lap_ms();
+    accept(model, inputs, w, rule, change, record);
+    if (absurd(model, w.current.g, start)) return fail(model, w, "line search", w.current.g);
     report.remaining_estimate = estimate_remaining(report, first);
     if (solver.target_error > 0 && as_error(report.remaining_estimate, report.decrease) < solver.target_error) {
       report.stop_reason = StopReason::target_error;
@@ -186,15 +187,16 @@ void clear(StepReport& report) {
   report.history = std::move(history);
 }
 
-// Where the body was, its handles moved; a body that nothing holds is also carried along with its centre of mass, which
-// costs no elastic energy and keeps its momentum.
+// Where the body was, its handles moved, into the trial iterate; a body that nothing holds is also carried along with
+// its centre of mass, which costs no elastic energy and keeps its momentum.
 void set_staying(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
-  w.trial.topRows(model.free) = state.x.topRows(model.free);
+  Positions& x = w.trial.x;
+  x.topRows(model.free) = state.x.topRows(model.free);
   if (!model.free_floating || has_colliders(inputs)) return;  // it might be carried into a collider
   Eigen::RowVector3d moved = Eigen::RowVector3d::Zero();
   for (int v = 0; v < model.free; ++v) moved += model.mass[v] * (w.y.row(v) - state.x.row(v));
   moved /= model.total_mass;
-  for (int v = 0; v < model.free; ++v) w.trial.row(v) += moved;
+  for (int v = 0; v < model.free; ++v) x.row(v) += moved;
 }
 
 // The answer must not be worse than staying: g(x) <= g(q) bounds the energy of backward Euler (docs/method.md), not
@@ -204,52 +206,59 @@ void set_staying(const Model& model, const FrameInputs& inputs, const State& sta
 // potential, which staying has none of, does not count.
 void descend_from_staying(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w,
                           SearchRule& rule) {
-  const Zone zone("check staying");
+  const Stretch stretch(w.clock, Phase::evaluate, "check staying");
   StepReport& report = w.report;
-  const double rubbed = friction_energy(w.contact.found, w.contact.stick_length, w.x);
-  const double reached = report.objective.back() - rubbed;
+  const double stick = w.contact.stick_length;
+  const double rubbed = friction_energy(w.current.contacts, stick, w.current.x);
+  const double reached = w.current.g - rubbed;
   const double inverse_h2 = model.scheme.inertia / (model.time_step * model.time_step);
   set_staying(model, inputs, state, w);
   double inertia = 0;
   for (int v = 0; v < model.free; ++v)
-    inertia += 0.5 * inverse_h2 * model.mass[v] * (w.trial.row(v) - w.y.row(v)).squaredNorm();
+    inertia += 0.5 * inverse_h2 * model.mass[v] * (w.trial.x.row(v) - w.y.row(v)).squaredNorm();
   if (reached <= inertia && !model.energy_may_be_negative) return;
-  const Stopwatch watch;
-  if (has_colliders(inputs)) find_contacts_timed(model, inputs, w.trial, w);
-  Change staying = evaluate(model, w, w.trial, w.trial_energy, nullptr, nullptr, nullptr);
-  const double rubbed_there = friction_energy(w.contact.found, w.contact.stick_length, w.trial);
-  staying.value -= rubbed_there;
-  report.evaluate_ms += watch.elapsed_ms();
-  if (!(staying.value < reached - noise_of(model, reached, extent_of(model, w)))) {
-    if (has_colliders(inputs)) w.contact.found.swap(w.contact.earlier);
-    return;
-  }
-  w.x.swap(w.trial);
-  report.decrease += reached + rubbed - staying.value;
-  report.history.push_back({w.since_entry.elapsed_ms(), reached + rubbed - staying.value - rubbed_there, 0, {}});
+  find_contacts_of(model, inputs, w, w.trial);
+  evaluate(model, w, w.trial, Wanted::value);
+  const double rubbed_there = friction_energy(w.trial.contacts, stick, w.trial.x);
+  const double staying = w.trial.g - rubbed_there;
+  if (!(staying < reached - noise_of(model, reached, extent_of(model, w)))) return;
+  std::swap(w.current, w.trial);
+  report.decrease += reached + rubbed - staying;
+  report.history.push_back({w.clock.elapsed_ms(), reached + rubbed - staying - rubbed_there, 0, {}});
   const int iterations = report.iterations;
   minimize(model, inputs, w, rule);
   report.iterations += iterations;
 }
 
 // Backward Euler: (x - q)/h. Midpoint: the velocity whose mean with the old one is that; held vertices just follow.
-void set_velocity(const Model& model, const Workspace& w, State& state) {
+void set_velocity(const Model& model, const Positions& x, State& state) {
   const double h = model.time_step;
   if (model.integrator == Integrator::backward_euler) {
-    state.v = (w.x - state.x) / h;
+    state.v = (x - state.x) / h;
     return;
   }
   const int held = model.vertices - model.free;
-  state.v.topRows(model.free) = 2 / h * (w.x - state.x).topRows(model.free) - state.v.topRows(model.free);
-  state.v.bottomRows(held) = (w.x - state.x).bottomRows(held) / h;
+  state.v.topRows(model.free) = 2 / h * (x - state.x).topRows(model.free) - state.v.topRows(model.free);
+  state.v.bottomRows(held) = (x - state.x).bottomRows(held) / h;
 }
 
 void report_contacts(Workspace& w) {
   w.report.contacts = w.contact.counts;
-  Positions& force = w.trial_gradient;
+  Positions& force = w.scratch;
   force.setZero();
-  add_contacts(w.contact.found, w.contact.stick_length, w.x, nullptr, w.direction, &force, -1);
+  add_contacts(w.current.contacts, w.contact.stick_length, w.current.x, nullptr, w.direction, &force, -1);
   w.report.contact_force = force.colwise().sum().transpose();
+}
+
+void report_times(Workspace& w) {
+  w.clock.change(Phase::other);
+  StepReport& report = w.report;
+  report.evaluate_ms = w.clock.spent_ms(Phase::evaluate);
+  report.solve_ms = w.clock.spent_ms(Phase::solve);
+  report.lbfgs_ms = w.clock.spent_ms(Phase::lbfgs);
+  report.collide_ms = w.clock.spent_ms(Phase::collide);
+  report.other_ms = w.clock.spent_ms(Phase::other);
+  report.step_ms = report.evaluate_ms + report.solve_ms + report.lbfgs_ms + report.collide_ms + report.other_ms;
 }
 
 }  // namespace
@@ -261,7 +270,7 @@ const StepReport& step(const Model& model, const FrameInputs& inputs, State& sta
 }
 
 const StepReport& step(const Model& model, const FrameInputs& inputs, State& state, Workspace& w, SearchRule& rule) {
-  w.since_entry = Stopwatch();
+  w.clock.start();
   const Zone step_zone("step", model.name);
   Zone zone("begin step");
   w.prepare(model, inputs.solver);
@@ -270,22 +279,22 @@ const StepReport& step(const Model& model, const FrameInputs& inputs, State& sta
   begin_step(model, inputs, state, w);
   zone.next("first iterate");
   const double above_start = set_first_iterate(model, inputs, state, w);
-  report.start_ms = w.since_entry.elapsed_ms();
+  report.start_ms = w.clock.elapsed_ms();
   zone.next("iterate");
   iterate(model, inputs, w, rule, 0);
   zone.next("end step");
   if (!report.failed && inputs.solver.line_search != LineSearch::none)
     descend_from_staying(model, inputs, state, w, rule);
   report.error_estimate = as_error(report.remaining_estimate, report.decrease + above_start);
-  if (!report.failed && !w.x.allFinite()) fail(model, w, "step", w.x, std::numeric_limits<double>::quiet_NaN());
+  const Positions& x = w.current.x;
+  if (!report.failed && !x.allFinite()) fail(model, w, "step", std::numeric_limits<double>::quiet_NaN());
   if (!report.failed) {
-    set_velocity(model, w, state);
-    state.x = w.x;
+    set_velocity(model, x, state);
+    state.x = x;
     state.time += model.time_step;
   }
   if (has_colliders(inputs)) report_contacts(w);
-  report.step_ms = w.since_entry.elapsed_ms();
-  report.other_ms = report.step_ms - report.evaluate_ms - report.solve_ms - report.lbfgs_ms - report.collide_ms;
+  report_times(w);
   return report;
 }
 

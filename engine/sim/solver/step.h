@@ -16,8 +16,8 @@ const StepReport& step(const Model& model, const FrameInputs& inputs, State& sta
 const StepReport& step(const Model& model, const FrameInputs& inputs, State& state, Workspace& workspace,
                        SearchRule& rule);
 
-// Minimises g from workspace.x; the report's decrease, slope and stop reason tell how far it came. Also stops once a
-// direction promises less than `enough` [J]. For step() and for references.
+// Minimises g from workspace.current.x; the report's decrease, slope and stop reason tell how far it came. Also stops
+// once a direction promises less than `enough` [J]. For step() and for references.
 void minimize(const Model& model, const FrameInputs& inputs, Workspace& workspace, double enough = 0);
 void minimize(const Model& model, const FrameInputs& inputs, Workspace& workspace, SearchRule& rule, double enough = 0);
 

@@ -1,6 +1,6 @@
 // One step's problem by itself: all that g of equation 3 depends on before anything is touched, in the order of the
-// input file instead of the model's. For comparing solvers on stored states, and for other programs. Not here: files
-// (app/).
+// input file instead of the model's. It serves comparisons of solvers on stored states, and other programs. Not here:
+// files (film/state_file.h).
 #pragma once
 
 #include "sim/model/inputs.h"
@@ -36,7 +36,7 @@ struct StepProblem {
   std::vector<Obstacle> colliders;
 };
 
-// Of the step that starts at `state` with these inputs. body: what the model was built from.
+// Returns the problem of the step that starts at `state` with these inputs. body: what the model was built from.
 StepProblem problem_of(const BodyDescription& body, const Model& model, const FrameInputs& inputs, const State& state);
 
 }  // namespace supple

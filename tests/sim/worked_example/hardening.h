@@ -1,4 +1,4 @@
-// A material that is linear near rest and hardens far from it: Psi = mu |S - 1|^2 + nu |(S - 1)^3|^2.
+// This material is linear near rest and hardens far from it: Psi = mu |S - 1|^2 + nu |(S - 1)^3|^2.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ struct Hardening {
     return madd(V(mu), squared_norm(d), V(nu) * squared_norm(d3));
   }
 
-  // From a = mu (s-1)^2 + nu (s-1)^6.
+  // Follows from a = mu (s-1)^2 + nu (s-1)^6.
   double axial_stress(double s) const {
     const double e = s - 1;
     return 2 * mu * e + 6 * nu * e * e * e * e * e;

@@ -1,5 +1,11 @@
-// What a Config owns; only for config.cpp and config_values.cpp, which know the TOML parser.
+// What Config, ConfigTable and ConfigValue hold of the TOML parser. Only the three files that implement them include
+// this.
 #pragma once
+
+// The parser takes its assertions for a part of handling malformed files, and without them promises the compiler that
+// they hold. They stay in any build.
+#undef NDEBUG
+#include <cassert>
 
 #include <toml++/toml.h>
 
@@ -15,18 +21,20 @@ struct Config::Content {
   std::filesystem::path folder;
   std::filesystem::path assets;
   std::vector<Problem> problems;
-  std::map<const toml::table*, std::vector<std::string>> asked;  // keys by table that was opened
+  std::map<const toml::table*, std::vector<std::string>> asked;  // the keys that readers asked for, by table
   std::vector<DocumentedKey> documented;
   std::vector<KnownKey> known;
   std::shared_ptr<KnownSurfaces> surfaces;
-  std::map<const toml::node*, toml::source_region> moved;  // where nodes that are copies stood; the parser forgets it
+  // The places where copied nodes stood: the parser does not copy them.
+  std::map<const toml::node*, toml::source_region> moved;
 
   const toml::source_region& source_of(const toml::node& node) const {
     const auto at = moved.find(&node);
     return at != moved.end() ? at->second : node.source();
   }
 
-  // Beside what the file names in a value are: its own file, which may be a replay's; the working folder for options.
+  // The folder that relative paths in a value start from: that of the file that the value stands in, which may be a
+  // replay, or the working folder for values of --set.
   std::filesystem::path folder_of(const toml::source_region& source) const {
     if (!source.path || *source.path == name) return folder;
     return source.path->starts_with(set_option) ? std::filesystem::path()
@@ -34,7 +42,7 @@ struct Config::Content {
   }
 
   ConfigValue value_of(const toml::node& node) const;
-  // A copy of a value has taken its place in the document.
+  // Records the places of a value of which a copy now stands in the document.
   void settle(const toml::node& copy, const ConfigValue& value);
 
   Problem place(const toml::node* node, std::string message) const {
@@ -47,13 +55,13 @@ struct Config::Content {
   }
 };
 
-// What a ConfigValue owns.
+// What a ConfigValue owns: a copy of a node, and where the original stood.
 struct ConfigValue::Content {
   std::shared_ptr<const toml::node> node;
-  std::vector<toml::source_region> places;  // of the node and those below it, as walk() goes
+  std::vector<toml::source_region> places;  // of the node and of those below it, in the order of walk()
 };
 
-// Calls visit(node) for a node and all below it, in an order that copies share.
+// Calls visit(node) for a node and all below it. The order is the same for a node and its copies.
 template <class Visit>
 void walk(const toml::node& node, const Visit& visit) {
   visit(node);
@@ -64,10 +72,10 @@ void walk(const toml::node& node, const Visit& visit) {
   }
 }
 
-// As messages show a value.
+// A value as messages show it.
 std::string shown(const toml::node& node);
 
-// An element of a list of tables goes by its name, or by its list's.
+// The name of an element of a list of tables, or the list's name when it has none.
 std::string name_of(const toml::table& element, const std::string& list);
 
 }  // namespace supple

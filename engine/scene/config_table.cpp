@@ -1,24 +1,25 @@
-// The typed questions that a ConfigTable answers.
+// ConfigTable: the typed questions of the readers.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <sstream>
 
 #include "base/text.h"
-#include "scene/config_content.h"
+#include "scene/toml_document.h"
 
 namespace supple {
 namespace {
 
 std::string number_text(double value) { return fmt::format("{:g}", value); }
 
-// What a number must be.
+// Says what a number must be.
 std::string number_in(const Range& range) {
   const std::string text = range.text();
   return text == "any number" ? "a number" : "a number, " + text;
 }
 
-// For words that look like numbers: in quotes, or of --set and beyond what a double holds, where TOML refuses them.
+// Explains a word that looks like a number: it stands in quotes, or it came by --set and is larger than a double can
+// be, so that TOML refused it.
 const char* word_hint(const toml::node& node) {
   const auto word = node.value_exact<std::string>();
   if (!word || word->empty()) return "";
@@ -60,6 +61,67 @@ std::string Range::text() const {
   if (above) return fmt::format("at most {}", number_text(highest));
   return "any number";
 }
+
+ConfigTable::ConfigTable(Config* config, const toml::table* table, std::string path, std::string generic)
+    : config_(config), table_(table), path_(std::move(path)), generic_(std::move(generic)) {
+  config_->content_->asked.try_emplace(table_);
+}
+
+namespace {
+
+std::string joined(const std::string& path, const char* name) { return path.empty() ? name : path + "." + name; }
+
+}  // namespace
+
+// `name` is that of a list's element, with its dot; `suffix` ends the generic path of a list.
+ConfigTable ConfigTable::inner(const Key& key, const toml::table& table, const std::string& name,
+                               const char* suffix) const {
+  return ConfigTable(config_, &table, joined(path_, key.name) + name, joined(generic_, key.name) + suffix);
+}
+
+bool ConfigTable::has(const char* key) const {
+  config_->content_->asked[table_].push_back(key);
+  return table_->contains(key);
+}
+
+std::vector<std::string> ConfigTable::keys() const {
+  std::vector<std::string> names;
+  for (const auto& [key, node] : *table_) names.emplace_back(key.str());
+  return names;
+}
+
+const toml::node* ConfigTable::find(const Key& key, const char* type, std::string fallback, std::string allowed) const {
+  config_->content_->asked[table_].push_back(key.name);
+  const toml::node* node = table_->get(key.name);
+  const std::string generic = joined(generic_, key.name);
+  auto& known = config_->content_->known;
+  KnownKey key_here{joined(path_, key.name),
+                    generic,
+                    type,
+                    allowed,
+                    key.unit,
+                    key.meaning,
+                    node != nullptr ? shown(*node) : fallback};
+  const bool seen =
+      std::any_of(known.rbegin(), known.rend(), [&](const KnownKey& k) { return k.path == key_here.path; });
+  if (!seen) known.push_back(std::move(key_here));
+  auto& documented = config_->content_->documented;
+  const bool listed = std::any_of(documented.begin(), documented.end(),
+                                  [&](const DocumentedKey& d) { return d.path == generic && d.type == type; });
+  if (!listed) documented.push_back({generic, type, std::move(fallback), std::move(allowed), key.unit, key.meaning});
+  return node;
+}
+
+Problem ConfigTable::place(const char* key, std::string message) const {
+  const toml::node* node = key != nullptr ? table_->get(key) : nullptr;
+  return config_->content_->place(node != nullptr ? node : table_, std::move(message));
+}
+
+void ConfigTable::complain(const char* key, const std::string& message) const {
+  config_->complain(place(key, message));
+}
+
+void ConfigTable::complain(const std::string& message) const { config_->complain(place(nullptr, message)); }
 
 void ConfigTable::wrong(const Key& key, const toml::node& node, const std::string& allowed) const {
   config_->complain(&node, fmt::format("{} = {}: must be {}", key.name, shown(node), allowed));
@@ -126,21 +188,46 @@ std::string ConfigTable::text(const Key& key, std::optional<std::string> fallbac
   return fallback.value_or("");
 }
 
-std::string ConfigTable::choice(const Key& key, std::optional<std::string> fallback,
-                                const std::vector<std::string>& allowed) const {
-  const toml::node* node =
-      find(key, "word", fallback ? fmt::format("\"{}\"", *fallback) : "required", word_list(allowed));
-  const std::string instead = fallback.value_or(allowed.front());
+// Whether a value is one of the words. Records a problem when it is not.
+bool ConfigTable::is_one_of(const Words& words, const Key& key, const toml::node& node) const {
+  const auto value = node.value_exact<std::string>();
+  if (value && std::find(words.allowed.begin(), words.allowed.end(), *value) != words.allowed.end()) return true;
+  for (const auto& [word, instead] : words.former) {
+    if (value != word) continue;
+    config_->complain(&node, fmt::format("{0} = '{1}': is now written {0} = {2}", key.name, word, instead));
+    return false;
+  }
+  const std::string nearest = value ? nearest_word(*value, words.allowed) : "", list = word_list(words.allowed);
+  wrong(key, node, nearest.empty() ? list : fmt::format("{}; did you mean '{}'?", list, nearest));
+  return false;
+}
+
+std::string ConfigTable::choice(const Key& key, std::optional<std::string> fallback, const Words& words) const {
+  const std::string list = word_list(words.allowed);
+  const toml::node* node = find(key, "word", fallback ? fmt::format("\"{}\"", *fallback) : "required", list);
+  const std::string instead = fallback.value_or(words.allowed.front());
   if (node == nullptr) {
-    if (!fallback) complain(fmt::format("'{}' is missing: {} ({})", key.name, key.meaning, word_list(allowed)));
+    if (!fallback) complain(fmt::format("'{}' is missing: {} ({})", key.name, key.meaning, list));
     return instead;
   }
-  const auto value = node->value_exact<std::string>();
-  if (value && std::find(allowed.begin(), allowed.end(), *value) != allowed.end()) return *value;
-  const std::string nearest = value ? nearest_word(*value, allowed) : "";
-  wrong(key, *node,
-        nearest.empty() ? word_list(allowed) : fmt::format("{}; did you mean '{}'?", word_list(allowed), nearest));
-  return instead;
+  return is_one_of(words, key, *node) ? *node->value_exact<std::string>() : instead;
+}
+
+// Empty when the key is absent or wrong.
+std::string ConfigTable::choice_if_given(const Key& key, const char* fallback, const Words& words) const {
+  const toml::node* node = find(key, "word", fallback, word_list(words.allowed));
+  return node != nullptr && is_one_of(words, key, *node) ? *node->value_exact<std::string>() : "";
+}
+
+std::optional<std::variant<std::string, ConfigTable>> ConfigTable::word_or_table(const Key& key,
+                                                                                 const std::string& fallback,
+                                                                                 const Words& words) const {
+  const toml::node* node = find(key, "word", fallback, word_list(words.allowed));
+  (void)find(key, "table", "none", "a table");
+  if (node == nullptr) return std::nullopt;
+  if (const toml::table* table = node->as_table()) return inner(key, *table, "", "");
+  if (is_one_of(words, key, *node)) return *node->value_exact<std::string>();
+  return std::nullopt;
 }
 
 namespace {

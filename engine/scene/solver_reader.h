@@ -1,0 +1,12 @@
+// The `solver` table of a scene file, of the scene or of a body.
+#pragma once
+
+#include "scene/config.h"
+#include "scene/scene_def.h"
+
+namespace supple {
+
+// Keys that are absent keep their defaults.
+SolverDef read_solver(const ConfigTable& table, const SolverDef& defaults);
+
+}  // namespace supple

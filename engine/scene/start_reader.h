@@ -1,0 +1,12 @@
+// The table `start` of a body in a scene file.
+#pragma once
+
+#include "scene/config.h"
+#include "scene/start_state.h"
+
+namespace supple {
+
+// At rest when the body has no such table.
+StartDef read_start(const ConfigTable& body);
+
+}  // namespace supple

@@ -1,0 +1,40 @@
+// The numbers of an elimination, front after front: a front takes its columns of the matrix and the update matrices of
+// its children, its own columns are eliminated, and its update matrix waits on a stack for its parent. Sums have one
+// order, which the matrix's pattern alone decides.
+#pragma once
+
+#include <Eigen/SparseCore>
+
+#include "base/aligned.h"
+#include "sim/linear/elimination.h"
+
+namespace supple {
+
+class Multifrontal {
+ public:
+  // Of an elimination that outlives this.
+  explicit Multifrontal(const Elimination& elimination);
+
+  // To be called before the first front of each matrix.
+  void begin();
+
+  // Writes a node's columns of the factor (front_layout.h); nodes come in the elimination's order. Of the matrix the
+  // lower triangle is read. Returns the first unknown whose pivot is not positive, or -1.
+  int eliminate(const Eigen::SparseMatrix<double>& matrix, int node, double* columns);
+
+ private:
+  void assemble(const Eigen::SparseMatrix<double>& matrix, int node, double* columns, double* update);
+  void add_update(const Supernode& parent, const Supernode& child, double* columns, double* update);
+
+  const Elimination& elimination_;
+  std::vector<std::int32_t> place_;     // padded row of the front by unknown
+  std::vector<std::int32_t> target_;    // padded row of the parent's front by row of a child
+  std::vector<std::int32_t> in_strip_;  // place in a strip of that front by row of a child
+  std::vector<std::int32_t> waiting_;   // nodes whose update matrices wait
+  // Update matrices of even and of odd levels: a node's children are all on the other stack than its own, so that it
+  // can be summed up where it waits, and each stack is taken from the top alone.
+  AlignedVector<double> stack_[2];
+  std::int64_t stacked_[2] = {0, 0};
+};
+
+}  // namespace supple

@@ -1,0 +1,20 @@
+// A point that the solver looks at, with all that is known of it.
+#pragma once
+
+#include <vector>
+
+#include "base/aligned.h"
+#include "base/types.h"
+#include "sim/contact/contact.h"
+
+namespace supple {
+
+struct Iterate {
+  Positions x;                    // positions, n x 3 [m]
+  Positions gradient;             // of g, n_free x 3 [N]
+  AlignedVector<double> energy;   // of the elements, by lane [J]
+  std::vector<Contact> contacts;  // found at x; empty without colliders
+  double g = 0;                   // with these contacts [J]
+};
+
+}  // namespace supple

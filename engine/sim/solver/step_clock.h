@@ -1,0 +1,69 @@
+// Where the time of a step goes. One mechanism fills both the report's phases and the trace's zones: each moment of a
+// step belongs to exactly one phase, so the phases add up to the step without anything being subtracted.
+#pragma once
+
+#include <array>
+#include <chrono>
+
+#include "base/trace.h"
+
+namespace supple {
+
+enum class Phase { other, evaluate, solve, lbfgs, collide };
+
+class StepClock {
+ public:
+  // A step begins: in the phase `other`.
+  void start() {
+    spent_ = {};
+    phase_ = Phase::other;
+    begin_ = since_ = Clock::now();
+  }
+
+  // Milliseconds since the start.
+  double elapsed_ms() const { return milliseconds(Clock::now() - begin_); }
+
+  // Milliseconds that a phase has had so far, what it has since the last change of phase left out.
+  double spent_ms(Phase phase) const { return milliseconds(spent_[static_cast<std::size_t>(phase)]); }
+
+  // What follows belongs to `phase`. Returns the phase before.
+  Phase change(Phase phase) {
+    const Clock::time_point now = Clock::now();
+    spent_[static_cast<std::size_t>(phase_)] += now - since_;
+    since_ = now;
+    return std::exchange(phase_, phase);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static double milliseconds(Clock::duration duration) {
+    return std::chrono::duration<double, std::milli>(duration).count();
+  }
+
+  Clock::time_point begin_, since_;
+  Phase phase_ = Phase::other;
+  std::array<Clock::duration, 5> spent_{};
+};
+
+// A stretch of a step: a zone of the trace whose time belongs to a phase, except for what stretches inside it take for
+// theirs. When it ends, the phase around it goes on.
+class Stretch {
+ public:
+  Stretch(StepClock& clock, Phase phase, const char* zone) : clock_(clock), outer_(clock.change(phase)), zone_(zone) {}
+  ~Stretch() { clock_.change(outer_); }
+  Stretch(const Stretch&) = delete;
+  Stretch& operator=(const Stretch&) = delete;
+
+  // Ends this stretch, and begins another one in its place.
+  void next(Phase phase, const char* zone) {
+    clock_.change(phase);
+    zone_.next(zone);
+  }
+
+ private:
+  StepClock& clock_;
+  Phase outer_;
+  Zone zone_;
+};
+
+}  // namespace supple

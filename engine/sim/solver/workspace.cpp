@@ -1,0 +1,42 @@
+#include "sim/solver/workspace.h"
+
+#include <algorithm>
+
+#include "sim/model/vertex_chunks.h"
+#include "sim/solver/objective.h"
+
+namespace supple {
+
+void Workspace::prepare(const Model& model, const SolverSettings& solver) {
+  const std::size_t most_values = 2 * (std::size_t(solver.iterations) + 1);  // a step may descend twice
+  if (report.objective.capacity() < most_values) report.objective.reserve(most_values);
+  if (report.history.capacity() < most_values) report.history.reserve(most_values);
+  if (prepared_for_ == model.id && window_ >= solver.history) return;
+  if (prepared_for_ != model.id) correction = {};
+  prepared_for_ = model.id;
+  window_ = std::max(window_, solver.history);
+  y.resize(model.vertices, 3);
+  for (Iterate* iterate : {&current, &trial}) {
+    iterate->x.resize(model.vertices, 3);
+    iterate->gradient.resize(model.free, 3);
+    iterate->energy.resize(std::size_t(model.blocks) * block_width);
+    iterate->contacts.clear();
+  }
+  q.resize(needs_start(model) ? model.vertices : 0, 3);
+  middle.resize(model.scheme.theta < 1 ? model.vertices : 0, 3);
+  if (!model.spring.empty()) target.resize(model.free, 3);
+  direction.resize(model.free, 3);
+  scratch.resize(model.free, 3);
+  force.resize(model.chunk_vertex.size() * 3);
+  local.resize(std::size_t(model.chunks.size()) * model.largest_chunk * 3);
+  solve_scratch.resize(std::size_t(model.free) * 4);
+  const std::size_t chunks = std::max<std::size_t>(model.chunks.size(), vertex_chunks(model));
+  partial.resize(chunks * (2 * window_ + 4));
+  step_pairs.resize(window_);
+  gradient_pairs.resize(window_);
+  for (Positions& pair : step_pairs) pair.resize(model.free, 3);
+  for (Positions& pair : gradient_pairs) pair.resize(model.free, 3);
+  products.resize(std::size_t(window_) * window_);
+}
+
+}  // namespace supple

@@ -1,0 +1,53 @@
+// Scratch of a step: never changes a result, and is made once. What outlives a step is in State.
+#pragma once
+
+#include "base/threads.h"
+#include "sim/contact/contact_direction.h"
+#include "sim/contact/find_contacts.h"
+#include "sim/model/report.h"
+#include "sim/solver/iterate.h"
+#include "sim/solver/step_clock.h"
+
+namespace supple {
+
+// One for each thread that steps.
+struct Workspace {
+  // Makes room for a model and a window; does nothing when there is enough.
+  void prepare(const Model& model, const SolverSettings& solver);
+
+  Threads* threads = nullptr;  // may be null: one thread
+
+  // The step's problem.
+  Positions y;                       // inertial prediction, n x 3 [m]
+  const Positions* start = nullptr;  // where the step starts, the caller's, n x 3 [m]
+  Positions q;                       // a copy of it, n x 3 [m]; empty unless the model needs it
+  Positions target;                  // of soft handles, by free vertex, n_free x 3 [m]; empty when there are none
+
+  // Where the solver is, and where it looks.
+  Iterate current, trial;
+  Positions direction;  // from the current iterate, n_free x 3 [m]
+
+  // L-BFGS' pairs, a ring.
+  std::vector<Positions> step_pairs, gradient_pairs;  // s [m] and t [N]
+  std::vector<double> products;                       // s_i . t_j, window x window [J]
+
+  ContactWork contact;
+  ContactCorrection correction;
+
+  // Room within one call; holds nothing between calls.
+  Positions middle;             // where forces are evaluated, n x 3 [m]; empty unless that is not the iterate
+  Positions scratch;            // n_free x 3
+  AlignedVector<double> force;  // by slot, x 3 [N]
+  AlignedVector<double> local;  // positions by chunk, x 3 [m]
+  SolveScratch solve_scratch;
+  std::vector<double> partial;  // of chunked sums
+
+  StepReport report;
+  StepClock clock;
+
+ private:
+  std::uint64_t prepared_for_ = 0;  // Model::id
+  int window_ = -1;
+};
+
+}  // namespace supple

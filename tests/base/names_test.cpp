@@ -1,0 +1,34 @@
+#include "base/names.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "render/gl_context.h"
+#include "scene/sweep.h"
+#include "sim/model/report.h"
+
+namespace supple {
+namespace {
+
+template <class E>
+class NameTables : public testing::Test {};
+
+using AllEnums = testing::Types<LineSearch, StopReason, ContactHistory, ContactDirection, Integrator, Precision, Ease,
+                                Selection::Kind, SweepMode, RampRule, Combine, Pattern, GlChoice, StartMatrix,
+                                LinearSolver, Preconditioner, Acceleration, Safeguard>;
+TYPED_TEST_SUITE(NameTables, AllEnums);
+
+TYPED_TEST(NameTables, GiveEveryValueBackByItsName) {
+  const std::vector<std::string> names = all_names<TypeParam>();
+  ASSERT_GE(names.size(), 2u);
+  EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    EXPECT_EQ(value_named<TypeParam>(names[i]), static_cast<TypeParam>(i));
+    EXPECT_EQ(name_of(static_cast<TypeParam>(i)), names[i]);
+  }
+  EXPECT_EQ(value_named<TypeParam>(""), std::nullopt);
+}
+
+}  // namespace
+}  // namespace supple

@@ -1,0 +1,157 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <set>
+
+#include "baselines/make_rule.h"
+#include "scene/scene_reader.h"
+#include "scene/warnings.h"
+#include "support/bodies.h"
+#include "support/scene_text.h"
+
+namespace supple {
+namespace {
+
+// A scene of one body with these lines in [solver].
+Config scene_with(const std::string& lines) {
+  return Config::parse("[solver]\n" + lines + "\n[[body]]\nbox = { extent = [1, 1, 1] }\nmaterial = \"jelly\"\n",
+                       "scene.toml", test::assets);
+}
+
+SolverDef solver_of(const std::string& lines) {
+  Config config = scene_with(lines);
+  const SceneDef scene = read_scene(config);
+  config.finish();
+  return scene.bodies.front().solver;
+}
+
+std::string refusal(const std::string& lines) {
+  try {
+    (void)solver_of(lines);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Method, IsReadBackFromItsSpelling) {
+  for (const Method& method : compared_methods())
+    EXPECT_EQ(solver_of("method = " + spelling_of(method)).method, method) << spelling_of(method);
+  EXPECT_EQ(solver_of("").method, Method::quasi_newton);
+}
+
+TEST(Method, HasADifferentNameForEveryCombination) {
+  std::set<std::string> names, spellings;
+  for (const Method& method : compared_methods()) {
+    names.insert(name_of(method));
+    spellings.insert(spelling_of(method));
+  }
+  EXPECT_EQ(names.size(), compared_methods().size());
+  EXPECT_EQ(spellings.size(), compared_methods().size());
+  EXPECT_EQ(name_of(Method::newton), "newton");
+  EXPECT_EQ(name_of(Method::newton_shifted), "hessian, shift");
+  EXPECT_EQ(name_of(Method::frame_cg(5, Preconditioner::rest)), "frame-hessian, 5 cg (rest)");
+  EXPECT_EQ(name_of(Method{.matrix = StartMatrix::identity, .acceleration = Acceleration::none}),
+            "identity, not accelerated");
+}
+
+TEST(Method, PartsThatAreLeftOutAreTheUsualOnes) {
+  EXPECT_EQ(solver_of("method = { matrix = \"system\" }").method, Method::quasi_newton);
+  EXPECT_EQ(solver_of("method = { matrix = \"hessian\" }").method, Method::newton);
+  EXPECT_EQ(solver_of("method = { matrix = \"hessian\", linear = \"cg\" }").method, Method::newton_cg(15));
+  EXPECT_EQ(solver_of("method = { matrix = \"frame-hessian\", linear = \"cg\" }").method,
+            Method::frame_cg(15, Preconditioner::system));
+  EXPECT_EQ(solver_of("method = { matrix = \"system\", acceleration = \"chebyshev\" }").method, Method::chebyshev);
+}
+
+TEST(Method, FormerWordsAreRefusedWithTheirNewSpelling) {
+  const std::vector<std::array<std::string, 2>> words = {
+      {"newton-shifted", R"({ matrix = "hessian", safeguard = "shift" })"},
+      {"newton-cg5", R"({ matrix = "hessian", linear = "cg", inner_iterations = 5 })"},
+      {"newton-cg15", R"({ matrix = "hessian", linear = "cg", inner_iterations = 15 })"},
+      {"quasi-newton-cg5", R"({ matrix = "system", linear = "cg", inner_iterations = 5 })"},
+      {"quasi-newton-cg15", R"({ matrix = "system", linear = "cg", inner_iterations = 15 })"},
+      {"lbfgs-identity", R"({ matrix = "identity" })"},
+      {"lbfgs-rest", R"({ matrix = "rest-hessian" })"},
+      {"lbfgs-warped", R"({ matrix = "warped-rest-hessian" })"},
+      {"lbfgs-frame", R"({ matrix = "frame-hessian" })"},
+      {"lbfgs-frame-cg5-rest",
+       R"({ matrix = "frame-hessian", linear = "cg", inner_iterations = 5, preconditioner = "rest" })"},
+      {"lbfgs-frame-cg15-rest",
+       R"({ matrix = "frame-hessian", linear = "cg", inner_iterations = 15, preconditioner = "rest" })"},
+      {"lbfgs-frame-cg5-ours",
+       R"({ matrix = "frame-hessian", linear = "cg", inner_iterations = 5, preconditioner = "system" })"},
+      {"lbfgs-frame-cg15-ours",
+       R"({ matrix = "frame-hessian", linear = "cg", inner_iterations = 15, preconditioner = "system" })"},
+      {"contact-matrix", R"({ matrix = "contact" })"},
+  };
+  for (const auto& [word, spelling] : words) {
+    EXPECT_EQ(refusal("method = \"" + word + "\""),
+              "scene.toml:2:10: method = '" + word + "': is now written method = " + spelling);
+    EXPECT_EQ(refusal("method = " + spelling), "accepted");
+  }
+}
+
+TEST(Method, PartsThatDoNotGoTogetherAreRefusedWithWhatDoes) {
+  EXPECT_EQ(refusal("method = { matrix = \"identity\", linear = \"cg\" }"),
+            "scene.toml:2:42: linear = 'cg': with matrix = 'identity' it must be direct");
+  EXPECT_EQ(refusal("method = { matrix = \"frame-hessian\", linear = \"cg\", preconditioner = \"jacobi\" }"),
+            "scene.toml:2:70: preconditioner = 'jacobi': with matrix = 'frame-hessian' and linear = 'cg' it must be "
+            "system or rest");
+  EXPECT_EQ(refusal("method = { matrix = \"hessian\", acceleration = \"l-bfgs\" }"),
+            "scene.toml:2:47: acceleration = 'l-bfgs': with matrix = 'hessian' and linear = 'direct' it must be none");
+  EXPECT_EQ(refusal("method = { matrix = \"rest-hessian\", acceleration = \"chebyshev\" }"),
+            "scene.toml:2:52: acceleration = 'chebyshev': with matrix = 'rest-hessian' and linear = 'direct' it must "
+            "be l-bfgs or none");
+  EXPECT_EQ(refusal("method = { matrix = \"hessian\", safeguard = \"curvature\" }"),
+            "scene.toml:2:44: safeguard = 'curvature': with matrix = 'hessian' and linear = 'direct' it must be "
+            "projection or shift");
+  EXPECT_EQ(refusal("method = { matrix = \"system\", inner_iterations = 5 }"),
+            "scene.toml:2:50: inner_iterations: only with linear = \"cg\"");
+  EXPECT_EQ(refusal("method = { matrix = \"system\", linear = \"cg\", inner_tolerance = 0.1 }"),
+            "scene.toml:2:64: inner_tolerance = 0.1: must be 0 but with matrix = 'hessian' and linear = 'cg'");
+  EXPECT_EQ(refusal("method = { linear = \"cg\" }"),
+            "scene.toml:2:10: 'matrix' is missing: what a search direction starts from (system, identity, "
+            "rest-hessian, warped-rest-hessian, frame-hessian, hessian, hecht or contact)");
+  EXPECT_EQ(refusal("method = \"newtn\""),
+            "scene.toml:2:10: method = 'newtn': must be quasi-newton, projective-dynamics, chebyshev, newton, gast or "
+            "hecht; did you mean 'newton'?");
+  EXPECT_EQ(refusal("method = { matrix = \"hesian\" }"),
+            "scene.toml:2:21: matrix = 'hesian': must be system, identity, rest-hessian, warped-rest-hessian, "
+            "frame-hessian, hessian, hecht or contact; did you mean 'hessian'?");
+}
+
+TEST(Method, PartsCanBeSetByTheirPaths) {
+  const auto method_with = [](const std::vector<std::string>& settings) {
+    Config config = scene_with("method = { matrix = \"frame-hessian\", linear = \"cg\" }");
+    for (const std::string& setting : settings) config.set(setting, exclusive_keys());
+    const SceneDef scene = read_scene(config);
+    config.finish();
+    return scene.bodies.front().solver.method;
+  };
+  EXPECT_EQ(method_with({"solver.method.inner_iterations=5", "solver.method.preconditioner=rest"}),
+            Method::frame_cg(5, Preconditioner::rest));
+  EXPECT_EQ(method_with({"solver.method=newton"}), Method::newton);
+  EXPECT_EQ(method_with({"solver.method={ matrix = \"contact\" }"}), Method::lbfgs_from(StartMatrix::contact));
+  EXPECT_EQ(method_with({"body.body.solver.method=hecht"}), Method::hecht);
+}
+
+TEST(Chebyshev, WithoutAnIterationLeftToAccelerateIsWarnedOf) {
+  const auto warning = [](const std::string& lines) {
+    Config config = scene_with(lines);
+    const SceneDef scene = read_scene(config);
+    config.finish();
+    const std::vector<Problem> list = warnings(scene, assemble(scene));
+    return list.empty() ? std::string("nothing") : list.front().message;
+  };
+  EXPECT_EQ(
+      warning("method = \"chebyshev\"\nchebyshev_delay = 10"),
+      "body 'body' is solved by chebyshev, whose acceleration begins after 10 iterations, and a step has 10: this "
+      "is projective-dynamics; make chebyshev_delay smaller than iterations");
+  EXPECT_EQ(warning("method = \"chebyshev\"\nchebyshev_delay = 9"), "nothing");
+  EXPECT_EQ(warning("method = \"chebyshev\""), "nothing");
+  EXPECT_EQ(warning("chebyshev_delay = 10"), "nothing");
+}
+
+}  // namespace
+}  // namespace supple
