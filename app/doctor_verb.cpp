@@ -31,7 +31,7 @@ struct Finding {
 
 constexpr std::uintmax_t enough_disk = 1'000'000'000;  // bytes: some hundred frames at 1280 x 720, and the film
 
-// A triangle, drawn with the film's own shaders.
+// Draws a triangle with the film's own shaders, and tells whether that works.
 Finding opengl() {
   Finding finding{"OpenGL", false, true, "", "draws the pictures", "libosmesa6, or libegl1 and libgl1-mesa-dri"};
   try {
@@ -121,7 +121,7 @@ Finding disk() {
   return finding;
 }
 
-// What the build may use of the processor, and whether it is there. A build for this machine alone has no other
+// Tells which instructions the build uses, and whether the processor has them. A build for one machine has no other
 // kernels.
 Finding processor() {
   std::vector<std::string> missing, used;

@@ -15,7 +15,7 @@
 namespace supple {
 namespace {
 
-// The kind of thing goes by what it is on the disk: a folder, a .mesh file, else a scene.
+// What an input is follows from what lies on the disk: a folder is a run, a .mesh file a mesh, all else a scene.
 int inform(const std::string& input, bool live) {
   std::error_code error;
   const std::filesystem::path path = input;

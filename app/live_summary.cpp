@@ -13,7 +13,7 @@
 namespace supple {
 namespace {
 
-// Least of three, on this machine [ms].
+// The least time of three factorisations on this machine [ms].
 double cost_of_factor(const Body& body) {
   Model model = build_model(body.description);
   ModelValues values(model, body.description);

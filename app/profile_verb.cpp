@@ -57,7 +57,7 @@ void report(const ProfileCommand& request, const ZoneProfile& profile, const std
   write_whole_file(folder / "zones.json", zones_json(profile));
   std::string no_plot;
   std::error_code error;
-  const bool traced = std::filesystem::exists(folder / "trace.json", error);  // a repeat that died left none
+  const bool traced = std::filesystem::exists(folder / "trace.json", error);  // a repeat that was killed left none
   const bool plotted = write_plot(frame_time_plot(profile), folder, &no_plot);
   if (request.film.json) {
     say(stdout, summary_json(profile));
@@ -69,7 +69,7 @@ void report(const ProfileCommand& request, const ZoneProfile& profile, const std
   if (!plotted && !request.film.plan.quiet) say(stderr, fmt::format("note: {}\n", no_plot));
 }
 
-// One run in this process.
+// Profiles one run in this process.
 int profile_once(const ProfileCommand& request, const std::vector<std::string>& command) {
   FilmCommand film = request.film;
   film.plan.trace = true;
@@ -86,7 +86,7 @@ int profile_once(const ProfileCommand& request, const std::vector<std::string>& 
   return 0;
 }
 
-// The same command for one repeat.
+// The command line of one repeat.
 std::vector<std::string> one_repeat(const std::vector<std::string>& command, const std::filesystem::path& folder) {
   std::vector<std::string> words = {std::filesystem::read_symlink("/proc/self/exe").string()};
   for (std::size_t i = 1; i < command.size(); ++i) {
@@ -102,8 +102,8 @@ std::vector<std::string> one_repeat(const std::vector<std::string>& command, con
   return words;
 }
 
-// Each repeat is a process of its own: where its memory lies changes the time of a zone by more than 10 %, for all of
-// its frames. Those before one that fails or is interrupted are reported.
+// Profiles repeats, each in a process of its own, because the place of a process's memory changes the time of a zone by
+// more than 10 %, for all of its frames. Repeats before one that fails or is interrupted are reported.
 int profile(const ProfileCommand& request, const std::vector<std::string>& command) {
   const SceneDef scene =
       Script::load(scene_file(request.film.plan.scene), assets_folder(), request.film.plan.settings).scene();
@@ -139,7 +139,7 @@ int profile(const ProfileCommand& request, const std::vector<std::string>& comma
   return status;
 }
 
-// A zones.json, or the one in a profile's folder.
+// The zones.json that is meant: the file itself, or the one in a profile's folder.
 std::string zones_file(const std::string& name) {
   std::error_code error;
   return std::filesystem::is_directory(name, error) ? (std::filesystem::path(name) / "zones.json").string() : name;

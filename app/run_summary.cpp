@@ -38,7 +38,7 @@ struct FileCount {
   std::uintmax_t bytes = 0;
 };
 
-// What lies directly in a run's folder: files by name, folders (with a '/') with all that is in them.
+// Counts what lies directly in a run's folder: files by name, and folders (with a '/') with all that is in them.
 std::map<std::string, FileCount> contents_of(const std::filesystem::path& folder) {
   std::map<std::string, FileCount> contents;
   std::error_code error;
@@ -58,7 +58,7 @@ std::map<std::string, FileCount> contents_of(const std::filesystem::path& folder
   return contents;
 }
 
-// Pictures from frame 0 on without a gap.
+// Counts the pictures from frame 0 on up to the first gap.
 int whole_pictures(const std::filesystem::path& folder) {
   std::error_code error;
   int frame = 0;

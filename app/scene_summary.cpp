@@ -93,7 +93,7 @@ std::string frames_text(const Script& script, const TimedChange& change) {
   return fmt::format("in frames {} to {}{}{}", first, first + count - 1, cost.empty() ? "" : ", each: ", cost);
 }
 
-// In the order in which they begin.
+// Lists the changes in the order in which they begin.
 std::string changes_text(const Script& script) {
   std::string text = fmt::format("changes         {} while it runs\n", script.changes().size());
   for (const TimedChange& change : script.changes()) {

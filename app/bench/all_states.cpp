@@ -14,7 +14,7 @@ namespace {
 
 constexpr int most_vertices = 4000;  // of subjects where every method runs to the end
 
-// Every body of every scene that ships, the smaller ones first.
+// All bodies of all scenes that ship, by scene.
 std::vector<SubjectChoice> everything() {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(assets_folder() / "scenes"))
@@ -127,7 +127,7 @@ ReportTable profile_table(const std::vector<MethodTimes>& list, const std::strin
 }  // namespace
 
 ReportSection bench_profiles(const BenchSetting& setting) {
-  // Bodies that can touch something apart: directions see contacts in different ways.
+  // Bodies that can touch something are in a group of their own, because directions see contacts in different ways.
   std::vector<MethodTimes> groups[2] = {all_methods(), all_methods()};
   for (auto& group : groups) {
     for (MethodTimes& method : group) method.times.resize(std::size(tolerances));

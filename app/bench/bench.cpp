@@ -73,7 +73,7 @@ const std::vector<Benchmark>& benchmarks() {
 
 namespace {
 
-// What a finished section must have been made with to be kept.
+// All that a finished section depends on: one that was made with something else is made again.
 std::string fingerprint(const BenchSetting& setting) {
   return fmt::format("{}; {}; {}; {}; {} threads; {}; paper meshes: {}", hash_text_form(program_identity()),
                      program_version(), build_flags(), variant_name(best_variant()), setting.threads->count(),

@@ -12,7 +12,7 @@
 
 namespace supple {
 
-// What every benchmark gets.
+// What is given to every benchmark.
 struct BenchSetting {
   std::filesystem::path out;                          // folder of the report
   std::optional<std::filesystem::path> paper_meshes;  // folder with the paper's meshes
@@ -29,8 +29,8 @@ struct Benchmark {
 
 const std::vector<Benchmark>& benchmarks();
 
-// Runs the named ones in order, writes the page after each, and skips those that an earlier call with the same program
-// and options has finished. Returns the exit status.
+// Runs the named benchmarks in order, writes the page after each, and skips those that an earlier call with the same
+// program and options has finished. Returns the exit status.
 int run_benchmarks(const std::vector<std::string>& names, const BenchSetting& setting, bool fresh);
 
 }  // namespace supple

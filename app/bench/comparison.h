@@ -1,5 +1,5 @@
-// Solvers on one state: how long, and how near the minimum they came. Everything is measured inside one run, from the
-// same state, with the same threads.
+// Compares solvers on one state: how long they take, and how near the minimum they come. Everything is measured inside
+// one run, from the same state, with the same threads.
 #pragma once
 
 #include <optional>
@@ -36,7 +36,7 @@ struct Outcome {
   double used_ms = 0;                    // by all runs
 };
 
-// Thrown between two runs once SIGINT or SIGTERM asked for an end.
+// Is thrown between two runs once a signal asked for an end.
 struct BenchInterrupted {};
 
 // Prepared solvers of one subject; patterns and constant factors are made once, outside of what is measured.
@@ -77,7 +77,7 @@ class SolverComparison {
 // Equation 12 by iteration: 1 - gained / whole. Empty when the run failed.
 std::vector<double> errors_of(const Outcome& outcome, double whole);
 
-// Of the end; NaN when the run failed.
+// Equation 12 at the end; NaN when the run failed.
 double last_error(const Outcome& outcome, double whole);
 
 // The first time at which the error is at most `tolerance`; infinity when it never is [ms].

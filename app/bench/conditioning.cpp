@@ -29,7 +29,7 @@ std::vector<Mat3> cube_rotations() {
   return rotations;
 }
 
-// Stretched along x by `stretch`, then turned, about the middle.
+// The body is stretched along x by `stretch` and then turned, both about its middle.
 BenchState released(const Subject& subject, double stretch, const Mat3& rotation) {
   BenchState state{0, start_state(subject.model, subject.body), 0};
   state.before.v.setZero();

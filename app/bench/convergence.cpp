@@ -21,7 +21,7 @@ double at_iteration(const std::vector<double>& errors, int k) {
   return !errors.empty() && errors.back() < 1e-11 ? errors.back() : std::nan("");  // it stopped at round-off, or early
 }
 
-// Curves of one state as two plots and a table.
+// Adds the curves of one state, as two plots and a table.
 void add_curves(ReportSection& section, const std::string& name, const std::vector<Outcome>& outcomes, double whole,
                 const std::string& ours) {
   ReportPlot by_iteration{name + "-iterations", "Error by iteration"}, by_time{name + "-time", "Error by time"};

@@ -27,7 +27,7 @@ double least_ms(int repeats, const Body& body) {
 }
 
 // Energies and forces of a polynomial material element by element: F, a singular value decomposition, the slopes of
-// mu (s - 1)^4, forces added to vertices. What a straightforward program does, in numbers of type T.
+// mu (s - 1)^4, forces added to vertices. A straightforward program does this; the numbers are of type T.
 template <class T>
 T plain_evaluation(const std::vector<ElementView>& elements, const Positions& x, double mu, std::vector<T>& force) {
   using Matrix = Eigen::Matrix<T, 3, 3>;

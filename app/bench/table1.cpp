@@ -9,9 +9,9 @@
 namespace supple {
 namespace {
 
-// A row of the paper's table I, and what it is here.
+// A row of the paper's table I, and the scene that stands for it here.
 struct Row {
-  std::string model, material, mesh;  // mesh: the paper's file; empty where it has none or ours is it
+  std::string model, material, mesh;  // mesh: the paper's file; empty where there is none, and where ours is the same
   SubjectChoice choice;
   std::vector<int> frames;
   double trials, overhead_ms, ours_ms, ours_error, newton_ms, newton_error;  // the paper's

@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* picture_words[] = {"none", "last", "all"};
 
-// Null where the file is not there or not whole.
+// Reads a JSON object; null where the file is not there or not whole.
 Json read_json(const std::filesystem::path& path) {
   std::ifstream file(path);
   if (!file) return nullptr;
@@ -78,7 +78,7 @@ FilmPlan film_of(const SweepRequest& request, std::size_t point) {
   return film;
 }
 
-// "failed: why" as run.json has it.
+// Why a run failed, from the "failed: ..." of its run.json; empty where it did not.
 std::string failure_in(const Json& run) {
   const std::string ended = run.is_object() ? run.value("ended", "") : "";
   return ended.starts_with("failed: ") ? ended.substr(8) : "";

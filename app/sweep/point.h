@@ -52,7 +52,8 @@ int run_point(const SweepRequest& request, std::size_t point, const std::vector<
 // Records that a point failed whose process ended without doing so.
 void record_failure(const SweepRequest& request, std::size_t point, int exit_status, const std::string& message);
 
-// From what its folder holds. A point counts as done if its run.json says so, and program and scene are the same.
+// Tells how a point ended, from what its folder holds. It counts as done if its run.json says so, and program and scene
+// are the same.
 PointOutcome outcome_of(const SweepRequest& request, std::size_t point);
 
 // Whether a done point also has the pictures and errors that are asked for.

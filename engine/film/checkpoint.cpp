@@ -25,7 +25,7 @@ void append_number(std::string& bytes, std::uint64_t number) {
   bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
 }
 
-// Takes a file's content apart from its beginning on.
+// Reads a file's content piece by piece from its beginning.
 class Reader {
  public:
   Reader(const std::string& bytes, std::string source) : bytes_(bytes), source_(std::move(source)) {}

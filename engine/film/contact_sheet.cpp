@@ -90,7 +90,7 @@ CaptionBitmap bitmap_of(const Sheet& sheet, const std::string& words, int pixels
   return sheet.font.empty() || words.empty() ? CaptionBitmap{} : draw_caption(sheet.font, words, pixels);
 }
 
-// The words with "…" for an end that does not fit.
+// The words as far as they fit, with "…" in the place of the rest.
 CaptionBitmap fitted(const Sheet& sheet, const std::string& words, int pixels, int width) {
   CaptionBitmap bitmap = bitmap_of(sheet, words, pixels);
   for (std::string rest = words; bitmap.width > width && !rest.empty();) {
@@ -101,7 +101,7 @@ CaptionBitmap fitted(const Sheet& sheet, const std::string& words, int pixels, i
   return bitmap;
 }
 
-// "name = value", the value alone where both do not fit.
+// Draws "name = value", or the value alone where both do not fit.
 CaptionBitmap fitted_value(const Sheet& sheet, const std::string& words, int width) {
   const std::size_t equals = words.find(" = ");
   const bool fits = equals == std::string::npos || bitmap_of(sheet, words, word_pixels).width <= width;
@@ -114,7 +114,7 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-// All captions on one line each, or all with a line a word.
+// The lines of all captions: one line each where that fits for all, otherwise a line for each word.
 std::vector<std::vector<std::string>> caption_lines(const Sheet& sheet, int width) {
   std::vector<std::vector<std::string>> lines;
   bool one_line = true;
@@ -127,7 +127,7 @@ std::vector<std::vector<std::string>> caption_lines(const Sheet& sheet, int widt
   return lines;
 }
 
-// What all pictures fit in: the first one's shape, no wider than the sheet has room for.
+// The size that all pictures are fitted into: the first one's shape, no wider than the sheet has room for.
 Size picture_size(const Sheet& sheet, const std::vector<std::optional<PngImage>>& images) {
   const int room = std::clamp(widest_sheet / sheet.columns, narrowest_picture, widest_picture);
   for (const auto& image : images) {

@@ -13,7 +13,7 @@ Vec3 collider_color(const ColliderDef& def) {
   return def.color.value_or(painted ? def.shape.color : Vec3(0.56, 0.64, 0.71));
 }
 
-// What a mesh and its skin have in common, whoever moves it.
+// The part of a drawn mesh that follows from its skin, for bodies and colliders alike.
 DrawMesh mesh_of(const Skin& skin, const std::vector<PaintLayer>& layers) {
   DrawMesh mesh;
   mesh.triangles.assign(skin.rest.triangles.data(), skin.rest.triangles.data() + skin.rest.triangles.size());

@@ -1,4 +1,4 @@
-// From bodies and their states to what the renderer draws.
+// Makes what the renderer draws from bodies, colliders and their states.
 #pragma once
 
 #include "render/draw_list.h"
@@ -7,14 +7,14 @@
 
 namespace supple {
 
-// What is drawn of each collider; empty where nothing is.
+// The skin of each collider; empty where nothing of it is drawn.
 std::vector<Skin> collider_skins(const std::vector<Obstacle>& obstacles, const std::vector<Body>& bodies);
 Bounds bounds_at_rest(const std::vector<Body>& bodies);
 
-// A collider, drawn by its skin; empty where nothing is.
+// The mesh that is drawn of a collider; empty where nothing is.
 DrawMesh collider_mesh(const Obstacle& obstacle, const Skin& skin);
 
-// Bodies, then colliders.
+// The stage of a film: first bodies, then colliders.
 Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const std::vector<DrawnBody>& drawn,
                  const std::vector<Obstacle>& obstacles, const std::vector<Skin>& skins, const std::string& font);
 

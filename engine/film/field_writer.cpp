@@ -27,7 +27,7 @@ FieldWriter::FieldWriter(const Body& body, const Model& model, const RunFolder& 
   if (error) throw RunError(fmt::format("{}: cannot be made: {}", folder.fields().string(), error.message()));
 }
 
-// What a run that was interrupted has left.
+// Finds the frames that a run wrote before it was interrupted.
 void FieldWriter::find_earlier(int frame) {
   std::error_code error;
   for (int earlier = 0; earlier < frame; ++earlier) {

@@ -14,9 +14,9 @@ class FieldWriter {
   // Makes the folder; throws RunError when it cannot. All that is passed must outlive the writer.
   FieldWriter(const Body& body, const Model& model, const RunFolder& folder, double fps);
 
-  // Writes a frame and brings the collection up to date, so that it can be opened while the film is made; a film that
-  // goes on has in it what was written before. workspace:
-  // of the step that led to the state; contact forces are written where there are colliders. Throws RunError.
+  // Writes a frame and brings the collection up to date, so that it can be opened while the film is made; in a film
+  // that was resumed it holds what was written before, too. workspace: of the step that led to the state; contact
+  // forces are written where there are colliders. Throws RunError.
   void add(int frame, const State& state, const FrameInputs& inputs, const Workspace& workspace);
 
  private:

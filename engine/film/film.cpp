@@ -79,7 +79,7 @@ bool remembers_steps(const Script& script) {
   return remembers_steps(script.scene());
 }
 
-// What the folder holds must be all that a film needs that starts there.
+// Checks that the folder holds all that a film needs which starts there.
 void check_folder(const FilmPlan& plan, const LoadedFilm& film, const FilmStart& start) {
   const SceneDef& scene = film.script.scene();
   check_save_states(plan.save_states, scene, start.path, start.kept_frames());

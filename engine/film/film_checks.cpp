@@ -103,7 +103,7 @@ std::optional<Checkpoint> checkpoint_in(const std::filesystem::path& run, const 
   if (checkpoint.frames > frames)
     throw InputError("--resume", fmt::format("the film in {} has {} frames already, which is more than {}",
                                              run.string(), checkpoint.frames, frames));
-  say(stderr, fmt::format("note: going on behind frame {} of {}\n", checkpoint.frames, frames));
+  say(stderr, fmt::format("note: resuming after frame {} of {}\n", checkpoint.frames, frames));
   return checkpoint;
 }
 
@@ -141,7 +141,7 @@ std::filesystem::path full_path(const std::filesystem::path& path) {
                                            error);
 }
 
-// Whether a run keeps a file of its own there, or may.
+// Whether a run keeps, or may keep, a file of its own there.
 bool is_of_run(const std::filesystem::path& file, const std::filesystem::path& run) {
   const std::filesystem::path inside = full_path(file).lexically_relative(full_path(run));
   if (inside.empty()) return false;

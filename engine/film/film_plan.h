@@ -10,7 +10,7 @@
 
 namespace supple {
 
-enum class FilmPictures { none, last, all };  // which frames are drawn
+enum class FilmPictures { none, last, all };  // the frames that are drawn
 
 struct FilmPlan {
   std::string scene;                       // a file of a scene or replay, or the name of one that ships
@@ -21,7 +21,7 @@ struct FilmPlan {
 
   std::string out;                // folder of the run; empty: out/NAME
   bool folder_is_locked = false;  // the caller already holds the lock on `out`
-  bool resume = false;            // go on from the folder's checkpoint
+  bool resume = false;            // from the folder's checkpoint
   int checkpoint_every = 60;      // frames; 0: never
 
   int threads = 0;  // of the solver; 0: all cores

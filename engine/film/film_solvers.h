@@ -14,7 +14,8 @@ class ErrorMeter {
  public:
   virtual ~ErrorMeter() = default;
 
-  // Equation 12 for a step from `before` to `after`; nothing where there is no room below the start but round-off.
+  // Evaluates equation 12 for a step from `before` to `after`. Returns nothing where the objective of the start is
+  // above its minimum by round-off alone.
   virtual std::optional<double> step_error(const Model& model, const FrameInputs& inputs, const State& before,
                                            const State& after) = 0;
 };

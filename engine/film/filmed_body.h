@@ -42,7 +42,7 @@ class FilmedBody {
   const FilmSolvers& solvers_;
   Threads& threads_;
   DrivenBody driver_;
-  Triangles surface_;                        // that may touch colliders, in the model's order; empty without colliders
+  Triangles surface_;                        // the part that may touch, in the model's order; empty without colliders
   std::unique_ptr<ErrorMeter> error_meter_;  // once an error is asked for
   std::uint64_t metered_model_ = 0;          // id of the model's values that the meter holds for
   PointCacheWriter motion_;

@@ -1,5 +1,5 @@
-// Drawing and compressing, each on a thread of its own behind a bounded queue: a slow disk slows the film and loses
-// nothing.
+// Draws and compresses frames, each on a thread of its own that is fed through a bounded queue: a slow disk slows the
+// film and loses nothing.
 #pragma once
 
 #include <filesystem>
@@ -20,13 +20,13 @@ class Pictures {
   Pictures(const Stage& stage, GlChoice gl, const std::filesystem::path& shaders, const RunFolder& folder);
   ~Pictures() { finish(); }
 
-  // False when a stage has failed.
+  // Queues a frame for drawing. Returns false when a stage has failed.
   bool put(int frame, DrawList list) { return lists_.push({frame, std::move(list)}); }
 
   // Waits until every frame that was put is on the disk.
   void finish();
 
-  // What became of the frames that reached the disk since this was asked last, in their order.
+  // The frames that reached the disk since this was called last, in their order, and their times.
   struct Written {
     int frame;
     double render_ms, encode_ms;

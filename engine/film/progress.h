@@ -1,4 +1,4 @@
-// How far a film has come, for people.
+// Tells people how far a film has come.
 #pragma once
 
 #include <fmt/core.h>

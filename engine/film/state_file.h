@@ -1,4 +1,4 @@
-// Folders that hold one step's problem: state.json and NumPy arrays. docs/states.md has the format.
+// Folders that hold one step's problem: state.json and NumPy arrays. docs/states.md describes the format.
 #pragma once
 
 #include <filesystem>

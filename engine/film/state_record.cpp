@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* format_name = "supple record 1";
 constexpr std::string_view first_bytes = "{\"format\":\"supple record ";  // of all versions
 
-// Of a vertex, in the order of the input file.
+// One vertex's record. Vertices stand in the order of the input file.
 struct VertexRecord {
   std::array<float, 3> position;  // [m]
   std::uint32_t hash;             // of position and velocity
@@ -58,7 +58,7 @@ std::string line_of(const RecordHead& head) {
   return json.dump() + '\n';
 }
 
-// Where the frames behind the first ones begin.
+// Where in the file the frames after the first ones begin.
 std::size_t bytes_behind(const RecordHead& head, int frames) {
   return line_of(head).size() + bytes_of_frame(head) * static_cast<std::size_t>(frames);
 }
@@ -162,7 +162,7 @@ StateVerifier::StateVerifier(const std::filesystem::path& path, const RecordHead
   recorded_frames_ = static_cast<int>(bytes / bytes_of_frame(head_));
   if (recorded_frames_ == 0) throw InputError(source, "holds no whole frame");
   if (const std::size_t rest = bytes % bytes_of_frame(head_); rest != 0) {
-    throw InputError(source, fmt::format("is damaged: behind {} whole frames of {} bytes there are {} bytes more",
+    throw InputError(source, fmt::format("is damaged: after {} whole frames of {} bytes there are {} bytes more",
                                          recorded_frames_, bytes_of_frame(head_), rest));
   }
   file_.seekg(begin + static_cast<std::streamoff>(bytes_of_frame(head_) * skipped_frames));

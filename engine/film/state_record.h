@@ -15,7 +15,7 @@
 
 namespace supple {
 
-// What a record says of itself.
+// The head of a record: what it was made of.
 struct RecordHead {
   std::string program, kernels;  // identities: the same bits are promised only where both are the same
   std::string film;              // JSON of the scene and the replay
@@ -26,7 +26,7 @@ struct RecordHead {
   std::vector<Body> bodies;
 };
 
-// No file yet, an empty one, or a record of any version.
+// Whether a record may be written to this path: there is no file yet, an empty one, or a record of any version.
 bool may_be_recorded_over(const std::filesystem::path& path);
 
 // Throws InputError where the file is not a record that begins with the first frames of the film.
@@ -34,8 +34,8 @@ void check_kept_record(const std::filesystem::path& path, const RecordHead& head
 
 class StateRecorder {
  public:
-  // Starts a file, or goes on behind the first frames of one. Throws RunError when it cannot be written, InputError as
-  // check_kept_record.
+  // Starts a file, or continues one after its first frames. Throws RunError when it cannot be written, InputError as
+  // check_kept_record does.
   StateRecorder(const std::filesystem::path& path, const RecordHead& head, int kept_frames);
   void add(const Model& model, const State& state);  // body by body, frame by frame
 
@@ -56,10 +56,11 @@ class StateVerifier {
   StateVerifier(const std::filesystem::path& path, const RecordHead& now, std::optional<double> tolerance,
                 int skipped_frames);
 
-  // What is said before the run: that the scene is not the recorded one, and in what. Empty where it is.
+  // A remark for before the run: that the scene is not the recorded one, and in what it differs. Empty where it is.
   const std::string& remark() const { return remark_; }
 
-  // Body by body, frame by frame. Returns what differs, or nothing; behind the end of the record, nothing.
+  // Body by body, frame by frame. Returns in what it differs; nothing where it does not, and after the end of the
+  // record.
   std::string compare(int frame, const Model& model, const State& state);
 
   // Once the film has so many frames.
