@@ -1,12 +1,13 @@
 #include <fmt/core.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 
 #include "app/bench/bench.h"
-#include "app/frame_loop.h"
 #include "app/verbs.h"
 #include "base/error.h"
+#include "base/interrupts.h"
 
 namespace supple {
 namespace {

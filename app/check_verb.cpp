@@ -1,10 +1,12 @@
 #include <fmt/core.h>
 
-#include "app/film_run.h"
+#include <CLI/CLI.hpp>
+
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
-#include "scene/assemble.h"
+#include "film/places.h"
+#include "scene/script_trial.h"
 #include "scene/sweep.h"
 #include "scene/warnings.h"
 

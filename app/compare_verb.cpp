@@ -1,12 +1,14 @@
 #include <fmt/core.h>
 
+#include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
-#include "app/run_comparison.h"
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
 #include "output/report_table.h"
+#include "output/run_comparison.h"
 #include "output/whole_file.h"
 
 namespace supple {
@@ -31,7 +33,7 @@ std::string states_text(const RunComparison& c) {
   return text;
 }
 
-// Of bodies whose saved motion is not that of the states; else empty.
+// Tells of bodies whose saved motion is not that of the states; empty where there are none.
 std::string motion_text(const RunComparison& c) {
   std::string text;
   for (const BodyComparison& body : c.bodies) {
@@ -131,7 +133,7 @@ std::string csv_of(const RunComparison& c) {
   return csv_text(records);
 }
 
-// Status 1 has a meaning here, so a place that cannot be written is told as wrong input.
+// Status 1 means here that the runs differ, so a file that cannot be written is refused as wrong input.
 void write_csv(const std::string& file, const RunComparison& comparison) {
   try {
     write_whole_file(file, csv_of(comparison));

@@ -1,10 +1,12 @@
-// What a shell asks while a command is typed. The answer comes from the command line's own description, so there is no
-// second list of verbs and options to keep.
+// Answers what a shell asks while a command is typed: which words fit. The answer comes from the command line's own
+// description, so there is no second list of verbs and options to keep.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 
 #include "app/verbs.h"
 #include "base/console.h"
+#include "film/places.h"
 
 namespace supple {
 namespace {
@@ -45,7 +47,7 @@ Words choices_of(const CLI::Option& option) {
   return words;
 }
 
-// What an option or a place on the line can hold. Names that ship go by the place's own name.
+// The words that an option or a place on the line can hold. Its own name tells which of the names that ship fit.
 Words values_of(const CLI::Option& option) {
   Words words = choices_of(option);
   if (!words.empty()) return words;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -8,11 +9,12 @@
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/text.h"
+#include "base/variants.h"
+#include "film/places.h"
 #include "geometry/surface_file.h"
 #include "output/child_program.h"
 #include "output/run_folder.h"
 #include "render/renderer.h"
-#include "base/variants.h"
 
 namespace supple {
 namespace {
@@ -29,7 +31,7 @@ struct Finding {
 
 constexpr std::uintmax_t enough_disk = 1'000'000'000;  // bytes: some hundred frames at 1280 x 720, and the film
 
-// A triangle, drawn with the film's own shaders.
+// Draws a triangle with the film's own shaders, and tells whether that works.
 Finding opengl() {
   Finding finding{"OpenGL", false, true, "", "draws the pictures", "libosmesa6, or libegl1 and libgl1-mesa-dri"};
   try {
@@ -119,7 +121,7 @@ Finding disk() {
   return finding;
 }
 
-// What the build may use of the processor, and whether it is there. A build for this machine alone has no other
+// Tells which instructions the build uses, and whether the processor has them. A build for one machine has no other
 // kernels.
 Finding processor() {
   std::vector<std::string> missing, used;

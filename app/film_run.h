@@ -1,43 +1,33 @@
-// A film from the command line to its folder: what the verbs that run a scene have in common.
+// A film from the command line to its folder, with words on the terminal: what the verbs that run a scene have in
+// common. Not here: the film itself (film/film.h).
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "app/frame_loop.h"
 #include "app/verbs.h"
 #include "base/trace.h"
+#include "film/film.h"
 
 namespace supple {
 
-// As the command line gives it.
-struct FilmRequest {
-  std::string scene;
-  std::optional<std::size_t> sweep_point;  // of the scene's sweep; otherwise the scene as it stands
-  std::string out;
-  bool folder_is_held = false;  // who calls has the lock of `out`
-  int frames = 0;               // 0: the scene's
-  int threads = 0;
-  std::vector<std::string> set;
-  int error_every = 0;
-  int fields_every = 0;
-  std::vector<int> save_states;
-  long long seed = -1;
-  bool no_video = false, no_images = false, last_image_only = false, trace = false, quiet = false, json = false;
-  bool table = true;  // at the end
-  std::string gl = "auto";
-  int checkpoint_every = 60;
-  bool resume = false;
-  std::string record, verify;
-  std::optional<double> tolerance;
+// A film as the command line asks for it.
+struct FilmCommand {
+  FilmPlan plan;
+  bool json = false;  // the result as one line of JSON
+  bool table = true;  // the table of times at the end
 };
 
-// The options that every run of a scene has; to resume is for single films.
-void add_film_options(CLI::App& verb, FilmRequest& request);
+// Adds the options that every run of a scene has. --resume is not among them: it is for single films.
+void add_film_options(CLI::App& verb, FilmCommand& command);
 
-// What is known of a run once it is over, for who looks closer.
+// Makes a verb one that films what its argument names. words: as the program was called.
+struct FilmArgument {
+  const char *name, *meaning;
+};
+void add_film(CLI::App& verb, const FilmArgument& argument, Action& action, const std::vector<std::string>& words);
+
+// What is known of a run once it is over, for a caller that looks closer.
 struct FilmRecord {
   RunInfo info;
   std::filesystem::path folder;
@@ -47,21 +37,8 @@ struct FilmRecord {
   std::vector<ThreadTrace> trace;  // when one was asked for
 };
 
-// Makes a verb one that films what its argument names.
-struct FilmArgument {
-  const char *name, *meaning;
-};
-void add_film(CLI::App& verb, const FilmArgument& argument, Action& action, const std::vector<std::string>& command);
-
-// Every change of a script once, so that what cannot be is said before anything is written. Throws InputError with all
-// that the bodies refuse.
-void try_changes(const Script& script, std::vector<Body> bodies);
-
-// What is legal and unwise about a scene and its changes.
-std::vector<Problem> all_warnings(const Script& script, const std::vector<Body>& bodies);
-
-// Runs it and tells how it went; returns the exit status. command: as it was called, for run.json. record: null when
-// nobody asks.
-int run_film(const FilmRequest& request, const std::vector<std::string>& command, FilmRecord* record = nullptr);
+// Makes a film and tells how it went. Returns the exit status. words: as the program was called, for run.json. record:
+// null where the caller does not look closer.
+int run_film(const FilmCommand& command, const std::vector<std::string>& words, FilmRecord* record = nullptr);
 
 }  // namespace supple

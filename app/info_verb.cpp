@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 #include <thread>
@@ -8,12 +9,13 @@
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
+#include "film/places.h"
 #include "geometry/mesh_file.h"
 
 namespace supple {
 namespace {
 
-// The kind of thing goes by what it is on the disk: a folder, a .mesh file, else a scene.
+// What an input is follows from what lies on the disk: a folder is a run, a .mesh file a mesh, all else a scene.
 int inform(const std::string& input, bool live) {
   std::error_code error;
   const std::filesystem::path path = input;

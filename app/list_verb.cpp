@@ -1,8 +1,11 @@
 #include <fmt/core.h>
 
+#include <CLI/CLI.hpp>
+
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/text.h"
+#include "film/places.h"
 #include "scene/scene_reader.h"
 #include "scene/script.h"
 

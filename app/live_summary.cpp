@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "app/summary.h"
-#include "app/verbs.h"
 #include "base/text.h"
 #include "base/timing.h"
+#include "film/places.h"
 #include "scene/assemble.h"
 #include "scene/script.h"
 #include "sim/model/model_values.h"
@@ -13,7 +13,7 @@
 namespace supple {
 namespace {
 
-// Least of three, on this machine [ms].
+// The least time of three factorisations on this machine [ms].
 double cost_of_factor(const Body& body) {
   Model model = build_model(body.description);
   ModelValues values(model, body.description);

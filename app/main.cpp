@@ -1,9 +1,10 @@
-// supple: films of soft bodies from scene files. Exit status: 0 done, 1 the run failed, 2 the input is wrong, 130
-// interrupted.
+// The program supple makes films of soft bodies from scene files. Exit status: 0 done, 1 the run failed, 2 the input is
+// wrong, 130 interrupted.
 #include <fcntl.h>
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
 #include <new>
@@ -17,7 +18,7 @@
 
 namespace {
 
-// A first word that is no verb; CLI11 would say that a subcommand is required.
+// The message for a first word that is no verb, for which CLI11 would only say that a subcommand is required.
 std::string unknown_word(const CLI::App& app, const std::string& word) {
   std::vector<std::string> known = {"--help", "--version"};
   for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
@@ -68,8 +69,8 @@ int run(int argc, char** argv) {
   return status == 0 && !said ? 1 : status;
 }
 
-// A file that is opened while a standard stream is closed gets its number, and then the stream's words. Who closes one
-// wants to hear nothing.
+// A file that is opened while a standard stream is closed would get the stream's number, and then its words. A user who
+// closes a stream wants to hear nothing, so such a stream leads nowhere.
 void open_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(stream, F_GETFD) < 0) (void)::open("/dev/null", O_RDWR);  // the lowest that is free: this one
@@ -79,7 +80,7 @@ void open_standard_streams() {
 
 int main(int argc, char** argv) {
   open_standard_streams();
-  std::signal(SIGPIPE, SIG_IGN);  // who stops listening does not end a run
+  std::signal(SIGPIPE, SIG_IGN);  // a run continues when its listener has gone
   try {
     return run(argc, argv);
   } catch (const supple::InputError& error) {

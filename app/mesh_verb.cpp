@@ -1,10 +1,13 @@
 #include <fmt/core.h>
 
+#include <CLI/CLI.hpp>
+
 #include "app/summary.h"
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
 #include "base/timing.h"
+#include "film/places.h"
 #include "geometry/mesh_file.h"
 #include "geometry/tetrahedralize.h"
 #include "scene/shape_reader.h"

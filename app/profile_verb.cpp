@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 #include <sys/wait.h>
 
+#include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
 
@@ -9,8 +10,10 @@
 #include "base/console.h"
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/interrupts.h"
 #include "base/text.h"
 #include "base/timing.h"
+#include "film/places.h"
 #include "output/child_program.h"
 #include "output/whole_file.h"
 #include "output/zone_comparison.h"
@@ -19,8 +22,8 @@
 namespace supple {
 namespace {
 
-struct ProfileRequest {
-  FilmRequest film;
+struct ProfileCommand {
+  FilmCommand film;
   int repeats = 10;
   std::vector<std::string> compared;  // two files, or none
 };
@@ -49,27 +52,28 @@ long lost_zones(const std::vector<ThreadTrace>& threads) {
   return lost;
 }
 
-// Leaves the profile in the folder and tells of it.
-void report(const ProfileRequest& request, const ZoneProfile& profile, const std::filesystem::path& folder) {
+// Writes the profile into the folder and tells about it.
+void report(const ProfileCommand& request, const ZoneProfile& profile, const std::filesystem::path& folder) {
   write_whole_file(folder / "zones.json", zones_json(profile));
   std::string no_plot;
   std::error_code error;
-  const bool traced = std::filesystem::exists(folder / "trace.json", error);  // a repeat that died left none
+  const bool traced = std::filesystem::exists(folder / "trace.json", error);  // a repeat that was killed left none
   const bool plotted = write_plot(frame_time_plot(profile), folder, &no_plot);
   if (request.film.json) {
     say(stdout, summary_json(profile));
-  } else if (!request.film.quiet) {
+  } else if (!request.film.plan.quiet) {
     say(stdout, fmt::format("\n{}\n  zones    {}\n", zone_table(profile), (folder / "zones.json").string()));
     if (traced) say(stdout, fmt::format("  trace    {}\n", (folder / "trace.json").string()));
     if (plotted) say(stdout, fmt::format("  plot     {}\n", (folder / "frame-times.svg").string()));
   }
-  if (!plotted && !request.film.quiet) say(stderr, fmt::format("note: {}\n", no_plot));
+  if (!plotted && !request.film.plan.quiet) say(stderr, fmt::format("note: {}\n", no_plot));
 }
 
-// One run in this process.
-int profile_once(const ProfileRequest& request, const std::vector<std::string>& command) {
-  FilmRequest film = request.film;
-  film.trace = film.no_video = true;
+// Profiles one run in this process.
+int profile_once(const ProfileCommand& request, const std::vector<std::string>& command) {
+  FilmCommand film = request.film;
+  film.plan.trace = true;
+  film.plan.video = false;
   film.json = film.table = false;
   FilmRecord record;
   const int status = run_film(film, command, &record);
@@ -82,7 +86,7 @@ int profile_once(const ProfileRequest& request, const std::vector<std::string>& 
   return 0;
 }
 
-// The same command for one repeat.
+// The command line of one repeat.
 std::vector<std::string> one_repeat(const std::vector<std::string>& command, const std::filesystem::path& folder) {
   std::vector<std::string> words = {std::filesystem::read_symlink("/proc/self/exe").string()};
   for (std::size_t i = 1; i < command.size(); ++i) {
@@ -98,12 +102,13 @@ std::vector<std::string> one_repeat(const std::vector<std::string>& command, con
   return words;
 }
 
-// Each repeat is a process of its own: where its memory lies changes the time of a zone by more than 10 %, for all of
-// its frames. Those before one that fails or is interrupted are reported.
-int profile(const ProfileRequest& request, const std::vector<std::string>& command) {
-  const SceneDef scene = Script::load(scene_file(request.film.scene), assets_folder(), request.film.set).scene();
-  const std::filesystem::path folder =
-      request.film.out.empty() ? std::filesystem::path("out") / scene.name : std::filesystem::path(request.film.out);
+// Profiles repeats, each in a process of its own, because the place of a process's memory changes the time of a zone by
+// more than 10 %, for all of its frames. Repeats before one that fails or is interrupted are reported.
+int profile(const ProfileCommand& request, const std::vector<std::string>& command) {
+  const SceneDef scene =
+      Script::load(scene_file(request.film.plan.scene), assets_folder(), request.film.plan.settings).scene();
+  const std::filesystem::path folder = request.film.plan.out.empty() ? std::filesystem::path("out") / scene.name
+                                                                     : std::filesystem::path(request.film.plan.out);
   catch_interrupts();
   std::optional<ZoneProfile> all;
   int status = 0;
@@ -124,7 +129,7 @@ int profile(const ProfileRequest& request, const std::vector<std::string>& comma
     const ZoneProfile one = read_zones(folder / "zones.json");
     if (all) add_repeats(one, *all);
     if (!all) all = one;
-    if (!request.film.quiet)
+    if (!request.film.plan.quiet)
       say(stderr, fmt::format("repeat {} of {}: {:.1f} s\n", repeat + 1, request.repeats, watch.elapsed_ms() / 1000));
   }
   if (status == 130)
@@ -134,13 +139,13 @@ int profile(const ProfileRequest& request, const std::vector<std::string>& comma
   return status;
 }
 
-// A zones.json, or the one in a profile's folder.
+// The zones.json that is meant: the file itself, or the one in a profile's folder.
 std::string zones_file(const std::string& name) {
   std::error_code error;
   return std::filesystem::is_directory(name, error) ? (std::filesystem::path(name) / "zones.json").string() : name;
 }
 
-int compare(const ProfileRequest& request) {
+int compare(const ProfileCommand& request) {
   const std::string before_name = zones_file(request.compared[0]), after_name = zones_file(request.compared[1]);
   const ZoneProfile before = read_zones(before_name), after = read_zones(after_name);
   std::vector<Problem> problems;
@@ -166,15 +171,15 @@ int compare(const ProfileRequest& request) {
   return 0;
 }
 
-int run(const ProfileRequest& request, const std::vector<std::string>& command) {
+int run(const ProfileCommand& request, const std::vector<std::string>& command) {
   if (request.compared.empty()) {
-    if (request.film.scene.empty()) throw InputError("profile", "needs a SCENE, or --compare with two zones.json");
+    if (request.film.plan.scene.empty()) throw InputError("profile", "needs a SCENE, or --compare with two zones.json");
     return request.repeats == 1 ? profile_once(request, command) : profile(request, command);
   }
   return compare(request);
 }
 
-// A comparison runs nothing, so what is said of a run has no meaning with it.
+// A comparison runs nothing, so the options of a run have no meaning with it.
 void check_compare_options(const CLI::App& verb) {
   for (const CLI::Option* option : verb.get_options()) {
     const std::string name = option->get_name();
@@ -186,14 +191,14 @@ void check_compare_options(const CLI::App& verb) {
 }  // namespace
 
 void add_profile(CLI::App& app, Action& action, const std::vector<std::string>& command) {
-  auto request = std::make_shared<ProfileRequest>();
+  auto request = std::make_shared<ProfileCommand>();
   CLI::App* verb = app.add_subcommand("profile", "Where the time of a scene's frames goes; two profiles compared.");
   verb->footer(
       "Examples: supple profile squirrel --frames 100 --no-images --out out/before\n"
       "          supple profile --compare out/before/zones.json out/after/zones.json\n"
       "Leaves zones.json, frame-times.svg and trace.json (of the last repeat) beside what render leaves, without a "
       "video.");
-  verb->add_option("SCENE|REPLAY", request->film.scene,
+  verb->add_option("SCENE|REPLAY", request->film.plan.scene,
                    "scene or replay file, or the name of one that ships (supple list)");
   verb->add_option("--repeats", request->repeats, "how often the scene is run")
       ->check(CLI::Range(1, 1000))

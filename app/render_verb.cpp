@@ -1,3 +1,5 @@
+#include <CLI/CLI.hpp>
+
 #include "app/film_run.h"
 #include "app/verbs.h"
 

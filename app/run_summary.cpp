@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "app/summary.h"
 #include "base/text.h"
@@ -22,7 +23,7 @@ std::string value_at(const Json& info, const std::vector<std::string>& path) {
                                       : value->dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-// As it can be typed again.
+// The command as it can be typed again.
 std::string command_text(const Json& info) {
   if (!info.contains("command") || !info["command"].is_array()) return "not known";
   std::vector<std::string> words;
@@ -37,7 +38,7 @@ struct FileCount {
   std::uintmax_t bytes = 0;
 };
 
-// What lies directly in a run's folder: files by name, folders (with a '/') with all that is in them.
+// Counts what lies directly in a run's folder: files by name, and folders (with a '/') with all that is in them.
 std::map<std::string, FileCount> contents_of(const std::filesystem::path& folder) {
   std::map<std::string, FileCount> contents;
   std::error_code error;
@@ -57,7 +58,7 @@ std::map<std::string, FileCount> contents_of(const std::filesystem::path& folder
   return contents;
 }
 
-// Pictures from frame 0 on without a gap.
+// Counts the pictures from frame 0 on up to the first gap.
 int whole_pictures(const std::filesystem::path& folder) {
   std::error_code error;
   int frame = 0;
@@ -97,21 +98,22 @@ std::string files_text(const std::filesystem::path& folder) {
 }  // namespace
 
 std::string run_summary(const RunRecord& run) {
+  const Json info = Json::parse(run.info_json);
   std::string text = fmt::format("  run             {}\n", printable(run.folder.string()));
-  text += fmt::format("  command         {}\n", command_text(run.info));
-  text += fmt::format("  program         {} {}, {} kernels, {}\n", value_at(run.info, {"program", "name"}),
-                      value_at(run.info, {"program", "version"}), value_at(run.info, {"program", "kernels"}),
-                      value_at(run.info, {"program", "build"}));
-  text += fmt::format("  machine         {}, {} threads\n", value_at(run.info, {"machine", "cpu"}),
-                      value_at(run.info, {"machine", "threads"}));
-  text += fmt::format("  scene           {}\n{}", value_at(run.info, {"scene_file"}), bodies_text(run.info));
+  text += fmt::format("  command         {}\n", command_text(info));
+  text += fmt::format("  program         {} {}, {} kernels, {}\n", value_at(info, {"program", "name"}),
+                      value_at(info, {"program", "version"}), value_at(info, {"program", "kernels"}),
+                      value_at(info, {"program", "build"}));
+  text += fmt::format("  machine         {}, {} threads\n", value_at(info, {"machine", "cpu"}),
+                      value_at(info, {"machine", "threads"}));
+  text += fmt::format("  scene           {}\n{}", value_at(info, {"scene_file"}), bodies_text(info));
   text += fmt::format("  ended           {}\n",
                       run.ended() == "running" ? "not yet, or the run was killed" : printable(run.ended()));
   text +=
       fmt::format("  frames          {} in profile.json, {} pictures\n", run.rows.size(), whole_pictures(run.folder));
-  if (run.info.contains("resumed_at"))
-    text += fmt::format("  resumed         behind frames {}\n", value_at(run.info, {"resumed_at"}));
-  text += fmt::format("  film            {}\n", run.info.contains("video") ? value_at(run.info, {"video"}) : "none");
+  if (info.contains("resumed_at"))
+    text += fmt::format("  resumed         after frames {}\n", value_at(info, {"resumed_at"}));
+  text += fmt::format("  film            {}\n", info.contains("video") ? value_at(info, {"video"}) : "none");
   if (run.has_profile) {
     text += fmt::format("  errors          {}\n", errors_text(run.rows));
     if (!run.rows.empty()) text += "\n" + profile_table(run.rows);

@@ -2,44 +2,26 @@
 
 #include <algorithm>
 
+#include "app/solvers.h"
 #include "app/summary.h"
-#include "app/verbs.h"
 #include "base/text.h"
-#include "baselines/make_rule.h"
+#include "film/frame_cost.h"
+#include "film/places.h"
 #include "output/profile.h"
-#include "scene/assemble.h"
-#include "scene/obstacle.h"
 #include "scene/script.h"
-#include "sim/solver/step.h"
 
 namespace supple {
 namespace {
 
 constexpr int tried_frames = 5;
 
-// Median of the first frames' step_ms, or why there is none.
-std::string cost_text(const SceneDef& scene, const Body& body, const Model& model, const CollisionSet& set,
-                      Threads& threads) {
-  FrameInputs inputs{
-      scene.gravity, {}, {}, settings_of(body.def.solver.method, body.def.solver.settings), &set.colliders};
-  const auto rule = make_rule(body.def.solver.method, model);
-  State state = start_state(model, body);
-  const Anchors anchors = rest_anchors(model, body);
-  Workspace workspace;
-  workspace.threads = &threads;
-  const double h = scene.time_step();
-  std::vector<double> frames(std::min(tried_frames, scene.frames), 0.0);
-  for (std::size_t number = 0; number < frames.size() * scene.substeps; ++number) {
-    const double from = double(number) * h;
-    handle_targets(model, body, anchors, from + h, 1, inputs.targets);
-    if (model.scheme.theta < 1) handle_targets(model, body, anchors, from + 0.5 * h, 1, inputs.middle_targets);
-    collider_motions(set, {from, from + h}, inputs.collider_motions);
-    const StepReport& report = step(model, inputs, state, workspace, *rule);
-    if (report.failed) return fmt::format("step {} fails: {}", number, report.failure.what);
-    frames[number / scene.substeps] += report.step_ms;
-  }
-  return fmt::format("{:.2f} ms a frame (median of the first {}, {} threads)", distribution_of(frames).p50,
-                     frames.size(), threads.count());
+// The median of the first frames' steps, or why there is none.
+std::string cost_text(const SceneDef& scene, Body& body, Model& model, const CollisionSet& set, Threads& threads) {
+  const FrameCost cost =
+      cost_of_frames(scene, body, model, set, all_solvers().steps, threads, std::min(tried_frames, scene.frames));
+  if (!cost.failure.empty()) return cost.failure;
+  return fmt::format("{:.2f} ms a frame (median of the first {}, {} threads)", distribution_of(cost.frame_ms).p50,
+                     cost.frame_ms.size(), threads.count());
 }
 
 std::string substance_text(const Body& body) {
@@ -69,9 +51,9 @@ std::string handle_text(const Body& body, std::size_t index) {
                      center.y(), center.z(), times);
 }
 
-std::string body_text(const SceneDef& scene, const Body& body, const CollisionSet& set, Threads& threads) {
+std::string body_text(const SceneDef& scene, Body& body, const CollisionSet& set, Threads& threads) {
   const TetMesh& mesh = body.description.mesh;
-  const Model model = build_model(body.description);
+  Model model = build_model(body.description);
   const Vec3 extent = bounds_of(mesh.rest).extent();
   std::string text = fmt::format("\nbody '{}'\n  made of         {}\n", body.def.name, printable(body.source));
   text += fmt::format("  size            {} vertices, {}\n", mesh.rest.rows(), substance_text(body));
@@ -90,14 +72,14 @@ std::string body_text(const SceneDef& scene, const Body& body, const CollisionSe
   return text + fmt::format("  costs           {}\n", cost_text(scene, body, model, set, threads));
 }
 
-// What a change becomes, and how.
+// The value that a change leads to, and how.
 std::string course_text(const TimedChange& change) {
   if (change.over <= 0) return fmt::format("becomes {}", printable(change.to.whole_text()));
   return fmt::format("from {} to {} over {:g} s, {}{}", change.from->whole_text(), change.to.whole_text(), change.over,
                      name_of(change.ease), change.by == RampRule::ratio ? " by ratio" : "");
 }
 
-// The frames in which a change is at work, and what it asks for in each of them.
+// The frames in which a change is at work, and what must be made anew in each of them.
 std::string frames_text(const Script& script, const TimedChange& change) {
   int first = -1, count = 0;
   for (int frame = 0; frame < script.scene().frames; ++frame) {
@@ -111,7 +93,7 @@ std::string frames_text(const Script& script, const TimedChange& change) {
   return fmt::format("in frames {} to {}{}{}", first, first + count - 1, cost.empty() ? "" : ", each: ", cost);
 }
 
-// In the order in which they begin.
+// Lists the changes in the order in which they begin.
 std::string changes_text(const Script& script) {
   std::string text = fmt::format("changes         {} while it runs\n", script.changes().size());
   for (const TimedChange& change : script.changes()) {
@@ -126,7 +108,7 @@ std::string changes_text(const Script& script) {
 std::string scene_summary(const std::filesystem::path& file, int thread_count) {
   const Script script = Script::load(file, assets_folder(), {});
   const SceneDef& scene = script.scene();
-  const std::vector<Body> bodies = assemble(scene);
+  std::vector<Body> bodies = assemble(scene);
   const CollisionSet set = collision_set(scene);
   Threads threads(thread_count);
   std::string text = fmt::format("scene           {}{}\n", printable(scene.name),
@@ -139,7 +121,7 @@ std::string scene_summary(const std::filesystem::path& file, int thread_count) {
   for (const ColliderDef& collider : scene.colliders)
     text += fmt::format("collider        '{}', friction {:g}{}\n", collider.name, collider.friction,
                         collider.keys.empty() ? "" : ", moves");
-  for (const Body& body : bodies) text += body_text(scene, body, set, threads);
+  for (Body& body : bodies) text += body_text(scene, body, set, threads);
   return text;
 }
 

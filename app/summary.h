@@ -1,4 +1,4 @@
-// What `supple info` says, as text for people: of a mesh, of a scene before it is run, of the folder of a run after it.
+// Makes the text of `supple info`: about a mesh, about a scene before it is run, and about the folder of a run.
 #pragma once
 
 #include <filesystem>
@@ -9,18 +9,18 @@
 
 namespace supple {
 
-// Counts, extent and quality.
+// Tells a mesh's counts, extent and quality.
 std::string mesh_summary(const TetMesh& mesh);
 
-// What the film of a scene or replay and its bodies are, and what a frame's steps cost on this machine: the first
-// frames are simulated, on this many threads, and nothing is written. Throws InputError as loading a scene does.
+// Describes a scene or replay and its bodies, and tells what a frame's steps cost on this machine: the first frames are
+// simulated, on this many threads, and nothing is written. Throws InputError as loading a scene does.
 std::string scene_summary(const std::filesystem::path& file, int threads);
 
-// What of a scene or replay may change while it runs: path, type, unit, value, what is allowed, what a change costs. A
-// new factor is timed. Throws InputError as loading a scene does.
+// Lists the values of a scene or replay that may change while it runs: path, type, unit, value, what is allowed, what a
+// change costs. A new factor is timed. Throws InputError as loading a scene does.
 std::string live_summary(const std::filesystem::path& file);
 
-// What was run, how it ended, times, and the files that are there.
+// Tells what was run, how it ended, its times, and which files are there.
 std::string run_summary(const RunRecord& run);
 
 }  // namespace supple

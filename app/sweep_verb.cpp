@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <CLI/CLI.hpp>
 #include <optional>
 
 #include "app/sweep/merge.h"
@@ -9,13 +10,13 @@
 #include "base/console.h"
 #include "base/error.h"
 #include "base/text.h"
-#include "render/gl_context.h"
+#include "film/places.h"
 #include "scene/scene_reader.h"
 
 namespace supple {
 namespace {
 
-// As the command line gives it.
+// A sweep as the command line asks for it.
 struct SweepOptions {
   SweepRequest request;
   std::string out;
@@ -37,8 +38,8 @@ SweepRequest request_of(const SweepOptions& options) {
   request.title = scene.title;
   request.out =
       options.out.empty() ? std::filesystem::path("out") / (scene.name + "-sweep") : std::filesystem::path(options.out);
-  if (options.images) request.pictures = SweepPictures::all;
-  if (options.no_images) request.pictures = SweepPictures::none;
+  if (options.images) request.pictures = FilmPictures::all;
+  if (options.no_images) request.pictures = FilmPictures::none;
   return request;
 }
 

@@ -5,8 +5,8 @@
 #include <limits>
 #include <map>
 
-#include "app/bench/bench.h"
-#include "app/verbs.h"
+#include "app/bench/sections.h"
+#include "film/places.h"
 #include "scene/scene_reader.h"
 
 namespace supple {
@@ -14,7 +14,7 @@ namespace {
 
 constexpr int most_vertices = 4000;  // of subjects where every method runs to the end
 
-// Every body of every scene that ships, the smaller ones first.
+// All bodies of all scenes that ship, by scene.
 std::vector<SubjectChoice> everything() {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(assets_folder() / "scenes"))
@@ -29,13 +29,13 @@ std::vector<SubjectChoice> everything() {
   return choices;
 }
 
-struct Entrant {
-  Contestant contestant;
+struct MethodTimes {
+  SolverEntry entry;
   std::vector<std::vector<double>> times = {};  // by tolerance, by state; infinity: not reached [ms]
   int failed = 0;
 };
 
-std::vector<Entrant> entrants() {
+std::vector<MethodTimes> all_methods() {
   return {{{"ours", Method::quasi_newton, 200}},
           {{"Projective Dynamics", Method::projective_dynamics, 300}},
           {{"Chebyshev", Method::chebyshev, 300}},
@@ -54,7 +54,7 @@ std::vector<Entrant> entrants() {
 
 constexpr double tolerances[] = {1e-1, 1e-2, 1e-3, 1e-4, 1e-6};
 
-ReportPlot profile_plot(const std::vector<Entrant>& list, std::size_t t) {
+ReportPlot profile_plot(const std::vector<MethodTimes>& list, std::size_t t) {
   const std::size_t states = list.front().times.front().size();
   ReportPlot plot{fmt::format("profile-{}", t), fmt::format("Share of states solved to {:g}", tolerances[t])};
   plot.x_label = "time over the fastest method's";
@@ -66,16 +66,16 @@ ReportPlot profile_plot(const std::vector<Entrant>& list, std::size_t t) {
   plot.x_max = 100;
   plot.y_min = 0;
   plot.y_max = 1;
-  for (const Entrant& entrant : list) {
+  for (const MethodTimes& method : list) {
     std::vector<double> ratios;
     for (std::size_t s = 0; s < states; ++s) {
       double fastest = std::numeric_limits<double>::infinity();
-      for (const Entrant& other : list) fastest = std::min(fastest, other.times[t][s]);
-      if (std::isfinite(entrant.times[t][s])) ratios.push_back(entrant.times[t][s] / fastest);
+      for (const MethodTimes& other : list) fastest = std::min(fastest, other.times[t][s]);
+      if (std::isfinite(method.times[t][s])) ratios.push_back(method.times[t][s] / fastest);
     }
     std::sort(ratios.begin(), ratios.end());
-    PlotSeries curve{entrant.contestant.label};
-    curve.thick = entrant.contestant.label == "ours";
+    PlotSeries curve{method.entry.label};
+    curve.thick = method.entry.label == "ours";
     curve.x.push_back(1);
     curve.y.push_back(0);
     for (std::size_t k = 0; k < ratios.size(); ++k) {
@@ -91,7 +91,7 @@ ReportPlot profile_plot(const std::vector<Entrant>& list, std::size_t t) {
   return plot;
 }
 
-ReportTable profile_table(const std::vector<Entrant>& list, const std::string& name, const std::string& title) {
+ReportTable profile_table(const std::vector<MethodTimes>& list, const std::string& name, const std::string& title) {
   const std::size_t states = list.front().times.front().size();
   ReportTable table{name, title};
   table.note =
@@ -104,21 +104,21 @@ ReportTable profile_table(const std::vector<Entrant>& list, const std::string& n
   }
   table.columns.emplace_back("states");
   table.columns.emplace_back("runs that failed");
-  for (const Entrant& entrant : list) {
-    std::vector<std::string> row = {entrant.contestant.label, std::to_string(entrant.contestant.iterations)};
+  for (const MethodTimes& method : list) {
+    std::vector<std::string> row = {method.entry.label, std::to_string(method.entry.iterations)};
     for (std::size_t t = 0; t < std::size(tolerances); ++t) {
       int solved = 0, first = 0;
       for (std::size_t s = 0; s < states; ++s) {
-        const double own = entrant.times[t][s];
+        const double own = method.times[t][s];
         if (!std::isfinite(own)) continue;
         ++solved;
-        first += std::none_of(list.begin(), list.end(), [&](const Entrant& o) { return o.times[t][s] < own; });
+        first += std::none_of(list.begin(), list.end(), [&](const MethodTimes& o) { return o.times[t][s] < own; });
       }
       row.push_back(std::to_string(solved));
       row.push_back(std::to_string(first));
     }
     row.push_back(std::to_string(states));
-    row.push_back(std::to_string(entrant.failed));
+    row.push_back(std::to_string(method.failed));
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -127,10 +127,10 @@ ReportTable profile_table(const std::vector<Entrant>& list, const std::string& n
 }  // namespace
 
 ReportSection bench_profiles(const BenchSetting& setting) {
-  // Bodies that can touch something apart: directions see contacts in different ways.
-  std::vector<Entrant> groups[2] = {entrants(), entrants()};
+  // Bodies that can touch something are in a group of their own, because directions see contacts in different ways.
+  std::vector<MethodTimes> groups[2] = {all_methods(), all_methods()};
   for (auto& group : groups) {
-    for (Entrant& entrant : group) entrant.times.resize(std::size(tolerances));
+    for (MethodTimes& method : group) method.times.resize(std::size(tolerances));
   }
   ReportTable raw{"profiles-states", "Every state: time to each tolerance"};
   raw.columns = {"scene",
@@ -147,23 +147,23 @@ ReportSection bench_profiles(const BenchSetting& setting) {
                  "minimum confirmed"};
   int bodies = 0, unsure = 0, states_in_all = 0;
   for (const SubjectChoice& choice : everything()) {
-    const Subject subject(choice);
+    Subject subject(choice);
     if (subject.model.vertices > most_vertices) continue;
     ++bodies;
-    std::vector<Entrant>& list = groups[subject.set.colliders.empty() ? 0 : 1];
-    setting.doing(fmt::format("{}, {} ({})", choice.scene, choice.body, subject.size_text()));
-    Contest contest(subject, *setting.threads);
-    std::vector<BenchState> states = setting.states_of(subject, {6, 12, 18, 30, 42, 54, 66});
-    const ChebyshevSettings chebyshev = trained_chebyshev(contest, states[1]);
+    std::vector<MethodTimes>& list = groups[subject.set.colliders.empty() ? 0 : 1];
+    say_doing(setting, fmt::format("{}, {} ({})", choice.scene, choice.body, subject.size_text()));
+    SolverComparison comparison(subject, *setting.threads);
+    std::vector<BenchState> states = states_of(subject, {6, 12, 18, 30, 42, 54, 66}, setting);
+    const ChebyshevSettings chebyshev = trained_chebyshev(comparison, states[1]);
     states.erase(states.begin() + 1);  // it was for training
-    std::vector<Contestant> contestants;
-    for (const Entrant& entrant : list) {
-      contestants.push_back(entrant.contestant);
-      contestants.back().chebyshev = chebyshev;
+    std::vector<SolverEntry> entries;
+    for (const MethodTimes& method : list) {
+      entries.push_back(method.entry);
+      entries.back().chebyshev = chebyshev;
     }
     for (const BenchState& state : states) {
-      const std::vector<Outcome> outcomes = contest.run(state, contestants, 1, 200);
-      const Minimum lowest = contest.reference(state, outcomes);
+      const std::vector<Outcome> outcomes = comparison.run(state, entries, 1, 200);
+      const Minimum lowest = comparison.reference(state, outcomes);
       const double scale = subject.model.total_mass * std::pow(subject.model.size / subject.model.time_step, 2);
       if (!(lowest.below_y > 1e-12 * scale)) continue;  // at rest: nothing to solve
       ++states_in_all;
@@ -212,18 +212,18 @@ ReportSection bench_scenes(const BenchSetting& setting) {
   table.columns = {"scene",        "body",         "frame",        "vertices",     "method",           "to 1e-1 [ms]",
                    "to 1e-2 [ms]", "to 1e-3 [ms]", "to 1e-4 [ms]", "to 1e-6 [ms]", "minimum confirmed"};
   for (const auto& [choice, frame] : picks) {
-    const Subject subject(choice);
-    Contest contest(subject, *setting.threads);
-    const std::vector<BenchState> states = setting.states_of(subject, {frame - 6, frame});
+    Subject subject(choice);
+    SolverComparison comparison(subject, *setting.threads);
+    const std::vector<BenchState> states = states_of(subject, {frame - 6, frame}, setting);
     const BenchState& state = states.back();
-    std::vector<Contestant> contestants = {{"ours", Method::quasi_newton, 100},
-                                           {"Projective Dynamics", Method::projective_dynamics, 100},
-                                           {"Chebyshev", Method::chebyshev, 100},
-                                           {"Newton", Method::newton, 12},
-                                           {"Newton, 15 CG", Method::newton_cg(15), 40}};
-    contestants[2].chebyshev = trained_chebyshev(contest, states.front());
-    const std::vector<Outcome> outcomes = contest.run(state, contestants, 2, 2000);
-    const Minimum lowest = contest.reference(state, outcomes);
+    std::vector<SolverEntry> entries = {{"ours", Method::quasi_newton, 100},
+                                        {"Projective Dynamics", Method::projective_dynamics, 100},
+                                        {"Chebyshev", Method::chebyshev, 100},
+                                        {"Newton", Method::newton, 12},
+                                        {"Newton, 15 CG", Method::newton_cg(15), 40}};
+    entries[2].chebyshev = trained_chebyshev(comparison, states.front());
+    const std::vector<Outcome> outcomes = comparison.run(state, entries, 2, 2000);
+    const Minimum lowest = comparison.reference(state, outcomes);
     ReportPlot plot{fmt::format("scene-{}-{}", choice.scene, choice.body),
                     fmt::format("{}, {} ({})", choice.scene, choice.body, subject.size_text())};
     plot.x_label = "time [ms]";
@@ -265,7 +265,7 @@ ReportSection bench_minima(const BenchSetting& setting) {
                                             {"spline-spheres", "a"},
                                             {"spline-spheres", "b"},
                                             {"thin-sheet", "sheet"}};
-  const std::vector<Contestant> contestants = {
+  const std::vector<SolverEntry> entries = {
       {"ours", Method::quasi_newton, 5000, 20},
       {"Newton", Method::newton, 150},
       {"Newton, shifted", Method::newton_shifted, 400},
@@ -274,17 +274,17 @@ ReportSection bench_minima(const BenchSetting& setting) {
       {"frame's start", Method::lbfgs_from(StartMatrix::frame_hessian), 1000, 20}};
   int same = 0, other = 0, unfinished = 0;
   for (const SubjectChoice& choice : picks) {
-    const Subject subject(choice);
-    Contest contest(subject, *setting.threads);
-    for (const BenchState& state : setting.states_of(subject, {15, 30, 45, 60})) {
-      const std::vector<Outcome> outcomes = contest.run(state, contestants, 0);
-      const Minimum lowest = contest.reference(state, outcomes);
+    Subject subject(choice);
+    SolverComparison comparison(subject, *setting.threads);
+    for (const BenchState& state : states_of(subject, {15, 30, 45, 60}, setting)) {
+      const std::vector<Outcome> outcomes = comparison.run(state, entries, 0);
+      const Minimum lowest = comparison.reference(state, outcomes);
       for (const Outcome& outcome : outcomes) {
         const double away = (outcome.x - lowest.x).rowwise().norm().maxCoeff() / subject.model.size;
         const bool equal = !outcome.failed && away < 1e-8;
         // Another minimum is one that a search from there does not leave.
         const bool elsewhere =
-            !equal && !outcome.failed && contest.reference(state, {outcome}).below_y < (1 - 1e-9) * lowest.below_y;
+            !equal && !outcome.failed && comparison.reference(state, {outcome}).below_y < (1 - 1e-9) * lowest.below_y;
         same += equal;
         other += elsewhere;
         unfinished += !equal && !elsewhere;

@@ -1,4 +1,4 @@
-#include "app/bench/bench.h"
+#include "app/bench/sections.h"
 
 #include <fmt/core.h>
 
@@ -8,10 +8,10 @@
 #include <thread>
 
 #include "app/bench/section_file.h"
-#include "app/frame_loop.h"
 #include "base/console.h"
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/interrupts.h"
 #include "base/text.h"
 #include "base/timing.h"
 #include "base/variants.h"
@@ -19,15 +19,20 @@
 
 namespace supple {
 
-std::optional<SubjectChoice> BenchSetting::with_paper_mesh(const SubjectChoice& choice, const std::string& mesh) const {
-  if (!paper_meshes) return std::nullopt;
+std::vector<BenchState> states_of(Subject& subject, const std::vector<int>& frames, const BenchSetting& setting) {
+  return states_of(subject, frames, setting.out / "states", *setting.threads);
+}
+
+std::optional<SubjectChoice> with_paper_mesh(const BenchSetting& setting, const SubjectChoice& choice,
+                                             const std::string& mesh) {
+  if (!setting.paper_meshes) return std::nullopt;
   SubjectChoice changed = choice;
-  changed.settings.push_back(fmt::format("body.{}.mesh={}", choice.body, (*paper_meshes / mesh).string()));
+  changed.settings.push_back(fmt::format("body.{}.mesh={}", choice.body, (*setting.paper_meshes / mesh).string()));
   return changed;
 }
 
-void BenchSetting::doing(const std::string& what) const {
-  if (!quiet) say(stderr, fmt::format("  {}\n", what));
+void say_doing(const BenchSetting& setting, const std::string& what) {
+  if (!setting.quiet) say(stderr, fmt::format("  {}\n", what));
 }
 
 Summary summary_of(std::vector<double> values) {
@@ -68,11 +73,11 @@ const std::vector<Benchmark>& benchmarks() {
 
 namespace {
 
-// What a finished section must have been made with to be kept.
+// All that a finished section depends on: one that was made with something else is made again.
 std::string fingerprint(const BenchSetting& setting) {
   return fmt::format("{}; {}; {}; {}; {} threads; {}; paper meshes: {}", hash_text_form(program_identity()),
-                     program_version(), build_flags(), variant_name(best_variant()), setting.threads->count(), cpu_name(),
-                     setting.paper_meshes ? "yes" : "no");
+                     program_version(), build_flags(), variant_name(best_variant()), setting.threads->count(),
+                     cpu_name(), setting.paper_meshes ? "yes" : "no");
 }
 
 ReportPage page_of(const BenchSetting& setting, std::vector<ReportSection> sections) {
@@ -127,7 +132,7 @@ int run_benchmarks(const std::vector<std::string>& names, const BenchSetting& se
       const Stopwatch watch;
       try {
         section = b.run(setting);
-      } catch (const ContestInterrupted&) {
+      } catch (const BenchInterrupted&) {
         if (!quiet) say(stderr, "interrupted; what is finished is kept\n");
         return 130;
       }

@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "app/bench/bench.h"
-#include "app/verbs.h"
+#include "app/bench/sections.h"
 #include "baselines/hessian.h"
+#include "film/places.h"
 
 namespace supple {
 namespace {
@@ -29,9 +29,10 @@ std::vector<Mat3> cube_rotations() {
   return rotations;
 }
 
-// Stretched along x by `stretch`, then turned, about the middle.
+// The body is stretched along x by `stretch` and then turned, both about its middle.
 BenchState released(const Subject& subject, double stretch, const Mat3& rotation) {
-  BenchState state{0, rest_state(subject.model), 0};
+  BenchState state{0, start_state(subject.model, subject.body), 0};
+  state.before.v.setZero();
   const Eigen::RowVector3d middle = subject.model.rest.colwise().mean();
   const Mat3 f = rotation * Vec3(stretch, 1, 1).asDiagonal();
   state.before.x = ((subject.model.rest.rowwise() - middle) * f.transpose()).rowwise() + middle;
@@ -75,7 +76,7 @@ Dense hessian_at(const Subject& subject, const Positions& x) {
 
 ReportSection bench_table2(const BenchSetting& setting) {
   constexpr double stretch = 1.2;
-  const Subject subject({(assets_folder() / "bench" / "cube.toml").string(), "cube"});
+  Subject subject({(assets_folder() / "bench" / "cube.toml").string(), "cube"});
   const Mat3 quarter = Eigen::AngleAxisd(std::acos(-1) / 2, Vec3::UnitZ()).toRotationMatrix();
   const BenchState as_it_is = released(subject, stretch, Mat3::Identity());
   const BenchState turned = released(subject, stretch, quarter);
@@ -102,9 +103,9 @@ ReportSection bench_table2(const BenchSetting& setting) {
   add("ours", "2, turned", ours, second, 9.94);
   section.tables.push_back(std::move(table));
 
-  Contest contest(subject, *setting.threads);
-  const std::vector<Contestant> both = {{"ours", Method::quasi_newton, 30},
-                                        {"rest pose", Method::lbfgs_from(StartMatrix::rest_hessian), 30}};
+  SolverComparison comparison(subject, *setting.threads);
+  const std::vector<SolverEntry> both = {{"ours", Method::quasi_newton, 30},
+                                         {"rest pose", Method::lbfgs_from(StartMatrix::rest_hessian), 30}};
   ReportPlot plot{"figure9", "Error by iteration in both poses"};
   plot.x_label = "iteration";
   plot.y_label = "error (equation 12)";
@@ -115,8 +116,8 @@ ReportSection bench_table2(const BenchSetting& setting) {
   std::vector<double> first_curve[2];
   for (const Mat3& rotation : cube_rotations()) {
     const BenchState state = released(subject, stretch, rotation);
-    const std::vector<Outcome> outcomes = contest.run(state, both, 0);
-    const Minimum lowest = contest.reference(state, outcomes);
+    const std::vector<Outcome> outcomes = comparison.run(state, both, 0);
+    const Minimum lowest = comparison.reference(state, outcomes);
     for (int m = 0; m < 2; ++m) {
       const std::vector<double> errors = errors_of(outcomes[m], lowest.below_y);
       if (first_curve[m].empty()) first_curve[m] = errors;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/bench/bench.h"
+#include "app/bench/sections.h"
 
 namespace supple {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 // The example of all convergence figures: the twisting bar, on the paper's mesh when it is there.
 SubjectChoice twisting_bar(const BenchSetting& setting) {
   const SubjectChoice ours{"twisting-bar", "bar"};
-  return setting.with_paper_mesh(ours, "longbar2.mesh").value_or(ours);
+  return with_paper_mesh(setting, ours, "longbar2.mesh").value_or(ours);
 }
 
 constexpr int example_frame = 130;
@@ -21,7 +21,7 @@ double at_iteration(const std::vector<double>& errors, int k) {
   return !errors.empty() && errors.back() < 1e-11 ? errors.back() : std::nan("");  // it stopped at round-off, or early
 }
 
-// Curves of one state as two plots and a table.
+// Adds the curves of one state, as two plots and a table.
 void add_curves(ReportSection& section, const std::string& name, const std::vector<Outcome>& outcomes, double whole,
                 const std::string& ours) {
   ReportPlot by_iteration{name + "-iterations", "Error by iteration"}, by_time{name + "-time", "Error by time"};
@@ -69,15 +69,15 @@ void add_curves(ReportSection& section, const std::string& name, const std::vect
 }
 
 ReportSection compare(const BenchSetting& setting, const std::string& name, const std::string& heading,
-                      std::vector<Contestant> contestants, const std::string& ours, const std::string& text) {
-  const Subject subject(twisting_bar(setting));
-  Contest contest(subject, *setting.threads);
-  const std::vector<BenchState> states = setting.states_of(subject, {60, example_frame});
-  for (Contestant& contestant : contestants) {
-    if (contestant.method == Method::chebyshev) contestant.chebyshev = trained_chebyshev(contest, states[0]);
+                      std::vector<SolverEntry> entries, const std::string& ours, const std::string& text) {
+  Subject subject(twisting_bar(setting));
+  SolverComparison comparison(subject, *setting.threads);
+  const std::vector<BenchState> states = states_of(subject, {60, example_frame}, setting);
+  for (SolverEntry& entry : entries) {
+    if (entry.method == Method::chebyshev) entry.chebyshev = trained_chebyshev(comparison, states[0]);
   }
-  const std::vector<Outcome> outcomes = contest.run(states[1], contestants, 5);
-  const Minimum lowest = contest.reference(states[1], outcomes);
+  const std::vector<Outcome> outcomes = comparison.run(states[1], entries, 5);
+  const Minimum lowest = comparison.reference(states[1], outcomes);
   ReportSection section{name, heading};
   section.text =
       fmt::format("Twisting bar, Neo-Hookean, frame {} ({}). {}{}", example_frame, subject.size_text(), text,
@@ -117,7 +117,7 @@ ReportSection bench_figure8(const BenchSetting& setting) {
 }
 
 ReportSection bench_figure13(const BenchSetting& setting) {
-  std::vector<Contestant> windows;
+  std::vector<SolverEntry> windows;
   for (const int m : {0, 1, 2, 3, 5, 8, 10, 20, 50, 100})
     windows.push_back({fmt::format("m = {}", m), Method::quasi_newton, 100, m});
   return compare(setting, "figure13", "Figure 13: window of L-BFGS", windows, "m = 5",
@@ -153,9 +153,9 @@ ReportSection bench_figure17(const BenchSetting& setting) {
 }
 
 ReportSection bench_figure14(const BenchSetting& setting) {
-  const Subject subject(twisting_bar(setting));
-  Contest contest(subject, *setting.threads);
-  const std::vector<BenchState> states = setting.states_of(subject, {30, 60, 120, example_frame, 150});
+  Subject subject(twisting_bar(setting));
+  SolverComparison comparison(subject, *setting.threads);
+  const std::vector<BenchState> states = states_of(subject, {30, 60, 120, example_frame, 150}, setting);
   ReportSection section{"figure14", "Figure 14: step lengths"};
   ReportPlot plot{"figure14-steps", fmt::format("Step lengths, frame {}", example_frame)};
   plot.x_label = "iteration";
@@ -173,11 +173,11 @@ ReportSection bench_figure14(const BenchSetting& setting) {
                    "10 iterations [ms]",
                    "trials"};
   for (const BenchState& state : states) {
-    const std::vector<Outcome> outcomes = contest.run(state,
-                                                      {{"Armijo", Method::quasi_newton, 30, 5, LineSearch::armijo},
-                                                       {"Wolfe", Method::quasi_newton, 30, 5, LineSearch::wolfe}},
-                                                      3);
-    const Minimum lowest = contest.reference(state, outcomes);
+    const std::vector<Outcome> outcomes = comparison.run(state,
+                                                         {{"Armijo", Method::quasi_newton, 30, 5, LineSearch::armijo},
+                                                          {"Wolfe", Method::quasi_newton, 30, 5, LineSearch::wolfe}},
+                                                         3);
+    const Minimum lowest = comparison.reference(state, outcomes);
     for (const Outcome& outcome : outcomes) {
       int full = 0, decreases = 0, both = 0;
       PlotSeries points{outcome.label};
@@ -220,12 +220,12 @@ ReportSection bench_figure15(const BenchSetting& setting) {
     SubjectChoice choice = twisting_bar(setting);
     choice.settings.push_back(fmt::format("solver.fit_from={:g}", 1 - half));
     choice.settings.push_back(fmt::format("solver.fit_to={:g}", 1 + half));
-    const Subject subject(choice);
-    Contest contest(subject, *setting.threads);
-    if (!state) state = setting.states_of(subject, {example_frame}).front();  // the same for all
+    Subject subject(choice);
+    SolverComparison comparison(subject, *setting.threads);
+    if (!state) state = states_of(subject, {example_frame}, setting).front();  // the same for all
     const std::string label = fmt::format("[{:g}, {:g}]", 1 - half, 1 + half);
-    outcomes.push_back(contest.run(*state, {{label, Method::quasi_newton, 100}}, 5).front());
-    whole = std::max(whole, contest.reference(*state, {outcomes.back()}).below_y);
+    outcomes.push_back(comparison.run(*state, {{label, Method::quasi_newton, 100}}, 5).front());
+    whole = std::max(whole, comparison.reference(*state, {outcomes.back()}).below_y);
     stiffnesses +=
         fmt::format("{}{}: k = {:.4g}", stiffnesses.empty() ? "" : "; ", label, subject.model.stiffness[0].k);
     sizes = subject.size_text();

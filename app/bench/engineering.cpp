@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/bench/bench.h"
+#include "app/bench/sections.h"
 #include "base/timing.h"
 #include "baselines/post_projection.h"
 #include "output/profile.h"
@@ -27,7 +27,7 @@ double least_ms(int repeats, const Body& body) {
 }
 
 // Energies and forces of a polynomial material element by element: F, a singular value decomposition, the slopes of
-// mu (s - 1)^4, forces added to vertices. What a straightforward program does, in numbers of type T.
+// mu (s - 1)^4, forces added to vertices. A straightforward program does this; the numbers are of type T.
 template <class T>
 T plain_evaluation(const std::vector<ElementView>& elements, const Positions& x, double mu, std::vector<T>& force) {
   using Matrix = Eigen::Matrix<T, 3, 3>;
@@ -68,10 +68,10 @@ T plain_evaluation(const std::vector<ElementView>& elements, const Positions& x,
 
 ReportSection bench_ablation(const BenchSetting& setting) {
   const SubjectChoice ours{"squirrel", "polynomial"};
-  const SubjectChoice choice = setting.with_paper_mesh(ours, "squirrel_modified.mesh").value_or(ours);
-  const Subject subject(choice);
+  const SubjectChoice choice = with_paper_mesh(setting, ours, "squirrel_modified.mesh").value_or(ours);
+  Subject subject(choice);
   const Model& model = subject.model;
-  const BenchState state = setting.states_of(subject, {35}).front();
+  const BenchState state = states_of(subject, {35}, setting).front();
   const auto& material = std::get<Polynomial>(model.materials.front());
   std::vector<ElementView> elements;
   for_each_element(model, [&](const ElementView& element) { elements.push_back(element); });
@@ -96,9 +96,9 @@ ReportSection bench_ablation(const BenchSetting& setting) {
   Workspace workspace;
   workspace.prepare(model, {});
   State at = state.before;
-  begin_step(model, subject.inputs(state.frame), at, workspace);
-  energy = elastic_energy(model, workspace, x);
+  begin_step(model, subject.inputs(state), at, workspace);
   workspace.current.x = x;
+  energy = elastic_energy(model, workspace, x);
   add("ours: no SVD, elements side by side in vector registers, with inertia and gathering",
       least_ms(15, [&] { evaluate(model, workspace, workspace.current, Wanted::gradient); }));
   add("the same, energy alone", least_ms(15, [&] { energy = elastic_energy(model, workspace, x); }));
@@ -107,11 +107,11 @@ ReportSection bench_ablation(const BenchSetting& setting) {
   ReportTable steps{"ablation-steps", "A step of ten iterations"};
   steps.columns = {"how", "step, least [ms]", "step, median [ms]", "error"};
   const auto run = [&](const std::string& how, const SubjectChoice& variant, int threads) {
-    const Subject changed(variant);
+    Subject changed(variant);
     Threads own(threads);
-    Contest contest(changed, own);
-    const std::vector<Outcome> outcomes = contest.run(state, {{"ours", Method::quasi_newton, 10}}, 15);
-    const Minimum lowest = contest.reference(state, outcomes);
+    SolverComparison comparison(changed, own);
+    const std::vector<Outcome> outcomes = comparison.run(state, {{"ours", Method::quasi_newton, 10}}, 15);
+    const Minimum lowest = comparison.reference(state, outcomes);
     steps.rows.push_back({how, number_text(outcomes[0].step_ms), number_text(outcomes[0].median_ms),
                           number_text(last_error(outcomes[0], lowest.below_y))});
   };
@@ -130,9 +130,9 @@ ReportSection bench_ablation(const BenchSetting& setting) {
 }
 
 ReportSection bench_contact(const BenchSetting& setting) {
-  const Subject subject({"bunny-torus", "bunny"});
+  Subject subject({"bunny-torus", "bunny"});
   const Model& model = subject.model;
-  Contest contest(subject, *setting.threads);
+  SolverComparison comparison(subject, *setting.threads);
   Triangles surface = boundary_faces(subject.body.description.mesh.tets);
   for (Eigen::Index i = 0; i < surface.size(); ++i) surface.data()[i] = model.internal_of[surface.data()[i]];
   struct Row {
@@ -140,19 +140,19 @@ ReportSection bench_contact(const BenchSetting& setting) {
     std::vector<double> error = {}, depth = {}, ms = {}, trials = {};
     int inverted = 0;
   };
-  const std::vector<Contestant> contestants = {{"ours", Method::quasi_newton, 10},
-                                               {"contacts in the matrix", Method::lbfgs_from(StartMatrix::contact), 10},
-                                               {"Newton, 1 iteration", Method::newton, 1},
-                                               {"Newton, 5 iterations", Method::newton, 5}};
+  const std::vector<SolverEntry> entries = {{"ours", Method::quasi_newton, 10},
+                                            {"contacts in the matrix", Method::lbfgs_from(StartMatrix::contact), 10},
+                                            {"Newton, 1 iteration", Method::newton, 1},
+                                            {"Newton, 5 iterations", Method::newton, 5}};
   std::vector<Row> rows;
-  for (const Contestant& contestant : contestants) rows.push_back({contestant.label});
+  for (const SolverEntry& entry : entries) rows.push_back({entry.label});
   rows.push_back({"projected after the step"});
   Workspace workspace;
   workspace.threads = setting.threads;
-  for (const BenchState& state : setting.states_of(subject, {56, 64, 72, 80, 88})) {
-    const FrameInputs inputs = subject.inputs(state.frame);
-    std::vector<Outcome> outcomes = contest.run(state, contestants, 3);
-    const Minimum lowest = contest.reference(state, outcomes);
+  for (const BenchState& state : states_of(subject, {56, 64, 72, 80, 88}, setting)) {
+    const FrameInputs inputs = subject.inputs(state);
+    std::vector<Outcome> outcomes = comparison.run(state, entries, 3);
+    const Minimum lowest = comparison.reference(state, outcomes);
     State after = state.before;
     Outcome projected;
     projected.step_ms = least_ms(2, [&] {

@@ -1,4 +1,4 @@
-// Finished sections of a report, kept so that an interrupted run goes on where it stopped.
+// Finished sections of a report, stored so that an interrupted run can be resumed where it stopped.
 #pragma once
 
 #include <filesystem>

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/bench/bench.h"
+#include "app/bench/sections.h"
 #include "sim/model/measures.h"
 
 namespace supple {
@@ -11,34 +11,23 @@ namespace {
 
 constexpr double torn = 1000;  // a stretch beyond which nothing is left to save
 
-struct Ride {
+struct ShakenRun {
   std::vector<double> stretch;  // by frame; shorter than asked when it failed
   int failed_at = -1;           // the frame in which it failed or was torn
   double ms = 0;                // median of a step
 };
 
-Ride ride(const Subject& subject, Method method, int iterations, int frames, Threads& threads) {
-  Ride result;
-  State state = start_state(subject.model, subject.body);
-  Workspace workspace;
-  workspace.threads = &threads;
-  const auto rule = make_rule(method, subject.model);
+ShakenRun shake(Subject& subject, Method method, int iterations, int frames, Threads& threads) {
+  ShakenRun result;
+  DrivenBody driver(subject.scene, subject.body, subject.model, subject.set, solver_instead(method, iterations),
+                    &threads);
   std::vector<double> times;
-  for (int frame = 0; frame < frames; ++frame) {
-    FrameInputs inputs = subject.inputs(frame);
-    inputs.solver.iterations = iterations;
-    inputs.solver = settings_of(method, inputs.solver);
-    const StepReport& report = step(subject.model, inputs, state, workspace, *rule);
-    if (report.failed) {
-      result.failed_at = frame;
-      break;
-    }
-    times.push_back(report.step_ms);
-    result.stretch.push_back(deformation(subject.model, state.x).stretch);
-    if (!(result.stretch.back() < torn)) {
-      result.failed_at = frame;
-      break;
-    }
+  for (int frame = 0; frame < frames && result.failed_at < 0; ++frame) {
+    const StepReport& last = driver.make_frame(frame, [&](const StepReport& report) {
+      if (!report.failed) times.push_back(report.step_ms);
+    });
+    if (!last.failed) result.stretch.push_back(deformation(subject.model, driver.state().x).stretch);
+    if (last.failed || !(result.stretch.back() < torn)) result.failed_at = frame;
   }
   if (!times.empty()) {
     std::nth_element(times.begin(), times.begin() + static_cast<long>(times.size() / 2), times.end());
@@ -51,7 +40,7 @@ Ride ride(const Subject& subject, Method method, int iterations, int frames, Thr
 
 ReportSection bench_figure10(const BenchSetting& setting) {
   const SubjectChoice ours{"shaking-bar", "bar"};
-  const SubjectChoice choice = setting.with_paper_mesh(ours, "longbar.mesh").value_or(ours);
+  const SubjectChoice choice = with_paper_mesh(setting, ours, "longbar.mesh").value_or(ours);
   ReportSection section{"figure10", "Figure 10: a bar shaken hard"};
   ReportTable table{"figure10", "What becomes of the bar"};
   table.columns = {
@@ -63,7 +52,7 @@ ReportSection bench_figure10(const BenchSetting& setting) {
     for (int k = 0; k < 12; ++k)
       keys += fmt::format(", {{ t = {:.4f}, move = [0, {:g}, 0] }}", 0.8333 + k / 3.0, k % 2 == 0 ? 20 * amount : 0.0);
     driven.settings.push_back(keys + "]");
-    const Subject subject(driven);
+    Subject subject(driven);
     sizes = subject.size_text();
     constexpr int frames = 150;
     ReportPlot plot{fmt::format("figure10-{}", amount > 1 ? "harder" : "film"),
@@ -72,17 +61,17 @@ ReportSection bench_figure10(const BenchSetting& setting) {
     plot.y_label = "stretch (99.9th percentile)";
     plot.y_min = 1;
     plot.y_max = 1e4;
-    struct Rider {
+    struct Shaken {
       const char* label;
       Method method;
       int iterations;
     };
-    for (const Rider& rider :
-         {Rider{"ours", Method::quasi_newton, 10}, Rider{"Hecht et al., 1 solve", Method::hecht, 1},
-          Rider{"Hecht et al., 10 solves", Method::hecht, 10}, Rider{"Newton", Method::newton, 2}}) {
-      const Ride result = ride(subject, rider.method, rider.iterations, frames, *setting.threads);
-      PlotSeries curve{rider.label};
-      curve.thick = rider.method == Method::quasi_newton;
+    for (const Shaken& shaken :
+         {Shaken{"ours", Method::quasi_newton, 10}, Shaken{"Hecht et al., 1 solve", Method::hecht, 1},
+          Shaken{"Hecht et al., 10 solves", Method::hecht, 10}, Shaken{"Newton", Method::newton, 2}}) {
+      const ShakenRun result = shake(subject, shaken.method, shaken.iterations, frames, *setting.threads);
+      PlotSeries curve{shaken.label};
+      curve.thick = shaken.method == Method::quasi_newton;
       for (std::size_t k = 0; k < result.stretch.size(); ++k) {
         curve.x.push_back(static_cast<double>(k));
         curve.y.push_back(result.stretch[k]);
@@ -90,7 +79,7 @@ ReportSection bench_figure10(const BenchSetting& setting) {
       plot.series.push_back(curve);
       const double most =
           result.stretch.empty() ? std::nan("") : *std::max_element(result.stretch.begin(), result.stretch.end());
-      table.rows.push_back({name, rider.label, std::to_string(rider.iterations), std::to_string(frames),
+      table.rows.push_back({name, shaken.label, std::to_string(shaken.iterations), std::to_string(frames),
                             result.failed_at < 0 ? "whole" : fmt::format("explodes in frame {}", result.failed_at),
                             number_text(most), number_text(result.ms)});
     }

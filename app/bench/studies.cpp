@@ -4,24 +4,24 @@
 #include <cmath>
 #include <limits>
 
-#include "app/bench/bench.h"
-#include "app/verbs.h"
+#include "app/bench/sections.h"
+#include "film/places.h"
 
 namespace supple {
 namespace {
 
 constexpr int sweep_frame = 60;
 
-// One point of a sweep: ours and Newton's to an error.
+// Adds one point of a sweep: the times of our method and of Newton's to an error.
 void add_point(ReportTable& table, ReportPlot& plot, const std::string& sweep, double value,
                const SubjectChoice& choice, const BenchSetting& setting) {
-  const Subject subject(choice);
-  setting.doing(fmt::format("{} {:g}", sweep, value));
-  Contest contest(subject, *setting.threads);
-  const BenchState state = setting.states_of(subject, {sweep_frame}).front();
+  Subject subject(choice);
+  say_doing(setting, fmt::format("{} {:g}", sweep, value));
+  SolverComparison comparison(subject, *setting.threads);
+  const BenchState state = states_of(subject, {sweep_frame}, setting).front();
   const std::vector<Outcome> outcomes =
-      contest.run(state, {{"ours", Method::quasi_newton, 300}, {"Newton", Method::newton, 15}}, 2, 3000);
-  const Minimum lowest = contest.reference(state, outcomes);
+      comparison.run(state, {{"ours", Method::quasi_newton, 300}, {"Newton", Method::newton, 15}}, 2, 3000);
+  const Minimum lowest = comparison.reference(state, outcomes);
   const std::vector<double> ours = errors_of(outcomes[0], lowest.below_y);
   const std::vector<double> newton = errors_of(outcomes[1], lowest.below_y);
   std::vector<std::string> row = {sweep, number_text(value), std::to_string(subject.model.vertices),
@@ -59,30 +59,23 @@ double rms(const Positions& a, const Positions& b) {
 }
 
 struct Played {
-  State state;
+  Positions x;  // after the last frame; not numbers where a step failed
   double ms_a_frame = 0;
 };
 
-Played play(const Subject& subject, Method method, int iterations, int frames, Threads& threads) {
-  Played played{start_state(subject.model, subject.body)};
-  Workspace workspace;
-  workspace.threads = &threads;
-  const auto rule = make_rule(method, subject.model);
+Played play(Subject& subject, Method method, int iterations, int frames, Threads& threads) {
+  DrivenBody driver(subject.scene, subject.body, subject.model, subject.set, solver_instead(method, iterations),
+                    &threads);
+  Played played;
   for (int frame = 0; frame < frames; ++frame) {
-    for (int substep = 0; substep < subject.scene.substeps; ++substep) {
-      const double h = subject.scene.time_step(), from = frame / subject.scene.fps + substep * h;
-      FrameInputs inputs = subject.inputs(frame);
-      handle_targets(subject.model, subject.body, from + h, inputs.targets);
-      inputs.solver.iterations = iterations;
-      inputs.solver = settings_of(method, inputs.solver);
-      const StepReport& report = step(subject.model, inputs, played.state, workspace, *rule);
-      if (report.failed) {
-        played.state.x.setConstant(std::nan(""));
-        return played;
-      }
-      played.ms_a_frame += report.step_ms / frames;
+    const StepReport& last =
+        driver.make_frame(frame, [&](const StepReport& report) { played.ms_a_frame += report.step_ms / frames; });
+    if (last.failed) {
+      played.x.setConstant(subject.model.vertices, 3, std::nan(""));
+      return played;
     }
   }
+  played.x = driver.state().x;
   return played;
 }
 
@@ -149,16 +142,16 @@ ReportSection bench_substeps(const BenchSetting& setting) {
       changed.settings.push_back(fmt::format("substeps={}", substeps));
       return changed;
     };
-    const Subject fine(with_substeps(64));
-    const Positions limit = play(fine, Method::quasi_newton, 10, frames, *setting.threads).state.x;
+    Subject fine(with_substeps(64));
+    const Positions limit = play(fine, Method::quasi_newton, 10, frames, *setting.threads).x;
     for (const auto& [substeps, iterations] :
          std::vector<std::pair<int, int>>{{1, 10}, {2, 5}, {5, 2}, {10, 1}, {1, 2}, {1, 100}}) {
-      const Subject subject(with_substeps(substeps));
-      const Positions solved = play(subject, Method::quasi_newton, 200, frames, *setting.threads).state.x;
+      Subject subject(with_substeps(substeps));
+      const Positions solved = play(subject, Method::quasi_newton, 200, frames, *setting.threads).x;
       const Played played = play(subject, Method::quasi_newton, iterations, frames, *setting.threads);
       table.rows.push_back({choice.scene, fmt::format("{} x {}", substeps, iterations), number_text(played.ms_a_frame),
-                            number_text(rms(played.state.x, limit) / subject.model.size),
-                            number_text(rms(played.state.x, solved) / subject.model.size)});
+                            number_text(rms(played.x, limit) / subject.model.size),
+                            number_text(rms(played.x, solved) / subject.model.size)});
     }
   }
   section.text = fmt::format(
@@ -171,12 +164,12 @@ ReportSection bench_substeps(const BenchSetting& setting) {
 
 ReportSection bench_hanging(const BenchSetting& setting) {
   constexpr int frames = 60;
-  const Subject subject({(assets_folder() / "bench" / "hanging-bar.toml").string(), "bar"});
+  Subject subject({(assets_folder() / "bench" / "hanging-bar.toml").string(), "bar"});
   int tip = 0;  // the vertex furthest along x
   for (int v = 0; v < subject.model.vertices; ++v) {
     if (subject.model.rest(v, 0) > subject.model.rest(tip, 0)) tip = v;
   }
-  const Positions solved = play(subject, Method::newton, 30, frames, *setting.threads).state.x;
+  const Positions solved = play(subject, Method::newton, 30, frames, *setting.threads).x;
   ReportSection section{"hanging", "Where the tip of a hanging bar is after two seconds"};
   section.text = fmt::format(
       "A corotated bar, 1 m long, held at one end and let go ({}, E = 1e5 Pa, h = 1/30 s). Solved (30 iterations of "
@@ -189,7 +182,7 @@ ReportSection bench_hanging(const BenchSetting& setting) {
     const bool newton = method == Method::newton || method == Method::newton_shifted;
     for (const int iterations : newton ? std::vector<int>{1, 2} : std::vector<int>{5, 10, 20}) {
       const Played played = play(subject, method, iterations, frames, *setting.threads);
-      const Eigen::RowVector3d at = played.state.x.row(tip);
+      const Eigen::RowVector3d at = played.x.row(tip);
       table.rows.push_back({name_of(method), std::to_string(iterations), number_text(played.ms_a_frame),
                             number_text(at.x(), 4), number_text(at.y(), 4),
                             number_text(1000 * (at - solved.row(tip)).norm())});

@@ -3,14 +3,15 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <fstream>
 
-#include "app/state_file.h"
-#include "app/verbs.h"
 #include "base/error.h"
 #include "base/hash.h"
-#include "output/run_folder.h"
 #include "baselines/make_rule.h"
+#include "film/checkpoint.h"
+#include "film/places.h"
+#include "film/state_file.h"
+#include "output/run_folder.h"
+#include "output/whole_file.h"
 #include "scene/scene_reader.h"
 
 namespace supple {
@@ -32,68 +33,80 @@ std::string state_name(const Subject& subject, int frame) {
                      frame);
 }
 
+// A state's name says all that it depends on, so its file needs no further identity.
+constexpr const char* snapshot_identity = "{}";
+constexpr const char* snapshot_file = "snapshot";
+
+void write_snapshot(const Subject& subject, const BenchState& state, const FrameInputs& inputs,
+                    const std::filesystem::path& folder) {
+  write_state(folder, {subject.scene.name, subject.scene.title, state.frame, state.frame * subject.scene.substeps},
+              problem_of(subject.body.description, subject.model, inputs, state.before));
+  write_whole_file(folder / snapshot_file, checkpoint_bytes({state.frame, {state.before}}, snapshot_identity));
+}
+
+BenchState read_snapshot(const Subject& subject, int frame, const std::filesystem::path& folder) {
+  const Checkpoint read = read_checkpoint(folder / snapshot_file, snapshot_identity);
+  return {frame, read.bodies.front(), state_hash(subject.model, read.bodies.front())};
+}
+
 }  // namespace
+
+Solvers scenes_own_solver() {
+  return {[](const SolverDef& solver, const Model& model) { return make_rule(solver.method, model); },
+          [](const SolverDef& solver) { return settings_of(solver.method, solver.settings); }};
+}
+
+Solvers solver_instead(Method method, int iterations) {
+  return {[method](const SolverDef&, const Model& model) { return make_rule(method, model); },
+          [method, iterations](const SolverDef& solver) {
+            SolverSettings settings = solver.settings;
+            settings.iterations = iterations;
+            return settings_of(method, settings);
+          }};
+}
 
 Subject::Subject(const SubjectChoice& chosen)
     : choice(chosen),
       scene(load_scene(scene_file(chosen.scene), assets_folder(), chosen.settings, &resolved)),
       body(body_named(assemble(scene), chosen)),
       model(build_model(body.description)),
-      set(collision_set(scene)) {}
+      set(collision_set(scene)),
+      driver(scene, body, model, set, scenes_own_solver(), nullptr) {}
 
-FrameInputs Subject::inputs(int frame) const {
-  FrameInputs inputs{
-      scene.gravity, {}, {}, settings_of(body.def.solver.method, body.def.solver.settings), &set.colliders};
-  const double from = frame / scene.fps, to = from + scene.time_step();
-  handle_targets(model, body, to, inputs.targets);
-  if (model.scheme.theta < 1) handle_targets(model, body, 0.5 * (from + to), inputs.middle_targets);
-  collider_motions(set, {from, to}, inputs.collider_motions);
-  return inputs;
+const FrameInputs& Subject::inputs(const BenchState& state) {
+  driver.restore(state.before);
+  driver.prepare_step(state.frame, 0);
+  return driver.inputs();
 }
 
 std::string Subject::size_text() const {
   return fmt::format("{} vertices, {} elements", model.vertices, model.elements);
 }
 
-std::vector<BenchState> states_of(const Subject& subject, const std::vector<int>& frames,
-                                  const std::filesystem::path& folder, Threads& threads) {
+std::vector<BenchState> states_of(Subject& subject, const std::vector<int>& frames, const std::filesystem::path& folder,
+                                  Threads& threads) {
   std::vector<BenchState> states;
   const auto stored = [&](int frame) { return folder / state_name(subject, frame); };
   const bool all_there = std::all_of(frames.begin(), frames.end(), [&](int frame) {
     std::error_code error;
-    return std::filesystem::exists(stored(frame) / "state.json", error);
+    return std::filesystem::exists(stored(frame) / snapshot_file, error);
   });
   if (all_there) {
-    for (const int frame : frames) {
-      const StoredState read = read_state(stored(frame));
-      states.push_back({frame, state_for(subject.model, read), 0});
-      states.back().hash = state_hash(subject.model, states.back().before);
-    }
+    for (const int frame : frames) states.push_back(read_snapshot(subject, frame, stored(frame)));
     return states;
   }
-  State state = start_state(subject.model, subject.body);
-  const auto rule = make_rule(subject.body.def.solver.method, subject.model);
-  Workspace workspace;
-  workspace.threads = &threads;
+  DrivenBody driver(subject.scene, subject.body, subject.model, subject.set, scenes_own_solver(), &threads);
   for (int frame = 0; frame <= frames.back(); ++frame) {
-    const FrameInputs inputs = subject.inputs(frame);
     if (std::binary_search(frames.begin(), frames.end(), frame)) {
-      states.push_back({frame, state, state_hash(subject.model, state)});
-      write_state(stored(frame), {subject.scene.name, subject.scene.title, frame, frame * subject.scene.substeps},
-                  problem_of(subject.body.description, subject.model, inputs, state));
+      driver.prepare_step(frame, 0);
+      states.push_back({frame, driver.state(), state_hash(subject.model, driver.state())});
+      write_snapshot(subject, states.back(), driver.inputs(), stored(frame));
     }
-    for (int substep = 0; substep < subject.scene.substeps; ++substep) {
-      FrameInputs own = inputs;
-      if (substep > 0) {
-        const double h = subject.scene.time_step(), from = frame / subject.scene.fps + substep * h;
-        handle_targets(subject.model, subject.body, from + h, own.targets);
-        collider_motions(subject.set, {from, from + h}, own.collider_motions);
-      }
-      const StepReport& report = step(subject.model, own, state, workspace, *rule);
-      if (report.failed)
-        throw RunError(fmt::format("{}, body '{}': frame {} failed: {}", subject.choice.scene, subject.choice.body,
-                                   frame, report.failure.what));
-    }
+    if (frame == frames.back()) break;
+    const StepReport& report = driver.make_frame(frame, [](const StepReport&) {});
+    if (report.failed)
+      throw RunError(fmt::format("{}, body '{}': frame {} failed: {}", subject.choice.scene, subject.choice.body, frame,
+                                 report.failure.what));
   }
   return states;
 }

@@ -1,14 +1,12 @@
-// What solvers are compared on: one body of a scene, and steps of it from stored states.
+// The bodies that solvers are compared on: one body of a scene each, and steps of it from stored states.
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/threads.h"
-#include "scene/assemble.h"
-#include "scene/obstacle.h"
+#include "scene/driven_body.h"
 #include "sim/solver/step.h"
 
 namespace supple {
@@ -19,32 +17,41 @@ struct SubjectChoice {
   std::vector<std::string> settings = {};
 };
 
-// Ready to run. Throws InputError as loading a scene does, and when there is no such body.
+// The solver that a scene names, and another one in its place.
+Solvers scenes_own_solver();
+Solvers solver_instead(Method method, int iterations);
+
+// One step to be made.
+struct BenchState {
+  int frame = 0;
+  State before;  // of the frame's first step; handles have grabbed and let go already
+  std::uint64_t hash = 0;
+};
+
+// A body that is ready to run. Throws InputError as loading a scene does, and when there is no such body.
 struct Subject {
   explicit Subject(const SubjectChoice& choice);
+  Subject(const Subject&) = delete;  // the driver refers to the other members
+  Subject& operator=(const Subject&) = delete;
+
   SubjectChoice choice;
   std::string resolved;  // the scene with all settings, as JSON
   SceneDef scene;
   Body body;
   Model model;
   CollisionSet set;
+  DrivenBody driver;  // by the scene's own solver
 
-  // Of the first step of a frame.
-  FrameInputs inputs(int frame) const;
+  // Puts the body into a state, and returns the inputs of the step from there. Renews the model where handles hold
+  // otherwise than before.
+  const FrameInputs& inputs(const BenchState& state);
   std::string size_text() const;  // "3472 vertices, 10441 elements"
 };
 
-// One step to be made.
-struct BenchState {
-  int frame = 0;
-  State before;
-  std::uint64_t hash = 0;
-};
-
 // Plays the scene with its own settings and keeps the states before these frames (ascending). A folder holds them for
-// the next time, each in a state folder (docs/states.md), which is read back instead when it is there and belongs to
-// this body.
-std::vector<BenchState> states_of(const Subject& subject, const std::vector<int>& frames,
-                                  const std::filesystem::path& folder, Threads& threads);
+// the next time, each with its problem (docs/states.md); a state that is there and belongs to this body is read back
+// instead.
+std::vector<BenchState> states_of(Subject& subject, const std::vector<int>& frames, const std::filesystem::path& folder,
+                                  Threads& threads);
 
 }  // namespace supple

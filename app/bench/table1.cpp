@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/bench/bench.h"
-#include "app/verbs.h"
+#include "app/bench/sections.h"
+#include "film/places.h"
 
 namespace supple {
 namespace {
 
-// A row of the paper's table I, and what it is here.
+// A row of the paper's table I, and the scene that stands for it here.
 struct Row {
-  std::string model, material, mesh;  // mesh: the paper's file; empty where it has none or ours is it
+  std::string model, material, mesh;  // mesh: the paper's file; empty where there is none, and where ours is the same
   SubjectChoice choice;
   std::vector<int> frames;
   double trials, overhead_ms, ours_ms, ours_error, newton_ms, newton_error;  // the paper's
@@ -136,16 +136,17 @@ const std::vector<Row>& rows() {
 
 void add_row(ReportTable& table, const Row& row, const SubjectChoice& choice, bool paper_mesh,
              const BenchSetting& setting) {
-  const Subject subject(choice);
-  setting.doing(fmt::format("{}, {} mesh ({})", row.model, paper_mesh ? "the paper's" : "our", subject.size_text()));
-  Contest contest(subject, *setting.threads);
-  const std::vector<Contestant> both = {{"ours", Method::quasi_newton, 10}, {"Newton", Method::newton, 1}};
+  Subject subject(choice);
+  say_doing(setting,
+            fmt::format("{}, {} mesh ({})", row.model, paper_mesh ? "the paper's" : "our", subject.size_text()));
+  SolverComparison comparison(subject, *setting.threads);
+  const std::vector<SolverEntry> both = {{"ours", Method::quasi_newton, 10}, {"Newton", Method::newton, 1}};
   std::vector<double> errors[2];
   double least[2] = {1e300, 1e300}, median[2] = {0, 0}, overhead = 0, trials = 0;
-  const std::vector<BenchState> states = setting.states_of(subject, row.frames);
+  const std::vector<BenchState> states = states_of(subject, row.frames, setting);
   for (const BenchState& state : states) {
-    const std::vector<Outcome> outcomes = contest.run(state, both, 5);
-    const Minimum lowest = contest.reference(state, outcomes);
+    const std::vector<Outcome> outcomes = comparison.run(state, both, 5);
+    const Minimum lowest = comparison.reference(state, outcomes);
     for (int m = 0; m < 2; ++m) {
       errors[m].push_back(last_error(outcomes[m], lowest.below_y));
       least[m] = std::min(least[m], outcomes[m].step_ms);
@@ -247,7 +248,7 @@ ReportSection bench_table1(const BenchSetting& setting) {
       own.choice.scene = (assets_folder() / "bench" / "paper-bunny-torus.toml").string();
       own.frames = {30, 45, 60, 75, 90};
     }
-    if (const auto paper = setting.with_paper_mesh(own.choice, row.mesh)) add_row(table, own, *paper, true, setting);
+    if (const auto paper = with_paper_mesh(setting, own.choice, row.mesh)) add_row(table, own, *paper, true, setting);
   }
   ReportSection section{"table1", "Table I: time and error by scene"};
   section.text =

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <set>
 
-#include "app/sweep/contact_sheet.h"
 #include "app/sweep/sweep_tables.h"
-#include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
+#include "film/contact_sheet.h"
+#include "film/places.h"
 #include "output/report_page.h"
 #include "output/run_folder.h"
 
@@ -47,14 +47,14 @@ std::filesystem::path last_picture(const std::filesystem::path& folder) {
   return last;
 }
 
-// Of a grid of two or more, a row holds the values of the last path, if they fit.
+// The number of columns. In a grid of two or more paths, a row holds the values of the last one, if they fit.
 int sheet_columns(const SweepDef& sweep, std::size_t pictures) {
   const std::size_t last = sweep.axes.back().values.size();
   if (sweep.mode == SweepMode::grid && sweep.axes.size() > 1 && last > 1 && last <= 8) return int(last);
   return std::clamp(int(std::ceil(std::sqrt(double(pictures)))), 1, 10);
 }
 
-// False when no point has a picture.
+// Writes the contact sheet. Returns false when no point has a picture.
 bool write_sheet(const SweepRequest& request, const std::string& title, const std::vector<PointResult>& results) {
   Sheet sheet{title, {}, sheet_columns(request.sweep, std::min(results.size(), most_pictures)), caption_font()};
   const std::vector<std::string> names = short_names(request.sweep);
@@ -114,7 +114,7 @@ ReportPage page_of(const SweepRequest& request, const std::string& title, const 
   return page;
 }
 
-// What is not done, and how to do it.
+// Says which points are not done, and how to run them.
 void say_missing(const std::vector<PointResult>& results) {
   constexpr std::size_t most_lines = 20;
   std::size_t missing = 0;

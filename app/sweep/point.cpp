@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "app/film_run.h"
-#include "app/verbs.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/timing.h"
+#include "film/places.h"
 #include "output/folder_lock.h"
 #include "output/whole_file.h"
 
@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* picture_words[] = {"none", "last", "all"};
 
-// Null where the file is not there or not whole.
+// Reads a JSON object; null where the file is not there or not whole.
 Json read_json(const std::filesystem::path& path) {
   std::ifstream file(path);
   if (!file) return nullptr;
@@ -28,7 +28,7 @@ Json read_json(const std::filesystem::path& path) {
   return json.is_object() ? json : Json(nullptr);
 }
 
-// What a record was made with; empty hash where the point's scene cannot be read.
+// The program and the scene that a record was made with; empty hash where the point's scene cannot be read.
 Json made_with(const SweepRequest& request, std::size_t point) {
   std::string scene;
   try {
@@ -61,31 +61,30 @@ void write_record(const SweepRequest& request, std::size_t point, int status, co
                    json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
-FilmRequest film_of(const SweepRequest& request, std::size_t point) {
-  FilmRequest film;
+FilmPlan film_of(const SweepRequest& request, std::size_t point) {
+  FilmPlan film;
   film.scene = request.file.string();
   film.sweep_point = point;
   film.out = request.folder(point).string();
-  film.folder_is_held = true;
-  film.set = request.settings;
+  film.folder_is_locked = true;
+  film.settings = request.settings;
   film.threads = request.threads;
   film.error_every = request.error_every;
-  film.no_video = request.pictures != SweepPictures::all;
-  film.no_images = request.pictures == SweepPictures::none;
+  film.pictures = request.pictures;
+  film.video = request.pictures == FilmPictures::all;
   film.checkpoint_every = 0;
-  film.last_image_only = request.pictures == SweepPictures::last;
-  film.gl = request.gl;
+  film.gl = *value_named<GlChoice>(request.gl);
   film.quiet = request.quiet;
   return film;
 }
 
-// "failed: why" as run.json has it.
+// Why a run failed, from the "failed: ..." of its run.json; empty where it did not.
 std::string failure_in(const Json& run) {
   const std::string ended = run.is_object() ? run.value("ended", "") : "";
   return ended.starts_with("failed: ") ? ended.substr(8) : "";
 }
 
-// What tells a record's sweep from this one; "" where nothing does.
+// In what a record's sweep differs from this one; "" where it is the same.
 std::string other_sweep(const SweepRequest& request, const Json& record) {
   const Json sweep = record.is_object() ? record.value("sweep", Json()) : Json();
   if (!sweep.is_object()) return "";
@@ -102,7 +101,7 @@ void check_folder(const SweepRequest& request) {
   std::error_code error;
   if (!std::filesystem::exists(request.out, error)) return;
   if (!std::filesystem::is_directory(request.out, error)) throw InputError(option, "exists and is not a folder");
-  // Asked in this order, since other points may start at this moment, and what they make first is points/.
+  // Asked in this order, since other points may start at this moment, and they make points/ first.
   const bool empty = std::filesystem::is_empty(request.out, error);
   const bool of_a_sweep = std::filesystem::is_directory(request.out / "points", error) &&
                           !std::filesystem::exists(request.out / "run.json", error);
@@ -151,7 +150,7 @@ int run_point(const SweepRequest& request, std::size_t point, const std::vector<
   for (const char* stale : {"point.json", "profile.json"}) std::filesystem::remove(folder / stale, error);
   const Stopwatch watch;
   try {
-    const int status = run_film(film_of(request, point), command);
+    const int status = run_film({film_of(request, point)}, command);
     const std::string message = status == 1 ? failure_in(read_json(folder / "run.json")) : "";
     write_record(request, point, status, message, watch.elapsed_ms() / 1000);
     return status;
@@ -164,7 +163,7 @@ int run_point(const SweepRequest& request, std::size_t point, const std::vector<
   }
 }
 
-void keep_failure(const SweepRequest& request, std::size_t point, int exit_status, const std::string& message) {
+void record_failure(const SweepRequest& request, std::size_t point, int exit_status, const std::string& message) {
   write_record(request, point, exit_status, message, 0);
 }
 
@@ -195,7 +194,7 @@ bool has_what_is_asked(const SweepRequest& request, std::size_t point) {
   const Json record = read_json(request.folder(point) / "point.json");
   if (!record.is_object() || record.value("error_every", 0) != request.error_every) return false;
   const std::string pictures = record.value("pictures", "none");
-  return request.pictures == SweepPictures::none || pictures == "all" ||
+  return request.pictures == FilmPictures::none || pictures == "all" ||
          pictures == picture_words[int(request.pictures)];
 }
 

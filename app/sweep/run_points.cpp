@@ -8,13 +8,13 @@
 #include <mutex>
 #include <thread>
 
-#include "app/frame_loop.h"
 #include "app/sweep/merge.h"
-#include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
+#include "base/interrupts.h"
 #include "base/text.h"
 #include "base/timing.h"
+#include "film/places.h"
 #include "output/child_program.h"
 #include "output/folder_lock.h"
 
@@ -37,8 +37,8 @@ std::vector<std::string> command_of(const SweepRequest& request, std::size_t poi
                                     "--quiet"};
   for (const std::string& setting : request.settings) words.insert(words.end(), {"--set", setting});
   if (request.error_every > 0) words.insert(words.end(), {"--error-every", std::to_string(request.error_every)});
-  if (request.pictures == SweepPictures::none) words.emplace_back("--no-images");
-  if (request.pictures == SweepPictures::all) words.emplace_back("--images");
+  if (request.pictures == FilmPictures::none) words.emplace_back("--no-images");
+  if (request.pictures == FilmPictures::all) words.emplace_back("--images");
   return words;
 }
 
@@ -80,7 +80,7 @@ class PointQueue {
     const bool asked_to_end = interrupted() || stopped_;
     if (!asked_to_end && end->status != 0 && outcome.exit_status.empty()) {
       const int status = WIFSIGNALED(end->status) ? 128 + WTERMSIG(end->status) : WEXITSTATUS(end->status);
-      keep_failure(request_, point, status, how_it_ended(*end));
+      record_failure(request_, point, status, how_it_ended(*end));
       outcome = outcome_of(request_, point);
     }
     const std::lock_guard lock(mutex_);

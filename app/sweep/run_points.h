@@ -1,4 +1,4 @@
-// All points of a sweep on this machine, several at a time, each in a process of its own.
+// Runs all points of a sweep on this machine, several at a time, each in a process of its own.
 #pragma once
 
 #include "app/sweep/point.h"

@@ -13,7 +13,7 @@
 namespace supple {
 namespace {
 
-// Of one body in one point; its rows in the order of the frames.
+// The rows of one body in one point, in the order of the frames.
 using BodyRows = std::vector<const BodyRow*>;
 
 struct Measure {
@@ -79,10 +79,10 @@ std::vector<std::string> body_names(const std::vector<PointResult>& results) {
   return names;
 }
 
-// All digits; "" for what is not there.
+// A number with all its digits; "" where there is none.
 std::string exact_text(const std::optional<double>& value) { return value ? fmt::format("{}", *value) : ""; }
 
-// Adds a column; a name that a path of the sweep has already gets a word more.
+// Adds a column. A name that a path of the sweep has already gets one more word.
 void add_column(ReportTable& table, std::string name, const std::vector<std::string>& cells) {
   while (std::ranges::find(table.columns, name) != table.columns.end()) name += " (result)";
   table.columns.push_back(std::move(name));

@@ -7,7 +7,7 @@
 
 namespace supple {
 
-// What is kept of a point's rows, which may be many.
+// What a point gave, summed up: its rows may be many.
 struct PointResult {
   PointOutcome outcome;
   std::size_t frames = 0;        // that are whole; 0 where there are none of this scene and program
@@ -23,10 +23,11 @@ struct PointResult {
 
 std::vector<PointResult> read_results(const SweepRequest& request);
 
-// A row a point: values, how it ended, and numbers that do not depend on who ran it, with all digits.
+// A table with a row a point: its values, how it ended, and numbers with all digits, which do not depend on the machine
+// and on the clock.
 ReportTable sweep_table(const SweepDef& sweep, const std::vector<PointResult>& results);
 
-// A row a point, in milliseconds and seconds.
+// A table with a row a point: its times, in milliseconds and seconds.
 ReportTable times_table(const std::vector<PointResult>& results);
 
 }  // namespace supple

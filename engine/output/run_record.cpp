@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 
@@ -25,6 +26,7 @@ void check_bodies(const std::vector<FrameRow>& rows, const std::string& source) 
 }  // namespace
 
 std::string RunRecord::ended() const {
+  const Json info = Json::parse(info_json);
   return info.contains("ended") && info["ended"].is_string() ? info["ended"].get<std::string>() : "not known";
 }
 
@@ -35,8 +37,9 @@ RunRecord read_run(const std::filesystem::path& folder) {
   if (!file) throw InputError(folder.string(), "there is no run.json in it: this is not the folder of a run");
   RunRecord record;
   record.folder = folder;
-  record.info = Json::parse(file, nullptr, false);
-  if (!record.info.is_object()) throw InputError((folder / "run.json").string(), "is damaged: not a JSON object");
+  const Json info = Json::parse(file, nullptr, false);
+  if (!info.is_object()) throw InputError((folder / "run.json").string(), "is damaged: not a JSON object");
+  record.info_json = info.dump();
   record.has_profile = std::filesystem::exists(folder / "profile.json", error);
   if (record.has_profile) {
     record.rows = read_profile(folder / "profile.json");

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -12,8 +11,8 @@ namespace supple {
 
 struct RunRecord {
   std::filesystem::path folder;
-  nlohmann::ordered_json info;  // contents of run.json
-  std::vector<FrameRow> rows;   // contents of profile.json; empty until a run has ended
+  std::string info_json;       // contents of run.json, a JSON object
+  std::vector<FrameRow> rows;  // contents of profile.json; empty until a run has ended
   bool has_profile = false;
 
   std::filesystem::path motion(const std::string& body) const { return folder / "motion" / (body + ".pc2"); }

@@ -11,8 +11,8 @@
 namespace supple {
 namespace {
 
-// From the file's frame to the world: turned about the origin, scaled, then put with the middle of its bottom at
-// `position`.
+// The map from the file's frame to the world: the body is turned about the origin, scaled, and put with the middle of
+// its bottom at `position`.
 Eigen::Affine3d placement(const BodyDef& def, const Positions& points) {
   Eigen::Affine3d turned(rotation_from_degrees(def.turn_deg).toRotationMatrix());
   Bounds box, untouched;
@@ -84,7 +84,8 @@ void set_substances(Body& body, std::vector<Problem>& problems) {
     if (known == body.regions.end()) {
       const std::vector<std::string> names(body.regions.begin() + 1, body.regions.end());
       const std::string nearest = nearest_word(region.name, names);
-      // A body made of another mesh than the scene was written for has no teeth to be stiff: that is said, not refused.
+      // A body made of another mesh than the scene was written for may lack the region (it has no teeth to be stiff):
+      // that is noted, not refused.
       if (!def.mesh.empty()) {
         body.notes.push_back(fmt::format("there is no region '{}'; its material is not used", region.name));
       } else {
@@ -100,7 +101,7 @@ void set_substances(Body& body, std::vector<Problem>& problems) {
   }
 }
 
-// Springs at their lengths in the world, and the mass of the cloth by vertex.
+// Makes the springs, with their lengths in the world, and the mass of the cloth by vertex.
 void weave(Body& body) {
   const BodyDef& def = body.def;
   BodyDescription& description = body.description;
@@ -155,7 +156,7 @@ void add_handles(Body& body, const Loaded& loaded, std::vector<Problem>& problem
   }
 }
 
-// All that follows from the definition once the mesh is in its place, but for handles.
+// Sets all that follows from the definition once the mesh is in its place, except for handles.
 void set_values(Body& body, const SceneDef& scene, std::vector<Problem>& problems) {
   const BodyDef& def = body.def;
   body.description.time_step = scene.time_step();
@@ -172,7 +173,7 @@ void set_values(Body& body, const SceneDef& scene, std::vector<Problem>& problem
 
 void update_body(Body& body, const SceneDef& scene, const BodyDef& def) {
   std::vector<Problem> problems;
-  const std::vector<std::string> notes = body.notes;  // were said when it was assembled
+  const std::vector<std::string> notes = body.notes;  // these were said when it was assembled
   const auto starts_or_ends = [&](double ClothDef::*stiffness) {
     return def.cloth && ((*def.cloth).*stiffness > 0) != ((*body.def.cloth).*stiffness > 0);
   };
@@ -241,7 +242,7 @@ std::vector<Body> assemble(const SceneDef& scene) {
 
 namespace {
 
-// Edge of the printed squares [m]; 0: nothing is printed.
+// The edge of the printed squares [m]; 0: nothing is printed.
 double square_of(const Body& body) {
   if (body.def.pattern == Pattern::none) return 0;
   if (body.def.pattern_size) return *body.def.pattern_size;
@@ -285,6 +286,21 @@ DrawnBody drawn_body(const SceneDef& scene, const Body& body) {
   return drawn;
 }
 
+namespace {
+
+// What keys move handled vertices from where nothing has been grabbed, and which handles hold as the film starts.
+Anchors rest_anchors(const Model& model, const Body& body) {
+  Anchors anchors;
+  anchors.points.resize(model.handled.size(), 3);
+  for (std::size_t i = 0; i < model.handled.size(); ++i)
+    anchors.points.row(i) = model.rest.row(model.handled[i].vertex);
+  for (const KeyedMotion& motion : body.motions) anchors.centers.push_back(motion.center);
+  for (const HandleDef& def : body.def.handles) anchors.holds.push_back(!def.grabs || def.holds_at(0));
+  return anchors;
+}
+
+}  // namespace
+
 State start_state(const Model& model, const Body& body) {
   State state = rest_state(model);
   const Positions start = start_positions(body.def.start, body.description.mesh.rest, body.seed, body.description.name);
@@ -297,16 +313,8 @@ State start_state(const Model& model, const Body& body) {
     state.x.row(vertex) = model.rest.row(vertex);
     state.v.row(vertex).setZero();
   }
+  state.anchors = rest_anchors(model, body);
   return state;
-}
-
-Anchors rest_anchors(const Model& model, const Body& body) {
-  Anchors anchors;
-  anchors.points.resize(model.handled.size(), 3);
-  for (std::size_t i = 0; i < model.handled.size(); ++i)
-    anchors.points.row(i) = model.rest.row(model.handled[i].vertex);
-  for (const KeyedMotion& motion : body.motions) anchors.centers.push_back(motion.center);
-  return anchors;
 }
 
 void grab(const Model& model, int handle, const Positions& x, Anchors& anchors) {

@@ -5,7 +5,7 @@
 namespace supple {
 namespace {
 
-// What the collider is, if it is that one primitive and nothing else.
+// The primitive of this kind that the collider is; null where it is another one, or more than one.
 template <class Kind>
 const Kind* lone(const Obstacle& obstacle) {
   const std::vector<ShapePart>& parts = obstacle.def.shape.root.parts;
@@ -20,7 +20,7 @@ std::pair<Vec3, Vec3> plane_of(const Obstacle& obstacle, const HalfSpace& half) 
 }
 
 Skin square_of(const Vec3& normal, const Vec3& center, double half_edge) {
-  constexpr int cells = 8;  // so that occlusion has somewhere to live
+  constexpr int cells = 8;  // so that occlusion, which is stored by vertex, has vertices
   const Vec3 side = normal.cross(std::abs(normal.z()) < 0.9 ? Vec3::UnitZ() : Vec3::UnitX()).normalized();
   const Vec3 up = normal.cross(side);
   Skin skin;
@@ -109,7 +109,7 @@ Skin drawn_obstacle(const Obstacle& obstacle, const Bounds& around) {
   }
   constexpr double cells = 96;  // along the longest side
   const Skin skin = skin_of(shape, shape.bounds().extent().maxCoeff() / cells);
-  // Vertices at creases once for each side, so that a box has edges.
+  // Vertices at creases are there once for each side, so that a box has edges.
   Skin creased = skin_of_surface(skin.rest.points, skin.rest.triangles, 0, vertex_of);
   for (std::size_t v = 0; v < vertex_of.size(); ++v) {
     creased.occlusion[v] = skin.occlusion[vertex_of[v]];

@@ -31,17 +31,17 @@ struct StepSpan {
   double change_from = 1, change_to = 1;
 };
 
-// Motions of all colliders over one step.
+// Computes the motions of all colliders over one step.
 void collider_motions(const CollisionSet& set, const StepSpan& span, std::vector<ColliderMotion>& motions);
 
-// What is drawn of it, in its own frame. A half space is a square that reaches well beyond `around` (in the world);
-// empty when it is the ground that every film has.
+// Makes what is drawn of a collider, in its own frame. A half space is a square that reaches well beyond `around` (in
+// the world); empty when it is the ground that every film has.
 Skin drawn_obstacle(const Obstacle& obstacle, const Bounds& around);
 
-// A half space and nothing else.
+// Whether a collider is a half space and nothing else.
 bool is_half_space(const Obstacle& obstacle);
 
-// The half space y < 0, at rest.
+// Whether a collider is the half space y < 0, at rest.
 bool is_ground(const Obstacle& obstacle);
 
 }  // namespace supple

@@ -1,5 +1,5 @@
 // What `supple bench` is made of, and the program itself on its shortest benchmark.
-#include "app/bench/bench.h"
+#include "app/bench/sections.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ using test::TemporaryFolder;
 
 TEST(Bench, StatesComeBackFromTheirFilesWithTheSameBits) {
   const TemporaryFolder folder;
-  const Subject subject({"shaking-bar", "bar"});
+  Subject subject({"shaking-bar", "bar"});
   Threads threads(1);
   const std::vector<BenchState> played = states_of(subject, {3, 17}, folder.path, threads);
   const std::vector<BenchState> read = states_of(subject, {3, 17}, folder.path, threads);
@@ -32,19 +32,19 @@ TEST(Bench, StatesComeBackFromTheirFilesWithTheSameBits) {
 
 TEST(Bench, GainsByIterationAddUpToWhereTheMethodsEnd) {
   const TemporaryFolder folder;
-  const Subject subject({"shaking-bar", "bar"});
+  Subject subject({"shaking-bar", "bar"});
   Threads threads(1);
-  Contest contest(subject, threads);
+  SolverComparison comparison(subject, threads);
   const BenchState state = states_of(subject, {25}, folder.path, threads).front();
   const std::vector<Outcome> outcomes =
-      contest.run(state, {{"ours", Method::quasi_newton, 8}, {"Newton", Method::newton, 40}}, 1);
-  const Minimum lowest = contest.reference(state, outcomes);
+      comparison.run(state, {{"ours", Method::quasi_newton, 8}, {"Newton", Method::newton, 40}}, 1);
+  const Minimum lowest = comparison.reference(state, outcomes);
   EXPECT_TRUE(lowest.positive_definite);
   Workspace w;
   for (const Outcome& outcome : outcomes) {
     ASSERT_FALSE(outcome.failed);
     ASSERT_EQ(outcome.gained.size(), outcome.ms.size());
-    EXPECT_NEAR(outcome.gained.back(), gained(subject.model, subject.inputs(25), state.before, outcome.x, w),
+    EXPECT_NEAR(outcome.gained.back(), gained(subject.model, subject.inputs(state), state.before, outcome.x, w),
                 1e-12 * lowest.below_y);
     const std::vector<double> errors = errors_of(outcome, lowest.below_y);
     for (std::size_t k = 1; k < errors.size(); ++k) {
@@ -59,32 +59,17 @@ TEST(Bench, GainsByIterationAddUpToWhereTheMethodsEnd) {
 
 TEST(Bench, TheReferenceIsBelowEveryMethodsEnd) {
   const TemporaryFolder folder;
-  const Subject subject({"spline-spheres", "a"});
+  Subject subject({"spline-spheres", "a"});
   Threads threads(1);
-  Contest contest(subject, threads);
+  SolverComparison comparison(subject, threads);
   const BenchState state = states_of(subject, {20}, folder.path, threads).front();
-  std::vector<Contestant> contestants;
-  for (const Method& method : compared_methods()) contestants.push_back({name_of(method), method, 40});
-  const std::vector<Outcome> outcomes = contest.run(state, contestants, 0);
-  const Minimum lowest = contest.reference(state, outcomes);
+  std::vector<SolverEntry> entries;
+  for (const Method& method : compared_methods()) entries.push_back({name_of(method), method, 40});
+  const std::vector<Outcome> outcomes = comparison.run(state, entries, 0);
+  const Minimum lowest = comparison.reference(state, outcomes);
   for (const Outcome& outcome : outcomes) {
     if (outcome.failed) continue;
     EXPECT_LE(outcome.gained.back(), lowest.below_y * (1 + 1e-12)) << outcome.label;
-  }
-}
-
-// At the default ten iterations, with the default delay and radius.
-TEST(Bench, ChebyshevIsNearerToTheMinimumThanProjectiveDynamicsOnTheTwistingBar) {
-  const TemporaryFolder folder;
-  const Subject subject({"twisting-bar", "bar", {"body.bar.box.cells=[14, 5, 5]"}});
-  Threads threads(1);
-  Contest contest(subject, threads);
-  for (const BenchState& state : states_of(subject, {40, 70, 100}, folder.path, threads)) {
-    const std::vector<Outcome> outcomes =
-        contest.run(state, {{"chebyshev", Method::chebyshev}, {"projective dynamics", Method::projective_dynamics}}, 0);
-    EXPECT_GT((outcomes[0].x - outcomes[1].x).cwiseAbs().maxCoeff(), 0);
-    const double whole = contest.reference(state, outcomes).below_y;
-    EXPECT_LT(last_error(outcomes[0], whole), 0.8 * last_error(outcomes[1], whole)) << "frame " << state.frame;
   }
 }
 
@@ -109,6 +94,21 @@ TEST(Bench, SectionsSurviveTheirFiles) {
   EXPECT_TRUE(back->plots[0].series[0].thick);
   EXPECT_FALSE(read_section(folder.path / "s.json", "another machine"));
   EXPECT_FALSE(read_section(folder.path / "none.json", "this machine"));
+}
+
+// At the default ten iterations, with the default delay and radius.
+TEST(Bench, ChebyshevIsNearerToTheMinimumThanProjectiveDynamicsOnTheTwistingBar) {
+  const TemporaryFolder folder;
+  Subject subject({"twisting-bar", "bar", {"body.bar.box.cells=[14, 5, 5]"}});
+  Threads threads(1);
+  SolverComparison comparison(subject, threads);
+  for (const BenchState& state : states_of(subject, {40, 70, 100}, folder.path, threads)) {
+    const std::vector<Outcome> outcomes = comparison.run(
+        state, {{"chebyshev", Method::chebyshev}, {"projective dynamics", Method::projective_dynamics}}, 0);
+    EXPECT_GT((outcomes[0].x - outcomes[1].x).cwiseAbs().maxCoeff(), 0);
+    const double whole = comparison.reference(state, outcomes).below_y;
+    EXPECT_LT(last_error(outcomes[0], whole), 0.8 * last_error(outcomes[1], whole)) << "frame " << state.frame;
+  }
 }
 
 // Table II: our matrix does not see how a body is turned, the rest pose's does.

@@ -6,9 +6,9 @@
 #include <fstream>
 #include <limits>
 
-#include "app/run_comparison.h"
 #include "base/error.h"
 #include "output/point_cache.h"
+#include "output/run_comparison.h"
 #include "support/bodies.h"
 #include "support/program.h"
 

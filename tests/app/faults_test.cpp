@@ -142,7 +142,7 @@ TEST_F(Faults, ARecordThatVerifiesNothingIsAFailure) {
   std::ofstream(folder_.path / "film.rec", std::ios::app) << "more";
   const Result damaged = with({"--verify", "film.rec"});
   EXPECT_EQ(damaged.status, 2);
-  EXPECT_NE(damaged.err.find("is damaged: behind 8 whole frames"), std::string::npos) << damaged.err;
+  EXPECT_NE(damaged.err.find("is damaged: after 8 whole frames"), std::string::npos) << damaged.err;
 }
 
 TEST_F(Faults, ADamagedFrameIsFoundBeforeGoingOn) {

@@ -209,7 +209,7 @@ TEST_F(ReplayedFilm, GoesOnAfterAnInterruptAndMayBecomeLonger) {
   ASSERT_EQ(cut.status, 130) << cut.err;
   const Result on = run(folder_.path, film({"--out", "cut", "--resume"}));
   ASSERT_EQ(on.status, 0) << on.err;
-  EXPECT_NE(on.err.find("note: going on behind frame "), std::string::npos) << on.err;
+  EXPECT_NE(on.err.find("note: resuming after frame "), std::string::npos) << on.err;
   EXPECT_EQ(hashes("cut").size(), 24u);
   ASSERT_EQ(run(folder_.path, film({"--out", "cut", "--resume", "--frames", "30"})).status, 0);
   expect_the_same_film("whole", "cut");
@@ -330,7 +330,7 @@ TEST_F(ReplayedFilm, GoesOnBehindTheLastWholeFrameOfARunThatFailed) {
   EXPECT_GE(kept, 6u);  // the change is at 0.2 s
   const Result on = run(folder_.path, film({"--no-images", "--out", "cut", "--resume"}));
   EXPECT_EQ(on.status, 0) << on.err;
-  EXPECT_NE(on.err.find(fmt::format("note: going on behind frame {} of 24", kept)), std::string::npos) << on.err;
+  EXPECT_NE(on.err.find(fmt::format("note: resuming after frame {} of 24", kept)), std::string::npos) << on.err;
   expect_the_same_film("whole", "cut");
 }
 

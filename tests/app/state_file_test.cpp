@@ -1,5 +1,5 @@
 // States that a run leaves: what is in them, that a step from them has the run's bits, and what is refused.
-#include "app/state_file.h"
+#include "film/state_file.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // The program's g and its gradient against those that a separate program would compute from the files of a state.
 #include <gtest/gtest.h>
 
-#include "app/state_file.h"
+#include "film/state_file.h"
 #include "sim/solver/step.h"
 #include "support/bodies.h"
 #include "support/stored_problem.h"

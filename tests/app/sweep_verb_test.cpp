@@ -10,8 +10,8 @@
 #include <set>
 #include <thread>
 
-#include "app/sweep/contact_sheet.h"
-#include "app/verbs.h"
+#include "film/contact_sheet.h"
+#include "film/places.h"
 #include "output/png_file.h"
 #include "output/report_table.h"
 #include "support/bodies.h"

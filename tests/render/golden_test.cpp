@@ -9,7 +9,7 @@
 
 #include <functional>
 
-#include "app/draw_scene.h"
+#include "film/draw_scene.h"
 #include "output/png_file.h"
 #include "render/renderer.h"
 #include "support/film.h"
@@ -65,13 +65,13 @@ Picture picture_of(const Shot& shot, const Settings& more = {}) {
   }
   film.play(1, shot.frames,
             [&](std::size_t b, int, const State&, const FrameInputs&, const State& after) { states[b] = after; });
-  const std::vector<Skin> colliders = drawn_set(film.set.obstacles, film.bodies);
+  const std::vector<Skin> colliders = collider_skins(film.set.obstacles, film.bodies);
   Picture picture;
   picture.stage = make_stage(film.scene, film.bodies, drawn, film.set.obstacles, colliders, shot.font);
   picture.list.camera = make_camera(film.scene, picture.stage);
   for (std::size_t b = 0; b < film.bodies.size(); ++b)
     picture.list.positions.push_back(skin_positions(drawn[b], film.models[b], states[b]));
-  add_set(film.set.obstacles, colliders, shot.frames / film.scene.fps, picture.list);
+  add_colliders(film.set.obstacles, colliders, shot.frames / film.scene.fps, picture.list);
   return picture;
 }
 

@@ -9,9 +9,9 @@
 #include <cstdlib>
 
 #include "app/bench/subject.h"
-#include "app/verbs.h"
 #include "baselines/make_rule.h"
 #include "baselines/reference.h"
+#include "film/places.h"
 #include "scene/scene_reader.h"
 
 using namespace supple;
@@ -46,9 +46,9 @@ struct StudiedState {
 };
 
 // Adds the errors of all candidates on one state; nothing where the body is at rest.
-bool add_state(const Subject& subject, const BenchState& state, std::vector<Candidate>& list,
+bool add_state(Subject& subject, const BenchState& state, std::vector<Candidate>& list,
                std::vector<std::unique_ptr<SearchRule>>& rules, Reference& reference, Workspace& workspace) {
-  FrameInputs inputs = subject.inputs(state.frame);
+  FrameInputs inputs = subject.inputs(state);
   inputs.solver.iterations = iterations;
   inputs.solver.history = SolverSettings{}.history;
   inputs.solver.line_search = LineSearch::armijo;
@@ -132,7 +132,7 @@ int main(int count, char** arguments) {
   std::sort(files.begin(), files.end());
   for (const std::filesystem::path& file : files) {
     for (const BodyDef& def : load_scene(file, assets_folder(), {}).bodies) {
-      const Subject subject({file.stem().string(), def.name});
+      Subject subject({file.stem().string(), def.name});
       if (subject.model.vertices > most_vertices) continue;
       fmt::print(stderr, "{}, {} ({})\n", subject.scene.name, def.name, subject.size_text());
       std::vector<std::unique_ptr<SearchRule>> rules;

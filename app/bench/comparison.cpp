@@ -1,0 +1,152 @@
+#include "app/bench/comparison.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "base/interrupts.h"
+
+namespace supple {
+
+SearchRule& SolverComparison::rule_of(const SolverEntry& entry) {
+  const auto same = [&](const Prepared& p) { return p.method == entry.method; };
+  const auto at = std::find_if(prepared_.begin(), prepared_.end(), same);
+  if (at != prepared_.end()) return *at->rule;
+  prepared_.push_back({entry.method, make_rule(entry.method, subject_.model)});
+  return *prepared_.back().rule;
+}
+
+namespace {
+
+// Adds one timed run of a solver to its outcome.
+void add_times(Outcome& outcome, const StepReport& report) {
+  std::vector<double> ms = {report.start_ms};
+  for (const IterationRecord& record : report.history) ms.push_back(record.elapsed_ms);
+  outcome.steps.push_back(report.step_ms);
+  outcome.overheads.push_back(report.lbfgs_ms);
+  if (outcome.ms.empty()) {
+    outcome.ms = ms;
+    return;
+  }
+  SUPPLE_CHECK(ms.size(), ==, outcome.ms.size());  // the same bits each time
+  for (std::size_t k = 0; k < ms.size(); ++k) outcome.ms[k] = std::min(outcome.ms[k], ms[k]);
+}
+
+}  // namespace
+
+// Repeats are the outer loop, so that what slows the machine for a while slows all solvers. The first round warms
+// caches and gives the results; its times do not count.
+std::vector<Outcome> SolverComparison::run(const BenchState& state, const std::vector<SolverEntry>& entries,
+                                           int repeats, double budget_ms) {
+  std::vector<Outcome> outcomes(entries.size());
+  for (int repeat = 0; repeat <= std::max(repeats, 1); ++repeat) {
+    for (std::size_t m = 0; m < entries.size(); ++m) {
+      if (interrupted()) throw BenchInterrupted{};
+      Outcome& outcome = outcomes[m];
+      if (outcome.failed || (repeat > 1 && outcome.used_ms > budget_ms)) continue;
+      const FrameInputs inputs = inputs_of(state, entries[m]);
+      SearchRule& rule = rule_of(entries[m]);
+      State after = state.before;
+      workspace_.correction = {};  // no solver may use what another one learned of A^-1
+      const StepReport& report = step(subject_.model, inputs, after, workspace_, rule);
+      outcome.used_ms += report.step_ms;
+      if (repeat > 0) {
+        add_times(outcome, report);
+        continue;
+      }
+      outcome.label = entries[m].label;
+      outcome.failed = report.failed;
+      outcome.stop_reason = report.stop_reason;
+      outcome.iterations = report.iterations;
+      outcome.trials = report.line_search;
+      outcome.history = report.history;
+      outcome.x = after.x;
+      if (report.failed) continue;
+      // Summed from the end backwards, so that gains near the minimum keep their last digits.
+      double left = gained(subject_.model, inputs, state.before, outcome.x, reference_workspace_);
+      outcome.gained.assign(outcome.history.size() + 1, left);
+      for (std::size_t k = outcome.history.size(); k-- > 0;) {
+        left -= outcome.history[k].decrease;
+        outcome.gained[k] = left;
+      }
+    }
+  }
+  for (Outcome& outcome : outcomes) {
+    if (outcome.failed) {
+      outcome.step_ms = outcome.median_ms = outcome.overhead_ms = std::nan("");
+      continue;
+    }
+    std::sort(outcome.steps.begin(), outcome.steps.end());
+    std::sort(outcome.overheads.begin(), outcome.overheads.end());
+    outcome.step_ms = outcome.steps.front();
+    outcome.median_ms = outcome.steps[outcome.steps.size() / 2];
+    outcome.overhead_ms = outcome.overheads[outcome.overheads.size() / 2];
+  }
+  return outcomes;
+}
+
+// Puts the subject into a state. What was prepared for other values of its model is made anew.
+const FrameInputs& SolverComparison::put(const BenchState& state) {
+  const FrameInputs& inputs = subject_.inputs(state);
+  if (prepared_for_ != subject_.model.id) {
+    prepared_.clear();
+    lowest_.emplace(subject_.model);
+    prepared_for_ = subject_.model.id;
+  }
+  return inputs;
+}
+
+FrameInputs SolverComparison::inputs_of(const BenchState& state, const SolverEntry& entry) {
+  FrameInputs inputs = put(state);
+  inputs.solver.iterations = entry.iterations;
+  inputs.solver.history = entry.history;
+  inputs.solver.line_search = entry.line_search;
+  inputs.solver.chebyshev = entry.chebyshev;
+  inputs.solver = settings_of(entry.method, inputs.solver);
+  return inputs;
+}
+
+Minimum SolverComparison::reference(const BenchState& state, const std::vector<Outcome>& outcomes) {
+  const auto better = [](const Outcome& a, const Outcome& b) {
+    const double none = -std::numeric_limits<double>::infinity();
+    return (a.failed ? none : a.gained.back()) < (b.failed ? none : b.gained.back());
+  };
+  const Outcome& best = *std::max_element(outcomes.begin(), outcomes.end(), better);
+  const FrameInputs inputs = put(state);
+  return lowest_->minimum(subject_.model, inputs, state.before, best.failed ? state.before.x : best.x,
+                          reference_workspace_);
+}
+
+std::vector<double> errors_of(const Outcome& outcome, double whole) {
+  std::vector<double> errors;
+  for (const double gain : outcome.gained) errors.push_back((whole - gain) / whole);
+  return errors;
+}
+
+double last_error(const Outcome& outcome, double whole) {
+  return outcome.failed ? std::nan("") : (whole - outcome.gained.back()) / whole;
+}
+
+double time_to(const Outcome& outcome, double whole, double tolerance) {
+  for (std::size_t k = 0; k < outcome.gained.size(); ++k) {
+    if (whole - outcome.gained[k] <= tolerance * whole) return outcome.ms[k];
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+ChebyshevSettings trained_chebyshev(SolverComparison& comparison, const BenchState& training) {
+  ChebyshevSettings best{10, 0.99};
+  double most = -std::numeric_limits<double>::infinity();
+  for (const double radius : {0.8, 0.9, 0.95, 0.97, 0.98, 0.99, 0.995, 0.999}) {
+    SolverEntry entry{"", Method::chebyshev, 30};
+    entry.chebyshev = {best.delay, radius};
+    const Outcome outcome = comparison.run(training, {entry}, 0).front();
+    if (outcome.failed || outcome.gained.back() <= most) continue;
+    most = outcome.gained.back();
+    best.radius = radius;
+  }
+  return best;
+}
+
+}  // namespace supple

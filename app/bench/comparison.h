@@ -1,0 +1,90 @@
+// Compares solvers on one state: how long they take, and how near the minimum they come. Everything is measured inside
+// one run, from the same state, with the same threads.
+#pragma once
+
+#include <optional>
+
+#include "app/bench/subject.h"
+#include "baselines/make_rule.h"
+#include "baselines/reference.h"
+
+namespace supple {
+
+// A solver in a comparison, with its settings.
+struct SolverEntry {
+  std::string label;
+  Method method = Method::quasi_newton;
+  int iterations = 10;
+  int history = 5;
+  LineSearch line_search = LineSearch::armijo;
+  ChebyshevSettings chebyshev = {};
+};
+
+// The result of one solver on one state. Lists go by iteration, the first iterate first.
+struct Outcome {
+  std::string label;
+  std::vector<double> gained;  // g(y) - g(x_k) [J]
+  std::vector<double> ms;      // since the step was entered, the least of all timed runs
+  std::vector<IterationRecord> history;
+  double step_ms = 0, median_ms = 0;  // of the whole step, least and median
+  double overhead_ms = 0;             // of L-BFGS without its solve
+  int iterations = 0, trials = 0;
+  bool failed = false;
+  StopReason stop_reason = StopReason::iterations;
+  Positions x;
+  std::vector<double> steps, overheads;  // of each timed run [ms]
+  double used_ms = 0;                    // by all runs
+};
+
+// Is thrown between two runs once a signal asked for an end.
+struct BenchInterrupted {};
+
+// Prepared solvers of one subject; patterns and constant factors are made once, outside of what is measured.
+class SolverComparison {
+ public:
+  // Both must outlive this object.
+  SolverComparison(Subject& subject, Threads& threads)
+      : subject_(subject), lowest_(subject.model), prepared_for_(subject.model.id) {
+    workspace_.threads = reference_workspace_.threads = &threads;
+  }
+
+  // Runs every solver `repeats` times (at least once) from the state, after one run that is not timed; all take turns.
+  // budget_ms: a solver is not repeated any more once it has used this [ms].
+  std::vector<Outcome> run(const BenchState& state, const std::vector<SolverEntry>& entries, int repeats,
+                           double budget_ms = 4000);
+
+  // Finds the minimum below the best of the outcomes.
+  Minimum reference(const BenchState& state, const std::vector<Outcome>& outcomes);
+
+  const Subject& subject() const { return subject_; }
+
+ private:
+  SearchRule& rule_of(const SolverEntry& entry);
+  const FrameInputs& put(const BenchState& state);
+  FrameInputs inputs_of(const BenchState& state, const SolverEntry& entry);
+
+  Subject& subject_;
+  std::optional<Reference> lowest_;
+  Workspace workspace_, reference_workspace_;
+  struct Prepared {
+    Method method;
+    std::unique_ptr<SearchRule> rule;
+  };
+  std::vector<Prepared> prepared_;
+  std::uint64_t prepared_for_;  // id of the values of the subject's model
+};
+
+// Equation 12 by iteration: 1 - gained / whole. Empty when the run failed.
+std::vector<double> errors_of(const Outcome& outcome, double whole);
+
+// Equation 12 at the end; NaN when the run failed.
+double last_error(const Outcome& outcome, double whole);
+
+// The first time at which the error is at most `tolerance`; infinity when it never is [ms].
+double time_to(const Outcome& outcome, double whole, double tolerance);
+
+// Finds the radius that makes Chebyshev's method best after 30 iterations on a training state, with the delay of
+// Wang 2015.
+ChebyshevSettings trained_chebyshev(SolverComparison& comparison, const BenchState& training);
+
+}  // namespace supple

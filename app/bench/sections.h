@@ -1,0 +1,51 @@
+// The sections of the report page, one function each, and what they share. Each plays or reads back the states that it
+// compares solvers on.
+#pragma once
+
+#include "app/bench/bench.h"
+#include "app/bench/comparison.h"
+
+namespace supple {
+
+// table1.cpp
+ReportSection bench_table1(const BenchSetting& setting);
+// conditioning.cpp
+ReportSection bench_table2(const BenchSetting& setting);
+// convergence.cpp
+ReportSection bench_figure7(const BenchSetting& setting);
+ReportSection bench_figure8(const BenchSetting& setting);
+ReportSection bench_figure13(const BenchSetting& setting);
+ReportSection bench_figure14(const BenchSetting& setting);
+ReportSection bench_figure15(const BenchSetting& setting);
+ReportSection bench_figure16(const BenchSetting& setting);
+ReportSection bench_figure17(const BenchSetting& setting);
+// stability.cpp
+ReportSection bench_figure10(const BenchSetting& setting);
+// all_states.cpp
+ReportSection bench_profiles(const BenchSetting& setting);
+ReportSection bench_scenes(const BenchSetting& setting);
+ReportSection bench_minima(const BenchSetting& setting);
+// studies.cpp
+ReportSection bench_sweeps(const BenchSetting& setting);
+ReportSection bench_substeps(const BenchSetting& setting);
+ReportSection bench_hanging(const BenchSetting& setting);
+// engineering.cpp
+ReportSection bench_ablation(const BenchSetting& setting);
+ReportSection bench_contact(const BenchSetting& setting);
+
+// Plays or reads back a subject's states before these frames, in the report's folder.
+std::vector<BenchState> states_of(Subject& subject, const std::vector<int>& frames, const BenchSetting& setting);
+
+// Says on standard error what is measured next.
+void say_doing(const BenchSetting& setting, const std::string& what);
+
+// The same scene with a mesh of the paper in the body's place; nothing where the paper's meshes are not at hand.
+std::optional<SubjectChoice> with_paper_mesh(const BenchSetting& setting, const SubjectChoice& choice,
+                                             const std::string& mesh);
+
+struct Summary {
+  double mean = 0, worst = 0, p95 = 0;
+};
+Summary summary_of(std::vector<double> values);  // NaN are left out
+
+}  // namespace supple

@@ -1,0 +1,34 @@
+#include "app/solvers.h"
+
+#include "baselines/make_rule.h"
+#include "baselines/reference.h"
+
+namespace supple {
+namespace {
+
+// Measures against the minimum that the reference finds.
+class ReferenceMeter : public ErrorMeter {
+ public:
+  ReferenceMeter(const Model& model, Threads& threads) : reference_(model) { workspace_.threads = &threads; }
+
+  std::optional<double> step_error(const Model& model, const FrameInputs& inputs, const State& before,
+                                   const State& after) override {
+    return reference_.step_error(model, inputs, before, after, workspace_);
+  }
+
+ private:
+  Reference reference_;
+  Workspace workspace_;
+};
+
+}  // namespace
+
+FilmSolvers all_solvers() {
+  return {
+      {[](const SolverDef& solver, const Model& model) { return make_rule(solver.method, model); },
+       [](const SolverDef& solver) { return settings_of(solver.method, solver.settings); }},
+      [](const Model& model, Threads& threads) { return std::make_unique<ReferenceMeter>(model, threads); },
+  };
+}
+
+}  // namespace supple

@@ -1,0 +1,30 @@
+// Makes what the renderer draws from bodies, colliders and their states.
+#pragma once
+
+#include "render/draw_list.h"
+#include "scene/assemble.h"
+#include "scene/obstacle.h"
+
+namespace supple {
+
+// The skin of each collider; empty where nothing of it is drawn.
+std::vector<Skin> collider_skins(const std::vector<Obstacle>& obstacles, const std::vector<Body>& bodies);
+Bounds bounds_at_rest(const std::vector<Body>& bodies);
+
+// The mesh that is drawn of a collider; empty where nothing is.
+DrawMesh collider_mesh(const Obstacle& obstacle, const Skin& skin);
+
+// The stage of a film: first bodies, then colliders.
+Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const std::vector<DrawnBody>& drawn,
+                 const std::vector<Obstacle>& obstacles, const std::vector<Skin>& skins, const std::string& font);
+
+// Adds the colliders' positions at a time to a list that has the bodies'.
+void add_colliders(const std::vector<Obstacle>& obstacles, const std::vector<Skin>& skins, double time, DrawList& list);
+
+// The scene's camera, or one that frames all bodies and the motion of their handles.
+Camera make_camera(const SceneDef& scene, const Stage& stage);
+
+// x y z by skin vertex.
+std::vector<float> skin_positions(const DrawnBody& drawn, const Model& model, const State& state);
+
+}  // namespace supple

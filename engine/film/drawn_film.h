@@ -1,0 +1,32 @@
+// What is drawn of a film: skins of bodies and colliders, made as the film starts, and the draw list of each frame.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "film/draw_scene.h"
+#include "film/filmed_body.h"
+
+namespace supple {
+
+class DrawnFilm {
+ public:
+  DrawnFilm(const SceneDef& scene, const std::vector<Body>& bodies, const CollisionSet& set, const std::string& font);
+
+  const Stage& stage() const { return stage_; }
+
+  // Makes the skin of a collider anew, whose shape has changed.
+  void renew(std::size_t collider, const CollisionSet& set, const std::vector<Body>& bodies);
+
+  // A frame's list: positions, and all that has changed since the last list.
+  DrawList list(const SceneDef& scene, const std::vector<std::unique_ptr<FilmedBody>>& bodies, const CollisionSet& set,
+                double time);
+
+ private:
+  std::vector<DrawnBody> drawn_;
+  std::vector<Skin> collider_skins_;
+  Stage stage_;
+  std::vector<std::size_t> renewed_;  // colliders, since the last list
+};
+
+}  // namespace supple

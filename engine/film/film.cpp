@@ -1,0 +1,220 @@
+#include "film/film.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <exception>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "base/error.h"
+#include "base/timing.h"
+#include "base/variants.h"
+#include "film/film_checks.h"
+#include "film/film_identity.h"
+#include "film/frame_loop.h"
+#include "film/places.h"
+#include "output/chrome_trace.h"
+#include "output/run_record.h"
+#include "output/video.h"
+#include "output/whole_file.h"
+#include "scene/script_trial.h"
+
+namespace supple {
+
+const char* text_of(FilmEnd end) {
+  switch (end) {
+    case FilmEnd::done: return "done";
+    case FilmEnd::interrupted: return "interrupted";
+    case FilmEnd::failed: break;
+  }
+  return "failed";
+}
+
+LoadedFilm load_film(const FilmPlan& plan, const std::vector<std::string>& command) {
+  Zone zone("read scene");
+  const std::string file = scene_file(plan.scene).string();
+  std::vector<std::string> settings = plan.settings;
+  if (plan.frames > 0) settings.push_back(fmt::format("frames={}", plan.frames));
+  if (plan.seed >= 0) settings.push_back(fmt::format("seed={}", plan.seed));
+  LoadedFilm film{Script::load(file, assets_folder(), settings, plan.sweep_point), {}, {}, {}};
+  film.info.command = command;
+  film.info.scene_file = file;
+  film.info.scene_json = film.script.scene_json();
+  film.info.replay_json = film.script.replay_json();
+  film.info.kernel_variant = variant_name(best_variant());
+  film.info.threads =
+      plan.threads > 0 ? plan.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  check_save_states(plan.save_states, film.script.scene(), {}, 0);
+  zone.next("assemble meshes");
+  film.bodies = assemble(film.script.scene());
+  for (const Body& body : film.bodies) {
+    const TetMesh& mesh = body.description.mesh;
+    const auto elements = static_cast<int>(mesh.tets.rows() + body.description.springs.size());
+    film.info.meshes.push_back({body.def.name, body.source, mesh_hash(body), int(mesh.rest.rows()), elements});
+  }
+  return film;
+}
+
+void build_models(LoadedFilm& film) {
+  const Zone zone("build models");
+  try_changes(film.script, film.bodies);
+  for (const Body& body : film.bodies) film.models.push_back(build_model(body.description));
+}
+
+namespace {
+
+bool remembers_steps(const SceneDef& scene) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                     [](const BodyDef& body) { return remembers_steps(body.solver.method); });
+}
+
+// Whether a method is used that no checkpoint can resume.
+bool remembers_steps(const Script& script) {
+  for (int frame = 0; frame < script.scene().frames; ++frame) {
+    const std::vector<const TimedChange*> at_work = script.at_work(frame);
+    const bool method = std::any_of(at_work.begin(), at_work.end(), [](const TimedChange* c) { return c->cost.rule; });
+    if (method && remembers_steps(script.scene_at(frame))) return true;
+  }
+  return remembers_steps(script.scene());
+}
+
+// Checks that the folder holds all that a film needs which starts there.
+void check_folder(const FilmPlan& plan, const LoadedFilm& film, const FilmStart& start) {
+  const SceneDef& scene = film.script.scene();
+  check_save_states(plan.save_states, scene, start.path, start.kept_frames());
+  check_rows_and_motion(start.path, film.bodies, static_cast<int>(scene.colliders.size()), start.kept_frames());
+  if (plan.pictures == FilmPictures::all) check_pictures(start.path / "frames", start.kept_frames());
+}
+
+void check_records(const FilmPlan& plan, const FilmStart& start) {
+  if (plan.record.empty()) return;
+  check_record(plan.record, start.path, start.record_head, start.kept_frames());
+  std::error_code ignored;
+  const bool same = !plan.verify.empty() &&
+                    (plan.record == plan.verify || std::filesystem::equivalent(plan.record, plan.verify, ignored));
+  if (same) throw InputError("--record " + plan.record, "is the file to --verify with, which would be overwritten");
+}
+
+}  // namespace
+
+FilmStart check_film(const FilmPlan& plan, const LoadedFilm& film) {
+  const Zone zone("begin folder");
+  const SceneDef& scene = film.script.scene();
+  FilmStart start;
+  start.path = plan.out.empty() ? std::filesystem::path("out") / scene.name : std::filesystem::path(plan.out);
+  start.identity = identity_of(film.info, film.script, film.bodies, plan);
+  start.checkpoint_every = remembers_steps(film.script) ? 0 : plan.checkpoint_every;
+  start.record_head = record_head(film.info, film.bodies);
+  std::error_code ignored;
+  if (!plan.folder_is_locked && std::filesystem::is_directory(start.path, ignored))
+    start.lock = std::make_unique<FolderLock>(start.path);
+  if (plan.resume) start.checkpoint = checkpoint_in(start.path, start.identity, scene.frames, film.info);
+  check_folder(plan, film, start);
+  check_records(plan, start);
+  if (!plan.verify.empty()) start.verifier.emplace(plan.verify, start.record_head, plan.tolerance, start.kept_frames());
+  // A folder that is not there yet is locked only now, so that a film that is refused leaves no trace.
+  if (!plan.folder_is_locked && !start.lock) start.lock = std::make_unique<FolderLock>(start.path);
+  return start;
+}
+
+namespace {
+
+// The frames after which the film in a folder was resumed before.
+std::vector<int> resumed_before(const std::filesystem::path& run) {
+  const auto info = nlohmann::ordered_json::parse(read_run(run).info_json);
+  return info.contains("resumed_at") ? info["resumed_at"].get<std::vector<int>>() : std::vector<int>();
+}
+
+}  // namespace
+
+RunFolder open_folder(FilmStart& start, LoadedFilm& film) {
+  const Zone zone("begin folder");
+  RunFolder folder(start.path, start.kept_frames());
+  film.info.ended = "running";
+  if (start.checkpoint) {
+    film.info.resumed = resumed_before(start.path);
+    film.info.resumed.push_back(start.kept_frames());
+  }
+  folder.write_info(film.info);
+  return folder;
+}
+
+namespace {
+
+// Makes the frames; what goes wrong is in the result. Returns false when the film could not even be begun.
+bool make_frames(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const RunFolder& folder,
+                 const FilmSolvers& solvers, FilmResult& result) {
+  const Stopwatch setup;
+  Stopwatch loop;
+  Progress progress(film.script.scene().frames, start.kept_frames(), plan.quiet);
+  std::optional<FilmLog> log;
+  std::optional<FrameLoop> frames;
+  const auto guarded = [&result](const auto& work) {
+    try {
+      work();
+    } catch (const std::exception& error) {
+      result.end = FilmEnd::failed;
+      if (result.message.empty()) result.message = error.what();
+    }
+  };
+  guarded([&] {
+    Zone prepare("prepare film");
+    log.emplace(folder, start.checkpoint_every, start.identity, start.kept_frames());
+    frames.emplace(plan, film, start, folder, solvers, *log);
+    result.setup_ms = setup.elapsed_ms();
+    loop.lap_ms();
+    prepare.finish();
+    result.end = frames->run(progress, result.message);
+  });
+  if (frames) guarded([&] { frames->finish(result); });
+  if (log) {
+    log->drop_others();
+    result.rows = log->rows();
+  }
+  progress.end();
+  result.wall_ms = loop.elapsed_ms();
+  return frames.has_value();
+}
+
+void make_video(double fps, const RunFolder& folder, FilmResult& result) {
+  const Zone zone("video");
+  const VideoResult video = encode_video(folder.frames(), static_cast<int>(result.rows.size()), fps, folder.video());
+  result.video_written = video.outcome == VideoOutcome::written;
+  result.video_failed = video.outcome == VideoOutcome::failed;
+  result.video_message = video.message;
+}
+
+}  // namespace
+
+FilmResult make_film(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const RunFolder& folder,
+                     const FilmSolvers& solvers) {
+  FilmResult result;
+  result.kept_frames = start.kept_frames();
+  const bool begun = make_frames(plan, film, start, folder, solvers, result);
+  if (begun && plan.pictures != FilmPictures::none && plan.video && !result.rows.empty())
+    make_video(film.script.scene().fps, folder, result);
+  return result;
+}
+
+std::string write_records(const FilmResult& result, LoadedFilm& film, const RunFolder& folder,
+                          const std::vector<ThreadTrace>* trace) {
+  RunInfo& info = film.info;
+  info.gl_backend = result.gl_backend;
+  info.gl_renderer = result.gl_renderer;
+  info.gl_version = result.gl_version;
+  info.frames = static_cast<int>(result.rows.size());
+  info.ended = text_of(result.end);
+  if (result.end == FilmEnd::failed) info.ended += ": " + result.message;
+  info.video = result.video_written ? "video.mp4" : result.video_message;
+  try {
+    folder.write_info(info);
+    folder.write_profile(profile_json(result.rows));
+    if (trace != nullptr) write_whole_file(folder.trace(), chrome_trace(*trace));
+  } catch (const RunError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace supple

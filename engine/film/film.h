@@ -1,0 +1,82 @@
+// A film from its plan to its folder, without a command line: load it, check it, open its folder, make it. Each part is
+// a function, so that a program can say what it likes between them. Not here: the loop over frames (frame_loop.h).
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/trace.h"
+#include "film/checkpoint.h"
+#include "film/film_plan.h"
+#include "film/film_solvers.h"
+#include "film/state_record.h"
+#include "output/folder_lock.h"
+#include "output/profile.h"
+#include "output/run_folder.h"
+#include "scene/script.h"
+
+namespace supple {
+
+// A scene or replay, read and assembled.
+struct LoadedFilm {
+  Script script;
+  std::vector<Body> bodies;
+  std::vector<Model> models;  // by body, once build_models has made them
+  RunInfo info;               // for run.json; filled in as the film goes along
+};
+
+// Reads the scene and its meshes. command: as the program was called. Throws InputError.
+LoadedFilm load_film(const FilmPlan& plan, const std::vector<std::string>& command);
+
+// Tries every change of the script, and builds the models. Throws InputError.
+void build_models(LoadedFilm& film);
+
+// How a film starts: where, and after which frames of an earlier run.
+struct FilmStart {
+  std::filesystem::path path;        // of the run's folder
+  std::unique_ptr<FolderLock> lock;  // on it; null where the caller holds it
+  std::string identity;              // of what a checkpoint belongs to
+  int checkpoint_every = 0;          // frames; 0: never
+  std::optional<Checkpoint> checkpoint;
+  RecordHead record_head;
+  std::optional<StateVerifier> verifier;
+
+  int kept_frames() const { return checkpoint ? checkpoint->frames : 0; }
+};
+
+// Refuses what cannot be made, before anything in the folder is touched, and finds where the film starts. Throws
+// InputError.
+FilmStart check_film(const FilmPlan& plan, const LoadedFilm& film);
+
+// Makes the folder the run's own, and writes run.json into it. Throws InputError and RunError.
+RunFolder open_folder(FilmStart& start, LoadedFilm& film);
+
+enum class FilmEnd { done, interrupted, failed };
+const char* text_of(FilmEnd end);
+
+struct FilmResult {
+  FilmEnd end = FilmEnd::done;
+  std::string message;         // why it failed, for people
+  std::vector<FrameRow> rows;  // of finished frames
+  int kept_frames = 0;         // of them, of an earlier run
+  std::string gl_backend, gl_renderer, gl_version;
+  std::string video_message;  // why there is no video
+  bool video_written = false;
+  bool video_failed = false;  // ffmpeg is there, and did not make it
+  double setup_ms = 0;
+  double wall_ms = 0;  // of the loop
+};
+
+// Makes the frames and the video. Whatever happens, the frames before it are whole, and `rows` tells of them.
+FilmResult make_film(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const RunFolder& folder,
+                     const FilmSolvers& solvers);
+
+// Writes what is known of the film at its end into run.json and profile.json, and the trace where there is one. Returns
+// what the disk refused; empty: nothing.
+std::string write_records(const FilmResult& result, LoadedFilm& film, const RunFolder& folder,
+                          const std::vector<ThreadTrace>* trace);
+
+}  // namespace supple

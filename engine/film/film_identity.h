@@ -1,0 +1,22 @@
+// What a film is recognised by: the identity that a checkpoint belongs to, and the head of a record of its states.
+#pragma once
+
+#include "film/film_plan.h"
+#include "film/state_record.h"
+#include "output/run_folder.h"
+#include "scene/assemble.h"
+#include "scene/script.h"
+
+namespace supple {
+
+// XXH64 of the points, elements and springs of a body.
+std::string mesh_hash(const Body& body);
+
+// All that must be the same for two runs to give the same films and fields, except for their length: as JSON.
+std::string identity_of(const RunInfo& info, const Script& script, const std::vector<Body>& bodies,
+                        const FilmPlan& plan);
+
+// The head of a record of this film's states.
+RecordHead record_head(const RunInfo& info, const std::vector<Body>& bodies);
+
+}  // namespace supple

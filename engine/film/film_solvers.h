@@ -1,0 +1,29 @@
+// The solvers that a film uses, which come from outside: this library does not know the one that has them.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "scene/driven_body.h"
+
+namespace supple {
+
+// Measures the error of one body's steps against the converged solution.
+class ErrorMeter {
+ public:
+  virtual ~ErrorMeter() = default;
+
+  // Evaluates equation 12 for a step from `before` to `after`. Returns nothing where the objective of the start is
+  // above its minimum by round-off alone.
+  virtual std::optional<double> step_error(const Model& model, const FrameInputs& inputs, const State& before,
+                                           const State& after) = 0;
+};
+
+struct FilmSolvers {
+  Solvers steps;
+  // A meter holds for the model's values as they are.
+  std::function<std::unique_ptr<ErrorMeter>(const Model&, Threads&)> error_meter;
+};
+
+}  // namespace supple

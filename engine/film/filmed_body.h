@@ -1,0 +1,52 @@
+// A body of a film: the driver that makes its steps (scene/driven_body.h), and what the film records of it.
+#pragma once
+
+#include "film/field_writer.h"
+#include "film/film_solvers.h"
+#include "output/point_cache.h"
+#include "output/profile.h"
+#include "output/run_folder.h"
+
+namespace supple {
+
+class FilmedBody {
+ public:
+  // All that is passed by reference must outlive this object. kept_frames: of an earlier run's motion, which stays and
+  // is continued.
+  FilmedBody(const SceneDef& scene, Body& body, Model& model, const CollisionSet& set, const RunFolder& folder,
+             const FilmSolvers& solvers, Threads& threads, int kept_frames = 0);
+
+  DrivenBody& driver() { return driver_; }
+  const Model& model() const { return driver_.model(); }
+  const State& state() const { return driver_.state(); }
+
+  // Makes one frame's steps. Returns a message when the solver failed.
+  std::string advance(int frame, bool measure_error, BodyRow& row);
+
+  // Appends the frame to motion/.
+  void save_motion();
+
+  // Writes the problem of a frame's first step, which has not been made yet, into the folder of states. Changes no
+  // result.
+  void save_state(int frame);
+
+  // Writes the frame's fields into fields/.
+  void save_fields(int frame);
+
+ private:
+  void measure(int frame, BodyRow& row);
+  std::optional<double> step_error(const State& before);
+
+  const SceneDef& scene_;
+  const RunFolder& folder_;
+  const FilmSolvers& solvers_;
+  Threads& threads_;
+  DrivenBody driver_;
+  Triangles surface_;                        // the part that may touch, in the model's order; empty without colliders
+  std::unique_ptr<ErrorMeter> error_meter_;  // once an error is asked for
+  std::uint64_t metered_model_ = 0;          // id of the model's values that the meter holds for
+  PointCacheWriter motion_;
+  std::optional<FieldWriter> fields_;  // once fields are asked for
+};
+
+}  // namespace supple

@@ -1,0 +1,209 @@
+#include "film/frame_loop.h"
+
+#include <algorithm>
+
+#include "base/hash.h"
+#include "base/interrupts.h"
+#include "base/timing.h"
+#include "base/trace.h"
+#include "film/places.h"
+
+namespace supple {
+
+FilmEnd FrameLoop::run(Progress& progress, std::string& message) {
+  for (int frame = first_; frame < scene_.frames; ++frame) {
+    if (interrupted()) return FilmEnd::interrupted;
+    const Zone zone("frame", {}, frame);
+    FrameRow row;
+    row.frame = frame;
+    row.time_s = (frame + 1) / scene_.fps;
+    if (log_.keeps_checkpoints()) remember(frame);
+    change(frame, row);
+    message = advance(frame, row);
+    if (!message.empty()) return FilmEnd::failed;
+    save_outputs(frame, row);
+    if (!show(frame, row)) return FilmEnd::failed;  // the pictures' error says why
+    log_.add(std::move(row));
+    if (log_.wants_checkpoint(frame + 1)) add_checkpoint(frame + 1);
+    log_.settle(pictures());
+    progress.show(frame + 1);
+  }
+  return FilmEnd::done;
+}
+
+// Applies what a replay changes in a frame.
+void FrameLoop::change(int frame, FrameRow& row) {
+  forget_earlier();
+  const std::vector<const TimedChange*> at_work = script_.at_work(frame);
+  if (at_work.empty()) return;
+  const Zone zone("change");
+  const Stopwatch watch;
+  std::vector<TimedChange> changes;
+  for (const TimedChange* one : at_work) changes.push_back(*one);
+  apply(script_.scene_at(frame), changes);
+  row.change_ms = watch.elapsed_ms();
+}
+
+// Makes all bodies' steps. Returns what went wrong.
+std::string FrameLoop::advance(int frame, FrameRow& row) {
+  const bool save_states = std::ranges::find(plan_.save_states, frame) != plan_.save_states.end();
+  std::vector<std::uint64_t> hashes;
+  for (const auto& body : filmed_) {
+    if (save_states) body->save_state(frame);
+    std::string message = advance_body(frame, *body, row);
+    if (!message.empty()) return message;
+    hashes.push_back(state_hash(body->model(), body->state()));
+    if (verifier_ != nullptr) message = verifier_->compare(frame, body->model(), body->state());
+    if (!message.empty()) return message;
+  }
+  for (const auto& body : filmed_) {  // only now: a record has whole frames
+    if (recorder_) recorder_->add(body->model(), body->state());
+  }
+  // One body's hash is the frame's; of several bodies it is XXH64 of their hashes in the order of the scene.
+  row.state_hash =
+      hashes.size() == 1 ? hashes.front() : hash_bytes(hashes.data(), sizeof(hashes.front()) * hashes.size());
+  return "";
+}
+
+std::string FrameLoop::advance_body(int frame, FilmedBody& body, FrameRow& row) {
+  const bool measure_error = plan_.error_every > 0 && frame % plan_.error_every == 0;
+  row.bodies.emplace_back();
+  std::string message = body.advance(frame, measure_error, row.bodies.back());
+  if (message.empty()) row.step_ms += row.bodies.back().step_ms;
+  return message;
+}
+
+void FrameLoop::save_outputs(int frame, const FrameRow& row) {
+  for (const auto& body : filmed_) body->save_motion();
+  if (plan_.fields_every > 0 && frame % plan_.fields_every == 0) {
+    for (const auto& body : filmed_) body->save_fields(frame);
+  }
+  for (const Obstacle& obstacle : set_.obstacles) poses_->add(frame, obstacle.def.name, obstacle.pose(row.time_s));
+}
+
+// Hands the frame to the pictures. Returns false when they have failed.
+bool FrameLoop::show(int frame, FrameRow& row) {
+  const bool drawn = plan_.pictures == FilmPictures::all || frame + 1 == scene_.frames;
+  if (!pictures_ || !drawn) return true;
+  Zone zone("draw list");
+  const Stopwatch watch;
+  DrawList list = drawn_->list(scene_, filmed_, set_, row.time_s);
+  row.draw_ms = watch.elapsed_ms();
+  zone.next("wait for render");
+  return pictures_->put(frame, std::move(list));
+}
+
+FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const RunFolder& folder,
+                     const FilmSolvers& solvers, FilmLog& log)
+    : plan_(plan),
+      script_(film.script),
+      bodies_(film.bodies),
+      folder_(folder),
+      scene_(film.script.scene()),
+      set_(collision_set(scene_)),
+      threads_(film.info.threads),
+      first_(start.kept_frames()),
+      log_(log),
+      verifier_(start.verifier ? &*start.verifier : nullptr) {
+  if (plan.pictures != FilmPictures::none) {
+    drawn_.emplace(scene_, bodies_, set_, caption_font());
+    pictures_.emplace(drawn_->stage(), plan.gl, shaders_folder(), folder);
+  }
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    filmed_.push_back(
+        std::make_unique<FilmedBody>(scene_, bodies_[b], film.models[b], set_, folder, solvers, threads_, first_));
+  }
+  if (!set_.obstacles.empty()) poses_.emplace(folder.colliders(), first_ * int(set_.obstacles.size()));
+  if (start.checkpoint) resume(*start.checkpoint);
+  if (!plan.record.empty()) recorder_.emplace(plan.record, start.record_head, first_);
+}
+
+// Goes on to where an earlier run's checkpoint was taken: first the scene as it was then, and then the bodies.
+void FrameLoop::resume(const Checkpoint& checkpoint) {
+  const bool changed = std::ranges::any_of(
+      script_.changes(), [&](const TimedChange& one) { return one.at < checkpoint.frames / scene_.fps; });
+  if (changed) {
+    apply(script_.scene_at(checkpoint.frames - 1), script_.changes());
+    forget_earlier();
+  }
+  for (std::size_t b = 0; b < filmed_.size(); ++b) filmed_[b]->driver().restore(checkpoint.bodies[b]);
+}
+
+// A change that was spread over the last frame is complete.
+void FrameLoop::forget_earlier() {
+  set_.earlier.clear();
+  for (Body& body : bodies_) body.earlier.clear();
+}
+
+namespace {
+
+// All that must be made anew of a body or collider after these changes.
+ChangeCost cost_for(const std::string& name, const std::vector<TimedChange>& changes) {
+  ChangeCost cost;
+  for (const TimedChange& change : changes) {
+    if (change.object.empty() || change.object == name) cost |= change.cost;
+  }
+  return cost;
+}
+
+}  // namespace
+
+void FrameLoop::apply(SceneDef scene, const std::vector<TimedChange>& changes) {
+  scene_ = std::move(scene);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    update_body(bodies_[b], scene_, scene_.bodies[b]);
+    filmed_[b]->driver().apply(cost_for(bodies_[b].def.name, changes));
+  }
+  CollisionSet now = collision_set(scene_);
+  now.earlier = std::move(set_.obstacles);
+  set_ = std::move(now);
+  if (drawn_) renew_changed_surfaces(changes);
+}
+
+void FrameLoop::renew_changed_surfaces(const std::vector<TimedChange>& changes) {
+  for (std::size_t c = 0; c < set_.obstacles.size(); ++c) {
+    const std::string& name = set_.obstacles[c].def.name;
+    // What is drawn of a half space depends on where it is.
+    const bool moved = is_half_space(set_.obstacles[c]) &&
+                       std::ranges::any_of(changes, [&name](const TimedChange& one) { return one.object == name; });
+    if (moved || cost_for(name, changes).surface) drawn_->renew(c, set_, bodies_);
+  }
+}
+
+Checkpoint FrameLoop::checkpoint_after(int frames) const {
+  Checkpoint checkpoint{frames, {}};
+  for (const auto& body : filmed_) checkpoint.bodies.push_back(body->state());
+  return checkpoint;
+}
+
+void FrameLoop::remember(int frame) {
+  const Zone zone("checkpoint");
+  before_ = checkpoint_after(frame);
+}
+
+void FrameLoop::add_checkpoint(int frames) {
+  const Zone zone("checkpoint");
+  log_.add(checkpoint_after(frames));
+}
+
+void FrameLoop::finish(FilmResult& result) {
+  const Zone zone("finish film");
+  if (pictures_) {
+    pictures_->finish();
+    result.gl_backend = pictures_->backend;
+    result.gl_renderer = pictures_->renderer;
+    result.gl_version = pictures_->version;
+  }
+  if (pictures_ && !pictures_->error().empty()) {
+    result.end = FilmEnd::failed;
+    result.message = pictures_->error();
+  }
+  const int frames = static_cast<int>(log_.rows().size());
+  // After a failure the bodies may be in the middle of a frame: the checkpoint before that frame is kept.
+  if (result.end == FilmEnd::failed && before_.frames > first_) log_.add(before_);
+  const bool at_end = result.end != FilmEnd::failed && log_.keeps_checkpoints() && !log_.wants_checkpoint(frames);
+  if (at_end) add_checkpoint(frames);
+  log_.settle(pictures());
+}
+
+}  // namespace supple

@@ -1,0 +1,53 @@
+#include "film/places.h"
+
+#include <algorithm>
+#include <system_error>
+
+namespace supple {
+namespace {
+
+std::filesystem::path shared_folder() {
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  const std::filesystem::path installed = program.parent_path().parent_path() / "share" / "supple";
+  if (std::filesystem::is_directory(installed / "shaders", error)) return installed;
+  return SUPPLE_SOURCE_FOLDER;
+}
+
+}  // namespace
+
+std::filesystem::path assets_folder() { return shared_folder() / "assets"; }
+std::filesystem::path shaders_folder() { return shared_folder() / "shaders"; }
+
+std::vector<std::string> shipped_names(const std::string& kind) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(assets_folder() / kind, error)) {
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string caption_font() {
+  for (const char* font :
+       {"/usr/share/fonts/truetype/lato/Lato-Regular.ttf", "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
+        "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"}) {
+    std::error_code error;
+    if (std::filesystem::exists(font, error)) return font;
+  }
+  return "";
+}
+
+std::filesystem::path scene_file(const std::string& name) {
+  std::error_code error;
+  // Folders are often named after what was filmed into them.
+  if (std::filesystem::exists(name, error) && !std::filesystem::is_directory(name, error)) return name;
+  for (const char* kind : {"scenes", "replays"}) {
+    const std::filesystem::path shipped = assets_folder() / kind / (name + ".toml");
+    if (std::filesystem::exists(shipped, error)) return shipped;
+  }
+  return name;
+}
+
+}  // namespace supple

@@ -1,0 +1,82 @@
+#include "scene/driven_body.h"
+
+#include "base/error.h"
+#include "base/trace.h"
+#include "sim/solver/step.h"
+
+namespace supple {
+
+DrivenBody::DrivenBody(const SceneDef& scene, Body& body, Model& model, const CollisionSet& set, const Solvers& solvers,
+                       Threads* threads)
+    : scene_(scene), body_(body), model_(model), set_(set), solvers_(solvers), state_(start_state(model, body)) {
+  inputs_.colliders = &set.colliders;
+  workspace_.threads = threads;
+  apply({.factor = hold_as_state_says(), .rule = true});
+}
+
+void DrivenBody::apply(const ChangeCost& cost) {
+  inputs_.gravity = scene_.gravity;
+  inputs_.solver = solvers_.settings(body_.def.solver);
+  if (cost.factor) renew_model();
+  if (cost.rule || cost.factor) rule_ = solvers_.rule(body_.def.solver, model_);
+}
+
+void DrivenBody::renew_model() {
+  if (!values_) values_.emplace(model_, body_.description);
+  values_->set(model_, body_.description);
+}
+
+void DrivenBody::restore(const State& state) {
+  SUPPLE_CHECK(state.anchors.holds.size(), ==, body_.def.handles.size());
+  state_ = state;
+  if (hold_as_state_says()) apply({.factor = true});
+}
+
+bool DrivenBody::hold_as_state_says() {
+  bool changed = false;
+  for (std::size_t h = 0; h < body_.description.handles.size(); ++h) {
+    const bool holds = state_.anchors.holds[h] != 0;
+    changed |= body_.description.handles[h].holds != holds;
+    body_.description.handles[h].holds = holds;
+  }
+  return changed;
+}
+
+void DrivenBody::switch_handles(double time) {
+  for (std::size_t h = 0; h < body_.def.handles.size(); ++h) {
+    const HandleDef& def = body_.def.handles[h];
+    if (!def.grabs) continue;
+    char& holds = state_.anchors.holds[h];
+    const bool starts_held = time <= 0 && holds != 0;
+    const bool switches = (holds != 0) != def.holds_at(time);
+    if (switches) holds = holds == 0;
+    if (starts_held || (switches && holds != 0)) grab(model_, static_cast<int>(h), state_.x, state_.anchors);
+  }
+  if (hold_as_state_says()) apply({.factor = true});
+}
+
+void DrivenBody::prepare_step(int frame, int substep) {
+  const Zone zone("inputs", body_.def.name);
+  const double done = static_cast<double>(frame) * scene_.substeps + substep, share = 1.0 / scene_.substeps;
+  const StepSpan span{done * scene_.time_step(), (done + 1) * scene_.time_step(), substep * share,
+                      (substep + 1) * share};
+  switch_handles(span.from);
+  handle_targets(model_, body_, state_.anchors, span.to, span.change_to, inputs_.targets);
+  if (model_.scheme.theta < 1)
+    handle_targets(model_, body_, state_.anchors, 0.5 * (span.from + span.to),
+                   0.5 * (span.change_from + span.change_to), inputs_.middle_targets);
+  collider_motions(set_, span, inputs_.collider_motions);
+}
+
+const StepReport& DrivenBody::step() { return supple::step(model_, inputs_, state_, workspace_, *rule_); }
+
+const StepReport& DrivenBody::make_frame(int frame, const std::function<void(const StepReport&)>& observe) {
+  for (int substep = 0; substep < scene_.substeps; ++substep) {
+    prepare_step(frame, substep);
+    observe(step());
+    if (workspace_.report.failed) break;
+  }
+  return workspace_.report;
+}
+
+}  // namespace supple

@@ -1,0 +1,56 @@
+#include "scene/script_trial.h"
+
+#include <algorithm>
+
+#include "scene/warnings.h"
+
+namespace supple {
+namespace {
+
+// Of the changes at work, the one that a body's model must follow; null where there are several.
+const TimedChange* only_change(const std::vector<const TimedChange*>& at_work, const std::string& body) {
+  const TimedChange* only = nullptr;
+  for (const TimedChange* change : at_work) {
+    if (!change->cost.factor || (!change->object.empty() && change->object != body)) continue;
+    if (only != nullptr) return nullptr;
+    only = change;
+  }
+  return only;
+}
+
+}  // namespace
+
+void try_changes(const Script& script, std::vector<Body> bodies) {
+  std::vector<Problem> problems;
+  const auto tell = [&problems](Problem problem) {
+    const auto same = [&problem](const Problem& p) { return p.text() == problem.text(); };
+    if (std::none_of(problems.begin(), problems.end(), same)) problems.push_back(std::move(problem));
+  };
+  for (int frame = 0; frame < script.scene().frames; ++frame) {
+    const std::vector<const TimedChange*> at_work = script.at_work(frame);
+    if (std::none_of(at_work.begin(), at_work.end(), [](const TimedChange* change) { return change->cost.factor; }))
+      continue;
+    const SceneDef scene = script.scene_at(frame);
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      try {
+        update_body(bodies[b], scene, scene.bodies[b]);
+      } catch (const InputError& error) {
+        const TimedChange* change = only_change(at_work, scene.bodies[b].name);
+        for (const Problem& problem : error.problems()) {
+          const Problem& place = change != nullptr ? change->place : problem;
+          tell({place.source, place.line, place.column, problem.message});
+        }
+        bodies[b].def = scene.bodies[b];  // so that later changes answer for themselves alone
+      }
+    }
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+std::vector<Problem> all_warnings(const Script& script, const std::vector<Body>& bodies) {
+  std::vector<Problem> list = warnings(script.scene(), bodies), of_time = script.warnings();
+  list.insert(list.end(), of_time.begin(), of_time.end());
+  return list;
+}
+
+}  // namespace supple
