@@ -17,12 +17,12 @@ FilmEnd FrameLoop::run(Progress& progress, std::string& message) {
     FrameRow row;
     row.frame = frame;
     row.time_s = (frame + 1) / scene_.fps;
-    if (log_.keeps_checkpoints()) remember(frame);
-    change(frame, row);
+    if (log_.keeps_checkpoints()) keep_state_before(frame);
+    apply_replay(frame, row);
     message = advance(frame, row);
     if (!message.empty()) return FilmEnd::failed;
     save_outputs(frame, row);
-    if (!show(frame, row)) return FilmEnd::failed;  // the pictures' error says why
+    if (!show(frame, row)) return FilmEnd::failed;  // finish() takes the message from the pictures
     log_.add(std::move(row));
     if (log_.wants_checkpoint(frame + 1)) add_checkpoint(frame + 1);
     log_.settle(pictures());
@@ -31,8 +31,8 @@ FilmEnd FrameLoop::run(Progress& progress, std::string& message) {
   return FilmEnd::done;
 }
 
-// Applies what a replay changes in a frame.
-void FrameLoop::change(int frame, FrameRow& row) {
+// Applies what a replay changes in this frame.
+void FrameLoop::apply_replay(int frame, FrameRow& row) {
   forget_earlier();
   const std::vector<const TimedChange*> at_work = script_.at_work(frame);
   if (at_work.empty()) return;
@@ -44,7 +44,7 @@ void FrameLoop::change(int frame, FrameRow& row) {
   row.change_ms = watch.elapsed_ms();
 }
 
-// Makes all bodies' steps. Returns what went wrong.
+// Makes one frame's steps of all bodies. Returns why it failed; empty: it did not.
 std::string FrameLoop::advance(int frame, FrameRow& row) {
   const bool save_states = std::ranges::find(plan_.save_states, frame) != plan_.save_states.end();
   std::vector<std::uint64_t> hashes;
@@ -56,7 +56,8 @@ std::string FrameLoop::advance(int frame, FrameRow& row) {
     if (verifier_ != nullptr) message = verifier_->compare(frame, body->model(), body->state());
     if (!message.empty()) return message;
   }
-  for (const auto& body : filmed_) {  // only now: a record has whole frames
+  for (const auto& body :
+       filmed_) {  // a record holds whole frames: nothing is added before every body has made its steps
     if (recorder_) recorder_->add(body->model(), body->state());
   }
   // One body's hash is the frame's; of several bodies it is XXH64 of their hashes in the order of the scene.
@@ -129,7 +130,7 @@ void FrameLoop::resume(const Checkpoint& checkpoint) {
   for (std::size_t b = 0; b < filmed_.size(); ++b) filmed_[b]->driver().restore(checkpoint.bodies[b]);
 }
 
-// A change that was spread over the last frame is complete.
+// Drops the values from before the last frame's changes: a change that was spread over that frame is complete.
 void FrameLoop::forget_earlier() {
   set_.earlier.clear();
   for (Body& body : bodies_) body.earlier.clear();
@@ -137,7 +138,7 @@ void FrameLoop::forget_earlier() {
 
 namespace {
 
-// All that must be made anew of a body or collider after these changes.
+// Adds up what these changes force us to make anew for one body or collider.
 ChangeCost cost_for(const std::string& name, const std::vector<TimedChange>& changes) {
   ChangeCost cost;
   for (const TimedChange& change : changes) {
@@ -176,7 +177,7 @@ Checkpoint FrameLoop::checkpoint_after(int frames) const {
   return checkpoint;
 }
 
-void FrameLoop::remember(int frame) {
+void FrameLoop::keep_state_before(int frame) {
   const Zone zone("checkpoint");
   before_ = checkpoint_after(frame);
 }

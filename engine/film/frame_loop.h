@@ -1,5 +1,5 @@
-// The loop that makes a film: step, draw, compress, overlapped through bounded queues. Nothing that a later stage does
-// can change a result.
+// The loop that makes a film: it makes the steps of a frame and hands what is to be drawn to Pictures, whose threads
+// draw and compress meanwhile. Nothing that they do can change a result.
 #pragma once
 
 #include <memory>
@@ -31,7 +31,7 @@ class FrameLoop {
 
  private:
   // Parts of a frame, in their order.
-  void change(int frame, FrameRow& row);
+  void apply_replay(int frame, FrameRow& row);
   std::string advance(int frame, FrameRow& row);
   void save_outputs(int frame, const FrameRow& row);
   bool show(int frame, FrameRow& row);
@@ -42,7 +42,7 @@ class FrameLoop {
   void renew_changed_surfaces(const std::vector<TimedChange>& changes);
   std::string advance_body(int frame, FilmedBody& body, FrameRow& row);
   Checkpoint checkpoint_after(int frames) const;
-  void remember(int frame);  // the state before it, in case that the frame fails
+  void keep_state_before(int frame);  // the state before it, in case that the frame fails
   void add_checkpoint(int frames);
   Pictures* pictures() { return pictures_ ? &*pictures_ : nullptr; }
 

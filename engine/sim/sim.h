@@ -1,7 +1,7 @@
 // The simulation for other programs: all that is needed to move a body, in the order in which it is called.
 //
 //   BodyDescription body;                    // mesh, materials by region, handles, time step: sim/model/model.h
-//   const Model model = build_model(body);   // constant from here on; several states may share it
+//   const Model model = build_model(body);   // no step changes it; several states may share it
 //   State state = rest_state(model);         // where the body is; a copy is a snapshot: sim/model/state.h
 //   Workspace workspace;                     // scratch, one for each thread that steps; never changes a result
 //   FrameInputs inputs;                      // gravity, handles' targets, colliders, settings: sim/model/inputs.h
@@ -9,7 +9,8 @@
 //
 // A step that fails says so in the report (failed, failure) and leaves the state as it was. Descriptions that
 // contradict themselves throw InputError, a matrix that cannot be factored RunError (base/error.h). Rows of a state are
-// in the model's order; in_input_order(model, state.x) has the mesh's. docs/library.md shows how to build against it.
+// in the model's order; in_input_order(model, state.x) sorts them as in the mesh. docs/library.md shows how to build
+// against it.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +20,7 @@
 #include "geometry/tetrahedralize.h"  // meshes of shapes and boxes
 #include "sim/materials/material.h"
 #include "sim/model/inputs.h"
-#include "sim/model/measures.h"  // energies, stretch
+#include "sim/model/measures.h"  // stretch, penetration
 #include "sim/model/model.h"
 #include "sim/model/report.h"
 #include "sim/model/state.h"

@@ -1,6 +1,6 @@
-// This is the closed set of materials. A new one is a header in this folder (parameters, energy density with its
-// derivative, axial stress) and an entry here; kernels, scene files, the stiffness fit and the derivative tests then
-// know it.
+// The closed set of materials. To add one, write a header in this folder (name, needs, parameters(), density(),
+// axial_stress(): parameters.h) and enter it here: kernels, scene files, the stiffness fit and the derivative tests then
+// know it. docs/adding-a-material.md goes through it.
 #pragma once
 
 #include <variant>

@@ -30,7 +30,7 @@ struct NeoHookean {
     return madd(V(0.5 * mu), squared_norm(f) - V(3.0), volume);
   }
 
-  // This is equation 10 with a = mu/2 (s^2 - 1) and c.
+  // Equation 10 with a = mu/2 (s^2 - 1), b = 0 and the c of LogVolume; J = s, because the other stretches are 1.
   double axial_stress(double s) const {
     double slope = 0;
     LogVolume{mu, lambda}.value(s, slope);

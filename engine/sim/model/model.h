@@ -1,5 +1,6 @@
-// A body, constant while it is stepped: elements in SIMD blocks, masses, handles and the factor of A = M/h^2 + L (Liu
-// et al. 2017, section 3.3). Not here: where the body is (State), what drives it (FrameInputs). Vertices are
+// A body as the solver sees it: elements in SIMD blocks, masses, handles and the factor of A = M/h^2 + L (Liu
+// et al. 2017, section 3.3). No step changes it; between steps, ModelValues may set its numbers anew (replays, handles
+// that let go). Not here: where the body is (State), what drives it (FrameInputs). Vertices are
 // renumbered: free ones first, in the factor's order of elimination (so that solves permute nothing), then those that
 // hard handles hold. Elements are sorted by material and by their first vertex.
 #pragma once
@@ -114,7 +115,7 @@ struct Model {
   std::vector<double> spring;       // by free vertex [N/m]; empty when all handles are hard
   bool free_floating = false;       // nothing holds it: A has the translations as known eigenvectors
 
-  // beta/h L over all vertices, by row; empty without damping. [N/m]
+  // (beta/h) L over all vertices, by row; empty without damping. [N/m]
   struct SparseRows {
     std::vector<std::int32_t> begin;  // n + 1
     std::vector<std::int32_t> column;

@@ -1,5 +1,5 @@
-// Where a body is: all of it that changes while it moves. Not here: what drives it (inputs.h), what a step tells of
-// itself (report.h).
+// Holds where a body is and how fast it moves: all that a step changes. Not here: what drives it (inputs.h), what a
+// step tells of itself (report.h).
 #pragma once
 
 #include <cstdint>
@@ -11,28 +11,29 @@ namespace supple {
 
 struct Model;
 
-// What handles move their vertices from: rest, or where they grabbed them.
+// The places that handles move their vertices from: at rest, or where they grabbed them.
 struct Anchors {
   Positions points;           // by Model::handled [m]
   std::vector<Vec3> centers;  // what keys turn about, by handle [m]
-  std::vector<char> holds;    // whether each handle holds its vertices; one that has let go pulls at nothing
+  std::vector<char> holds;    // whether each handle holds its vertices; one that has let go does not pull
 };
 
-// All that a body's future depends on. A copy is a snapshot.
+// All that a body's future depends on, unless its SearchRule remembers earlier steps (solver/step.h). A copy is a
+// snapshot. step() changes x, v and time; DrivenBody changes the anchors, and replaces the whole when it restores one.
 struct State {
   Positions x;      // positions, n x 3, in the model's order [m]
   Positions v;      // velocities, n x 3 [m/s]
   double time = 0;  // [s]
-  Anchors anchors;  // empty where nothing but steps are made, which do not look at them
+  Anchors anchors;  // may stay empty where only steps are made: they do not read them
 };
 
-// The model at rest where it was built.
+// Returns the state of a model that rests where it was built.
 State rest_state(const Model& model);
 
-// XXH64 of all positions, then all velocities, as little-endian doubles in the order of the input file.
+// Returns the XXH64 of all positions, then all velocities, as little-endian doubles in the order of the input file.
 std::uint64_t state_hash(const Model& model, const State& state);
 
-// Rows of the input file's order.
+// Returns the rows sorted from the model's order into the input file's.
 Positions in_input_order(const Model& model, const Positions& internal);
 
 }  // namespace supple

@@ -87,7 +87,8 @@ void forget_start(Workspace& w) {
 // Sets a first iterate that fits the handles. The paper starts from y; with rows eliminated, y leaves the elements
 // beside a handle torn by all that the handle did not do freely (its keyed motion, and the fall that it did not take),
 // often by more than their size. So the handles' departure from y is spread into the body by the quadratic model that
-// also gives the directions, A_ff d_f = -A_fh d_h: one solve. docs/results.md says what was measured. This costs one
+// also gives the directions, A_ff d_f = -A_fh d_h: one solve. docs/results.md ("Error of the polynomial
+// head") says what starting from y cost in earlier films. This costs one
 // evaluation more, because y stays the first iterate where it is the better one. Returns g(y), the handles at their
 // targets, when the first iterate is another one.
 std::optional<double> spread_handles(const Model& model, const FrameInputs& inputs, Workspace& w) {

@@ -14,7 +14,7 @@ struct Iterate {
   Positions gradient;             // of g, n_free x 3 [N]
   AlignedVector<double> energy;   // of the elements, by lane [J]
   std::vector<Contact> contacts;  // found at x; empty without colliders
-  double g = 0;                   // with these contacts [J]
+  double g = 0;                   // the objective at x, with these contacts [J]
 };
 
 }  // namespace supple

@@ -66,7 +66,8 @@ struct Descent {
   double slope = 0;
 };
 
-// Finds a direction that leads downhill: the rule's, or the rule's once it has forgotten what it learned.
+// Asks the rule for a direction that leads downhill. If it does not, asks again after the rule has forgotten what it
+// learned.
 Descent next_direction(const Model& model, const FrameInputs& inputs, Workspace& w, SearchRule& rule) {
   const Stretch stretch(w.clock, Phase::other, "direction");
   for (;;) {
@@ -95,8 +96,8 @@ Search find_next(const Model& model, const FrameInputs& inputs, Workspace& w, Se
   return plain.done ? Search::exhausted : search_line(model, inputs, w, plain.slope, change, record);
 }
 
-// The contacts found at the trial point take the place of those that the search went by: in the gradient there, and in
-// the objective by what is returned.
+// Replaces the contacts that the search went by with those found at the trial point. Corrects the trial's gradient;
+// returns by how much its objective changes [J].
 double take_contacts(Workspace& w) {
   const double stick = w.contact.stick_length;
   Iterate& to = w.trial;
@@ -127,8 +128,8 @@ void accept(const Model& model, const FrameInputs& inputs, Workspace& w, SearchR
   w.report.history.push_back(record);
 }
 
-// The iterations of algorithm 1 from the current iterate, whose evaluation is at hand.
-void iterate(const Model& model, const FrameInputs& inputs, Workspace& w, SearchRule& rule, double enough) {
+// Runs the iterations of algorithm 1 from the current iterate, which has been evaluated.
+void run_iterations(const Model& model, const FrameInputs& inputs, Workspace& w, SearchRule& rule, double enough) {
   const SolverSettings& solver = inputs.solver;
   StepReport& report = w.report;
   const std::size_t first = report.objective.size() - 1;
@@ -172,7 +173,7 @@ void minimize(const Model& model, const FrameInputs& inputs, Workspace& w, doubl
 
 void minimize(const Model& model, const FrameInputs& inputs, Workspace& w, SearchRule& rule, double enough) {
   evaluate_start(model, inputs, w);
-  iterate(model, inputs, w, rule, enough);
+  run_iterations(model, inputs, w, rule, enough);
 }
 
 namespace {
@@ -187,8 +188,8 @@ void clear(StepReport& report) {
   report.history = std::move(history);
 }
 
-// Where the body was, its handles moved, into the trial iterate; a body that nothing holds is also carried along with
-// its centre of mass, which costs no elastic energy and keeps its momentum.
+// Sets the trial iterate to where the body was, with its handles moved. A body that nothing holds is also carried along
+// with its centre of mass, which costs no elastic energy and keeps its momentum.
 void set_staying(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
   Positions& x = w.trial.x;
   x.topRows(model.free) = state.x.topRows(model.free);
@@ -200,17 +201,17 @@ void set_staying(const Model& model, const FrameInputs& inputs, const State& sta
 }
 
 // The answer must not be worse than staying: g(x) <= g(q) bounds the energy of backward Euler (docs/method.md), not
-// that of midpoint, where staying also turns the velocity round. When the iterations from y have not come that far
-// (elements turned inside out by a violent step), descend from there instead. Costs an evaluation only when the inertia
-// of staying cannot settle it, or when the elastic energy may be negative. Friction only takes energy, so its
-// potential, which staying has none of, does not count.
+// that of midpoint, where a body that stays has its velocity reversed. Where the iterations ended higher (elements
+// turned inside out by a violent step), descends from there instead. This costs an evaluation only when the inertia of
+// staying cannot settle it, or when the elastic energy may be negative. Friction only takes energy, so its potential is
+// left out on both sides.
 void descend_from_staying(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w,
                           SearchRule& rule) {
   const Stretch stretch(w.clock, Phase::evaluate, "check staying");
   StepReport& report = w.report;
   const double stick = w.contact.stick_length;
-  const double rubbed = friction_energy(w.current.contacts, stick, w.current.x);
-  const double reached = w.current.g - rubbed;
+  const double friction_reached = friction_energy(w.current.contacts, stick, w.current.x);
+  const double reached = w.current.g - friction_reached;
   const double inverse_h2 = model.scheme.inertia / (model.time_step * model.time_step);
   set_staying(model, inputs, state, w);
   double inertia = 0;
@@ -219,18 +220,20 @@ void descend_from_staying(const Model& model, const FrameInputs& inputs, const S
   if (reached <= inertia && !model.energy_may_be_negative) return;
   find_contacts_of(model, inputs, w, w.trial);
   evaluate(model, w, w.trial, Wanted::value);
-  const double rubbed_there = friction_energy(w.trial.contacts, stick, w.trial.x);
-  const double staying = w.trial.g - rubbed_there;
+  const double friction_staying = friction_energy(w.trial.contacts, stick, w.trial.x);
+  const double staying = w.trial.g - friction_staying;
   if (!(staying < reached - noise_of(model, reached, extent_of(model, w)))) return;
   std::swap(w.current, w.trial);
-  report.decrease += reached + rubbed - staying;
-  report.history.push_back({w.clock.elapsed_ms(), reached + rubbed - staying - rubbed_there, 0, {}});
+  const double gained = reached + friction_reached - staying - friction_staying;
+  report.decrease += gained;
+  report.history.push_back({w.clock.elapsed_ms(), gained, 0, {}});
   const int iterations = report.iterations;
   minimize(model, inputs, w, rule);
   report.iterations += iterations;
 }
 
-// Backward Euler: (x - q)/h. Midpoint: the velocity whose mean with the old one is that; held vertices just follow.
+// Backward Euler: v = (x - q)/h. Midpoint: the new velocity whose mean with the old one is (x - q)/h; vertices that are
+// held take (x - q)/h itself.
 void set_velocity(const Model& model, const Positions& x, State& state) {
   const double h = model.time_step;
   if (model.integrator == Integrator::backward_euler) {
@@ -281,7 +284,7 @@ const StepReport& step(const Model& model, const FrameInputs& inputs, State& sta
   const double above_start = set_first_iterate(model, inputs, state, w);
   report.start_ms = w.clock.elapsed_ms();
   zone.next("iterate");
-  iterate(model, inputs, w, rule, 0);
+  run_iterations(model, inputs, w, rule, 0);
   zone.next("end step");
   if (!report.failed && inputs.solver.line_search != LineSearch::none)
     descend_from_staying(model, inputs, state, w, rule);

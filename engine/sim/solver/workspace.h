@@ -1,4 +1,4 @@
-// Scratch of a step: never changes a result, and is made once. What outlives a step is in State.
+// The memory that step() works in, made once and reused. Nothing left in it from earlier steps changes a result.
 #pragma once
 
 #include "base/threads.h"
@@ -10,7 +10,7 @@
 
 namespace supple {
 
-// One for each thread that steps.
+// One for each body, or for each thread that steps: prepare() fits it to another model.
 struct Workspace {
   // Makes room for a model and a window; does nothing when there is enough.
   void prepare(const Model& model, const SolverSettings& solver);
