@@ -69,8 +69,8 @@ struct Names<LineSearch> {
 
 // Chebyshev's semi-iterative acceleration (Wang 2015). docs/bench.md says how the defaults were found.
 struct ChebyshevSettings {
-  int delay = 10;        // S: the first iterations that are not accelerated
-  double radius = 0.99;  // rho: the spectral radius that is assumed of the plain iteration
+  int delay = 1;         // S: the first iterations that are not accelerated
+  double radius = 0.85;  // rho: the spectral radius that is assumed of the plain iteration
 };
 
 // Settings that may change between steps.
