@@ -5,14 +5,8 @@
 #include "sim/linear/linear_kernels.h"
 
 namespace supple {
-namespace {
-
-constexpr Merging for_one_solve{8, 24, 0.8, 64, 0.15, 0.05};
-
-}  // namespace
-
 void ChangingFactor::analyze(const Eigen::SparseMatrix<double>& matrix) {
-  elimination_ = std::make_unique<Elimination>(Elimination::of(matrix, for_one_solve));
+  elimination_ = std::make_unique<Elimination>(Elimination::of(matrix));
   fronts_ = std::make_unique<Multifrontal>(*elimination_);
   first_number_.clear();
   std::int64_t count = 0, most_rows = 0;

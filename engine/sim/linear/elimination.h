@@ -27,16 +27,6 @@ struct Supernode {
   FrontShape front() const { return {width(), row_count}; }
 };
 
-// How far children are merged into their parents: zeros are stored and worked on, fewer and wider fronts go faster.
-struct Merging {
-  int always;  // up to so many columns whatever the zeros
-  int often;   // up to so many columns while zeros are less than often_zeros of all numbers
-  double often_zeros;
-  int seldom;
-  double seldom_zeros;
-  double wide_zeros;  // of wider ones
-};
-
 struct Elimination {
   int size = 0;
   std::vector<Supernode> nodes;  // by columns
@@ -46,10 +36,7 @@ struct Elimination {
   std::int64_t deepest_stack[2] = {0, 0};  // numbers of update matrices that wait at one time, of even and odd levels
 
   // Of the lower triangle's pattern, unknowns eliminated in their order; what stands above the diagonal is ignored.
-  static Elimination of(const Eigen::SparseMatrix<double>& matrix, const Merging& merging = for_many_solves);
-
-  // CHOLMOD's thresholds (nrelax, zrelax), which the times of our solves confirm to within noise.
-  static constexpr Merging for_many_solves{4, 16, 0.8, 48, 0.1, 0.05};
+  static Elimination of(const Eigen::SparseMatrix<double>& matrix);
 };
 
 }  // namespace supple

@@ -76,12 +76,17 @@ void Multifrontal::add_update(const Supernode& parent, const Supernode& child, d
   in_strip_.resize(count);
   for (int i = 0; i < count; ++i) target_[i] = place_[rows[i]];
   int j = 0;
-  for (int width = 0; j < count && target_[j] < front.pivots; ++j, from += child_stride) {
-    if (const int next = strip_width(front, target_[j] / block_rows); next != width) {
-      width = next;
-      for (int i = j; i < count; ++i) in_strip_[i] = place_in_strip(target_[i], width);
+  double* first_column = nullptr;
+  for (int strip = -1, width = 0; j < count && target_[j] < front.pivots; ++j, from += child_stride) {
+    if (target_[j] / block_rows != strip) {
+      strip = target_[j] / block_rows;
+      first_column = column_of(front, columns, strip * block_rows);
+      if (const int next = strip_width(front, strip); next != width) {
+        width = next;
+        for (int i = j; i < count; ++i) in_strip_[i] = place_in_strip(target_[i], width);
+      }
     }
-    double* column = column_of(front, columns, target_[j]);
+    double* column = first_column + target_[j] % block_rows * block_rows;
     for (int i = j; i < count; ++i) column[in_strip_[i]] += from[i];
   }
   const int first = strips_of(front) * block_rows;
