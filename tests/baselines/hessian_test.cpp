@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 
+#include "base/error.h"
 #include "baselines/make_rule.h"
 #include "sim/model/element_view.h"
 #include "support/bodies.h"
