@@ -105,7 +105,7 @@ TEST(ZoneComparison, TellsAZoneFromASlowMachine) {
     const ZoneComparison slow = compare_zones(made_profile(2 * pair), made_profile(2 * pair + 1, "", 1, 1.25));
     EXPECT_TRUE(slow.as_a_whole);
     EXPECT_EQ(named(slow), std::vector<std::string>{}) << "pair " << pair << "\n" << comparison_text(slow);
-    EXPECT_NE(comparison_text(slow).find("the build, or the machine"), std::string::npos);
+    EXPECT_NE(comparison_text(slow).find("the build, or the state of the machine"), std::string::npos);
     const Leaf& slowed = leaves[pair % 5];
     const ZoneComparison both =
         compare_zones(made_profile(2 * pair), made_profile(2 * pair + 1, slowed.path, 1.2, 1.25));

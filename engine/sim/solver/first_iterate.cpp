@@ -33,7 +33,8 @@ namespace {
 void set_targets(const Model& model, const FrameInputs& inputs, Workspace& w) {
   const bool midway = model.scheme.theta < 1;
   SUPPLE_CHECK(inputs.targets.rows(), ==, Eigen::Index(model.handled.size()));
-  if (midway) SUPPLE_CHECK(inputs.middle_targets.rows(), ==, Eigen::Index(model.handled.size()));
+  if (midway && !model.spring.empty())
+    SUPPLE_CHECK(inputs.middle_targets.rows(), ==, Eigen::Index(model.handled.size()));
   for (std::size_t i = 0; i < model.handled.size(); ++i) {
     const std::int32_t v = model.handled[i].vertex;
     if (v < model.free) {
