@@ -27,7 +27,7 @@ struct FilmArgument {
 };
 void add_film(CLI::App& verb, const FilmArgument& argument, Action& action, const std::vector<std::string>& words);
 
-// What is known of a run once it is over, for a caller that looks closer.
+// The record of a run once it is over, for callers that examine it.
 struct FilmRecord {
   RunInfo info;
   std::filesystem::path folder;

@@ -15,7 +15,7 @@
 namespace supple {
 namespace {
 
-// What an input is follows from what lies on the disk: a folder is a run, a .mesh file a mesh, all else a scene.
+// The disk tells which kind an input is: a folder is a run, a .mesh file is a mesh, and all else is a scene.
 int inform(const std::string& input, bool live) {
   std::error_code error;
   const std::filesystem::path path = input;

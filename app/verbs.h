@@ -11,7 +11,7 @@ class App;
 
 namespace supple {
 
-// What main runs once the command line is understood. Returns the exit status.
+// The action that main runs once the command line is understood. It returns the exit status.
 using Action = std::function<int()>;
 
 void add_render(CLI::App& app, Action& action, const std::vector<std::string>& command);

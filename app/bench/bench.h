@@ -12,7 +12,7 @@
 
 namespace supple {
 
-// What is given to every benchmark.
+// The setting that every benchmark is given.
 struct BenchSetting {
   std::filesystem::path out;                          // folder of the report
   std::optional<std::filesystem::path> paper_meshes;  // folder with the paper's meshes

@@ -30,7 +30,7 @@ struct SweepRequest {
 
 enum class PointEnd { done, failed, interrupted, outdated, unfinished, not_run };
 
-// What is known of a point.
+// A point and all that is known of it.
 struct PointOutcome {
   PointEnd end = PointEnd::not_run;
   std::string exit_status;  // empty while unknown

@@ -7,7 +7,7 @@
 
 namespace supple {
 
-// What a point gave, summed up: its rows may be many.
+// The results of a point in short: it may have many rows.
 struct PointResult {
   PointOutcome outcome;
   std::size_t frames = 0;        // that are whole; 0 where there are none of this scene and program

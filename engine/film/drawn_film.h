@@ -1,4 +1,4 @@
-// What is drawn of a film: skins of bodies and colliders, made as the film starts, and the draw list of each frame.
+// The drawn part of a film: skins of bodies and colliders, made as the film starts, and the draw list of each frame.
 #pragma once
 
 #include <string>

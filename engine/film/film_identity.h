@@ -1,4 +1,4 @@
-// What a film is recognised by: the identity that a checkpoint belongs to, and the head of a record of its states.
+// A film is recognised by the identity that a checkpoint belongs to, and by the head of a record of its states.
 #pragma once
 
 #include "film/film_plan.h"

@@ -1,4 +1,4 @@
-// What a film is asked to be, before anything is read or made: the one struct that the command line, a sweep's points
+// The plan of a film, before anything is read or made: the one struct that the command line, a sweep's points
 // and other programs fill in.
 #pragma once
 

@@ -164,7 +164,7 @@ void FrameLoop::apply(SceneDef scene, const std::vector<TimedChange>& changes) {
 void FrameLoop::renew_changed_surfaces(const std::vector<TimedChange>& changes) {
   for (std::size_t c = 0; c < set_.obstacles.size(); ++c) {
     const std::string& name = set_.obstacles[c].def.name;
-    // What is drawn of a half space depends on where it is.
+    // The square that is drawn for a half space depends on where it is.
     const bool moved = is_half_space(set_.obstacles[c]) &&
                        std::ranges::any_of(changes, [&name](const TimedChange& one) { return one.object == name; });
     if (moved || cost_for(name, changes).surface) drawn_->renew(c, set_, bodies_);

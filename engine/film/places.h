@@ -1,4 +1,4 @@
-// Where the files that come with the program are: beside the installed program, or in the source tree that it was
+// Finds the files that come with the program: beside the installed program, or in the source tree that it was
 // built from.
 #pragma once
 

@@ -9,7 +9,7 @@ namespace supple {
 
 constexpr int state_file_version = 1;
 
-// Which step of which film.
+// Tells which step of which film a problem belongs to.
 struct StepLabel {
   std::string scene, title;
   int frame = 0;

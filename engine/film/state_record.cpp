@@ -58,7 +58,7 @@ std::string line_of(const RecordHead& head) {
   return json.dump() + '\n';
 }
 
-// Where in the file the frames after the first ones begin.
+// Returns the place in the file where the frames after the first ones begin.
 std::size_t bytes_behind(const RecordHead& head, int frames) {
   return line_of(head).size() + bytes_of_frame(head) * static_cast<std::size_t>(frames);
 }

@@ -64,7 +64,7 @@ double median_step(const std::vector<FrameRow>& rows) {
   return rows.size() > 1 ? step.rest.p50 : step.first;
 }
 
-// What run.json says of what was run, without how the run itself went.
+// Returns the part of run.json that tells what was run, without how the run itself went.
 std::string what_was_run(const RunRecord& run) {
   auto info = nlohmann::ordered_json::parse(run.info_json);
   for (const char* key : {"command", "ended", "frames", "resumed_at", "video"}) info.erase(key);

@@ -130,7 +130,7 @@ void add_handles(Body& body, const Loaded& loaded, std::vector<Problem>& problem
   for (const HandleDef& def : body.def.handles) {
     Handle handle{def.name, selected(def.select, loaded.mesh, loaded.mesh.rest, loaded.regions), def.spring,
                   !def.grabs || def.holds_at(0)};
-    // Where two handles overlap the first one has the vertices.
+    // The first of two handles that overlap has the vertices.
     std::erase_if(handle.vertices, [&](std::int32_t v) { return taken[v] != 0; });
     for (const std::int32_t v : handle.vertices) taken[v] = 1;
     if (handle.vertices.empty()) {

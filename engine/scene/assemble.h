@@ -10,7 +10,7 @@
 
 namespace supple {
 
-// What is drawn of a body: a skin carried by its elements, or (vertex_of) the mesh's own boundary.
+// The drawn surface of a body: a skin carried by its elements, or (vertex_of) the mesh's own boundary.
 struct DrawnBody {
   Skin skin;
   Embedding embedding;                  // when the skin is finer than the mesh

@@ -95,7 +95,7 @@ class ConfigValue {
   bool all_positive() const;
   // Reads a default as KnownKey has it. Nothing when that is a description in words.
   static std::optional<ConfigValue> parse(const std::string& text);
-  // What lies at a share `s` of the way, 0 to 1, number by number; whole: rounded.
+  // Returns the value at a share `s` of the way, 0 to 1, number by number; whole: rounded.
   static ConfigValue between(const ConfigValue& from, const ConfigValue& to, double s, RampRule by, bool whole);
 
  private:

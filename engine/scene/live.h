@@ -9,7 +9,7 @@
 
 namespace supple {
 
-// What must be made anew when a value changes. For most values that is nothing.
+// Tells what must be made anew when a value changes. For most values that is nothing.
 struct ChangeCost {
   bool factor = false;   // A and its factor: the body's stiffness, mass or time step
   bool rule = false;     // what the method keeps from step to step

@@ -1,4 +1,4 @@
-// What a Script owns. Only script.cpp, which reads it, and script_check.cpp, which checks it, include this.
+// The parts that a Script owns. Only script.cpp, which reads it, and script_check.cpp, which checks it, include this.
 #pragma once
 
 #include <set>

@@ -7,7 +7,7 @@
 namespace supple {
 namespace {
 
-// Of the changes at work, the one that a body's model must follow; null where there are several.
+// Returns the one change at work that a body's model must follow; null where there are several.
 const TimedChange* only_change(const std::vector<const TimedChange*>& at_work, const std::string& body) {
   const TimedChange* only = nullptr;
   for (const TimedChange* change : at_work) {

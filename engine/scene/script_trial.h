@@ -11,7 +11,7 @@ namespace supple {
 // with all that the bodies refuse.
 void try_changes(const Script& script, std::vector<Body> bodies);
 
-// What is legal and unwise about a scene and its changes.
+// Lists what is legal and unwise about a scene and its changes.
 std::vector<Problem> all_warnings(const Script& script, const std::vector<Body>& bodies);
 
 }  // namespace supple

@@ -1,6 +1,6 @@
-// Where a body starts: at rest, or deformed on purpose, to see it recover. Not here: motion from outside (handles), and
-// how scene files say it (start_reader.h). A new start state is a struct with place(), an entry in StartDef, and a
-// reader.
+// The place where a body starts: at rest, or deformed on purpose, to see it recover. Not here: motion from outside
+// (handles), and how scene files say it (start_reader.h). A new start state is a struct with place(), an entry in
+// StartDef, and a reader.
 #pragma once
 
 #include <cstdint>
@@ -64,7 +64,8 @@ struct Flattened {
 
 using StartDef = std::variant<AtRest, Stretched, Rotated, Twisted, Random, Flattened>;
 
-// Where all points of a body start. The random numbers follow from the scene's seed and the body's name.
+// Returns the places where all points of a body start. The random numbers follow from the scene's seed and the body's
+// name.
 Positions start_positions(const StartDef& start, const Positions& rest, std::uint64_t seed, const std::string& body);
 
 }  // namespace supple

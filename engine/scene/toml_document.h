@@ -1,5 +1,5 @@
-// What Config, ConfigTable and ConfigValue hold of the TOML parser. Only the three files that implement them include
-// this.
+// The parts of the TOML parser that Config, ConfigTable and ConfigValue hold. Only the three files that implement them
+// include this.
 #pragma once
 
 // The parser takes its assertions for a part of handling malformed files, and without them promises the compiler that
@@ -55,7 +55,7 @@ struct Config::Content {
   }
 };
 
-// What a ConfigValue owns: a copy of a node, and where the original stood.
+// The parts of a ConfigValue: a copy of a node, and where the original stood.
 struct ConfigValue::Content {
   std::shared_ptr<const toml::node> node;
   std::vector<toml::source_region> places;  // of the node and of those below it, in the order of walk()

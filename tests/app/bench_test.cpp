@@ -1,4 +1,4 @@
-// What `supple bench` is made of, and the program itself on its shortest benchmark.
+// Tests the parts of `supple bench`, and the program itself on its shortest benchmark.
 #include "app/bench/sections.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What a run leaves for other programs: surfaces beside the point caches, and with --vtu fields.
+// Tests what a run leaves for other programs: surfaces beside the point caches, and with --vtu fields.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// What goes wrong outside: the disk, ffmpeg, files that somebody damaged. A message, a status, and nothing lost.
+// Tests what goes wrong outside: the disk, ffmpeg, files that somebody damaged. There is a message and a status, and
+// nothing is lost.
 #include <sys/stat.h>
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// What the program is like to use: help with examples, completion, what it says of the machine, colour.
+// Tests what the program is like to use: help with examples, completion, what it says of the machine, colour.
 #include <gtest/gtest.h>
 #include <stdlib.h>
 

@@ -28,8 +28,8 @@ const std::string lato = "/usr/share/fonts/truetype/lato/Lato-Regular.ttf";
 
 using Settings = std::vector<std::string>;
 
-// What to draw: a scene, changed by settings as --set takes them. Bodies stand where they start, which is the same on
-// all machines, or move for a few frames, in which rounding errors do not grow to what a picture shows.
+// Tells what to draw: a scene, changed by settings as --set takes them. Bodies stand where they start, which is the
+// same on all machines, or move for a few frames, in which rounding errors do not grow to what a picture shows.
 struct Shot {
   std::filesystem::path scene;
   Settings settings = {};

@@ -1,6 +1,6 @@
-// Which delay and radius make Chebyshev's method best at ten iterations a step. Every scene that ships is played with
-// its own settings; from stored states one step is made with each pair, and its error (equation 12) is set against that
-// of Projective Dynamics, which is the same method without acceleration. Prints markdown.
+// Finds which delay and radius make Chebyshev's method best at ten iterations a step. Every scene that ships is played
+// with its own settings; from stored states one step is made with each pair, and its error (equation 12) is set against
+// that of Projective Dynamics, which is the same method without acceleration. Prints markdown.
 //   supple_chebyshev_study STATES [MOST_VERTICES]      (STATES: a folder that keeps the states for the next run)
 #include <fmt/format.h>
 
@@ -83,7 +83,7 @@ struct Score {
   int failed = 0;
 };
 
-// Of the states with these indices.
+// Returns the score over the states with these indices.
 Score score_of(const Candidate& candidate, const Candidate& plain, const std::vector<std::size_t>& states) {
   Score score;
   for (const std::size_t s : states) {

@@ -39,7 +39,7 @@ double contact_energy(const std::vector<Contact>& contacts, const Positions& poi
 // Adds `sign` times the normal forces at a point to `force` [N].
 void add_normal_forces(const std::vector<Contact>& contacts, const Positions& point, double sign, Positions& force);
 
-// What contacts add to an objective.
+// The share of contacts in an objective.
 struct ContactChange {
   double value = 0;  // [J]
   double slope = 0;  // along the direction [J]

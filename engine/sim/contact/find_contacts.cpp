@@ -71,7 +71,7 @@ class View {
   ColliderTraits traits_;
 };
 
-// Where a vertex entered, or where it was if the step started inside.
+// The place where a vertex entered, or where it was if the step started inside.
 struct Entry {
   SurfacePoint surface;
   double way;  // from a to b, 0 to 1

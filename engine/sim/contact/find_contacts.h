@@ -1,4 +1,4 @@
-// Where a body's vertices meet rigid colliders on their way through a step, and the planes that hold them there: once
+// Finds where a body's vertices meet rigid colliders on their way through a step, and the planes that hold them: once
 // for each iterate, with an exact look at those vertices alone that may have come near. Not here: the energies of these
 // planes (contact.h).
 #pragma once
@@ -13,13 +13,13 @@
 
 namespace supple {
 
-// What a search asks of a shape once.
+// Traits of a shape that a search asks for once.
 struct ColliderTraits {
   double certainty;       // Shape::certainty
   double half_thickness;  // Shape::half_thickness [m]
 };
 
-// What the search for contacts remembers within a step, and its scratch; empty while there are no colliders.
+// The memory of the search for contacts within a step, and its scratch; empty while there are no colliders.
 struct ContactWork {
   std::vector<std::vector<Contact>> by_chunk;
   std::vector<double> clearance;          // signed distance at the start, colliders x free; NaN: not asked yet [m]

@@ -28,7 +28,7 @@ struct ElementRecord {
 // Lists the tetrahedra first, then the springs; corners have the mesh's numbering.
 std::vector<ElementRecord> element_records(const TetMesh& mesh, const std::vector<Spring>& springs);
 
-// What an element adds to L = sum_e G_e^T (weight) G_e: rows of G_e^T, one a corner, and their weight [N/m].
+// The share of an element in L = sum_e G_e^T (weight) G_e: rows of G_e^T, one a corner, and their weight [N/m].
 struct SystemTerm {
   std::array<std::array<double, 3>, most_corners> row{};
   double weight;

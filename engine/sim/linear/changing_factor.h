@@ -19,8 +19,8 @@ class ChangingFactor {
   // Lower triangle; what stands above the diagonal is ignored. Unknowns come in an order of little fill already.
   void analyze(const Eigen::SparseMatrix<double>& matrix);
 
-  // Of a matrix with the pattern that was analysed. False when it is not positive definite; the factor then solves
-  // nothing until another matrix has one.
+  // Factors a matrix with the pattern that was analysed. Returns false when it is not positive definite; the factor
+  // then solves nothing until another matrix has one.
   bool factorize(const Eigen::SparseMatrix<double>& matrix);
 
   // x = A^-1 b; both have as many numbers as the matrix has rows, and may be the same.

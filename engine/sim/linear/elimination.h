@@ -1,6 +1,6 @@
-// What Gaussian elimination touches in a symmetric matrix, by pattern alone: groups of adjacent columns that share one
-// pattern of rows (supernodes), and an order in which their dense fronts can be stacked. Depends on nothing but the
-// pattern, so it is found once for all matrices that have it.
+// Finds what Gaussian elimination touches in a symmetric matrix, by pattern alone: groups of adjacent columns that
+// share one pattern of rows (supernodes), and an order in which their dense fronts can be stacked. Depends on nothing
+// but the pattern, so it is found once for all matrices that have it.
 //
 // Duff, Reid 1983, "The multifrontal solution of indefinite sparse symmetric linear equations"; Liu 1992, "The
 // multifrontal method for sparse matrix solution: theory and practice".
@@ -35,7 +35,7 @@ struct Elimination {
   std::int64_t most_column_numbers = 0;    // of one front
   std::int64_t deepest_stack[2] = {0, 0};  // numbers of update matrices that wait at one time, of even and odd levels
 
-  // Of the lower triangle's pattern, unknowns eliminated in their order; what stands above the diagonal is ignored.
+  // Takes the pattern of the lower triangle, whose unknowns are eliminated in their order; ignores what is above it.
   static Elimination of(const Eigen::SparseMatrix<double>& matrix);
 };
 

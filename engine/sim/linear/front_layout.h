@@ -32,7 +32,7 @@ static constexpr int strip_width(FrontShape front, int strip) {
   return left < block_rows ? left : block_rows;
 }
 
-// Of the block of a strip's diagonal, among the numbers of the eliminated columns.
+// Returns the place of a strip's diagonal block among the numbers of the eliminated columns.
 static constexpr std::int64_t strip_begin(FrontShape front, int strip) {
   const std::int64_t blocks = std::int64_t(strip) * row_blocks_of(front) - std::int64_t(strip) * (strip - 1) / 2;
   return block_rows * block_rows * blocks;
@@ -47,7 +47,7 @@ static constexpr std::int64_t column_numbers(FrontShape front) {
 // Numbers of the update matrix.
 static constexpr std::int64_t update_numbers(FrontShape front) { return padded_rows(front.rows) * front.rows; }
 
-// Where the row of a front stands among the padded ones: the eliminated columns' rows first.
+// Returns the place of a front's row among the padded ones: the rows of the eliminated columns come first.
 static constexpr int padded_place(FrontShape front, int row) {
   return row < front.pivots ? row : strips_of(front) * block_rows + row - front.pivots;
 }

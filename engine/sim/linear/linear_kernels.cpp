@@ -92,7 +92,7 @@ struct DenseFront {
             block_rows, update_stride};
   }
 
-  // Of `count` row blocks, at most tile_blocks.
+  // Works on `count` row blocks, at most tile_blocks.
   void take(int first_strip, int end_strip, int row_block, int count, int column_block) const {
     using Widths = std::make_integer_sequence<int, tile_columns>;
     const int width = columns_in(column_block);

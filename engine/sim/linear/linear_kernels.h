@@ -46,7 +46,7 @@ struct LinearKernels {
   void (*add_scaled)(const double* const* a, const double* c, int count, double* r, long begin, long end);
 };
 
-// Of the widest variant that this machine can run, or of one of those that it can (base/variants.h).
+// Returns the loops of the widest variant that this machine can run, or of any variant that it can (base/variants.h).
 const LinearKernels& linear_kernels();
 const LinearKernels& linear_kernels(int variant);
 

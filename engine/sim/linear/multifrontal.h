@@ -12,7 +12,7 @@ namespace supple {
 
 class Multifrontal {
  public:
-  // Of an elimination that outlives this.
+  // The elimination must outlive this.
   explicit Multifrontal(const Elimination& elimination);
 
   // To be called before the first front of each matrix.

@@ -1,5 +1,5 @@
-// What every material says of itself, so that scene files, stiffness fits, kernels and tests pick a new one up without
-// being told. Optional members of a material, each used where it exists:
+// Every material tells the following of itself, so that scene files, stiffness fits, kernels and tests pick a new one
+// up without being told. Optional members of a material, each used where it exists:
 //   static M from(const Lame&)          from Young's modulus and Poisson's ratio
 //   const char* problem() const         what is wrong with parameters that are each in range, or null
 //   std::vector<double> seams() const   stretches where the axial stress changes its formula
@@ -14,7 +14,7 @@
 
 namespace supple {
 
-// What a formula needs of F: a decomposition that the formula does not use is not computed.
+// Tells what a formula needs of F: a decomposition that the formula does not use is not computed.
 enum class Needs {
   gradient,         // F alone: density(F, P)
   stretch,          // S of the polar decomposition F = R S: density(S, dPsi/dS), and P = R dPsi/dS

@@ -1,4 +1,4 @@
-// What comes from outside for one step of one body: gravity, targets of handles, colliders and how they move, and the
+// The inputs of one step of one body: gravity, targets of handles, colliders and how they move, and the
 // settings of the solver, which may change from step to step.
 #pragma once
 
@@ -26,8 +26,8 @@ struct ColliderMotion {
   Eigen::Isometry3d end = Eigen::Isometry3d::Identity();
 };
 
-// What becomes of L-BFGS' pairs when the contacts change: the planes of the iteration that made a pair are not those in
-// force later.
+// The treatment of L-BFGS' pairs when the contacts change: the planes of the iteration that made a pair are not those
+// in force later.
 enum class ContactHistory {
   frozen,   // both gradients with the planes of the iteration that made the pair
   current,  // the rest of t, and 2 k_c n n^T s for each contact that is in force now

@@ -42,7 +42,7 @@ struct Names<LinearSolver> {
   static constexpr std::array table = {Name{LinearSolver::direct, "direct"}, Name{LinearSolver::cg, "cg"}};
 };
 
-// Of conjugate gradients.
+// Preconditioners of conjugate gradients.
 enum class Preconditioner {
   none,    // direct solves have none
   jacobi,  // the matrix's own diagonal
@@ -55,7 +55,7 @@ struct Names<Preconditioner> {
                                        Name{Preconditioner::rest, "rest"}, Name{Preconditioner::system, "system"}};
 };
 
-// What an iteration learns from earlier ones of the same step.
+// The way in which an iteration learns from earlier ones of the same step.
 enum class Acceleration {
   none,
   lbfgs,      // SolverSettings::history pairs
@@ -67,7 +67,7 @@ struct Names<Acceleration> {
                                        Name{Acceleration::chebyshev, "chebyshev"}};
 };
 
-// What is done about a Hessian that is not positive definite.
+// The remedy for a Hessian that is not positive definite.
 enum class Safeguard {
   none,        // the matrix is positive definite by itself
   projection,  // each element's Hessian is replaced by the nearest semi-definite one (Teran et al. 2005)
@@ -179,7 +179,7 @@ class PartChoice {
   std::size_t count_ = 0;
 };
 
-// What goes with a matrix and a linear solver. A pair that is not listed does not exist.
+// The parts that go with a matrix and a linear solver. A pair that is not listed does not exist.
 struct MethodForm {
   StartMatrix matrix;
   LinearSolver linear;

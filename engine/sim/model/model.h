@@ -31,9 +31,9 @@ struct Names<Integrator> {
                                        Name{Integrator::implicit_midpoint, "implicit-midpoint"}};
 };
 
-// What a step minimises: w/(2 h^2) |x - y|^2_M + e E(theta x + (1 - theta) q), with y = q + h v + f h^2 M^-1 f_ext.
-// Backward Euler is equation 3; implicit midpoint evaluates forces halfway (Hairer, Lubich, Wanner 2006, "Geometric
-// numerical integration", section II.1).
+// The objective that a step minimises: w/(2 h^2) |x - y|^2_M + e E(theta x + (1 - theta) q), with y = q + h v + f h^2
+// M^-1 f_ext. Backward Euler is equation 3; implicit midpoint evaluates forces halfway (Hairer, Lubich, Wanner 2006,
+// "Geometric numerical integration", section II.1).
 struct TimeScheme {
   double inertia, energy, theta, force;  // w, e, theta, f
 };
@@ -41,7 +41,7 @@ constexpr TimeScheme scheme_of(Integrator integrator) {
   return integrator == Integrator::backward_euler ? TimeScheme{1, 1, 1, 1} : TimeScheme{2, 2, 0.5, 0.5};
 }
 
-// What a model is built from.
+// The description that a model is built from.
 struct BodyDescription {
   std::string name;
   TetMesh mesh;                     // in its place in the world at rest

@@ -1,4 +1,4 @@
-// What a step tells of itself: times by phase, iterations, how far it came, why it ended.
+// The report that a step gives of itself: times by phase, iterations, how far it came, why it ended.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Where the iterations of a step start: y, or a better point where handles or colliders make y a bad one.
+// Chooses where the iterations of a step start: y, or a better point where handles or colliders make y a bad one.
 #pragma once
 
 #include "sim/model/inputs.h"

@@ -1,5 +1,5 @@
-// Where the time of a step goes. One mechanism fills both the report's phases and the trace's zones: each moment of a
-// step belongs to exactly one phase, so the phases add up to the step without anything being subtracted.
+// Tells where the time of a step goes. One mechanism fills both the report's phases and the trace's zones: each moment
+// of a step belongs to exactly one phase, so the phases add up to the step without anything being subtracted.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ class StepClock {
   // Milliseconds that a phase has had so far, what it has since the last change of phase left out.
   double spent_ms(Phase phase) const { return milliseconds(spent_[static_cast<std::size_t>(phase)]); }
 
-  // What follows belongs to `phase`. Returns the phase before.
+  // Counts what follows for `phase`. Returns the phase before.
   Phase change(Phase phase) {
     const Clock::time_point now = Clock::now();
     spent_[static_cast<std::size_t>(phase_)] += now - since_;

@@ -23,7 +23,7 @@ struct Workspace {
   Positions q;                       // a copy of it, n x 3 [m]; empty unless the model needs it
   Positions target;                  // of soft handles, by free vertex, n_free x 3 [m]; empty when there are none
 
-  // Where the solver is, and where it looks.
+  // The point where the solver is, and the one at which it looks.
   Iterate current, trial;
   Positions direction;  // from the current iterate, n_free x 3 [m]
 
