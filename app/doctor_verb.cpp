@@ -125,7 +125,7 @@ Finding disk() {
 // kernels.
 Finding processor() {
   std::vector<std::string> missing, used;
-  const auto look = [&](const char* name, bool here) { (here ? used : missing).push_back(name); };
+  [[maybe_unused]] const auto look = [&](const char* name, bool here) { (here ? used : missing).push_back(name); };
 #ifdef __AVX2__
   look("AVX2", __builtin_cpu_supports("avx2"));
 #endif
