@@ -288,7 +288,7 @@ DrawnBody drawn_body(const SceneDef& scene, const Body& body) {
 
 namespace {
 
-// What keys move handled vertices from where nothing has been grabbed, and which handles hold as the film starts.
+// Returns the places that keys move handled vertices from while nothing is grabbed, and which handles hold at the start.
 Anchors rest_anchors(const Model& model, const Body& body) {
   Anchors anchors;
   anchors.points.resize(model.handled.size(), 3);
