@@ -47,8 +47,8 @@ std::string handle_text(const Body& body, std::size_t index) {
                         std::isfinite(def.until) ? "at both" : "there");
   }
   return fmt::format("  handle          '{}' {} {} vertices around ({:.3g}, {:.3g}, {:.3g}) m{}\n",
-                     printable(handle.name), handle.spring > 0 ? "pulls" : "holds", handle.vertices.size(), center.x(),
-                     center.y(), center.z(), times);
+                     printable(handle.name), handle.stiffness > 0 ? "pulls" : "holds", handle.vertices.size(),
+                     center.x(), center.y(), center.z(), times);
 }
 
 std::string body_text(const SceneDef& scene, Body& body, const CollisionSet& set, Threads& threads) {

@@ -11,7 +11,7 @@ class ReferenceMeter : public ErrorMeter {
  public:
   ReferenceMeter(const Model& model, Threads& threads) : reference_(model) { workspace_.threads = &threads; }
 
-  std::optional<double> step_error(const Model& model, const FrameInputs& inputs, const State& before,
+  std::optional<double> step_error(const Model& model, const StepInputs& inputs, const State& before,
                                    const State& after) override {
     return reference_.step_error(model, inputs, before, after, workspace_);
   }

@@ -45,7 +45,7 @@ std::vector<Outcome> SolverComparison::run(const BenchState& state, const std::v
       if (interrupted()) throw BenchInterrupted{};
       Outcome& outcome = outcomes[m];
       if (outcome.failed || (repeat > 1 && outcome.used_ms > budget_ms)) continue;
-      const FrameInputs inputs = inputs_of(state, entries[m]);
+      const StepInputs inputs = inputs_of(state, entries[m]);
       SearchRule& rule = rule_of(entries[m]);
       State after = state.before;
       workspace_.correction = {};  // no solver may use what another one learned of A^-1
@@ -87,8 +87,8 @@ std::vector<Outcome> SolverComparison::run(const BenchState& state, const std::v
 }
 
 // Puts the subject into a state. What was prepared for other values of its model is made anew.
-const FrameInputs& SolverComparison::put(const BenchState& state) {
-  const FrameInputs& inputs = subject_.inputs(state);
+const StepInputs& SolverComparison::put(const BenchState& state) {
+  const StepInputs& inputs = subject_.inputs(state);
   if (prepared_for_ != subject_.model.id) {
     prepared_.clear();
     lowest_.emplace(subject_.model);
@@ -97,8 +97,8 @@ const FrameInputs& SolverComparison::put(const BenchState& state) {
   return inputs;
 }
 
-FrameInputs SolverComparison::inputs_of(const BenchState& state, const SolverEntry& entry) {
-  FrameInputs inputs = put(state);
+StepInputs SolverComparison::inputs_of(const BenchState& state, const SolverEntry& entry) {
+  StepInputs inputs = put(state);
   inputs.solver.iterations = entry.iterations;
   inputs.solver.history = entry.history;
   inputs.solver.line_search = entry.line_search;
@@ -113,7 +113,7 @@ Minimum SolverComparison::reference(const BenchState& state, const std::vector<O
     return (a.failed ? none : a.gained.back()) < (b.failed ? none : b.gained.back());
   };
   const Outcome& best = *std::max_element(outcomes.begin(), outcomes.end(), better);
-  const FrameInputs inputs = put(state);
+  const StepInputs inputs = put(state);
   return lowest_->minimum(subject_.model, inputs, state.before, best.failed ? state.before.x : best.x,
                           reference_workspace_);
 }

@@ -60,8 +60,8 @@ class SolverComparison {
 
  private:
   SearchRule& rule_of(const SolverEntry& entry);
-  const FrameInputs& put(const BenchState& state);
-  FrameInputs inputs_of(const BenchState& state, const SolverEntry& entry);
+  const StepInputs& put(const BenchState& state);
+  StepInputs inputs_of(const BenchState& state, const SolverEntry& entry);
 
   Subject& subject_;
   std::optional<Reference> lowest_;

@@ -150,7 +150,7 @@ ReportSection bench_contact(const BenchSetting& setting) {
   Workspace workspace;
   workspace.threads = setting.threads;
   for (const BenchState& state : states_of(subject, {56, 64, 72, 80, 88}, setting)) {
-    const FrameInputs inputs = subject.inputs(state);
+    const StepInputs inputs = subject.inputs(state);
     std::vector<Outcome> outcomes = comparison.run(state, entries, 3);
     const Minimum lowest = comparison.reference(state, outcomes);
     State after = state.before;

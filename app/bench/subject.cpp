@@ -37,7 +37,7 @@ std::string state_name(const Subject& subject, int frame) {
 constexpr const char* snapshot_identity = "{}";
 constexpr const char* snapshot_file = "snapshot";
 
-void write_snapshot(const Subject& subject, const BenchState& state, const FrameInputs& inputs,
+void write_snapshot(const Subject& subject, const BenchState& state, const StepInputs& inputs,
                     const std::filesystem::path& folder) {
   write_state(folder, {subject.scene.name, subject.scene.title, state.frame, state.frame * subject.scene.substeps},
               problem_of(subject.body.description, subject.model, inputs, state.before));
@@ -73,7 +73,7 @@ Subject::Subject(const SubjectChoice& chosen)
       set(collision_set(scene)),
       driver(scene, body, model, set, scenes_own_solver(), nullptr) {}
 
-const FrameInputs& Subject::inputs(const BenchState& state) {
+const StepInputs& Subject::inputs(const BenchState& state) {
   driver.restore(state.before);
   driver.prepare_step(state.frame, 0);
   return driver.inputs();

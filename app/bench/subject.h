@@ -44,7 +44,7 @@ struct Subject {
 
   // Puts the body into a state, and returns the inputs of the step from there. Renews the model where handles hold
   // otherwise than before.
-  const FrameInputs& inputs(const BenchState& state);
+  const StepInputs& inputs(const BenchState& state);
   std::string size_text() const;  // "3472 vertices, 10441 elements"
 };
 

@@ -18,8 +18,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* picture_words[] = {"none", "last", "all"};
-
 // Reads a JSON object; null where the file is not there or not whole.
 Json read_json(const std::filesystem::path& path) {
   std::ifstream file(path);
@@ -51,7 +49,7 @@ void write_record(const SweepRequest& request, std::size_t point, int status, co
   Json json = made_with(request, point);
   json["sweep"] = {{"scene", request.name}, {"paths", paths_of(request.sweep)}};
   json["error_every"] = request.error_every;
-  json["pictures"] = picture_words[int(request.pictures)];
+  json["pictures"] = name_of(request.pictures);
   json["exit_status"] = status;
   json["message"] = message;
   json["wall_s"] = seconds;
@@ -193,9 +191,8 @@ PointOutcome outcome_of(const SweepRequest& request, std::size_t point) {
 bool has_what_is_asked(const SweepRequest& request, std::size_t point) {
   const Json record = read_json(request.folder(point) / "point.json");
   if (!record.is_object() || record.value("error_every", 0) != request.error_every) return false;
-  const std::string pictures = record.value("pictures", "none");
-  return request.pictures == FilmPictures::none || pictures == "all" ||
-         pictures == picture_words[int(request.pictures)];
+  const auto drawn = value_named<FilmPictures>(record.value("pictures", ""));
+  return request.pictures == FilmPictures::none || drawn == FilmPictures::all || drawn == request.pictures;
 }
 
 }  // namespace supple

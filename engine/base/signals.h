@@ -8,9 +8,9 @@ namespace supple {
 // While one of these objects lives, SIGINT, SIGTERM and SIGHUP are blocked in its thread, and for good in the threads
 // that it starts: another thread receives them, or they stay pending. The destructor restores the handlers of SIGTERM
 // and SIGABRT, which code in between may have replaced.
-class SignalsWait {
+class BlockedSignals {
  public:
-  SignalsWait() {
+  BlockedSignals() {
     sigset_t ends;
     sigemptyset(&ends);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&ends, signal);
@@ -18,13 +18,13 @@ class SignalsWait {
     sigaction(SIGTERM, nullptr, &terminate_);
     sigaction(SIGABRT, nullptr, &abort_);
   }
-  ~SignalsWait() {
+  ~BlockedSignals() {
     sigaction(SIGTERM, &terminate_, nullptr);
     sigaction(SIGABRT, &abort_, nullptr);
     pthread_sigmask(SIG_SETMASK, &before_, nullptr);
   }
-  SignalsWait(const SignalsWait&) = delete;
-  SignalsWait& operator=(const SignalsWait&) = delete;
+  BlockedSignals(const BlockedSignals&) = delete;
+  BlockedSignals& operator=(const BlockedSignals&) = delete;
 
  private:
   sigset_t before_;

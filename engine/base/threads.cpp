@@ -6,7 +6,7 @@
 namespace supple {
 
 Threads::Threads(int count) {
-  const SignalsWait meanwhile;  // workers never receive the signals that end the program; the caller does
+  const BlockedSignals meanwhile;  // workers never receive the signals that end the program; the caller does
   for (int i = 1; i < count; ++i) workers_.emplace_back([this, i] { work(i); });
 }
 

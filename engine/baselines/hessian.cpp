@@ -161,7 +161,7 @@ void HessianMatrix::assemble(const Model& model, const ElementMatrices& elements
   };
   for (int v = 0; v < model.free; ++v) {
     double own = model.scheme.inertia * model.mass[v] * inverse_h2;
-    if (!model.spring.empty()) own += scale * model.spring[v];
+    if (!model.handle_stiffness.empty()) own += scale * model.handle_stiffness[v];
     add(v, v, own * Mat3::Identity());
     if (model.damping.begin.empty()) continue;
     for (std::int32_t k = model.damping.begin[v]; k < model.damping.begin[v + 1]; ++k) {
@@ -181,7 +181,7 @@ void HessianMatrix::assemble(const Model& model, const ElementMatrices& elements
 void HessianMatrix::assemble(const Model& model, Workspace& workspace, bool project) {
   const Positions& x = workspace.current.x;
   const double theta = model.scheme.theta;
-  if (theta < 1) workspace.middle = theta * x + (1 - theta) * workspace.q;
+  if (theta < 1) workspace.middle = theta * x + (1 - theta) * workspace.start_copy;
   element_matrices(model, workspace, theta < 1 ? workspace.middle : x, project, scratch_);
   assemble(model, scratch_, workspace.current.contacts, workspace.contact.stick_length, x);
 }
@@ -231,7 +231,7 @@ SparseMatrix system_matrix_of(const Model& model) {
   std::vector<Eigen::Triplet<double>> entries;
   for (int v = 0; v < model.free; ++v) {
     double own = model.scheme.inertia * model.mass[v] / (model.time_step * model.time_step);
-    if (!model.spring.empty()) own += scale * model.spring[v];
+    if (!model.handle_stiffness.empty()) own += scale * model.handle_stiffness[v];
     entries.emplace_back(v, v, own);
     if (model.damping.begin.empty()) continue;
     for (std::int32_t k = model.damping.begin[v]; k < model.damping.begin[v + 1]; ++k) {

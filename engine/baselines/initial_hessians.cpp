@@ -50,14 +50,14 @@ HessianMatrix rest_hessian(const Model& model) {
 
 }  // namespace
 
-void IdentityInverse::accepted(const Model& model, const FrameInputs&, Workspace& w) {
+void IdentityInverse::accepted(const Model& model, const StepInputs&, Workspace& w) {
   const auto s = w.trial.x.topRows(model.free) - w.current.x.topRows(model.free);
   const auto t = w.trial.gradient - w.current.gradient;
   const double st = s.cwiseProduct(t).sum(), tt = t.squaredNorm();
   if (st > 1e-10 * std::sqrt(s.squaredNorm() * tt)) scale_ = st / tt;
 }
 
-void IdentityInverse::apply(const Model& model, const FrameInputs&, Workspace&, Positions& r, Positions& z) {
+void IdentityInverse::apply(const Model& model, const StepInputs&, Workspace&, Positions& r, Positions& z) {
   if (scale_ > 0) {
     z = scale_ * r;
     return;
@@ -72,15 +72,15 @@ RestInverse::RestInverse(const Model& model) {
   factorize_projected(hessian, factor_);
 }
 
-void RestInverse::apply(const Model&, const FrameInputs&, Workspace&, Positions& r, Positions& z) {
+void RestInverse::apply(const Model&, const StepInputs&, Workspace&, Positions& r, Positions& z) {
   factor_.solve(r.data(), z.data());
 }
 
-void WarpedInverse::begin(const Model& model, const FrameInputs&, Workspace& w) {
+void WarpedInverse::begin(const Model& model, const StepInputs&, Workspace& w) {
   vertex_rotations(model, w.current.x, rotation_);
 }
 
-void WarpedInverse::apply(const Model& model, const FrameInputs& inputs, Workspace& w, Positions& r, Positions& z) {
+void WarpedInverse::apply(const Model& model, const StepInputs& inputs, Workspace& w, Positions& r, Positions& z) {
   turn(rotation_, true, r);
   RestInverse::apply(model, inputs, w, r, z);
   turn(rotation_, false, z);
@@ -88,12 +88,12 @@ void WarpedInverse::apply(const Model& model, const FrameInputs& inputs, Workspa
 
 FrameInverse::FrameInverse(const Model& model) : hessian_(model) { factor_.analyze(hessian_.matrix()); }
 
-void FrameInverse::begin(const Model& model, const FrameInputs&, Workspace& w) {
+void FrameInverse::begin(const Model& model, const StepInputs&, Workspace& w) {
   hessian_.assemble(model, w, true);
   factorize_projected(hessian_, factor_);
 }
 
-void FrameInverse::apply(const Model&, const FrameInputs&, Workspace&, Positions& r, Positions& z) {
+void FrameInverse::apply(const Model&, const StepInputs&, Workspace&, Positions& r, Positions& z) {
   factor_.solve(r.data(), z.data());
 }
 
@@ -102,9 +102,9 @@ FrameCgInverse::FrameCgInverse(const Model& model, Preconditioner preconditioner
   incomplete_.compute(preconditioner == Preconditioner::rest ? rest_hessian(model).matrix() : system_matrix_of(model));
 }
 
-void FrameCgInverse::begin(const Model& model, const FrameInputs&, Workspace& w) { hessian_.assemble(model, w, true); }
+void FrameCgInverse::begin(const Model& model, const StepInputs&, Workspace& w) { hessian_.assemble(model, w, true); }
 
-void FrameCgInverse::apply(const Model& model, const FrameInputs&, Workspace&, Positions& r, Positions& z) {
+void FrameCgInverse::apply(const Model& model, const StepInputs&, Workspace&, Positions& r, Positions& z) {
   right_ = vector_of(r);
   conjugate_gradients(
       right_, solution_, iterations_, 0,
@@ -128,7 +128,7 @@ SystemCgInverse::SystemCgInverse(const Model& model, int iterations)
   for (int v = 0; v < model.free; ++v) inverse_diagonal_.segment<3>(3 * v).setConstant(1 / diagonal[v]);
 }
 
-void SystemCgInverse::apply(const Model& model, const FrameInputs&, Workspace&, Positions& r, Positions& z) {
+void SystemCgInverse::apply(const Model& model, const StepInputs&, Workspace&, Positions& r, Positions& z) {
   right_ = vector_of(r);
   conjugate_gradients(
       right_, solution_, iterations_, 0,
@@ -147,8 +147,8 @@ HechtInverse::HechtInverse(const Model& model) : hessian_(model) {
   factor_.analyze(hessian_.matrix());
 }
 
-void HechtInverse::begin(const Model& model, const FrameInputs&, Workspace& w) {
-  vertex_rotations(model, *w.start, now_);
+void HechtInverse::begin(const Model& model, const StepInputs&, Workspace& w) {
+  vertex_rotations(model, *w.start_positions, now_);
   if (steps_++ % 2 == 0) {
     factored_ = now_;
     std::size_t chunk = 0;
@@ -161,7 +161,7 @@ void HechtInverse::begin(const Model& model, const FrameInputs&, Workspace& w) {
       const double* from = &rest_.numbers[at];
       double* to = &turned_.numbers[at];
       const auto index = [](int i, int j) { return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i; };
-      const Mat3 rotation = rotation_of(deformation_gradient(*w.start, element));
+      const Mat3 rotation = rotation_of(deformation_gradient(*w.start_positions, element));
       for (int a = 0; a < 3; ++a) {
         for (int b = 0; b <= a; ++b) {
           Mat3 block;
@@ -182,7 +182,7 @@ void HechtInverse::begin(const Model& model, const FrameInputs&, Workspace& w) {
   for (std::size_t v = 0; v < now_.size(); ++v) warp_[v] = now_[v] * factored_[v].transpose();
 }
 
-void HechtInverse::apply(const Model&, const FrameInputs&, Workspace&, Positions& r, Positions& z) {
+void HechtInverse::apply(const Model&, const StepInputs&, Workspace&, Positions& r, Positions& z) {
   turn(warp_, true, r);
   factor_.solve(r.data(), z.data());
   turn(warp_, false, z);
@@ -194,7 +194,7 @@ ContactMatrixInverse::ContactMatrixInverse(const Model& model)
   factor_.analyze(matrix_);
 }
 
-void ContactMatrixInverse::apply(const Model& model, const FrameInputs&, Workspace& w, Positions& r, Positions& z) {
+void ContactMatrixInverse::apply(const Model& model, const StepInputs&, Workspace& w, Positions& r, Positions& z) {
   std::fill(stiffness_.begin(), stiffness_.end(), 0.0);
   for (const Contact& contact : w.current.contacts) {
     if (contact.depth > 0) stiffness_[contact.vertex] += 2 * contact.stiffness;

@@ -13,9 +13,9 @@ namespace supple {
 // (t.t / s.t) I of the last pair (equation 13 is the scale of the inverse), and M/h^2 before there is one.
 class IdentityInverse final : public InitialInverse {
  public:
-  void begin(const Model&, const FrameInputs&, Workspace&) override { scale_ = 0; }
-  void accepted(const Model& model, const FrameInputs& inputs, Workspace& workspace) override;
-  void apply(const Model& model, const FrameInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
+  void begin(const Model&, const StepInputs&, Workspace&) override { scale_ = 0; }
+  void accepted(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
+  void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
 
  private:
   double scale_ = 0;  // [m/N]; 0: no pair yet
@@ -25,7 +25,7 @@ class IdentityInverse final : public InitialInverse {
 class RestInverse : public InitialInverse {
  public:
   explicit RestInverse(const Model& model);
-  void apply(const Model& model, const FrameInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
+  void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
 
  private:
   ChangingFactor factor_;
@@ -36,8 +36,8 @@ class RestInverse : public InitialInverse {
 class WarpedInverse final : public RestInverse {
  public:
   using RestInverse::RestInverse;
-  void begin(const Model& model, const FrameInputs& inputs, Workspace& workspace) override;
-  void apply(const Model& model, const FrameInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
+  void begin(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
+  void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
 
  private:
   std::vector<Mat3> rotation_;  // by free vertex
@@ -47,8 +47,8 @@ class WarpedInverse final : public RestInverse {
 class FrameInverse final : public InitialInverse {
  public:
   explicit FrameInverse(const Model& model);
-  void begin(const Model& model, const FrameInputs& inputs, Workspace& workspace) override;
-  void apply(const Model& model, const FrameInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
+  void begin(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
+  void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
 
  private:
   HessianMatrix hessian_;
@@ -59,8 +59,8 @@ class FrameInverse final : public InitialInverse {
 class FrameCgInverse final : public InitialInverse {
  public:
   FrameCgInverse(const Model& model, Preconditioner preconditioner, int iterations);
-  void begin(const Model& model, const FrameInputs& inputs, Workspace& workspace) override;
-  void apply(const Model& model, const FrameInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
+  void begin(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
+  void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
 
  private:
   using Incomplete = Eigen::IncompleteCholesky<double, Eigen::Lower, Eigen::NaturalOrdering<int>>;
@@ -76,7 +76,7 @@ class FrameCgInverse final : public InitialInverse {
 class SystemCgInverse final : public InitialInverse {
  public:
   SystemCgInverse(const Model& model, int iterations);
-  void apply(const Model& model, const FrameInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
+  void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
 
  private:
   int iterations_;
@@ -92,8 +92,8 @@ class SystemCgInverse final : public InitialInverse {
 class HechtInverse final : public InitialInverse {
  public:
   explicit HechtInverse(const Model& model);
-  void begin(const Model& model, const FrameInputs& inputs, Workspace& workspace) override;
-  void apply(const Model& model, const FrameInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
+  void begin(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
+  void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
 
  private:
   ElementMatrices rest_, turned_;
@@ -108,8 +108,8 @@ class HechtInverse final : public InitialInverse {
 class ContactMatrixInverse final : public InitialInverse {
  public:
   explicit ContactMatrixInverse(const Model& model);
-  void begin(const Model&, const FrameInputs&, Workspace&) override { factored_.clear(); }
-  void apply(const Model& model, const FrameInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
+  void begin(const Model&, const StepInputs&, Workspace&) override { factored_.clear(); }
+  void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
 
  private:
   SparseMatrix system_, matrix_;  // lower triangles

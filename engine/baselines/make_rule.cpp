@@ -33,14 +33,14 @@ std::unique_ptr<InitialInverse> initial_inverse(const Method& method, const Mode
 class LbfgsFrom final : public SearchRule {
  public:
   explicit LbfgsFrom(std::unique_ptr<InitialInverse> inverse) : inverse_(std::move(inverse)), rule_(*inverse_) {}
-  void begin(const Model& model, const FrameInputs& inputs, Workspace& w) override { rule_.begin(model, inputs, w); }
-  double direction(const Model& model, const FrameInputs& inputs, Workspace& w) override {
+  void begin(const Model& model, const StepInputs& inputs, Workspace& w) override { rule_.begin(model, inputs, w); }
+  double direction(const Model& model, const StepInputs& inputs, Workspace& w) override {
     return rule_.direction(model, inputs, w);
   }
-  void accepted(const Model& model, const FrameInputs& inputs, Workspace& w) override {
+  void accepted(const Model& model, const StepInputs& inputs, Workspace& w) override {
     rule_.accepted(model, inputs, w);
   }
-  void contacts_changed(const FrameInputs& inputs) override { rule_.contacts_changed(inputs); }
+  void contacts_changed(const StepInputs& inputs) override { rule_.contacts_changed(inputs); }
   bool forget() override { return rule_.forget(); }
 
  private:
@@ -52,9 +52,9 @@ class LbfgsFrom final : public SearchRule {
 // and position-based dynamics"; Liu et al. 2017, algorithm 3). After an ascent it starts anew.
 class ChebyshevRule final : public SearchRule {
  public:
-  void begin(const Model&, const FrameInputs&, Workspace&) override { iteration_ = 0; }
+  void begin(const Model&, const StepInputs&, Workspace&) override { iteration_ = 0; }
 
-  double direction(const Model& model, const FrameInputs& inputs, Workspace& w) override {
+  double direction(const Model& model, const StepInputs& inputs, Workspace& w) override {
     const Stretch stretch(w.clock, Phase::solve, "solve");
     w.scratch = w.current.gradient;
     find_stiff_directions(model, w.current.contacts, w.current.x, w.contact.stick_length, w.correction);
@@ -76,7 +76,7 @@ class ChebyshevRule final : public SearchRule {
     return (w.current.gradient.array() * w.direction.array()).sum();
   }
 
-  void accepted(const Model&, const FrameInputs&, Workspace& w) override {
+  void accepted(const Model&, const StepInputs&, Workspace& w) override {
     before_ = w.current.x;
     ++iteration_;
   }

@@ -15,7 +15,7 @@ NewtonRule::NewtonRule(const Model& model, Definite definite) : definite_(defini
   factor_.analyze(hessian_.matrix());
 }
 
-double NewtonRule::direction(const Model& model, const FrameInputs&, Workspace& w) {
+double NewtonRule::direction(const Model& model, const StepInputs&, Workspace& w) {
   const Stretch stretch(w.clock, Phase::solve, "Newton");
   hessian_.assemble(model, w, definite_ == Definite::projected);
   if (definite_ == Definite::projected) {
@@ -41,7 +41,7 @@ double NewtonRule::direction(const Model& model, const FrameInputs&, Workspace& 
 NewtonCgRule::NewtonCgRule(const Model& model, bool project, int iterations, double tolerance)
     : project_(project), iterations_(iterations), tolerance_(tolerance), hessian_(model) {}
 
-double NewtonCgRule::direction(const Model& model, const FrameInputs&, Workspace& w) {
+double NewtonCgRule::direction(const Model& model, const StepInputs&, Workspace& w) {
   const Stretch stretch(w.clock, Phase::solve, "Newton");
   hessian_.assemble(model, w, project_);
   const Eigen::Index count = 3 * model.free;

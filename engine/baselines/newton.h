@@ -16,8 +16,8 @@ enum class Definite {
 class NewtonRule final : public SearchRule {
  public:
   NewtonRule(const Model& model, Definite definite);
-  void begin(const Model&, const FrameInputs&, Workspace&) override { shift_ = 0; }
-  double direction(const Model& model, const FrameInputs& inputs, Workspace& workspace) override;
+  void begin(const Model&, const StepInputs&, Workspace&) override { shift_ = 0; }
+  double direction(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
 
  private:
   Definite definite_;
@@ -30,7 +30,7 @@ class NewtonRule final : public SearchRule {
 class NewtonCgRule final : public SearchRule {
  public:
   NewtonCgRule(const Model& model, bool project, int iterations, double tolerance);
-  double direction(const Model& model, const FrameInputs& inputs, Workspace& workspace) override;
+  double direction(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
 
  private:
   bool project_;

@@ -4,8 +4,8 @@
 
 namespace supple {
 
-const StepReport& step_then_project(const Model& model, const FrameInputs& inputs, State& state, Workspace& w) {
-  FrameInputs without_colliders = inputs;
+const StepReport& step_then_project(const Model& model, const StepInputs& inputs, State& state, Workspace& w) {
+  StepInputs without_colliders = inputs;
   without_colliders.colliders = nullptr;
   const State before = state;
   const StepReport& report = step(model, without_colliders, state, w);

@@ -8,6 +8,6 @@ namespace supple {
 
 // Makes a step without colliders; then puts every vertex that is inside one on the nearest point of its surface, and
 // corrects velocities. The report is the step's.
-const StepReport& step_then_project(const Model& model, const FrameInputs& inputs, State& state, Workspace& workspace);
+const StepReport& step_then_project(const Model& model, const StepInputs& inputs, State& state, Workspace& workspace);
 
 }  // namespace supple

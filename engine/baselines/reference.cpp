@@ -15,8 +15,8 @@ constexpr int slow_iterations = 5000;  // of L-BFGS where Newton's line search g
 // report shows.
 constexpr double digits = 1e-12;
 
-FrameInputs thorough(const FrameInputs& inputs, int iterations, int history) {
-  FrameInputs result = inputs;
+StepInputs thorough(const StepInputs& inputs, int iterations, int history) {
+  StepInputs result = inputs;
   result.solver = SolverSettings{};
   result.solver.iterations = iterations;
   result.solver.history = history;
@@ -39,14 +39,14 @@ struct Reference::Parts {
 Reference::Reference(const Model& model) : parts_(std::make_unique<Parts>(model)) {}
 Reference::~Reference() = default;
 
-double contact_energy_at(const Model& model, const FrameInputs& inputs, const Positions& x, Workspace& w) {
+double contact_energy_at(const Model& model, const StepInputs& inputs, const Positions& x, Workspace& w) {
   if (!has_colliders(inputs)) return 0;
   std::vector<Contact> found;
   find_contacts(model, inputs, x, w.threads, w.contact, found);
   return add_contacts(found, w.contact.stick_length, x, nullptr, w.direction, nullptr).value;
 }
 
-double gained(const Model& model, const FrameInputs& inputs, const State& before, const Positions& x, Workspace& w) {
+double gained(const Model& model, const StepInputs& inputs, const State& before, const Positions& x, Workspace& w) {
   w.prepare(model, inputs.solver);
   begin_step(model, inputs, before, w);
   // Summed as a difference; y with its handles at their targets, whatever the solver started from.
@@ -59,10 +59,10 @@ double gained(const Model& model, const FrameInputs& inputs, const State& before
   return contacts - change;
 }
 
-Minimum Reference::minimum(const Model& model, const FrameInputs& inputs, const State& before, const Positions& x,
+Minimum Reference::minimum(const Model& model, const StepInputs& inputs, const State& before, const Positions& x,
                            Workspace& w) {
-  const FrameInputs by_newton = thorough(inputs, newton_iterations, 0);
-  const FrameInputs by_lbfgs = thorough(inputs, check_iterations, 20);
+  const StepInputs by_newton = thorough(inputs, newton_iterations, 0);
+  const StepInputs by_lbfgs = thorough(inputs, check_iterations, 20);
   w.prepare(model, by_lbfgs.solver);
   w.report = StepReport{};
   Minimum result;
@@ -80,7 +80,7 @@ Minimum Reference::minimum(const Model& model, const FrameInputs& inputs, const 
   return result;
 }
 
-std::optional<double> Reference::step_error(const Model& model, const FrameInputs& inputs, const State& before,
+std::optional<double> Reference::step_error(const Model& model, const StepInputs& inputs, const State& before,
                                             const State& after, Workspace& w) {
   const Minimum lowest = minimum(model, inputs, before, after.x, w);
   w.trial.x = w.y;

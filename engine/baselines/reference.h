@@ -26,13 +26,13 @@ class Reference {
   ~Reference();
 
   // From `x`, one of the points that a step from `before` has come to. workspace: scratch of the reference's own.
-  Minimum minimum(const Model& model, const FrameInputs& inputs, const State& before, const Positions& x,
+  Minimum minimum(const Model& model, const StepInputs& inputs, const State& before, const Positions& x,
                   Workspace& workspace);
 
   // error(x_k) = (g(x_k) - g*) / (g(y) - g*). `before` and `after` are the states around the step. g* is what minimum()
   // finds going on from x_k; both differences are sums of small ones, so that small errors keep their digits. Empty
   // where g(y) - g* is round-off.
-  std::optional<double> step_error(const Model& model, const FrameInputs& inputs, const State& before,
+  std::optional<double> step_error(const Model& model, const StepInputs& inputs, const State& before,
                                    const State& after, Workspace& workspace);
 
  private:
@@ -41,11 +41,11 @@ class Reference {
 };
 
 // Energy, friction included, of the contacts found anew at x, after begin_step [J].
-double contact_energy_at(const Model& model, const FrameInputs& inputs, const Positions& x, Workspace& workspace);
+double contact_energy_at(const Model& model, const StepInputs& inputs, const Positions& x, Workspace& workspace);
 
 // g(y) - g(x) of a step from `before`, handles at their targets, each point with the contacts found there [J]. Leaves
 // x in workspace.current.x.
-double gained(const Model& model, const FrameInputs& inputs, const State& before, const Positions& x,
+double gained(const Model& model, const StepInputs& inputs, const State& before, const Positions& x,
               Workspace& workspace);
 
 }  // namespace supple

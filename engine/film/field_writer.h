@@ -17,7 +17,7 @@ class FieldWriter {
   // Writes a frame and brings the collection up to date, so that it can be opened while the film is made; in a film
   // that was resumed it holds what was written before, too. workspace: of the step that led to the state; contact
   // forces are written where there are colliders. Throws RunError.
-  void add(int frame, const State& state, const FrameInputs& inputs, const Workspace& workspace);
+  void add(int frame, const State& state, const StepInputs& inputs, const Workspace& workspace);
 
  private:
   void find_earlier(int frame);

@@ -6,11 +6,17 @@
 #include <string>
 #include <vector>
 
+#include "base/names.h"
 #include "render/gl_context.h"
 
 namespace supple {
 
 enum class FilmPictures { none, last, all };  // the frames that are drawn
+template <>
+struct Names<FilmPictures> {
+  static constexpr std::array table = {Name{FilmPictures::none, "none"}, Name{FilmPictures::last, "last"},
+                                       Name{FilmPictures::all, "all"}};
+};
 
 struct FilmPlan {
   std::string scene;                       // a file of a scene or replay, or the name of one that ships

@@ -16,7 +16,7 @@ class ErrorMeter {
 
   // Evaluates equation 12 for a step from `before` to `after`. Returns nothing where the objective of the start is
   // above its minimum by round-off alone.
-  virtual std::optional<double> step_error(const Model& model, const FrameInputs& inputs, const State& before,
+  virtual std::optional<double> step_error(const Model& model, const StepInputs& inputs, const State& before,
                                            const State& after) = 0;
 };
 

@@ -17,7 +17,7 @@ constexpr std::size_t frames_in_flight = 3;  // between two stages
 
 Pictures::Pictures(const Stage& stage, GlChoice gl, const std::filesystem::path& shaders, const RunFolder& folder)
     : folder_(folder), lists_(frames_in_flight), images_(frames_in_flight) {
-  const SignalsWait meanwhile;  // the thread that makes the frames takes signals
+  const BlockedSignals meanwhile;  // the thread that makes the frames takes signals
   drawing_ = std::thread([this, stage, gl, shaders] { guarded([&] { draw_all(stage, gl, shaders); }); });
   compressing_ = std::thread([this] { guarded([this] { compress_all(); }); });
 }

@@ -182,9 +182,9 @@ void write_state(const std::filesystem::path& folder, const StepLabel& label, co
   if (!problem.body.springs.empty()) write_springs(folder, problem.body.springs);
   std::vector<std::int32_t> handled;
   std::vector<double> stiffness;
-  for (const auto& [vertex, spring] : problem.handled) {
-    handled.push_back(vertex);
-    stiffness.push_back(spring);
+  for (const StepProblem::Handled& each : problem.handled) {
+    handled.push_back(each.vertex);
+    stiffness.push_back(each.stiffness);
   }
   write_list(folder / "handled.npy", handled);
   write_list(folder / "handle_stiffness.npy", stiffness);

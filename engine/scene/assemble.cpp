@@ -128,7 +128,7 @@ void add_handles(Body& body, const Loaded& loaded, std::vector<Problem>& problem
   std::vector<char> taken(loaded.mesh.rest.rows(), 0);
   Eigen::Index held = 0;
   for (const HandleDef& def : body.def.handles) {
-    Handle handle{def.name, selected(def.select, loaded.mesh, loaded.mesh.rest, loaded.regions), def.spring,
+    Handle handle{def.name, selected(def.select, loaded.mesh, loaded.mesh.rest, loaded.regions), def.stiffness,
                   !def.grabs || def.holds_at(0)};
     // The first of two handles that overlap has the vertices.
     std::erase_if(handle.vertices, [&](std::int32_t v) { return taken[v] != 0; });
@@ -141,8 +141,8 @@ void add_handles(Body& body, const Loaded& loaded, std::vector<Problem>& problem
                          by_region ? fmt::format(": there is no region '{}'", def.select.region)
                                    : "; boxes, spheres and planes are relative to the rest bounding box (0 to 1)")));
     }
-    if (def.spring <= 0) held += static_cast<Eigen::Index>(handle.vertices.size());
-    if (def.spring <= 0 && held == loaded.mesh.rest.rows()) {
+    if (def.stiffness <= 0) held += static_cast<Eigen::Index>(handle.vertices.size());
+    if (def.stiffness <= 0 && held == loaded.mesh.rest.rows()) {
       problems.push_back(at(def.select.place,
                             fmt::format("with handle '{}' every vertex of body '{}' is held: nothing is left to move",
                                         def.name, body.def.name)));
@@ -187,11 +187,11 @@ void update_body(Body& body, const SceneDef& scene, const BodyDef& def) {
   body.earlier = body.motions;
   for (std::size_t h = 0; h < def.handles.size(); ++h) {
     Handle& handle = body.description.handles[h];
-    if ((handle.spring <= 0) != (def.handles[h].spring <= 0))
+    if ((handle.stiffness <= 0) != (def.handles[h].stiffness <= 0))
       problems.push_back(at(def.handles[h].select.place,
                             fmt::format("handle '{}' of body '{}': hard handles stay hard, and springs stay springs",
                                         handle.name, def.name)));
-    handle.spring = def.handles[h].spring;
+    handle.stiffness = def.handles[h].stiffness;
     body.motions[h].ease = def.handles[h].ease;
     body.motions[h].keys = def.handles[h].keys;
   }
@@ -288,7 +288,8 @@ DrawnBody drawn_body(const SceneDef& scene, const Body& body) {
 
 namespace {
 
-// Returns the places that keys move handled vertices from while nothing is grabbed, and which handles hold at the start.
+// Returns the places that keys move handled vertices from while nothing is grabbed, and which handles hold at the
+// start.
 Anchors rest_anchors(const Model& model, const Body& body) {
   Anchors anchors;
   anchors.points.resize(model.handled.size(), 3);

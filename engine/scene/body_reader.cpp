@@ -80,7 +80,7 @@ HandleDef read_handle(const ConfigTable& table) {
   HandleDef handle;
   handle.name = table.text({"name", "", "addresses the handle in --set and in messages"}, std::nullopt);
   handle.select = read_selection(table);
-  handle.spring =
+  handle.stiffness =
       table
           .number_or_word({"stiffness", "N/m",
                            "of each vertex's spring to its target; hard vertices are eliminated and follow exactly"},
@@ -92,7 +92,7 @@ HandleDef read_handle(const ConfigTable& table) {
   handle.until = table.number_if_given({"until", "s", "it lets go; the default is never"}, Range::positive())
                      .value_or(handle.until);
   if (handle.until <= handle.from) table.complain("until", "until: must be later than 'from'");
-  if (handle.grabs && handle.spring <= 0)
+  if (handle.grabs && handle.stiffness <= 0)
     table.complain("stiffness", "a handle that grabs or lets go needs a number as its stiffness [N/m]");
   handle.ease = read_ease(table);
   handle.keys = read_keys(table, "rotation about the handle's centre: x, then y, then z");

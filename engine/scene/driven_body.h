@@ -33,7 +33,7 @@ class DrivenBody {
   const Body& body() const { return body_; }
   const Model& model() const { return model_; }
   const State& state() const { return state_; }
-  const FrameInputs& inputs() const { return inputs_; }  // of the step that was prepared last
+  const StepInputs& inputs() const { return inputs_; }  // of the step that was prepared last
   const CollisionSet& set() const { return set_; }
   Workspace& workspace() { return workspace_; }
 
@@ -65,7 +65,7 @@ class DrivenBody {
   const CollisionSet& set_;
   Solvers solvers_;
   State state_;
-  FrameInputs inputs_;
+  StepInputs inputs_;
   std::unique_ptr<SearchRule> rule_;
   Workspace workspace_;
   std::optional<ModelValues> values_;  // once the model has changed

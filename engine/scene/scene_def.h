@@ -53,7 +53,7 @@ struct Names<Ease> {
 struct HandleDef {
   std::string name;
   Selection select;
-  double spring = 0;  // 0: hard [N/m]
+  double stiffness = 0;  // of the spring from each vertex to its target, 0: hard [N/m]
   // A handle that grabs holds its vertices from one time to another [s]. Its keys are relative to where the vertices
   // are when it begins to hold them.
   bool grabs = false;

@@ -89,8 +89,8 @@ std::vector<Problem> warnings(const SceneDef& scene, const std::vector<Body>& bo
                            "its vertices jump",
                            handle.name, body.def.name, def.from)));
       }
-      if (handle.spring <= 0 || def.grabs) continue;
-      const double sag = mass * scene.gravity.norm() / (handle.spring * static_cast<double>(handle.vertices.size()));
+      if (handle.stiffness <= 0 || def.grabs) continue;
+      const double sag = mass * scene.gravity.norm() / (handle.stiffness * static_cast<double>(handle.vertices.size()));
       if (sag > 0.02 * box.diagonal()) {
         list.push_back(at(body.def.handles[i].select.place,
                           fmt::format("handle '{}' of body '{}' is soft for its load: the body's weight alone "

@@ -4,7 +4,7 @@
 //   const Model model = build_model(body);   // no step changes it; several states may share it
 //   State state = rest_state(model);         // where the body is; a copy is a snapshot: sim/model/state.h
 //   Workspace workspace;                     // scratch, one for each thread that steps; never changes a result
-//   FrameInputs inputs;                      // gravity, handles' targets, colliders, settings: sim/model/inputs.h
+//   StepInputs inputs;                      // gravity, handles' targets, colliders, settings: sim/model/inputs.h
 //   const StepReport& report = step(model, inputs, state, workspace);  // once a time step: sim/solver/step.h
 //
 // A step that fails says so in the report (failed, failure) and leaves the state as it was. Descriptions that

@@ -151,7 +151,7 @@ TEST(States, GiveTheRunsBitsWhenTheStepIsMadeAgain) {
       const Model& model = film.models[b];
       const StoredState stored = read_state(states / (name + "-000003"));
       State state = state_for(model, stored);
-      FrameInputs inputs{film.scene.gravity, {}, {}, film.bodies[b].def.solver.settings, &film.set.colliders};
+      StepInputs inputs{film.scene.gravity, {}, {}, film.bodies[b].def.solver.settings, &film.set.colliders};
       Workspace w;
       for (int substep = 0; substep < film.scene.substeps; ++substep) {
         const double done = 3.0 * film.scene.substeps + substep, h = film.scene.time_step();

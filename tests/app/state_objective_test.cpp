@@ -71,7 +71,7 @@ struct Agreement {
 void compare(const BodyDescription& body, Agreement& agreement) {
   const test::TemporaryFolder folder;
   const Model model = build_model(body);
-  FrameInputs inputs = test::still_inputs(model);
+  StepInputs inputs = test::still_inputs(model);
   inputs.targets = test::shaken(inputs.targets, 0.02, 1);
   inputs.middle_targets = test::shaken(inputs.targets, 0.01, 2);
   State state = rest_state(model);

@@ -151,7 +151,7 @@ TEST(Hessian, OfAWholeBodyIsTheDerivativeOfItsGradient) {
       Workspace w;
       w.prepare(model, {});
       const State state = rest_state(model);
-      FrameInputs inputs = test::still_inputs(model);
+      StepInputs inputs = test::still_inputs(model);
       inputs.middle_targets = inputs.targets;
       begin_step(model, inputs, state, w);
       w.current.x.topRows(model.free) = test::shaken(w.current.x, 0.01, 3).topRows(model.free);
@@ -171,7 +171,7 @@ TEST(Hessian, OfSpringsAndContactsIsTheDerivativeOfTheGradient) {
   Workspace w;
   w.prepare(model, {});
   const State state = rest_state(model);
-  const FrameInputs inputs = test::still_inputs(model);
+  const StepInputs inputs = test::still_inputs(model);
   begin_step(model, inputs, state, w);
   w.current.x = test::shaken(w.current.x, 0.02, 5);
   w.contact.stick_length = 1e-3;
@@ -208,7 +208,7 @@ TEST(Hessian, SystemMatrixIsWhatTheModelHasFactored) {
 // Given enough iterations, every method reaches the minimum that ours reaches.
 TEST(Methods, AllReachTheMinimumOfOneStep) {
   const Model model = build_model(test::bar(NeoHookean{2e4, 4e4}, Held::hard_end, Precision::double_precision, 2));
-  FrameInputs inputs = test::still_inputs(model);
+  StepInputs inputs = test::still_inputs(model);
   inputs.solver.iterations = 2000;
   State before = rest_state(model);
   before.x.topRows(model.free) = test::shaken(before.x, 0.01, 7).topRows(model.free);
@@ -219,7 +219,7 @@ TEST(Methods, AllReachTheMinimumOfOneStep) {
   for (const Method& method : compared_methods()) {
     const std::string name = name_of(method);
     const auto rule = make_rule(method, model);
-    FrameInputs own = inputs;
+    StepInputs own = inputs;
     own.solver = settings_of(method, own.solver);
     own.solver.line_search = LineSearch::armijo;
     State after = before;
@@ -235,7 +235,7 @@ TEST(Methods, AllReachTheMinimumOfOneStep) {
 // Each entry of the table of forms that compared_methods() does not have: a matrix by itself.
 TEST(Methods, EveryCombinationOfPartsReachesTheMinimum) {
   const Model model = build_model(test::bar(NeoHookean{2e4, 4e4}, Held::hard_end, Precision::double_precision, 2));
-  FrameInputs inputs = test::still_inputs(model);
+  StepInputs inputs = test::still_inputs(model);
   inputs.solver.iterations = 5000;
   State before = rest_state(model);
   before.x.topRows(model.free) = test::shaken(before.x, 0.01, 7).topRows(model.free);
@@ -250,7 +250,7 @@ TEST(Methods, EveryCombinationOfPartsReachesTheMinimum) {
           const Method method{form.matrix,  form.linear, form.linear == LinearSolver::cg ? 7 : 0, 0, preconditioner,
                               acceleration, safeguard};
           const auto rule = make_rule(method, model);
-          FrameInputs own = inputs;
+          StepInputs own = inputs;
           own.solver = settings_of(method, own.solver);
           own.solver.line_search = LineSearch::armijo;
           State after = before;
@@ -277,7 +277,7 @@ TEST(Methods, PartsThatDoNotGoTogetherMakeNoRule) {
 
 TEST(Methods, NewtonConvergesQuadratically) {
   const Model model = build_model(test::bar(NeoHookean{2e4, 4e4}, Held::hard_end, Precision::double_precision, 2));
-  FrameInputs inputs = test::still_inputs(model);
+  StepInputs inputs = test::still_inputs(model);
   inputs.solver = settings_of(Method::newton, inputs.solver);
   inputs.solver.iterations = 30;
   State state = rest_state(model);
@@ -292,7 +292,7 @@ TEST(Methods, NewtonConvergesQuadratically) {
 // The conditions are those of Nocedal and Wright 2006, equations 3.7.
 TEST(LineSearch, WolfeStepsSatisfyBothConditions) {
   const Model model = build_model(test::bar(NeoHookean{2e4, 4e4}, Held::hard_end, Precision::double_precision, 2));
-  FrameInputs inputs = test::still_inputs(model);
+  StepInputs inputs = test::still_inputs(model);
   inputs.solver.line_search = LineSearch::wolfe;
   inputs.solver.iterations = 12;
   State state = rest_state(model);

@@ -64,7 +64,7 @@ Picture picture_of(const Shot& shot, const Settings& more = {}) {
     drawn.push_back(drawn_body(film.scene, film.bodies[b]));
   }
   film.play(1, shot.frames,
-            [&](std::size_t b, int, const State&, const FrameInputs&, const State& after) { states[b] = after; });
+            [&](std::size_t b, int, const State&, const StepInputs&, const State& after) { states[b] = after; });
   const std::vector<Skin> colliders = collider_skins(film.set.obstacles, film.bodies);
   Picture picture;
   picture.stage = make_stage(film.scene, film.bodies, drawn, film.set.obstacles, colliders, shot.font);

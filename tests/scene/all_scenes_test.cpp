@@ -34,7 +34,7 @@ TEST(Scenes, NoStepOfAnySceneIsWorseThanStaying) {
     const Film run(path, {});
     EXPECT_FALSE(run.scene.title.empty()) << path;
     run.play(2, frames_to_run(),
-             [&](std::size_t b, int number, const State& before, const FrameInputs& inputs, const State& after) {
+             [&](std::size_t b, int number, const State& before, const StepInputs& inputs, const State& after) {
                const Model& model = run.models[b];
                const auto [staying, change] = test::against_staying(model, inputs, before, after);
                EXPECT_LE(change, noise_of(model, staying, model.size + before.x.cwiseAbs().maxCoeff()))
@@ -49,7 +49,7 @@ TEST(Scenes, GiveTheSameBitsForAnyNumberOfThreads) {
     std::set<std::vector<std::uint64_t>> runs;
     for (const int threads : {1, 2, 4}) {
       std::vector<std::uint64_t> hashes;
-      run.play(threads, frames_to_run(), [&](std::size_t b, int, const State&, const FrameInputs&, const State& after) {
+      run.play(threads, frames_to_run(), [&](std::size_t b, int, const State&, const StepInputs&, const State& after) {
         hashes.push_back(state_hash(run.models[b], after));
       });
       runs.insert(hashes);
@@ -64,7 +64,7 @@ TEST(Scenes, TheHippoIsWholeAgainAfterTenSecondsFromRandomPositions) {
         load_scene(test::assets / "scenes" / "hippo.toml", test::assets, {fmt::format("seed={}", seed)});
     const Body body = assemble(scene).front();
     const Model model = build_model(body.description);
-    FrameInputs inputs{scene.gravity, {}, {}, body.def.solver.settings};
+    StepInputs inputs{scene.gravity, {}, {}, body.def.solver.settings};
     inputs.targets.resize(0, 3);
     State state = start_state(model, body);
     EXPECT_GT(deformation(model, state.x).inverted.value_or(0), model.elements / 3);

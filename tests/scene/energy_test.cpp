@@ -17,7 +17,7 @@ std::vector<double> energy_of(const std::string& body, const std::vector<std::st
   const test::Film film(test::assets / "scenes" / "integrators.toml", settings);
   std::vector<double> list;
   Workspace w;
-  film.play(2, frames, [&](std::size_t b, int number, const State&, const FrameInputs& inputs, const State& after) {
+  film.play(2, frames, [&](std::size_t b, int number, const State&, const StepInputs& inputs, const State& after) {
     if (film.bodies[b].def.name != body || (number + 1) % film.scene.substeps != 0) return;
     w.prepare(film.models[b], inputs.solver);
     list.push_back(energies(film.models[b], after, inputs.gravity, w).total());

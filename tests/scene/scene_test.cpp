@@ -112,7 +112,7 @@ TEST(SceneFile, SettingsReachEveryValueByItsPath) {
   EXPECT_EQ(std::get<Polynomial>(scene.bodies[0].substance.material).mu, 2.5e3);
   EXPECT_EQ(scene.bodies[0].solver.settings.iterations, 3);
   EXPECT_EQ(scene.bodies[0].solver.settings.line_search, LineSearch::none);
-  EXPECT_EQ(scene.bodies[0].handles[0].spring, 12);
+  EXPECT_EQ(scene.bodies[0].handles[0].stiffness, 12);
   EXPECT_EQ(scene.bodies[0].total_mass, 4);
   EXPECT_EQ(scene.gravity.y(), -1);
   EXPECT_EQ(scene.title, "a word");

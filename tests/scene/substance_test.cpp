@@ -55,7 +55,7 @@ TEST(Substances, EveryPresetMakesABodyThatHoldsItsOwnWeight) {
     const std::vector<Body> bodies = assemble(scene);
     EXPECT_EQ(bodies[0].description.density, preset.density);
     const Model model = build_model(bodies[0].description);
-    FrameInputs inputs = test::still_inputs(model);
+    StepInputs inputs = test::still_inputs(model);
     State state = start_state(model, bodies[0]);
     Workspace w;
     for (int frame = 0; frame < 90; ++frame) {
@@ -234,7 +234,7 @@ TEST(StartStates, BodiesRecoverFromThem) {
                  box_body(std::string("material = { model = \"corotated\", young = 1e5, poisson = 0.4 }\n") + start));
     const Body body = assemble(scene).front();
     const Model model = build_model(body.description);
-    FrameInputs inputs = test::still_inputs(model);
+    StepInputs inputs = test::still_inputs(model);
     inputs.gravity.setZero();
     State state = start_state(model, body);
     Workspace w;

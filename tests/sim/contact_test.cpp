@@ -46,15 +46,15 @@ BodyDescription cube(int cells, const Material& material = Corotated{3e4, 6e4}) 
   return body;
 }
 
-// Holds a body among colliders.
-struct Play {
+// A body among colliders, and what its steps need.
+struct ContactScene {
   Model model;
   std::vector<Collider> colliders;
-  FrameInputs inputs;
+  StepInputs inputs;
   State state;
   Workspace w;
 
-  Play(const BodyDescription& body, std::vector<Collider> all, const Vec3& place = Vec3::Zero())
+  ContactScene(const BodyDescription& body, std::vector<Collider> all, const Vec3& place = Vec3::Zero())
       : model(build_model(body)), colliders(std::move(all)), state(rest_state(model)) {
     inputs = test::still_inputs(model);
     inputs.colliders = &colliders;
@@ -79,18 +79,18 @@ struct Play {
 };
 
 TEST(Contact, GradientIsTheDerivativeOfTheEnergyWithPlanesAsTheyStand) {
-  Play play(cube(2), {{"ball", shape_of(Sphere{0.3}), 0.01, 0.4}}, Vec3(0, 0.36, 0));
-  play.state.v.rowwise() = Eigen::RowVector3d(2, -1.5, 1);
-  play.w.prepare(play.model, play.inputs.solver);
-  begin_step(play.model, play.inputs, play.state, play.w);
-  find_contacts_of(play.model, play.inputs, play.w, play.w.current);
-  const std::vector<Contact>& found = play.w.current.contacts;
+  ContactScene scene(cube(2), {{"ball", shape_of(Sphere{0.3}), 0.01, 0.4}}, Vec3(0, 0.36, 0));
+  scene.state.v.rowwise() = Eigen::RowVector3d(2, -1.5, 1);
+  scene.w.prepare(scene.model, scene.inputs.solver);
+  begin_step(scene.model, scene.inputs, scene.state, scene.w);
+  find_contacts_of(scene.model, scene.inputs, scene.w, scene.w.current);
+  const std::vector<Contact>& found = scene.w.current.contacts;
   EXPECT_GT(std::count_if(found.begin(), found.end(), [](const Contact& c) { return c.depth > 0; }), 3);
   EXPECT_GT(std::count_if(found.begin(), found.end(), [](const Contact& c) { return c.friction > 0; }), 3);
-  const double stick = play.w.contact.stick_length;
-  Positions& x = play.w.current.x;
-  Positions gradient = Positions::Zero(play.model.free, 3);
-  const Positions direction = shaken(Positions::Zero(play.model.free, 3), 1, 6);
+  const double stick = scene.w.contact.stick_length;
+  Positions& x = scene.w.current.x;
+  Positions gradient = Positions::Zero(scene.model.free, 3);
+  const Positions direction = shaken(Positions::Zero(scene.model.free, 3), 1, 6);
   const ContactChange at = add_contacts(found, stick, x, nullptr, direction, &gradient);
   EXPECT_NEAR(at.slope, (gradient.array() * direction.array()).sum(), 1e-12 * std::abs(at.slope));
   double best = 1e300;
@@ -116,19 +116,19 @@ TEST(Contact, PlanesGiveTheDerivativeOfTheEnergyFoundAnew) {
                                                              {"torus", shape_of(Torus{0.1, 0.2})},
                                                              {"blend", blend}};
   for (const auto& [name, shape] : shapes) {
-    Play play(cube(2), {{name, shape}}, Vec3(0.02, 0.305, 0.01));
-    play.state.v.rowwise() = Eigen::RowVector3d(0.1, -0.9, 0.05);
-    play.w.prepare(play.model, play.inputs.solver);
-    begin_step(play.model, play.inputs, play.state, play.w);
-    const Positions x = play.w.current.x, direction = shaken(Positions::Zero(play.model.free, 3), 1, 6);
-    find_contacts_of(play.model, play.inputs, play.w, play.w.current);
-    Positions gradient = Positions::Zero(play.model.free, 3);
-    const double slope = add_contacts(play.w.current.contacts, 1, x, nullptr, direction, &gradient).slope;
+    ContactScene scene(cube(2), {{name, shape}}, Vec3(0.02, 0.305, 0.01));
+    scene.state.v.rowwise() = Eigen::RowVector3d(0.1, -0.9, 0.05);
+    scene.w.prepare(scene.model, scene.inputs.solver);
+    begin_step(scene.model, scene.inputs, scene.state, scene.w);
+    const Positions x = scene.w.current.x, direction = shaken(Positions::Zero(scene.model.free, 3), 1, 6);
+    find_contacts_of(scene.model, scene.inputs, scene.w, scene.w.current);
+    Positions gradient = Positions::Zero(scene.model.free, 3);
+    const double slope = add_contacts(scene.w.current.contacts, 1, x, nullptr, direction, &gradient).slope;
     ASSERT_NE(slope, 0) << name;
     double best = 1e300;
     for (const double h : {1e-6, 1e-7}) {
-      const double forward = contact_energy_at(play.model, play.inputs, x + h * direction, play.w);
-      const double backward = contact_energy_at(play.model, play.inputs, x - h * direction, play.w);
+      const double forward = contact_energy_at(scene.model, scene.inputs, x + h * direction, scene.w);
+      const double backward = contact_energy_at(scene.model, scene.inputs, x - h * direction, scene.w);
       best = std::min(best, std::abs((forward - backward) / (2 * h) - slope));
     }
     EXPECT_LT(best, 1e-5 * std::abs(slope)) << name;
@@ -137,51 +137,51 @@ TEST(Contact, PlanesGiveTheDerivativeOfTheEnergyFoundAnew) {
 
 // Compares (A + K)^-1 by the Woodbury identity with a dense inverse of A + K.
 TEST(Contact, LowRankDirectionsSolveTheSystemWithContacts) {
-  Play play(bar(Corotated{1e4, 3e4}, Held::hard_end), {{"ground", ground, 0, 0.5}}, Vec3(0, 0.001, 0));
-  play.state.v.rowwise() = Eigen::RowVector3d(0.3, -0.5, 0);
-  play.w.prepare(play.model, play.inputs.solver);
-  begin_step(play.model, play.inputs, play.state, play.w);
-  find_contacts_of(play.model, play.inputs, play.w, play.w.current);
-  find_stiff_directions(play.model, play.w.current.contacts, play.w.current.x, play.w.contact.stick_length,
-                        play.w.correction);
-  ASSERT_GT(play.w.correction.wanted.size(), 8u);
-  const int n = play.model.free;
+  ContactScene scene(bar(Corotated{1e4, 3e4}, Held::hard_end), {{"ground", ground, 0, 0.5}}, Vec3(0, 0.001, 0));
+  scene.state.v.rowwise() = Eigen::RowVector3d(0.3, -0.5, 0);
+  scene.w.prepare(scene.model, scene.inputs.solver);
+  begin_step(scene.model, scene.inputs, scene.state, scene.w);
+  find_contacts_of(scene.model, scene.inputs, scene.w, scene.w.current);
+  find_stiff_directions(scene.model, scene.w.current.contacts, scene.w.current.x, scene.w.contact.stick_length,
+                        scene.w.correction);
+  ASSERT_GT(scene.w.correction.wanted.size(), 8u);
+  const int n = scene.model.free;
   Eigen::MatrixXd inverse(3 * n, 3 * n);  // the inverse of A
   Positions r(n, 3), z(n, 3);
   for (int column = 0; column < 3 * n; ++column) {
     r.setZero();
     r.data()[column] = 1;
-    play.model.factor.solve(r.data(), z.data(), play.w.solve_scratch.data());
+    scene.model.factor.solve(r.data(), z.data(), scene.w.solve_scratch.data());
     inverse.col(column) = Eigen::Map<Eigen::VectorXd>(z.data(), 3 * n);
   }
   Eigen::MatrixXd system = inverse.inverse();
-  for (const StiffDirection& stiff : play.w.correction.wanted)
+  for (const StiffDirection& stiff : scene.w.correction.wanted)
     system.block<3, 3>(3 * stiff.vertex, 3 * stiff.vertex) += stiff.stiffness * stiff.axis * stiff.axis.transpose();
   r = shaken(Positions::Zero(n, 3), 1, 2);
   const Eigen::VectorXd wanted = system.ldlt().solve(Eigen::Map<Eigen::VectorXd>(r.data(), 3 * n));
   ContactSettings settings;
-  apply_inverse(play.model, settings, play.w.correction, play.w.solve_scratch, r, z);
+  apply_inverse(scene.model, settings, scene.w.correction, scene.w.solve_scratch, r, z);
   // The small system is solved in single precision, the rest in double.
   EXPECT_LT((Eigen::Map<Eigen::VectorXd>(z.data(), 3 * n) - wanted).norm(), 1e-4 * wanted.norm());
 }
 
 TEST(Contact, MomentumChangesByTheImpulsesOfGravityAndContacts) {
   for (const int iterations : {300, 4}) {
-    Play play(cube(3), {{"ball", shape_of(Sphere{0.5}), 0, 0.3}}, Vec3(0.05, 0.61, 0));
-    play.state.v.rowwise() = Eigen::RowVector3d(0.3, -1, 0.1);
-    play.inputs.solver.iterations = iterations;
-    const double h = play.model.time_step;
+    ContactScene scene(cube(3), {{"ball", shape_of(Sphere{0.5}), 0, 0.3}}, Vec3(0.05, 0.61, 0));
+    scene.state.v.rowwise() = Eigen::RowVector3d(0.3, -1, 0.1);
+    scene.inputs.solver.iterations = iterations;
+    const double h = scene.model.time_step;
     for (int frame = 0; frame < 5; ++frame) {
       const auto momentum = [&] {
         Vec3 sum = Vec3::Zero();
-        for (int v = 0; v < play.model.vertices; ++v) sum += play.model.mass[v] * Vec3(play.state.v.row(v));
+        for (int v = 0; v < scene.model.vertices; ++v) sum += scene.model.mass[v] * Vec3(scene.state.v.row(v));
         return sum;
       };
       const Vec3 before = momentum();
-      const StepReport& report = play.advance();
+      const StepReport& report = scene.advance();
       EXPECT_GT(report.contacts.touching, 0) << frame;
-      const Vec3 left = play.w.current.gradient.colwise().sum().transpose();  // zero at a minimum
-      const Vec3 impulse = h * (play.model.total_mass * play.inputs.gravity + report.contact_force);
+      const Vec3 left = scene.w.current.gradient.colwise().sum().transpose();  // zero at a minimum
+      const Vec3 impulse = h * (scene.model.total_mass * scene.inputs.gravity + report.contact_force);
       const double scale = before.norm() + impulse.norm();
       EXPECT_LT((momentum() - before - impulse - h * left).norm(), 1e-9 * scale) << frame;
       if (iterations == 300) {
@@ -207,19 +207,19 @@ TEST(Contact, NothingGoesThroughAtAnySpeedUpToItsSizeAStep) {
   for (const Obstacle& obstacle : obstacles) {
     for (const double speed : {1.0, 2.0, 5.0, fastest}) {
       const double x = obstacle.name.starts_with("torus") ? 0.5 : 0.0;
-      Play play(cube(3), {{obstacle.name, obstacle.shape}}, Vec3(x, obstacle.top + 0.13, 0.02));
-      play.state.v.col(1).setConstant(-speed);
+      ContactScene scene(cube(3), {{obstacle.name, obstacle.shape}}, Vec3(x, obstacle.top + 0.13, 0.02));
+      scene.state.v.col(1).setConstant(-speed);
       double deepest = 0;
       for (int frame = 0; frame < 8; ++frame) {
-        play.advance();
-        deepest = std::max(deepest, play.deepest(0));
+        scene.advance();
+        deepest = std::max(deepest, scene.deepest(0));
         if (!obstacle.name.starts_with("plate") && obstacle.name != "box") continue;
         // A body below the middle of a plate has passed through it.
-        EXPECT_GT(play.state.x.col(1).minCoeff(), 0) << obstacle.name << " at " << speed << " m/s, frame " << frame;
+        EXPECT_GT(scene.state.x.col(1).minCoeff(), 0) << obstacle.name << " at " << speed << " m/s, frame " << frame;
       }
       EXPECT_LT(deepest, 0.02 * size) << obstacle.name << " at " << speed << " m/s";
       if (!obstacle.name.starts_with("torus")) {  // it slides off the torus's tube
-        EXPECT_GT(play.center().y(), obstacle.top) << obstacle.name << " at " << speed << " m/s";
+        EXPECT_GT(scene.center().y(), obstacle.top) << obstacle.name << " at " << speed << " m/s";
       }
       RecordProperty(obstacle.name + fmt::format(" {:.3g}", speed), fmt::format("{:.2e}", deepest / size));
     }
@@ -228,27 +228,27 @@ TEST(Contact, NothingGoesThroughAtAnySpeedUpToItsSizeAStep) {
 
 // The collider comes to the body, and it is thin and fast.
 TEST(Contact, APlateThatMovesFastIsNotLetThrough) {
-  Play play(cube(3), {{"plate", shape_of(Box{Vec3(1, 0.002, 1), 0})}});
-  play.inputs.gravity.setZero();
+  ContactScene scene(cube(3), {{"plate", shape_of(Box{Vec3(1, 0.002, 1), 0})}});
+  scene.inputs.gravity.setZero();
   double height = -0.15;
   for (int frame = 0; frame < 6; ++frame) {
-    play.inputs.collider_motions[0] = {moved_to(Vec3(0, height, 0)), moved_to(Vec3(0, height + 0.3, 0))};
+    scene.inputs.collider_motions[0] = {moved_to(Vec3(0, height, 0)), moved_to(Vec3(0, height + 0.3, 0))};
     height += 0.3;
-    play.advance();
-    EXPECT_GT(play.state.x.col(1).minCoeff(), height) << frame;
+    scene.advance();
+    EXPECT_GT(scene.state.x.col(1).minCoeff(), height) << frame;
   }
 }
 
 TEST(Contact, ColliderThatTurnsCarriesWhatStandsOnIt) {
-  Play play(cube(2), {{"disc", shape_of(Cylinder{1, 0.05, 0}), 0, 1.0}}, Vec3(0.5, 0.1501, 0));
-  play.inputs.solver.iterations = 30;
+  ContactScene scene(cube(2), {{"disc", shape_of(Cylinder{1, 0.05, 0}), 0, 1.0}}, Vec3(0.5, 0.1501, 0));
+  scene.inputs.solver.iterations = 30;
   const double turn = 0.02;  // the collider's turn in a step
   for (int frame = 0; frame < 40; ++frame) {
-    play.inputs.collider_motions[0].start = Eigen::AngleAxisd(turn * frame, Vec3::UnitY());
-    play.inputs.collider_motions[0].end = Eigen::AngleAxisd(turn * (frame + 1), Vec3::UnitY());
-    play.advance();
+    scene.inputs.collider_motions[0].start = Eigen::AngleAxisd(turn * frame, Vec3::UnitY());
+    scene.inputs.collider_motions[0].end = Eigen::AngleAxisd(turn * (frame + 1), Vec3::UnitY());
+    scene.advance();
   }
-  const Vec3 at = play.center();
+  const Vec3 at = scene.center();
   EXPECT_NEAR(std::atan2(-at.z(), at.x()), 40 * turn, 0.06);
   EXPECT_NEAR(std::hypot(at.x(), at.z()), 0.5, 0.02);
 }
@@ -266,40 +266,40 @@ TEST(Contact, OverlapsArePushedOutNoFasterThanAllowed) {
     const double x = name == "torus" ? 0.5 : 0,
                  top = shape.distance(Vec3(x, 10, 0)) > 9 ? 10 - shape.distance(Vec3(x, 10, 0)) : 0;
     for (const double sunk : {0.1, 0.22}) {  // half inside and wholly inside
-      Play play(cube(3), {{name, shape}}, Vec3(x, top + 0.1 - sunk, 0.01));
-      play.inputs.gravity.setZero();
+      ContactScene scene(cube(3), {{name, shape}}, Vec3(x, top + 0.1 - sunk, 0.01));
+      scene.inputs.gravity.setZero();
       double fastest = 0;
       int frames = 0;
-      while (play.deepest(0) > 1e-3 * play.model.size && frames < 150) {
-        const Positions before = play.state.x;
-        play.advance();
-        fastest = std::max(fastest, (play.state.x - before).rowwise().norm().maxCoeff() / play.model.time_step);
+      while (scene.deepest(0) > 1e-3 * scene.model.size && frames < 150) {
+        const Positions before = scene.state.x;
+        scene.advance();
+        fastest = std::max(fastest, (scene.state.x - before).rowwise().norm().maxCoeff() / scene.model.time_step);
         ++frames;
       }
-      ASSERT_TRUE(play.state.x.allFinite());
-      EXPECT_LT(play.deepest(0), 0.01 * play.model.size) << name << ", sunk by " << sunk;
+      ASSERT_TRUE(scene.state.x.allFinite());
+      EXPECT_LT(scene.deepest(0), 0.01 * scene.model.size) << name << ", sunk by " << sunk;
       // A body that is pushed also swings; a few times the limit is not an explosion.
-      EXPECT_LT(fastest, 4 * play.inputs.solver.contact.push_out * play.model.size) << name << ", sunk by " << sunk;
+      EXPECT_LT(fastest, 4 * scene.inputs.solver.contact.push_out * scene.model.size) << name << ", sunk by " << sunk;
     }
   }
 }
 
 TEST(Contact, ABodyAtRestStaysAtRestForAMinute) {
-  Play play(cube(3), {{"ground", ground, 0, 0.5}}, Vec3(0, 0.1, 0));
-  for (int frame = 0; frame < 300; ++frame) play.advance();
-  const Vec3 settled = play.center();
+  ContactScene scene(cube(3), {{"ground", ground, 0, 0.5}}, Vec3(0, 0.1, 0));
+  for (int frame = 0; frame < 300; ++frame) scene.advance();
+  const Vec3 settled = scene.center();
   double fastest = 0;
   int changes = 0;
   std::uint64_t set = 0;  // hash of the vertices that touch
   for (int frame = 300; frame < 1800; ++frame) {
-    const StepReport& report = play.advance();
-    fastest = std::max(fastest, play.fastest());
+    const StepReport& report = scene.advance();
+    fastest = std::max(fastest, scene.fastest());
     EXPECT_GT(report.contacts.touching, 0);
-    if (frame >= 1770) changes += play.w.contact.set_now != set;
-    set = play.w.contact.set_now;
+    if (frame >= 1770) changes += scene.w.contact.set_now != set;
+    set = scene.w.contact.set_now;
   }
-  EXPECT_LT(fastest, 1e-4 * play.model.size);
-  EXPECT_LT((play.center() - settled).norm(), 1e-4 * play.model.size);
+  EXPECT_LT(fastest, 1e-4 * scene.model.size);
+  EXPECT_LT((scene.center() - settled).norm(), 1e-4 * scene.model.size);
   EXPECT_EQ(changes, 0);
 }
 
@@ -309,58 +309,58 @@ TEST(Contact, FrictionHoldsOrSlidesAsCoulombSays) {
   for (const double friction : {0.0, 0.2, 0.3, 0.45}) {
     BodyDescription body = cube(3, Corotated{3e5, 6e5});
     body.mesh.rest = body.mesh.rest * Eigen::AngleAxisd(angle, Vec3::UnitX()).toRotationMatrix().transpose();
-    Play play(body, {{"slope", shape_of(HalfSpace{normal, 0}), 0, friction}}, 0.1 * normal);
-    for (int frame = 0; frame < 15; ++frame) play.advance();
-    const double start = play.center().dot(down), speed = (play.state.v.colwise().mean() * down)(0);
-    for (int frame = 0; frame < 45; ++frame) play.advance();
-    const double time = 1.5, acceleration = ((play.state.v.colwise().mean() * down)(0) - speed) / time;
+    ContactScene scene(body, {{"slope", shape_of(HalfSpace{normal, 0}), 0, friction}}, 0.1 * normal);
+    for (int frame = 0; frame < 15; ++frame) scene.advance();
+    const double start = scene.center().dot(down), speed = (scene.state.v.colwise().mean() * down)(0);
+    for (int frame = 0; frame < 45; ++frame) scene.advance();
+    const double time = 1.5, acceleration = ((scene.state.v.colwise().mean() * down)(0) - speed) / time;
     const double expected = g * (std::sin(angle) - friction * std::cos(angle));
     if (expected > 0) {
       EXPECT_NEAR(acceleration, expected, 0.05 * g * std::sin(angle)) << friction;
     } else {
-      EXPECT_LT(std::abs(play.center().dot(down) - start),
-                2 * time * play.inputs.solver.contact.stick * play.model.size)
+      EXPECT_LT(std::abs(scene.center().dot(down) - start),
+                2 * time * scene.inputs.solver.contact.stick * scene.model.size)
           << friction;
     }
   }
 }
 
 TEST(Contact, SameBitsWhateverTheWorkspaceDidBefore) {
-  const auto hashes = [](Play& play, int frames) {
+  const auto hashes = [](ContactScene& scene, int frames) {
     std::vector<std::uint64_t> list;
     for (int frame = 0; frame < frames; ++frame) {
-      play.advance();
-      list.push_back(state_hash(play.model, play.state));
+      scene.advance();
+      list.push_back(state_hash(scene.model, scene.state));
     }
     return list;
   };
   const std::vector<Collider> colliders = {{"ball", shape_of(Sphere{0.3}), 0, 0.3}, {"ground", ground}};
   BodyDescription body = cube(4);
   body.precision = Precision::single_precision;
-  Play fresh(body, colliders, Vec3(0.1, 0.42, 0));
+  ContactScene fresh(body, colliders, Vec3(0.1, 0.42, 0));
   const auto expected = hashes(fresh, 20);
   fresh.state = rest_state(fresh.model);  // the same workspace, which now knows what it touched
   fresh.state.x.rowwise() += Eigen::RowVector3d(0.1, 0.42, 0);
   EXPECT_EQ(hashes(fresh, 20), expected);
   // Starts from a snapshot in the middle of contact.
-  Play snapshot(body, colliders);
+  ContactScene snapshot(body, colliders);
   snapshot.state = fresh.state;
   EXPECT_GT(fresh.w.contact.counts.touching, 0);
   EXPECT_EQ(hashes(snapshot, 5), hashes(fresh, 5));
-  Play threaded(body, colliders, Vec3(0.1, 0.42, 0));
+  ContactScene threaded(body, colliders, Vec3(0.1, 0.42, 0));
   Threads threads(3);
   threaded.w.threads = &threads;
   EXPECT_EQ(hashes(threaded, 20), expected);
 }
 
 TEST(Contact, CostsNothingWithoutColliders) {
-  Play play(cube(2), {});
-  play.inputs.colliders = nullptr;
-  play.inputs.collider_motions.clear();
-  const StepReport& report = play.advance();
+  ContactScene scene(cube(2), {});
+  scene.inputs.colliders = nullptr;
+  scene.inputs.collider_motions.clear();
+  const StepReport& report = scene.advance();
   EXPECT_EQ(report.collide_ms, 0);
-  EXPECT_TRUE(play.w.contact.clearance.empty());
-  EXPECT_TRUE(play.w.correction.inverse.empty());
+  EXPECT_TRUE(scene.w.contact.clearance.empty());
+  EXPECT_TRUE(scene.w.correction.inverse.empty());
 }
 
 }  // namespace

@@ -196,7 +196,7 @@ TEST(Derivatives, NetForceAndTorqueOfAWholeBodyVanishAtEveryIteration) {
   bodies.push_back(test::spring_net(6));
   for (const BodyDescription& body : bodies) {
     const Model model = build_model(body);
-    FrameInputs inputs = test::still_inputs(model);
+    StepInputs inputs = test::still_inputs(model);
     State start = rest_state(model);
     start.x = test::shaken(model.rest, 0.01, 1);
     start.v = test::shaken(Positions::Zero(model.vertices, 3), 0.5, 2);

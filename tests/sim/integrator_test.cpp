@@ -48,7 +48,7 @@ TEST(Integrators, TheSystemMatrixIsTheHessianOfTheQuadraticPart) {
     body.damping = 0.01;
     const Model model = build_model(body);
     Workspace w;
-    FrameInputs inputs = still_inputs(model);
+    StepInputs inputs = still_inputs(model);
     inputs.middle_targets = inputs.targets;
     inputs.gravity.setZero();
     w.prepare(model, inputs.solver);
@@ -67,7 +67,7 @@ TEST(Integrators, TheSystemMatrixIsTheHessianOfTheQuadraticPart) {
   }
 }
 
-State swinging(const Model& model, FrameInputs inputs, int frames, double* largest_energy = nullptr) {
+State swinging(const Model& model, StepInputs inputs, int frames, double* largest_energy = nullptr) {
   State state = rest_state(model);
   state.v.col(1) = 2 * model.rest.col(0);
   inputs.middle_targets = inputs.targets;
@@ -83,7 +83,7 @@ State swinging(const Model& model, FrameInputs inputs, int frames, double* large
 
 double energy_after(const BodyDescription& body, int frames) {
   const Model model = build_model(body);
-  FrameInputs inputs = still_inputs(model);
+  StepInputs inputs = still_inputs(model);
   inputs.solver.iterations = 100;
   const State state = swinging(model, inputs, frames);
   Workspace w;
@@ -115,7 +115,7 @@ TEST(Integrators, MidpointIsOfSecondOrderAndBackwardEulerOfFirst) {
     body.integrator = integrator;
     body.time_step = 0.08 / steps;
     const Model model = build_model(body);
-    FrameInputs inputs = still_inputs(model);
+    StepInputs inputs = still_inputs(model);
     inputs.solver.iterations = 300;
     return swinging(model, inputs, steps).x;
   };
@@ -135,7 +135,7 @@ TEST(Integrators, BothFallFreelyAndKeepMomentum) {
     body.integrator = Integrator::implicit_midpoint;
     body.damping = damping;
     const Model model = build_model(body);
-    const FrameInputs inputs = still_inputs(model);
+    const StepInputs inputs = still_inputs(model);
     State state = rest_state(model);
     Workspace w;
     const int frames = 30;
@@ -150,7 +150,7 @@ TEST(Integrators, BothFallFreelyAndKeepMomentum) {
 TEST(Integrators, EveryStepOfEveryObjectiveIsNoWorseThanStaying) {
   for (const BodyDescription& body : all_objectives()) {
     const Model model = build_model(body);
-    FrameInputs inputs = still_inputs(model);
+    StepInputs inputs = still_inputs(model);
     inputs.middle_targets = inputs.targets;
     inputs.solver.iterations = 1;  // deliberately too few
     State state = rest_state(model);
@@ -191,7 +191,7 @@ TEST(Springs, AndFibresAreWholeInTheSystemMatrix) {
   }
   for (const BodyDescription& body : {weight_on_a_spring(), fibre}) {
     const Model model = build_model(body);
-    FrameInputs inputs = still_inputs(model);
+    StepInputs inputs = still_inputs(model);
     inputs.solver.iterations = 1;
     inputs.solver.history = 0;
     State state = rest_state(model);
@@ -211,7 +211,7 @@ TEST(Springs, HangLongerByTheirLoad) {
   BodyDescription body = weight_on_a_spring();
   body.time_step = 1;
   const Model model = build_model(body);
-  FrameInputs inputs = still_inputs(model);
+  StepInputs inputs = still_inputs(model);
   inputs.solver.iterations = 50;
   State state = rest_state(model);
   Workspace w;
@@ -224,7 +224,7 @@ TEST(Fibres, StiffenTheirDirectionAndNoOther) {
     BodyDescription body = bar(Corotated{1e4, 1e4}, Held::hard_end, Precision::double_precision, 2);
     body.fibres = {Fibre{4e5, {direction.x(), direction.y(), direction.z()}}};
     const Model model = build_model(body);
-    FrameInputs inputs = still_inputs(model);
+    StepInputs inputs = still_inputs(model);
     inputs.gravity = Vec3(40, 0, 0);  // along the bar
     inputs.solver.iterations = 50;
     State state = rest_state(model);

@@ -32,7 +32,7 @@ void expect_as_built(BodyDescription body, const Change& change) {
   EXPECT_EQ(model.diagonal, built.diagonal);
   EXPECT_EQ(model.mass, built.mass);
   EXPECT_EQ(model.field, built.field);
-  EXPECT_EQ(model.spring, built.spring);
+  EXPECT_EQ(model.handle_stiffness, built.handle_stiffness);
   EXPECT_EQ(model.damping.value, built.damping.value);
   EXPECT_EQ(model.free_floating, built.free_floating);
   EXPECT_EQ(model.couplings.size(), built.couplings.size());
@@ -68,7 +68,7 @@ TEST(ModelValues, SpringsOfClothAndOfHandles) {
     for (Spring& spring : b.springs) spring.stiffness *= 3;
   });
   const BodyDescription held = test::bar(NeoHookean{1e4, 4e4}, test::Held::spring_end);
-  expect_as_built(held, [](BodyDescription& b) { b.handles[0].spring *= 10; });
+  expect_as_built(held, [](BodyDescription& b) { b.handles[0].stiffness *= 10; });
   expect_as_built(held, [](BodyDescription& b) { b.handles[0].holds = false; });
 }
 

@@ -31,7 +31,7 @@ BodyDescription held_box(const Vec3& extent, const Eigen::Vector3i& cells, const
 // Makes steps without velocity until nothing moves; then the forces are in balance.
 Positions equilibrium(const BodyDescription& body, const Vec3& pull) {
   const Model model = build_model(body);
-  FrameInputs inputs = test::still_inputs(model);
+  StepInputs inputs = test::still_inputs(model);
   inputs.gravity = pull;
   inputs.solver.iterations = 3000;
   inputs.solver.history = 30;

@@ -100,7 +100,7 @@ TEST(Step, WithWindowZeroOnAsRigidAsPossibleEqualsLocalGlobalAndNeverRejectsATri
   for (const Held held : {Held::nothing, Held::hard_end}) {
     const BodyDescription body = bar(AsRigidAsPossible{2e4}, held);
     const Model model = build_model(body);
-    FrameInputs inputs = still_inputs(model);
+    StepInputs inputs = still_inputs(model);
     inputs.solver.history = 0;
     // Without gravity, y leaves the handle where its target is, so that the first iterate is y itself.
     inputs.gravity.setZero();
@@ -130,7 +130,7 @@ TEST(Step, ABodyAtRestWithoutForcesStaysWhereItIs) {
   for (const Material& material : test::all_materials()) {
     for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
       const Model model = build_model(bar(material, Held::nothing, precision));
-      FrameInputs inputs = still_inputs(model);
+      StepInputs inputs = still_inputs(model);
       inputs.gravity.setZero();
       State state = rest_state(model);
       Workspace w;
@@ -147,7 +147,7 @@ TEST(Step, FreeFlightKeepsMomentum) {
         BodyDescription body = bar(material, Held::nothing, precision, 2);
         body.integrator = integrator;
         const Model model = build_model(body);
-        FrameInputs inputs = still_inputs(model);
+        StepInputs inputs = still_inputs(model);
         inputs.gravity.setZero();
         State state = rest_state(model);
         state.x = test::shaken(model.rest, 0.01, 1);
@@ -171,7 +171,7 @@ TEST(Step, FreeFlightKeepsMomentum) {
 
 TEST(Step, GravityAloneIsFreeFall) {
   const Model model = build_model(bar(NeoHookean{1e4, 3e4}, Held::nothing, Precision::single_precision));
-  const FrameInputs inputs = still_inputs(model);
+  const StepInputs inputs = still_inputs(model);
   State state = rest_state(model);
   Workspace w;
   const int frames = 30;
@@ -182,7 +182,7 @@ TEST(Step, GravityAloneIsFreeFall) {
 }
 
 // Returns the state of a swinging bar some frames into its motion.
-State swinging(const Model& model, const FrameInputs& inputs, int frames) {
+State swinging(const Model& model, const StepInputs& inputs, int frames) {
   State state = rest_state(model);
   Workspace w;
   for (int frame = 0; frame < frames; ++frame) step(model, inputs, state, w);
@@ -193,7 +193,7 @@ TEST(Step, ConvergesToAnErrorOf1e12WithoutStalling) {
   for (const Material& material : test::all_materials()) {
     for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
       const Model model = build_model(bar(material, Held::hard_end, precision, 2));
-      FrameInputs inputs = still_inputs(model);
+      StepInputs inputs = still_inputs(model);
       const State before = swinging(model, inputs, 5);
       inputs.solver.iterations = 2000;
       State state = before;
@@ -221,7 +221,7 @@ TEST(Step, DoesNotRejectTrialsForTheRoundOffOfPositions) {
     }
     return moved;
   }());
-  FrameInputs inputs = still_inputs(model);
+  StepInputs inputs = still_inputs(model);
   inputs.solver.iterations = 200;
   State state = rest_state(model);
   Workspace w;
@@ -238,7 +238,7 @@ TEST(Step, DoesNotRejectTrialsForTheRoundOffOfPositions) {
 TEST(Step, IsNeverWorseThanStaying) {
   for (const Material& material : test::all_materials()) {
     const Model model = build_model(bar(material, Held::hard_end, Precision::single_precision));
-    FrameInputs inputs = still_inputs(model);
+    StepInputs inputs = still_inputs(model);
     inputs.solver.iterations = 1;  // deliberately too few
     State state = rest_state(model);
     state.x.topRows(model.free) = test::shaken(model.rest, 0.05, 3).topRows(model.free);
@@ -255,7 +255,7 @@ TEST(Step, IsNeverWorseThanStaying) {
 TEST(Step, DoesNotDependOnTheNumberOfThreads) {
   const Model model = build_model(
       bar(Polynomial{4e4}, Held::hard_end, Precision::single_precision, 8));  // 2,900 vertices: work is shared
-  FrameInputs inputs = still_inputs(model);
+  StepInputs inputs = still_inputs(model);
   inputs.targets.col(2).array() += 0.02;
   std::vector<std::uint64_t> hashes;
   for (const int count : {1, 2, 4}) {
@@ -275,7 +275,7 @@ TEST(Step, AllocatesNothingOnceTheWorkspaceIsPrepared) {
   GTEST_SKIP() << "the sanitizer owns malloc";
 #endif
   const Model model = build_model(bar(Corotated{1e4, 3e4}, Held::spring_end, Precision::single_precision, 8));
-  const FrameInputs inputs = still_inputs(model);
+  const StepInputs inputs = still_inputs(model);
   Threads threads(2);
   State state = rest_state(model);
   Workspace w;
@@ -288,7 +288,7 @@ TEST(Step, AllocatesNothingOnceTheWorkspaceIsPrepared) {
 
 TEST(Step, WithoutLineSearchReportsTheVertexWhenTheBodyFliesApart) {
   const Model model = build_model(bar(Polynomial{1e5}, Held::hard_end, Precision::single_precision));
-  FrameInputs inputs = still_inputs(model);
+  StepInputs inputs = still_inputs(model);
   inputs.solver.line_search = LineSearch::none;
   State state = rest_state(model);
   state.x.topRows(model.free) *= 6;
@@ -309,7 +309,7 @@ TEST(Step, WithoutLineSearchReportsTheVertexWhenTheBodyFliesApart) {
 TEST(Step, ErrorEstimateFollowsTheMeasuredError) {
   // The estimate is not a bound, but it must be of the error's size, so that it can be used to stop.
   const Model model = build_model(bar(NeoHookean{2e4, 8e4}, Held::hard_end, Precision::single_precision, 3));
-  FrameInputs inputs = still_inputs(model);
+  StepInputs inputs = still_inputs(model);
   State state = swinging(model, inputs, 10);
   double log_ratio = 0;
   int count = 0;
@@ -329,7 +329,7 @@ TEST(Step, ErrorEstimateFollowsTheMeasuredError) {
 TEST(Step, AllHandlesArriveAtTheirTargets) {
   for (const Held held : {Held::hard_end, Held::spring_end}) {
     const Model model = build_model(bar(Corotated{1e3, 1e3}, held));
-    FrameInputs inputs = still_inputs(model);
+    StepInputs inputs = still_inputs(model);
     inputs.gravity.setZero();
     inputs.targets.col(0).array() += 0.05;
     State state = rest_state(model);
@@ -344,7 +344,7 @@ TEST(Step, AllHandlesArriveAtTheirTargets) {
 TEST(Step, StartsWithTheHandlesDepartureSpreadIntoTheBody) {
   // The handle jumps by a third of an element: y alone tears the elements beside it.
   const Model model = build_model(bar(Corotated{1e4, 3e4}, Held::hard_end, Precision::single_precision, 3));
-  FrameInputs inputs = still_inputs(model);
+  StepInputs inputs = still_inputs(model);
   inputs.targets.col(1).array() += 0.01;
   State state = rest_state(model);
   Workspace w;

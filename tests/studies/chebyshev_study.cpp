@@ -48,7 +48,7 @@ struct StudiedState {
 // Adds the errors of all candidates on one state; nothing where the body is at rest.
 bool add_state(Subject& subject, const BenchState& state, std::vector<Candidate>& list,
                std::vector<std::unique_ptr<SearchRule>>& rules, Reference& reference, Workspace& workspace) {
-  FrameInputs inputs = subject.inputs(state);
+  StepInputs inputs = subject.inputs(state);
   inputs.solver.iterations = iterations;
   inputs.solver.history = SolverSettings{}.history;
   inputs.solver.line_search = LineSearch::armijo;
@@ -56,7 +56,7 @@ bool add_state(Subject& subject, const BenchState& state, std::vector<Candidate>
   double most = -1;
   Positions best = state.before.x;
   for (std::size_t c = 0; c < list.size(); ++c) {
-    FrameInputs own = inputs;
+    StepInputs own = inputs;
     own.solver.chebyshev = list[c].chebyshev;
     own.solver = settings_of(list[c].method, own.solver);
     State after = state.before;

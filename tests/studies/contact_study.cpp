@@ -58,7 +58,7 @@ int main(int count, char** arguments) {
   const CollisionSet set = collision_set(scene);
   Triangles surface = body.def.cloth ? body.cloth.surface.triangles : boundary_faces(body.description.mesh.tets);
   for (Eigen::Index i = 0; i < surface.size(); ++i) surface.data()[i] = model.internal_of[surface.data()[i]];
-  FrameInputs inputs{scene.gravity, {}, {}, body.def.solver.settings, &set.colliders};
+  StepInputs inputs{scene.gravity, {}, {}, body.def.solver.settings, &set.colliders};
   std::vector<Variant> list = variants(inputs.solver);
   State state = start_state(model, body);
   Threads threads(2);
@@ -76,7 +76,7 @@ int main(int count, char** arguments) {
     if (frame % std::atoi(arguments[4]) != 0 || report.contacts.touching == 0) continue;
     ++states;
     for (Variant& variant : list) {
-      FrameInputs varied = inputs;
+      StepInputs varied = inputs;
       varied.solver = variant.solver;
       State after = before;
       const StepReport& varied_report = step(model, varied, after, trial);

@@ -78,8 +78,8 @@ BodyDescription spring_net(int cells) {
   return body;
 }
 
-FrameInputs still_inputs(const Model& model) {
-  FrameInputs inputs;
+StepInputs still_inputs(const Model& model) {
+  StepInputs inputs;
   inputs.targets.resize(model.handled.size(), 3);
   for (std::size_t i = 0; i < model.handled.size(); ++i)
     inputs.targets.row(i) = model.rest.row(model.handled[i].vertex);

@@ -33,7 +33,7 @@ BodyDescription bar(const Material& material, Held held, Precision precision = P
 BodyDescription spring_net(int cells);
 
 // Makes inputs for a body whose handles stay where they rest.
-FrameInputs still_inputs(const Model& model);
+StepInputs still_inputs(const Model& model);
 
 // Returns rest positions with every coordinate moved by up to `amount`.
 Positions shaken(const Positions& rest, double amount, unsigned seed);

@@ -26,7 +26,7 @@ struct Film {
   void play(int thread_count, int frames, const Visit& visit) const {
     Threads threads(thread_count);
     for (std::size_t b = 0; b < bodies.size(); ++b) {
-      FrameInputs inputs{scene.gravity, {}, {}, bodies[b].def.solver.settings, &set.colliders};
+      StepInputs inputs{scene.gravity, {}, {}, bodies[b].def.solver.settings, &set.colliders};
       State state = start_state(models[b], bodies[b]);
       Workspace w;
       w.threads = &threads;

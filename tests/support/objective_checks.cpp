@@ -9,7 +9,7 @@ namespace supple::test {
 void expect_derivative_of_objective(const BodyDescription& body, const std::string& name) {
   const Model model = build_model(body);
   Workspace w;
-  FrameInputs inputs = still_inputs(model);
+  StepInputs inputs = still_inputs(model);
   inputs.middle_targets = inputs.targets;
   inputs.middle_targets.array() += 0.003;
   inputs.targets.array() += 0.01;
@@ -38,7 +38,7 @@ void expect_derivative_of_objective(const BodyDescription& body, const std::stri
   EXPECT_NEAR(change.slope, slope_there, 1e-11 * std::abs(slope_there)) << name;
 }
 
-AgainstStaying against_staying(const Model& model, const FrameInputs& inputs, const State& before, const State& after) {
+AgainstStaying against_staying(const Model& model, const StepInputs& inputs, const State& before, const State& after) {
   Workspace w;
   w.prepare(model, inputs.solver);
   begin_step(model, inputs, before, w);

@@ -17,6 +17,6 @@ struct AgainstStaying {
   double staying;  // g(q), with the handles at their targets [J]
   double change;   // g(where the step ended) - g(q) [J]
 };
-AgainstStaying against_staying(const Model& model, const FrameInputs& inputs, const State& before, const State& after);
+AgainstStaying against_staying(const Model& model, const StepInputs& inputs, const State& before, const State& after);
 
 }  // namespace supple::test

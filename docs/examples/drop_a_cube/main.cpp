@@ -17,7 +17,7 @@ int main() {
   ground.shape.root.parts = {ShapePart{HalfSpace{Vec3(0, 1, 0), 0}}};  // solid below y = 0
   const std::vector<Collider> colliders = {ground};
 
-  FrameInputs inputs;
+  StepInputs inputs;
   inputs.colliders = &colliders;
   inputs.collider_motions.resize(colliders.size());  // it stays where it is
 

@@ -113,7 +113,7 @@ double reach_of(double way) { return 0.25 * way; }
 // Everything that the examination of one vertex needs.
 struct Search {
   const Model& model;
-  const FrameInputs& inputs;
+  const StepInputs& inputs;
   const Positions& x;
   ContactWork& work;
 
@@ -209,7 +209,7 @@ void forget_counts(ContactWork& work) {
   work.set_before = work.set_now = 0;
 }
 
-void begin_contacts(const Model& model, const FrameInputs& inputs, const Positions& q, const Positions& y,
+void begin_contacts(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& y,
                     ContactWork& work) {
   const std::size_t colliders = inputs.colliders->size();
   const int groups = groups_of(model);
@@ -243,7 +243,7 @@ void begin_contacts(const Model& model, const FrameInputs& inputs, const Positio
   }
 }
 
-void find_contacts(const Model& model, const FrameInputs& inputs, const Positions& x, Threads* threads,
+void find_contacts(const Model& model, const StepInputs& inputs, const Positions& x, Threads* threads,
                    ContactWork& work, std::vector<Contact>& found) {
   const ContactSettings& settings = inputs.solver.contact;
   const double h = model.time_step, unit_stiffness = settings.stiffness / (h * h);
@@ -300,7 +300,7 @@ void count_contacts(const std::vector<Contact>& before, const std::vector<Contac
   work.set_now = set;
 }
 
-double way_to_impact(const Model& model, const FrameInputs& inputs, const Positions& x, double allowed,
+double way_to_impact(const Model& model, const StepInputs& inputs, const Positions& x, double allowed,
                      ContactWork& work) {
   measure_moves(model, x, work);
   double least = 1;

@@ -35,16 +35,16 @@ struct ContactWork {
 };
 
 // Prepares a step from q: what can touch at all. y must outlive the step.
-void begin_contacts(const Model& model, const FrameInputs& inputs, const Positions& q, const Positions& y,
+void begin_contacts(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& y,
                     ContactWork& work);
 
 // Finds the contacts of the vertices at x, on their way from q: by collider and vertex.
-void find_contacts(const Model& model, const FrameInputs& inputs, const Positions& x, Threads* threads,
+void find_contacts(const Model& model, const StepInputs& inputs, const Positions& x, Threads* threads,
                    ContactWork& work, std::vector<Contact>& found);
 
 // How much of the way from q to x the body can go before a vertex is deeper than `allowed` [m] below a surface that it
 // enters on the way, 0 to 1.
-double way_to_impact(const Model& model, const FrameInputs& inputs, const Positions& x, double allowed,
+double way_to_impact(const Model& model, const StepInputs& inputs, const Positions& x, double allowed,
                      ContactWork& work);
 
 // Counts what changed between the contacts of two iterates, the later of which has just been accepted.

@@ -69,7 +69,7 @@ std::vector<std::int32_t> fill_reducing_order(int count,
   cholmod_sparse view = pattern_of(pattern);
   // METIS takes SIGTERM for an error of its own and gives up; CHOLMOD then goes on with another order, whose last bits
   // differ, and the signal is lost.
-  const SignalsWait meanwhile;
+  const BlockedSignals meanwhile;
   const auto factor = cholmod.hold(cholmod_analyze(&view, &cholmod.common));
   if (!factor || factor->ordering != CHOLMOD_METIS)
     throw RunError("the stiffness matrix could not be ordered: out of memory");

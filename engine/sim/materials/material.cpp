@@ -49,10 +49,10 @@ std::vector<double> panel_ends(const Material& material, const StretchInterval& 
 
 }  // namespace
 
-bool may_be_negative(const Material& material) {
+bool energy_may_be_negative(const Material& material) {
   return std::visit(
       [](const auto& m) {
-        if constexpr (requires { m.may_be_negative(); }) return m.may_be_negative();
+        if constexpr (requires { m.energy_may_be_negative(); }) return m.energy_may_be_negative();
         return false;
       },
       material);

@@ -1,6 +1,6 @@
 // The closed set of materials. To add one, write a header in this folder (name, needs, parameters(), density(),
-// axial_stress(): parameters.h) and enter it here: kernels, scene files, the stiffness fit and the derivative tests then
-// know it. docs/adding-a-material.md goes through it.
+// axial_stress(): parameters.h) and enter it here: kernels, scene files, the stiffness fit and the derivative tests
+// then know it. docs/adding-a-material.md goes through it.
 #pragma once
 
 #include <variant>
@@ -26,7 +26,7 @@ inline std::string_view name_of(const Material& material) {
 }
 
 // Tells whether some deformation has less energy than rest.
-bool may_be_negative(const Material& material);
+bool energy_may_be_negative(const Material& material);
 
 // The stretch interval of equation 11.
 struct StretchInterval {

@@ -4,7 +4,7 @@
 //   const char* problem() const         what is wrong with parameters that are each in range, or null
 //   std::vector<double> seams() const   stretches where the axial stress changes its formula
 //   double system_stiffness() const     k in M/h^2 + L, in place of equation 11
-//   bool may_be_negative() const        whether some deformation has less energy than rest; without it, none has
+//   bool energy_may_be_negative() const  whether some deformation has less energy than rest; without it, none has
 //   static constexpr auto curves()      functions given by control points, as parameters() are numbers
 #pragma once
 

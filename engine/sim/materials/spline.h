@@ -87,7 +87,7 @@ struct Spline {
   static Spline preset_a(const Lame& lame);
   static Spline preset_b(const Lame& lame);
   const char* problem() const;
-  bool may_be_negative() const { return true; }  // nobody knows what will be drawn
+  bool energy_may_be_negative() const { return true; }  // nobody knows what will be drawn
 
   template <class V>
   V density(const V (&s)[3], V (&slope)[3]) const {

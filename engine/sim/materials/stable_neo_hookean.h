@@ -23,7 +23,7 @@ struct StableNeoHookean {
                                     &StableNeoHookean::lambda, false}};
   }
   static StableNeoHookean from(const Lame& lame) { return {lame.mu, lame.lambda + lame.mu}; }
-  bool may_be_negative() const { return lambda < mu; }  // least at F = 0: (lambda - mu)/2
+  bool energy_may_be_negative() const { return lambda < mu; }  // least at F = 0: (lambda - mu)/2
   // Uniform stretching at rest has the curvature 3 lambda - mu.
   const char* problem() const {
     return 3 * lambda <= mu ? "lambda must be above mu/3: below, the rest shape of stable-neo-hookean is not stable"

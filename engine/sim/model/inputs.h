@@ -85,7 +85,7 @@ struct SolverSettings {
 };
 
 // All that comes from outside for one step of one body.
-struct FrameInputs {
+struct StepInputs {
   Vec3 gravity = Vec3(0, -9.81, 0);  // [m/s^2]
   Positions targets;                 // at the end of the step, by Model::handled [m]
   Positions middle_targets;          // at its middle; only for implicit midpoint [m]
@@ -94,7 +94,7 @@ struct FrameInputs {
   std::vector<ColliderMotion> collider_motions = {};  // of each over the step
 };
 
-inline bool has_colliders(const FrameInputs& inputs) {
+inline bool has_colliders(const StepInputs& inputs) {
   return inputs.colliders != nullptr && !inputs.colliders->empty();
 }
 

@@ -135,7 +135,7 @@ Model build_model(const BodyDescription& body) {
         throw InputError(body.name,
                          fmt::format("handle '{}' holds a vertex that another handle holds already", handle.name));
       taken[v] = 1;
-      held[v] = handle.spring <= 0;
+      held[v] = handle.stiffness <= 0;
     }
   }
   if (std::count(held.begin(), held.end(), 0) == 0)

@@ -1,6 +1,6 @@
 // A body as the solver sees it: elements in SIMD blocks, masses, handles and the factor of A = M/h^2 + L (Liu
 // et al. 2017, section 3.3). No step changes it; between steps, ModelValues may set its numbers anew (replays, handles
-// that let go). Not here: where the body is (State), what drives it (FrameInputs). Vertices are
+// that let go). Not here: where the body is (State), what drives it (StepInputs). Vertices are
 // renumbered: free ones first, in the factor's order of elimination (so that solves permute nothing), then those that
 // hard handles hold. Elements are sorted by material and by their first vertex.
 #pragma once
@@ -20,8 +20,8 @@ namespace supple {
 struct Handle {
   std::string name;
   std::vector<std::int32_t> vertices;  // of the mesh, in its own numbering; one vertex belongs to one handle
-  double spring = 0;  // stiffness of each vertex's spring to its target [N/m]; 0: hard, the rows are eliminated
-  bool holds = true;  // springs that have been let go pull at nothing until they hold again
+  double stiffness = 0;  // of the spring from each vertex to its target [N/m]; 0: hard, the rows are eliminated
+  bool holds = true;     // springs that have been let go pull at nothing until they hold again
 };
 
 enum class Integrator { backward_euler, implicit_midpoint };
@@ -95,7 +95,9 @@ struct Model {
     std::size_t first_corner, first_field;
   };
   std::vector<ChunkRange> chunks;
-  int largest_chunk = 0;  // vertices
+  // The number of vertices of the chunk that has most. Each chunk copies the positions of its vertices to a place of
+  // its own before it is evaluated, and these places are this large, so that threads that work on chunks share none.
+  int largest_chunk = 0;
 
   // The places of each free vertex in the chunks' lists are slots[slot_begin[v] .. slot_begin[v+1]).
   std::vector<std::int32_t> slot_begin;
@@ -105,15 +107,15 @@ struct Model {
     std::int32_t vertex;
     std::int32_t handle;
   };
-  std::vector<HandleVertex> handled;  // the order of FrameInputs::targets
+  std::vector<HandleVertex> handled;  // the order of StepInputs::targets
   struct Coupling {                   // an entry of A between a free vertex and one that a hard handle holds
     std::int32_t free;
     std::int32_t held;
     double value;
   };
-  std::vector<Coupling> couplings;  // sorted by free vertex
-  std::vector<double> spring;       // by free vertex [N/m]; empty when all handles are hard
-  bool free_floating = false;       // nothing holds it: A has the translations as known eigenvectors
+  std::vector<Coupling> couplings;       // sorted by free vertex
+  std::vector<double> handle_stiffness;  // of the spring at each free vertex, 0: none [N/m]; empty when all are hard
+  bool free_floating = false;            // nothing holds it: A has the translations as known eigenvectors
 
   // (beta/h) L over all vertices, by row; empty without damping. [N/m]
   struct SparseRows {

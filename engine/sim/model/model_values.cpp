@@ -65,14 +65,14 @@ void set_masses(Model& model, const BodyDescription& body) {
 }
 
 void set_handle_springs(Model& model, const BodyDescription& body) {
-  model.spring.clear();
+  model.handle_stiffness.clear();
   model.free_floating = model.free == model.vertices;
   for (const auto& [vertex, h] : model.handled) {
     const Handle& handle = body.handles[h];
-    if (handle.spring <= 0) continue;
-    if (model.spring.empty()) model.spring.assign(model.free, 0.0);
+    if (handle.stiffness <= 0) continue;
+    if (model.handle_stiffness.empty()) model.handle_stiffness.assign(model.free, 0.0);
     if (!handle.holds) continue;
-    model.spring[vertex] = handle.spring;
+    model.handle_stiffness[vertex] = handle.stiffness;
     model.free_floating = false;
   }
 }
@@ -98,8 +98,9 @@ void add_term(const SystemTerm& term, int corners, const std::int32_t* place, do
 
 // Returns what inertia and the springs of handles add to L in A [N/m].
 double diagonal_part(const Model& model, std::int32_t v) {
-  const double held =
-      model.spring.empty() ? 0 : model.scheme.energy * model.scheme.theta * model.scheme.theta * model.spring[v];
+  const double held = model.handle_stiffness.empty()
+                          ? 0
+                          : model.scheme.energy * model.scheme.theta * model.scheme.theta * model.handle_stiffness[v];
   return model.scheme.inertia * model.mass[v] / (model.time_step * model.time_step) + held;
 }
 
@@ -188,7 +189,7 @@ void ModelValues::set(Model& model, const BodyDescription& body) {
   model.energy_may_be_negative = false;
   for (const Material& material : model.materials) {
     model.stiffness.push_back(system_stiffness(material, body.fit));
-    model.energy_may_be_negative |= may_be_negative(material);
+    model.energy_may_be_negative |= energy_may_be_negative(material);
   }
   SUPPLE_CHECK(elements_.size(), ==, std::size_t(body.mesh.tets.rows()) + body.springs.size());
   for (ElementRecord& element : elements_) {

@@ -12,7 +12,7 @@ constexpr double deepest_start = 0.004;  // the overlap that a first iterate may
 
 }  // namespace
 
-void find_contacts_of(const Model& model, const FrameInputs& inputs, Workspace& w, Iterate& iterate) {
+void find_contacts_of(const Model& model, const StepInputs& inputs, Workspace& w, Iterate& iterate) {
   if (!has_colliders(inputs)) return;
   const Stretch stretch(w.clock, Phase::collide, "find contacts");
   find_contacts(model, inputs, iterate.x, w.threads, w.contact, iterate.contacts);
@@ -22,7 +22,7 @@ void set_trial(const Model& model, Workspace& w, double alpha) {
   w.trial.x.topRows(model.free) = w.current.x.topRows(model.free) + alpha * w.direction;
 }
 
-void inertial_prediction(const Model& model, const FrameInputs& inputs, const State& state, Positions& y) {
+void inertial_prediction(const Model& model, const StepInputs& inputs, const State& state, Positions& y) {
   const double h = model.time_step;
   y = (state.x + h * state.v).rowwise() + (model.scheme.force * h * h * inputs.gravity).transpose();
 }
@@ -30,10 +30,10 @@ void inertial_prediction(const Model& model, const FrameInputs& inputs, const St
 namespace {
 
 // Held vertices stand at their targets in both iterates; soft handles pull towards theirs.
-void set_targets(const Model& model, const FrameInputs& inputs, Workspace& w) {
+void set_targets(const Model& model, const StepInputs& inputs, Workspace& w) {
   const bool midway = model.scheme.theta < 1;
   SUPPLE_CHECK(inputs.targets.rows(), ==, Eigen::Index(model.handled.size()));
-  if (midway && !model.spring.empty())
+  if (midway && !model.handle_stiffness.empty())
     SUPPLE_CHECK(inputs.middle_targets.rows(), ==, Eigen::Index(model.handled.size()));
   for (std::size_t i = 0; i < model.handled.size(); ++i) {
     const std::int32_t v = model.handled[i].vertex;
@@ -49,12 +49,12 @@ void set_targets(const Model& model, const FrameInputs& inputs, Workspace& w) {
 
 }  // namespace
 
-void begin_step(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
+void begin_step(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
   SUPPLE_CHECK(state.x.rows(), ==, model.vertices);
   SUPPLE_CHECK(state.v.rows(), ==, model.vertices);
   inertial_prediction(model, inputs, state, w.y);
-  w.start = &state.x;
-  if (needs_start(model)) w.q = state.x;
+  w.start_positions = &state.x;
+  if (needs_start(model)) w.start_copy = state.x;
   w.current.contacts.clear();
   w.trial.contacts.clear();
   if (has_colliders(inputs)) {
@@ -66,7 +66,7 @@ void begin_step(const Model& model, const FrameInputs& inputs, const State& stat
   set_targets(model, inputs, w);
 }
 
-void evaluate_start(const Model& model, const FrameInputs& inputs, Workspace& w) {
+void evaluate_start(const Model& model, const StepInputs& inputs, Workspace& w) {
   const Stretch stretch(w.clock, Phase::evaluate, "evaluate start");
   if (has_colliders(inputs)) {
     w.trial.contacts.swap(w.current.contacts);
@@ -92,7 +92,7 @@ void forget_start(Workspace& w) {
 // head") says what starting from y cost in earlier films. This costs one
 // evaluation more, because y stays the first iterate where it is the better one. Returns g(y), the handles at their
 // targets, when the first iterate is another one.
-std::optional<double> spread_handles(const Model& model, const FrameInputs& inputs, Workspace& w) {
+std::optional<double> spread_handles(const Model& model, const StepInputs& inputs, Workspace& w) {
   if (model.couplings.empty()) return std::nullopt;
   Positions& right = w.scratch;
   right.setZero();
@@ -117,7 +117,7 @@ std::optional<double> spread_handles(const Model& model, const FrameInputs& inpu
 
 // A first iterate far below a surface would start from torn or inverted elements, or beyond the collider. So the body
 // goes only as far as the first impact and a little further. Returns whether it was stopped.
-bool stop_at_impact(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
+bool stop_at_impact(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
   if (!has_colliders(inputs)) return false;
   const Stretch stretch(w.clock, Phase::collide, "stop at impact");
   Positions& x = w.current.x;
@@ -130,7 +130,7 @@ bool stop_at_impact(const Model& model, const FrameInputs& inputs, const State& 
 // leave all that it rests on g h^2 deep in its colliders: from q + h v. Costs an evaluation, and only where something
 // touches. Friction is treated as in
 // descend_from_staying().
-void start_where_better(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
+void start_where_better(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
   if (!has_colliders(inputs) || w.contact.counts.touching == 0) return;
   const Stretch stretch(w.clock, Phase::evaluate, "start where better");
   const double stick = w.contact.stick_length;
@@ -148,7 +148,7 @@ void start_where_better(const Model& model, const FrameInputs& inputs, const Sta
 
 }  // namespace
 
-double set_first_iterate(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
+double set_first_iterate(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
   const std::optional<double> at_y = spread_handles(model, inputs, w);
   const bool stopped = stop_at_impact(model, inputs, state, w);
   if (stopped) forget_start(w);

@@ -8,21 +8,21 @@
 namespace supple {
 
 // y = q + h v + f h^2 M^-1 f_ext of every vertex, in the model's order [m].
-void inertial_prediction(const Model& model, const FrameInputs& inputs, const State& state, Positions& y);
+void inertial_prediction(const Model& model, const StepInputs& inputs, const State& state, Positions& y);
 
 // The first part of step(): y, and the targets of handles in y's place, into the workspace. Also leaves the current
 // iterate's x = y.
-void begin_step(const Model& model, const FrameInputs& inputs, const State& state, Workspace& workspace);
+void begin_step(const Model& model, const StepInputs& inputs, const State& state, Workspace& workspace);
 
 // Chooses workspace.current and evaluates it. Returns g(y) - g(x), handles at their targets, where that is known, or 0:
 // equation 12 counts from y [J].
-double set_first_iterate(const Model& model, const FrameInputs& inputs, const State& state, Workspace& workspace);
+double set_first_iterate(const Model& model, const StepInputs& inputs, const State& state, Workspace& workspace);
 
 // Evaluates workspace.current with the contacts found there, as the report's next objective.
-void evaluate_start(const Model& model, const FrameInputs& inputs, Workspace& workspace);
+void evaluate_start(const Model& model, const StepInputs& inputs, Workspace& workspace);
 
 // Finds the contacts of an iterate; does nothing without colliders.
-void find_contacts_of(const Model& model, const FrameInputs& inputs, Workspace& workspace, Iterate& iterate);
+void find_contacts_of(const Model& model, const StepInputs& inputs, Workspace& workspace, Iterate& iterate);
 
 // workspace.trial.x = x + alpha d for the free vertices; handled ones stay at their targets.
 void set_trial(const Model& model, Workspace& workspace, double alpha);

@@ -93,7 +93,7 @@ class ContactPairs {
 
 }  // namespace
 
-double search_direction(const Model& model, const FrameInputs& inputs, Workspace& workspace, const PairHistory& history,
+double search_direction(const Model& model, const StepInputs& inputs, Workspace& workspace, const PairHistory& history,
                         InitialInverse& initial) {
   Stretch stretch(workspace.clock, Phase::lbfgs, "L-BFGS");
   const int count = history.count;

@@ -28,17 +28,17 @@ class InitialInverse {
  public:
   virtual ~InitialInverse() = default;
   // These are called when those of SearchRule are.
-  virtual void begin(const Model&, const FrameInputs&, Workspace&) {}
-  virtual void accepted(const Model&, const FrameInputs&, Workspace&) {}
+  virtual void begin(const Model&, const StepInputs&, Workspace&) {}
+  virtual void accepted(const Model&, const StepInputs&, Workspace&) {}
   // Computes z = A0^-1 r for the free vertices; overwrites r.
-  virtual void apply(const Model& model, const FrameInputs& inputs, Workspace& workspace, Positions& r,
+  virtual void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r,
                      Positions& z) = 0;
   // Called after the recursion: may bend workspace.direction and returns true then.
-  virtual bool bend(const Model&, const FrameInputs&, Workspace&) { return false; }
+  virtual bool bend(const Model&, const StepInputs&, Workspace&) { return false; }
 };
 
 // Sets workspace.direction to -H grad with H the L-BFGS approximation of the inverse Hessian; returns tr(grad^T d).
-double search_direction(const Model& model, const FrameInputs& inputs, Workspace& workspace, const PairHistory& history,
+double search_direction(const Model& model, const StepInputs& inputs, Workspace& workspace, const PairHistory& history,
                         InitialInverse& initial);
 
 // Keeps s and t, the differences of positions and gradients of trial and current iterate (without the normal forces of
@@ -50,18 +50,18 @@ class LbfgsRule : public SearchRule {
  public:
   explicit LbfgsRule(InitialInverse& initial) : initial_(initial) {}
 
-  void begin(const Model& model, const FrameInputs& inputs, Workspace& workspace) override {
+  void begin(const Model& model, const StepInputs& inputs, Workspace& workspace) override {
     history_ = {inputs.solver.history, 0, -1};
     initial_.begin(model, inputs, workspace);
   }
-  double direction(const Model& model, const FrameInputs& inputs, Workspace& workspace) override {
+  double direction(const Model& model, const StepInputs& inputs, Workspace& workspace) override {
     return search_direction(model, inputs, workspace, history_, initial_);
   }
-  void accepted(const Model& model, const FrameInputs& inputs, Workspace& workspace) override {
+  void accepted(const Model& model, const StepInputs& inputs, Workspace& workspace) override {
     initial_.accepted(model, inputs, workspace);
     remember_pair(model, inputs.solver.contact, workspace, history_);
   }
-  void contacts_changed(const FrameInputs& inputs) override {
+  void contacts_changed(const StepInputs& inputs) override {
     if (inputs.solver.contact.history == ContactHistory::dropped) history_.clear();
   }
   bool forget() override { return history_.forget(); }
@@ -75,10 +75,10 @@ class LbfgsRule : public SearchRule {
 // contact_direction.h.
 class SystemInverse final : public InitialInverse {
  public:
-  void apply(const Model& model, const FrameInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override {
+  void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override {
     apply_inverse(model, inputs.solver.contact, workspace.correction, workspace.solve_scratch, r, z);
   }
-  bool bend(const Model& model, const FrameInputs& inputs, Workspace& workspace) override {
+  bool bend(const Model& model, const StepInputs& inputs, Workspace& workspace) override {
     return foresee_contacts(model, inputs.solver.contact, workspace.current.contacts, workspace.current.x,
                             workspace.correction, workspace.solve_scratch, workspace.direction);
   }

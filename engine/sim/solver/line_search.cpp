@@ -25,7 +25,7 @@ bool decreases_by_slope(const Change& change, double slope, double armijo, doubl
 // Finds the contacts at the trial point, which the planes of the search accepted. They are kept unless they make it
 // worse than where the search began, which it could not see. Friction, whose normal forces are lagged, does not
 // count here.
-bool contacts_accept(const Model& model, const FrameInputs& inputs, Workspace& w, double change, double noise) {
+bool contacts_accept(const Model& model, const StepInputs& inputs, Workspace& w, double change, double noise) {
   if (!has_colliders(inputs)) return true;
   find_contacts_of(model, inputs, w, w.trial);
   const double jump = contact_energy(w.trial.contacts, w.trial.x) - contact_energy(w.current.contacts, w.trial.x);
@@ -33,7 +33,7 @@ bool contacts_accept(const Model& model, const FrameInputs& inputs, Workspace& w
 }
 
 // Tries alpha = 1, 1/2, ...
-Search backtrack(const Model& model, const FrameInputs& inputs, Workspace& w, double slope, Change& change,
+Search backtrack(const Model& model, const StepInputs& inputs, Workspace& w, double slope, Change& change,
                  IterationRecord& record) {
   const SolverSettings& solver = inputs.solver;
   const double noise = noise_of(model, w.current.g, extent_of(model, w));
@@ -76,7 +76,7 @@ struct Trial {
 // in backtrack(), is one that is too far away.
 class WolfeSearch {
  public:
-  WolfeSearch(const Model& model, const FrameInputs& inputs, Workspace& w, double slope, Change& change,
+  WolfeSearch(const Model& model, const StepInputs& inputs, Workspace& w, double slope, Change& change,
               IterationRecord& record)
       : model_(model),
         inputs_(inputs),
@@ -150,7 +150,7 @@ class WolfeSearch {
   }
 
   const Model& model_;
-  const FrameInputs& inputs_;
+  const StepInputs& inputs_;
   Workspace& w_;
   double slope_;
   double noise_;
@@ -170,7 +170,7 @@ bool below_resolution(const Model& model, const Workspace& w) {
   return w.direction.cwiseAbs().maxCoeff() <= 4 * round_off * std::max(extent, model.size);
 }
 
-Search search_line(const Model& model, const FrameInputs& inputs, Workspace& w, double slope, Change& change,
+Search search_line(const Model& model, const StepInputs& inputs, Workspace& w, double slope, Change& change,
                    IterationRecord& record) {
   const double noise = noise_of(model, w.current.g, extent_of(model, w));
   if (inputs.solver.line_search == LineSearch::wolfe && -slope > noise / inputs.solver.armijo)

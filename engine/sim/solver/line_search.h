@@ -15,7 +15,7 @@ enum class Search {
 // Searches from the current iterate along workspace.direction (of this slope [J]) as the settings say. Leaves the
 // accepted point in workspace.trial, with gradient and energies by the contacts of the current iterate and, in its
 // contacts, those found there. `record` gets the step length and how the full step did.
-Search search_line(const Model& model, const FrameInputs& inputs, Workspace& workspace, double slope, Change& change,
+Search search_line(const Model& model, const StepInputs& inputs, Workspace& workspace, double slope, Change& change,
                    IterationRecord& record);
 
 // A direction too short to change the positions' last bits: nothing is left to gain. Also true of the round-off of a

@@ -37,7 +37,7 @@ struct VertexTerms {
     for (double& s : sum) s = 0;
     for (std::int32_t k = model.damping.begin[v]; k < model.damping.begin[v + 1]; ++k) {
       const std::size_t at = 3 * std::size_t(model.damping.column[k]);
-      for (int c = 0; c < 3; ++c) sum[c] += model.damping.value[k] * (p[at + c] - w.q.data()[at + c]);
+      for (int c = 0; c < 3; ++c) sum[c] += model.damping.value[k] * (p[at + c] - w.start_copy.data()[at + c]);
     }
   }
 
@@ -46,7 +46,7 @@ struct VertexTerms {
     for (int v = model.free; v < model.vertices; ++v) {
       double of_point[3];
       drag(v, point, of_point);
-      for (int k = 0; k < 3; ++k) value += 0.5 * (point[3 * std::size_t(v) + k] - w.q(v, k)) * of_point[k];
+      for (int k = 0; k < 3; ++k) value += 0.5 * (point[3 * std::size_t(v) + k] - w.start_copy(v, k)) * of_point[k];
     }
   }
 
@@ -57,7 +57,7 @@ struct VertexTerms {
     const double weight = model.mass[v] * inertia;
     double value = r != nullptr ? quadratic_change(weight, p, r, y) : quadratic_value(weight, p, y);
     for (int c = 0; c < 3; ++c) gradient[c] = weight * (p[c] - y[c]);
-    if (springs && model.spring[v] > 0) value += add_spring(v, gradient);
+    if (springs && model.handle_stiffness[v] > 0) value += add_spring(v, gradient);
     if (damped) value += add_drag(v, gradient);
     return value;
   }
@@ -68,12 +68,12 @@ struct VertexTerms {
     const double theta = model.scheme.theta, *t = w.target.data() + at;
     const auto evaluated = [&](const double* x, double(&result)[3]) {
       for (int c = 0; c < 3; ++c)
-        result[c] = theta < 1 ? theta * x[at + c] + (1 - theta) * w.q.data()[at + c] : x[at + c];
+        result[c] = theta < 1 ? theta * x[at + c] + (1 - theta) * w.start_copy.data()[at + c] : x[at + c];
     };
     double p[3], r[3];
     evaluated(point, p);
-    for (int c = 0; c < 3; ++c) gradient[c] += model.spring[v] * (p[c] - t[c]);
-    const double weight = model.scheme.energy * model.spring[v];
+    for (int c = 0; c < 3; ++c) gradient[c] += model.handle_stiffness[v] * (p[c] - t[c]);
+    const double weight = model.scheme.energy * model.handle_stiffness[v];
     if (reference == nullptr) return quadratic_value(weight, p, t);
     evaluated(reference, r);
     return quadratic_change(weight, p, r, t);
@@ -88,7 +88,7 @@ struct VertexTerms {
     for (int c = 0; c < 3; ++c) {
       gradient[c] += of_point[c];
       value += reference != nullptr ? (point[at + c] - reference[at + c]) * (of_point[c] + of_reference[c])
-                                    : (point[at + c] - w.q.data()[at + c]) * of_point[c];
+                                    : (point[at + c] - w.start_copy.data()[at + c]) * of_point[c];
     }
     return 0.5 * value;
   }
@@ -152,7 +152,7 @@ Change evaluate_against(const Model& model, Workspace& workspace, Iterate& at, c
                         const Iterate* reference, Wanted wanted) {
   const Stretch stretch(workspace.clock, Phase::evaluate, "evaluate");
   const double theta = model.scheme.theta;
-  if (theta < 1) workspace.middle = theta * at.x + (1 - theta) * workspace.q;
+  if (theta < 1) workspace.middle = theta * at.x + (1 - theta) * workspace.start_copy;
   Change change{evaluate_elements(model, workspace, theta < 1 ? workspace.middle : at.x, at.energy, wanted,
                                   reference != nullptr ? &reference->energy : nullptr),
                 0};
@@ -163,7 +163,7 @@ Change evaluate_against(const Model& model, Workspace& workspace, Iterate& at, c
                           at.x.data(),
                           reference != nullptr ? reference_x->data() : nullptr,
                           model.scheme.inertia / (model.time_step * model.time_step),
-                          !model.spring.empty(),
+                          !model.handle_stiffness.empty(),
                           !model.damping.begin.empty()};
   add_vertices(model, workspace, terms, gradient, change);
   if (terms.damped && reference == nullptr) terms.add_held_drag(change.value);

@@ -12,17 +12,17 @@ class SearchRule {
   virtual ~SearchRule() = default;
 
   // Called once a step, when workspace.current is the first iterate with its gradient and energies.
-  virtual void begin(const Model&, const FrameInputs&, Workspace&) {}
+  virtual void begin(const Model&, const StepInputs&, Workspace&) {}
 
   // Sets workspace.direction at workspace.current; returns tr(grad^T d).
-  virtual double direction(const Model& model, const FrameInputs& inputs, Workspace& workspace) = 0;
+  virtual double direction(const Model& model, const StepInputs& inputs, Workspace& workspace) = 0;
 
   // The trial iterate was accepted and is about to become the current one. The gradients of both still have the
   // contacts of the current one, by which the search went.
-  virtual void accepted(const Model&, const FrameInputs&, Workspace&) {}
+  virtual void accepted(const Model&, const StepInputs&, Workspace&) {}
 
   // The contacts of the new iterate are not those of the last.
-  virtual void contacts_changed(const FrameInputs&) {}
+  virtual void contacts_changed(const StepInputs&) {}
 
   // Forgets what earlier iterations taught, when the direction was of no use. Returns false when there was nothing to
   // forget.

@@ -68,7 +68,7 @@ struct Descent {
 
 // Asks the rule for a direction that leads downhill. If it does not, asks again after the rule has forgotten what it
 // learned.
-Descent next_direction(const Model& model, const FrameInputs& inputs, Workspace& w, SearchRule& rule) {
+Descent next_direction(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule) {
   const Stretch stretch(w.clock, Phase::other, "direction");
   for (;;) {
     const double slope = w.report.slope = rule.direction(model, inputs, w);
@@ -80,7 +80,7 @@ Descent next_direction(const Model& model, const FrameInputs& inputs, Workspace&
 
 // Looks along the direction for the next iterate, and leaves it in the trial iterate. A search that fails is repeated
 // once along the direction of a rule that has forgotten what it learned.
-Search find_next(const Model& model, const FrameInputs& inputs, Workspace& w, SearchRule& rule, double slope,
+Search find_next(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, double slope,
                  Change& change, IterationRecord& record) {
   const Stretch stretch(w.clock, Phase::evaluate, "line search");
   if (inputs.solver.line_search == LineSearch::none) {
@@ -109,7 +109,7 @@ double take_contacts(Workspace& w) {
 }
 
 // Makes the trial iterate the current one.
-void accept(const Model& model, const FrameInputs& inputs, Workspace& w, SearchRule& rule, Change change,
+void accept(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, Change change,
             IterationRecord& record) {
   const Stretch stretch(w.clock, Phase::lbfgs, "accept");
   rule.accepted(model, inputs, w);
@@ -129,7 +129,7 @@ void accept(const Model& model, const FrameInputs& inputs, Workspace& w, SearchR
 }
 
 // Runs the iterations of algorithm 1 from the current iterate, which has been evaluated.
-void run_iterations(const Model& model, const FrameInputs& inputs, Workspace& w, SearchRule& rule, double enough) {
+void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, double enough) {
   const SolverSettings& solver = inputs.solver;
   StepReport& report = w.report;
   const std::size_t first = report.objective.size() - 1;
@@ -165,13 +165,13 @@ void run_iterations(const Model& model, const FrameInputs& inputs, Workspace& w,
 
 }  // namespace
 
-void minimize(const Model& model, const FrameInputs& inputs, Workspace& w, double enough) {
+void minimize(const Model& model, const StepInputs& inputs, Workspace& w, double enough) {
   SystemInverse system;
   LbfgsRule rule(system);
   minimize(model, inputs, w, rule, enough);
 }
 
-void minimize(const Model& model, const FrameInputs& inputs, Workspace& w, SearchRule& rule, double enough) {
+void minimize(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, double enough) {
   evaluate_start(model, inputs, w);
   run_iterations(model, inputs, w, rule, enough);
 }
@@ -190,7 +190,7 @@ void clear(StepReport& report) {
 
 // Sets the trial iterate to where the body was, with its handles moved. A body that nothing holds is also carried along
 // with its centre of mass, which costs no elastic energy and keeps its momentum.
-void set_staying(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w) {
+void set_staying(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
   Positions& x = w.trial.x;
   x.topRows(model.free) = state.x.topRows(model.free);
   if (!model.free_floating || has_colliders(inputs)) return;  // it might be carried into a collider
@@ -205,7 +205,7 @@ void set_staying(const Model& model, const FrameInputs& inputs, const State& sta
 // turned inside out by a violent step), descends from there instead. This costs an evaluation only when the inertia of
 // staying cannot settle it, or when the elastic energy may be negative. Friction only takes energy, so its potential is
 // left out on both sides.
-void descend_from_staying(const Model& model, const FrameInputs& inputs, const State& state, Workspace& w,
+void descend_from_staying(const Model& model, const StepInputs& inputs, const State& state, Workspace& w,
                           SearchRule& rule) {
   const Stretch stretch(w.clock, Phase::evaluate, "check staying");
   StepReport& report = w.report;
@@ -266,13 +266,13 @@ void report_times(Workspace& w) {
 
 }  // namespace
 
-const StepReport& step(const Model& model, const FrameInputs& inputs, State& state, Workspace& w) {
+const StepReport& step(const Model& model, const StepInputs& inputs, State& state, Workspace& w) {
   SystemInverse system;
   LbfgsRule rule(system);
   return step(model, inputs, state, w, rule);
 }
 
-const StepReport& step(const Model& model, const FrameInputs& inputs, State& state, Workspace& w, SearchRule& rule) {
+const StepReport& step(const Model& model, const StepInputs& inputs, State& state, Workspace& w, SearchRule& rule) {
   w.clock.start();
   const Zone step_zone("step", model.name);
   Zone zone("begin step");

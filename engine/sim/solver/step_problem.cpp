@@ -5,7 +5,7 @@
 
 namespace supple {
 
-StepProblem problem_of(const BodyDescription& body, const Model& model, const FrameInputs& inputs, const State& state) {
+StepProblem problem_of(const BodyDescription& body, const Model& model, const StepInputs& inputs, const State& state) {
   SUPPLE_CHECK(body.mesh.rest.rows(), ==, model.vertices);
   SUPPLE_CHECK(inputs.targets.rows(), ==, Eigen::Index(model.handled.size()));
   StepProblem problem;
@@ -27,7 +27,7 @@ StepProblem problem_of(const BodyDescription& body, const Model& model, const Fr
     const Handle& handle = body.handles[model.handled[i].handle];
     if (!handle.holds) continue;
     rows.push_back(static_cast<Eigen::Index>(i));
-    problem.handled.push_back({model.input_of[model.handled[i].vertex], handle.spring});
+    problem.handled.push_back({model.input_of[model.handled[i].vertex], handle.stiffness});
   }
   problem.targets = inputs.targets(rows, Eigen::all);
   if (model.scheme.theta < 1) problem.middle_targets = inputs.middle_targets(rows, Eigen::all);

@@ -21,7 +21,7 @@ struct StepProblem {
 
   struct Handled {
     std::int32_t vertex;
-    double spring;  // to its target [N/m]; 0: held there, and no unknown
+    double stiffness;  // of the spring to its target [N/m]; 0: held there, and no unknown
   };
   std::vector<Handled> handled;
   Positions targets;         // at the end of the step, by `handled` [m]
@@ -37,6 +37,6 @@ struct StepProblem {
 };
 
 // Returns the problem of the step that starts at `state` with these inputs. body: what the model was built from.
-StepProblem problem_of(const BodyDescription& body, const Model& model, const FrameInputs& inputs, const State& state);
+StepProblem problem_of(const BodyDescription& body, const Model& model, const StepInputs& inputs, const State& state);
 
 }  // namespace supple

@@ -22,9 +22,9 @@ void Workspace::prepare(const Model& model, const SolverSettings& solver) {
     iterate->energy.resize(std::size_t(model.blocks) * block_width);
     iterate->contacts.clear();
   }
-  q.resize(needs_start(model) ? model.vertices : 0, 3);
+  start_copy.resize(needs_start(model) ? model.vertices : 0, 3);
   middle.resize(model.scheme.theta < 1 ? model.vertices : 0, 3);
-  if (!model.spring.empty()) target.resize(model.free, 3);
+  if (!model.handle_stiffness.empty()) target.resize(model.free, 3);
   direction.resize(model.free, 3);
   scratch.resize(model.free, 3);
   force.resize(model.chunk_vertex.size() * 3);

@@ -18,10 +18,10 @@ struct Workspace {
   Threads* threads = nullptr;  // may be null: one thread
 
   // The step's problem.
-  Positions y;                       // inertial prediction, n x 3 [m]
-  const Positions* start = nullptr;  // where the step starts, the caller's, n x 3 [m]
-  Positions q;                       // a copy of it, n x 3 [m]; empty unless the model needs it
-  Positions target;                  // of soft handles, by free vertex, n_free x 3 [m]; empty when there are none
+  Positions y;                                 // inertial prediction, n x 3 [m]
+  const Positions* start_positions = nullptr;  // q, where the step starts: the caller's, n x 3 [m]
+  Positions start_copy;                        // a copy of them, n x 3 [m]; empty unless the model's forces depend on q
+  Positions target;  // of soft handles, by free vertex, n_free x 3 [m]; empty when there are none
 
   // The point where the solver is, and the one at which it looks.
   Iterate current, trial;
