@@ -189,10 +189,9 @@ void HechtInverse::apply(const Model&, const StepInputs&, Workspace&, Positions&
 }
 
 ContactMatrixInverse::ContactMatrixInverse(const Model& model)
-    : system_(system_matrix_of(model).triangularView<Eigen::Lower>()), stiffness_(model.free, 0.0) {
-  matrix_ = system_;
-  factor_.analyze(matrix_);
-}
+    : system_(system_matrix_of(model).triangularView<Eigen::Lower>()),
+      scratch_(std::size_t(model.free) * 4),
+      stiffness_(model.free, 0.0) {}
 
 void ContactMatrixInverse::apply(const Model& model, const StepInputs&, Workspace& w, Positions& r, Positions& z) {
   std::fill(stiffness_.begin(), stiffness_.end(), 0.0);
@@ -204,15 +203,10 @@ void ContactMatrixInverse::apply(const Model& model, const StepInputs&, Workspac
     for (int v = 0; v < model.free; ++v) {
       if (stiffness_[v] > 0) matrix_.coeffRef(v, v) += stiffness_[v];
     }
-    factor_.factorize(matrix_);
+    factor_.factorize(matrix_, Precision::double_precision);
     factored_ = stiffness_;
   }
-  solution_.resize(model.free);
-  for (int c = 0; c < 3; ++c) {
-    right_ = r.col(c);
-    factor_.solve(right_.data(), solution_.data());
-    z.col(c) = solution_;
-  }
+  factor_.solve(r.data(), z.data(), scratch_.data());
 }
 
 }  // namespace supple

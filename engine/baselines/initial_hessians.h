@@ -104,7 +104,7 @@ class HechtInverse final : public InitialInverse {
 };
 
 // M/h^2 + L with a spring of 2 k_c at each touching vertex, factored anew when the set changes (the second way of
-// Bouaziz et al. 2014 that section 4.3 speaks of).
+// Bouaziz et al. 2014 that section 4.3 speaks of). apply() throws RunError where that matrix is not positive definite.
 class ContactMatrixInverse final : public InitialInverse {
  public:
   explicit ContactMatrixInverse(const Model& model);
@@ -113,9 +113,9 @@ class ContactMatrixInverse final : public InitialInverse {
 
  private:
   SparseMatrix system_, matrix_;  // lower triangles
-  ChangingFactor factor_;
+  CholeskyFactor factor_;
+  SolveScratch scratch_;
   std::vector<double> stiffness_, factored_;  // by free vertex [N/m]
-  Eigen::VectorXd right_, solution_;
 };
 
 }  // namespace supple
