@@ -42,20 +42,25 @@ Eigen::MatrixXd by_differences(const Model& model, Workspace& w, double step) {
   return 0.5 * (hessian + hessian.transpose());
 }
 
-// Sets up one tetrahedron at a given deformation gradient; its first vertex is held.
+// Makes one tetrahedron whose first vertex is held.
+BodyDescription tetrahedron(const Eigen::Matrix<double, 4, 3>& rest, const Material& material) {
+  BodyDescription body;
+  body.name = "tetrahedron";
+  body.mesh.rest = rest;
+  body.mesh.tets.resize(1, 4);
+  body.mesh.tets << 0, 1, 2, 3;
+  body.materials = {material};
+  body.density = 1e-6;  // so low that inertia does not hide what the element does
+  body.time_step = 1;
+  body.handles = {{"corner", {0}, 0}};
+  return body;
+}
+
+// Sets up one tetrahedron at a given deformation gradient.
 struct OneTetrahedron {
   explicit OneTetrahedron(const Material& material, const Fibre& fibre = {}) {
-    BodyDescription body;
-    body.name = "tetrahedron";
-    body.mesh.rest.resize(4, 3);
-    body.mesh.rest << 0.1, 0.2, -0.1, 1.1, 0.3, 0, 0.2, 1.1, 0.1, 0, 0.1, 0.9;
-    body.mesh.tets.resize(1, 4);
-    body.mesh.tets << 0, 1, 2, 3;
-    body.materials = {material};
+    BodyDescription body = tetrahedron({{0.1, 0.2, -0.1}, {1.1, 0.3, 0}, {0.2, 1.1, 0.1}, {0, 0.1, 0.9}}, material);
     if (fibre.kappa > 0) body.fibres = {fibre};
-    body.density = 1e-6;  // so low that inertia does not hide what the element does
-    body.time_step = 1;
-    body.handles = {{"corner", {0}, 0}};
     model = build_model(body);
     w.prepare(model, {});
     begin_step(model, test::still_inputs(model), rest_state(model), w);
@@ -99,20 +104,9 @@ TEST(Hessian, OfEveryMaterialIsTheDerivativeOfItsGradient) {
 TEST(Hessian, ProjectionIsTheNearestPositiveSemidefiniteMatrix) {
   std::mt19937 random(2);
   for (const Material& material : test::all_materials()) {
-    OneTetrahedron subject(material);
     // The clamp is that of the density's Hessian over F: with rest edges along the axes, F's entries are the corners'
     // own coordinates.
-    BodyDescription unit;
-    unit.name = "unit";
-    unit.mesh.rest.resize(4, 3);
-    unit.mesh.rest << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
-    unit.mesh.tets.resize(1, 4);
-    unit.mesh.tets << 0, 1, 2, 3;
-    unit.materials = {material};
-    unit.density = 1e-6;
-    unit.time_step = 1;
-    unit.handles = {{"corner", {0}, 0}};
-    const Model model = build_model(unit);
+    const Model model = build_model(tetrahedron({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, material));
     Workspace w;
     w.prepare(model, {});
     ElementMatrices raw, projected;
@@ -205,43 +199,58 @@ TEST(Hessian, SystemMatrixIsWhatTheModelHasFactored) {
   }
 }
 
-// Given enough iterations, every method reaches the minimum that ours reaches.
-TEST(Methods, AllReachTheMinimumOfOneStep) {
+// A bar that is shaken and then stepped once by any method, each time from the same state.
+struct ShakenBar {
   const Model model = build_model(test::bar(NeoHookean{2e4, 4e4}, Held::hard_end, Precision::double_precision, 2));
   StepInputs inputs = test::still_inputs(model);
-  inputs.solver.iterations = 2000;
   State before = rest_state(model);
-  before.x.topRows(model.free) = test::shaken(before.x, 0.01, 7).topRows(model.free);
-  before.v.topRows(model.free).setConstant(0.5);
-  State solved = before;
-  Workspace w;
-  const double lowest = step(model, inputs, solved, w).objective.back();
-  for (const Method& method : compared_methods()) {
-    const std::string name = name_of(method);
+
+  explicit ShakenBar(int iterations) {
+    inputs.solver.iterations = iterations;
+    before.x.topRows(model.free) = test::shaken(before.x, 0.01, 7).topRows(model.free);
+  }
+  struct Stepped {
+    State after;
+    StepReport report;
+  };
+  Stepped by_ours() const {
+    State after = before;
+    Workspace w;
+    const StepReport report = step(model, inputs, after, w);
+    return {after, report};
+  }
+  Stepped by(const Method& method) const {
     const auto rule = make_rule(method, model);
     StepInputs own = inputs;
     own.solver = settings_of(method, own.solver);
     own.solver.line_search = LineSearch::armijo;
     State after = before;
-    Workspace scratch;
-    const StepReport& report = step(model, own, after, scratch, *rule);
+    Workspace w;
+    const StepReport report = step(model, own, after, w, *rule);
+    return {after, report};
+  }
+};
+
+// Given enough iterations, every method reaches the minimum that ours reaches.
+TEST(Methods, AllReachTheMinimumOfOneStep) {
+  ShakenBar bar(2000);
+  bar.before.v.topRows(bar.model.free).setConstant(0.5);
+  const ShakenBar::Stepped ours = bar.by_ours();
+  const double lowest = ours.report.objective.back();
+  for (const Method& method : compared_methods()) {
+    const std::string name = name_of(method);
+    const auto [after, report] = bar.by(method);
     ASSERT_FALSE(report.failed) << name;
     EXPECT_NEAR(report.objective.back(), lowest, 1e-9 * (report.objective.front() - lowest)) << name;
-    EXPECT_LT((after.x - solved.x).cwiseAbs().maxCoeff(), 1e-6 * model.size) << name;
+    EXPECT_LT((after.x - ours.after.x).cwiseAbs().maxCoeff(), 1e-6 * bar.model.size) << name;
     fmt::print("{:24} {:5} iterations, {:5} trials\n", name, report.iterations, report.line_search);
   }
 }
 
 // Each entry of the table of forms that compared_methods() does not have: a matrix by itself.
 TEST(Methods, EveryCombinationOfPartsReachesTheMinimum) {
-  const Model model = build_model(test::bar(NeoHookean{2e4, 4e4}, Held::hard_end, Precision::double_precision, 2));
-  StepInputs inputs = test::still_inputs(model);
-  inputs.solver.iterations = 5000;
-  State before = rest_state(model);
-  before.x.topRows(model.free) = test::shaken(before.x, 0.01, 7).topRows(model.free);
-  State solved = before;
-  Workspace w;
-  const double lowest = step(model, inputs, solved, w).objective.back();
+  const ShakenBar bar(5000);
+  const double lowest = bar.by_ours().report.objective.back();
   int count = 0;
   for (const MethodForm& form : method_forms) {
     for (const Preconditioner preconditioner : form.preconditioner) {
@@ -249,13 +258,7 @@ TEST(Methods, EveryCombinationOfPartsReachesTheMinimum) {
         for (const Safeguard safeguard : form.safeguard) {
           const Method method{form.matrix,  form.linear, form.linear == LinearSolver::cg ? 7 : 0, 0, preconditioner,
                               acceleration, safeguard};
-          const auto rule = make_rule(method, model);
-          StepInputs own = inputs;
-          own.solver = settings_of(method, own.solver);
-          own.solver.line_search = LineSearch::armijo;
-          State after = before;
-          Workspace scratch;
-          const StepReport& report = step(model, own, after, scratch, *rule);
+          const StepReport report = bar.by(method).report;
           ASSERT_FALSE(report.failed) << name_of(method);
           EXPECT_NEAR(report.objective.back(), lowest, 1e-8 * (report.objective.front() - lowest)) << name_of(method);
           ++count;
