@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <array>
 
 #include "base/error.h"
 #include "baselines/make_rule.h"
@@ -43,10 +44,11 @@ Eigen::MatrixXd by_differences(const Model& model, Workspace& w, double step) {
 }
 
 // Makes one tetrahedron whose first vertex is held.
-BodyDescription tetrahedron(const Eigen::Matrix<double, 4, 3>& rest, const Material& material) {
+BodyDescription tetrahedron(const std::array<Vec3, 4>& corners, const Material& material) {
   BodyDescription body;
   body.name = "tetrahedron";
-  body.mesh.rest = rest;
+  body.mesh.rest.resize(4, 3);
+  for (int v = 0; v < 4; ++v) body.mesh.rest.row(v) = corners[v].transpose();
   body.mesh.tets.resize(1, 4);
   body.mesh.tets << 0, 1, 2, 3;
   body.materials = {material};
@@ -59,7 +61,8 @@ BodyDescription tetrahedron(const Eigen::Matrix<double, 4, 3>& rest, const Mater
 // Sets up one tetrahedron at a given deformation gradient.
 struct OneTetrahedron {
   explicit OneTetrahedron(const Material& material, const Fibre& fibre = {}) {
-    BodyDescription body = tetrahedron({{0.1, 0.2, -0.1}, {1.1, 0.3, 0}, {0.2, 1.1, 0.1}, {0, 0.1, 0.9}}, material);
+    BodyDescription body =
+        tetrahedron({Vec3(0.1, 0.2, -0.1), Vec3(1.1, 0.3, 0), Vec3(0.2, 1.1, 0.1), Vec3(0, 0.1, 0.9)}, material);
     if (fibre.kappa > 0) body.fibres = {fibre};
     model = build_model(body);
     w.prepare(model, {});
@@ -106,7 +109,8 @@ TEST(Hessian, ProjectionIsTheNearestPositiveSemidefiniteMatrix) {
   for (const Material& material : test::all_materials()) {
     // The clamp is that of the density's Hessian over F: with rest edges along the axes, F's entries are the corners'
     // own coordinates.
-    const Model model = build_model(tetrahedron({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, material));
+    const Model model =
+        build_model(tetrahedron({Vec3(0, 0, 0), Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}, material));
     Workspace w;
     w.prepare(model, {});
     ElementMatrices raw, projected;
