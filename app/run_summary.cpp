@@ -6,6 +6,7 @@
 
 #include "app/summary.h"
 #include "base/text.h"
+#include "output/json_text.h"
 
 namespace supple {
 namespace {
@@ -98,7 +99,7 @@ std::string files_text(const std::filesystem::path& folder) {
 }  // namespace
 
 std::string run_summary(const RunRecord& run) {
-  const Json info = Json::parse(run.info_json);
+  const Json info = parsed_json<Json>(run.info_json);
   std::string text = fmt::format("  run             {}\n", printable(run.folder.string()));
   text += fmt::format("  command         {}\n", command_text(info));
   text += fmt::format("  program         {} {}, {} kernels, {}\n", value_at(info, {"program", "name"}),

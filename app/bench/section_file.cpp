@@ -3,6 +3,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "output/json_text.h"
 #include "output/whole_file.h"
 
 namespace supple {
@@ -77,14 +78,14 @@ void write_section(const ReportSection& section, const std::string& made_with, c
                               {"page_columns", table.page_columns}});
   }
   for (const ReportPlot& plot : section.plots) json["plots"].push_back(json_of(plot));
-  write_whole_file(file, json.dump());
+  write_whole_file(file, exact_json_text(json));
 }
 
 std::optional<ReportSection> read_section(const std::filesystem::path& file, const std::string& made_with) {
   std::ifstream stream(file);
   if (!stream) return std::nullopt;
   try {
-    const Json json = Json::parse(stream);
+    const Json json = parsed_json<Json>(stream);
     if (json.at("made_with") != made_with) return std::nullopt;
     ReportSection section{json.at("name"), json.at("heading"), json.at("text")};
     for (const Json& table : json.at("tables")) {

@@ -11,6 +11,7 @@
 #include "base/timing.h"
 #include "film/places.h"
 #include "output/folder_lock.h"
+#include "output/json_text.h"
 #include "output/whole_file.h"
 
 namespace supple {
@@ -22,7 +23,7 @@ using Json = nlohmann::ordered_json;
 Json read_json(const std::filesystem::path& path) {
   std::ifstream file(path);
   if (!file) return nullptr;
-  Json json = Json::parse(file, nullptr, false);
+  Json json = json_if_valid<Json>(file);
   return json.is_object() ? json : Json(nullptr);
 }
 
@@ -55,8 +56,7 @@ void write_record(const SweepRequest& request, std::size_t point, int status, co
   json["wall_s"] = seconds;
   std::error_code error;
   std::filesystem::create_directories(request.folder(point), error);
-  write_whole_file(request.folder(point) / "point.json",
-                   json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_whole_file(request.folder(point) / "point.json", json_text(json, 1) + "\n");
 }
 
 FilmPlan film_of(const SweepRequest& request, std::size_t point) {
@@ -88,8 +88,10 @@ std::string other_sweep(const SweepRequest& request, const Json& record) {
   if (!sweep.is_object()) return "";
   const Json scene = sweep.value("scene", Json()), paths = sweep.value("paths", Json());
   const Json now = paths_of(request.sweep);
-  if (scene != request.name) return fmt::format("the scene is {} there and \"{}\" here", scene.dump(), request.name);
-  return paths == now ? "" : fmt::format("the paths are {} there and {} here", paths.dump(), now.dump());
+  if (scene != request.name)
+    return fmt::format("the scene is {} there and \"{}\" here", exact_json_text(scene), request.name);
+  return paths == now ? ""
+                      : fmt::format("the paths are {} there and {} here", exact_json_text(paths), exact_json_text(now));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "output/json_text.h"
 
 namespace supple {
 namespace {
@@ -141,7 +142,7 @@ PointResult read_result(const SweepRequest& request, std::size_t point) {
   if (result.outcome.end != PointEnd::done && result.outcome.end != PointEnd::failed) return result;
   const std::filesystem::path folder = request.folder(point);
   std::ifstream file(folder / "run.json");
-  const nlohmann::json run = nlohmann::json::parse(file, nullptr, false);
+  const nlohmann::json run = json_if_valid<nlohmann::json>(file);
   result.cpu = json_word(run, "machine", "cpu");
   result.kernels = json_word(run, "program", "kernels");
   if (std::filesystem::exists(folder / "profile.json")) add_rows(result, read_profile(folder / "profile.json"));

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "output/json_difference.h"
+#include "output/json_text.h"
 
 namespace supple {
 namespace {
@@ -59,7 +60,7 @@ class Reader {
 }  // namespace
 
 std::string checkpoint_bytes(const Checkpoint& checkpoint, const std::string& identity) {
-  Json head = {{"identity", Json::parse(identity)}, {"frames", checkpoint.frames}, {"bodies", Json::array()}};
+  Json head = {{"identity", parsed_json<Json>(identity)}, {"frames", checkpoint.frames}, {"bodies", Json::array()}};
   for (const State& body : checkpoint.bodies) {
     Json holds = Json::array();
     for (const char held : body.anchors.holds) holds.push_back(held != 0);
@@ -69,7 +70,7 @@ std::string checkpoint_bytes(const Checkpoint& checkpoint, const std::string& id
                               {"holds", holds},
                               {"time_s", body.time}});
   }
-  const std::string text = head.dump();
+  const std::string text = exact_json_text(head);
   std::string bytes(signature);
   append_number(bytes, text.size());
   bytes += text;
@@ -92,9 +93,9 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string&
   std::uint64_t hash = 0;
   std::memcpy(&hash, bytes.data() + bytes.size() - sizeof hash, sizeof hash);
   if (hash != hash_bytes(bytes.data(), bytes.size() - sizeof hash)) reader.fail();
-  const Json head = Json::parse(reader.take(reader.number()));  // whole, as its hash says
+  const Json head = parsed_json<Json>(reader.take(reader.number()));  // whole, as its hash says
 
-  const std::vector<std::string> differences = json_differences(head["identity"].dump(), identity);
+  const std::vector<std::string> differences = json_differences(exact_json_text(head["identity"]), identity);
   if (!differences.empty()) {
     std::string list;
     for (const std::string& difference : differences) list += "\n  " + difference;

@@ -12,9 +12,11 @@
 #include "base/variants.h"
 #include "film/film_checks.h"
 #include "film/film_identity.h"
+#include "film/film_solvers.h"
 #include "film/frame_loop.h"
 #include "film/places.h"
 #include "output/chrome_trace.h"
+#include "output/json_text.h"
 #include "output/run_record.h"
 #include "output/video.h"
 #include "output/whole_file.h"
@@ -122,7 +124,7 @@ namespace {
 
 // The frames after which the film in a folder was resumed before.
 std::vector<int> resumed_before(const std::filesystem::path& run) {
-  const auto info = nlohmann::ordered_json::parse(read_run(run).info_json);
+  const auto info = parsed_json<nlohmann::ordered_json>(read_run(run).info_json);
   return info.contains("resumed_at") ? info["resumed_at"].get<std::vector<int>>() : std::vector<int>();
 }
 

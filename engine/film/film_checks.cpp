@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "film/film_log.h"
 #include "output/json_difference.h"
+#include "output/json_text.h"
 #include "output/png_file.h"
 #include "output/point_cache.h"
 #include "output/pose_table.h"
@@ -53,13 +54,13 @@ std::string film_of_run(const Json& run) {
   if (run.contains("replay")) film["replay"] = run["replay"];
   for (const Json& mesh : run.value("meshes", Json::array()))
     film["meshes"][mesh.at("body").get<std::string>()] = mesh.at("xxh64");
-  return film.dump();
+  return exact_json_text(film);
 }
 
 // Whether a run has only just begun to make the folder its own. Then all else in it is of an earlier run.
 bool has_just_begun(const std::filesystem::path& run) {
   std::ifstream stream(run / "run.json");
-  const Json json = stream ? Json::parse(stream, nullptr, false) : Json();
+  const Json json = stream ? json_if_valid<Json>(stream) : Json();
   return json.is_object() && !json.contains("ended");
 }
 
@@ -69,7 +70,7 @@ void check_nothing_is_lost(const std::filesystem::path& run, const RunInfo& info
   const std::filesystem::path file = run / "run.json";
   std::ifstream stream(file);
   if (!stream) return;
-  const Json before = Json::parse(stream, nullptr, false);
+  const Json before = json_if_valid<Json>(stream);
   const auto refuse = [&run](const std::string& what) {
     throw InputError("--resume", fmt::format("{} holds {}; without --resume it is made anew", run.string(), what));
   };
@@ -78,7 +79,7 @@ void check_nothing_is_lost(const std::filesystem::path& run, const RunInfo& info
       refuse(fmt::format("a film that is complete, of {} frames, and no checkpoint to go on from",
                          before.at("frames").get<int>()));
     const std::vector<std::string> differences =
-        json_differences(film_of_run(before), film_of_run(Json::parse(info_json(info))));
+        json_differences(film_of_run(before), film_of_run(parsed_json<Json>(info_json(info))));
     std::string list;
     for (const std::string& difference : differences) list += "\n  " + difference;
     if (!list.empty()) refuse(fmt::format("another film than this one and no checkpoint; then and now:{}\n", list));

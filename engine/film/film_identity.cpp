@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "output/json_text.h"
 
 namespace supple {
 namespace {
@@ -54,7 +55,7 @@ std::string mesh_hash(const Body& body) {
 
 std::string identity_of(const RunInfo& info, const Script& script, const std::vector<Body>& bodies,
                         const FilmPlan& plan) {
-  nlohmann::ordered_json scene = nlohmann::ordered_json::parse(info.scene_json);
+  nlohmann::ordered_json scene = parsed_json<nlohmann::ordered_json>(info.scene_json);
   scene.erase("frames");
   nlohmann::ordered_json meshes;
   for (const RunInfo::Mesh& mesh : info.meshes) meshes[mesh.body] = mesh.hash;
@@ -68,18 +69,15 @@ std::string identity_of(const RunInfo& info, const Script& script, const std::ve
       {"meshes", meshes},
       {"files", files_of(script, bodies)},
       {"scene", scene}};
-  if (!info.replay_json.empty()) identity["replay"] = nlohmann::ordered_json::parse(info.replay_json);
-  return identity.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  if (!info.replay_json.empty()) identity["replay"] = parsed_json<nlohmann::ordered_json>(info.replay_json);
+  return json_text(identity);
 }
 
 RecordHead record_head(const RunInfo& info, const std::vector<Body>& bodies) {
-  nlohmann::ordered_json film = {{"scene", nlohmann::ordered_json::parse(info.scene_json)}};
+  nlohmann::ordered_json film = {{"scene", parsed_json<nlohmann::ordered_json>(info.scene_json)}};
   film["scene"].erase("frames");
-  if (!info.replay_json.empty()) film["replay"] = nlohmann::ordered_json::parse(info.replay_json);
-  RecordHead head{hash_text_form(program_identity()),
-                  info.kernel_variant,
-                  film.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace),
-                  {}};
+  if (!info.replay_json.empty()) film["replay"] = parsed_json<nlohmann::ordered_json>(info.replay_json);
+  RecordHead head{hash_text_form(program_identity()), info.kernel_variant, json_text(film), {}};
   for (const Body& body : bodies) head.bodies.push_back({body.def.name, int(body.description.mesh.rest.rows())});
   return head;
 }

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "output/json_text.h"
 #include "output/npy.h"
 #include "output/run_folder.h"
 #include "output/whole_file.h"
@@ -146,7 +147,7 @@ T value_of(const nlohmann::json& json, const std::string& file, const char* key)
 nlohmann::json read_json(const std::string& path) {
   std::ifstream file(path);
   if (!file) throw InputError(path, "no such file: this is not the folder of a state");
-  nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
+  nlohmann::json json = json_if_valid<nlohmann::json>(file);
   if (!json.is_object() || json.value("format", nlohmann::json()) != "supple-state")
     throw InputError(path, "is not the description of a state (\"format\": \"supple-state\")");
   return json;
@@ -191,8 +192,7 @@ void write_state(const std::filesystem::path& folder, const StepLabel& label, co
   write_table(folder / "targets.npy", problem.targets);
   if (problem.middle_targets.rows() > 0) write_table(folder / "middle_targets.npy", problem.middle_targets);
   // Names need not be UTF-8; JSON must be.
-  write_whole_file(folder / "state.json",
-                   state_json(label, problem).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_whole_file(folder / "state.json", json_text(state_json(label, problem), 1) + "\n");
 }
 
 StoredState read_state(const std::filesystem::path& folder) {

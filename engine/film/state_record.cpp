@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "output/json_difference.h"
+#include "output/json_text.h"
 
 namespace supple {
 namespace {
@@ -53,9 +54,9 @@ std::string line_of(const RecordHead& head) {
   const Json json = {{"format", format_name},
                      {"program", head.program},
                      {"kernels", head.kernels},
-                     {"film", Json::parse(head.film)},
+                     {"film", parsed_json<Json>(head.film)},
                      {"bodies", bodies}};
-  return json.dump() + '\n';
+  return exact_json_text(json) + '\n';
 }
 
 // Returns the place in the file where the frames after the first ones begin.
@@ -68,11 +69,11 @@ RecordHead read_head(std::istream& file, const std::string& source) {
   try {
     std::string line;
     std::getline(file, line);
-    const Json json = Json::parse(line);
+    const Json json = parsed_json<Json>(line);
     if (json.at("format") != format_name) throw InputError(source, "is a record of another version");
     head.program = json.at("program");
     head.kernels = json.at("kernels");
-    head.film = json.at("film").dump();
+    head.film = exact_json_text(json.at("film"));
     for (const Json& body : json.at("bodies")) head.bodies.push_back({body.at("name"), body.at("vertices")});
   } catch (const nlohmann::json::exception&) {
     throw InputError(source, "is not a record that --record made");

@@ -7,13 +7,13 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "output/json_text.h"
+
 namespace supple {
 namespace {
 
 // Names of bodies are free text, and may have been cut in the middle of a letter.
-std::string quoted(const std::string& text) {
-  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
+std::string quoted(const std::string& text) { return json_text(nlohmann::json(text)); }
 
 // Keeps whole nanoseconds, so that zones nest in the file as they did in time.
 std::string microseconds(std::int64_t ns) { return fmt::format("{}.{:03}", ns / 1000, ns % 1000); }

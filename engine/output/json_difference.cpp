@@ -6,14 +6,18 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "output/json_text.h"
+
 namespace supple {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string text_of(const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string text_of(const Json& value) { return json_text(value); }
 
-std::string shortened(const std::string& text) { return text.size() > 60 ? text.substr(0, 57) + "..." : text; }
+std::string shortened(const std::string& text) {
+  return text.size() > 60 ? fmt::format("{}...", text.substr(0, 57)) : text;
+}
 
 std::string name_of(const Json& element) {
   const bool named = element.is_object() && element.contains("name") && element["name"].is_string();
@@ -69,7 +73,7 @@ void compare(const Json& a, const Json& b, const std::string& path, std::vector<
 
 std::vector<JsonDifference> differing_values(const std::string& a, const std::string& b) {
   std::vector<JsonDifference> found;
-  const Json first = Json::parse(a, nullptr, false), second = Json::parse(b, nullptr, false);
+  const Json first = json_if_valid<Json>(a), second = json_if_valid<Json>(b);
   if (!first.is_discarded() && !second.is_discarded()) {
     compare(first, second, "", found);
   } else if (a != b) {

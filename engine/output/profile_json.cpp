@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "output/json_text.h"
 #include "output/profile.h"
 
 namespace supple {
@@ -127,10 +128,10 @@ auto as_input_errors(const std::string& source, const Read& read) {
 
 }  // namespace
 
-std::string row_line(const FrameRow& row) { return json_of(row).dump(); }
+std::string row_line(const FrameRow& row) { return exact_json_text(json_of(row)); }
 
 FrameRow row_of_line(const std::string& line, const std::string& source) {
-  return as_input_errors(source, [&] { return frame_row(Json::parse(line)); });
+  return as_input_errors(source, [&] { return frame_row(parsed_json<Json>(line)); });
 }
 
 std::vector<FrameRow> read_profile(const std::filesystem::path& path) {
@@ -138,7 +139,7 @@ std::vector<FrameRow> read_profile(const std::filesystem::path& path) {
   if (!file) throw InputError(path.string(), "cannot be read");
   return as_input_errors(path.string(), [&] {
     std::vector<FrameRow> rows;
-    const Json document = Json::parse(file);
+    const Json document = parsed_json<Json>(file);
     for (const Json& frame : document.at("frames")) rows.push_back(frame_row(frame));
     return rows;
   });
@@ -155,7 +156,7 @@ std::string profile_json(const std::vector<FrameRow>& rows) {
   Json document;
   document["frames"] = std::move(frames);
   document["summary"] = {{"frames", rows.size()}, {"first_frame", first}, {"without_first_frame", rest}};
-  return document.dump(1) + "\n";
+  return exact_json_text(document, 1) + "\n";
 }
 
 }  // namespace supple

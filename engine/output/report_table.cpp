@@ -10,6 +10,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "output/json_text.h"
 #include "output/whole_file.h"
 
 namespace supple {
@@ -103,7 +104,7 @@ class CsvReader {
 Json json_of(const std::string& cell) {
   if (cell.empty()) return nullptr;
   const bool may_say_more = reads_as_number(cell) || cell == "true" || cell == "false" || cell.front() == '[';
-  Json value = may_say_more ? Json::parse(cell, nullptr, false) : Json(Json::value_t::discarded);
+  Json value = may_say_more ? json_if_valid<Json>(cell) : Json(Json::value_t::discarded);
   return value.is_discarded() ? Json(cell) : value;
 }
 
@@ -124,7 +125,7 @@ std::string number_text(double value, int digits) {
 bool reads_as_number(const std::string& cell) {
   const std::size_t ends_in_digit = cell.find_last_of("0123456789");
   if (cell.empty() || ends_in_digit + 1 != cell.size() || cell.find_first_of("-0123456789") != 0) return false;
-  return Json::parse(cell, nullptr, false).is_number();
+  return json_if_valid<Json>(cell).is_number();
 }
 
 void check_report_name(const std::string& name) {
@@ -161,7 +162,7 @@ void write_json(const ReportTable& table, const std::filesystem::path& folder) {
     for (std::size_t i = 0; i < cells.size(); ++i) row[table.columns[i]] = json_of(cells[i]);
     list.push_back(std::move(row));
   }
-  write_whole_file(folder / (table.name + ".json"), list.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_whole_file(folder / (table.name + ".json"), json_text(list, 1) + "\n");
 }
 
 std::vector<std::vector<std::string>> read_csv(const std::filesystem::path& path) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "output/json_text.h"
 #include "output/point_cache.h"
 
 namespace supple {
@@ -66,9 +67,9 @@ double median_step(const std::vector<FrameRow>& rows) {
 
 // Returns the part of run.json that tells what was run, without how the run itself went.
 std::string what_was_run(const RunRecord& run) {
-  auto info = nlohmann::ordered_json::parse(run.info_json);
+  auto info = parsed_json<nlohmann::ordered_json>(run.info_json);
   for (const char* key : {"command", "ended", "frames", "resumed_at", "video"}) info.erase(key);
-  return info.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return json_text(info);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "output/json_text.h"
 #include "output/whole_file.h"
 
 namespace supple {
@@ -174,12 +175,12 @@ std::string info_json(const RunInfo& info) {
                               {"elements", mesh.elements}});
   }
   json["scene_file"] = info.scene_file;
-  json["scene"] = nlohmann::ordered_json::parse(info.scene_json, nullptr, false);
-  if (!info.replay_json.empty()) json["replay"] = nlohmann::ordered_json::parse(info.replay_json, nullptr, false);
+  json["scene"] = json_if_valid<nlohmann::ordered_json>(info.scene_json);
+  if (!info.replay_json.empty()) json["replay"] = json_if_valid<nlohmann::ordered_json>(info.replay_json);
   if (!info.resumed.empty()) json["resumed_at"] = info.resumed;
   if (!info.video.empty()) json["video"] = info.video;
   // File names need not be UTF-8, but JSON must be.
-  return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_text(json, 1) + "\n";
 }
 
 void RunFolder::write_info(const RunInfo& info) const { write_whole_file(path_ / "run.json", info_json(info)); }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "output/json_text.h"
 
 namespace supple {
 namespace {
@@ -26,7 +27,7 @@ void check_bodies(const std::vector<FrameRow>& rows, const std::string& source) 
 }  // namespace
 
 std::string RunRecord::ended() const {
-  const Json info = Json::parse(info_json);
+  const Json info = parsed_json<Json>(info_json);
   return info.contains("ended") && info["ended"].is_string() ? info["ended"].get<std::string>() : "not known";
 }
 
@@ -37,9 +38,9 @@ RunRecord read_run(const std::filesystem::path& folder) {
   if (!file) throw InputError(folder.string(), "there is no run.json in it: this is not the folder of a run");
   RunRecord record;
   record.folder = folder;
-  const Json info = Json::parse(file, nullptr, false);
+  const Json info = json_if_valid<Json>(file);
   if (!info.is_object()) throw InputError((folder / "run.json").string(), "is damaged: not a JSON object");
-  record.info_json = info.dump();
+  record.info_json = exact_json_text(info);
   record.has_profile = std::filesystem::exists(folder / "profile.json", error);
   if (record.has_profile) {
     record.rows = read_profile(folder / "profile.json");

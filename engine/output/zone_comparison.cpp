@@ -9,6 +9,7 @@
 #include <random>
 
 #include "base/error.h"
+#include "output/json_text.h"
 
 namespace supple {
 namespace {
@@ -211,13 +212,13 @@ void test(std::vector<Pooled>& zones, const std::vector<Group>& groups) {
 }
 
 std::string first_difference(const std::string& before, const std::string& after) {
-  const auto a = nlohmann::json::parse(before, nullptr, false), b = nlohmann::json::parse(after, nullptr, false);
+  const auto a = json_if_valid<nlohmann::json>(before), b = json_if_valid<nlohmann::json>(after);
   const auto patch = nlohmann::json::diff(a, b);
   if (patch.empty()) return "";
   const std::string path = patch.front().at("path");
   const nlohmann::json::json_pointer place(path);
   const auto value = [&](const nlohmann::json& json) {
-    return json.contains(place) ? json.at(place).dump() : "absent";
+    return json.contains(place) ? exact_json_text(json.at(place)) : "absent";
   };
   return fmt::format("the scenes differ at {}: {} and {}", path, value(a), value(b));
 }
@@ -320,7 +321,7 @@ std::string comparison_json(const ZoneComparison& c) {
   for (const ZoneChange& zone : c.zones) json["zones"].push_back(row(zone));
   json["only_before"] = c.only_before;
   json["only_after"] = c.only_after;
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json) + "\n";
 }
 
 }  // namespace supple

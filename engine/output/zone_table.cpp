@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
+#include "output/json_text.h"
 
 namespace supple {
 namespace {
@@ -198,7 +199,7 @@ std::string summary_json(const ZoneProfile& profile) {
                              {"share", row.share},
                              {"self_share", row.self_share}});
   }
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json) + "\n";
 }
 
 ReportPlot frame_time_plot(const ZoneProfile& profile) {

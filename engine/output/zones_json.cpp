@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "output/json_text.h"
 #include "output/zones.h"
 
 namespace supple {
@@ -36,7 +37,7 @@ Json json_of(const ProfiledRun& run) {
   json["meshes"] = Json::array();
   for (const auto& [body, hash] : run.meshes) json["meshes"].push_back({{"body", body}, {"xxh64", hash}});
   json["replay"] = run.replay_json;
-  json["scene_resolved"] = Json::parse(run.scene_json, nullptr, false);
+  json["scene_resolved"] = json_if_valid<Json>(run.scene_json);
   return json;
 }
 
@@ -55,7 +56,7 @@ ProfiledRun run_of(const Json& json) {
   for (const Json& mesh : json.at("meshes"))
     run.meshes.emplace_back(mesh.at("body").get<std::string>(), mesh.at("xxh64").get<std::string>());
   json.at("replay").get_to(run.replay_json);
-  run.scene_json = json.at("scene_resolved").dump();
+  run.scene_json = exact_json_text(json.at("scene_resolved"));
   return run;
 }
 
@@ -99,14 +100,14 @@ std::string zones_json(const ZoneProfile& profile) {
                              {"self_ms", rounded(zone.self_ms)}});
   }
   // File names need not be UTF-8, but JSON must be.
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json) + "\n";
 }
 
 ZoneProfile read_zones(const std::filesystem::path& path) {
   std::ifstream file(path);
   if (!file) throw InputError(path.string(), "cannot be read");
   try {
-    return profile_of(Json::parse(file), path.string());
+    return profile_of(parsed_json<Json>(file), path.string());
   } catch (const nlohmann::json::exception&) {
     throw InputError(path.string(), "is not a zones.json as this version writes it");
   }

@@ -1,0 +1,30 @@
+// JSON as text, both ways. The library's parser and writer are compiled here alone: every unit that called them would
+// compile them anew, and they take seconds. Json is nlohmann::json or nlohmann::ordered_json.
+#pragma once
+
+#include <istream>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+
+namespace supple {
+
+// On one line, or with this indent. Strings need not be UTF-8; bytes that are not are replaced.
+template <class Json>
+std::string json_text(const Json& json, int indent = -1);
+// The same for text that must not change unnoticed: throws nlohmann::json::type_error where a string is not UTF-8.
+template <class Json>
+std::string exact_json_text(const Json& json, int indent = -1);
+
+// Throws nlohmann::json::parse_error where the text is not JSON.
+template <class Json>
+Json parsed_json(std::string_view text);
+template <class Json>
+Json parsed_json(std::istream& text);
+// Returns a discarded value where the text is not JSON.
+template <class Json>
+Json json_if_valid(std::string_view text);
+template <class Json>
+Json json_if_valid(std::istream& text);
+
+}  // namespace supple
