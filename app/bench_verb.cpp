@@ -1,6 +1,5 @@
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 
@@ -39,29 +38,25 @@ int bench(const BenchOptions& options) {
 
 }  // namespace
 
-void add_bench(CLI::App& app, Action& action) {
+void add_bench(CommandLine& line) {
   auto options = std::make_shared<BenchOptions>();
-  CLI::App* verb = app.add_subcommand("bench", "Solvers compared on the same states: the paper's tables and figures.");
+  Verb verb = line.verb("bench", "Solvers compared on the same states: the paper's tables and figures.");
   std::vector<std::string> names = {"all"};
   std::string list = "Benchmarks:\n  all          every one\n";
   for (const Benchmark& b : benchmarks()) {
     names.push_back(b.name);
     list += fmt::format("  {:12} {}\n", b.name, b.meaning);
   }
-  verb->add_option("NAME", options->name, "one of the benchmarks below, or all")
-      ->required()
-      ->check(CLI::IsMember(names));
-  verb->add_option("--out", options->out, "folder for the report")->capture_default_str();
-  verb->add_option("--paper-meshes", options->paper_meshes, "folder with the meshes of the paper (longbar2.mesh ...)");
-  verb->add_option("--threads", options->threads, "threads of the solvers")
-      ->check(CLI::Range(1, 256))
-      ->capture_default_str();
-  verb->add_flag("--fresh", options->fresh, "make what an earlier call has finished once more");
-  verb->add_flag("--quiet", options->quiet, "say nothing but errors");
-  verb->footer(list +
-               "\nExample: supple bench figure7\nLeaves index.html with CSV, JSON and SVG beside it; bench all goes on "
-               "where it stopped.");
-  verb->callback([options, &action] { action = [options] { return bench(*options); }; });
+  verb.option("NAME", options->name, "one of the benchmarks below, or all").required().one_of(names);
+  verb.option("--out", options->out, "folder for the report").shows_default();
+  verb.option("--paper-meshes", options->paper_meshes, "folder with the meshes of the paper (longbar2.mesh ...)");
+  verb.option("--threads", options->threads, "threads of the solvers").between(1, 256).shows_default();
+  verb.flag("--fresh", options->fresh, "make what an earlier call has finished once more");
+  verb.flag("--quiet", options->quiet, "say nothing but errors");
+  verb.footer(list +
+              "\nExample: supple bench figure7\nLeaves index.html with CSV, JSON and SVG beside it; bench all goes on "
+              "where it stopped.");
+  verb.runs([options] { return bench(*options); });
 }
 
 }  // namespace supple

@@ -1,7 +1,5 @@
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
-
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
@@ -52,16 +50,14 @@ int check(const std::string& name, const std::vector<std::string>& settings) {
 
 }  // namespace
 
-void add_check(CLI::App& app, Action& action) {
+void add_check(CommandLine& line) {
   auto name = std::make_shared<std::string>();
   auto settings = std::make_shared<std::vector<std::string>>();
-  CLI::App* verb = app.add_subcommand("check", "Every error and warning of a scene or replay at once; writes nothing.");
-  verb->footer("Example: supple check my-scene.toml");
-  verb->add_option("SCENE|REPLAY", *name, "scene or replay file, or the name of one that ships")->required();
-  verb->add_option("--set", *settings, "path=value over the scene's; may be repeated")
-      ->take_all()
-      ->allow_extra_args(false);
-  verb->callback([&action, name, settings] { action = [name, settings] { return check(*name, *settings); }; });
+  Verb verb = line.verb("check", "Every error and warning of a scene or replay at once; writes nothing.");
+  verb.footer("Example: supple check my-scene.toml");
+  verb.option("SCENE|REPLAY", *name, "scene or replay file, or the name of one that ships").required();
+  verb.option("--set", *settings, "path=value over the scene's; may be repeated").repeatable();
+  verb.runs([name, settings] { return check(*name, *settings); });
 }
 
 }  // namespace supple

@@ -1,12 +1,12 @@
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
+#include "output/json_text.h"
 #include "output/report_table.h"
 #include "output/run_comparison.h"
 #include "output/whole_file.h"
@@ -115,7 +115,7 @@ std::string json_of(const RunRecord& a, const RunRecord& b, const RunComparison&
   json["differences"] = Json::array();
   for (const JsonDifference& d : c.differences)
     json["differences"].push_back({{"path", d.path}, {"a", d.a}, {"b", d.b}});
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json) + "\n";
 }
 
 std::string csv_of(const RunComparison& c) {
@@ -152,20 +152,20 @@ int compare(const CompareOptions& options) {
 
 }  // namespace
 
-void add_compare(CLI::App& app, Action& action) {
+void add_compare(CommandLine& line) {
   auto options = std::make_shared<CompareOptions>();
-  CLI::App* verb = app.add_subcommand("compare", "Two runs: the first frame that differs, distances, timing.");
-  verb->footer(
+  Verb verb = line.verb("compare", "Two runs: the first frame that differs, distances, timing.");
+  verb.footer(
       "Example: supple compare out/squirrel out/squirrel-2 --csv distances.csv\n"
       "Distances are between equal vertices of the saved motion (single precision); size is the diagonal of the box "
       "around a body in A's first frame.\n"
       "Exit status: 0 the same bodies, frames, states and saved motion; 1 they differ; 2 a folder cannot be read as a "
       "run's.");
-  verb->add_option("RUN_A", options->a, "folder that supple render left")->required();
-  verb->add_option("RUN_B", options->b, "the other one")->required();
-  verb->add_option("--csv", options->csv, "file for the distances, a row a frame and body");
-  verb->add_flag("--json", options->json, "the result as one line of JSON");
-  verb->callback([&action, options] { action = [options] { return compare(*options); }; });
+  verb.option("RUN_A", options->a, "folder that supple render left").required();
+  verb.option("RUN_B", options->b, "the other one").required();
+  verb.option("--csv", options->csv, "file for the distances, a row a frame and body");
+  verb.flag("--json", options->json, "the result as one line of JSON");
+  verb.runs([options] { return compare(*options); });
 }
 
 }  // namespace supple

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -13,6 +12,7 @@
 #include "film/places.h"
 #include "geometry/surface_file.h"
 #include "output/child_program.h"
+#include "output/json_text.h"
 #include "output/run_folder.h"
 #include "render/renderer.h"
 
@@ -181,7 +181,7 @@ void say_json(const std::vector<Finding>& list, bool ready) {
                               {"purpose", f.purpose},
                               {"package", f.package}});
   }
-  say(stdout, json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  say(stdout, json_text(json) + "\n");
 }
 
 int examine(bool as_json) {
@@ -194,14 +194,14 @@ int examine(bool as_json) {
 
 }  // namespace
 
-void add_doctor(CLI::App& app, Action& action) {
+void add_doctor(CommandLine& line) {
   auto json = std::make_shared<bool>(false);
-  CLI::App* verb = app.add_subcommand("doctor", "What this machine has and lacks for making films.");
-  verb->footer(
+  Verb verb = line.verb("doctor", "What this machine has and lacks for making films.");
+  verb.footer(
       "Example: supple doctor\n"
       "Exit status: 0 everything that a film needs is there; 1 something is missing.");
-  verb->add_flag("--json", *json, "the result as one line of JSON");
-  verb->callback([&action, json] { action = [json] { return examine(*json); }; });
+  verb.flag("--json", *json, "the result as one line of JSON");
+  verb.runs([json] { return examine(*json); });
 }
 
 }  // namespace supple

@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -13,6 +12,7 @@
 #include "base/interrupts.h"
 #include "base/text.h"
 #include "base/timing.h"
+#include "output/json_text.h"
 #include "scene/script_trial.h"
 
 namespace supple {
@@ -63,7 +63,7 @@ void print_json(const FilmResult& result, const RunFolder& folder) {
   json["video"] =
       result.video_written ? nlohmann::ordered_json(folder.video().string()) : nlohmann::ordered_json(nullptr);
   json["video_message"] = result.video_message;
-  say(stdout, fmt::format("{}\n", json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)));
+  say(stdout, fmt::format("{}\n", json_text(json)));
 }
 
 // Tells how the film went; returns the exit status. unrecorded: what the disk refused at the end.
@@ -99,57 +99,53 @@ bool say_verdict(const FilmCommand& command, const StateVerifier& verifier, int 
 
 }  // namespace
 
-void add_film_options(CLI::App& verb, FilmCommand& command) {
+void add_film_options(Verb& verb, FilmCommand& command) {
   FilmPlan& plan = command.plan;
-  verb.add_option("--out", plan.out, "folder for the results [out/NAME]");
-  verb.add_option("--frames", plan.frames, "length of the film, over the scene's")->check(CLI::Range(1, 1000000));
-  verb.add_option("--threads", plan.threads, "threads of the solver [all cores]; results do not depend on it")
-      ->check(CLI::Range(1, 256));
-  verb.add_option("--set", plan.settings, "path=value over the scene's, such as solver.iterations=20; may be repeated")
-      ->take_all()
-      ->allow_extra_args(false);
-  verb.add_option("--seed", plan.seed, "of random start states, over the scene's")->check(CLI::Range(0, 2000000000));
-  verb.add_option("--error-every", plan.error_every, "measure the error of equation 12 every N frames (slow)")
-      ->check(CLI::Range(1, 1000000));
-  verb.add_option("--save-state", plan.save_states,
-                  "frames, such as 10,20: each body's state and problem before it, in states/BODY-NNNNNN/")
-      ->delimiter(',')
-      ->take_all()
-      ->allow_extra_args(false)
-      ->check(CLI::Range(0, 999999));
-  verb.add_option("--vtu", plan.fields_every,
-                  "write fields every N frames, for ParaView: fields/BODY-NNNNNN.vtu and fields/BODY.pvd")
-      ->check(CLI::Range(1, 1000000));
-  verb.add_flag_callback(
+  verb.option("--out", plan.out, "folder for the results [out/NAME]");
+  verb.option("--frames", plan.frames, "length of the film, over the scene's").between(1, 1000000);
+  verb.option("--threads", plan.threads, "threads of the solver [all cores]; results do not depend on it")
+      .between(1, 256);
+  verb.option("--set", plan.settings, "path=value over the scene's, such as solver.iterations=20; may be repeated")
+      .repeatable();
+  verb.option("--seed", plan.seed, "of random start states, over the scene's").between(0, 2000000000);
+  verb.option("--error-every", plan.error_every, "measure the error of equation 12 every N frames (slow)")
+      .between(1, 1000000);
+  verb.option("--save-state", plan.save_states,
+              "frames, such as 10,20: each body's state and problem before it, in states/BODY-NNNNNN/")
+      .separated_by(',')
+      .repeatable()
+      .between(0, 999999);
+  verb.option("--vtu", plan.fields_every,
+              "write fields every N frames, for ParaView: fields/BODY-NNNNNN.vtu and fields/BODY.pvd")
+      .between(1, 1000000);
+  verb.flag(
       "--no-video", [&plan] { plan.video = false; }, "frames only");
-  verb.add_flag_callback(
+  verb.flag(
       "--no-images", [&plan] { plan.pictures = FilmPictures::none; }, "simulate only");
-  verb.add_flag("--trace", plan.trace, "where every thread's time went, for chrome://tracing or Perfetto: trace.json");
-  verb.add_option_function<std::string>(
+  verb.flag("--trace", plan.trace, "where every thread's time went, for chrome://tracing or Perfetto: trace.json");
+  verb.option(
           "--gl", [&plan](const std::string& word) { plan.gl = *value_named<GlChoice>(word); },
           word_list(all_names<GlChoice>()))
-      ->check(CLI::IsMember(all_names<GlChoice>()));
-  verb.add_option("--checkpoint-every", plan.checkpoint_every,
-                  "frames between checkpoints, from which a film can be resumed; 0 makes none")
-      ->check(CLI::Range(0, 1000000))
-      ->capture_default_str();
-  verb.add_option("--record", plan.record, "file for the states of all frames, to be compared with --verify");
-  CLI::Option* verify =
-      verb.add_option("--verify", plan.verify, "stop at the first frame that is not as this file has it");
-  verb.add_option("--tolerance", plan.tolerance,
-                  "compare positions up to this, over the body's size, instead of all bits")
-      ->needs(verify)
-      ->check(CLI::Range(0.0, 1.0));
-  verb.add_flag("--quiet", plan.quiet, "say nothing but errors");
-  verb.add_flag("--json", command.json, "the result as one line of JSON on standard output");
+      .one_of(all_names<GlChoice>());
+  verb.option("--checkpoint-every", plan.checkpoint_every,
+              "frames between checkpoints, from which a film can be resumed; 0 makes none")
+      .between(0, 1000000)
+      .shows_default();
+  verb.option("--record", plan.record, "file for the states of all frames, to be compared with --verify");
+  const Option verify = verb.option("--verify", plan.verify, "stop at the first frame that is not as this file has it");
+  verb.option("--tolerance", plan.tolerance, "compare positions up to this, over the body's size, instead of all bits")
+      .needs(verify)
+      .between(0.0, 1.0);
+  verb.flag("--quiet", plan.quiet, "say nothing but errors");
+  verb.flag("--json", command.json, "the result as one line of JSON on standard output");
 }
 
-void add_film(CLI::App& verb, const FilmArgument& argument, Action& action, const std::vector<std::string>& words) {
+void add_film(Verb& verb, const FilmArgument& argument, const std::vector<std::string>& words) {
   auto command = std::make_shared<FilmCommand>();
-  verb.add_option(argument.name, command->plan.scene, argument.meaning)->required();
+  verb.option(argument.name, command->plan.scene, argument.meaning).required();
   add_film_options(verb, *command);
-  verb.add_flag("--resume", command->plan.resume, "go on with the film in --out that was interrupted or killed");
-  verb.callback([&action, command, words] { action = [command, words] { return run_film(*command, words); }; });
+  verb.flag("--resume", command->plan.resume, "go on with the film in --out that was interrupted or killed");
+  verb.runs([command, words] { return run_film(*command, words); });
 }
 
 int run_film(const FilmCommand& command, const std::vector<std::string>& words, FilmRecord* record) {

@@ -19,13 +19,13 @@ struct FilmCommand {
 };
 
 // Adds the options that every run of a scene has. --resume is not among them: it is for single films.
-void add_film_options(CLI::App& verb, FilmCommand& command);
+void add_film_options(Verb& verb, FilmCommand& command);
 
 // Makes a verb one that films what its argument names. words: as the program was called.
 struct FilmArgument {
   const char *name, *meaning;
 };
-void add_film(CLI::App& verb, const FilmArgument& argument, Action& action, const std::vector<std::string>& words);
+void add_film(Verb& verb, const FilmArgument& argument, const std::vector<std::string>& words);
 
 // The record of a run once it is over, for callers that examine it.
 struct FilmRecord {

@@ -1,6 +1,5 @@
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 #include <thread>
@@ -44,20 +43,20 @@ int inform(const std::string& input, bool live) {
 
 }  // namespace
 
-void add_info(CLI::App& app, Action& action) {
+void add_info(CommandLine& line) {
   auto input = std::make_shared<std::string>();
   auto live = std::make_shared<bool>(false);
-  CLI::App* verb = app.add_subcommand("info", "What is in a mesh, a scene, a replay or the folder of a run.");
-  verb->footer(
+  Verb verb = line.verb("info", "What is in a mesh, a scene, a replay or the folder of a run.");
+  verb.footer(
       "Examples: supple info squirrel.mesh, supple info squirrel, supple info --live squirrel, supple info "
       "out/squirrel\n"
       "Of a scene the first frames are simulated, to tell what one costs here; nothing is written.");
-  verb->add_option(
+  verb.option(
           "SCENE|REPLAY|MESH|RUN", *input,
           "MEDIT .mesh file, scene or replay file or the name of one that ships, or a folder that supple render left")
-      ->required();
-  verb->add_flag("--live", *live, "list what of a scene can change while it runs, and what that costs");
-  verb->callback([&action, input, live] { action = [input, live] { return inform(*input, *live); }; });
+      .required();
+  verb.flag("--live", *live, "list what of a scene can change while it runs, and what that costs");
+  verb.runs([input, live] { return inform(*input, *live); });
 }
 
 }  // namespace supple

@@ -1,7 +1,5 @@
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
-
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/text.h"
@@ -27,10 +25,10 @@ int list_scenes() {
 
 }  // namespace
 
-void add_list(CLI::App& app, Action& action) {
-  CLI::App* verb = app.add_subcommand("list", "The scenes and replays that ship, a line each.");
-  verb->footer("Example: supple list");
-  verb->callback([&action] { action = list_scenes; });
+void add_list(CommandLine& line) {
+  Verb verb = line.verb("list", "The scenes and replays that ship, a line each.");
+  verb.footer("Example: supple list");
+  verb.runs(list_scenes);
 }
 
 }  // namespace supple

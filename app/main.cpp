@@ -4,67 +4,32 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
 #include <new>
-#include <sstream>
 
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
-#include "base/text.h"
-#include "output/run_folder.h"
 
 namespace {
 
-// The message for a first word that is no verb, for which CLI11 would only say that a subcommand is required.
-std::string unknown_word(const CLI::App& app, const std::string& word) {
-  std::vector<std::string> known = {"--help", "--version"};
-  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
-    if (!verb->get_group().empty()) known.push_back(verb->get_name());
-  const std::string nearest = supple::nearest_word(word, known);
-  return fmt::format("supple: no {} '{}'{}\nTry: supple --help\n", word.starts_with("-") ? "option" : "verb", word,
-                     nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
-}
-
 int run(int argc, char** argv) {
-  CLI::App app("Simulates soft bodies fast and accurately, and films them.", "supple");
-  app.require_subcommand(1);
-  app.footer(
-      "Examples: supple render squirrel --frames 60\n"
-      "          supple list");
-  app.set_version_flag("--version", supple::program_version());
-  app.failure_message([](const CLI::App* a, const CLI::Error& e) {
-    return fmt::format("supple: {}\nTry: supple {}--help\n", e.what(),
-                       a->get_subcommands().empty() ? "" : a->get_subcommands().front()->get_name() + " ");
-  });
-  const std::vector<std::string> command(argv, argv + argc);
-  supple::Action action;
-  supple::add_render(app, action, command);
-  supple::add_replay(app, action, command);
-  supple::add_sweep(app, action, command);
-  supple::add_profile(app, action, command);
-  supple::add_bench(app, action);
-  supple::add_check(app, action);
-  supple::add_mesh(app, action);
-  supple::add_info(app, action);
-  supple::add_compare(app, action);
-  supple::add_list(app, action);
-  supple::add_doctor(app, action);
-  supple::add_complete(app, action, command);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& asked) {
-    return app.exit(asked);
-  } catch (const CLI::ParseError& error) {
-    std::ostringstream help, message;
-    (void)app.exit(error, help, message);
-    const bool no_verb = app.get_subcommands().empty() && !app.remaining().empty();
-    supple::say(stderr, no_verb ? unknown_word(app, app.remaining().front()) : message.str());
-    return 2;
-  }
-  const int status = action();
+  supple::CommandLine line(argc, argv);
+  supple::add_render(line);
+  supple::add_replay(line);
+  supple::add_sweep(line);
+  supple::add_profile(line);
+  supple::add_bench(line);
+  supple::add_check(line);
+  supple::add_mesh(line);
+  supple::add_info(line);
+  supple::add_compare(line);
+  supple::add_list(line);
+  supple::add_doctor(line);
+  supple::add_complete(line);
+  if (const std::optional<int> status = line.read()) return *status;
+  const int status = line.run();
   const bool said = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
   return status == 0 && !said ? 1 : status;
 }

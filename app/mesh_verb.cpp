@@ -1,7 +1,5 @@
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
-
 #include "app/summary.h"
 #include "app/verbs.h"
 #include "base/console.h"
@@ -45,24 +43,21 @@ int make_mesh(const std::string& input, const std::string& output, int vertices)
 
 }  // namespace
 
-void add_mesh(CLI::App& app, Action& action) {
-  struct Options {
+void add_mesh(CommandLine& line) {
+  struct MeshOptions {
     std::string input, output;
     int vertices = 4000;
   };
-  auto options = std::make_shared<Options>();
-  CLI::App* verb =
-      app.add_subcommand("mesh", "Make tetrahedra of a shape or a closed surface, or check and rewrite a mesh.");
-  verb->footer("Example: supple mesh squirrel -o squirrel.mesh --vertices 8395");
-  verb->add_option("SHAPE", options->input,
-                   "shape file (.toml), the name of a shape that ships, a closed surface (OBJ, PLY, STL, glTF, OFF), "
-                   "or a .mesh file")
-      ->required();
-  verb->add_option("-o,--output", options->output, "MEDIT .mesh file to write")->required();
-  verb->add_option("--vertices", options->vertices, "wanted (within 3 %)")->check(CLI::Range(50, 500000));
-  verb->callback([&action, options] {
-    action = [options] { return make_mesh(options->input, options->output, options->vertices); };
-  });
+  auto options = std::make_shared<MeshOptions>();
+  Verb verb = line.verb("mesh", "Make tetrahedra of a shape or a closed surface, or check and rewrite a mesh.");
+  verb.footer("Example: supple mesh squirrel -o squirrel.mesh --vertices 8395");
+  verb.option("SHAPE", options->input,
+              "shape file (.toml), the name of a shape that ships, a closed surface (OBJ, PLY, STL, glTF, OFF), "
+              "or a .mesh file")
+      .required();
+  verb.option("-o,--output", options->output, "MEDIT .mesh file to write").required();
+  verb.option("--vertices", options->vertices, "wanted (within 3 %)").between(50, 500000);
+  verb.runs([options] { return make_mesh(options->input, options->output, options->vertices); });
 }
 
 }  // namespace supple

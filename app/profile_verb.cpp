@@ -1,7 +1,6 @@
 #include <fmt/core.h>
 #include <sys/wait.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <optional>
 
@@ -180,36 +179,32 @@ int run(const ProfileCommand& request, const std::vector<std::string>& command) 
 }
 
 // A comparison runs nothing, so the options of a run have no meaning with it.
-void check_compare_options(const CLI::App& verb) {
-  for (const CLI::Option* option : verb.get_options()) {
-    const std::string name = option->get_name();
-    if (option->count() > 0 && name != "--compare" && name != "--json" && name != "--quiet")
+void check_compare_options(const Verb& verb) {
+  for (const std::string& name : verb.given()) {
+    if (name != "--compare" && name != "--json" && name != "--quiet")
       throw InputError("profile --compare", name + " has no meaning with it");
   }
 }
 
 }  // namespace
 
-void add_profile(CLI::App& app, Action& action, const std::vector<std::string>& command) {
+void add_profile(CommandLine& line) {
   auto request = std::make_shared<ProfileCommand>();
-  CLI::App* verb = app.add_subcommand("profile", "Where the time of a scene's frames goes; two profiles compared.");
-  verb->footer(
+  Verb verb = line.verb("profile", "Where the time of a scene's frames goes; two profiles compared.");
+  verb.footer(
       "Examples: supple profile squirrel --frames 100 --no-images --out out/before\n"
       "          supple profile --compare out/before/zones.json out/after/zones.json\n"
       "Leaves zones.json, frame-times.svg and trace.json (of the last repeat) beside what render leaves, without a "
       "video.");
-  verb->add_option("SCENE|REPLAY", request->film.plan.scene,
-                   "scene or replay file, or the name of one that ships (supple list)");
-  verb->add_option("--repeats", request->repeats, "how often the scene is run")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  verb->add_option("--compare", request->compared, "two zones.json: what became slower or faster from A to B")
-      ->type_name("A B")
-      ->expected(2);
-  add_film_options(*verb, request->film);
-  verb->callback([&action, request, command, verb] {
-    if (!request->compared.empty()) check_compare_options(*verb);
-    action = [request, command] { return run(*request, command); };
+  verb.option("SCENE|REPLAY", request->film.plan.scene,
+              "scene or replay file, or the name of one that ships (supple list)");
+  verb.option("--repeats", request->repeats, "how often the scene is run").between(1, 1000).shows_default();
+  verb.option("--compare", request->compared, "two zones.json: what became slower or faster from A to B")
+      .two_values("A B");
+  add_film_options(verb, request->film);
+  verb.runs([request, verb, words = line.words()] {
+    if (!request->compared.empty()) check_compare_options(verb);
+    return run(*request, words);
   });
 }
 

@@ -1,16 +1,15 @@
-#include <CLI/CLI.hpp>
 
 #include "app/film_run.h"
 #include "app/verbs.h"
 
 namespace supple {
 
-void add_render(CLI::App& app, Action& action, const std::vector<std::string>& command) {
-  CLI::App* verb = app.add_subcommand("render", "Simulate a scene and film it.");
-  verb->footer(
+void add_render(CommandLine& line) {
+  Verb verb = line.verb("render", "Simulate a scene and film it.");
+  verb.footer(
       "Example: supple render squirrel --frames 60 --set body.polynomial.material.mu=6e4\n"
       "Leaves frames/, video.mp4, motion/, profile.json and run.json in out/NAME, and states/ if asked.");
-  add_film(*verb, {"SCENE", "scene file, or the name of one that ships (supple list)"}, action, command);
+  add_film(verb, {"SCENE", "scene file, or the name of one that ships (supple list)"}, line.words());
 }
 
 }  // namespace supple

@@ -1,6 +1,5 @@
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <optional>
 
 #include "app/sweep/merge.h"
@@ -73,49 +72,44 @@ int sweep(const SweepOptions& options, const std::vector<std::string>& command) 
   return run_point(request, *options.index, command);
 }
 
-void add_options(CLI::App& verb, SweepOptions& options) {
+void add_options(Verb& verb, SweepOptions& options) {
   SweepRequest& request = options.request;
-  verb.add_option("SCENE", request.scene, "scene file with a [sweep] table, or the name of one that ships")->required();
-  CLI::Option_group* what = verb.add_option_group("What to do", "one of these; without any, as --jobs");
-  what->add_option("--jobs", options.jobs,
-                   "run what is not done, so many points at a time [cores / threads]; then merge")
-      ->check(CLI::Range(1, 1024));
-  what->add_option("--index", options.index, "run this point alone, done or not; counts from 0")
-      ->check(CLI::Range(std::size_t(0), most_sweep_points));
-  what->add_flag("--merge", options.merge, "make the tables, the contact sheet and the page of what has run");
-  what->add_flag("--list", options.list, "the points and their values, a line each");
-  what->add_flag("--count", options.count, "how many points there are");
-  what->require_option(0, 1);
-  verb.add_flag("--again", options.again, "run points that are done once more");
-  verb.add_option("--out", options.out, "folder for the results [out/NAME-sweep]");
-  verb.add_option("--frames", options.frames, "length of the films, over the scene's")->check(CLI::Range(1, 1000000));
-  verb.add_option("--threads", request.threads, "threads of each point; results do not depend on it")
-      ->check(CLI::Range(1, 256))
-      ->capture_default_str();
-  verb.add_option("--set", request.settings, "path=value over the scene's, for all points; may be repeated")
-      ->take_all()
-      ->allow_extra_args(false);
-  verb.add_option("--seed", options.seed, "of random start states, over the scene's")->check(CLI::Range(0, 2000000000));
-  verb.add_option("--error-every", request.error_every, "measure the error of equation 12 every N frames (slow)")
-      ->check(CLI::Range(1, 1000000));
-  CLI::Option* images =
-      verb.add_flag("--images", options.images, "film every point; otherwise the last frame is drawn");
-  verb.add_flag("--no-images", options.no_images, "simulate only")->excludes(images);
-  verb.add_option("--gl", request.gl, word_list(all_names<GlChoice>()))->check(CLI::IsMember(all_names<GlChoice>()));
-  verb.add_flag("--quiet", request.quiet, "say nothing but errors");
+  verb.option("SCENE", request.scene, "scene file with a [sweep] table, or the name of one that ships").required();
+  Options what = verb.at_most_one_of("What to do", "one of these; without any, as --jobs");
+  what.option("--jobs", options.jobs, "run what is not done, so many points at a time [cores / threads]; then merge")
+      .between(1, 1024);
+  what.option("--index", options.index, "run this point alone, done or not; counts from 0")
+      .between(std::size_t(0), most_sweep_points);
+  what.flag("--merge", options.merge, "make the tables, the contact sheet and the page of what has run");
+  what.flag("--list", options.list, "the points and their values, a line each");
+  what.flag("--count", options.count, "how many points there are");
+  verb.flag("--again", options.again, "run points that are done once more");
+  verb.option("--out", options.out, "folder for the results [out/NAME-sweep]");
+  verb.option("--frames", options.frames, "length of the films, over the scene's").between(1, 1000000);
+  verb.option("--threads", request.threads, "threads of each point; results do not depend on it")
+      .between(1, 256)
+      .shows_default();
+  verb.option("--set", request.settings, "path=value over the scene's, for all points; may be repeated").repeatable();
+  verb.option("--seed", options.seed, "of random start states, over the scene's").between(0, 2000000000);
+  verb.option("--error-every", request.error_every, "measure the error of equation 12 every N frames (slow)")
+      .between(1, 1000000);
+  const Option images = verb.flag("--images", options.images, "film every point; otherwise the last frame is drawn");
+  verb.flag("--no-images", options.no_images, "simulate only").excludes(images);
+  verb.option("--gl", request.gl, word_list(all_names<GlChoice>())).one_of(all_names<GlChoice>());
+  verb.flag("--quiet", request.quiet, "say nothing but errors");
 }
 
 }  // namespace
 
-void add_sweep(CLI::App& app, Action& action, const std::vector<std::string>& command) {
+void add_sweep(CommandLine& line) {
   auto options = std::make_shared<SweepOptions>();
-  CLI::App* verb = app.add_subcommand("sweep", "Run a scene with other values, point by point, and compare.");
-  verb->footer(
+  Verb verb = line.verb("sweep", "Run a scene with other values, point by point, and compare.");
+  verb.footer(
       "Example: supple sweep stiffness\n"
       "         supple sweep squirrel --set 'sweep.values.solver.iterations=[5, 10, 20]' --frames 60\n"
       "Leaves points/NNNN/ (a run each), sweep.csv, times.csv, contact-sheet.png and index.html in out/NAME-sweep.");
-  add_options(*verb, *options);
-  verb->callback([&action, options, command] { action = [options, command] { return sweep(*options, command); }; });
+  add_options(verb, *options);
+  verb.runs([options, words = line.words()] { return sweep(*options, words); });
 }
 
 }  // namespace supple

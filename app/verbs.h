@@ -1,30 +1,21 @@
-// The program's verbs, a file each. Each adds itself to the command line, and sets the action when it was called.
+// The program's verbs, a file each. Each adds itself to the command line, with the action that it stands for.
 #pragma once
 
-#include <functional>
-#include <string>
-#include <vector>
-
-namespace CLI {
-class App;
-}
+#include "app/command_line.h"
 
 namespace supple {
 
-// The action that main runs once the command line is understood. It returns the exit status.
-using Action = std::function<int()>;
-
-void add_render(CLI::App& app, Action& action, const std::vector<std::string>& command);
-void add_replay(CLI::App& app, Action& action, const std::vector<std::string>& command);
-void add_sweep(CLI::App& app, Action& action, const std::vector<std::string>& command);
-void add_profile(CLI::App& app, Action& action, const std::vector<std::string>& command);
-void add_check(CLI::App& app, Action& action);
-void add_mesh(CLI::App& app, Action& action);
-void add_info(CLI::App& app, Action& action);
-void add_list(CLI::App& app, Action& action);
-void add_compare(CLI::App& app, Action& action);
-void add_bench(CLI::App& app, Action& action);
-void add_doctor(CLI::App& app, Action& action);
-void add_complete(CLI::App& app, Action& action, const std::vector<std::string>& command);
+void add_render(CommandLine& line);
+void add_replay(CommandLine& line);
+void add_sweep(CommandLine& line);
+void add_profile(CommandLine& line);
+void add_check(CommandLine& line);
+void add_mesh(CommandLine& line);
+void add_info(CommandLine& line);
+void add_list(CommandLine& line);
+void add_compare(CommandLine& line);
+void add_bench(CommandLine& line);
+void add_doctor(CommandLine& line);
+void add_complete(CommandLine& line);
 
 }  // namespace supple
