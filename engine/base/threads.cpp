@@ -1,16 +1,50 @@
 #include "base/threads.h"
 
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <vector>
+
 #include "base/signals.h"
 #include "base/trace.h"
 
 namespace supple {
 
-Threads::Threads(int count) {
+class Threads::Workers {
+ public:
+  explicit Workers(int count);
+  ~Workers();
+  Workers(const Workers&) = delete;
+  Workers& operator=(const Workers&) = delete;
+
+  void run(int chunks, Call call, const void* context);
+
+ private:
+  void work(int number);
+  void take_chunks(Call call, const void* context, int chunks);
+
+  std::vector<std::thread> workers_;
+  std::mutex mutex_;
+  std::condition_variable work_ready_;
+  std::condition_variable work_done_;
+  Call call_ = nullptr;            // the job in progress, guarded by mutex_; null between jobs
+  const void* context_ = nullptr;  // the body of that job
+  const char* zone_ = nullptr;     // the zone that the job was requested in, for traces
+  int chunks_ = 0;
+  int running_ = 0;               // number of workers inside the job
+  unsigned long generation_ = 0;  // counts jobs, so that a worker enters each at most once
+  bool stopping_ = false;
+  std::atomic<int> next_chunk_{0};
+};
+
+Threads::Workers::Workers(int count) {
   const BlockedSignals meanwhile;  // workers never receive the signals that end the program; the caller does
-  for (int i = 1; i < count; ++i) workers_.emplace_back([this, i] { work(i); });
+  for (int i = 1; i <= count; ++i) workers_.emplace_back([this, i] { work(i); });
 }
 
-Threads::~Threads() {
+Threads::Workers::~Workers() {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
@@ -19,11 +53,11 @@ Threads::~Threads() {
   for (std::thread& worker : workers_) worker.join();
 }
 
-void Threads::take_chunks(Call call, const void* context, int chunks) {
+void Threads::Workers::take_chunks(Call call, const void* context, int chunks) {
   for (int chunk; (chunk = next_chunk_.fetch_add(1, std::memory_order_relaxed)) < chunks;) call(context, chunk);
 }
 
-void Threads::run_shared(int chunks, Call call, const void* context) {
+void Threads::Workers::run(int chunks, Call call, const void* context) {
   {
     const std::lock_guard lock(mutex_);
     next_chunk_.store(0, std::memory_order_relaxed);
@@ -41,7 +75,7 @@ void Threads::run_shared(int chunks, Call call, const void* context) {
   work_done_.wait(lock, [this] { return running_ == 0; });
 }
 
-void Threads::work(int number) {
+void Threads::Workers::work(int number) {
   name_thread("worker", number);
   unsigned long seen = 0;
   std::unique_lock lock(mutex_);
@@ -63,5 +97,11 @@ void Threads::work(int number) {
     if (--running_ == 0) work_done_.notify_one();
   }
 }
+
+Threads::Threads(int count)
+    : count_(std::max(1, count)), workers_(count_ > 1 ? std::make_unique<Workers>(count_ - 1) : nullptr) {}
+Threads::~Threads() = default;
+
+void Threads::run_shared(int chunks, Call call, const void* context) { workers_->run(chunks, call, context); }
 
 }  // namespace supple

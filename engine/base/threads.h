@@ -4,13 +4,7 @@
 // occupies therefore costs a little time but holds up no barrier.
 #pragma once
 
-#include <atomic>
-#include <condition_variable>
-#include <cstddef>
 #include <memory>
-#include <mutex>
-#include <thread>
-#include <vector>
 
 namespace supple {
 
@@ -22,14 +16,14 @@ class Threads {
   Threads(const Threads&) = delete;
   Threads& operator=(const Threads&) = delete;
 
-  int count() const { return static_cast<int>(workers_.size()) + 1; }
+  int count() const { return count_; }
 
   // Calls body(chunk) once for each chunk in [0, chunks) and returns when all are done. body must not throw. Nothing is
   // allocated.
   template <class Body>
   void run(int chunks, const Body& body) {
     if (chunks <= 0) return;
-    if (workers_.empty() || chunks == 1) {
+    if (count_ == 1 || chunks == 1) {
       for (int chunk = 0; chunk < chunks; ++chunk) body(chunk);
       return;
     }
@@ -41,21 +35,10 @@ class Threads {
   using Call = void (*)(const void* context, int chunk);
 
   void run_shared(int chunks, Call call, const void* context);
-  void work(int number);
-  void take_chunks(Call call, const void* context, int chunks);
 
-  std::vector<std::thread> workers_;
-  std::mutex mutex_;
-  std::condition_variable work_ready_;
-  std::condition_variable work_done_;
-  Call call_ = nullptr;            // the job in progress, guarded by mutex_; null between jobs
-  const void* context_ = nullptr;  // the body of that job
-  const char* zone_ = nullptr;     // the zone that the job was requested in, for traces
-  int chunks_ = 0;
-  int running_ = 0;               // number of workers inside the job
-  unsigned long generation_ = 0;  // counts jobs, so that a worker enters each at most once
-  bool stopping_ = false;
-  std::atomic<int> next_chunk_{0};
+  class Workers;  // in threads.cpp, which alone compiles the library's headers for threads
+  int count_;
+  std::unique_ptr<Workers> workers_;
 };
 
 // Runs chunks on the threads (null: on the calling one) where there is enough work to be worth waking them. work: a

@@ -1,5 +1,5 @@
 // Defines the vocabulary that every folder shares: arrays of points and of indices. Nothing here knows what a point is
-// for.
+// for. Every unit reads this header, so nothing in it computes with Eigen: each unit would compile that anew.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,23 +20,16 @@ using Tetrahedra = Eigen::Matrix<std::int32_t, Eigen::Dynamic, 4, Eigen::RowMajo
 
 // An axis-aligned box; it is empty while any lower bound exceeds its upper one.
 struct Bounds {
-  Vec3 lower = Vec3::Constant(1e300);
-  Vec3 upper = Vec3::Constant(-1e300);
+  Vec3 lower = Vec3(1e300, 1e300, 1e300);
+  Vec3 upper = Vec3(-1e300, -1e300, -1e300);
 
-  void include(const Vec3& point) {
-    lower = lower.cwiseMin(point);
-    upper = upper.cwiseMax(point);
-  }
-  bool empty() const { return (lower.array() > upper.array()).any(); }
-  Vec3 extent() const { return empty() ? Vec3(Vec3::Zero()) : Vec3(upper - lower); }
-  Vec3 center() const { return 0.5 * (lower + upper); }
-  double diagonal() const { return extent().norm(); }
+  void include(const Vec3& point);
+  bool empty() const;
+  Vec3 extent() const;
+  Vec3 center() const;
+  double diagonal() const;
 };
 
-inline Bounds bounds_of(const Positions& points) {
-  Bounds box;
-  for (Eigen::Index i = 0; i < points.rows(); ++i) box.include(points.row(i).transpose());
-  return box;
-}
+Bounds bounds_of(const Positions& points);
 
 }  // namespace supple

@@ -11,14 +11,16 @@
 #include "base/trace.h"
 #include "film/checkpoint.h"
 #include "film/film_plan.h"
-#include "film/film_solvers.h"
 #include "film/state_record.h"
 #include "output/folder_lock.h"
 #include "output/profile.h"
 #include "output/run_folder.h"
+#include "scene/assemble.h"
 #include "scene/script.h"
 
 namespace supple {
+
+struct FilmSolvers;  // film_solvers.h
 
 // A scene or replay, read and assembled.
 struct LoadedFilm {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/names.h"
+#include "geometry/pose.h"
 #include "geometry/source_file.h"
 #include "geometry/triangle_solid.h"
 
@@ -69,9 +70,9 @@ struct Names<Combine> {
 // Describes one step in building a shape: the field so far is combined with this part.
 struct ShapePart {
   Primitive primitive;
-  Eigen::Isometry3d to_local = Eigen::Isometry3d::Identity();  // from the parent's frame
-  double scale = 1;       // local lengths times scale are lengths in the parent's frame
-  bool mirror_x = false;  // whether a copy lies at x -> -x of the parent's frame
+  Eigen::Isometry3d to_local = no_motion();  // from the parent's frame
+  double scale = 1;                          // local lengths times scale are lengths in the parent's frame
+  bool mirror_x = false;                     // whether a copy lies at x -> -x of the parent's frame
   Combine combine = Combine::add;
   double blend = 0;  // width over which the surfaces blend into each other [m]
   int region = 0;    // tag of the elements inside; 0 is untagged

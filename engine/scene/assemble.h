@@ -3,6 +3,7 @@
 #pragma once
 
 #include "geometry/cloth.h"
+#include "geometry/pose.h"
 #include "geometry/skin.h"
 #include "scene/keyed_motion.h"
 #include "scene/scene_def.h"
@@ -31,9 +32,9 @@ struct Body {
   std::vector<std::string> regions;  // names by tag
   double volume = 0;                 // of its tetrahedra at rest [m^3]
   ClothMesh cloth;
-  TriMesh skin;                                             // of a body made from a surface, in the file's frame
-  std::uint64_t seed = 0;                                   // of its random start
-  Eigen::Affine3d placement = Eigen::Affine3d::Identity();  // from the file's frame to the world: turned, scaled, moved
+  TriMesh skin;                                // of a body made from a surface, in the file's frame
+  std::uint64_t seed = 0;                      // of its random start
+  Eigen::Affine3d placement = no_placement();  // from the file's frame to the world: turned, scaled, moved
 };
 
 // Makes all bodies of a scene. Throws InputError with the problems of all bodies at once: unreadable meshes, empty

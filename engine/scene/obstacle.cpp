@@ -47,6 +47,8 @@ Skin square_of(const Vec3& normal, const Vec3& center, double half_edge) {
 
 }  // namespace
 
+Eigen::Isometry3d Obstacle::pose(double time) const { return motion.at(time) * rest; }
+
 CollisionSet collision_set(const SceneDef& scene) {
   CollisionSet set;
   for (const ColliderDef& def : scene.colliders) {

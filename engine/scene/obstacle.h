@@ -1,6 +1,7 @@
 // Colliders ready for the solver and for the film.
 #pragma once
 
+#include "geometry/pose.h"
 #include "geometry/skin.h"
 #include "scene/keyed_motion.h"
 #include "sim/model/inputs.h"
@@ -10,10 +11,10 @@ namespace supple {
 struct Obstacle {
   ColliderDef def;
   KeyedMotion motion;
-  Eigen::Isometry3d rest = Eigen::Isometry3d::Identity();  // from its frame to the world before any key
+  Eigen::Isometry3d rest = no_motion();  // from its frame to the world before any key
 
   // From its frame to the world at a time [s].
-  Eigen::Isometry3d pose(double time) const { return motion.at(time) * rest; }
+  Eigen::Isometry3d pose(double time) const;
 };
 
 // All that bodies can run into.

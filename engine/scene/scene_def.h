@@ -24,11 +24,11 @@ namespace supple {
 struct Selection {
   enum class Kind { region, box, sphere, plane } kind = Kind::box;
   std::string region;
-  Vec3 lower = Vec3::Zero(), upper = Vec3::Ones();  // box
-  Vec3 center = Vec3::Zero();                       // sphere; a point of the plane
-  double radius = 0;                                // sphere; relative to the longest side
-  Vec3 normal = Vec3::UnitY();                      // plane: picks the side that it points to
-  Problem place;                                    // in the file, for messages once the mesh is known
+  Vec3 lower = Vec3(0, 0, 0), upper = Vec3(1, 1, 1);  // box
+  Vec3 center = Vec3(0, 0, 0);                        // sphere; a point of the plane
+  double radius = 0;                                  // sphere; relative to the longest side
+  Vec3 normal = Vec3(0, 1, 0);                        // plane: picks the side that it points to
+  Problem place;                                      // in the file, for messages once the mesh is known
 };
 
 template <>
@@ -39,9 +39,9 @@ struct Names<Selection::Kind> {
 };
 
 struct MotionKey {
-  double time = 0;               // [s]
-  Vec3 move = Vec3::Zero();      // from rest [m]
-  Vec3 turn_deg = Vec3::Zero();  // about the handle's centre, or the collider's origin
+  double time = 0;                // [s]
+  Vec3 move = Vec3(0, 0, 0);      // from rest [m]
+  Vec3 turn_deg = Vec3(0, 0, 0);  // about the handle's centre, or the collider's origin
 };
 
 enum class Ease { smooth, linear };
@@ -80,15 +80,15 @@ struct RegionDef {
 
 // A box cut into equal cells.
 struct BoxDef {
-  Vec3 extent = Vec3::Ones();  // [m]
-  Eigen::Vector3i cells = Eigen::Vector3i::Ones();
+  Vec3 extent = Vec3(1, 1, 1);  // [m]
+  Eigen::Vector3i cells = Eigen::Vector3i(1, 1, 1);
 };
 
 // A grid of springs, or the triangles of a mesh file.
 struct ClothDef {
-  std::filesystem::path mesh;                        // empty: a grid
-  Eigen::Vector2d extent = Eigen::Vector2d::Ones();  // of the grid [m]
-  Eigen::Vector2i cells = Eigen::Vector2i::Constant(40);
+  std::filesystem::path mesh;                      // empty: a grid
+  Eigen::Vector2d extent = Eigen::Vector2d(1, 1);  // of the grid [m]
+  Eigen::Vector2i cells = Eigen::Vector2i(40, 40);
   double stretch = 0, shear = 0, bend = 0;  // stiffness of a spring [N/m]
 };
 
@@ -111,15 +111,15 @@ struct BodyDef {
   std::filesystem::path mesh;
   std::optional<BoxDef> box;
   std::optional<ClothDef> cloth;
-  int vertices = 0;              // of the tetrahedra made from a shape
-  std::optional<double> size;    // longest side; otherwise the file's units are metres [m]
-  Vec3 position = Vec3::Zero();  // of the middle of the bounding box's bottom [m]
-  Vec3 turn_deg = Vec3::Zero();
+  int vertices = 0;               // of the tetrahedra made from a shape
+  std::optional<double> size;     // longest side; otherwise the file's units are metres [m]
+  Vec3 position = Vec3(0, 0, 0);  // of the middle of the bounding box's bottom [m]
+  Vec3 turn_deg = Vec3(0, 0, 0);
   std::optional<double> density;     // [kg/m^3]; of cloth [kg/m^2]
   std::optional<double> total_mass;  // spread over the volume, of cloth over the area [kg]
   SubstanceDef substance;            // of solids
   StartDef start;
-  Vec3 velocity = Vec3::Zero();  // at the start [m/s]
+  Vec3 velocity = Vec3(0, 0, 0);  // at the start [m/s]
   std::vector<RegionDef> regions;
   std::vector<HandleDef> handles;
   SolverDef solver;
@@ -136,8 +136,8 @@ struct BodyDef {
 struct ColliderDef {
   std::string name;
   Shape shape;
-  Vec3 position = Vec3::Zero();  // of its origin [m]
-  Vec3 turn_deg = Vec3::Zero();
+  Vec3 position = Vec3(0, 0, 0);  // of its origin [m]
+  Vec3 turn_deg = Vec3(0, 0, 0);
   double friction = 0;
   double thickness = 0;  // [m]
   Ease ease = Ease::smooth;

@@ -15,7 +15,7 @@ namespace supple {
 // The body at rest, in its place in the world: start states are relative to it.
 struct RestFrame {
   Bounds box;
-  Vec3 center = Vec3::Zero();  // of the box [m]
+  Vec3 center = Vec3(0, 0, 0);  // of the box [m]
 };
 
 // Uniformly distributed random numbers that are the same on every machine and library.

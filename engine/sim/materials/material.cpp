@@ -49,6 +49,10 @@ std::vector<double> panel_ends(const Material& material, const StretchInterval& 
 
 }  // namespace
 
+std::string_view name_of(const Material& material) {
+  return std::visit([](const auto& m) { return m.name; }, material);
+}
+
 bool energy_may_be_negative(const Material& material) {
   return std::visit(
       [](const auto& m) {

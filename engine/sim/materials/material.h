@@ -21,9 +21,7 @@ namespace supple {
 using Material = std::variant<AsRigidAsPossible, Polynomial, Corotated, StVenantKirchhoff, NeoHookean, MooneyRivlin,
                               FixedCorotated, StableNeoHookean, Spline, StrainLimiting>;
 
-inline std::string_view name_of(const Material& material) {
-  return std::visit([](const auto& m) { return m.name; }, material);
-}
+std::string_view name_of(const Material& material);
 
 // Tells whether some deformation has less energy than rest.
 bool energy_may_be_negative(const Material& material);

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "base/names.h"
+#include "geometry/pose.h"
 #include "geometry/shape.h"
 
 namespace supple {
@@ -22,8 +23,8 @@ struct Collider {
 
 // A collider's pose, from its frame to the world, when a step starts and when it ends.
 struct ColliderMotion {
-  Eigen::Isometry3d start = Eigen::Isometry3d::Identity();
-  Eigen::Isometry3d end = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d start = no_motion();
+  Eigen::Isometry3d end = no_motion();
 };
 
 // The treatment of L-BFGS' pairs when the contacts change: the planes of the iteration that made a pair are not those

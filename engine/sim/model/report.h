@@ -59,7 +59,7 @@ struct StepReport {
   double slope = 0;                      // tr(grad^T d) of the last direction [J]
   StopReason stop_reason = StopReason::iterations;
   ContactCounts contacts;
-  Vec3 contact_force = Vec3::Zero();  // of all colliders on the body, at the end of the step [N]
+  Vec3 contact_force = Vec3(0, 0, 0);  // of all colliders on the body, at the end of the step [N]
   bool failed = false;
   StepFailure failure;
 };

@@ -14,7 +14,7 @@ struct StepProblem {
   std::vector<double> stiffness;  // k of equation 11 by region, which damping takes [Pa]
   std::vector<double> mass;       // by vertex [kg]
   double time = 0;                // at the start of the step [s]
-  Vec3 gravity = Vec3::Zero();    // [m/s^2]
+  Vec3 gravity = Vec3(0, 0, 0);   // [m/s^2]
   Positions q, v, y;              // start, its velocities, and where inertia alone leads, n x 3 [m], [m/s], [m]
   std::uint64_t hash = 0;         // state_hash of q and v
   SolverSettings solver;
