@@ -75,8 +75,9 @@ int say_result(const FilmCommand& command, const FilmResult& result, const RunFo
     print_result(result, folder, scene);
   }
   if (result.end == FilmEnd::failed) {
-    say(stderr, fmt::format("supple: {}\n  kept: {} whole frames in {}\n", result.message,
-                            std::max(int(result.rows.size()), result.kept_frames), folder.path().string()));
+    say(stderr, fmt::format("supple: {}\n  kept: {} {} in {}\n", result.message,
+                            std::max(int(result.rows.size()), result.kept_frames),
+                            command.plan.film_only ? "frames' motion" : "whole frames", folder.path().string()));
   }
   if (!unrecorded.empty()) say(stderr, fmt::format("supple: {}\n", unrecorded));
   if (result.video_failed) say(stderr, fmt::format("supple: {}\n", result.video_message));
@@ -149,6 +150,10 @@ void add_film(CLI::App& verb, const FilmArgument& argument, Action& action, cons
   verb.add_option(argument.name, command->plan.scene, argument.meaning)->required();
   add_film_options(verb, *command);
   verb.add_flag("--resume", command->plan.resume, "go on with the film in --out that was interrupted or killed");
+  verb.add_flag("--film-only", command->plan.film_only,
+                "leave the film and no files of its frames; without those there are no checkpoints, so that --resume "
+                "starts anew after a run that was killed")
+      ->excludes("--no-video", "--no-images", "--checkpoint-every");
   verb.callback([&action, command, words] { action = [command, words] { return run_film(*command, words); }; });
 }
 

@@ -66,6 +66,7 @@ struct FilmResult {
   std::string video_message;  // why there is no video
   bool video_written = false;
   bool video_failed = false;  // ffmpeg is there, and did not make it
+  double encode_ms = 0;       // its processor time for a frame of the video; 0: there is none
   double setup_ms = 0;
   double wall_ms = 0;  // of the loop
 };

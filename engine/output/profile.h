@@ -40,8 +40,9 @@ struct FrameRow {
   int frame = 0;
   double time_s = 0;
   double step_ms = 0;
-  std::optional<double> change_ms;  // time to apply what a replay changes; absent where it changes nothing
-  std::optional<double> draw_ms, render_ms, encode_ms;  // absent without images
+  std::optional<double> change_ms;           // time to apply what a replay changes; absent where it changes nothing
+  std::optional<double> draw_ms, render_ms;  // absent where nothing is drawn
+  std::optional<double> compress_ms;         // of the frame's file; absent without one
   std::uint64_t state_hash = 0;
   std::vector<BodyRow> bodies;
 };

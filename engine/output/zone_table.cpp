@@ -87,7 +87,7 @@ std::string deadline_text(const Deadline& deadline) {
   return fmt::format(
       "  Deadline {:.1f} ms: of {} frames {} are late by wall time (from a frame's begin to its end on the thread that "
       "makes it,\n  including the wait for later stages), {} by work (the sum of its step, draw list, render and "
-      "encode).\n",
+      "compress).\n",
       deadline.ms, deadline.frames, deadline.late_wall, deadline.late_work);
 }
 
@@ -128,7 +128,7 @@ Deadline deadline_of(const ZoneProfile& profile) {
   Deadline deadline{1000 / profile.run.fps};
   std::vector<const ZoneTimes*> stages;
   for (const ZoneTimes& zone : profile.zones) {
-    for (const char* stage : {"frame/step", "frame/draw list", "render", "encode"}) {
+    for (const char* stage : {"frame/step", "frame/draw list", "render", "compress"}) {
       if (zone.path == stage) stages.push_back(&zone);
     }
   }
