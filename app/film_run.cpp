@@ -53,6 +53,7 @@ void print_result(const FilmResult& result, const RunFolder& folder, const Scene
   if (result.video_written) say(stdout, fmt::format("  film     {}\n", folder.video().string()));
   if (!result.video_message.empty() && !result.video_failed) say(stdout, fmt::format("  {}\n", result.video_message));
   say(stdout, fmt::format("  profile  {}\n", (folder.path() / "profile.json").string()));
+  say(stdout, fmt::format("  {}\n", verdict_on(result)));
 }
 
 void print_json(const FilmResult& result, const RunFolder& folder) {
@@ -63,6 +64,7 @@ void print_json(const FilmResult& result, const RunFolder& folder) {
   json["video"] =
       result.video_written ? nlohmann::ordered_json(folder.video().string()) : nlohmann::ordered_json(nullptr);
   json["video_message"] = result.video_message;
+  json["verdict"] = verdict_on(result);
   say(stdout, fmt::format("{}\n", json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)));
 }
 

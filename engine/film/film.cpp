@@ -17,6 +17,7 @@
 #include "output/child_program.h"
 #include "output/chrome_trace.h"
 #include "output/run_record.h"
+#include "output/verdict.h"
 #include "output/video.h"
 #include "output/whole_file.h"
 #include "scene/script_trial.h"
@@ -217,6 +218,8 @@ FilmResult make_film(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
   return result;
 }
 
+std::string verdict_on(const FilmResult& result) { return verdict(work_of(result.rows, result.encode_ms)); }
+
 std::string write_records(const FilmResult& result, LoadedFilm& film, const RunFolder& folder,
                           const std::vector<ThreadTrace>* trace) {
   RunInfo& info = film.info;
@@ -229,7 +232,7 @@ std::string write_records(const FilmResult& result, LoadedFilm& film, const RunF
   info.video = result.video_written ? "video.mp4" : result.video_message;
   try {
     folder.write_info(info);
-    folder.write_profile(profile_json(result.rows));
+    folder.write_profile(profile_json(result.rows, verdict_on(result)));
     if (trace != nullptr) write_whole_file(folder.trace(), chrome_trace(*trace));
   } catch (const RunError& error) {
     return error.what();

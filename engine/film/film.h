@@ -75,6 +75,9 @@ struct FilmResult {
 FilmResult make_film(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const RunFolder& folder,
                      const FilmSolvers& solvers);
 
+// Says which stage costs most, and what helps (output/verdict.h).
+std::string verdict_on(const FilmResult& result);
+
 // Writes what is known of the film at its end into run.json and profile.json, and the trace where there is one. Returns
 // what the disk refused; empty: nothing.
 std::string write_records(const FilmResult& result, LoadedFilm& film, const RunFolder& folder,

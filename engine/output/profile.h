@@ -64,7 +64,8 @@ struct StageSummary {
 std::vector<StageSummary> summarize(const std::vector<FrameRow>& rows);
 
 // Writes rows as text (profile_json.cpp): all rows of a run, or one row as a line of its own.
-std::string profile_json(const std::vector<FrameRow>& rows);
+// verdict: on the whole run (verdict.h); empty: none.
+std::string profile_json(const std::vector<FrameRow>& rows, const std::string& verdict = "");
 std::string row_line(const FrameRow& row);
 
 // Reads rows back. Throws InputError naming the file where it cannot be read or is not such a text.

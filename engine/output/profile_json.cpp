@@ -144,7 +144,7 @@ std::vector<FrameRow> read_profile(const std::filesystem::path& path) {
   });
 }
 
-std::string profile_json(const std::vector<FrameRow>& rows) {
+std::string profile_json(const std::vector<FrameRow>& rows, const std::string& verdict) {
   Json frames = Json::array();
   for (const FrameRow& row : rows) frames.push_back(json_of(row));
   Json first, rest;
@@ -155,6 +155,7 @@ std::string profile_json(const std::vector<FrameRow>& rows) {
   Json document;
   document["frames"] = std::move(frames);
   document["summary"] = {{"frames", rows.size()}, {"first_frame", first}, {"without_first_frame", rest}};
+  if (!verdict.empty()) document["summary"]["verdict"] = verdict;
   return document.dump(1) + "\n";
 }
 

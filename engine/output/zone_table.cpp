@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
+#include "output/verdict.h"
 
 namespace supple {
 namespace {
@@ -182,6 +183,7 @@ std::string summary_json(const ZoneProfile& profile) {
                       {"frames", deadline.frames},
                       {"late_wall", deadline.late_wall},
                       {"late_work", deadline.late_work}};
+  json["verdict"] = verdict(work_of(profile));
   for (const SlowFrame& slow : slow_frames(profile, 3))
     json["slow_frames"].push_back({{"frame", slow.frame}, {"ms", slow.ms}, {"zone", slow.zone}});
   for (const SetupTimes& row : profile.setup) json["setup_ms"][row.name] = median_of(row.ms);
