@@ -112,6 +112,11 @@ Option& Option::excludes(const Option& other) {
   return *this;
 }
 
+Option& Option::excludes(const std::vector<std::string>& names) {
+  for (const std::string& name : names) option_->excludes(name);
+  return *this;
+}
+
 Option& Option::shows_default() {
   option_->capture_default_str();
   return *this;

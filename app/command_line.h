@@ -34,6 +34,7 @@ class Option {
   Option& two_values(const std::string& names);
   Option& needs(const Option& other);
   Option& excludes(const Option& other);
+  Option& excludes(const std::vector<std::string>& names);  // of options that have been added
   Option& shows_default();  // --help tells what the variable holds now
 
  private:

@@ -53,6 +53,7 @@ void print_result(const FilmResult& result, const RunFolder& folder, const Scene
   if (result.video_written) say(stdout, fmt::format("  film     {}\n", folder.video().string()));
   if (!result.video_message.empty() && !result.video_failed) say(stdout, fmt::format("  {}\n", result.video_message));
   say(stdout, fmt::format("  profile  {}\n", (folder.path() / "profile.json").string()));
+  say(stdout, fmt::format("  {}\n", verdict_on(result)));
 }
 
 void print_json(const FilmResult& result, const RunFolder& folder) {
@@ -63,6 +64,7 @@ void print_json(const FilmResult& result, const RunFolder& folder) {
   json["video"] =
       result.video_written ? nlohmann::ordered_json(folder.video().string()) : nlohmann::ordered_json(nullptr);
   json["video_message"] = result.video_message;
+  json["verdict"] = verdict_on(result);
   say(stdout, fmt::format("{}\n", json_text(json)));
 }
 
@@ -75,8 +77,9 @@ int say_result(const FilmCommand& command, const FilmResult& result, const RunFo
     print_result(result, folder, scene);
   }
   if (result.end == FilmEnd::failed) {
-    say(stderr, fmt::format("supple: {}\n  kept: {} whole frames in {}\n", result.message,
-                            std::max(int(result.rows.size()), result.kept_frames), folder.path().string()));
+    say(stderr, fmt::format("supple: {}\n  kept: {} {} in {}\n", result.message,
+                            std::max(int(result.rows.size()), result.kept_frames),
+                            command.plan.film_only ? "frames' motion" : "whole frames", folder.path().string()));
   }
   if (!unrecorded.empty()) say(stderr, fmt::format("supple: {}\n", unrecorded));
   if (result.video_failed) say(stderr, fmt::format("supple: {}\n", result.video_message));
@@ -145,6 +148,10 @@ void add_film(Verb& verb, const FilmArgument& argument, const std::vector<std::s
   verb.option(argument.name, command->plan.scene, argument.meaning).required();
   add_film_options(verb, *command);
   verb.flag("--resume", command->plan.resume, "go on with the film in --out that was interrupted or killed");
+  verb.flag("--film-only", command->plan.film_only,
+            "leave the film and no files of its frames; without those there are no checkpoints, so that --resume "
+            "starts anew after a run that was killed")
+      .excludes({"--no-video", "--no-images", "--checkpoint-every"});
   verb.runs([command, words] { return run_film(*command, words); });
 }
 

@@ -14,6 +14,7 @@
 #include "base/timing.h"
 #include "film/places.h"
 #include "output/child_program.h"
+#include "output/verdict.h"
 #include "output/whole_file.h"
 #include "output/zone_comparison.h"
 #include "output/zone_table.h"
@@ -64,6 +65,7 @@ void report(const ProfileCommand& request, const ZoneProfile& profile, const std
     say(stdout, fmt::format("\n{}\n  zones    {}\n", zone_table(profile), (folder / "zones.json").string()));
     if (traced) say(stdout, fmt::format("  trace    {}\n", (folder / "trace.json").string()));
     if (plotted) say(stdout, fmt::format("  plot     {}\n", (folder / "frame-times.svg").string()));
+    say(stdout, fmt::format("  {}\n", verdict(work_of(profile))));
   }
   if (!plotted && !request.film.plan.quiet) say(stderr, fmt::format("note: {}\n", no_plot));
 }

@@ -15,9 +15,11 @@
 #include "film/film_solvers.h"
 #include "film/frame_loop.h"
 #include "film/places.h"
+#include "output/child_program.h"
 #include "output/chrome_trace.h"
 #include "output/json_text.h"
 #include "output/run_record.h"
+#include "output/verdict.h"
 #include "output/video.h"
 #include "output/whole_file.h"
 #include "scene/script_trial.h"
@@ -86,7 +88,7 @@ void check_folder(const FilmPlan& plan, const LoadedFilm& film, const FilmStart&
   const SceneDef& scene = film.script.scene();
   check_save_states(plan.save_states, scene, start.path, start.kept_frames());
   check_rows_and_motion(start.path, film.bodies, static_cast<int>(scene.colliders.size()), start.kept_frames());
-  if (plan.pictures == FilmPictures::all) check_pictures(start.path / "frames", start.kept_frames());
+  if (plan.pictures == FilmPictures::all && !plan.film_only) check_pictures(start.path / "frames", start.kept_frames());
 }
 
 void check_records(const FilmPlan& plan, const FilmStart& start) {
@@ -106,8 +108,10 @@ FilmStart check_film(const FilmPlan& plan, const LoadedFilm& film) {
   FilmStart start;
   start.path = plan.out.empty() ? std::filesystem::path("out") / scene.name : std::filesystem::path(plan.out);
   start.identity = identity_of(film.info, film.script, film.bodies, plan);
-  start.checkpoint_every = remembers_steps(film.script) ? 0 : plan.checkpoint_every;
+  start.checkpoint_every = remembers_steps(film.script) || plan.film_only ? 0 : plan.checkpoint_every;
   start.record_head = record_head(film.info, film.bodies);
+  if (plan.film_only && !run_program({"ffmpeg", "-version"}))
+    throw InputError("--film-only", "needs ffmpeg, which is not installed (Debian: ffmpeg)");
   std::error_code ignored;
   if (!plan.folder_is_locked && std::filesystem::is_directory(start.path, ignored))
     start.lock = std::make_unique<FolderLock>(start.path);
@@ -146,7 +150,7 @@ namespace {
 
 // Makes the frames; what goes wrong is in the result. Returns false when the film could not even be begun.
 bool make_frames(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const RunFolder& folder,
-                 const FilmSolvers& solvers, FilmResult& result) {
+                 const FilmSolvers& solvers, VideoEncoder* video, FilmResult& result) {
   const Stopwatch setup;
   Stopwatch loop;
   Progress progress(film.script.scene().frames, start.kept_frames(), plan.quiet);
@@ -163,7 +167,7 @@ bool make_frames(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const
   guarded([&] {
     Zone prepare("prepare film");
     log.emplace(folder, start.checkpoint_every, start.identity, start.kept_frames());
-    frames.emplace(plan, film, start, folder, solvers, *log);
+    frames.emplace(plan, film, start, folder, solvers, *log, video);
     result.setup_ms = setup.elapsed_ms();
     loop.lap_ms();
     prepare.finish();
@@ -179,12 +183,27 @@ bool make_frames(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const
   return frames.has_value();
 }
 
-void make_video(double fps, const RunFolder& folder, FilmResult& result) {
+void begin_video(const SceneDef& scene, const RunFolder& folder, std::optional<VideoEncoder>& video) {
+  video.emplace(folder.video(), scene.output.width, scene.output.height, scene.fps);
+}
+
+// Ends the video, so that it has the frames that are whole, neither fewer nor more.
+void finish_video(const FilmPlan& plan, const SceneDef& scene, const RunFolder& folder,
+                  std::optional<VideoEncoder>& video, FilmResult& result) {
   const Zone zone("video");
-  const VideoResult video = encode_video(folder.frames(), static_cast<int>(result.rows.size()), fps, folder.video());
-  result.video_written = video.outcome == VideoOutcome::written;
-  result.video_failed = video.outcome == VideoOutcome::failed;
-  result.video_message = video.message;
+  const auto frames = static_cast<int>(result.rows.size());
+  // The disk may have taken a frame, but not its row.
+  if (video->frames() > frames && !plan.film_only) {
+    begin_video(scene, folder, video);
+    video->add_files(folder.frames(), frames);
+  }
+  const VideoResult end = video->finish();
+  result.video_written = end.outcome == VideoOutcome::written;
+  result.video_failed = end.outcome == VideoOutcome::failed || (plan.film_only && !result.video_written);
+  result.encode_ms = end.cpu_ms / frames;
+  if (result.video_written) return;
+  result.video_message = fmt::format("no film: {}{}{}", end.reason, plan.film_only ? "" : "; the frames are whole",
+                                     end.told.empty() ? "" : ". " + end.told);
 }
 
 }  // namespace
@@ -193,11 +212,15 @@ FilmResult make_film(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
                      const FilmSolvers& solvers) {
   FilmResult result;
   result.kept_frames = start.kept_frames();
-  const bool begun = make_frames(plan, film, start, folder, solvers, result);
-  if (begun && plan.pictures != FilmPictures::none && plan.video && !result.rows.empty())
-    make_video(film.script.scene().fps, folder, result);
+  const SceneDef scene = film.script.scene();
+  std::optional<VideoEncoder> video;
+  if (plan.pictures == FilmPictures::all && plan.video) begin_video(scene, folder, video);
+  const bool begun = make_frames(plan, film, start, folder, solvers, video ? &*video : nullptr, result);
+  if (video && begun && !result.rows.empty()) finish_video(plan, scene, folder, video, result);
   return result;
 }
+
+std::string verdict_on(const FilmResult& result) { return verdict(work_of(result.rows, result.encode_ms)); }
 
 std::string write_records(const FilmResult& result, LoadedFilm& film, const RunFolder& folder,
                           const std::vector<ThreadTrace>* trace) {
@@ -211,7 +234,7 @@ std::string write_records(const FilmResult& result, LoadedFilm& film, const RunF
   info.video = result.video_written ? "video.mp4" : result.video_message;
   try {
     folder.write_info(info);
-    folder.write_profile(profile_json(result.rows));
+    folder.write_profile(profile_json(result.rows, verdict_on(result)));
     if (trace != nullptr) write_whole_file(folder.trace(), chrome_trace(*trace));
   } catch (const RunError& error) {
     return error.what();

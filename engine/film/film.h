@@ -68,6 +68,7 @@ struct FilmResult {
   std::string video_message;  // why there is no video
   bool video_written = false;
   bool video_failed = false;  // ffmpeg is there, and did not make it
+  double encode_ms = 0;       // its processor time for a frame of the video; 0: there is none
   double setup_ms = 0;
   double wall_ms = 0;  // of the loop
 };
@@ -75,6 +76,9 @@ struct FilmResult {
 // Makes the frames and the video. Whatever happens, the frames before it are whole, and `rows` tells of them.
 FilmResult make_film(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const RunFolder& folder,
                      const FilmSolvers& solvers);
+
+// Says which stage costs most, and what helps (output/verdict.h).
+std::string verdict_on(const FilmResult& result);
 
 // Writes what is known of the film at its end into run.json and profile.json, and the trace where there is one. Returns
 // what the disk refused; empty: nothing.

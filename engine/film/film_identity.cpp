@@ -40,6 +40,12 @@ nlohmann::ordered_json files_of(const Script& script, const std::vector<Body>& b
   return list;
 }
 
+// The pictures that a film leaves as files, which are none where it leaves nothing but itself.
+nlohmann::ordered_json images_of(const FilmPlan& plan) {
+  if (plan.film_only) return "film only";
+  return plan.pictures != FilmPictures::none;
+}
+
 }  // namespace
 
 std::string mesh_hash(const Body& body) {
@@ -63,7 +69,7 @@ std::string identity_of(const RunInfo& info, const Script& script, const std::ve
       {"program", fmt::format("{} {}", program_version(), hash_text_form(program_identity()))},
       {"kernels", info.kernel_variant},
       {"cpu", cpu_name()},
-      {"images", plan.pictures != FilmPictures::none},
+      {"images", images_of(plan)},
       {"gl", name_of(plan.gl)},
       {"vtu", plan.fields_every},
       {"meshes", meshes},

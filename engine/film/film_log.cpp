@@ -67,7 +67,7 @@ void FilmLog::note_rows(Pictures* pictures) {
   for (const Pictures::Written& frame : written) {
     if (whole_ == int(rows_.size())) break;  // drawn, but its row never came
     rows_[whole_].render_ms = frame.render_ms;
-    rows_[whole_].encode_ms = frame.encode_ms;
+    rows_[whole_].compress_ms = frame.compress_ms;
     note_row();
     settle_undrawn();
   }

@@ -32,7 +32,8 @@ struct FilmPlan {
 
   int threads = 0;  // of the solver; 0: all cores
   FilmPictures pictures = FilmPictures::all;
-  bool video = true;  // only with pictures
+  bool video = true;       // only with pictures of all frames
+  bool film_only = false;  // no files of the frames and no checkpoints; only with a video
   GlChoice gl = GlChoice::automatic;
   int error_every = 0;           // measure the error of equation 12 every so many frames; 0: never
   int fields_every = 0;          // write fields every so many frames; 0: never

@@ -95,7 +95,7 @@ bool FrameLoop::show(int frame, FrameRow& row) {
 }
 
 FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const RunFolder& folder,
-                     const FilmSolvers& solvers, FilmLog& log)
+                     const FilmSolvers& solvers, FilmLog& log, VideoEncoder* video)
     : plan_(plan),
       script_(film.script),
       bodies_(film.bodies),
@@ -108,7 +108,8 @@ FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
       verifier_(start.verifier ? &*start.verifier : nullptr) {
   if (plan.pictures != FilmPictures::none) {
     drawn_.emplace(scene_, bodies_, set_, caption_font());
-    pictures_.emplace(drawn_->stage(), plan.gl, shaders_folder(), folder);
+    pictures_.emplace(drawn_->stage(), plan.gl, shaders_folder(),
+                      PictureTargets{&folder, !plan.film_only, video, first_});
   }
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     filmed_.push_back(

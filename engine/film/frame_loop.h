@@ -19,9 +19,9 @@ namespace supple {
 // A film in progress.
 class FrameLoop {
  public:
-  // All that is passed must outlive this object.
+  // All that is passed must outlive this object. video: null where there shall be none.
   FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const RunFolder& folder,
-            const FilmSolvers& solvers, FilmLog& log);
+            const FilmSolvers& solvers, FilmLog& log, VideoEncoder* video);
 
   // Makes the frames that are left. Returns how it ended; `message` says why it failed.
   FilmEnd run(Progress& progress, std::string& message);

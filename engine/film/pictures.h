@@ -1,35 +1,48 @@
-// Draws and compresses frames, each on a thread of its own that is fed through a bounded queue: a slow disk slows the
-// film and loses nothing.
+// Draws frames, compresses them and hands them to the film's encoder: stages with threads of their own that are
+// connected by bounded queues, so that a slow stage slows the film and loses nothing. Frames leave in the order in
+// which they were put.
 #pragma once
 
 #include <filesystem>
+#include <future>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "base/queue.h"
 #include "output/run_folder.h"
+#include "output/video.h"
 #include "render/renderer.h"
 
 namespace supple {
 
+// Where frames go. All that it points to must outlive the pictures.
+struct PictureTargets {
+  const RunFolder* folder;
+  bool files = true;             // frames become PNG files
+  VideoEncoder* film = nullptr;  // null: there is no film
+  int kept_frames = 0;           // of an earlier run: files with which the film begins
+};
+
 class Pictures {
  public:
-  // The folder must outlive it.
-  Pictures(const Stage& stage, GlChoice gl, const std::filesystem::path& shaders, const RunFolder& folder);
+  Pictures(const Stage& stage, GlChoice gl, const std::filesystem::path& shaders, const PictureTargets& targets);
   ~Pictures() { finish(); }
 
   // Queues a frame for drawing. Returns false when a stage has failed.
   bool put(int frame, DrawList list) { return lists_.push({frame, std::move(list)}); }
 
-  // Waits until every frame that was put is on the disk.
+  // Waits until every frame that was put is where it belongs.
   void finish();
 
-  // The frames that reached the disk since this was called last, in their order, and their times.
+  // The frames that are on the disk, or without files in the film, since this was called last, in their order, and
+  // their times.
   struct Written {
     int frame;
-    double render_ms, encode_ms;
+    double render_ms;
+    std::optional<double> compress_ms;  // only with files
   };
   std::vector<Written> take_written();
 
@@ -39,21 +52,28 @@ class Pictures {
   std::string backend, renderer, version;
 
  private:
-  struct Drawn {
+  struct Picture {
     int frame;
     double render_ms;
     Image image;
+    double compress_ms = 0;
+    std::vector<std::uint8_t> png;  // empty without files
   };
 
   template <class Work>
   void guarded(const Work& work);
   void draw_all(const Stage& stage, GlChoice gl, const std::filesystem::path& shaders);
-  void compress_all();
+  bool pass_on(Picture picture);
+  void compress_all(int number);
+  void write_all();
+  void add_to_film(const Image& image);
 
-  const RunFolder& folder_;
+  const PictureTargets targets_;
   BoundedQueue<std::pair<int, DrawList>> lists_;
-  BoundedQueue<Drawn> images_;
-  std::thread drawing_, compressing_;
+  BoundedQueue<std::packaged_task<Picture()>> drawn_;  // to be compressed
+  BoundedQueue<std::future<Picture>> pictures_;        // the same, in the order in which they are written
+  std::thread drawing_, writing_;
+  std::vector<std::thread> compressing_;
   std::mutex mutex_;
   std::string error_;             // guarded, as what follows
   std::vector<Written> written_;  // and not yet taken

@@ -1,8 +1,13 @@
-// Runs other programs (ffmpeg, gnuplot, supple itself for a part of its work) to their end, without a shell.
+// Runs other programs (ffmpeg, gnuplot, supple itself for a part of its work) without a shell, to their end or beside
+// this one.
 #pragma once
 
+#include <sys/types.h>
+
+#include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,6 +16,7 @@ namespace supple {
 struct ProgramEnd {
   int status;          // as waitpid gives it
   std::string output;  // the last 4 kB of standard output and standard error
+  double cpu_ms = 0;   // processor time of all its threads
 };
 
 // Looks the program up in PATH and runs it with an empty standard input. Returns nothing when it is not installed.
@@ -18,6 +24,34 @@ struct ProgramEnd {
 // program that can be stopped does not outlive this process or thread: it gets SIGTERM when that ends, however it ends.
 // Several threads may call this.
 std::optional<ProgramEnd> run_program(const std::vector<std::string>& words, const std::function<bool()>& stop = {});
+
+// A program that runs beside this one and reads from its standard input what it is given. Ctrl-C on the terminal does
+// not reach it. Only one thread may use it at a time.
+class FedProgram {
+ public:
+  // Looks the program up in PATH and starts it. It does not outlive the calling thread: it gets SIGKILL when that ends,
+  // however it ends.
+  explicit FedProgram(const std::vector<std::string>& words);
+  // Ends it with SIGKILL, unless its end has been waited for.
+  ~FedProgram();
+  FedProgram(const FedProgram&) = delete;
+  FedProgram& operator=(const FedProgram&) = delete;
+
+  // Gives it bytes, and waits until it has taken them. Returns false once it takes no more, as after its death; no
+  // SIGPIPE comes of that.
+  bool write(std::span<const std::uint8_t> bytes);
+
+  // Closes its input and waits for its end. Returns nothing when the program is not installed or cannot be started.
+  std::optional<ProgramEnd> finish();
+
+ private:
+  bool wait_for_room();
+  void close_input();
+
+  pid_t child_ = -1;
+  int input_ = -1, output_ = -1;  // our ends of the pipes; -1: closed
+  std::string told_;              // the last of what it has written
+};
 
 // Gives "was ended by signal 9" or "ended with status 1".
 std::string how_it_ended(const ProgramEnd& end);

@@ -1,5 +1,6 @@
-// Reads and writes PNG images. Level 3 without row filters is several times faster than libpng's defaults on rendered
-// frames, and hardly larger. This is the only place that knows libpng.
+// Reads and writes PNG images. libdeflate writes them at level 1 without row filters: the fastest of the settings tried
+// that did not make files larger than zlib does at level 3, and 1.8 times as fast. This is the only place that knows
+// libdeflate, and libpng, which reads.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +9,9 @@
 #include <vector>
 
 namespace supple {
+
+// A file's content: 8-bit RGB, rows from the top. Equal images give equal bytes.
+std::vector<std::uint8_t> png_bytes(int width, int height, std::span<const std::uint8_t> rgb);
 
 // Writes 8-bit RGB, rows from the top. The file is written under a temporary name and renamed, so that a file that
 // exists is whole. Throws RunError when the disk refuses.

@@ -47,7 +47,7 @@ std::vector<StageSummary> summarize(const std::vector<FrameRow>& rows) {
                               {"change", [](const FrameRow& r) { return r.change_ms; }},
                               {"draw", [](const FrameRow& r) { return r.draw_ms; }},
                               {"render", [](const FrameRow& r) { return r.render_ms; }},
-                              {"encode", [](const FrameRow& r) { return r.encode_ms; }}};
+                              {"compress", [](const FrameRow& r) { return r.compress_ms; }}};
   std::vector<StageSummary> result;
   for (const Stage& stage : stages) {
     std::vector<double> values;

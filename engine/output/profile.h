@@ -40,8 +40,9 @@ struct FrameRow {
   int frame = 0;
   double time_s = 0;
   double step_ms = 0;
-  std::optional<double> change_ms;  // time to apply what a replay changes; absent where it changes nothing
-  std::optional<double> draw_ms, render_ms, encode_ms;  // absent without images
+  std::optional<double> change_ms;           // time to apply what a replay changes; absent where it changes nothing
+  std::optional<double> draw_ms, render_ms;  // absent where nothing is drawn
+  std::optional<double> compress_ms;         // of the frame's file; absent without one
   std::uint64_t state_hash = 0;
   std::vector<BodyRow> bodies;
 };
@@ -63,7 +64,8 @@ struct StageSummary {
 std::vector<StageSummary> summarize(const std::vector<FrameRow>& rows);
 
 // Writes rows as text (profile_json.cpp): all rows of a run, or one row as a line of its own.
-std::string profile_json(const std::vector<FrameRow>& rows);
+// verdict: on the whole run (verdict.h); empty: none.
+std::string profile_json(const std::vector<FrameRow>& rows, const std::string& verdict = "");
 std::string row_line(const FrameRow& row);
 
 // Reads rows back. Throws InputError naming the file where it cannot be read or is not such a text.

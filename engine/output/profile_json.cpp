@@ -57,7 +57,7 @@ Json json_of(const FrameRow& row) {
   if (row.change_ms) frame["change_ms"] = rounded_ms(*row.change_ms);
   if (row.draw_ms) frame["draw_ms"] = rounded_ms(*row.draw_ms);
   if (row.render_ms) frame["render_ms"] = rounded_ms(*row.render_ms);
-  if (row.encode_ms) frame["encode_ms"] = rounded_ms(*row.encode_ms);
+  if (row.compress_ms) frame["compress_ms"] = rounded_ms(*row.compress_ms);
   frame["state_hash"] = hash_text_form(row.state_hash);
   frame["bodies"] = Json::array();
   for (const BodyRow& body : row.bodies) frame["bodies"].push_back(json_of(body));
@@ -108,7 +108,7 @@ FrameRow frame_row(const Json& json) {
   read_if_there(json, "change_ms", row.change_ms);
   read_if_there(json, "draw_ms", row.draw_ms);
   read_if_there(json, "render_ms", row.render_ms);
-  read_if_there(json, "encode_ms", row.encode_ms);
+  read_if_there(json, "compress_ms", row.compress_ms);
   row.state_hash = std::stoull(json.at("state_hash").get<std::string>(), nullptr, 16);
   for (const Json& body : json.at("bodies")) row.bodies.push_back(body_row(body));
   return row;
@@ -145,7 +145,7 @@ std::vector<FrameRow> read_profile(const std::filesystem::path& path) {
   });
 }
 
-std::string profile_json(const std::vector<FrameRow>& rows) {
+std::string profile_json(const std::vector<FrameRow>& rows, const std::string& verdict) {
   Json frames = Json::array();
   for (const FrameRow& row : rows) frames.push_back(json_of(row));
   Json first, rest;
@@ -156,6 +156,7 @@ std::string profile_json(const std::vector<FrameRow>& rows) {
   Json document;
   document["frames"] = std::move(frames);
   document["summary"] = {{"frames", rows.size()}, {"first_frame", first}, {"without_first_frame", rest}};
+  if (!verdict.empty()) document["summary"]["verdict"] = verdict;
   return exact_json_text(document, 1) + "\n";
 }
 

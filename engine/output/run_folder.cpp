@@ -142,7 +142,7 @@ RunFolder::RunFolder(const std::filesystem::path& path, int kept_frames) : path_
     remove_run(path);
   }
   remove_frames_from(path / "frames", kept_frames);
-  for (const char* part : {"video.mp4", "profile.json", "trace.json"}) std::filesystem::remove(path / part, error);
+  for (const char* part : {"video.mp4", "video.part.mp4", "profile.json", "trace.json"}) std::filesystem::remove(path / part, error);
   for (const char* part : {"frames", "motion", "checkpoint"}) make_folder(path / part);
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/text.h"
 #include "output/json_text.h"
+#include "output/verdict.h"
 
 namespace supple {
 namespace {
@@ -88,7 +89,7 @@ std::string deadline_text(const Deadline& deadline) {
   return fmt::format(
       "  Deadline {:.1f} ms: of {} frames {} are late by wall time (from a frame's begin to its end on the thread that "
       "makes it,\n  including the wait for later stages), {} by work (the sum of its step, draw list, render and "
-      "encode).\n",
+      "compress).\n",
       deadline.ms, deadline.frames, deadline.late_wall, deadline.late_work);
 }
 
@@ -129,7 +130,7 @@ Deadline deadline_of(const ZoneProfile& profile) {
   Deadline deadline{1000 / profile.run.fps};
   std::vector<const ZoneTimes*> stages;
   for (const ZoneTimes& zone : profile.zones) {
-    for (const char* stage : {"frame/step", "frame/draw list", "render", "encode"}) {
+    for (const char* stage : {"frame/step", "frame/draw list", "render", "compress"}) {
       if (zone.path == stage) stages.push_back(&zone);
     }
   }
@@ -183,6 +184,7 @@ std::string summary_json(const ZoneProfile& profile) {
                       {"frames", deadline.frames},
                       {"late_wall", deadline.late_wall},
                       {"late_work", deadline.late_work}};
+  json["verdict"] = verdict(work_of(profile));
   for (const SlowFrame& slow : slow_frames(profile, 3))
     json["slow_frames"].push_back({{"frame", slow.frame}, {"ms", slow.ms}, {"zone", slow.zone}});
   for (const SetupTimes& row : profile.setup) json["setup_ms"][row.name] = median_of(row.ms);

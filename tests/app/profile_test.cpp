@@ -67,7 +67,7 @@ TEST(Profile, OfASceneLeavesZonesTraceAndPlot) {
   for (const auto& event : trace["traceEvents"]) {
     if (event["name"] == "thread_name") tracks.push_back(event["args"]["name"]);
   }
-  for (const char* track : {"main", "render", "encode"})
+  for (const char* track : {"main", "render", "compress 1", "output"})
     EXPECT_NE(std::ranges::find(tracks, track), tracks.end()) << track;
   EXPECT_TRUE(std::filesystem::exists(out / "frame-times.csv"));
   EXPECT_EQ(std::filesystem::exists(out / "frame-times.svg"), result.err.find("gnuplot") == std::string::npos);

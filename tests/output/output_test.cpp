@@ -92,7 +92,7 @@ TEST(Profile, LeavesOutWhatWasNotUsedAndTheFirstFrame) {
   std::vector<FrameRow> rows(3, row);
   rows[1].step_ms = rows[2].step_ms = 2;
   const std::string json = profile_json(rows);
-  for (const char* absent : {"render_ms", "encode_ms", "\"error\"", "jiggle", "collide_ms"})
+  for (const char* absent : {"render_ms", "compress_ms", "\"error\"", "jiggle", "collide_ms"})
     EXPECT_EQ(json.find(absent), std::string::npos) << absent;
   EXPECT_EQ(summarize(rows)[0].rest.max, 2);
   EXPECT_EQ(summarize(rows)[0].first, 100);
@@ -107,6 +107,7 @@ TEST(Profile, RowsComeBackFromTheirText) {
   row.time_s = 8.0 / 30;
   row.step_ms = 12.25;
   row.render_ms = 3.5;
+  row.compress_ms = 4.25;
   row.state_hash = 0xfedcba9876543210u;
   BodyRow body;
   body.name = "soft";

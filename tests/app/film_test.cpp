@@ -1,0 +1,225 @@
+// Tests the film itself: how many frames it has, their colours, what becomes of it when ffmpeg dies or the run is
+// ended, and a film without files of its frames.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <fstream>
+
+#include "output/child_program.h"
+#include "output/png_file.h"
+#include "output/video.h"
+#include "support/bodies.h"
+#include "support/program.h"
+
+namespace supple {
+namespace {
+
+using test::read_file;
+using test::Result;
+using test::run;
+
+bool has_ffmpeg() {
+  const auto told = run_program({"ffmpeg", "-encoders"});
+  return told && told->status == 0 && run_program({"ffprobe", "-version"});
+}
+
+class FilmOfABar : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!has_ffmpeg()) GTEST_SKIP() << "ffmpeg is not installed";
+    std::ofstream(folder_.path / "bar.toml") << R"(frames = 12
+[[body]]
+name = "bar"
+box = { extent = [0.4, 0.2, 0.2], cells = [8, 4, 4] }
+material = "jelly"
+color = [0.9, 0.35, 0.05]
+[[body.handles]]
+name = "end"
+select = { box = [[0, 0, 0], [0.1, 1, 1]] }
+[output]
+width = 320
+height = 180
+samples = 1
+)";
+  }
+  Result film(const std::string& out, std::vector<std::string> more = {}, const std::filesystem::path& signal_when = {},
+              int signal = SIGINT) const {
+    more.insert(more.begin(), {"render", "bar.toml", "--quiet", "--out", out});
+    return run(folder_.path, more, signal_when, signal);
+  }
+  std::filesystem::path video(const std::string& out) const { return folder_.path / out / "video.mp4"; }
+  int pictures(const std::string& out) const {
+    const std::filesystem::directory_iterator files(folder_.path / out / "frames");
+    return static_cast<int>(std::count_if(begin(files), end(files), [](const auto& f) { return looks_whole(f); }));
+  }
+  // Puts a program in the place of ffmpeg. Returns what is to stand before the command line of a shell.
+  std::string with_ffmpeg(const std::string& script) const {
+    std::filesystem::create_directory(folder_.path / "bin");
+    std::ofstream(folder_.path / "bin" / "ffmpeg") << "#!/bin/sh\n" << script << "\n";
+    chmod((folder_.path / "bin" / "ffmpeg").c_str(), 0755);
+    return "PATH=$PWD/bin:$PATH";
+  }
+  Result in_shell(const std::string& line) const {
+    std::ofstream(folder_.path / "line.sh") << "cd '" << folder_.path.string() << "'\n" << line << "\n";
+    const int status = std::system(
+        fmt::format("bash '{0}/line.sh' > '{0}/stdout.txt' 2> '{0}/stderr.txt'", folder_.path.string()).c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(folder_.path / "stdout.txt"),
+            read_file(folder_.path / "stderr.txt")};
+  }
+  // What ffprobe says of the film's colours.
+  std::string colours(const std::string& out) const {
+    const auto told = run_program({"ffprobe", "-v", "error", "-select_streams", "v:0", "-show_entries",
+                                   "stream=color_range,color_space,color_transfer,color_primaries,pix_fmt", "-of",
+                                   "default=noprint_wrappers=1", video(out).string()});
+    return told ? told->output : "";
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(FilmOfABar, HasItsFramesAndSaysInWhichColours) {
+  ASSERT_EQ(film("out").status, 0);
+  EXPECT_EQ(count_video_frames(video("out")), 12);
+  EXPECT_EQ(pictures("out"), 12);
+  const std::string told = colours("out");
+  for (const char* line : {"pix_fmt=yuv420p\n", "color_range=tv\n", "color_space=bt709\n", "color_primaries=bt709\n",
+                           "color_transfer=iec61966-2-1\n"})
+    EXPECT_NE(told.find(line), std::string::npos) << told;
+}
+
+// Flat patches, since chroma is stored at half the size and edges are smoothed.
+TEST_F(FilmOfABar, ShowsColoursAsTheyAreInTheFrames) {
+  constexpr int side = 64;
+  const std::vector<std::array<int, 3>> patches = {{230, 89, 13}, {255, 0, 0},     {0, 255, 0},     {0, 0, 255},
+                                                   {0, 0, 0},     {255, 255, 255}, {128, 128, 128}, {204, 153, 102},
+                                                   {20, 40, 90},  {240, 200, 20}};
+  const int width = side * int(patches.size());
+  const auto patch = [&](int x) { return patches[std::size_t(x / side)]; };
+  std::vector<std::uint8_t> rgb;
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < width; ++x)
+      for (const int value : patch(x)) rgb.push_back(std::uint8_t(value));
+  VideoEncoder encoder(folder_.path / "patches.mp4", width, side, 30);
+  for (int frame = 0; frame < 3; ++frame) EXPECT_TRUE(encoder.add(rgb));
+  ASSERT_EQ(encoder.finish().outcome, VideoOutcome::written);
+  const auto decoded = run_program({"ffmpeg", "-nostdin", "-y", "-loglevel", "error", "-i",
+                                    (folder_.path / "patches.mp4").string(), (folder_.path / "%d.png").string()});
+  ASSERT_TRUE(decoded && decoded->status == 0);
+  for (const char* file : {"1.png", "3.png"}) {
+    const PngImage shown = read_png(folder_.path / file);
+    ASSERT_EQ(shown.rgb.size(), rgb.size());
+    for (int x = side / 2; x < width; x += side) {
+      for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(shown.rgb[(std::size_t(side / 2) * width + x) * 3 + c], patch(x)[c], 3) << x << ' ' << c;
+    }
+  }
+}
+
+TEST_F(FilmOfABar, WithoutFilesIsTheSameFilm) {
+  ASSERT_EQ(film("a").status, 0);
+  const Result only = film("b", {"--film-only"});
+  ASSERT_EQ(only.status, 0) << only.err;
+  EXPECT_EQ(read_file(video("a")), read_file(video("b")));
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path / "b" / "frames"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.path / "b" / "checkpoint" / "state"));
+  EXPECT_EQ(test::profile_of(folder_.path / "b")["frames"].size(), 12u);
+
+  // A run that was killed is started anew.
+  EXPECT_EQ(film("c", {"--film-only", "--frames", "20000"}, folder_.path / "c" / "motion" / "bar.pc2", SIGKILL).status,
+            -SIGKILL);
+  const Result on = film("c", {"--film-only", "--resume"});
+  EXPECT_EQ(on.status, 0) << on.err;
+  EXPECT_NE(on.err.find("has no checkpoint yet; starting with the first frame"), std::string::npos) << on.err;
+  EXPECT_EQ(read_file(video("a")), read_file(video("c")));
+  EXPECT_FALSE(std::filesystem::exists(folder_.path / "c" / "video.part.mp4"));
+
+  // A checkpoint that has files of its frames belongs to another kind of film.
+  const Result other = film("a", {"--film-only", "--resume"});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_NE(other.err.find("images: true and \"film only\""), std::string::npos) << other.err;
+  EXPECT_EQ(pictures("a"), 12);
+  EXPECT_EQ(film("a", {"--film-only", "--no-video"}).status, 2);
+}
+
+TEST_F(FilmOfABar, WithoutFilesNeedsFfmpegToTheEnd) {
+  const std::string program = fmt::format("'{}' render bar.toml --quiet --film-only", SUPPLE_PROGRAM);
+  const Result without = in_shell("PATH=/nowhere " + program);
+  EXPECT_EQ(without.status, 2);
+  EXPECT_EQ(without.err, "--film-only: needs ffmpeg, which is not installed (Debian: ffmpeg)\n");
+  EXPECT_FALSE(std::filesystem::exists(folder_.path / "out"));
+  const Result dying = in_shell(with_ffmpeg("[ \"$1\" = -version ] || { head -c 1000 > /dev/null; kill -9 $$; }") +
+                                " " + program + " --set output.width=640 --set output.height=480");
+  EXPECT_EQ(dying.status, 1) << dying.err;
+  EXPECT_NE(dying.err.find("supple: no film: ffmpeg was ended by signal 9\n"), std::string::npos) << dying.err;
+  EXPECT_EQ(dying.err.find("whole"), std::string::npos) << dying.err;
+  EXPECT_FALSE(std::filesystem::exists(video("out/bar")));
+}
+
+TEST_F(FilmOfABar, AnEncoderThatDiesInTheMiddleCostsNoFrame) {
+  // Large pictures, so that the pipe holds but one of them.
+  const std::string program =
+      fmt::format("'{}' render bar.toml --quiet --set output.width=640 --set output.height=480", SUPPLE_PROGRAM);
+  const std::pair<const char*, const char*> ends[] = {
+      {"head -c 3000000 > /dev/null; echo out of luck; kill -9 $$",
+       "supple: no film: ffmpeg was ended by signal 9; the frames are whole. out of luck\n"},
+      {"exec < /dev/null; sleep 1; exit 1", "supple: no film: ffmpeg ended with status 1; the frames are whole\n"},
+      {"head -c 3000000 > /dev/null; exit 0",
+       "supple: no film: ffmpeg ended before it had all frames; the frames are whole\n"},
+      {"yes '0123456789' | head -c 1000000; cat > /dev/null; exit 3", "supple: no film: ffmpeg ended with status 3"}};
+  for (const auto& [script, message] : ends) {
+    const Result result = in_shell(with_ffmpeg(script) + " " + program);
+    EXPECT_EQ(result.status, 1) << result.err;
+    EXPECT_NE(result.err.find(message), std::string::npos) << result.err;
+    EXPECT_EQ(pictures("out/bar"), 12) << script;
+    EXPECT_EQ(test::profile_of(folder_.path / "out" / "bar")["frames"].size(), 12u);
+    EXPECT_FALSE(std::filesystem::exists(video("out/bar")));
+    EXPECT_FALSE(std::filesystem::exists(folder_.path / "out" / "bar" / "video.part.mp4"));
+  }
+}
+
+// A terminal sends SIGINT to all programs of the command.
+TEST_F(FilmOfABar, IsWholeUpToAnInterruptOfTheWholeGroup) {
+  for (const char* more : {"", "--film-only"}) {
+    std::filesystem::remove_all(folder_.path / "out");
+    const Result result =
+        in_shell(fmt::format("set -m\n'{}' render bar.toml --quiet --frames 20000 {} &\nprogram=$!\n"
+                             "until [ -s out/bar/motion/bar.pc2 ]; do sleep 0.01; done\nsleep 0.5\n"
+                             "kill -INT -$program\nwait $program",
+                             SUPPLE_PROGRAM, more));
+    EXPECT_EQ(result.status, 130) << result.err;
+    const auto frames = static_cast<int>(test::profile_of(folder_.path / "out" / "bar")["frames"].size());
+    EXPECT_GT(frames, 0);
+    EXPECT_EQ(count_video_frames(video("out/bar")), frames);
+    EXPECT_EQ(pictures("out/bar"), *more == '\0' ? frames : 0);
+  }
+}
+
+TEST_F(FilmOfABar, GoesOnFromTheFilesOfItsFrames) {
+  ASSERT_EQ(film("whole", {"--frames", "20"}).status, 0);
+  ASSERT_EQ(film("cut", {"--no-video"}).status, 0);
+  ASSERT_EQ(film("cut", {"--resume", "--frames", "20"}).status, 0);
+  EXPECT_EQ(read_file(video("whole")), read_file(video("cut")));
+  ASSERT_EQ(film("cut", {"--resume", "--frames", "20"}).status, 0);  // no frame is made
+  EXPECT_EQ(read_file(video("whole")), read_file(video("cut")));
+
+  // A file that begins and ends as it should and is damaged between costs the film and nothing else.
+  const std::filesystem::path frame = folder_.path / "cut" / "frames" / "000003.png";
+  std::string bytes = read_file(frame);
+  bytes[bytes.size() / 2] ^= 1;
+  std::ofstream(frame, std::ios::binary) << bytes;
+  const Result damaged = film("cut", {"--resume", "--frames", "22"});
+  EXPECT_EQ(damaged.status, 1);
+  EXPECT_NE(damaged.err.find("supple: no film: " + (std::filesystem::path("cut") / "frames" / "000003.png").string()),
+            std::string::npos)
+      << damaged.err;
+  EXPECT_EQ(pictures("cut"), 22);
+  EXPECT_FALSE(std::filesystem::exists(video("cut")));
+}
+
+}  // namespace
+}  // namespace supple
