@@ -5,15 +5,14 @@
 #include "film.glsl"
 #include "lighting.glsl"
 #include "shadow.glsl"
-uniform usampler2DMS visible;     // by sample: number of the triangle, from one; zero: none
+uniform usampler2DMS visible;     // by sample: patch (8 bits) and number of the triangle, from one; zero: none
 uniform sampler2DMS depths;
 uniform samplerBuffer places;     // by vertex: x y z, and the open sky
 uniform samplerBuffer normals;    // by vertex
-uniform usamplerBuffer triangles; // three vertices, and the mesh
-uniform samplerBuffer faces;      // by triangle: its normal and its mesh, in bytes
-uniform samplerBuffer paint;      // by vertex, two texels: distances to the layers
+uniform usamplerBuffer triangles; // three vertices; mesh (16 bits), covering layer (4 bits), bordering layers (8 bits)
+uniform samplerBuffer paint;      // by vertex and layer: distances, eight for each vertex
 uniform samplerBuffer squares;    // by vertex: place in the printed pattern
-uniform samplerBuffer materials;  // by mesh, twelve texels
+uniform samplerBuffer materials;  // by mesh, eighteen texels
 uniform vec3 depth_scale;         // see DepthScale; the third is a pixel's edge at distance one
 uniform vec2 sample_places[SAMPLES];
 out vec4 pixel;
@@ -29,7 +28,9 @@ vec3 weights_on(vec3 ray, vec3 from_eye, vec3 side_b, vec3 side_c) {
 // A point of a triangle, as seen through a place in the picture.
 struct Seen {
   ivec3 corners;
-  int mesh;
+  int material;            // its mesh's first texel
+  int covering;            // the layer that covers all of the triangle, or zero
+  uint bordering;          // layers above that one whose borders may run through it, by bit
   vec3 weights;            // of the corners
   vec3 right, up;          // how the weights change to the next pixel
   vec3 world, normal;
@@ -38,9 +39,11 @@ struct Seen {
 
 Seen look(uint number, vec2 at) {
   Seen seen;
-  uvec4 triangle = texelFetch(triangles, int(number) - 1);
+  uvec4 triangle = texelFetch(triangles, int(number & 0xffffffu) - 1);
   seen.corners = ivec3(triangle.xyz);
-  seen.mesh = int(triangle.w);
+  seen.material = 18 * int(triangle.w & 0xffffu);
+  seen.covering = int(triangle.w >> 16 & 15u);
+  seen.bordering = triangle.w >> 20;
   vec4 a = texelFetch(places, seen.corners.x), b = texelFetch(places, seen.corners.y), c = texelFetch(places, seen.corners.z);
   vec3 from_eye = a.xyz - eye, side_b = b.xyz - a.xyz, side_c = c.xyz - a.xyz;
   vec3 ray = ray_corner + at.x * ray_right + at.y * ray_up;
@@ -60,30 +63,19 @@ Seen look(uint number, vec2 at) {
   return seen;
 }
 
-#ifdef PAINTED
-// Lays four layers over a material; x, y, z: the distances to them at the corners.
-vec4 painted(vec4 material, Seen seen, int slot, int count, vec4 x, vec4 y, vec4 z, vec4 soft) {
-  vec4 d = seen.weights.x * x + seen.weights.y * y + seen.weights.z * z;
-  vec4 change = abs(seen.right.x * x + seen.right.y * y + seen.right.z * z) + abs(seen.up.x * x + seen.up.y * y + seen.up.z * z);
-  vec4 width = max(soft, 1.2 * change);
-  vec4 cover = 1.0 - smoothstep(-0.5 * width, 0.5 * width, d);
-  for (int i = 0; i < 4; ++i) material = mix(material, texelFetch(materials, slot + i), i < count ? cover[i] : 0.0);
-  return material;
-}
-#endif
-
 vec4 material_of(Seen seen) {
-  int slot = 12 * seen.mesh;
-  vec4 material = texelFetch(materials, slot);
+  vec4 material = texelFetch(materials, seen.material + seen.covering);
 #ifdef PAINTED
-  int layers = int(texelFetch(materials, slot + 11).x);
-  int step = 0;
-  do {  // four layers at a time
-    material = painted(material, seen, slot + 1 + 4 * step, layers - 4 * step,
-                       texelFetch(paint, 2 * seen.corners.x + step), texelFetch(paint, 2 * seen.corners.y + step),
-                       texelFetch(paint, 2 * seen.corners.z + step), texelFetch(materials, slot + 9 + step));
-    ++step;
-  } while (4 * step < layers);
+  uint left = seen.bordering;
+  do {  // one layer at a time, the lowest first; a block of pixels without a border goes through this once, for nothing
+    int layer = left == 0u ? 0 : int(log2(float(left & (~left + 1u))) + 0.5);
+    float a = texelFetch(paint, 8 * seen.corners.x + layer).r, b = texelFetch(paint, 8 * seen.corners.y + layer).r;
+    vec3 d = vec3(a, b, texelFetch(paint, 8 * seen.corners.z + layer).r);
+    float width = max(texelFetch(materials, seen.material + 9 + layer).r, 1.2 * (abs(dot(seen.right, d)) + abs(dot(seen.up, d))));
+    float cover = 1.0 - smoothstep(-0.5 * width, 0.5 * width, dot(seen.weights, d));
+    material = mix(material, texelFetch(materials, seen.material + 1 + layer), left == 0u ? 0.0 : cover);
+    left &= left - 1u;
+  } while (left != 0u);
 #endif
   return material;
 }
@@ -92,7 +84,7 @@ vec4 material_of(Seen seen) {
 // Computes the factor of the printed pattern on the colour, filtered over the pixel so that it neither flickers nor
 // breaks into dots.
 float print(Seen seen) {
-  float kind = texelFetch(materials, 12 * seen.mesh + 11).y;
+  float kind = texelFetch(materials, seen.material + 17).x;
   vec2 a = texelFetch(squares, seen.corners.x).xy, b = texelFetch(squares, seen.corners.y).xy, c = texelFetch(squares, seen.corners.z).xy;
   vec2 at = seen.weights.x * a + seen.weights.y * b + seen.weights.z * c;
   vec2 change = abs(seen.right.x * a + seen.right.y * b + seen.right.z * c) + abs(seen.up.x * a + seen.up.y * b + seen.up.z * c);
@@ -151,24 +143,18 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   uint number[SAMPLES];
   for (int i = 0; i < SAMPLES; ++i) number[i] = texelFetch(visible, at, i).r;
-  // Samples are of one surface when they show the same mesh, faces that lean alike, and depths that such a face can
-  // have within a pixel. The first surface that is met and the second, if there is one, are shaded once each; a third
-  // counts as the second.
+  // Samples are of one surface when they show the same smooth patch at nearly the same depth. The first surface that is
+  // met and the second, if there is one, are shaded once each; a third counts as the second.
   uint first = 0u, second = 0u;
   for (int i = SAMPLES - 1; i >= 0; --i) first = number[i] == 0u ? first : number[i];
   if (first == 0u) discard;
-  vec4 face = texelFetch(faces, int(first) - 1);
-  vec3 n = 2.0 * face.xyz - 1.0;
-  vec3 middle = ray_corner + gl_FragCoord.x * ray_right + gl_FragCoord.y * ray_up;
-  float slant = max(abs(dot(n, middle)) / length(middle), 0.05);
-  float depth = -1.0, within = 2.0 * depth_scale.z * (1.0 + sqrt(max(0.0, 1.0 - slant * slant)) / slant);
+  float depth = -1.0;
   vec2 weight = vec2(0.0), first_place = vec2(0.0), second_place = vec2(0.0);
   for (int i = 0; i < SAMPLES; ++i) {
     float there = distance_of(at, i);
     bool covered = number[i] != 0u;
     depth = covered && depth < 0.0 ? there : depth;
-    vec4 other = texelFetch(faces, int(covered ? number[i] : first) - 1);
-    bool same = other.w == face.w && dot(2.0 * other.xyz - 1.0, n) > 0.6 && abs(there - depth) < within * depth;
+    bool same = number[i] >> 24 == first >> 24 && abs(there - depth) < 6.0 * depth_scale.z * depth;
     weight += covered ? (same ? vec2(1.0, 0.0) : vec2(0.0, 1.0)) : vec2(0.0);
     first_place += covered && same ? sample_places[i] : vec2(0.0);
     second_place += covered && !same ? sample_places[i] : vec2(0.0);

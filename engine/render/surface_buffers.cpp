@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/error.h"
 #include "render/color.h"
@@ -10,9 +11,9 @@
 namespace supple {
 namespace {
 
-// A mesh's material in texels of four floats: nine linear colours with gloss, of which the first is the uncovered
-// surface; the widths of the eight layers' borders; number of layers and kind of print.
-constexpr std::size_t material_texels = 12;
+// A mesh's material in texels of four floats: linear colours with gloss, of which the first is the uncovered surface and
+// eight are its layers; the widths of the layers' borders, one in each of eight texels; the kind of print.
+constexpr std::size_t material_texels = 18;
 
 void append_material(const DrawMesh& mesh, std::vector<float>& out) {
   const std::size_t begin = out.size();
@@ -23,13 +24,47 @@ void append_material(const DrawMesh& mesh, std::vector<float>& out) {
     out[begin + 4 * slot + 3] = static_cast<float>(gloss);
   };
   put(0, mesh.color, mesh.gloss);
-  const std::size_t layers = std::min<std::size_t>(mesh.layers.size(), 8);
-  for (std::size_t layer = 0; layer < layers; ++layer) {
+  for (std::size_t layer = 0; layer < std::min<std::size_t>(mesh.layers.size(), 8); ++layer) {
     put(layer + 1, mesh.layers[layer].color, mesh.layers[layer].gloss);
-    out[begin + 4 * 9 + layer] = static_cast<float>(mesh.layers[layer].soft);
+    out[begin + 4 * (layer + 9)] = static_cast<float>(mesh.layers[layer].soft);
   }
-  out[begin + 4 * 11] = static_cast<float>(layers);
-  out[begin + 4 * 11 + 1] = mesh.square.empty() ? 0.0f : mesh.printed == Printed::grid ? 1.0f : 2.0f;
+  out[begin + 4 * 17] = mesh.square.empty() ? 0.0f : mesh.printed == Printed::grid ? 1.0f : 2.0f;
+}
+
+// What the shader must know of a triangle's colours: its mesh (16 bits), the topmost layer that covers all of it or zero
+// (4 bits), and which layers above that one have a border on it or close by (8 bits). Most triangles have none.
+std::uint32_t packed_look(const DrawMesh& mesh, std::size_t index, const std::uint32_t* corners) {
+  std::uint32_t covering = 0, bordering = 0;
+  for (std::size_t layer = 0; layer < std::min<std::size_t>(mesh.layers.size(), 8); ++layer) {
+    const auto at = [&](int k) { return mesh.paint[corners[k]][layer]; };
+    const auto [low, high] = std::minmax({at(0), at(1), at(2)});
+    // The shader widens a border to the size of a pixel, in which the distance changes by less than on the triangle
+    // where pixels are smaller than triangles, and by what does not matter where they are larger.
+    const double reach = std::max(0.5 * mesh.layers[layer].soft, 0.6 * double(high - low));
+    if (low > reach) continue;
+    if (high < -reach) {
+      covering = static_cast<std::uint32_t>(layer + 1);
+      bordering = 0;
+    } else {
+      bordering |= 1u << layer;
+    }
+  }
+  return static_cast<std::uint32_t>(index) | covering << 16 | bordering << 20;
+}
+
+// Numbers the patches of a mesh by vertex, from `first` on: triangles that share a vertex belong to one patch. A crease
+// has vertices of its own on both sides, so a patch is smooth.
+void append_patches(const DrawMesh& mesh, unsigned first, std::vector<float>& out) {
+  std::vector<std::uint32_t> parent(mesh.occlusion.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto root = [&parent](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
+    for (std::size_t k = 1; k < 3; ++k) parent[root(mesh.triangles[t + k])] = root(mesh.triangles[t]);
+  }
+  for (std::uint32_t v = 0; v < parent.size(); ++v) out.push_back(static_cast<float>((first + 37 * root(v)) % 255));
 }
 
 }  // namespace
@@ -37,11 +72,12 @@ void append_material(const DrawMesh& mesh, std::vector<float>& out) {
 SurfaceBuffers::SurfaceBuffers(const GlTable& gl, const std::vector<DrawMesh>& meshes) : gl_(gl) { make_static(meshes); }
 
 SurfaceBuffers::~SurfaceBuffers() {
-  for (const Lookup* lookup : {&places_, &normals_, &triangles_, &faces_, &paint_, &squares_, &materials_}) {
+  for (const Lookup* lookup : {&places_, &normals_, &triangles_, &paint_, &squares_, &materials_}) {
     gl_.DeleteTextures(1, &lookup->texture);
     gl_.DeleteBuffers(1, &lookup->buffer);
   }
   gl_.DeleteBuffers(1, &indices_);
+  gl_.DeleteBuffers(1, &patches_);
   gl_.DeleteVertexArrays(1, &array_);
 }
 
@@ -58,7 +94,7 @@ void SurfaceBuffers::make_lookup(Lookup& lookup, GLenum format, std::size_t byte
 
 void SurfaceBuffers::make_static(const std::vector<DrawMesh>& meshes) {
   std::vector<std::uint32_t> triangles, indices;
-  std::vector<float> paint, squares, materials;
+  std::vector<float> paint, squares, materials, patches;
   unsigned vertices = 0;
   const bool printed = std::ranges::any_of(meshes, [](const DrawMesh& mesh) { return !mesh.square.empty(); });
   const bool painted = std::ranges::any_of(meshes, [](const DrawMesh& mesh) { return !mesh.layers.empty(); });
@@ -68,7 +104,7 @@ void SurfaceBuffers::make_static(const std::vector<DrawMesh>& meshes) {
                 0, 0};
     for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
       for (std::size_t k = 0; k < 3; ++k) triangles.push_back(vertices + mesh.triangles[t + k]);
-      triangles.push_back(static_cast<std::uint32_t>(m));
+      triangles.push_back(packed_look(mesh, m, &mesh.triangles[t]));
     }
     for (std::size_t v = 0; v < mesh.occlusion.size(); ++v) {
       place_data_.insert(place_data_.end(), {0, 0, 0, mesh.occlusion[v]});
@@ -78,6 +114,7 @@ void SurfaceBuffers::make_static(const std::vector<DrawMesh>& meshes) {
       squares.insert(squares.end(), square.begin(), square.end());
     }
     append_material(mesh, materials);
+    append_patches(mesh, static_cast<unsigned>(97 * m), patches);
     vertices += static_cast<unsigned>(mesh.occlusion.size());
     ranges_.push_back(range);
   }
@@ -91,13 +128,11 @@ void SurfaceBuffers::make_static(const std::vector<DrawMesh>& meshes) {
     for (const std::uint32_t vertex : casters) indices.push_back(ranges_[m].first_vertex + vertex);
   }
   normal_data_.assign(4 * std::size_t(vertices), 0.0f);
-  face_data_.assign(triangles.size(), 0);
   const std::size_t by_vertex = 4 * sizeof(float) * vertices;
   make_lookup(places_, GL_RGBA32F, by_vertex, nullptr, GL_STREAM_DRAW);
   make_lookup(normals_, GL_RGBA32F, by_vertex, nullptr, GL_STREAM_DRAW);
-  make_lookup(faces_, GL_RGBA8, face_data_.size(), nullptr, GL_STREAM_DRAW);
   make_lookup(triangles_, GL_RGBA32UI, triangles.size() * sizeof(std::uint32_t), triangles.data(), GL_STATIC_DRAW);
-  make_lookup(paint_, GL_RGBA32F, paint.size() * sizeof(float), paint.data(), GL_STATIC_DRAW);
+  make_lookup(paint_, GL_R32F, paint.size() * sizeof(float), paint.data(), GL_STATIC_DRAW);
   make_lookup(squares_, GL_RG32F, squares.size() * sizeof(float), squares.data(), GL_STATIC_DRAW);
   make_lookup(materials_, GL_RGBA32F, materials.size() * sizeof(float), materials.data(), GL_STATIC_DRAW);
 
@@ -106,6 +141,11 @@ void SurfaceBuffers::make_static(const std::vector<DrawMesh>& meshes) {
   gl_.BindBuffer(GL_ARRAY_BUFFER, places_.buffer);
   gl_.EnableVertexAttribArray(0);
   gl_.VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 4 * sizeof(float), nullptr);
+  gl_.GenBuffers(1, &patches_);
+  gl_.BindBuffer(GL_ARRAY_BUFFER, patches_);
+  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(patches.size() * sizeof(float)), patches.data(), GL_STATIC_DRAW);
+  gl_.EnableVertexAttribArray(1);
+  gl_.VertexAttribPointer(1, 1, GL_FLOAT, GL_FALSE, 0, nullptr);
   gl_.GenBuffers(1, &indices_);
   gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_);
   gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * sizeof(std::uint32_t)),
@@ -119,9 +159,7 @@ void SurfaceBuffers::upload(const std::vector<DrawMesh>& meshes, const std::vect
     SUPPLE_CHECK(positions[m].size(), ==, 3 * meshes[m].occlusion.size());
     float* place = place_data_.data() + 4 * std::size_t(ranges_[m].first_vertex);
     for (std::size_t i = 0; i < positions[m].size(); i += 3, place += 4) std::copy_n(&positions[m][i], 3, place);
-    compute_normals(positions[m], meshes[m].triangles, static_cast<std::uint8_t>(m),
-                    normal_data_.data() + 4 * std::size_t(ranges_[m].first_vertex),
-                    face_data_.data() + 4 * std::size_t(ranges_[m].first_triangle));
+    compute_normals(positions[m], meshes[m].triangles, normal_data_.data() + 4 * std::size_t(ranges_[m].first_vertex));
   }
   const auto put = [this](const Lookup& lookup, const auto& data) {
     gl_.BindBuffer(GL_TEXTURE_BUFFER, lookup.buffer);
@@ -129,7 +167,6 @@ void SurfaceBuffers::upload(const std::vector<DrawMesh>& meshes, const std::vect
   };
   put(places_, place_data_);
   put(normals_, normal_data_);
-  put(faces_, face_data_);
 }
 
 void SurfaceBuffers::draw(std::size_t mesh) const {
@@ -148,8 +185,8 @@ void SurfaceBuffers::draw_caster(std::size_t mesh) const {
 
 int SurfaceBuffers::bind(const Program& program, int unit) const {
   for (const auto& [name, lookup] :
-       {std::pair{"places", &places_}, {"normals", &normals_}, {"triangles", &triangles_}, {"faces", &faces_},
-        {"paint", &paint_}, {"squares", &squares_}, {"materials", &materials_}}) {
+       {std::pair{"places", &places_}, {"normals", &normals_}, {"triangles", &triangles_}, {"paint", &paint_},
+        {"squares", &squares_}, {"materials", &materials_}}) {
     program.set_texture(name, unit++, GL_TEXTURE_BUFFER, lookup->texture);
   }
   return unit;

@@ -28,7 +28,7 @@ class SurfaceBuffers {
   // Draws the triangles that cast one mesh's shadow, which may be fewer.
   void draw_caster(std::size_t mesh) const;
 
-  // Has a program's samplers places, normals, triangles, faces, paint, squares and materials read these buffers.
+  // Has a program's samplers places, normals, triangles, paint, squares and materials read these buffers.
   // Returns the first unit that is still free.
   int bind(const Program& program, int first_unit) const;
 
@@ -46,16 +46,14 @@ class SurfaceBuffers {
 
   const GlTable& gl_;
   std::vector<Range> ranges_;  // by mesh
-  GLuint array_ = 0, indices_ = 0;
+  GLuint array_ = 0, indices_ = 0, patches_ = 0;
   Lookup places_;     // by vertex: x y z, and the open sky
   Lookup normals_;    // by vertex
-  Lookup triangles_;  // three vertices and the mesh
-  Lookup faces_;      // by triangle: normal and mesh in bytes, for a quick look at which surfaces meet in a pixel
-  Lookup paint_;      // by vertex, two texels: distances to the eight layers
+  Lookup triangles_;  // three vertices, and packed_look
+  Lookup paint_;      // by vertex and layer: distances, eight for each vertex
   Lookup squares_;    // by vertex: place in the printed pattern
   Lookup materials_;  // by mesh, see material_texels
   std::vector<float> place_data_, normal_data_;
-  std::vector<std::uint8_t> face_data_;
 };
 
 }  // namespace supple

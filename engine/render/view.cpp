@@ -76,8 +76,7 @@ Camera framing(const Bounds& box, double fov_deg, double margin, double aspect) 
   return camera;
 }
 
-void compute_normals(const std::vector<float>& positions, const std::vector<std::uint32_t>& triangles, std::uint8_t tag,
-                     float* normals, std::uint8_t* faces) {
+void compute_normals(const std::vector<float>& positions, const std::vector<std::uint32_t>& triangles, float* normals) {
   const std::size_t vertices = positions.size() / 3;
   std::fill_n(normals, 4 * vertices, 0.0f);
   for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) {
@@ -90,10 +89,6 @@ void compute_normals(const std::vector<float>& positions, const std::vector<std:
       float* sum = &normals[4 * triangles[t + corner]];
       for (int k = 0; k < 3; ++k) sum[k] += n[k];
     }
-    const float scale = 127.5f / std::max(1e-30f, std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]));
-    std::uint8_t* face = faces + 4 * (t / 3);
-    for (int k = 0; k < 3; ++k) face[k] = static_cast<std::uint8_t>(128.0f + scale * n[k]);
-    face[3] = tag;
   }
   for (std::size_t i = 0; i < 4 * vertices; i += 4) {
     float* n = normals + i;

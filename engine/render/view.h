@@ -31,8 +31,7 @@ struct Rays {
 Rays rays_through(const Camera& camera, int width, int height);
 
 // Computes smooth normals (x y z and a zero by vertex): each vertex's normal is the sum of its triangles' normals,
-// weighted by area. Each triangle's own normal is written in bytes, from 0 for -1 to 255 for 1, with `tag` behind it.
-void compute_normals(const std::vector<float>& positions, const std::vector<std::uint32_t>& triangles, std::uint8_t tag,
-                     float* normals, std::uint8_t* faces);
+// weighted by area.
+void compute_normals(const std::vector<float>& positions, const std::vector<std::uint32_t>& triangles, float* normals);
 
 }  // namespace supple

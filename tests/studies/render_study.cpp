@@ -54,8 +54,10 @@ Take simulate(const std::filesystem::path& path, int frames, const std::vector<s
   }
   const std::vector<Skin> colliders = collider_skins(set.obstacles, bodies);
   Take take;
+  const Stage fine = make_stage(scene, bodies, drawn, set.obstacles, colliders, caption_font());
+  const Camera camera = make_camera(scene, fine);
+  fit_to_cameras(drawn, bodies, {camera}, scene.output.height);
   take.stage = make_stage(scene, bodies, drawn, set.obstacles, colliders, caption_font());
-  const Camera camera = make_camera(scene, take.stage);
   std::vector<std::unique_ptr<DrivenBody>> driven;
   for (std::size_t b = 0; b < bodies.size(); ++b)
     driven.push_back(std::make_unique<DrivenBody>(scene, bodies[b], models[b], set, scenes_own_solver(), &threads));
