@@ -1,13 +1,32 @@
 #include "film/drawn_film.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace supple {
 
-DrawnFilm::DrawnFilm(const SceneDef& scene, const std::vector<Body>& bodies, const CollisionSet& set,
+namespace {
+
+std::vector<Camera> cameras_of(const Script& script, const Stage& stage) {
+  std::vector<Camera> cameras = {make_camera(script.scene(), stage)};
+  const auto moves_camera = [](const TimedChange* change) { return change->path.starts_with("camera."); };
+  for (int frame = 0; frame < script.scene().frames; ++frame) {
+    if (std::ranges::any_of(script.at_work(frame), moves_camera))
+      cameras.push_back(make_camera(script.scene_at(frame), stage));
+  }
+  return cameras;
+}
+
+}  // namespace
+
+DrawnFilm::DrawnFilm(const Script& script, const std::vector<Body>& bodies, const CollisionSet& set,
                      const std::string& font) {
+  const SceneDef& scene = script.scene();
   for (const Body& body : bodies) drawn_.push_back(drawn_body(scene, body));
   collider_skins_ = collider_skins(set.obstacles, bodies);
+  // Cameras frame the bodies' boxes, which do not depend on the skins.
+  const Stage fine = make_stage(scene, bodies, drawn_, set.obstacles, collider_skins_, font);
+  fit_to_cameras(drawn_, bodies, cameras_of(script, fine), scene.output.height);
   stage_ = make_stage(scene, bodies, drawn_, set.obstacles, collider_skins_, font);
 }
 

@@ -6,12 +6,14 @@
 
 #include "film/draw_scene.h"
 #include "film/filmed_body.h"
+#include "scene/script.h"
 
 namespace supple {
 
 class DrawnFilm {
  public:
-  DrawnFilm(const SceneDef& scene, const std::vector<Body>& bodies, const CollisionSet& set, const std::string& font);
+  // The script tells all cameras of the film, to which the skins' resolution is fitted.
+  DrawnFilm(const Script& script, const std::vector<Body>& bodies, const CollisionSet& set, const std::string& font);
 
   const Stage& stage() const { return stage_; }
 

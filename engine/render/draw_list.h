@@ -24,6 +24,7 @@ enum class Printed { grid, checks };
 struct DrawMesh {
   std::string label;                         // caption; none when empty
   std::vector<std::uint32_t> triangles;      // vertex indices, three a triangle, anticlockwise from outside
+  std::vector<std::uint32_t> shadow_triangles;  // the same, those that cast its shadow; all of them when empty
   std::vector<float> occlusion;              // by vertex, from 1 (open sky) to 0 (no sky)
   std::vector<std::array<float, 8>> paint;   // by vertex: signed distance to each layer, negative where it covers
   std::vector<std::array<float, 2>> square;  // by vertex: place in a printed pattern, in squares; no pattern when empty

@@ -17,6 +17,7 @@
   F(PFNGLBUFFERSUBDATAPROC, BufferSubData)                                   \
   F(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)                 \
   F(PFNGLCLEARPROC, Clear)                                                   \
+  F(PFNGLCLEARBUFFERUIVPROC, ClearBufferuiv)                                 \
   F(PFNGLCLEARCOLORPROC, ClearColor)                                         \
   F(PFNGLCOMPILESHADERPROC, CompileShader)                                   \
   F(PFNGLCREATEPROGRAMPROC, CreateProgram)                                   \
@@ -35,6 +36,7 @@
   F(PFNGLDRAWELEMENTSPROC, DrawElements)                                     \
   F(PFNGLENABLEPROC, Enable)                                                 \
   F(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray)               \
+  F(PFNGLFINISHPROC, Finish)                                                 \
   F(PFNGLFRAMEBUFFERRENDERBUFFERPROC, FramebufferRenderbuffer)               \
   F(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D)                     \
   F(PFNGLGENBUFFERSPROC, GenBuffers)                                         \
@@ -44,6 +46,7 @@
   F(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                               \
   F(PFNGLGETERRORPROC, GetError)                                             \
   F(PFNGLGETINTEGERVPROC, GetIntegerv)                                       \
+  F(PFNGLGETMULTISAMPLEFVPROC, GetMultisamplefv)                             \
   F(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)                           \
   F(PFNGLGETPROGRAMIVPROC, GetProgramiv)                                     \
   F(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)                             \
@@ -57,10 +60,14 @@
   F(PFNGLREADPIXELSPROC, ReadPixels)                                         \
   F(PFNGLRENDERBUFFERSTORAGEMULTISAMPLEPROC, RenderbufferStorageMultisample) \
   F(PFNGLSHADERSOURCEPROC, ShaderSource)                                     \
+  F(PFNGLTEXBUFFERPROC, TexBuffer)                                           \
   F(PFNGLTEXIMAGE2DPROC, TexImage2D)                                         \
+  F(PFNGLTEXIMAGE2DMULTISAMPLEPROC, TexImage2DMultisample)                   \
   F(PFNGLTEXPARAMETERIPROC, TexParameteri)                                   \
   F(PFNGLUNIFORM1FPROC, Uniform1f)                                           \
   F(PFNGLUNIFORM1IPROC, Uniform1i)                                           \
+  F(PFNGLUNIFORM1UIPROC, Uniform1ui)                                         \
+  F(PFNGLUNIFORM2FVPROC, Uniform2fv)                                         \
   F(PFNGLUNIFORM3FPROC, Uniform3f)                                           \
   F(PFNGLUNIFORM4FPROC, Uniform4f)                                           \
   F(PFNGLUNIFORM4FVPROC, Uniform4fv)                                         \

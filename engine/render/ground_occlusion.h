@@ -11,6 +11,7 @@ namespace supple {
 class GroundOcclusion {
  public:
   static constexpr int cells = 128;  // number of cells along each side
+  static constexpr float unseen = 0.008f;  // a part of the sky so small that its lack is less than a level
 
   // Covers a square of the ground around the stage.
   GroundOcclusion(const Bounds& stage, double largest_body);
@@ -21,6 +22,7 @@ class GroundOcclusion {
   double origin_x() const { return origin_x_; }
   double origin_z() const { return origin_z_; }
   double extent() const { return extent_; }
+  double reach() const { return reach_; }  // how high a body may be to darken the ground [m]
 
  private:
   double origin_x_, origin_z_, extent_, reach_;  // [m]

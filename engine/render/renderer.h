@@ -1,22 +1,31 @@
 // Draws a stage with OpenGL 3.3: key light with shadow map, fill, rim and sky light, a ground that fades into the
 // background, and captions. All functions are called on the thread that made the renderer.
+//
+// Triangles are rasterised with several samples a pixel, but only their numbers are written (the visibility buffer of
+// Burns and Hunt 2013). A second pass shades each pixel once from that, and each sample on its own only where
+// different surfaces meet. So neither small triangles nor hidden ones cost shading.
 #pragma once
 
-#include <Eigen/Geometry>
 #include <filesystem>
+#include <memory>
 #include <string>
 
+#include "render/captions.h"
 #include "render/draw_list.h"
 #include "render/gl_context.h"
 #include "render/gl_table.h"
-#include "render/ground_occlusion.h"
-#include "render/mesh_buffers.h"
+#include "render/ground.h"
+#include "render/program.h"
+#include "render/shadow_map.h"
+#include "render/surface_buffers.h"
+#include "render/tile_buffer.h"
+#include "render/tiles.h"
 
 namespace supple {
 
 class Renderer {
  public:
-  // Throws RunError when there is no context, when the context is broken (a test triangle shows it), and when shaders
+  // Throws RunError when there is no context, when the context is broken (a test picture shows it), and when shaders
   // do not compile.
   Renderer(const Stage& stage, GlChoice choice, const std::filesystem::path& shaders);
   ~Renderer();
@@ -30,47 +39,30 @@ class Renderer {
   const std::string& version() const { return version_; }  // GL_VERSION
 
  private:
-  struct Target {
-    GLuint framebuffer = 0, color = 0, depth = 0;  // depth exists only where bodies are drawn
-  };
-  struct Label {
-    GLuint texture = 0;
-    int width = 0, height = 0;
-    Vec3 anchor = Vec3::Zero();
-  };
-
   void make_targets();
-  void make_label(std::size_t mesh);
-  void check_test_triangle();
+  void make_shading();
+  void check_test_picture();
   void upload(const DrawList& list);
-  void draw_shadow_map();
-  void draw_mesh(std::size_t mesh);
-  void draw_bodies(const Camera& camera);
-  void draw_ground(const Camera& camera);
-  void lay_bodies_over_ground();
-  void draw_labels(const Camera& camera);
-  void set_lights(GLuint program, const Camera& camera) const;
-
-  GLint uniform(GLuint program, const char* name) const { return gl_.GetUniformLocation(program, name); }
+  void draw_visibility(const Eigen::Matrix4f& view);
+  void shade(const Eigen::Matrix4f& view, const StageLight& light, const DrawList& list);
+  Image read_picture();
 
   Stage stage_;
   GlContext context_;
   GlTable gl_;
   std::string name_, version_;
-  GLuint body_program_ = 0, ground_program_ = 0, shadow_program_ = 0, label_program_ = 0, backdrop_program_ = 0,
-         layer_program_ = 0;
-  Target bodies_;    // antialiased; transparent where there is no body
-  Target resolved_;  // the same, one sample a pixel; its colour is layer_texture_
-  Target picture_;
-  GLuint layer_texture_ = 0;
-  GLuint shadow_framebuffer_ = 0, shadow_texture_ = 0, occlusion_texture_ = 0, empty_array_ = 0;
-  std::vector<MeshBuffers> meshes_;
-  std::vector<Label> labels_;  // one for each mesh
-  Bounds bounds_;              // bounds of the stage at rest, widened; lights and shadows cover them
+  Bounds bounds_;  // bounds of the stage at rest; lights and shadows cover them
   double largest_body_ = 1;
-  GroundOcclusion occlusion_;
-  Eigen::Matrix4f light_matrix_ = Eigen::Matrix4f::Identity();
-  Vec3 key_direction_;  // towards the light
+  GLuint visible_framebuffer_ = 0, visible_ = 0, depth_ = 0;  // number of the triangle in each sample, and its depth
+  GLuint picture_framebuffer_ = 0, picture_color_ = 0;
+  int samples_ = 1;  // that a pixel has
+  std::unique_ptr<Program> visibility_program_, shading_program_;
+  std::unique_ptr<SurfaceBuffers> surfaces_;
+  std::unique_ptr<ShadowMap> shadows_;
+  std::unique_ptr<Ground> ground_;
+  std::unique_ptr<Captions> captions_;
+  std::unique_ptr<TileBuffer> tile_buffer_;
+  Tiles tiles_;
 };
 
 }  // namespace supple

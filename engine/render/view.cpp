@@ -32,10 +32,36 @@ Eigen::Matrix4f look_at(const Vec3& eye, const Vec3& target) {
   return m.cast<float>();
 }
 
-Eigen::Matrix4f view_matrix(const Camera& camera, double aspect, const Vec3& center, double reach) {
+namespace {
+
+// Distances from the eye between which things are seen [m].
+struct Depths {
+  double near, far;
+};
+
+Depths depths_of(const Camera& camera, const Vec3& center, double reach) {
   const double distance = (camera.eye - center).norm();
-  const double near = std::max(0.02 * reach, distance - 2 * reach);
-  return perspective(camera.fov_deg, aspect, near, distance + 60 * reach) * look_at(camera.eye, camera.target);
+  return {std::max(0.02 * reach, distance - 2 * reach), distance + 60 * reach};
+}
+
+}  // namespace
+
+Eigen::Matrix4f view_matrix(const Camera& camera, double aspect, const Vec3& center, double reach) {
+  const Depths depths = depths_of(camera, center, reach);
+  return perspective(camera.fov_deg, aspect, depths.near, depths.far) * look_at(camera.eye, camera.target);
+}
+
+DepthScale depth_scale(const Camera& camera, const Vec3& center, double reach) {
+  const Depths depths = depths_of(camera, center, reach);
+  const double length = depths.far - depths.near;
+  return {depths.far * depths.near / length, depths.far / length};
+}
+
+Rays rays_through(const Camera& camera, int width, int height) {
+  const Eigen::Matrix4d to_eye = look_at(camera.eye, camera.target).cast<double>();
+  const Vec3 right = to_eye.block<1, 3>(0, 0), up = to_eye.block<1, 3>(1, 0), back = to_eye.block<1, 3>(2, 0);
+  const double pixel = 2 * std::tan(camera.fov_deg * std::numbers::pi / 360) / height;
+  return {-back - 0.5 * pixel * (width * right + height * up), pixel * right, pixel * up};
 }
 
 Camera framing(const Bounds& box, double fov_deg, double margin, double aspect) {
@@ -50,9 +76,9 @@ Camera framing(const Bounds& box, double fov_deg, double margin, double aspect) 
   return camera;
 }
 
-void compute_normals(const std::vector<float>& positions, const std::vector<std::uint32_t>& triangles,
-                     std::vector<float>& normals) {
-  normals.assign(positions.size(), 0.0f);
+void compute_normals(const std::vector<float>& positions, const std::vector<std::uint32_t>& triangles, float* normals) {
+  const std::size_t vertices = positions.size() / 3;
+  std::fill_n(normals, 4 * vertices, 0.0f);
   for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) {
     const float* a = &positions[3 * triangles[t]];
     const float* b = &positions[3 * triangles[t + 1]];
@@ -60,15 +86,15 @@ void compute_normals(const std::vector<float>& positions, const std::vector<std:
     const float u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
     const float n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
     for (int corner = 0; corner < 3; ++corner) {
-      float* sum = &normals[3 * triangles[t + corner]];
+      float* sum = &normals[4 * triangles[t + corner]];
       for (int k = 0; k < 3; ++k) sum[k] += n[k];
     }
   }
-  for (std::size_t i = 0; i + 2 < normals.size(); i += 3) {
-    const float length =
-        std::sqrt(normals[i] * normals[i] + normals[i + 1] * normals[i + 1] + normals[i + 2] * normals[i + 2]);
+  for (std::size_t i = 0; i < 4 * vertices; i += 4) {
+    float* n = normals + i;
+    const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     if (length > 0) {
-      for (int k = 0; k < 3; ++k) normals[i + k] /= length;
+      for (int k = 0; k < 3; ++k) n[k] /= length;
     }
   }
 }

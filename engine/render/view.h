@@ -16,9 +16,22 @@ Eigen::Matrix4f look_at(const Vec3& eye, const Vec3& target);
 // Maps world to clip coordinates. center, reach: a ball that holds everything that can be seen [m].
 Eigen::Matrix4f view_matrix(const Camera& camera, double aspect, const Vec3& center, double reach);
 
-// Computes smooth normals (x y z by vertex): each vertex's normal is the sum of its triangles' normals, weighted by
-// area.
-void compute_normals(const std::vector<float>& positions, const std::vector<std::uint32_t>& triangles,
-                     std::vector<float>& normals);
+// Maps a value of the depth buffer, 0 to 1, to the distance along the viewing direction: factor / (offset - value). The
+// arguments are those of view_matrix.
+struct DepthScale {
+  double factor, offset;
+};
+DepthScale depth_scale(const Camera& camera, const Vec3& center, double reach);
+
+// The directions from the eye through the picture: corner + x right + y up for a place in pixels from the lower left.
+// They have length one along the viewing direction.
+struct Rays {
+  Vec3 corner, right, up;
+};
+Rays rays_through(const Camera& camera, int width, int height);
+
+// Computes smooth normals (x y z and a zero by vertex): each vertex's normal is the sum of its triangles' normals,
+// weighted by area.
+void compute_normals(const std::vector<float>& positions, const std::vector<std::uint32_t>& triangles, float* normals);
 
 }  // namespace supple

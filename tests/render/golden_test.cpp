@@ -69,6 +69,8 @@ Picture picture_of(const Shot& shot, const Settings& more = {}) {
   Picture picture;
   picture.stage = make_stage(film.scene, film.bodies, drawn, film.set.obstacles, colliders, shot.font);
   picture.list.camera = make_camera(film.scene, picture.stage);
+  fit_to_cameras(drawn, film.bodies, {picture.list.camera}, film.scene.output.height);
+  picture.stage = make_stage(film.scene, film.bodies, drawn, film.set.obstacles, colliders, shot.font);
   for (std::size_t b = 0; b < film.bodies.size(); ++b)
     picture.list.positions.push_back(skin_positions(drawn[b], film.models[b], states[b]));
   add_colliders(film.set.obstacles, colliders, shot.frames / film.scene.fps, picture.list);

@@ -1,0 +1,68 @@
+// Draws the seamless ground and the background behind it. What bodies leave alone is drawn once and copied into each
+// frame; each frame draws again only the part of the ground that shadows may reach. How much light arrives there is
+// found at half the picture's resolution, because it changes little from pixel to pixel.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "render/draw_list.h"
+#include "render/ground_occlusion.h"
+#include "render/program.h"
+#include "render/shadow_map.h"
+#include "render/tile_buffer.h"
+#include "render/tiles.h"
+#include "render/view.h"
+
+namespace supple {
+
+// What the shader of a surface in the open must know about the stage.
+struct StageLight {
+  Vec3 to_key;  // unit vector towards the key light
+  Camera camera;
+  Vec3 background, ground;  // linear
+  double exposure;
+  Rays rays;
+};
+
+// Gives the lights and rays to a program whose shader includes film.glsl and lighting.glsl.
+void set_light(const Program& program, const StageLight& light);
+
+class Ground {
+ public:
+  // bounds: of the stage; largest_body: a diagonal [m].
+  Ground(const GlTable& gl, const std::filesystem::path& shaders, int width, int height, const Bounds& bounds,
+         double largest_body);
+  ~Ground();
+  Ground(const Ground&) = delete;
+  Ground& operator=(const Ground&) = delete;
+
+  // Fills the picture's framebuffer.
+  void draw(GLuint picture, const Eigen::Matrix4f& view, const StageLight& light, const ShadowMap& shadows,
+            const std::vector<DrawMesh>& meshes, const std::vector<std::vector<float>>& positions);
+
+ private:
+  void draw_bare(const Eigen::Matrix4f& view, const StageLight& light);
+  void mark_shadows(const Eigen::Matrix4f& view, const StageLight& light, double penumbra,
+                    const std::vector<DrawMesh>& meshes, const std::vector<std::vector<float>>& positions);
+  void mark_occlusion(const Eigen::Matrix4f& view, const std::vector<float>& open);
+  void set_stage(const Program& program, const StageLight& light) const;
+
+  const GlTable& gl_;
+  Program bare_, arriving_, shaded_;
+  int width_, height_;
+  Vec3 center_;
+  double radius_;  // of the stage [m]
+  GroundOcclusion occlusion_;
+  Tiles tiles_;  // that shadows or occlusion reach
+  TileBuffer tile_buffer_;
+  GLuint framebuffer_ = 0, color_ = 0;  // the bare ground and background
+  GLuint light_framebuffer_ = 0, light_ = 0;  // key light and open sky, at half the resolution
+  GLuint occlusion_texture_ = 0;
+  std::optional<Eigen::Matrix4f> bare_view_;  // that the bare ground was drawn with
+  std::vector<float> cast_;                   // scratch: a mesh's shadow on the ground
+};
+
+}  // namespace supple

@@ -1,0 +1,92 @@
+#include "render/program.h"
+
+#include <fmt/core.h>
+
+#include <fstream>
+
+#include "base/error.h"
+
+namespace supple {
+namespace {
+
+std::string read_source(const std::filesystem::path& path, const std::vector<std::string>& definitions) {
+  std::ifstream file(path);
+  if (!file) throw RunError(fmt::format("{}: shader cannot be read", path.string()));
+  std::string source;
+  for (std::string line; std::getline(file, line);) {
+    constexpr std::string_view include = "#include \"";
+    if (line.starts_with(include)) {
+      const std::string name = line.substr(include.size(), line.rfind('"') - include.size());
+      source += read_source(path.parent_path() / name, {});
+    } else {
+      source += line + '\n';
+    }
+    if (!line.starts_with("#version")) continue;
+    for (const std::string& definition : definitions) source += "#define " + definition + '\n';
+  }
+  return source;
+}
+
+GLuint compile(const GlTable& gl, GLenum kind, const std::filesystem::path& path,
+               const std::vector<std::string>& definitions) {
+  const std::string source = read_source(path, definitions);
+  const char* text = source.c_str();
+  const GLuint shader = gl.CreateShader(kind);
+  gl.ShaderSource(shader, 1, &text, nullptr);
+  gl.CompileShader(shader);
+  GLint compiled = 0;
+  gl.GetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+  if (!compiled) {
+    char log[2048] = "";
+    gl.GetShaderInfoLog(shader, sizeof log, nullptr, log);
+    throw RunError(fmt::format("{}: {}", path.string(), log));
+  }
+  return shader;
+}
+
+}  // namespace
+
+Program::Program(const GlTable& gl, const std::filesystem::path& folder, const std::string& vertex,
+                 const std::string& fragment, const std::vector<std::string>& definitions)
+    : gl_(gl) {
+  const GLuint first = compile(gl, GL_VERTEX_SHADER, folder / (vertex + ".vert"), definitions);
+  const GLuint second = compile(gl, GL_FRAGMENT_SHADER, folder / (fragment + ".frag"), definitions);
+  id_ = gl.CreateProgram();
+  gl.AttachShader(id_, first);
+  gl.AttachShader(id_, second);
+  gl.LinkProgram(id_);
+  gl.DeleteShader(first);
+  gl.DeleteShader(second);
+  GLint linked = 0;
+  gl.GetProgramiv(id_, GL_LINK_STATUS, &linked);
+  if (!linked) {
+    char log[2048] = "";
+    gl.GetProgramInfoLog(id_, sizeof log, nullptr, log);
+    throw RunError(fmt::format("shader program {}: {}", fragment, log));
+  }
+}
+
+void Program::set(const char* name, const Vec3& value) const {
+  gl_.Uniform3f(at(name), static_cast<float>(value.x()), static_cast<float>(value.y()), static_cast<float>(value.z()));
+}
+
+void Program::set(const char* name, const Eigen::Vector4d& value) const {
+  const Eigen::Vector4f v = value.cast<float>();
+  gl_.Uniform4f(at(name), v.x(), v.y(), v.z(), v.w());
+}
+
+void Program::set(const char* name, const Eigen::Matrix4f& value) const {
+  gl_.UniformMatrix4fv(at(name), 1, GL_FALSE, value.data());
+}
+
+void Program::set_pairs(const char* name, std::span<const float> values) const {
+  gl_.Uniform2fv(at(name), static_cast<GLsizei>(values.size() / 2), values.data());
+}
+
+void Program::set_texture(const char* name, int unit, GLenum kind, GLuint texture) const {
+  gl_.ActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  gl_.BindTexture(kind, texture);
+  gl_.Uniform1i(at(name), unit);
+}
+
+}  // namespace supple

@@ -1,0 +1,41 @@
+// The key light's shadow map: how far from the light the nearest surface is. The map is orthographic, covers the stage
+// with room for motion, and keeps its place for a whole film, so that shadows do not swim.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+
+#include "render/program.h"
+#include "render/surface_buffers.h"
+
+namespace supple {
+
+class ShadowMap {
+ public:
+  // bounds: of the stage, with the ground below it; largest_body: a diagonal [m]; to_light: unit vector; width: of the
+  // picture in pixels, which the map's resolution follows.
+  ShadowMap(const GlTable& gl, const std::filesystem::path& shaders, const Bounds& bounds, double largest_body,
+            const Vec3& to_light, int width);
+  ~ShadowMap();
+  ShadowMap(const ShadowMap&) = delete;
+  ShadowMap& operator=(const ShadowMap&) = delete;
+
+  // Draws all meshes into the map.
+  void draw(const SurfaceBuffers& surfaces, const std::vector<DrawMesh>& meshes) const;
+
+  // Gives the map and its numbers to a program whose shader includes shadow.glsl; the map takes this unit.
+  void bind(const Program& program, int unit) const;
+
+  double widest_penumbra() const { return widest_; }  // radius in the world [m]
+
+ private:
+  const GlTable& gl_;
+  Program program_;
+  GLuint framebuffer_ = 0, texture_ = 0;
+  Eigen::Matrix4f matrix_;  // maps the world to the light's clip coordinates
+  double radius_;           // of what the map covers [m]
+  double offset_, widest_;  // [m]
+  int edge_;                // of the map, in texels
+};
+
+}  // namespace supple

@@ -1,0 +1,195 @@
+#include "render/surface_buffers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/error.h"
+#include "render/color.h"
+#include "render/view.h"
+
+namespace supple {
+namespace {
+
+// A mesh's material in texels of four floats: linear colours with gloss, of which the first is the uncovered surface and
+// eight are its layers; the widths of the layers' borders, one in each of eight texels; the kind of print.
+constexpr std::size_t material_texels = 18;
+
+void append_material(const DrawMesh& mesh, std::vector<float>& out) {
+  const std::size_t begin = out.size();
+  out.resize(begin + 4 * material_texels);
+  const auto put = [&](std::size_t slot, const Vec3& srgb, double gloss) {
+    const Vec3 linear = linear_of(srgb);
+    for (int k = 0; k < 3; ++k) out[begin + 4 * slot + k] = static_cast<float>(linear[k]);
+    out[begin + 4 * slot + 3] = static_cast<float>(gloss);
+  };
+  put(0, mesh.color, mesh.gloss);
+  for (std::size_t layer = 0; layer < std::min<std::size_t>(mesh.layers.size(), 8); ++layer) {
+    put(layer + 1, mesh.layers[layer].color, mesh.layers[layer].gloss);
+    out[begin + 4 * (layer + 9)] = static_cast<float>(mesh.layers[layer].soft);
+  }
+  out[begin + 4 * 17] = mesh.square.empty() ? 0.0f : mesh.printed == Printed::grid ? 1.0f : 2.0f;
+}
+
+// What the shader must know of a triangle's colours: its mesh (16 bits), the topmost layer that covers all of it or zero
+// (4 bits), and which layers above that one have a border on it or close by (8 bits). Most triangles have none.
+std::uint32_t packed_look(const DrawMesh& mesh, std::size_t index, const std::uint32_t* corners) {
+  std::uint32_t covering = 0, bordering = 0;
+  for (std::size_t layer = 0; layer < std::min<std::size_t>(mesh.layers.size(), 8); ++layer) {
+    const auto at = [&](int k) { return mesh.paint[corners[k]][layer]; };
+    const auto [low, high] = std::minmax({at(0), at(1), at(2)});
+    // The shader widens a border to the size of a pixel, in which the distance changes by less than on the triangle
+    // where pixels are smaller than triangles, and by what does not matter where they are larger.
+    const double reach = std::max(0.5 * mesh.layers[layer].soft, 0.6 * double(high - low));
+    if (low > reach) continue;
+    if (high < -reach) {
+      covering = static_cast<std::uint32_t>(layer + 1);
+      bordering = 0;
+    } else {
+      bordering |= 1u << layer;
+    }
+  }
+  return static_cast<std::uint32_t>(index) | covering << 16 | bordering << 20;
+}
+
+// Numbers the patches of a mesh by vertex, from `first` on: triangles that share a vertex belong to one patch. A crease
+// has vertices of its own on both sides, so a patch is smooth.
+void append_patches(const DrawMesh& mesh, unsigned first, std::vector<float>& out) {
+  std::vector<std::uint32_t> parent(mesh.occlusion.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto root = [&parent](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
+    for (std::size_t k = 1; k < 3; ++k) parent[root(mesh.triangles[t + k])] = root(mesh.triangles[t]);
+  }
+  for (std::uint32_t v = 0; v < parent.size(); ++v) out.push_back(static_cast<float>((first + 37 * root(v)) % 255));
+}
+
+}  // namespace
+
+SurfaceBuffers::SurfaceBuffers(const GlTable& gl, const std::vector<DrawMesh>& meshes) : gl_(gl) { make_static(meshes); }
+
+SurfaceBuffers::~SurfaceBuffers() {
+  for (const Lookup* lookup : {&places_, &normals_, &triangles_, &paint_, &squares_, &materials_}) {
+    gl_.DeleteTextures(1, &lookup->texture);
+    gl_.DeleteBuffers(1, &lookup->buffer);
+  }
+  gl_.DeleteBuffers(1, &indices_);
+  gl_.DeleteBuffers(1, &patches_);
+  gl_.DeleteVertexArrays(1, &array_);
+}
+
+// An empty buffer cannot be read as a texture, so each has room for one element.
+void SurfaceBuffers::make_lookup(Lookup& lookup, GLenum format, std::size_t bytes, const void* data, GLenum usage) {
+  gl_.GenBuffers(1, &lookup.buffer);
+  gl_.BindBuffer(GL_TEXTURE_BUFFER, lookup.buffer);
+  gl_.BufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(std::max<std::size_t>(bytes, 16)),
+                 bytes == 0 ? nullptr : data, usage);
+  gl_.GenTextures(1, &lookup.texture);
+  gl_.BindTexture(GL_TEXTURE_BUFFER, lookup.texture);
+  gl_.TexBuffer(GL_TEXTURE_BUFFER, format, lookup.buffer);
+}
+
+void SurfaceBuffers::make_static(const std::vector<DrawMesh>& meshes) {
+  std::vector<std::uint32_t> triangles, indices;
+  std::vector<float> paint, squares, materials, patches;
+  unsigned vertices = 0;
+  const bool printed = std::ranges::any_of(meshes, [](const DrawMesh& mesh) { return !mesh.square.empty(); });
+  const bool painted = std::ranges::any_of(meshes, [](const DrawMesh& mesh) { return !mesh.layers.empty(); });
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    const DrawMesh& mesh = meshes[m];
+    Range range{vertices, static_cast<unsigned>(triangles.size() / 4), static_cast<unsigned>(mesh.triangles.size() / 3),
+                0, 0};
+    for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
+      for (std::size_t k = 0; k < 3; ++k) triangles.push_back(vertices + mesh.triangles[t + k]);
+      triangles.push_back(packed_look(mesh, m, &mesh.triangles[t]));
+    }
+    for (std::size_t v = 0; v < mesh.occlusion.size(); ++v) {
+      place_data_.insert(place_data_.end(), {0, 0, 0, mesh.occlusion[v]});
+      if (painted) paint.insert(paint.end(), mesh.paint[v].begin(), mesh.paint[v].end());
+      if (!printed) continue;
+      const std::array<float, 2> square = mesh.square.empty() ? std::array<float, 2>{} : mesh.square[v];
+      squares.insert(squares.end(), square.begin(), square.end());
+    }
+    append_material(mesh, materials);
+    append_patches(mesh, static_cast<unsigned>(97 * m), patches);
+    vertices += static_cast<unsigned>(mesh.occlusion.size());
+    ranges_.push_back(range);
+  }
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    for (const std::uint32_t vertex : meshes[m].triangles) indices.push_back(ranges_[m].first_vertex + vertex);
+  }
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    const std::vector<std::uint32_t>& casters = meshes[m].shadow_triangles;
+    ranges_[m].first_caster = casters.empty() ? ranges_[m].first_triangle : static_cast<unsigned>(indices.size() / 3);
+    ranges_[m].casters = casters.empty() ? ranges_[m].triangles : static_cast<unsigned>(casters.size() / 3);
+    for (const std::uint32_t vertex : casters) indices.push_back(ranges_[m].first_vertex + vertex);
+  }
+  normal_data_.assign(4 * std::size_t(vertices), 0.0f);
+  const std::size_t by_vertex = 4 * sizeof(float) * vertices;
+  make_lookup(places_, GL_RGBA32F, by_vertex, nullptr, GL_STREAM_DRAW);
+  make_lookup(normals_, GL_RGBA32F, by_vertex, nullptr, GL_STREAM_DRAW);
+  make_lookup(triangles_, GL_RGBA32UI, triangles.size() * sizeof(std::uint32_t), triangles.data(), GL_STATIC_DRAW);
+  make_lookup(paint_, GL_R32F, paint.size() * sizeof(float), paint.data(), GL_STATIC_DRAW);
+  make_lookup(squares_, GL_RG32F, squares.size() * sizeof(float), squares.data(), GL_STATIC_DRAW);
+  make_lookup(materials_, GL_RGBA32F, materials.size() * sizeof(float), materials.data(), GL_STATIC_DRAW);
+
+  gl_.GenVertexArrays(1, &array_);
+  gl_.BindVertexArray(array_);
+  gl_.BindBuffer(GL_ARRAY_BUFFER, places_.buffer);
+  gl_.EnableVertexAttribArray(0);
+  gl_.VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 4 * sizeof(float), nullptr);
+  gl_.GenBuffers(1, &patches_);
+  gl_.BindBuffer(GL_ARRAY_BUFFER, patches_);
+  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(patches.size() * sizeof(float)), patches.data(), GL_STATIC_DRAW);
+  gl_.EnableVertexAttribArray(1);
+  gl_.VertexAttribPointer(1, 1, GL_FLOAT, GL_FALSE, 0, nullptr);
+  gl_.GenBuffers(1, &indices_);
+  gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_);
+  gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * sizeof(std::uint32_t)),
+                 indices.data(), GL_STATIC_DRAW);
+  gl_.BindVertexArray(0);
+}
+
+void SurfaceBuffers::upload(const std::vector<DrawMesh>& meshes, const std::vector<std::vector<float>>& positions) {
+  SUPPLE_CHECK(positions.size(), ==, ranges_.size());
+  for (std::size_t m = 0; m < ranges_.size(); ++m) {
+    SUPPLE_CHECK(positions[m].size(), ==, 3 * meshes[m].occlusion.size());
+    float* place = place_data_.data() + 4 * std::size_t(ranges_[m].first_vertex);
+    for (std::size_t i = 0; i < positions[m].size(); i += 3, place += 4) std::copy_n(&positions[m][i], 3, place);
+    compute_normals(positions[m], meshes[m].triangles, normal_data_.data() + 4 * std::size_t(ranges_[m].first_vertex));
+  }
+  const auto put = [this](const Lookup& lookup, const auto& data) {
+    gl_.BindBuffer(GL_TEXTURE_BUFFER, lookup.buffer);
+    gl_.BufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(data.size() * sizeof(data[0])), data.data());
+  };
+  put(places_, place_data_);
+  put(normals_, normal_data_);
+}
+
+void SurfaceBuffers::draw(std::size_t mesh) const {
+  gl_.BindVertexArray(array_);
+  const std::size_t begin = 3 * sizeof(std::uint32_t) * ranges_[mesh].first_triangle;
+  gl_.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * ranges_[mesh].triangles), GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(begin));
+}
+
+void SurfaceBuffers::draw_caster(std::size_t mesh) const {
+  gl_.BindVertexArray(array_);
+  const std::size_t begin = 3 * sizeof(std::uint32_t) * ranges_[mesh].first_caster;
+  gl_.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * ranges_[mesh].casters), GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(begin));
+}
+
+int SurfaceBuffers::bind(const Program& program, int unit) const {
+  for (const auto& [name, lookup] :
+       {std::pair{"places", &places_}, {"normals", &normals_}, {"triangles", &triangles_}, {"paint", &paint_},
+        {"squares", &squares_}, {"materials", &materials_}}) {
+    program.set_texture(name, unit++, GL_TEXTURE_BUFFER, lookup->texture);
+  }
+  return unit;
+}
+
+}  // namespace supple

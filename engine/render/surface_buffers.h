@@ -1,0 +1,59 @@
+// Holds all surfaces of a stage in OpenGL's memory, one behind the other: as vertices and indices for the passes that
+// rasterise triangles, and as buffer textures for the pass that shades, which knows only a triangle's number and looks
+// up the rest.
+#pragma once
+
+#include <vector>
+
+#include "render/draw_list.h"
+#include "render/gl_table.h"
+#include "render/program.h"
+
+namespace supple {
+
+class SurfaceBuffers {
+ public:
+  SurfaceBuffers(const GlTable& gl, const std::vector<DrawMesh>& meshes);
+  ~SurfaceBuffers();
+  SurfaceBuffers(const SurfaceBuffers&) = delete;
+  SurfaceBuffers& operator=(const SurfaceBuffers&) = delete;
+
+  // Uploads where the vertices are (x y z, by mesh) and the normals that follow. The meshes must be those that the
+  // buffers were made for.
+  void upload(const std::vector<DrawMesh>& meshes, const std::vector<std::vector<float>>& positions);
+
+  // Draws one mesh; its triangles count from first_triangle(mesh).
+  void draw(std::size_t mesh) const;
+  unsigned first_triangle(std::size_t mesh) const { return ranges_[mesh].first_triangle; }
+  // Draws the triangles that cast one mesh's shadow, which may be fewer.
+  void draw_caster(std::size_t mesh) const;
+
+  // Has a program's samplers places, normals, triangles, paint, squares and materials read these buffers.
+  // Returns the first unit that is still free.
+  int bind(const Program& program, int first_unit) const;
+
+ private:
+  // A buffer that shaders read as a texture with one texel for each element.
+  struct Lookup {
+    GLuint buffer = 0, texture = 0;
+  };
+  struct Range {
+    unsigned first_vertex, first_triangle, triangles, first_caster, casters;
+  };
+
+  void make_lookup(Lookup& lookup, GLenum format, std::size_t bytes, const void* data, GLenum usage);
+  void make_static(const std::vector<DrawMesh>& meshes);
+
+  const GlTable& gl_;
+  std::vector<Range> ranges_;  // by mesh
+  GLuint array_ = 0, indices_ = 0, patches_ = 0;
+  Lookup places_;     // by vertex: x y z, and the open sky
+  Lookup normals_;    // by vertex
+  Lookup triangles_;  // three vertices, and packed_look
+  Lookup paint_;      // by vertex and layer: distances, eight for each vertex
+  Lookup squares_;    // by vertex: place in the printed pattern
+  Lookup materials_;  // by mesh, see material_texels
+  std::vector<float> place_data_, normal_data_;
+};
+
+}  // namespace supple

@@ -1,0 +1,40 @@
+// Finds which parts of the picture surfaces may cover, so that the shading pass runs nowhere else.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+namespace supple {
+
+// A picture cut into square tiles, each marked or not.
+class Tiles {
+ public:
+  static constexpr int edge = 16;  // pixels
+
+  Tiles(int width, int height);
+
+  void clear();
+
+  // Marks each tile that the box of a triangle touches, and all tiles when a vertex lies behind the camera. positions:
+  // x y z by vertex; view: maps the world to clip coordinates.
+  void mark(const std::vector<float>& positions, const std::vector<std::uint32_t>& triangles,
+            const Eigen::Matrix4f& view);
+
+  // Marks what lies within this many pixels of a marked tile too.
+  void widen(double pixels);
+
+  bool marked(int x, int y) const { return marked_[std::size_t(y) * columns_ + x] != 0; }
+
+  // Returns runs of marked tiles as triangles over the picture: six corners a run, x y each, in clip coordinates. The
+  // rows' y grows upwards, as in clip coordinates.
+  const std::vector<float>& corners();
+
+ private:
+  int width_, height_, columns_, rows_;
+  std::vector<std::uint8_t> marked_;
+  std::vector<float> corners_;
+  std::vector<std::int16_t> tile_of_;  // x y by vertex
+};
+
+}  // namespace supple

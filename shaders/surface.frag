@@ -1,0 +1,172 @@
+#version 330 core
+#extension GL_ARB_texture_gather : require
+// Shades what the visibility buffer shows. The material is clay with painted layers. A layer's border is the zero of
+// its interpolated distance, so it is sharp however coarse the surface is.
+#include "film.glsl"
+#include "lighting.glsl"
+#include "shadow.glsl"
+uniform usampler2DMS visible;     // by sample: patch (8 bits) and number of the triangle, from one; zero: none
+uniform sampler2DMS depths;
+uniform samplerBuffer places;     // by vertex: x y z, and the open sky
+uniform samplerBuffer normals;    // by vertex
+uniform usamplerBuffer triangles; // three vertices; mesh (16 bits), covering layer (4 bits), bordering layers (8 bits)
+uniform samplerBuffer paint;      // by vertex and layer: distances, eight for each vertex
+uniform samplerBuffer squares;    // by vertex: place in the printed pattern
+uniform samplerBuffer materials;  // by mesh, eighteen texels
+uniform vec3 depth_scale;         // see DepthScale; the third is a pixel's edge at distance one
+uniform vec2 sample_places[SAMPLES];
+out vec4 pixel;
+
+// Barycentric coordinates of where a ray from the eye meets a triangle's plane (Moeller and Trumbore 1997).
+vec3 weights_on(vec3 ray, vec3 from_eye, vec3 side_b, vec3 side_c) {
+  vec3 p = cross(ray, side_c), q = cross(-from_eye, side_b);
+  float determinant = dot(side_b, p);
+  float b = dot(-from_eye, p) / determinant, c = dot(ray, q) / determinant;
+  return vec3(1.0 - b - c, b, c);
+}
+
+// A point of a triangle, as seen through a place in the picture.
+struct Seen {
+  ivec3 corners;
+  int material;            // its mesh's first texel
+  int covering;            // the layer that covers all of the triangle, or zero
+  uint bordering;          // layers above that one whose borders may run through it, by bit
+  vec3 weights;            // of the corners
+  vec3 right, up;          // how the weights change to the next pixel
+  vec3 world, normal;
+  float open;
+};
+
+Seen look(uint number, vec2 at) {
+  Seen seen;
+  uvec4 triangle = texelFetch(triangles, int(number & 0xffffffu) - 1);
+  seen.corners = ivec3(triangle.xyz);
+  seen.material = 18 * int(triangle.w & 0xffffu);
+  seen.covering = int(triangle.w >> 16 & 15u);
+  seen.bordering = triangle.w >> 20;
+  vec4 a = texelFetch(places, seen.corners.x), b = texelFetch(places, seen.corners.y), c = texelFetch(places, seen.corners.z);
+  vec3 from_eye = a.xyz - eye, side_b = b.xyz - a.xyz, side_c = c.xyz - a.xyz;
+  vec3 ray = ray_corner + at.x * ray_right + at.y * ray_up;
+  vec3 weights = weights_on(ray, from_eye, side_b, side_c);
+  seen.right = weights_on(ray + ray_right, from_eye, side_b, side_c) - weights;
+  seen.up = weights_on(ray + ray_up, from_eye, side_b, side_c) - weights;
+  // The place may lie beside the triangle, of which another sample is seen: its nearest point stands for it.
+  weights = max(weights, 0.0);
+  weights /= weights.x + weights.y + weights.z;
+  seen.weights = weights;
+  seen.world = weights.x * a.xyz + weights.y * b.xyz + weights.z * c.xyz;
+  seen.open = dot(weights, vec3(a.w, b.w, c.w));
+  seen.normal = normalize(weights.x * texelFetch(normals, seen.corners.x).xyz + weights.y * texelFetch(normals, seen.corners.y).xyz +
+                          weights.z * texelFetch(normals, seen.corners.z).xyz);
+  vec3 towards = eye - seen.world;
+  if (dot(cross(side_b, side_c), towards) < 0.0 && dot(seen.normal, towards) < 0.0) seen.normal = -seen.normal;
+  return seen;
+}
+
+vec4 material_of(Seen seen) {
+  vec4 material = texelFetch(materials, seen.material + seen.covering);
+#ifdef PAINTED
+  uint left = seen.bordering;
+  do {  // one layer at a time, the lowest first; a block of pixels without a border goes through this once, for nothing
+    int layer = left == 0u ? 0 : int(log2(float(left & (~left + 1u))) + 0.5);
+    float a = texelFetch(paint, 8 * seen.corners.x + layer).r, b = texelFetch(paint, 8 * seen.corners.y + layer).r;
+    vec3 d = vec3(a, b, texelFetch(paint, 8 * seen.corners.z + layer).r);
+    float width = max(texelFetch(materials, seen.material + 9 + layer).r, 1.2 * (abs(dot(seen.right, d)) + abs(dot(seen.up, d))));
+    float cover = 1.0 - smoothstep(-0.5 * width, 0.5 * width, dot(seen.weights, d));
+    material = mix(material, texelFetch(materials, seen.material + 1 + layer), left == 0u ? 0.0 : cover);
+    left &= left - 1u;
+  } while (left != 0u);
+#endif
+  return material;
+}
+
+#ifdef PRINTED
+// Computes the factor of the printed pattern on the colour, filtered over the pixel so that it neither flickers nor
+// breaks into dots.
+float print(Seen seen) {
+  float kind = texelFetch(materials, seen.material + 17).x;
+  vec2 a = texelFetch(squares, seen.corners.x).xy, b = texelFetch(squares, seen.corners.y).xy, c = texelFetch(squares, seen.corners.z).xy;
+  vec2 at = seen.weights.x * a + seen.weights.y * b + seen.weights.z * c;
+  vec2 change = abs(seen.right.x * a + seen.right.y * b + seen.right.z * c) + abs(seen.up.x * a + seen.up.y * b + seen.up.z * c);
+  vec2 pixel_size = max(change, vec2(1e-6));
+  const float half_line = 0.035;
+  vec2 away = abs(fract(at - 0.5) - 0.5);
+  vec2 line = clamp((half_line + 0.5 * pixel_size - away) / pixel_size, 0.0, 1.0) * min(vec2(1.0), 2.0 * half_line / pixel_size + 0.3);
+  float grid = 1.0 - 0.55 * max(line.x, line.y);
+  // The chequerboard is the product of two square waves, each integrated over the pixel (box filter).
+  vec2 low = 0.5 * (at - 0.5 * pixel_size), high = 0.5 * (at + 0.5 * pixel_size);
+  vec2 wave = (abs(fract(high) - 0.5) - abs(fract(low) - 0.5)) / (0.5 * pixel_size);
+  float checks = 1.0 - 0.09 * (1.0 + wave.x * wave.y);
+  return kind < 0.5 ? 1.0 : kind < 1.5 ? grid : checks;
+}
+#endif
+
+vec3 light_from(Seen seen) {
+  vec3 n = seen.normal;
+  vec3 v = normalize(eye - seen.world);
+  vec4 material = material_of(seen);
+  vec3 albedo = material.rgb;
+#ifdef PRINTED
+  albedo *= print(seen);
+#endif
+  float gloss = material.a;
+
+  // A little wrapping makes plastic look like clay: light bleeds past the terminator, reddened by the material's own
+  // colour.
+  float facing = dot(n, key_direction);
+  float lit = light_reaching(seen.world, n, 1.0);
+  float wrapped = max((facing + 0.25) / 1.25, 0.0);
+  vec3 key = key_color * mix(vec3(max(facing, 0.0)), vec3(wrapped) * (0.55 + 0.45 * albedo), 0.5) * mix(lit, 1.0, 0.06);
+  vec3 fill = fill_color * max(dot(n, normalize(vec3(0.95, 0.25, 0.45))) * 0.7 + 0.3, 0.0);
+  float up = 0.5 + 0.5 * n.y;
+  vec3 sky = mix(0.55 * ground_color, sky_color, up);
+  float open = seen.open * seen.open;
+  vec3 light = albedo * (key * mix(1.0, seen.open, 0.35) + (fill * mix(open, 1.0, 0.3) + sky * open));
+
+  float away = 1.0 - max(dot(n, v), 0.0);
+  float edge = away * away * away;
+  light += rim_color * edge * max(dot(n, normalize(vec3(0.35, 0.55, -0.8))) + 0.15, 0.0) * (0.25 + 0.75 * albedo) * seen.open;
+
+  vec3 h = normalize(key_direction + v);
+  float power = mix(12.0, 420.0, gloss * gloss);
+  float grazing = 1.0 - max(dot(v, h), 0.0);
+  float fresnel = 0.04 + 0.96 * grazing * grazing * grazing * grazing * grazing;
+  light += key_color * fresnel * lit * (power + 8.0) / 25.0 * pow(max(dot(n, h), 0.0), power) * gloss;
+  // Wet surfaces also reflect the sky.
+  light += sky_color * gloss * gloss * (0.04 + 0.5 * edge * away * away) * open * smoothstep(-0.2, 0.6, reflect(-v, n).y);
+  return light;
+}
+
+float distance_of(ivec2 at, int i) { return depth_scale.x / (depth_scale.y - texelFetch(depths, at, i).r); }
+
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  uint number[SAMPLES];
+  for (int i = 0; i < SAMPLES; ++i) number[i] = texelFetch(visible, at, i).r;
+  // Samples are of one surface when they show the same smooth patch at nearly the same depth. The first surface that is
+  // met and the second, if there is one, are shaded once each; a third counts as the second.
+  uint first = 0u, second = 0u;
+  for (int i = SAMPLES - 1; i >= 0; --i) first = number[i] == 0u ? first : number[i];
+  if (first == 0u) discard;
+  float depth = -1.0;
+  vec2 weight = vec2(0.0), first_place = vec2(0.0), second_place = vec2(0.0);
+  for (int i = 0; i < SAMPLES; ++i) {
+    float there = distance_of(at, i);
+    bool covered = number[i] != 0u;
+    depth = covered && depth < 0.0 ? there : depth;
+    bool same = number[i] >> 24 == first >> 24 && abs(there - depth) < 6.0 * depth_scale.z * depth;
+    weight += covered ? (same ? vec2(1.0, 0.0) : vec2(0.0, 1.0)) : vec2(0.0);
+    first_place += covered && same ? sample_places[i] : vec2(0.0);
+    second_place += covered && !same ? sample_places[i] : vec2(0.0);
+    second = covered && !same ? number[i] : second;
+  }
+  vec3 sum = vec3(0.0);
+  int looked = 0, looks = second == 0u ? 1 : 2;
+  do {
+    vec2 place = looked == 0 ? first_place / weight.x : second_place / max(weight.y, 1.0);
+    uint one = looked == 0 ? first : second == 0u ? first : second;
+    sum += (looked == 0 ? weight.x : weight.y) * film(light_from(look(one, vec2(at) + place))).rgb;
+    ++looked;
+  } while (looked < looks);
+  pixel = vec4(sum, weight.x + weight.y) / float(SAMPLES);
+}
