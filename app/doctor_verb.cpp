@@ -50,7 +50,9 @@ Finding opengl() {
     list.positions = {{0, 0, 0, 1, 0, 0, 0, 1, 0}};
     (void)renderer.draw(list);
     finding.ok = true;
-    finding.found = fmt::format("{}: {}, {}", renderer.backend(), renderer.name(), renderer.version());
+    const std::vector<std::string> devices = egl_devices();
+    finding.found = fmt::format("{}: {}, {}; EGL finds {}", renderer.backend(), renderer.name(), renderer.version(),
+                                devices.empty() ? "no devices" : fmt::format("{}", fmt::join(devices, ", ")));
   } catch (const std::exception& error) {
     finding.found = error.what();
   }

@@ -1,5 +1,6 @@
-// Makes an OpenGL 3.3 core context without a window, through OSMesa or a surfaceless EGL display (Mesa dropped OSMesa
-// in 25.1). The libraries are opened at run time, so that a machine without either still simulates.
+// Makes an OpenGL 3.3 core context without a window, through OSMesa, which draws in software, or through EGL, which also
+// reaches graphics cards (Mesa dropped OSMesa in 25.1). The libraries are opened at run time, so that a machine without
+// either still simulates.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +11,16 @@
 
 namespace supple {
 
+// Automatic: a graphics card where EGL finds one, else OSMesa, else EGL in software. egl: the same without OSMesa.
 enum class GlChoice { automatic, osmesa, egl };
 template <>
 struct Names<GlChoice> {
   static constexpr std::array table = {Name{GlChoice::automatic, "auto"}, Name{GlChoice::osmesa, "osmesa"},
                                        Name{GlChoice::egl, "egl"}};
 };
+
+// What EGL finds on this machine: the device files of graphics cards, and "software" for rasterisers. Empty without EGL.
+std::vector<std::string> egl_devices();
 
 class GlContext {
  public:
@@ -33,7 +38,10 @@ class GlContext {
  private:
   // Each of these returns an empty text, or why it did not work.
   std::string open_osmesa();
+  std::string open_cards();
   std::string open_egl();
+  // Tries to make a context on a display of an EGL library that is open.
+  bool open_display(void* library, void* display);
 
   const char* backend_ = "";
   Function (*resolve_)(const char*) = nullptr;
