@@ -1,16 +1,9 @@
 #include "sim/contact/contact_direction.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 namespace supple {
-namespace {
-
-constexpr std::size_t most_remembered = std::size_t(1) << 26;  // numbers of A^-1 that are kept after a step: 256 MB
-constexpr std::size_t most_low_rank = 600;  // stiff directions: a dense factorisation of more costs more than it gains
-
-}  // namespace
 
 void find_stiff_directions(const Model& model, const std::vector<Contact>& contacts, const Positions& x,
                            double stick_length, ContactCorrection& correction) {
@@ -32,10 +25,73 @@ void find_stiff_directions(const Model& model, const std::vector<Contact>& conta
   }
 }
 
+// A factorisation takes about as many operations as the directions to the third power: that of 250 takes a fraction of
+// a millisecond, and more are allowed where the body is so large that it takes about half as long as a solve with A.
+std::size_t most_coupled_directions(const Model& model) {
+  const double numbers = static_cast<double>(model.factor.stored_numbers());
+  return std::max<std::size_t>(250, static_cast<std::size_t>(std::cbrt(45 * numbers)));
+}
+
 namespace {
 
-// A vertex with several stiff directions that are not at right angles goes through its projections in turn, and back in
-// the opposite order.
+// An order of vertices of which every beginning is spread evenly over their numbers (van der Corput's sequence), and so
+// over the body, whose order of elimination keeps neighbours together. It does not change from step to step, so that
+// few vertices are ever chosen.
+std::uint32_t rank_of(std::int32_t vertex) {
+  auto bits = static_cast<std::uint32_t>(vertex);
+  std::uint32_t reversed = 0;
+  for (int i = 0; i < 32; ++i, bits >>= 1) reversed = reversed << 1 | (bits & 1);
+  return reversed;
+}
+
+// Returns how many of the wanted directions the system may have, so that it has no more coupled ones than it should.
+std::size_t affordable(const Model& model, const std::vector<StiffDirection>& wanted) {
+  const std::size_t most = most_coupled_directions(model);
+  std::vector<CoupledDirections> lists;
+  std::size_t largest = 0;
+  for (std::size_t i = 0; i < wanted.size(); ++i) couple(wanted[i], static_cast<Eigen::Index>(i), lists);
+  for (const CoupledDirections& list : lists) largest = std::max(largest, list.members.size());
+  return largest <= most ? wanted.size() : wanted.size() * most / largest;
+}
+
+// Splits the wanted directions: those of the vertices of lowest rank go into the system, as many as it may have, and
+// stand there for their neighbours, too.
+void split(ContactCorrection& c, std::size_t most) {
+  c.together = c.wanted;
+  c.rest.clear();
+  if (c.wanted.size() > most) {
+    std::vector<std::uint32_t> ranks;
+    for (const StiffDirection& s : c.wanted) ranks.push_back(rank_of(s.vertex));
+    std::nth_element(ranks.begin(), ranks.begin() + static_cast<std::ptrdiff_t>(most), ranks.end());
+    const auto last = std::stable_partition(c.together.begin(), c.together.end(),
+                                            [&](const StiffDirection& s) { return rank_of(s.vertex) < ranks[most]; });
+    c.rest.assign(last, c.together.end());
+    c.together.erase(last, c.together.end());
+    for (StiffDirection& s : c.together)
+      s.stiffness *= static_cast<double>(c.wanted.size()) / static_cast<double>(c.together.size());
+  }
+  std::stable_sort(c.together.begin(), c.together.end(),
+                   [](const StiffDirection& a, const StiffDirection& b) { return a.vertex < b.vertex; });
+}
+
+FactorPart part_of(const Model& model, const std::vector<StiffDirection>& directions) {
+  std::vector<std::int32_t> vertices;
+  for (const StiffDirection& s : directions) vertices.push_back(s.vertex);
+  return paths_to_root(model.factor, vertices);
+}
+
+// The share of a motion that is left to a vertex in a direction of the rest.
+double share(const Model& model, const StiffDirection& s) {
+  return std::sqrt(model.diagonal[s.vertex] / (model.diagonal[s.vertex] + s.stiffness));
+}
+
+// Scales the motion of the rest: T. A vertex with several directions that are not at right angles goes through them in
+// turn, and back in the opposite order.
+void scale_rest(const Model& model, const StiffDirection& s, Positions& r) {
+  r.row(s.vertex) -= (1 - share(model, s)) * r.row(s.vertex).dot(s.axis) * s.axis.transpose();
+}
+
+// H = P A^-1 P + N diag(1 / (a + k)) N^T.
 void apply_diagonal(const Model& model, ContactCorrection& c, SolveScratch& scratch, Positions& r, Positions& z) {
   c.answer.resize(static_cast<Eigen::Index>(c.wanted.size()));
   for (std::size_t i = 0; i < c.wanted.size(); ++i) {
@@ -51,162 +107,112 @@ void apply_diagonal(const Model& model, ContactCorrection& c, SolveScratch& scra
   }
 }
 
-// Makes sure that the columns of A^-1 of all vertices of the list are known. A solve finds three of them; r and z are
-// scratch.
-void learn_columns(const Model& model, ContactCorrection& c, SolveScratch& scratch, Positions& r, Positions& z) {
-  if (c.column_of.empty()) c.column_of.assign(model.free, -1);
-  std::vector<std::int32_t> fresh;
-  for (const StiffDirection& s : c.stiff) {
-    if (c.column_of[s.vertex] >= 0) continue;
-    c.column_of[s.vertex] = static_cast<std::int32_t>(c.inverse.size() + fresh.size());
-    fresh.push_back(s.vertex);
+// Adds the forces -N answer to a solve under way and to its right-hand side.
+void add_answer(ContactCorrection& c, const FactorPart& part, Positions& r) {
+  c.solve.clear_addition(part);
+  for (Eigen::Index i = 0; i < c.answer.size(); ++i) {
+    const StiffDirection& s = c.system.directions()[i];
+    const Vec3 force = -static_cast<double>(c.answer[i]) * s.axis;
+    c.solve.add(s.vertex, force);
+    r.row(s.vertex) += force.transpose();
   }
-  for (std::size_t at = 0; at < fresh.size(); at += 3) {
-    const std::size_t count = std::min<std::size_t>(3, fresh.size() - at);
-    r.setZero();
-    for (std::size_t k = 0; k < count; ++k) r(fresh[at + k], static_cast<Eigen::Index>(k)) = 1;
-    model.factor.solve(r.data(), z.data(), scratch.data());
-    for (std::size_t k = 0; k < count; ++k) c.inverse.emplace_back(z.col(static_cast<Eigen::Index>(k)).cast<float>());
-  }
+  c.solve.pass_on(part);
 }
 
-// Takes always the same one of the two entries that should be equal, whichever vertex was touched first.
-float capacitance_entry(const ContactCorrection& c, const StiffDirection& a, const StiffDirection& b) {
-  const auto [low, high] = std::minmax(a.vertex, b.vertex);
-  return static_cast<float>(a.axis.dot(b.axis)) * c.inverse[c.column_of[high]][low];
+void finish(const Model& model, ContactCorrection& c, const Positions& r, Positions& z) {
+  c.solve.finish(z.data());
+  if (model.free_floating) restore_translation(model, r, z);
 }
 
-// Appends the directions from `first` on to the Cholesky factor of the capacitance; c.stiff and c.lower agree up to
-// there. Returns false when it is not positive definite.
-bool extend_factor(ContactCorrection& c, Eigen::Index first) {
-  const auto n = static_cast<Eigen::Index>(c.stiff.size()), more = n - first;
-  if (c.lower.rows() < n) {
-    Eigen::MatrixXf larger = Eigen::MatrixXf::Zero(n + n / 2, n + n / 2);
-    larger.topLeftCorner(first, first) = c.lower.topLeftCorner(first, first);
-    c.lower.swap(larger);
-  }
-  auto below = c.lower.block(first, 0, more, first);
-  auto corner = c.lower.block(first, first, more, more);
-  for (Eigen::Index i = 0; i < more; ++i) {
-    for (Eigen::Index j = 0; j < first; ++j) below(i, j) = capacitance_entry(c, c.stiff[first + i], c.stiff[j]);
-    for (Eigen::Index j = 0; j <= i; ++j) corner(i, j) = capacitance_entry(c, c.stiff[first + i], c.stiff[first + j]);
-    corner(i, i) += static_cast<float>(1 / c.stiff[first + i].stiffness);
-  }
-  if (first > 0) {
-    c.lower.topLeftCorner(first, first)
-        .transpose()
-        .triangularView<Eigen::Upper>()
-        .solveInPlace<Eigen::OnTheRight>(below);
-    corner.selfadjointView<Eigen::Lower>().rankUpdate(below, -1);
-  }
-  Eigen::LLT<Eigen::Ref<Eigen::MatrixXf>> factor(corner);
-  return factor.info() == Eigen::Success;
-}
-
-// Subtracts A^-1 N S^-1 e from z, with e given in c.answer.
-void subtract_answer(const Model& model, ContactCorrection& c, SolveScratch& scratch, Positions& z) {
-  const auto n = static_cast<Eigen::Index>(c.stiff.size());
-  const auto lower = c.lower.topLeftCorner(n, n).triangularView<Eigen::Lower>();
-  lower.solveInPlace(c.answer);
-  lower.transpose().solveInPlace(c.answer);
-  c.push.setZero(model.free, 3);
-  c.back.resize(model.free, 3);
-  for (Eigen::Index i = 0; i < n; ++i) c.push.row(c.stiff[i].vertex) += c.answer[i] * c.stiff[i].axis.transpose();
-  solve_system(model, c.push, c.back, scratch);
-  z -= c.back;
-}
-
-// Tells whether the factor was made for the same stiff directions, or nearly the same: the correction need not be
-// exact.
-bool still_good(const ContactCorrection& c, const std::vector<StiffDirection>& wanted) {
-  if (c.stiff.size() != wanted.size()) return false;
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    const StiffDirection &a = c.stiff[i], &b = wanted[i];
-    if (a.vertex != b.vertex || a.axis.dot(b.axis) < 0.999 || std::abs(a.stiffness - b.stiffness) > 0.1 * a.stiffness)
-      return false;
-  }
-  return true;
-}
-
-// Chooses at most most_low_rank of the wanted directions: where there are more, every n-th stands for its neighbours, n
-// times as stiff.
-void thin_out(const std::vector<StiffDirection>& wanted, std::vector<StiffDirection>& chosen) {
-  const std::size_t stride = (wanted.size() + most_low_rank - 1) / most_low_rank;
-  chosen.clear();
-  for (std::size_t i = 0; i < wanted.size(); i += stride) {
-    chosen.push_back(wanted[i]);
-    chosen.back().stiffness *= static_cast<double>(stride);
-  }
-}
-
-bool apply_low_rank(const Model& model, ContactCorrection& c, SolveScratch& scratch, const Positions& r, Positions& z) {
-  thin_out(c.wanted, c.chosen);
-  if (!still_good(c, c.chosen)) {
-    c.stiff = c.chosen;
-    c.push.resize(model.free, 3);
-    learn_columns(model, c, scratch, c.push, z);
-    if (!extend_factor(c, 0)) {
-      c.stiff.clear();
-      return false;
-    }
-  }
-  solve_system(model, r, z, scratch);
-  c.answer.resize(static_cast<Eigen::Index>(c.stiff.size()));
+// z = (A + K')^-1 r; r gets the forces at the contacts.
+void apply_low_rank(const Model& model, ContactCorrection& c, Positions& r, Positions& z) {
+  c.solve.begin(model.factor, r.data());
+  c.solve.look(c.part);
+  const std::vector<StiffDirection>& directions = c.system.directions();
+  c.answer.resize(static_cast<Eigen::Index>(directions.size()));
   for (Eigen::Index i = 0; i < c.answer.size(); ++i)
-    c.answer[i] = static_cast<float>(z.row(c.stiff[i].vertex).dot(c.stiff[i].axis));
-  subtract_answer(model, c, scratch, z);
-  return true;
+    c.answer[i] = static_cast<float>(c.solve.seen(directions[i].vertex).dot(directions[i].axis));
+  c.system.solve(c.answer);
+  add_answer(c, c.part, r);
+  finish(model, c, r, z);
 }
 
 }  // namespace
 
-void forget_factor(const Model& model, ContactCorrection& c) {
-  c.stiff.clear();
-  if (c.inverse.size() * std::size_t(model.free) <= most_remembered) return;
-  c.inverse.clear();
-  c.column_of.clear();
-}
-
-bool foresee_contacts(const Model& model, const ContactSettings& settings, const std::vector<Contact>& contacts,
-                      const Positions& x, ContactCorrection& c, SolveScratch& scratch, Positions& direction) {
-  if (settings.direction != ContactDirection::low_rank || contacts.empty()) return false;
-  if (c.wanted.size() > most_low_rank) return false;
-  if (c.wanted.empty()) c.stiff.clear();
-  c.entered.assign(c.stiff.size(), 0.0f);
-  for (int pass = 0; pass < 3; ++pass) {
-    const std::size_t first = c.stiff.size();
-    for (const Contact& contact : contacts) {
-      if (contact.depth > 0) continue;
-      const double gap = contact.normal.dot(x.row(contact.vertex) + direction.row(contact.vertex)) - contact.offset;
-      if (gap >= 0 || c.stiff.size() >= most_low_rank) continue;
-      if (pass > 0 && std::find_if(c.stiff.begin(), c.stiff.end(), [&](const StiffDirection& s) {
-                        return s.vertex == contact.vertex && s.axis == contact.normal;
-                      }) != c.stiff.end())
-        continue;
-      c.stiff.push_back({contact.vertex, contact.normal, 2 * contact.stiffness});
-      c.entered.push_back(static_cast<float>(gap));
-    }
-    if (c.stiff.size() == first) return pass > 0;
-    if (pass == 0) c.unbent = direction;
-    c.push.resize(model.free, 3);
-    c.back.resize(model.free, 3);
-    learn_columns(model, c, scratch, c.push, c.back);
-    if (!extend_factor(c, static_cast<Eigen::Index>(first))) {
-      c.stiff.clear();
-      return pass > 0;
-    }
-    c.answer = Eigen::Map<const Eigen::VectorXf>(c.entered.data(), static_cast<Eigen::Index>(c.entered.size()));
-    std::fill(c.entered.begin(), c.entered.end(), 0.0f);
-    subtract_answer(model, c, scratch, direction);
-  }
-  return true;
-}
+void begin_corrections(const Model& model, ContactCorrection& c) { c.system.begin_step(model); }
 
 void apply_inverse(const Model& model, const ContactSettings& settings, ContactCorrection& c, SolveScratch& scratch,
                    Positions& r, Positions& z) {
-  if (c.wanted.empty() || settings.direction == ContactDirection::ignored) return solve_system(model, r, z, scratch);
+  if (c.wanted.empty() || settings.direction == ContactDirection::ignored) {
+    c.system.clear();
+    return solve_system(model, r, z, scratch);
+  }
   if (settings.direction == ContactDirection::diagonal) return apply_diagonal(model, c, scratch, r, z);
-  if (!apply_low_rank(model, c, scratch, r, z)) solve_system(model, r, z, scratch);
+  split(c, affordable(model, c.wanted));
+  if (!c.system.set(model, c.together)) c.rest = c.wanted;
+  c.part = part_of(model, c.system.directions());
+  for (const StiffDirection& s : c.rest) scale_rest(model, s, r);
+  if (c.system.directions().empty()) {
+    solve_system(model, r, z, scratch);
+  } else {
+    apply_low_rank(model, c, r, z);
+  }
+  for (std::size_t i = c.rest.size(); i-- > 0;) scale_rest(model, c.rest[i], z);
+}
+
+namespace {
+
+// Returns how far above its plane a direction leads a vertex from x.
+double gap_after(const Contact& contact, const Positions& x, const Positions& direction) {
+  return contact.normal.dot(x.row(contact.vertex) + direction.row(contact.vertex)) - contact.offset;
+}
+
+// Minimises the quadratic model with the energies of these planes, too: the direction ends where they hold it.
+void bend(const Model& model, const std::vector<StiffDirection>& ahead, const std::vector<float>& gaps,
+          ContactCorrection& c, Positions& direction) {
+  const auto before = static_cast<Eigen::Index>(c.system.directions().size());
+  if (!c.system.append(model, ahead)) return;
+  c.answer = Eigen::VectorXf::Zero(static_cast<Eigen::Index>(c.system.directions().size()));
+  std::copy(gaps.begin(), gaps.end(), c.answer.data() + before);
+  c.system.solve(c.answer);
+  const FactorPart part = part_of(model, c.system.directions());
+  c.push.setZero(model.free, 3);
+  c.back.resize(model.free, 3);
+  c.solve.begin_from_zero(model.factor, c.answer.cwiseAbs().maxCoeff());
+  add_answer(c, part, c.push);
+  finish(model, c, c.push, c.back);
+  for (const StiffDirection& s : c.rest) scale_rest(model, s, c.back);
+  direction += c.back;
+}
+
+}  // namespace
+
+bool foresee_contacts(const Model& model, const ContactSettings& settings, const std::vector<Contact>& contacts,
+                      const Positions& x, ContactCorrection& c, Positions& direction) {
+  if (settings.direction != ContactDirection::low_rank) return false;
+  std::vector<StiffDirection> ahead;
+  std::vector<float> gaps;
+  for (const Contact& contact : contacts) {
+    if (contact.depth > 0) continue;
+    const double gap = gap_after(contact, x, direction);
+    if (gap >= 0) continue;
+    ahead.push_back({contact.vertex, contact.normal, 2 * contact.stiffness});
+    gaps.push_back(static_cast<float>(gap));
+  }
+  if (ahead.empty()) return false;
+  c.unbent = direction;
+  std::vector<StiffDirection> all = c.system.directions();
+  all.insert(all.end(), ahead.begin(), ahead.end());
+  if (affordable(model, all) == all.size()) {
+    bend(model, ahead, gaps, c, direction);
+    return true;
+  }
+  for (const Contact& contact : contacts) {
+    if (contact.depth > 0) continue;
+    const double gap = gap_after(contact, x, direction);
+    if (gap < 0) direction.row(contact.vertex) -= gap * contact.normal.transpose();
+  }
+  return true;
 }
 
 }  // namespace supple

@@ -106,9 +106,10 @@ std::optional<SurfacePoint> holding(const View& view, const Vec3& a, const Vec3&
   return here.distance < reach ? std::optional(here) : std::nullopt;
 }
 
-// A vertex that moved `way` since the step began gets a plane within this distance of a surface: an iteration may still
-// move it that much further.
-double reach_of(double way) { return 0.25 * way; }
+// A vertex that moved `way` since the step began, and would have moved `freely` if nothing held it, gets a plane within
+// this distance of a surface: an iteration may still move it that much further. What rests hardly moves, but the next
+// iteration may move it as far as gravity would.
+double reach_of(double way, double freely) { return 0.25 * std::max(way, freely); }
 
 // Everything that the examination of one vertex needs.
 struct Search {
@@ -126,30 +127,34 @@ struct Search {
     return known;
   }
 
-  // Calls found(v, a, b, field_at_a) for the vertices of a group that may have met collider c.
+  // Calls found(v, a, b, field_at_a, reach) for the vertices of a group that may have met collider c.
   template <class Found>
   void near(std::size_t c, const View& view, int group, const Found& found) const {
     const int groups = groups_of(model);
     const std::size_t at = c * groups + group;
     const double moved = work.group_move[group] + work.collider_move[at];
-    if (moved + reach_of(moved) < view.clear(work.group_distance[at])) return;
+    const double freely = work.group_free_move[group] + work.collider_move[at];
+    if (moved + reach_of(moved, freely) < view.clear(work.group_distance[at])) return;
     const int end = std::min(model.free, (group + 1) * group_size);
     for (int v = group * group_size; v < end; ++v) {
       const Vec3 a = view.at_start(work.start.row(v)), b = view.at_end(x.row(v));
       const double way = (b - a).norm();
+      const double reach = reach_of(way, (view.at_end(work.prediction->row(v)) - a).norm());
       const double field = start_field(view, c, v, a);
-      if (way + reach_of(way) < view.clear(field)) continue;
-      found(v, a, b, field);
+      if (way + reach < view.clear(field)) continue;
+      found(v, a, b, field, reach);
     }
   }
 };
 
-void measure_moves(const Model& model, const Positions& x, ContactWork& work) {
+// Finds the largest distance of each group's vertices from where they started.
+void measure_moves(const Model& model, const Positions& x, const ContactWork& work, std::vector<double>& moves) {
+  moves.resize(groups_of(model));
   for (int group = 0; group < groups_of(model); ++group) {
     double most = 0;
     const int end = std::min(model.free, (group + 1) * group_size);
     for (int v = group * group_size; v < end; ++v) most = std::max(most, (x.row(v) - work.start.row(v)).squaredNorm());
-    work.group_move[group] = std::sqrt(most);
+    moves[group] = std::sqrt(most);
   }
 }
 
@@ -221,7 +226,7 @@ void begin_contacts(const Model& model, const StepInputs& inputs, const Position
   work.clearance.assign(colliders * model.free, unknown);
   work.group_distance.resize(colliders * groups);
   work.collider_move.resize(colliders * groups);
-  work.group_move.resize(groups);
+  measure_moves(model, y, work, work.group_free_move);
   work.by_chunk.resize((groups + groups_a_chunk - 1) / groups_a_chunk);
   work.traits.clear();
   for (const Collider& collider : *inputs.colliders)
@@ -249,14 +254,15 @@ void find_contacts(const Model& model, const StepInputs& inputs, const Positions
   const double h = model.time_step, unit_stiffness = settings.stiffness / (h * h);
   const double push_out = settings.push_out * model.size * h;
   found.clear();
-  measure_moves(model, x, work);
+  measure_moves(model, x, work, work.group_move);
   const int groups = groups_of(model);
   for (std::size_t c = 0; c < inputs.colliders->size(); ++c) {
     const Search search{model, inputs, x, work};
     const View view = search.view(c);
     const double friction = (*inputs.colliders)[c].friction;
-    const auto examine = [&](std::vector<Contact>& list, int v, const Vec3& a, const Vec3& b, double field) {
-      const std::optional<SurfacePoint> surface = holding(view, a, b, field, reach_of((b - a).norm()));
+    const auto examine = [&](std::vector<Contact>& list, int v, const Vec3& a, const Vec3& b, double field,
+                             double reach) {
+      const std::optional<SurfacePoint> surface = holding(view, a, b, field, reach);
       if (!surface) return;
       Contact contact{v, static_cast<std::int32_t>(c),   view.end().linear() * surface->normal,
                       0, unit_stiffness * model.mass[v], 0};
@@ -280,8 +286,9 @@ void find_contacts(const Model& model, const StepInputs& inputs, const Positions
       std::vector<Contact>& list = work.by_chunk[chunk];
       list.clear();
       for (int group = chunk * groups_a_chunk; group < std::min(groups, (chunk + 1) * groups_a_chunk); ++group) {
-        search.near(c, view, group,
-                    [&](int v, const Vec3& a, const Vec3& b, double field) { examine(list, v, a, b, field); });
+        search.near(c, view, group, [&](int v, const Vec3& a, const Vec3& b, double field, double reach) {
+          examine(list, v, a, b, field, reach);
+        });
       }
     });
     for (const auto& list : work.by_chunk) found.insert(found.end(), list.begin(), list.end());
@@ -302,13 +309,13 @@ void count_contacts(const std::vector<Contact>& before, const std::vector<Contac
 
 double way_to_impact(const Model& model, const StepInputs& inputs, const Positions& x, double allowed,
                      ContactWork& work) {
-  measure_moves(model, x, work);
+  measure_moves(model, x, work, work.group_move);
   double least = 1;
   for (std::size_t c = 0; c < inputs.colliders->size(); ++c) {
     const Search search{model, inputs, x, work};
     const View view = search.view(c);
     for (int group = 0; group < groups_of(model); ++group) {
-      search.near(c, view, group, [&](int, const Vec3& a, const Vec3& b, double field) {
+      search.near(c, view, group, [&](int, const Vec3& a, const Vec3& b, double field, double) {
         if (field <= 0) return;
         const std::optional<Entry> entered = entry(view, a, b, field);
         if (!entered) return;

@@ -25,6 +25,7 @@ struct ContactWork {
   std::vector<double> clearance;          // signed distance at the start, colliders x free; NaN: not asked yet [m]
   std::vector<double> group_distance;     // least distance of a group's vertices at the start, colliders x groups [m]
   std::vector<double> group_move;         // largest of a group's vertices, start to iterate [m]
+  std::vector<double> group_free_move;    // the same, start to prediction [m]
   std::vector<double> collider_move;      // of the collider's own points near a group, colliders x groups [m]
   std::vector<ColliderTraits> traits;     // by collider
   Positions start;                        // q of the free vertices [m]

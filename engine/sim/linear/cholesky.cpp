@@ -100,6 +100,7 @@ void CholeskyFactor::analyze(const Eigen::SparseMatrix<double>& matrix) {
       const int end = node.first + node.width() * (part + 1) / parts;
       first_column_.push_back(first);
       width_.push_back(end - first);
+      panel_of_.insert(panel_of_.end(), end - first, static_cast<std::int32_t>(width_.size()) - 1);
       for (int j = end; j <= node.last; ++j) rows_.push_back(j);
       const auto below = elimination_.rows.begin() + node.first_row;
       rows_.insert(rows_.end(), below, below + node.row_count);
@@ -169,15 +170,13 @@ PanelsView CholeskyFactor::view() const {
           values};
 }
 
-namespace {
-
-// A power of two that brings the largest entry near 1, so that single precision neither overflows nor falls into
-// denormals.
-double scale_of(const double* b, int count) {
+double solve_scale(const double* b, int count) {
   double largest = 0;
   for (int i = 0; i < count; ++i) largest = std::max(largest, std::abs(b[i]));
   return largest > 0 && std::isfinite(largest) ? std::exp2(-std::ilogb(largest)) : 1.0;
 }
+
+namespace {
 
 template <class T, class Solve>
 void solve_interleaved(int size, const double* b, double* x, T* four, double scale, const Solve& solve) {
@@ -196,10 +195,15 @@ void solve_interleaved(int size, const double* b, double* x, T* four, double sca
 void CholeskyFactor::solve(const double* b, double* x, double* scratch) const {
   const PanelsView panels = view();
   if (precision_ == Precision::single_precision) {
-    solve_interleaved(size_, b, x, reinterpret_cast<float*>(scratch), scale_of(b, 3 * size_),
-                      [&](float* four) { linear_kernels().solve_float(panels, four); });
+    solve_interleaved(size_, b, x, reinterpret_cast<float*>(scratch), solve_scale(b, 3 * size_), [&](float* four) {
+      linear_kernels().down_float(panels, nullptr, 0, four);
+      linear_kernels().up_float(panels, nullptr, 0, four);
+    });
   } else {
-    solve_interleaved(size_, b, x, scratch, 1.0, [&](double* four) { linear_kernels().solve_double(panels, four); });
+    solve_interleaved(size_, b, x, scratch, 1.0, [&](double* four) {
+      linear_kernels().down_double(panels, nullptr, 0, four);
+      linear_kernels().up_double(panels, nullptr, 0, four);
+    });
   }
 }
 

@@ -30,6 +30,10 @@ struct Names<Precision> {
                                        Name{Precision::double_precision, "double"}};
 };
 
+// A power of two that brings the largest of some numbers near 1, so that single precision neither overflows nor falls
+// into denormals.
+double solve_scale(const double* numbers, int count);
+
 class CholeskyFactor {
  public:
   CholeskyFactor() = default;
@@ -46,12 +50,20 @@ class CholeskyFactor {
   // x = A^-1 b for b and x with `size` rows, interleaved. scratch: 4 * size doubles.
   void solve(const double* b, double* x, double* scratch) const;
 
+  // The panels that solves go by (linear_kernels.h), for those who solve in parts (parted_solve.h).
+  PanelsView view() const;
+  Precision precision() const { return precision_; }
+  std::int32_t panel_of(int unknown) const { return panel_of_[unknown]; }
+  // The panel of the first row below a panel, the next one on the way to the root of the elimination tree; -1: none.
+  std::int32_t parent_of(int panel) const {
+    return first_row_[panel] < first_row_[panel + 1] ? panel_of_[rows_[first_row_[panel]]] : -1;
+  }
+
  private:
   bool has_pattern_of(const Eigen::SparseMatrix<double>& matrix) const;
   void analyze(const Eigen::SparseMatrix<double>& matrix);
   template <class T>
   void store_panels(int node, const double* columns, AlignedVector<T>& out) const;
-  PanelsView view() const;
 
   int size_ = 0;
   Precision precision_ = Precision::double_precision;
@@ -59,6 +71,7 @@ class CholeskyFactor {
   Elimination elimination_;
   std::vector<std::int32_t> first_panel_;  // by supernode; one more entry than supernodes
   std::vector<std::int32_t> first_column_, width_, rows_;
+  std::vector<std::int32_t> panel_of_;  // by unknown
   std::vector<std::int64_t> first_row_, first_value_;
   AlignedVector<float> single_;
   AlignedVector<double> double_;

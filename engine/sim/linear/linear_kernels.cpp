@@ -316,13 +316,25 @@ template <class T>
 using PanelStep = void (*)(const PanelsView&, int, T*);
 
 template <class T>
-void solve(const PanelsView& view, T* x) {
-  static constexpr PanelStep<T> down[panel_width] = {forward<T, 1>, forward<T, 2>, forward<T, 3>, forward<T, 4>,
+void down(const PanelsView& view, const std::int32_t* list, int count, T* x) {
+  static constexpr PanelStep<T> step[panel_width] = {forward<T, 1>, forward<T, 2>, forward<T, 3>, forward<T, 4>,
                                                      forward<T, 5>, forward<T, 6>, forward<T, 7>, forward<T, 8>};
-  static constexpr PanelStep<T> up[panel_width] = {backward<T, 1>, backward<T, 2>, backward<T, 3>, backward<T, 4>,
-                                                   backward<T, 5>, backward<T, 6>, backward<T, 7>, backward<T, 8>};
-  for (int panel = 0; panel < view.panels; ++panel) down[view.width[panel] - 1](view, panel, x);
-  for (int panel = view.panels - 1; panel >= 0; --panel) up[view.width[panel] - 1](view, panel, x);
+  if (list == nullptr) {
+    for (int panel = 0; panel < view.panels; ++panel) step[view.width[panel] - 1](view, panel, x);
+    return;
+  }
+  for (int i = 0; i < count; ++i) step[view.width[list[i]] - 1](view, list[i], x);
+}
+
+template <class T>
+void up(const PanelsView& view, const std::int32_t* list, int count, T* x) {
+  static constexpr PanelStep<T> step[panel_width] = {backward<T, 1>, backward<T, 2>, backward<T, 3>, backward<T, 4>,
+                                                     backward<T, 5>, backward<T, 6>, backward<T, 7>, backward<T, 8>};
+  if (list == nullptr) {
+    for (int panel = view.panels - 1; panel >= 0; --panel) step[view.width[panel] - 1](view, panel, x);
+    return;
+  }
+  for (int i = count - 1; i >= 0; --i) step[view.width[list[i]] - 1](view, list[i], x);
 }
 
 void dots(const double* const* a, int count, const double* b, long begin, long end, double* result) {
@@ -342,6 +354,25 @@ void dots(const double* const* a, int count, const double* b, long begin, long e
   }
 }
 
+float dot_float(const float* a, const float* b, long count) {
+  typedef float Many __attribute__((vector_size(64)));
+  Many sum[2] = {};
+  long at = 0;
+  for (; at + 32 <= count; at += 32) {
+    for (int k = 0; k < 2; ++k) {
+      Many u, v;
+      __builtin_memcpy(&u, a + at + 16 * k, sizeof u);
+      __builtin_memcpy(&v, b + at + 16 * k, sizeof v);
+      sum[k] += u * v;
+    }
+  }
+  sum[0] += sum[1];
+  float all = 0;
+  for (int i = 0; i < 16; ++i) all += sum[0][i];
+  for (; at < count; ++at) all += a[at] * b[at];
+  return all;
+}
+
 void add_scaled(const double* const* a, const double* c, int count, double* r, long begin, long end) {
   long at = begin;
   for (; at + lanes <= end; at += lanes) {
@@ -357,7 +388,7 @@ void add_scaled(const double* const* a, const double* c, int count, double* r, l
 }  // namespace
 
 extern const LinearKernels SUPPLE_TABLE(linear);
-const LinearKernels SUPPLE_TABLE(linear) = {eliminate,     solve_down, solve_up,  solve<float>,
-                                            solve<double>, dots,       add_scaled};
+const LinearKernels SUPPLE_TABLE(linear) = {eliminate,    solve_down, solve_up, down<float>, up<float>,
+                                            down<double>, up<double>, dots,     dot_float,   add_scaled};
 
 }  // namespace supple

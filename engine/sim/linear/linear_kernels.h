@@ -36,12 +36,18 @@ struct LinearKernels {
   void (*solve_up)(FrontShape front, const double* columns, const std::int32_t* rows, double* own, double* x,
                    double* scratch);
 
-  // Solves L L^T x = b in place for four interleaved right-hand sides (n x 4), by panels of up to panel_width columns.
-  void (*solve_float)(const PanelsView& panels, float* x);
-  void (*solve_double)(const PanelsView& panels, double* x);
+  // Solves L x = b (down) or L^T x = b (up) in place for four interleaved right-hand sides (n x 4), by panels of up to
+  // panel_width columns: those of an ascending list, or all of them (null). Numbers that belong to other panels are
+  // read by down alone as targets, and are not used by up if the list holds all panels that its own depend on.
+  void (*down_float)(const PanelsView& panels, const std::int32_t* list, int count, float* x);
+  void (*up_float)(const PanelsView& panels, const std::int32_t* list, int count, float* x);
+  void (*down_double)(const PanelsView& panels, const std::int32_t* list, int count, double* x);
+  void (*up_double)(const PanelsView& panels, const std::int32_t* list, int count, double* x);
 
   // dots[i] = a_i . b over [begin, end)
   void (*dots)(const double* const* a, int count, const double* b, long begin, long end, double* dots);
+  // a . b in single precision
+  float (*dot_float)(const float* a, const float* b, long count);
   // r += sum_i c_i a_i over [begin, end)
   void (*add_scaled)(const double* const* a, const double* c, int count, double* r, long begin, long end);
 };

@@ -1,10 +1,6 @@
 #include "sim/model/system_solve.h"
 
 namespace supple {
-namespace {
-
-// A body that nothing holds moves as a whole by exactly 1^T M z = h^2/w 1^T r, because L does not see translations;
-// single precision only nearly does so, and would let the centre of mass drift.
 void restore_translation(const Model& model, const Positions& r, Positions& z) {
   Eigen::RowVector3d wanted = Eigen::RowVector3d::Zero(), found = Eigen::RowVector3d::Zero();
   for (int v = 0; v < model.free; ++v) {
@@ -15,8 +11,6 @@ void restore_translation(const Model& model, const Positions& r, Positions& z) {
   const Eigen::RowVector3d shift = (h * h / model.scheme.inertia * wanted - found) / model.total_mass;
   for (int v = 0; v < model.free; ++v) z.row(v) += shift;
 }
-
-}  // namespace
 
 void solve_system(const Model& model, const Positions& r, Positions& z, SolveScratch& scratch) {
   scratch.resize(4 * std::size_t(model.free));

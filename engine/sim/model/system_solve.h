@@ -13,4 +13,8 @@ using SolveScratch = AlignedVector<double>;
 // though the factor has single precision.
 void solve_system(const Model& model, const Positions& r, Positions& z, SolveScratch& scratch);
 
+// A body that nothing holds moves as a whole by exactly 1^T M z = h^2/w 1^T r, because L does not see translations;
+// single precision only nearly does so, and would let the centre of mass drift. Moves z = A^-1 r by what is missing.
+void restore_translation(const Model& model, const Positions& r, Positions& z);
+
 }  // namespace supple

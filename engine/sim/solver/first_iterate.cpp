@@ -60,7 +60,7 @@ void begin_step(const Model& model, const StepInputs& inputs, const State& state
   if (has_colliders(inputs)) {
     const Stretch stretch(w.clock, Phase::collide, "begin contacts");
     begin_contacts(model, inputs, state.x, w.y, w.contact);
-    forget_factor(model, w.correction);
+    begin_corrections(model, w.correction);
   }
   w.current.x = w.y;
   set_targets(model, inputs, w);

@@ -80,7 +80,7 @@ class SystemInverse final : public InitialInverse {
   }
   bool bend(const Model& model, const StepInputs& inputs, Workspace& workspace) override {
     return foresee_contacts(model, inputs.solver.contact, workspace.current.contacts, workspace.current.x,
-                            workspace.correction, workspace.solve_scratch, workspace.direction);
+                            workspace.correction, workspace.direction);
   }
 };
 

@@ -1,0 +1,141 @@
+#include "sim/contact/capacitance.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace supple {
+namespace {
+
+constexpr std::size_t most_axes = 8;  // of a list, before all directions count as coupled with it
+constexpr double right_angle = 1e-7;  // cosine below which directions are uncoupled in single precision
+
+// Tells whether two lists of directions are the same, or nearly.
+bool alike(const std::vector<StiffDirection>& a, const std::vector<StiffDirection>& b) {
+  const auto close = [](const StiffDirection& s, const StiffDirection& t) {
+    return s.vertex == t.vertex && s.axis.dot(t.axis) >= 0.999 &&
+           std::abs(s.stiffness - t.stiffness) <= 0.1 * s.stiffness;
+  };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), close);
+}
+
+bool coupled(const CoupledDirections& list, const Vec3& axis) {
+  return list.axes.size() > most_axes || std::any_of(list.axes.begin(), list.axes.end(), [&](const Vec3& known) {
+           return std::abs(known.dot(axis)) > right_angle;
+         });
+}
+
+void add_axis(CoupledDirections& list, const Vec3& axis) {
+  if (list.axes.size() > most_axes || std::find(list.axes.begin(), list.axes.end(), axis) != list.axes.end()) return;
+  list.axes.push_back(axis);
+}
+
+}  // namespace
+
+std::size_t couple(const StiffDirection& direction, Eigen::Index number, std::vector<CoupledDirections>& lists) {
+  std::size_t home = lists.size();
+  for (std::size_t i = 0; i < lists.size();) {
+    if (!coupled(lists[i], direction.axis)) {
+      ++i;
+    } else if (home == lists.size()) {
+      home = i++;
+    } else {
+      lists[home].members.insert(lists[home].members.end(), lists[i].members.begin(), lists[i].members.end());
+      for (const Vec3& axis : lists[i].axes) add_axis(lists[home], axis);
+      lists.erase(lists.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+  }
+  if (home == lists.size()) lists.emplace_back();
+  add_axis(lists[home], direction.axis);
+  lists[home].members.push_back(number);
+  return home;
+}
+
+void Capacitance::clear() {
+  directions_.clear();
+  lists_.clear();
+}
+
+void Capacitance::begin_step(const Model& model) {
+  clear();
+  if (entries_.stored_numbers() > model.factor.stored_numbers()) entries_.clear();
+}
+
+bool Capacitance::set(const Model& model, const std::vector<StiffDirection>& wanted) {
+  if (alike(directions_, wanted)) return true;
+  clear();
+  return append(model, wanted);
+}
+
+// A list that has grown at its end keeps its factor; where lists became one, all are factored anew.
+bool Capacitance::append(const Model& model, const std::vector<StiffDirection>& more) {
+  const std::size_t lists_before = lists_.size();
+  std::vector<Eigen::Index> sizes;
+  for (const CoupledDirections& list : lists_) sizes.push_back(static_cast<Eigen::Index>(list.members.size()));
+  bool merged = false;
+  std::vector<std::int32_t> touched;
+  for (const StiffDirection& direction : more) {
+    touched.push_back(direction.vertex);
+    const std::size_t count = lists_.size();
+    couple(direction, static_cast<Eigen::Index>(directions_.size()), lists_);
+    merged |= lists_.size() < count;
+    directions_.push_back(direction);
+  }
+  entries_.learn(model.factor, touched);
+  factors_.resize(std::max(factors_.size(), lists_.size()));
+  for (std::size_t i = 0; i < lists_.size(); ++i) {
+    factors_[i].factored = merged || i >= lists_before ? 0 : sizes[i];
+    if (extend(model, lists_[i], factors_[i])) continue;
+    clear();
+    return false;
+  }
+  return true;
+}
+
+// Directions of one vertex that come one after the other share an entry.
+void Capacitance::fill_row(const Model& model, const CoupledDirections& list, Eigen::Index row, float* values) {
+  const StiffDirection& own = directions_[list.members[row]];
+  std::int32_t other = -1;
+  float entry = 0;
+  for (Eigen::Index j = 0; j <= row; ++j) {
+    const StiffDirection& s = directions_[list.members[j]];
+    if (s.vertex != other) entry = entries_.entry(model.factor, own.vertex, other = s.vertex);
+    values[j] = static_cast<float>(own.axis.dot(s.axis)) * entry;
+  }
+  values[row] += static_cast<float>(1 / own.stiffness);
+}
+
+bool Capacitance::extend(const Model& model, const CoupledDirections& list, Factor& factor) {
+  const auto n = static_cast<Eigen::Index>(list.members.size()), first = factor.factored, more = n - first;
+  if (more == 0) return true;
+  RowMatrix& lower = factor.lower;
+  if (lower.rows() < n) {
+    RowMatrix larger = RowMatrix::Zero(n + n / 2, n + n / 2);
+    larger.topLeftCorner(first, first) = lower.topLeftCorner(first, first);
+    lower.swap(larger);
+  }
+  for (Eigen::Index i = first; i < n; ++i) fill_row(model, list, i, lower.row(i).data());
+  auto below = lower.block(first, 0, more, first);
+  auto corner = lower.block(first, first, more, more);
+  if (first > 0) {
+    lower.topLeftCorner(first, first).transpose().triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(below);
+    corner.selfadjointView<Eigen::Lower>().rankUpdate(below, -1);
+  }
+  const Eigen::LLT<Eigen::Ref<RowMatrix>> done(corner);
+  return done.info() == Eigen::Success;
+}
+
+void Capacitance::solve(Eigen::VectorXf& answer) const {
+  Eigen::VectorXf part;
+  for (std::size_t i = 0; i < lists_.size(); ++i) {
+    const std::vector<Eigen::Index>& members = lists_[i].members;
+    const auto n = static_cast<Eigen::Index>(members.size());
+    part = answer(members);
+    const auto lower = factors_[i].lower.topLeftCorner(n, n).triangularView<Eigen::Lower>();
+    lower.solveInPlace(part);
+    lower.transpose().solveInPlace(part);
+    answer(members) = part;
+  }
+}
+
+}  // namespace supple

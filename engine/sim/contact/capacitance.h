@@ -1,0 +1,67 @@
+// The small dense system of the Woodbury identity, K^-1 + N^T A^-1 N over some stiff directions: it gives the forces at
+// contacts that keep them from moving. It takes the entries of A^-1 among touched vertices alone, which are kept from
+// step to step. Directions at right angles do not feel each other, because A is the same for x, y and z: on flat ground
+// normals and both tangents are three systems. All in single precision.
+#pragma once
+
+#include <vector>
+
+#include "base/types.h"
+#include "sim/linear/inverse_entries.h"
+#include "sim/model/model.h"
+
+namespace supple {
+
+// A direction in which a vertex meets a stiffness that A does not hold.
+struct StiffDirection {
+  std::int32_t vertex;
+  Vec3 axis;         // of unit length
+  double stiffness;  // k [N/m]
+};
+
+// Directions by number that are solved for together.
+struct CoupledDirections {
+  std::vector<Vec3> axes;  // all that occur; where they are many, all other directions count as coupled
+  std::vector<Eigen::Index> members;
+};
+
+// Puts a direction among those that it is coupled with; lists that it joins become one. Returns the place of the list.
+std::size_t couple(const StiffDirection& direction, Eigen::Index number, std::vector<CoupledDirections>& lists);
+
+class Capacitance {
+ public:
+  const std::vector<StiffDirection>& directions() const { return directions_; }
+
+  // Leaves a system without directions, which is also what remains of one that is not positive definite.
+  void clear();
+
+  // Makes a step independent of those before, except for entries that would be found again.
+  void begin_step(const Model& model);
+
+  // Makes the system of these directions; does nothing when it is that of nearly the same already: a correction need
+  // not be exact. Returns false when it is not positive definite.
+  bool set(const Model& model, const std::vector<StiffDirection>& wanted);
+  bool append(const Model& model, const std::vector<StiffDirection>& more);
+
+  // Solves in place; by direction.
+  void solve(Eigen::VectorXf& answer) const;
+
+  // Numbers of A^-1 and its factor that are kept from step to step.
+  std::int64_t kept_numbers() const { return entries_.stored_numbers(); }
+
+ private:
+  using RowMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  struct Factor {
+    RowMatrix lower;            // Cholesky factor, in its top left corner
+    Eigen::Index factored = 0;  // members that it holds already
+  };
+  bool extend(const Model& model, const CoupledDirections& list, Factor& factor);
+  void fill_row(const Model& model, const CoupledDirections& list, Eigen::Index row, float* values);
+
+  std::vector<StiffDirection> directions_;
+  std::vector<CoupledDirections> lists_;
+  std::vector<Factor> factors_;  // of the lists
+  InverseEntries entries_;
+};
+
+}  // namespace supple
