@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "film/film_plan.h"
 #include "render/gl_context.h"
 #include "scene/sweep.h"
 #include "sim/model/report.h"
@@ -15,8 +16,8 @@ template <class E>
 class NameTables : public testing::Test {};
 
 using AllEnums = testing::Types<LineSearch, StopReason, ContactHistory, ContactDirection, Integrator, Precision, Ease,
-                                Selection::Kind, SweepMode, RampRule, Combine, Pattern, GlChoice, StartMatrix,
-                                LinearSolver, Preconditioner, Acceleration, Safeguard>;
+                                Selection::Kind, SweepMode, RampRule, Combine, Pattern, GlChoice, FilmPictures,
+                                StartMatrix, LinearSolver, Preconditioner, Acceleration, Safeguard>;
 TYPED_TEST_SUITE(NameTables, AllEnums);
 
 TYPED_TEST(NameTables, GiveEveryValueBackByItsName) {
