@@ -50,9 +50,11 @@ Seen look(uint number, vec2 at) {
   vec3 weights = weights_on(ray, from_eye, side_b, side_c);
   seen.right = weights_on(ray + ray_right, from_eye, side_b, side_c) - weights;
   seen.up = weights_on(ray + ray_up, from_eye, side_b, side_c) - weights;
-  // The place may lie beside the triangle, of which another sample is seen: its nearest point stands for it.
-  weights = max(weights, 0.0);
-  weights /= weights.x + weights.y + weights.z;
+  // The place may lie beside the triangle, of which another sample is seen. What is smooth goes on in its plane, but not
+  // far, because a triangle that is seen from the side has a long way to there.
+  vec3 off = weights - 1.0 / 3.0;
+  float far = max(max(abs(off.x), abs(off.y)), abs(off.z));
+  weights = far < 1e6 ? 1.0 / 3.0 + off / max(far, 1.0) : vec3(1.0 / 3.0);  // the plane of a sliver may be no plane
   seen.weights = weights;
   seen.world = weights.x * a.xyz + weights.y * b.xyz + weights.z * c.xyz;
   seen.open = dot(weights, vec3(a.w, b.w, c.w));
@@ -143,17 +145,25 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   uint number[SAMPLES];
   for (int i = 0; i < SAMPLES; ++i) number[i] = texelFetch(visible, at, i).r;
-  // Samples are of one surface when they show the same smooth patch at nearly the same depth. The first surface that is
-  // met and the second, if there is one, are shaded once each; a third counts as the second.
+  // Samples are of one surface when they show the same smooth patch at nearly the same depth. The triangle that most
+  // samples show stands for the first surface. If there is a second one, each is shaded once; a third counts as the
+  // second.
   uint first = 0u, second = 0u;
-  for (int i = SAMPLES - 1; i >= 0; --i) first = number[i] == 0u ? first : number[i];
+  float depth = 1.0;
+  int most = 0;
+  for (int i = 0; i < SAMPLES; ++i) {
+    int alike = 0;
+    for (int k = 0; k < SAMPLES; ++k) alike += number[k] == number[i] ? 1 : 0;
+    bool better = number[i] != 0u && alike > most;
+    first = better ? number[i] : first;
+    depth = better ? distance_of(at, i) : depth;
+    most = better ? alike : most;
+  }
   if (first == 0u) discard;
-  float depth = -1.0;
   vec2 weight = vec2(0.0), first_place = vec2(0.0), second_place = vec2(0.0);
   for (int i = 0; i < SAMPLES; ++i) {
     float there = distance_of(at, i);
     bool covered = number[i] != 0u;
-    depth = covered && depth < 0.0 ? there : depth;
     bool same = number[i] >> 24 == first >> 24 && abs(there - depth) < 6.0 * depth_scale.z * depth;
     weight += covered ? (same ? vec2(1.0, 0.0) : vec2(0.0, 1.0)) : vec2(0.0);
     first_place += covered && same ? sample_places[i] : vec2(0.0);

@@ -38,9 +38,9 @@ std::uint32_t packed_look(const DrawMesh& mesh, std::size_t index, const std::ui
   for (std::size_t layer = 0; layer < std::min<std::size_t>(mesh.layers.size(), 8); ++layer) {
     const auto at = [&](int k) { return mesh.paint[corners[k]][layer]; };
     const auto [low, high] = std::minmax({at(0), at(1), at(2)});
-    // The shader widens a border to the size of a pixel, in which the distance changes by less than on the triangle
-    // where pixels are smaller than triangles, and by what does not matter where they are larger.
-    const double reach = std::max(0.5 * mesh.layers[layer].soft, 0.6 * double(high - low));
+    // The shader widens a border to a pixel, which may be larger than the triangle: two hundredths of the body are more
+    // than a pixel of any picture in which one would look at borders.
+    const double reach = std::max({0.5 * mesh.layers[layer].soft, 0.6 * double(high - low), 0.02 * mesh.rest.diagonal()});
     if (low > reach) continue;
     if (high < -reach) {
       covering = static_cast<std::uint32_t>(layer + 1);
