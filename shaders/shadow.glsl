@@ -29,6 +29,11 @@ float light_reaching(vec3 position, vec3 normal, float in_map) {
   vec3 at = 0.5 * p.xyz + 0.5;
   vec2 texel = at.xy * float(map_texels);
   float depth = at.z - 0.0006 * in_map - 0.0001;
+  // Around the point, the surface is taken for its tangent plane, so that it does not cast a shadow on itself.
+  vec3 across = mat3(light_matrix) * normal;
+  bool turned_away = across.z >= 0.0;
+  vec2 slope = -across.xy / min(across.z, -1e-6);
+  slope *= min(1.0, 3.0 / max(length(slope), 1e-6)) / float(map_texels);
   // A pattern without structure (Jimenez 2014, "interleaved gradient noise") turns the taps from pixel to pixel, so
   // that they do not show as sheets.
   float turn = 6.2831853 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
@@ -36,9 +41,12 @@ float light_reaching(vec3 position, vec3 normal, float in_map) {
   mat2 rotation = mat2(way.x, way.y, -way.y, way.x);
   // Most points are fully lit or fully in shadow, and eight wide taps tell so.
   float casters = 0.0, caster_depth = 0.0;
+  // What is nearly as deep as the surface itself is a hollow of it rather than a caster.
+  float above = depth - in_map * 0.25 * widest_penumbra / float(map_texels);
   for (int i = 0; i < 8; ++i) {
-    float there = depth_at(texel + widest_penumbra * (rotation * around[i]));
-    float casts = 1.0 - step(depth, there);
+    vec2 off = widest_penumbra * (rotation * around[i]);
+    float there = depth_at(texel + off);
+    float casts = 1.0 - step(above + dot(slope, off), there);
     casters += casts;
     caster_depth += casts * there;
   }
@@ -46,15 +54,18 @@ float light_reaching(vec3 position, vec3 normal, float in_map) {
   if (!inside) casters = 0.0;
   // The border takes as many taps on a spiral as it needs, one at a time, because a software rasteriser runs through a
   // loop's body once even when no pixel of a block wants it.
-  bool border = casters > 0.5 && casters < 7.5;
+  // In a hollow, all of them may meet the walls while the light still reaches the point itself.
+  bool reached = depth_at(texel) >= above;
+  bool border = casters > 0.5 && (casters < 7.5 || reached) && !turned_away;
   float radius = clamp(penumbra_slope * (depth - caster_depth / max(casters, 1.0)), 1.0, widest_penumbra);
   const mat2 golden = mat2(-0.7373688, 0.6754903, -0.6754903, -0.7373688);
   float lit = 0.0, taken = 0.0;
   int taps = border ? most_taps : 0;
   do {
-    lit += passing(texel + radius * sqrt((taken + 0.5) / float(most_taps)) * way, depth);
+    vec2 off = radius * sqrt((taken + 0.5) / float(most_taps)) * way;
+    lit += passing(texel + off, depth + dot(slope, off));
     way = golden * way;
     taken += 1.0;
   } while (int(taken) < taps);
-  return border ? lit / taken : (casters > 4.0 ? 0.0 : 1.0);
+  return border ? lit / taken : 1.0 - casters / 8.0;
 }

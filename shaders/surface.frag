@@ -5,8 +5,15 @@
 #include "film.glsl"
 #include "lighting.glsl"
 #include "shadow.glsl"
-uniform usampler2DMS visible;     // by sample: patch (8 bits) and number of the triangle, from one; zero: none
-uniform sampler2DMS depths;
+#if SAMPLES > 1
+#define SampledNumbers usampler2DMS
+#define SampledDepths sampler2DMS
+#else
+#define SampledNumbers usampler2D
+#define SampledDepths sampler2D
+#endif
+uniform SampledNumbers visible;   // by sample: patch (8 bits) and number of the triangle, from one; zero: none
+uniform SampledDepths depths;
 uniform samplerBuffer places;     // by vertex: x y z, and the open sky
 uniform samplerBuffer normals;    // by vertex
 uniform usamplerBuffer triangles; // three vertices; mesh (16 bits), covering layer (4 bits), bordering layers (8 bits)
@@ -144,7 +151,11 @@ float distance_of(ivec2 at, int i) { return depth_scale.x / (depth_scale.y - tex
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   uint number[SAMPLES];
-  for (int i = 0; i < SAMPLES; ++i) number[i] = texelFetch(visible, at, i).r;
+  float there[SAMPLES];
+  for (int i = 0; i < SAMPLES; ++i) {
+    number[i] = texelFetch(visible, at, i).r;
+    there[i] = distance_of(at, i);
+  }
   // Samples are of one surface when they show the same smooth patch at nearly the same depth. The triangle that most
   // samples show stands for the first surface. If there is a second one, each is shaded once; a third counts as the
   // second.
@@ -156,15 +167,14 @@ void main() {
     for (int k = 0; k < SAMPLES; ++k) alike += number[k] == number[i] ? 1 : 0;
     bool better = number[i] != 0u && alike > most;
     first = better ? number[i] : first;
-    depth = better ? distance_of(at, i) : depth;
+    depth = better ? there[i] : depth;
     most = better ? alike : most;
   }
   if (first == 0u) discard;
   vec2 weight = vec2(0.0), first_place = vec2(0.0), second_place = vec2(0.0);
   for (int i = 0; i < SAMPLES; ++i) {
-    float there = distance_of(at, i);
     bool covered = number[i] != 0u;
-    bool same = number[i] >> 24 == first >> 24 && abs(there - depth) < 6.0 * depth_scale.z * depth;
+    bool same = number[i] >> 24 == first >> 24 && abs(there[i] - depth) < 6.0 * depth_scale.z * depth;
     weight += covered ? (same ? vec2(1.0, 0.0) : vec2(0.0, 1.0)) : vec2(0.0);
     first_place += covered && same ? sample_places[i] : vec2(0.0);
     second_place += covered && !same ? sample_places[i] : vec2(0.0);

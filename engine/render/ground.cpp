@@ -135,7 +135,7 @@ void Ground::draw(GLuint picture, const Eigen::Matrix4f& view, const StageLight&
   gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, picture);
   gl_.BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
 
-  const std::vector<float>& open = occlusion_.compute(positions);
+  const std::vector<float>& open = occlusion_.compute(meshes, positions);
   tiles_.clear();
   mark_shadows(view, light, shadows.widest_penumbra(), meshes, positions);
   mark_occlusion(view, open);

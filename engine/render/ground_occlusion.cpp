@@ -13,16 +13,41 @@ GroundOcclusion::GroundOcclusion(const Bounds& stage, double largest_body)
   origin_z_ = stage.center().z() - 0.5 * extent_;
 }
 
-const std::vector<float>& GroundOcclusion::compute(const std::vector<std::vector<float>>& positions) {
+// Notes that there is a surface at a point.
+void GroundOcclusion::lower(float x, float y, float z) {
+  const double cell = extent_ / cells;
+  const double u = (x - origin_x_) / cell, v = (z - origin_z_) / cell;
+  if (!(u >= 0 && v >= 0 && u < cells && v < cells)) return;
+  float& low = lowest_[std::size_t(v) * cells + std::size_t(u)];
+  low = std::min(low, std::max(y, static_cast<float>(0.35 * cell)));
+}
+
+// The same for points of a triangle that lie less than a cell apart. Its corners are left out: they are noted already.
+void GroundOcclusion::lower_over_triangle(const float* a, const float* b, const float* c) {
+  const auto span = [](float p, float q, float r) { return std::max({p, q, r}) - std::min({p, q, r}); };
+  const double cell = extent_ / cells;
+  const double widest = std::max(span(a[0], b[0], c[0]), span(a[2], b[2], c[2]));
+  if (widest < cell || std::min({a[1], b[1], c[1]}) > reach_) return;
+  const int parts = std::min(static_cast<int>(std::ceil(widest / cell)), 2 * cells);
+  for (int i = 0; i <= parts; ++i) {
+    for (int k = 0; k <= parts - i; ++k) {
+      const float s = static_cast<float>(i) / static_cast<float>(parts), t = static_cast<float>(k) / static_cast<float>(parts);
+      lower(a[0] + s * (b[0] - a[0]) + t * (c[0] - a[0]), a[1] + s * (b[1] - a[1]) + t * (c[1] - a[1]),
+            a[2] + s * (b[2] - a[2]) + t * (c[2] - a[2]));
+    }
+  }
+}
+
+const std::vector<float>& GroundOcclusion::compute(const std::vector<DrawMesh>& meshes,
+                                                   const std::vector<std::vector<float>>& positions) {
   const double cell = extent_ / cells;
   std::fill(lowest_.begin(), lowest_.end(), 1e9f);
-  for (const std::vector<float>& points : positions) {
-    for (std::size_t i = 0; i + 2 < points.size(); i += 3) {
-      const double u = (points[i] - origin_x_) / cell, v = (points[i + 2] - origin_z_) / cell;
-      if (!(u >= 0 && v >= 0 && u < cells && v < cells)) continue;
-      float& low = lowest_[std::size_t(v) * cells + std::size_t(u)];
-      low = std::min(low, std::max(points[i + 1], static_cast<float>(0.35 * cell)));
-    }
+  for (std::size_t m = 0; m < positions.size(); ++m) {
+    const std::vector<float>& points = positions[m];
+    for (std::size_t i = 0; i + 2 < points.size(); i += 3) lower(points[i], points[i + 1], points[i + 2]);
+    const std::vector<std::uint32_t>& triangles = meshes[m].triangles;
+    for (std::size_t t = 0; t + 2 < triangles.size(); t += 3)
+      lower_over_triangle(&points[3 * triangles[t]], &points[3 * triangles[t + 1]], &points[3 * triangles[t + 2]]);
   }
   // A patch at height y, seen from a point at distance d beside it, covers this share of the sky: y^2 dA / (pi (d^2 +
   // y^2)^2).

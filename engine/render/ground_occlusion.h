@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "base/types.h"
+#include "render/draw_list.h"
 
 namespace supple {
 
@@ -16,8 +16,9 @@ class GroundOcclusion {
   // Covers a square of the ground around the stage.
   GroundOcclusion(const Bounds& stage, double largest_body);
 
-  // Returns the open sky by cell, from 1 to 0, row by row along z, for surfaces given by their vertices (x y z).
-  const std::vector<float>& compute(const std::vector<std::vector<float>>& positions);
+  // Returns the open sky by cell, from 1 to 0, row by row along z. positions: x y z by vertex, for each mesh.
+  const std::vector<float>& compute(const std::vector<DrawMesh>& meshes,
+                                    const std::vector<std::vector<float>>& positions);
 
   double origin_x() const { return origin_x_; }
   double origin_z() const { return origin_z_; }
@@ -25,6 +26,9 @@ class GroundOcclusion {
   double reach() const { return reach_; }  // how high a body may be to darken the ground [m]
 
  private:
+  void lower(float x, float y, float z);
+  void lower_over_triangle(const float* a, const float* b, const float* c);
+
   double origin_x_, origin_z_, extent_, reach_;  // [m]
   std::vector<float> lowest_;                    // height of the lowest surface by cell; huge where there is none [m]
   std::vector<float> open_;

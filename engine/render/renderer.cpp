@@ -111,17 +111,24 @@ void Renderer::make_targets() {
   }
   gl_.GenFramebuffers(1, &visible_framebuffer_);
   gl_.BindFramebuffer(GL_FRAMEBUFFER, visible_framebuffer_);
-  const auto target = [this](GLuint& texture, GLenum format, GLenum attachment) {
+  // A texture with one sample of several is another kind of texture, and some drivers give it four.
+  const auto target = [this](GLuint& texture, GLenum format, GLenum meaning, GLenum attachment) {
     gl_.GenTextures(1, &texture);
-    gl_.BindTexture(GL_TEXTURE_2D_MULTISAMPLE, texture);
-    gl_.TexImage2DMultisample(GL_TEXTURE_2D_MULTISAMPLE, samples_, format, stage_.width, stage_.height, GL_TRUE);
-    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, attachment, GL_TEXTURE_2D_MULTISAMPLE, texture, 0);
+    gl_.BindTexture(sample_texture(), texture);
+    if (samples_ > 1) {
+      gl_.TexImage2DMultisample(GL_TEXTURE_2D_MULTISAMPLE, samples_, format, stage_.width, stage_.height, GL_TRUE);
+    } else {
+      gl_.TexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format), stage_.width, stage_.height, 0, meaning,
+                     GL_UNSIGNED_INT, nullptr);
+      gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+      gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    }
+    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, attachment, sample_texture(), texture, 0);
   };
-  target(visible_, GL_R32UI, GL_COLOR_ATTACHMENT0);
-  target(depth_, GL_DEPTH_COMPONENT24, GL_DEPTH_ATTACHMENT);
+  target(visible_, GL_R32UI, GL_RED_INTEGER, GL_COLOR_ATTACHMENT0);
+  target(depth_, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_DEPTH_ATTACHMENT);
   check("visibility");
-  gl_.GetIntegerv(GL_SAMPLES, &samples_);  // a driver may take more than were asked for
-  samples_ = std::max(samples_, 1);
+  if (samples_ > 1) gl_.GetIntegerv(GL_SAMPLES, &samples_);  // a driver may take more than were asked for
   gl_.GenFramebuffers(1, &picture_framebuffer_);
   gl_.BindFramebuffer(GL_FRAMEBUFFER, picture_framebuffer_);
   gl_.GenRenderbuffers(1, &picture_color_);
@@ -213,8 +220,8 @@ void Renderer::shade(const Eigen::Matrix4f& view, const StageLight& light, const
   set_light(program, light);
   int unit = surfaces_->bind(program, 0);
   shadows_->bind(program, unit++);
-  program.set_texture("visible", unit++, GL_TEXTURE_2D_MULTISAMPLE, visible_);
-  program.set_texture("depths", unit++, GL_TEXTURE_2D_MULTISAMPLE, depth_);
+  program.set_texture("visible", unit++, sample_texture(), visible_);
+  program.set_texture("depths", unit++, sample_texture(), depth_);
   const DepthScale scale = depth_scale(list.camera, bounds_.center(), bounds_.diagonal() + largest_body_);
   program.set("depth_scale", Vec3(scale.factor, scale.offset, light.rays.up.norm()));
   gl_.Enable(GL_BLEND);

@@ -46,6 +46,7 @@ class Renderer {
   void draw_visibility(const Eigen::Matrix4f& view);
   void shade(const Eigen::Matrix4f& view, const StageLight& light, const DrawList& list);
   Image read_picture();
+  GLenum sample_texture() const { return samples_ > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D; }
 
   Stage stage_;
   GlContext context_;

@@ -22,7 +22,7 @@ using namespace supple;
 
 namespace {
 
-constexpr int repeats = 30;
+constexpr int repeats = 100;
 
 double cpu_ms() {
   rusage usage{};
