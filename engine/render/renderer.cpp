@@ -64,6 +64,7 @@ class DrawZone {
 
 Renderer::Renderer(const Stage& stage, GlChoice choice, const std::filesystem::path& shaders)
     : stage_(stage),
+      shaders_(shaders),
       context_(choice),
       gl_(load_gl(context_)),
       name_(gl_text(gl_, GL_RENDERER)),
@@ -73,18 +74,12 @@ Renderer::Renderer(const Stage& stage, GlChoice choice, const std::filesystem::p
       tiles_(stage.width, stage.height) {
   make_targets();
   visibility_program_ = std::make_unique<Program>(gl_, shaders, "visibility", "visibility");
-  std::vector<std::string> definitions = {fmt::format("SAMPLES {}", samples_)};
-  if (std::ranges::any_of(stage_.meshes, [](const DrawMesh& mesh) { return !mesh.layers.empty(); }))
-    definitions.emplace_back("PAINTED");
-  if (std::ranges::any_of(stage_.meshes, [](const DrawMesh& mesh) { return !mesh.square.empty(); }))
-    definitions.emplace_back("PRINTED");
-  shading_program_ = std::make_unique<Program>(gl_, shaders, "tiles", "surface", definitions);
   shadows_ = std::make_unique<ShadowMap>(gl_, shaders, bounds_, largest_body_, to_key_light(), stage_.width);
   ground_ = std::make_unique<Ground>(gl_, shaders, stage_.width, stage_.height, bounds_, largest_body_);
   captions_ = std::make_unique<Captions>(gl_, shaders, stage_.font, stage_.width, stage_.height);
-  make_shading();
+  tile_buffer_ = std::make_unique<TileBuffer>(gl_);
   check_test_picture();
-  surfaces_ = std::make_unique<SurfaceBuffers>(gl_, stage_.meshes);
+  take_meshes();
   captions_->renew(stage_.meshes);
   check_gl(gl_, "preparing the stage");
 }
@@ -138,15 +133,23 @@ void Renderer::make_targets() {
   check("picture");
 }
 
-// What the shading program has all film long.
-void Renderer::make_shading() {
+// Makes the buffers of the stage's meshes, and a program that shades what they have and no more.
+void Renderer::take_meshes() {
+  surfaces_ = std::make_unique<SurfaceBuffers>(gl_, stage_.meshes);
+  std::vector<std::string> definitions = {fmt::format("SAMPLES {}", samples_)};
+  if (std::ranges::any_of(stage_.meshes, [](const DrawMesh& mesh) { return !mesh.layers.empty(); }))
+    definitions.emplace_back("PAINTED");
+  if (std::ranges::any_of(stage_.meshes, [](const DrawMesh& mesh) { return !mesh.square.empty(); }))
+    definitions.emplace_back("PRINTED");
+  if (shading_program_ && definitions == definitions_) return;
+  definitions_ = definitions;
+  shading_program_ = std::make_unique<Program>(gl_, shaders_, "tiles", "surface", definitions);
   std::vector<float> places(2 * std::size_t(samples_), 0.5f);
   gl_.BindFramebuffer(GL_FRAMEBUFFER, visible_framebuffer_);
   for (int s = 0; s < samples_ && samples_ > 1; ++s)
     gl_.GetMultisamplefv(GL_SAMPLE_POSITION, static_cast<GLuint>(s), &places[2 * std::size_t(s)]);
   shading_program_->use();
   shading_program_->set_pairs("sample_places", places);
-  tile_buffer_ = std::make_unique<TileBuffer>(gl_);
 }
 
 // Some software rasterisers accept a multisampled framebuffer and leave it blank, without an error; a triangle drawn
@@ -161,7 +164,7 @@ void Renderer::check_test_picture() {
   Stage test;
   test.meshes.push_back(mesh);
   std::swap(stage_.meshes, test.meshes);
-  surfaces_ = std::make_unique<SurfaceBuffers>(gl_, stage_.meshes);
+  take_meshes();
   DrawList list;
   list.camera = {Vec3(0, 1, 3), Vec3(0, 1, 0), 30};
   list.positions = {{-9, 0, 0, 9, 0, 0, 0, 9, 0}};
@@ -179,7 +182,7 @@ void Renderer::check_test_picture() {
 
 void Renderer::upload(const DrawList& list) {
   for (const auto& [m, mesh] : list.renewed) stage_.meshes[m] = mesh;
-  if (!list.renewed.empty()) surfaces_ = std::make_unique<SurfaceBuffers>(gl_, stage_.meshes);
+  if (!list.renewed.empty()) take_meshes();
   for (const auto& [m, caption] : list.captions) {
     stage_.meshes[m].label = caption;
     captions_->renew(m, stage_.meshes[m]);

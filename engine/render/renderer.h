@@ -40,7 +40,7 @@ class Renderer {
 
  private:
   void make_targets();
-  void make_shading();
+  void take_meshes();
   void check_test_picture();
   void upload(const DrawList& list);
   void draw_visibility(const Eigen::Matrix4f& view);
@@ -49,6 +49,7 @@ class Renderer {
   GLenum sample_texture() const { return samples_ > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D; }
 
   Stage stage_;
+  std::filesystem::path shaders_;
   GlContext context_;
   GlTable gl_;
   std::string name_, version_;
@@ -58,6 +59,7 @@ class Renderer {
   GLuint picture_framebuffer_ = 0, picture_color_ = 0;
   int samples_ = 1;  // that a pixel has
   std::unique_ptr<Program> visibility_program_, shading_program_;
+  std::vector<std::string> definitions_;  // of the shading program
   std::unique_ptr<SurfaceBuffers> surfaces_;
   std::unique_ptr<ShadowMap> shadows_;
   std::unique_ptr<Ground> ground_;

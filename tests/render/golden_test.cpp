@@ -201,5 +201,19 @@ TEST(Golden, ABodyIsDrawnByTheSurfaceOfItsFile) {
       {{{"body.steps.box={ extent = [1.4, 0.9, 2.1], cells = [6, 4, 9] }"}}, {{"body.steps.start.twist_deg=0"}}});
 }
 
+// Colours that no mesh had as the film began.
+TEST(Renderer, AMeshThatIsRenewedWithPaintLooksAsIfItHadBeenThereFromTheStart) {
+  const Picture painted = picture_of({written_for_tests("regions")});
+  Stage bare = painted.stage;
+  remove_paint(bare);
+  Renderer renderer(bare, GlChoice::osmesa, test::source_folder / "shaders");
+  const Image before = renderer.draw(painted.list);
+  DrawList list = painted.list;
+  for (std::size_t m = 0; m < painted.stage.meshes.size(); ++m) list.renewed.emplace_back(m, painted.stage.meshes[m]);
+  const Image after = renderer.draw(list);
+  EXPECT_NE(before.rgb, after.rgb);
+  EXPECT_EQ(after.rgb, draw(painted).rgb);
+}
+
 }  // namespace
 }  // namespace supple
