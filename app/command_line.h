@@ -16,7 +16,7 @@ class Option;
 
 namespace supple {
 
-// What the program does once the command line is understood. It returns the exit status.
+// The program runs this once it has understood the command line. It returns the exit status.
 using Action = std::function<int()>;
 
 // An option or a place on the line that has been added, and what is asked of its values.

@@ -93,7 +93,8 @@ Triangles simplified(const Skin& skin, double error, double longest, const std::
     std::vector<std::int32_t>& where = carries_border(skin, layers, corners) ? bordering : plain;
     where.insert(where.end(), corners, corners + 3);
   }
-  // What is an outer edge in one pass lies within a cell in the next, whose grid is shifted. Each pass adds its error.
+  // A pass leaves the edges between two cells alone. The next one shifts the grid, so that these edges lie within a cell
+  // and can be simplified. The errors of the passes add up.
   constexpr int passes = 3;
   for (int pass = 0; pass < passes; ++pass)
     plain = simplified_by_cells(skin, plain, longest, static_cast<double>(pass) / passes, error / passes);

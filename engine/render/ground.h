@@ -18,7 +18,7 @@
 
 namespace supple {
 
-// What the shader of a surface in the open must know about the stage.
+// Holds what every shader that lights a surface needs: the light, the camera and the colours of the stage.
 struct StageLight {
   Vec3 to_key;  // unit vector towards the key light
   Camera camera;

@@ -71,7 +71,7 @@ samples = 1
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(folder_.path / "stdout.txt"),
             read_file(folder_.path / "stderr.txt")};
   }
-  // What ffprobe says of the film's colours.
+  // Asks ffprobe for the colour tags of the film.
   std::string colours(const std::string& out) const {
     const auto told = run_program({"ffprobe", "-v", "error", "-select_streams", "v:0", "-show_entries",
                                    "stream=color_range,color_space,color_transfer,color_primaries,pix_fmt", "-of",
