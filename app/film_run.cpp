@@ -13,6 +13,9 @@
 #include "base/text.h"
 #include "base/timing.h"
 #include "output/json_text.h"
+#include "output/run_page.h"
+#include "output/run_record.h"
+#include "output/whole_file.h"
 #include "scene/script_trial.h"
 
 namespace supple {
@@ -148,6 +151,7 @@ void add_film(Verb& verb, const FilmArgument& argument, const std::vector<std::s
   verb.option(argument.name, command->plan.scene, argument.meaning).required();
   add_film_options(verb, *command);
   verb.flag("--resume", command->plan.resume, "go on with the film in --out that was interrupted or killed");
+  verb.flag("--page", command->page, "also one HTML page of the run: index.html, as supple page makes it");
   verb.flag("--film-only", command->plan.film_only,
             "leave the film and no files of its frames; without those there are no checkpoints, so that --resume "
             "starts anew after a run that was killed")
@@ -181,6 +185,11 @@ int run_film(const FilmCommand& command, const std::vector<std::string>& words, 
   if (start.verifier && result.end == FilmEnd::done &&
       !say_verdict(command, *start.verifier, static_cast<int>(result.rows.size())))
     status = 1;
+  if (command.page && !result.rows.empty()) {
+    const std::filesystem::path page = folder.path() / "index.html";
+    write_whole_file(page, run_page(read_run(folder.path())));
+    if (!plan.quiet && !command.json) say(stdout, fmt::format("  page     {}\n", page.string()));
+  }
   if (record != nullptr) *record = {film.info, folder.path(), scene.name, scene.fps, result, std::move(trace)};
   return status;
 }

@@ -18,6 +18,8 @@ int run(int argc, char** argv) {
   supple::CommandLine line(argc, argv);
   supple::add_render(line);
   supple::add_replay(line);
+  supple::add_draw(line);
+  supple::add_page(line);
   supple::add_sweep(line);
   supple::add_profile(line);
   supple::add_bench(line);

@@ -7,6 +7,7 @@
 #include "app/summary.h"
 #include "base/text.h"
 #include "output/json_text.h"
+#include "output/run_folder.h"
 
 namespace supple {
 namespace {
@@ -63,7 +64,7 @@ std::map<std::string, FileCount> contents_of(const std::filesystem::path& folder
 int whole_pictures(const std::filesystem::path& folder) {
   std::error_code error;
   int frame = 0;
-  while (std::filesystem::exists(folder / "frames" / fmt::format("{:06}.png", frame), error)) ++frame;
+  while (std::filesystem::exists(picture_file(folder / "frames", frame), error)) ++frame;
   return frame;
 }
 

@@ -95,20 +95,6 @@ Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const s
   return stage;
 }
 
-Camera make_camera(const SceneDef& scene, const Stage& stage) {
-  Bounds box;
-  for (const DrawMesh& mesh : stage.meshes) {
-    if (!mesh.framed) continue;
-    box.include(mesh.rest.lower);
-    box.include(mesh.rest.upper);
-  }
-  Camera camera =
-      framing(box, scene.camera.fov_deg, scene.camera.margin, static_cast<double>(stage.width) / stage.height);
-  if (scene.camera.target) camera.target = *scene.camera.target;
-  if (scene.camera.position) camera.eye = *scene.camera.position;
-  return camera;
-}
-
 namespace {
 
 // The edge of a pixel where a camera sees the body at rest from nearest [m].
@@ -152,8 +138,7 @@ void fit_to_cameras(std::vector<DrawnBody>& drawn, const std::vector<Body>& bodi
   }
 }
 
-std::vector<float> skin_positions(const DrawnBody& drawn, const Model& model, const State& state) {
-  const Positions mesh = in_input_order(model, state.x);
+std::vector<float> skin_positions(const DrawnBody& drawn, const Positions& mesh) {
   Positions points;
   if (drawn.vertex_of.empty()) {
     apply(drawn.embedding, mesh, points);

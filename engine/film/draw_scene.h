@@ -21,15 +21,12 @@ Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const s
 // Adds the colliders' positions at a time to a list that has the bodies'.
 void add_colliders(const std::vector<Obstacle>& obstacles, const std::vector<Skin>& skins, double time, DrawList& list);
 
-// The scene's camera, or one that frames all bodies and the motion of their handles.
-Camera make_camera(const SceneDef& scene, const Stage& stage);
-
 // Takes away triangles of skins that no camera could show in a picture of this height [pixels]. Skins that are a mesh's
 // own surface are left as they are.
 void fit_to_cameras(std::vector<DrawnBody>& drawn, const std::vector<Body>& bodies, const std::vector<Camera>& cameras,
                     int height);
 
-// x y z by skin vertex.
-std::vector<float> skin_positions(const DrawnBody& drawn, const Model& model, const State& state);
+// Returns x y z by skin vertex. mesh: the positions of the body's mesh vertices, in the order of the input file [m].
+std::vector<float> skin_positions(const DrawnBody& drawn, const Positions& mesh);
 
 }  // namespace supple

@@ -3,16 +3,20 @@
 #include <algorithm>
 #include <utility>
 
+#include "film/camera.h"
+
 namespace supple {
 
 namespace {
 
 std::vector<Camera> cameras_of(const Script& script, const Stage& stage) {
-  std::vector<Camera> cameras = {make_camera(script.scene(), stage)};
-  const auto moves_camera = [](const TimedChange* change) { return change->path.starts_with("camera."); };
+  SceneDef scene = script.scene();
+  std::vector<Camera> cameras = {camera_at(scene, stage, 0)};
+  const auto moves_camera = [](const TimedChange* change) { return change->path.starts_with("camera"); };
   for (int frame = 0; frame < script.scene().frames; ++frame) {
-    if (std::ranges::any_of(script.at_work(frame), moves_camera))
-      cameras.push_back(make_camera(script.scene_at(frame), stage));
+    const bool changes = std::ranges::any_of(script.at_work(frame), moves_camera);
+    if (changes) scene = script.scene_at(frame);
+    if (changes || scene.camera.moves()) cameras.push_back(camera_at(scene, stage, (frame + 1) / scene.fps));
   }
   return cameras;
 }
@@ -30,21 +34,28 @@ DrawnFilm::DrawnFilm(const Script& script, const std::vector<Body>& bodies, cons
   stage_ = make_stage(scene, bodies, drawn_, set.obstacles, collider_skins_, font);
 }
 
-void DrawnFilm::renew(std::size_t collider, const CollisionSet& set, const std::vector<Body>& bodies) {
-  collider_skins_[collider] = drawn_obstacle(set.obstacles[collider], bounds_at_rest(bodies));
-  renewed_.push_back(collider);
+void DrawnFilm::follow(const std::vector<TimedChange>& changes, const CollisionSet& set,
+                       const std::vector<Body>& bodies) {
+  for (std::size_t c = 0; c < set.obstacles.size(); ++c) {
+    const std::string& name = set.obstacles[c].def.name;
+    // The square that is drawn for a half space depends on where it is.
+    const bool moved = is_half_space(set.obstacles[c]) &&
+                       std::ranges::any_of(changes, [&name](const TimedChange& one) { return one.object == name; });
+    if (!moved && !cost_for(name, changes).surface) continue;
+    collider_skins_[c] = drawn_obstacle(set.obstacles[c], bounds_at_rest(bodies));
+    renewed_.push_back(c);
+  }
 }
 
-DrawList DrawnFilm::list(const SceneDef& scene, const std::vector<std::unique_ptr<FilmedBody>>& bodies,
-                         const CollisionSet& set, double time) {
+DrawList DrawnFilm::list(const SceneDef& scene, const std::vector<const Positions*>& motion, const CollisionSet& set,
+                         double time) {
   DrawList result;
-  result.camera = make_camera(scene, stage_);
-  for (std::size_t b = 0; b < bodies.size(); ++b)
-    result.positions.push_back(skin_positions(drawn_[b], bodies[b]->model(), bodies[b]->state()));
+  for (std::size_t b = 0; b < motion.size(); ++b) result.positions.push_back(skin_positions(drawn_[b], *motion[b]));
   add_colliders(set.obstacles, collider_skins_, time, result);
+  result.camera = camera_at(scene, stage_, time, result.positions);
   for (const std::size_t c : std::exchange(renewed_, {}))
-    result.renewed.emplace_back(bodies.size() + c, collider_mesh(set.obstacles[c], collider_skins_[c]));
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    result.renewed.emplace_back(motion.size() + c, collider_mesh(set.obstacles[c], collider_skins_[c]));
+  for (std::size_t b = 0; b < motion.size(); ++b) {
     if (stage_.meshes[b].label == scene.bodies[b].label) continue;
     stage_.meshes[b].label = scene.bodies[b].label;
     result.captions.emplace_back(b, scene.bodies[b].label);

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "film/draw_scene.h"
-#include "film/filmed_body.h"
 #include "scene/script.h"
 
 namespace supple {
@@ -17,11 +16,12 @@ class DrawnFilm {
 
   const Stage& stage() const { return stage_; }
 
-  // Makes the skin of a collider anew, whose shape has changed.
-  void renew(std::size_t collider, const CollisionSet& set, const std::vector<Body>& bodies);
+  // Makes the skins of colliders again whose shape these changes of a replay have changed.
+  void follow(const std::vector<TimedChange>& changes, const CollisionSet& set, const std::vector<Body>& bodies);
 
-  // A frame's list: positions, and all that has changed since the last list.
-  DrawList list(const SceneDef& scene, const std::vector<std::unique_ptr<FilmedBody>>& bodies, const CollisionSet& set,
+  // Makes a frame's list: positions, and all that has changed since the last list. motion: by body, the positions of
+  // its mesh as motion/ has them [m]. time: the frame's end [s].
+  DrawList list(const SceneDef& scene, const std::vector<const Positions*>& motion, const CollisionSet& set,
                 double time);
 
  private:

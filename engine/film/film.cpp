@@ -43,7 +43,9 @@ LoadedFilm load_film(const FilmPlan& plan, const std::vector<std::string>& comma
   if (plan.seed >= 0) settings.push_back(fmt::format("seed={}", plan.seed));
   LoadedFilm film{Script::load(file, assets_folder(), settings, plan.sweep_point), {}, {}, {}};
   film.info.command = command;
-  film.info.scene_file = file;
+  film.info.scene_file = std::filesystem::absolute(file).lexically_normal().string();
+  film.info.settings = settings;
+  film.info.sweep_point = plan.sweep_point;
   film.info.scene_json = film.script.scene_json();
   film.info.replay_json = film.script.replay_json();
   film.info.kernel_variant = variant_name(best_variant());

@@ -126,7 +126,7 @@ void check_rows_and_motion(const std::filesystem::path& run, const std::vector<B
 
 void check_pictures(const std::filesystem::path& frames, int count) {
   for (int frame = 0; frame < count; ++frame) {
-    const std::filesystem::path picture = frames / fmt::format("{:06}.png", frame);
+    const std::filesystem::path picture = picture_file(frames, frame);
     if (!looks_whole(picture))
       throw InputError(picture.string(),
                        "is missing or damaged, and --resume does not make it again; start anew without --resume");

@@ -8,6 +8,7 @@
 #include "film/checkpoint.h"
 #include "film/pictures.h"
 #include "output/profile.h"
+#include "output/run_folder.h"
 
 namespace supple {
 

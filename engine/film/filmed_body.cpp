@@ -108,10 +108,11 @@ void FilmedBody::measure(int frame, BodyRow& row) {
 
 void FilmedBody::save_motion() {
   const Zone zone("motion files", driver_.body().def.name);
-  motion_.add(in_input_order(model(), state().x));
+  saved_motion_ = as_cached(in_input_order(model(), state().x));
+  motion_.add(saved_motion_);
 }
 
-void FilmedBody::save_state(int frame) {
+void FilmedBody::save_problem(int frame) {
   const Zone zone("save state", driver_.body().def.name);
   driver_.prepare_step(frame, 0);
   write_state(folder_.state(driver_.body().def.name, frame),

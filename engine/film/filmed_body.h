@@ -25,10 +25,12 @@ class FilmedBody {
 
   // Appends the frame to motion/.
   void save_motion();
+  // Returns the frame's positions as motion/ has them, in the order of the input file [m].
+  const Positions& saved_motion() const { return saved_motion_; }
 
   // Writes the problem of a frame's first step, which has not been made yet, into the folder of states. Changes no
   // result.
-  void save_state(int frame);
+  void save_problem(int frame);
 
   // Writes the frame's fields into fields/.
   void save_fields(int frame);
@@ -46,6 +48,7 @@ class FilmedBody {
   std::unique_ptr<ErrorMeter> error_meter_;  // once an error is asked for
   std::uint64_t metered_model_ = 0;          // id of the model's values that the meter holds for
   PointCacheWriter motion_;
+  Positions saved_motion_;
   std::optional<FieldWriter> fields_;  // once fields are asked for
 };
 

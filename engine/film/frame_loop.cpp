@@ -17,9 +17,9 @@ FilmEnd FrameLoop::run(Progress& progress, std::string& message) {
     FrameRow row;
     row.frame = frame;
     row.time_s = (frame + 1) / scene_.fps;
-    if (log_.keeps_checkpoints()) keep_state_before(frame);
+    if (log_.keeps_checkpoints()) keep_checkpoint_before(frame);
     apply_replay(frame, row);
-    message = advance(frame, row);
+    message = step_bodies(frame, row);
     if (!message.empty()) return FilmEnd::failed;
     save_outputs(frame, row);
     if (!show(frame, row)) return FilmEnd::failed;  // finish() takes the message from the pictures
@@ -33,7 +33,7 @@ FilmEnd FrameLoop::run(Progress& progress, std::string& message) {
 
 // Applies what a replay changes in this frame.
 void FrameLoop::apply_replay(int frame, FrameRow& row) {
-  forget_earlier();
+  end_last_changes();
   const std::vector<const TimedChange*> at_work = script_.at_work(frame);
   if (at_work.empty()) return;
   const Zone zone("change");
@@ -44,20 +44,21 @@ void FrameLoop::apply_replay(int frame, FrameRow& row) {
   row.change_ms = watch.elapsed_ms();
 }
 
-// Makes one frame's steps of all bodies. Returns why it failed; empty: it did not.
-std::string FrameLoop::advance(int frame, FrameRow& row) {
+// Makes one frame's steps of all bodies: FilmedBody::advance prepares and makes each of them by its DrivenBody, which
+// calls step() (sim/solver/step.h). Returns why it failed; empty: it did not.
+std::string FrameLoop::step_bodies(int frame, FrameRow& row) {
   const bool save_states = std::ranges::find(plan_.save_states, frame) != plan_.save_states.end();
   std::vector<std::uint64_t> hashes;
   for (const auto& body : filmed_) {
-    if (save_states) body->save_state(frame);
-    std::string message = advance_body(frame, *body, row);
+    if (save_states) body->save_problem(frame);
+    std::string message = step_body(frame, *body, row);
     if (!message.empty()) return message;
     hashes.push_back(state_hash(body->model(), body->state()));
     if (verifier_ != nullptr) message = verifier_->compare(frame, body->model(), body->state());
     if (!message.empty()) return message;
   }
-  for (const auto& body :
-       filmed_) {  // a record holds whole frames: nothing is added before every body has made its steps
+  // A record holds whole frames: nothing is added before every body has made its steps.
+  for (const auto& body : filmed_) {
     if (recorder_) recorder_->add(body->model(), body->state());
   }
   // One body's hash is the frame's; of several bodies it is XXH64 of their hashes in the order of the scene.
@@ -66,7 +67,7 @@ std::string FrameLoop::advance(int frame, FrameRow& row) {
   return "";
 }
 
-std::string FrameLoop::advance_body(int frame, FilmedBody& body, FrameRow& row) {
+std::string FrameLoop::step_body(int frame, FilmedBody& body, FrameRow& row) {
   const bool measure_error = plan_.error_every > 0 && frame % plan_.error_every == 0;
   row.bodies.emplace_back();
   std::string message = body.advance(frame, measure_error, row.bodies.back());
@@ -88,7 +89,9 @@ bool FrameLoop::show(int frame, FrameRow& row) {
   if (!pictures_ || !drawn) return true;
   Zone zone("draw list");
   const Stopwatch watch;
-  DrawList list = drawn_->list(scene_, filmed_, set_, row.time_s);
+  std::vector<const Positions*> motion;
+  for (const auto& body : filmed_) motion.push_back(&body->saved_motion());
+  DrawList list = drawn_->list(scene_, motion, set_, row.time_s);
   row.draw_ms = watch.elapsed_ms();
   zone.next("wait for render");
   return pictures_->put(frame, std::move(list));
@@ -109,7 +112,7 @@ FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
   if (plan.pictures != FilmPictures::none) {
     drawn_.emplace(script_, bodies_, set_, caption_font());
     pictures_.emplace(drawn_->stage(), plan.gl, shaders_folder(),
-                      PictureTargets{&folder, !plan.film_only, video, first_});
+                      PictureTargets{folder.frames(), !plan.film_only, video, first_});
   }
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     filmed_.push_back(
@@ -126,29 +129,17 @@ void FrameLoop::resume(const Checkpoint& checkpoint) {
       script_.changes(), [&](const TimedChange& one) { return one.at < checkpoint.frames / scene_.fps; });
   if (changed) {
     apply(script_.scene_at(checkpoint.frames - 1), script_.changes());
-    forget_earlier();
+    end_last_changes();
   }
   for (std::size_t b = 0; b < filmed_.size(); ++b) filmed_[b]->driver().restore(checkpoint.bodies[b]);
 }
 
-// Drops the values from before the last frame's changes: a change that was spread over that frame is complete.
-void FrameLoop::forget_earlier() {
+// In the frame of a change, places go in even parts from the values in `earlier` to the new ones. That frame is over,
+// so only the new ones count.
+void FrameLoop::end_last_changes() {
   set_.earlier.clear();
   for (Body& body : bodies_) body.earlier.clear();
 }
-
-namespace {
-
-// Adds up what these changes force us to make anew for one body or collider.
-ChangeCost cost_for(const std::string& name, const std::vector<TimedChange>& changes) {
-  ChangeCost cost;
-  for (const TimedChange& change : changes) {
-    if (change.object.empty() || change.object == name) cost |= change.cost;
-  }
-  return cost;
-}
-
-}  // namespace
 
 void FrameLoop::apply(SceneDef scene, const std::vector<TimedChange>& changes) {
   scene_ = std::move(scene);
@@ -159,17 +150,7 @@ void FrameLoop::apply(SceneDef scene, const std::vector<TimedChange>& changes) {
   CollisionSet now = collision_set(scene_);
   now.earlier = std::move(set_.obstacles);
   set_ = std::move(now);
-  if (drawn_) renew_changed_surfaces(changes);
-}
-
-void FrameLoop::renew_changed_surfaces(const std::vector<TimedChange>& changes) {
-  for (std::size_t c = 0; c < set_.obstacles.size(); ++c) {
-    const std::string& name = set_.obstacles[c].def.name;
-    // The square that is drawn for a half space depends on where it is.
-    const bool moved = is_half_space(set_.obstacles[c]) &&
-                       std::ranges::any_of(changes, [&name](const TimedChange& one) { return one.object == name; });
-    if (moved || cost_for(name, changes).surface) drawn_->renew(c, set_, bodies_);
-  }
+  if (drawn_) drawn_->follow(changes, set_, bodies_);
 }
 
 Checkpoint FrameLoop::checkpoint_after(int frames) const {
@@ -178,7 +159,7 @@ Checkpoint FrameLoop::checkpoint_after(int frames) const {
   return checkpoint;
 }
 
-void FrameLoop::keep_state_before(int frame) {
+void FrameLoop::keep_checkpoint_before(int frame) {
   const Zone zone("checkpoint");
   before_ = checkpoint_after(frame);
 }
@@ -202,7 +183,7 @@ void FrameLoop::finish(FilmResult& result) {
   }
   const int frames = static_cast<int>(log_.rows().size());
   // After a failure the bodies may be in the middle of a frame: the checkpoint before that frame is kept.
-  if (result.end == FilmEnd::failed && before_.frames > first_) log_.add(before_);
+  if (result.end == FilmEnd::failed && before_.frames > first_) log_.add(before_);  // one at first_ is there already
   const bool at_end = result.end != FilmEnd::failed && log_.keeps_checkpoints() && !log_.wants_checkpoint(frames);
   if (at_end) add_checkpoint(frames);
   log_.settle(pictures());

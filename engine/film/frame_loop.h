@@ -10,6 +10,7 @@
 #include "film/drawn_film.h"
 #include "film/film.h"
 #include "film/film_log.h"
+#include "film/filmed_body.h"
 #include "film/pictures.h"
 #include "film/progress.h"
 #include "output/pose_table.h"
@@ -23,7 +24,8 @@ class FrameLoop {
   FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const RunFolder& folder,
             const FilmSolvers& solvers, FilmLog& log, VideoEncoder* video);
 
-  // Makes the frames that are left. Returns how it ended; `message` says why it failed.
+  // Makes the frames that are left. Returns how it ended; when a step failed, `message` says why. Why pictures failed,
+  // finish() says.
   FilmEnd run(Progress& progress, std::string& message);
 
   // Waits for the pictures, and leaves a checkpoint after the last frame.
@@ -32,17 +34,16 @@ class FrameLoop {
  private:
   // Parts of a frame, in their order.
   void apply_replay(int frame, FrameRow& row);
-  std::string advance(int frame, FrameRow& row);
+  std::string step_bodies(int frame, FrameRow& row);
   void save_outputs(int frame, const FrameRow& row);
   bool show(int frame, FrameRow& row);
 
   void resume(const Checkpoint& checkpoint);
-  void forget_earlier();
+  void end_last_changes();
   void apply(SceneDef scene, const std::vector<TimedChange>& changes);
-  void renew_changed_surfaces(const std::vector<TimedChange>& changes);
-  std::string advance_body(int frame, FilmedBody& body, FrameRow& row);
+  std::string step_body(int frame, FilmedBody& body, FrameRow& row);
   Checkpoint checkpoint_after(int frames) const;
-  void keep_state_before(int frame);  // the state before it, in case that the frame fails
+  void keep_checkpoint_before(int frame);
   void add_checkpoint(int frames);
   Pictures* pictures() { return pictures_ ? &*pictures_ : nullptr; }
 
@@ -50,13 +51,13 @@ class FrameLoop {
   const Script& script_;
   std::vector<Body>& bodies_;
   const RunFolder& folder_;
-  SceneDef scene_;  // of the frame in progress
-  CollisionSet set_;
+  SceneDef scene_;    // of the frame in progress
+  CollisionSet set_;  // the colliders of the frame in progress
   Threads threads_;
-  int first_;  // frame that is made
+  int first_;  // the first frame that this run makes; those before it are an earlier run's
   FilmLog& log_;
-  StateVerifier* verifier_;         // null: there is nothing to compare with
-  Checkpoint before_;               // the frame in progress, in case that it fails
+  StateVerifier* verifier_;         // of --verify; null without it
+  Checkpoint before_;               // taken before the frame in progress; empty when the film keeps none
   std::optional<DrawnFilm> drawn_;  // only with pictures
   std::vector<std::unique_ptr<FilmedBody>> filmed_;
   std::optional<PoseTableWriter> poses_;  // only with colliders

@@ -9,6 +9,7 @@
 #include "base/timing.h"
 #include "base/trace.h"
 #include "output/png_file.h"
+#include "output/run_folder.h"
 #include "output/whole_file.h"
 
 namespace supple {
@@ -114,12 +115,12 @@ void Pictures::add_to_film(const Image& image) {
 
 void Pictures::write_all() {
   name_thread("output");
-  if (targets_.film != nullptr) targets_.film->add_files(targets_.folder->frames(), targets_.kept_frames);
+  if (targets_.film != nullptr) targets_.film->add_files(targets_.frames, targets_.kept_frames);
   while (auto result = pictures_.pop()) {
     Picture picture = result->get();
     Zone zone("write", {}, picture.frame);
     const Stopwatch watch;
-    if (targets_.files) write_whole_file(targets_.folder->frame(picture.frame), picture.png);
+    if (targets_.files) write_whole_file(picture_file(targets_.frames, picture.frame), picture.png);
     const double write_ms = watch.elapsed_ms();
     zone.next("wait for film");
     add_to_film(picture.image);

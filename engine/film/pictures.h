@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "base/queue.h"
-#include "output/run_folder.h"
 #include "output/video.h"
 #include "render/renderer.h"
 
@@ -20,7 +19,7 @@ namespace supple {
 
 // Where frames go. All that it points to must outlive the pictures.
 struct PictureTargets {
-  const RunFolder* folder;
+  std::filesystem::path frames;  // the folder of the files
   bool files = true;             // frames become PNG files
   VideoEncoder* film = nullptr;  // null: there is no film
   int kept_frames = 0;           // of an earlier run: files with which the film begins

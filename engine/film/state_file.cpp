@@ -50,7 +50,8 @@ Json regions_json(const StepProblem& problem) {
   return regions;
 }
 
-// The keys of a scene's [solver].
+// Returns those keys of [solver] that a StepProblem has. The method, and what belongs to chebyshev alone, are not among
+// them; integrator and damping are written one level up.
 Json solver_json(const StepProblem& problem) {
   const SolverSettings& s = problem.solver;
   const ContactSettings& c = s.contact;

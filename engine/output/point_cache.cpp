@@ -38,6 +38,8 @@ bool point_cache_has(const std::filesystem::path& path, int points, int frames) 
          header.samples >= frames && bytes >= sizeof header + 3 * sizeof(float) * std::uintmax_t(points) * frames;
 }
 
+Positions as_cached(const Positions& points) { return points.cast<float>().cast<double>(); }
+
 PointCacheWriter::PointCacheWriter(const std::filesystem::path& path, int points, int kept_frames)
     : path_(path), file_(std::fopen(path.c_str(), kept_frames > 0 ? "r+b" : "wb")), points_(points) {
   if (!file_) fail(kept_frames > 0 ? "be opened" : "be created");

@@ -69,13 +69,6 @@ void remove_own(const std::filesystem::path& folder, const IsOwn& is_own) {
   for (const std::filesystem::path& file : own) std::filesystem::remove(file, error);
 }
 
-void remove_frames_from(const std::filesystem::path& frames, int first) {
-  remove_own(frames, [first](const std::filesystem::path& file) {
-    const std::optional<long> frame = frame_of(file);
-    return frame && *frame >= first;
-  });
-}
-
 // Removes the folders BODY-NNNNNN.
 void remove_states(const std::filesystem::path& states) {
   std::error_code error;
@@ -141,12 +134,22 @@ RunFolder::RunFolder(const std::filesystem::path& path, int kept_frames) : path_
     remove_own(path / "checkpoint", is_checkpoint);
     remove_run(path);
   }
-  remove_frames_from(path / "frames", kept_frames);
-  for (const char* part : {"video.mp4", "video.part.mp4", "profile.json", "trace.json"}) std::filesystem::remove(path / part, error);
+  remove_pictures(path / "frames", kept_frames);
+  for (const char* part : {"video.mp4", "video.part.mp4", "profile.json", "trace.json"})
+    std::filesystem::remove(path / part, error);
   for (const char* part : {"frames", "motion", "checkpoint"}) make_folder(path / part);
 }
 
-std::filesystem::path RunFolder::frame(int index) const { return frames() / fmt::format("{:06}.png", index); }
+void remove_pictures(const std::filesystem::path& frames, int first) {
+  remove_own(frames, [first](const std::filesystem::path& file) {
+    const std::optional<long> frame = frame_of(file);
+    return frame && *frame >= first;
+  });
+}
+
+std::filesystem::path picture_file(const std::filesystem::path& frames, int index) {
+  return frames / fmt::format("{:06}.png", index);
+}
 
 std::filesystem::path RunFolder::state(const std::string& body, int frame) const {
   return path_ / "states" / fmt::format("{}-{:06}", body, frame);
@@ -175,6 +178,8 @@ std::string info_json(const RunInfo& info) {
                               {"elements", mesh.elements}});
   }
   json["scene_file"] = info.scene_file;
+  json["settings"] = info.settings;
+  if (info.sweep_point) json["sweep_point"] = *info.sweep_point;
   json["scene"] = json_if_valid<nlohmann::ordered_json>(info.scene_json);
   if (!info.replay_json.empty()) json["replay"] = json_if_valid<nlohmann::ordered_json>(info.replay_json);
   if (!info.resumed.empty()) json["resumed_at"] = info.resumed;

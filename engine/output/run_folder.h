@@ -4,14 +4,17 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace supple {
 
 struct RunInfo {
-  std::vector<std::string> command;  // the command line
-  std::string scene_file;
+  std::vector<std::string> command;   // the command line
+  std::string scene_file;             // an absolute path
+  std::vector<std::string> settings;  // path=value over the scene's
+  std::optional<std::size_t> sweep_point;
   std::string scene_json;   // the scene at the start of the film, after --set
   std::string replay_json;  // the file of a replay, else empty
   struct Mesh {
@@ -31,6 +34,11 @@ struct RunInfo {
 // Writes the information as run.json holds it.
 std::string info_json(const RunInfo& info);
 
+// Names the picture of a frame in a folder of pictures.
+std::filesystem::path picture_file(const std::filesystem::path& frames, int index);
+// Removes the pictures of frames from `first` on, and those that are not whole yet. Other files stay.
+void remove_pictures(const std::filesystem::path& frames, int first);
+
 class RunFolder {
  public:
   // Makes the folder, or takes over one that an earlier run left. That run's results are removed, except for what
@@ -40,7 +48,7 @@ class RunFolder {
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path frames() const { return path_ / "frames"; }
-  std::filesystem::path frame(int index) const;
+  std::filesystem::path frame(int index) const { return picture_file(frames(), index); }
   std::filesystem::path motion(const std::string& body) const { return path_ / "motion" / (body + ".pc2"); }
   std::filesystem::path surface(const std::string& body) const { return path_ / "motion" / (body + ".obj"); }
   std::filesystem::path colliders() const { return path_ / "motion" / "colliders.csv"; }

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/trace.h"
 #include "output/png_file.h"
+#include "output/run_folder.h"
 
 namespace supple {
 namespace {
@@ -74,7 +75,7 @@ bool VideoEncoder::add(std::span<const std::uint8_t> rgb) {
 void VideoEncoder::add_files(const std::filesystem::path& frames, int count) {
   try {
     while (taken_ && unread_.empty() && frames_ < count) {
-      const std::filesystem::path file = frames / fmt::format("{:06}.png", frames_);
+      const std::filesystem::path file = picture_file(frames, frames_);
       const Zone zone("read frame", {}, frames_);
       const PngImage image = read_png(file);
       if (image.rgb.size() != frame_bytes_) throw InputError(file.string(), "is not of the film's size");

@@ -64,15 +64,22 @@ Rays rays_through(const Camera& camera, int width, int height) {
   return {-back - 0.5 * pixel * (width * right + height * up), pixel * right, pixel * up};
 }
 
-Camera framing(const Bounds& box, double fov_deg, double margin, double aspect) {
+Camera framing(const Bounds& box, const Vec3& direction, double fov_deg, double margin, double aspect) {
   Camera camera;
   camera.fov_deg = fov_deg;
-  const double half = std::tan(fov_deg * std::numbers::pi / 360);
-  const Vec3 extent = box.extent();
-  const double across = margin * std::max(0.5 * extent.y(), 0.5 * extent.x() / aspect);
-  const double distance = across / half + 0.5 * extent.z();
-  camera.target = box.center() - Vec3(0, 0.06 * extent.y(), 0);
-  camera.eye = camera.target + distance * Vec3(0, 0.16, 1).normalized();
+  camera.target = box.center() - Vec3(0, 0.06 * box.extent().y(), 0);  // captions stand below
+  const double high = std::tan(fov_deg * std::numbers::pi / 360), wide = high * aspect;
+  const Vec3 right = Vec3::UnitY().cross(direction).normalized(), up = direction.cross(right);
+  // A corner is in view when its distance from the axis is at most its depth times the tangent of half the angle.
+  double distance = 0;
+  for (int c = 0; c < 8; ++c) {
+    const Vec3 corner(c & 1 ? box.upper.x() : box.lower.x(), c & 2 ? box.upper.y() : box.lower.y(),
+                      c & 4 ? box.upper.z() : box.lower.z());
+    const Vec3 p = corner - camera.target;
+    const double depth = margin * std::max(std::abs(p.dot(right)) / wide, std::abs(p.dot(up)) / high);
+    distance = std::max(distance, depth + p.dot(direction));
+  }
+  camera.eye = camera.target + distance * direction;
   return camera;
 }
 

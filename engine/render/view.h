@@ -7,8 +7,9 @@
 
 namespace supple {
 
-// Returns a camera a little above eye level that has all of the box in view, with some space around it.
-Camera framing(const Bounds& box, double fov_deg, double margin, double aspect);
+// Returns a camera that has all of the box in view, with some space around it (margin: 1 is none). direction: of length
+// one, from what is seen to the eye. aspect: width over height of the picture.
+Camera framing(const Bounds& box, const Vec3& direction, double fov_deg, double margin, double aspect);
 
 // Maps world to eye coordinates: the eye looks at the target, and up is y.
 Eigen::Matrix4f look_at(const Vec3& eye, const Vec3& target);

@@ -1,5 +1,6 @@
 // A scene as its file describes it: plain nested structs with defaults, SI units, angles in degrees where the name says
-// so. Nothing is built yet (assemble.h), and nothing here knows scene files or TOML (scene_reader.h).
+// so. The defaults here are those of the file format. Nothing is built yet (assemble.h), and nothing here knows scene
+// files or TOML (scene_reader.h).
 #pragma once
 
 #include <filesystem>
@@ -92,7 +93,9 @@ struct ClothDef {
   double stretch = 0, shear = 0, bend = 0;  // stiffness of a spring [N/m]
 };
 
-// How the steps of a body are solved.
+// How the steps of a body are solved: the table [solver]. `settings` go with every step's inputs and cost nothing to
+// change. The others are built into the model (fit, precision, integrator, damping: assemble.cpp) or choose the rule
+// for directions (method); live.cpp tells what a change of each costs.
 struct SolverDef {
   Method method = Method::quasi_newton;
   SolverSettings settings;
@@ -147,11 +150,29 @@ struct ColliderDef {
   Problem place;
 };
 
+// A place of the camera on its way. Values that a key does not have come from the keys before and after it.
+struct CameraKey {
+  double time = 0;                                   // [s]
+  std::optional<Vec3> position, target;              // [m]
+  std::optional<double> azimuth_deg, elevation_deg;  // direction of the eye, as seen from the target
+  std::optional<double> distance;                    // [m]
+  std::optional<double> fov_deg;
+};
+
+// Without a position the eye stands in the direction of azimuth and elevation, as far away as it must to see all
+// bodies.
 struct CameraDef {
-  std::optional<Vec3> position;  // [m]; without it the camera frames all bodies
-  std::optional<Vec3> target;
-  double fov_deg = 30;   // vertical
-  double margin = 1.25;  // air around the bodies when they are framed
+  std::optional<Vec3> position, target;  // [m]
+  double azimuth_deg = 30, elevation_deg = 14;
+  std::optional<double> distance;  // [m]
+  double fov_deg = 30;             // vertical
+  double margin = 1.25;            // air around the bodies when they are framed
+  double orbit_deg = 0;            // that the eye goes round the target [degrees/s]
+  std::string follow;              // the body or collider that it moves along with; empty: none
+  Ease ease = Ease::smooth;
+  std::vector<CameraKey> keys;  // in order of time
+
+  bool moves() const { return orbit_deg != 0 || !keys.empty(); }
 };
 
 struct LookDef {

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "scene/body_reader.h"
+#include "scene/camera_reader.h"
 #include "scene/collider_reader.h"
 #include "scene/solver_reader.h"
 #include "scene/sweep.h"
@@ -12,7 +13,12 @@ namespace supple {
 
 const std::vector<std::set<std::string>>& exclusive_keys() {
   static const std::vector<std::set<std::string>> groups = {{"shape", "surface", "mesh", "box", "cloth"},
-                                                            {"density", "total_mass"}};
+                                                            {"density", "total_mass"},
+                                                            {"position", "azimuth"},
+                                                            {"position", "elevation"},
+                                                            {"position", "distance"},
+                                                            {"position", "orbit"},
+                                                            {"target", "follow"}};
   return groups;
 }
 
@@ -23,9 +29,10 @@ SceneDef read_scene(Config& config) {
   const ConfigTable root = config.root();
   (void)root.integer({"version", "", "of this format"}, 1, Range::between(1, 1));
   scene.title = root.text({"title", "", "for people"}, "");
-  scene.frames = root.integer({"frames", "", "length of the film"}, 120, Range::between(1, 1000000));
-  scene.fps = root.number({"fps", "1/s", "frames a second"}, 30, Range::between(1, 100000));
-  scene.substeps = root.integer({"substeps", "", "steps a frame: h = 1 / (fps substeps)"}, 1, Range::between(1, 1000));
+  scene.frames = root.integer({"frames", "", "length of the film"}, scene.frames, Range::between(1, 1000000));
+  scene.fps = root.number({"fps", "1/s", "frames a second"}, scene.fps, Range::between(1, 100000));
+  scene.substeps =
+      root.integer({"substeps", "", "steps a frame: h = 1 / (fps substeps)"}, scene.substeps, Range::between(1, 1000));
   scene.gravity = root.vector({"gravity", "m/s^2", "acceleration of free fall"}, scene.gravity);
   scene.seed =
       static_cast<std::uint64_t>(root.integer({"seed", "", "of random start states"}, 1, Range::between(0, 2e9)));
@@ -46,33 +53,30 @@ SceneDef read_scene(Config& config) {
   if (scene.bodies.empty()) root.complain("a scene needs at least one [[body]]");
 
   if (const auto camera = root.table({"camera", "", "where the film is seen from"})) {
-    scene.camera.position = camera->vector_if_given({"position", "m", "of the eye; without it all bodies are framed"});
-    scene.camera.target = camera->vector_if_given({"target", "m", "what the eye looks at"});
-    if (scene.camera.position && scene.camera.target && *scene.camera.position == *scene.camera.target) {
-      camera->complain("target", "target: must not be the camera's own position");
-    }
-    scene.camera.fov_deg =
-        camera->number({"fov_deg", "degrees", "vertical field of view"}, scene.camera.fov_deg, Range::between(1, 150));
-    scene.camera.margin = camera->number({"margin", "", "air around the bodies when they are framed"},
-                                         scene.camera.margin, Range::between(0.5, 10));
+    scene.camera = read_camera(*camera, scene.camera);
+    const bool known =
+        scene.camera.follow.empty() || names.contains(scene.camera.follow) || colliders.contains(scene.camera.follow);
+    if (!known)
+      camera->complain("follow", fmt::format("follow: no body or collider is called '{}'", scene.camera.follow));
   }
   if (const auto look = root.table({"look", "", "ground, background and light"})) {
     scene.look.ground =
         look->vector({"ground", "sRGB", "colour of the ground"}, scene.look.ground, Range::between(0, 1));
     scene.look.background = look->vector({"background", "sRGB", "colour that the ground fades into"},
                                          scene.look.background, Range::between(0, 1));
-    scene.look.exposure = look->number({"exposure", "", "multiplies the light"}, 1.0, Range::above(0, 100));
-    scene.look.show_labels = look->boolean({"labels", "", "captions below the bodies"}, true);
+    scene.look.exposure =
+        look->number({"exposure", "", "multiplies the light"}, scene.look.exposure, Range::above(0, 100));
+    scene.look.show_labels = look->boolean({"labels", "", "captions below the bodies"}, scene.look.show_labels);
   }
   if (const auto output = root.table({"output", "", "the pictures"})) {
-    scene.output.width =
-        output->integer({"width", "pixels", "even, for the film's encoder"}, 1280, Range::between(16, 8192));
-    scene.output.height =
-        output->integer({"height", "pixels", "even, for the film's encoder"}, 720, Range::between(16, 8192));
+    scene.output.width = output->integer({"width", "pixels", "even, for the film's encoder"}, scene.output.width,
+                                         Range::between(16, 8192));
+    scene.output.height = output->integer({"height", "pixels", "even, for the film's encoder"}, scene.output.height,
+                                          Range::between(16, 8192));
     if (scene.output.width % 2 != 0) output->complain("width", "width: must be even");
     if (scene.output.height % 2 != 0) output->complain("height", "height: must be even");
-    scene.output.samples =
-        output->integer({"samples", "", "antialiasing samples a pixel: 1, 2, 4 or 8"}, 4, Range::between(1, 8));
+    scene.output.samples = output->integer({"samples", "", "antialiasing samples a pixel: 1, 2, 4 or 8"},
+                                           scene.output.samples, Range::between(1, 8));
     if ((scene.output.samples & (scene.output.samples - 1)) != 0)
       output->complain("samples", "samples: must be 1, 2, 4 or 8");
     scene.output.energy = output->boolean(

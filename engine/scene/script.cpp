@@ -185,6 +185,14 @@ Script Script::load(const std::filesystem::path& path, const std::filesystem::pa
   return Script(std::move(parts));
 }
 
+ChangeCost cost_for(const std::string& name, const std::vector<TimedChange>& changes) {
+  ChangeCost cost;
+  for (const TimedChange& change : changes) {
+    if (change.object.empty() || change.object == name) cost |= change.cost;
+  }
+  return cost;
+}
+
 bool Script::is_replay() const { return parts_->replay.has_value(); }
 const SceneDef& Script::scene() const { return parts_->start; }
 const std::vector<TimedChange>& Script::changes() const { return parts_->changes; }

@@ -25,6 +25,9 @@ struct TimedChange {
   std::optional<double> done_at(double time) const;
 };
 
+// Adds up what these changes force us to make again for one body or collider.
+ChangeCost cost_for(const std::string& name, const std::vector<TimedChange>& changes);
+
 class Script {
  public:
   // Loads a scene file, or a replay, which is a file that names its `scene`. `settings` are those of --set, and apply

@@ -4,8 +4,11 @@
 //   const Model model = build_model(body);   // no step changes it; several states may share it
 //   State state = rest_state(model);         // where the body is; a copy is a snapshot: sim/model/state.h
 //   Workspace workspace;                     // scratch, one for each thread that steps; never changes a result
-//   StepInputs inputs;                      // gravity, handles' targets, colliders, settings: sim/model/inputs.h
+//   StepInputs inputs;                       // gravity, handles' targets, colliders, settings: sim/model/inputs.h
 //   const StepReport& report = step(model, inputs, state, workspace);  // once a time step: sim/solver/step.h
+//
+// inputs.targets has a row for each of model.handled, in its order: the place where that vertex is held. At rest it is
+// model.rest.row(model.handled[i].vertex); without handles the matrix stays empty.
 //
 // A step that fails says so in the report (failed, failure) and leaves the state as it was. Descriptions that
 // contradict themselves throw InputError, a matrix that cannot be factored RunError (base/error.h). Rows of a state are

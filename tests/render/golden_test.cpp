@@ -9,6 +9,7 @@
 
 #include <functional>
 
+#include "film/camera.h"
 #include "film/draw_scene.h"
 #include "output/png_file.h"
 #include "render/renderer.h"
@@ -68,11 +69,11 @@ Picture picture_of(const Shot& shot, const Settings& more = {}) {
   const std::vector<Skin> colliders = collider_skins(film.set.obstacles, film.bodies);
   Picture picture;
   picture.stage = make_stage(film.scene, film.bodies, drawn, film.set.obstacles, colliders, shot.font);
-  picture.list.camera = make_camera(film.scene, picture.stage);
+  picture.list.camera = camera_at(film.scene, picture.stage, shot.frames / film.scene.fps);
   fit_to_cameras(drawn, film.bodies, {picture.list.camera}, film.scene.output.height);
   picture.stage = make_stage(film.scene, film.bodies, drawn, film.set.obstacles, colliders, shot.font);
   for (std::size_t b = 0; b < film.bodies.size(); ++b)
-    picture.list.positions.push_back(skin_positions(drawn[b], film.models[b], states[b]));
+    picture.list.positions.push_back(skin_positions(drawn[b], in_input_order(film.models[b], states[b].x)));
   add_colliders(film.set.obstacles, colliders, shot.frames / film.scene.fps, picture.list);
   return picture;
 }

@@ -280,12 +280,21 @@ parts = []
 std::string table_of(const std::vector<DocumentedKey>& keys) {
   std::string table = "| key | default | allowed | unit | meaning |\n|---|---|---|---|---|\n";
   std::set<std::string> seen;
+  const auto meanings = [&keys](const DocumentedKey& of) {  // several models may use one name for different parameters
+    std::vector<std::string> different;
+    for (const DocumentedKey& key : keys) {
+      const bool same = key.path == of.path && key.type == of.type;
+      if (same && std::ranges::find(different, key.meaning) == different.end()) different.push_back(key.meaning);
+    }
+    return fmt::format("{}", fmt::join(different, "; "));
+  };
   for (const DocumentedKey& key : keys) {
     // The materials of regions and the solvers of bodies are documented once, where such keys first occur.
     if (key.path.find("regions.") != std::string::npos && !key.path.ends_with("regions.NAME")) continue;
     if (key.path.starts_with("collider[].shape.")) continue;  // documented as a part in the table of shapes
     if (key.path.starts_with("body[].solver.") || !seen.insert(key.path + key.type).second) continue;
-    table += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.path, key.fallback, key.allowed, key.unit, key.meaning);
+    table +=
+        fmt::format("| `{}` | {} | {} | {} | {} |\n", key.path, key.fallback, key.allowed, key.unit, meanings(key));
   }
   return table;
 }

@@ -5,6 +5,7 @@
 #include <random>
 #include <xsimd/xsimd.hpp>
 
+#include "sim/elements/dual.h"
 #include "sim/elements/tetrahedron.h"
 #include "sim/worked_example/hardening.h"
 #include "support/bodies.h"
@@ -45,6 +46,16 @@ TEST(WorkedExample, IsTheDerivativeOfItsEnergyAndTheSumOverItsStretches) {
     EXPECT_NEAR(density_of(material, wide, wide_stress).get(0), energy, 1e-11 * (1 + energy));
   }
   EXPECT_NEAR(material.axial_stress(1.3), 2 * 3 * 0.3 + 6 * 50 * std::pow(0.3, 5), 1e-12);
+}
+
+TEST(WorkedExample, HasSecondDerivativesThroughDualNumbers) {
+  const Hardening material{3, 50};
+  using D = Dual<double>;
+  const D one(1.0), zero(0.0), x = D::variable(1.3, 0);
+  Symmetric3<D> slope;
+  const D energy = material.density(Symmetric3<D>{x, one, one, zero, zero, zero}, slope);
+  EXPECT_NEAR(energy.d[0], slope.xx.value, 1e-12);
+  EXPECT_NEAR(slope.xx.d[0], 2 * 3 + 30 * 50 * std::pow(0.3, 4), 1e-12);
 }
 
 }  // namespace

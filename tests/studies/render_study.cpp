@@ -12,6 +12,7 @@
 #include "app/bench/subject.h"
 #include "base/timing.h"
 #include "base/trace.h"
+#include "film/camera.h"
 #include "film/draw_scene.h"
 #include "film/places.h"
 #include "output/png_file.h"
@@ -55,7 +56,7 @@ Take simulate(const std::filesystem::path& path, int frames, const std::vector<s
   const std::vector<Skin> colliders = collider_skins(set.obstacles, bodies);
   Take take;
   const Stage fine = make_stage(scene, bodies, drawn, set.obstacles, colliders, caption_font());
-  const Camera camera = make_camera(scene, fine);
+  const Camera camera = camera_at(scene, fine, 0);
   fit_to_cameras(drawn, bodies, {camera}, scene.output.height);
   take.stage = make_stage(scene, bodies, drawn, set.obstacles, colliders, caption_font());
   std::vector<std::unique_ptr<DrivenBody>> driven;
@@ -67,7 +68,7 @@ Take simulate(const std::filesystem::path& path, int frames, const std::vector<s
     DrawList list;
     list.camera = camera;
     for (std::size_t b = 0; b < bodies.size(); ++b)
-      list.positions.push_back(skin_positions(drawn[b], models[b], driven[b]->state()));
+      list.positions.push_back(skin_positions(drawn[b], in_input_order(models[b], driven[b]->state().x)));
     add_colliders(set.obstacles, colliders, (frame + 1) / scene.fps, list);
     take.lists.push_back(std::move(list));
   }
@@ -100,13 +101,15 @@ int main(int argc, char** argv) {
     wall.push_back(watch.elapsed_ms());
     cpu.push_back(cpu_ms() - before);
   }
-  fmt::print("{} triangles, {}x{}: wall {:.1f} ms (least {:.1f}), cores {:.1f} ms (least {:.1f})\n", triangles, image.width,
-             image.height, median(wall), *std::ranges::min_element(wall), median(cpu), *std::ranges::min_element(cpu));
+  fmt::print("{} triangles, {}x{}: wall {:.1f} ms (least {:.1f}), cores {:.1f} ms (least {:.1f})\n", triangles,
+             image.width, image.height, median(wall), *std::ranges::min_element(wall), median(cpu),
+             *std::ranges::min_element(cpu));
   start_trace();
   for (int i = 0; i < repeats; ++i) image = renderer.draw(take.lists[std::size_t(i) % take.lists.size()]);
   std::map<std::string, std::vector<double>> stages;
   for (const ThreadTrace& thread : stop_trace()) {
-    for (const TraceEvent& event : thread.events) stages[event.name].push_back(1e-6 * double(event.end_ns - event.begin_ns));
+    for (const TraceEvent& event : thread.events)
+      stages[event.name].push_back(1e-6 * double(event.end_ns - event.begin_ns));
   }
   for (auto& [name, times] : stages) fmt::print("  {:<16}{:8.2f} ms\n", name, median(times));
   write_png(argv[2], image.width, image.height, image.rgb);

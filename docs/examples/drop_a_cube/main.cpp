@@ -9,12 +9,12 @@ int main() {
   BodyDescription cube;
   cube.name = "cube";
   cube.mesh = box_mesh(Vec3(0.2, 0.2, 0.2), Eigen::Vector3i(4, 4, 4));
-  transform(cube.mesh, 1, Vec3(0, 0.5, 0));  // scale 1; half a metre above the ground
+  transform(cube.mesh, 1, Vec3(0, 0.5, 0));  // not scaled; the mesh begins at the origin, so its bottom is at y = 0.5
   cube.materials = {NeoHookean::from(Lame::from_young(1e5, 0.4))};
 
   Collider ground;
   ground.name = "ground";
-  ground.shape.root.parts = {ShapePart{HalfSpace{Vec3(0, 1, 0), 0}}};  // solid below y = 0
+  ground.shape.root.parts = {ShapePart{HalfSpace{Vec3(0, 1, 0), 0}}};  // a tree of one part, solid below y = 0
   const std::vector<Collider> colliders = {ground};
 
   StepInputs inputs;
@@ -24,7 +24,7 @@ int main() {
   const Model model = build_model(cube);
   State state = rest_state(model);
   Workspace workspace;
-  for (int frame = 0; frame <= 60; ++frame) {  // of 1/30 s, one step each
+  for (int frame = 0; frame <= 60; ++frame) {  // a step is cube.time_step = 1/30 s
     std::printf("%d %.4f\n", frame, state.x.col(1).minCoeff());
     const StepReport& report = step(model, inputs, state, workspace);
     if (!report.failed) continue;

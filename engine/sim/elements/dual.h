@@ -62,6 +62,11 @@ struct Dual {
     using std::log;
     return a.mapped(log(a.value), V(1.0) / a.value);
   }
+  friend Dual exp(const Dual& a) {
+    using std::exp;
+    const V at = exp(a.value);
+    return a.mapped(at, at);
+  }
   friend Dual sqrt(const Dual& a) {
     using std::sqrt;
     const V root = sqrt(a.value);

@@ -1,6 +1,6 @@
 // The closed set of materials. To add one, write a header in this folder (name, needs, parameters(), density(),
-// axial_stress(): parameters.h) and enter it here: kernels, scene files, the stiffness fit and the derivative tests
-// then know it. docs/adding-a-material.md goes through it.
+// axial_stress(): parameters.h) and enter it here: kernels, scene files and the stiffness fit then know it.
+// docs/adding-a-material.md goes through it, and lists what tests and pages need.
 #pragma once
 
 #include <variant>

@@ -1,5 +1,9 @@
-// Every material tells the following of itself, so that scene files, stiffness fits, kernels and tests pick a new one
-// up without being told. Optional members of a material, each used where it exists:
+// Every material has a name, needs, parameters(), density() and axial_stress(s). The last is f = a' + 2 b' + c' of
+// equation 10: the stress along the axis of a sample at F = diag(s, 1, 1), whose sides are held.
+//
+// Every material tells the following of itself, so that scene files, stiffness fits and kernels pick a new one up
+// without being told. Tests and pages are told in the places that docs/adding-a-material.md lists. Optional members of
+// a material, each used where it exists:
 //   static M from(const Lame&)          from Young's modulus and Poisson's ratio
 //   const char* problem() const         what is wrong with parameters that are each in range, or null
 //   std::vector<double> seams() const   stretches where the axial stress changes its formula
@@ -14,7 +18,9 @@
 
 namespace supple {
 
-// Tells what a formula needs of F: a decomposition that the formula does not use is not computed.
+// Tells what a formula needs of F: a decomposition that the formula does not use is not computed. density() is a
+// template over its number type: SIMD registers, doubles, and Dual of either (elements/dual.h), which has only the
+// operations that docs/adding-a-material.md lists.
 enum class Needs {
   gradient,         // F alone: density(F, P)
   stretch,          // S of the polar decomposition F = R S: density(S, dPsi/dS), and P = R dPsi/dS

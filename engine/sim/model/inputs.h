@@ -74,7 +74,7 @@ struct ChebyshevSettings {
   double radius = 0.85;  // rho: the spectral radius that is assumed of the plain iteration
 };
 
-// Settings that may change between steps.
+// The settings of [solver] that step() reads from its inputs; the others are in the Model or in the SearchRule.
 struct SolverSettings {
   int iterations = 10;
   int history = 5;  // window m of L-BFGS; 0 is plain quasi-Newton

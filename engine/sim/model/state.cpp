@@ -8,9 +8,9 @@ namespace supple {
 
 State rest_state(const Model& model) { return {model.rest, Positions::Zero(model.vertices, 3), 0, {}}; }
 
-Positions in_input_order(const Model& model, const Positions& internal) {
+Positions in_input_order(const Model& model, const Positions& rows) {
   Positions result(model.vertices, 3);
-  for (int i = 0; i < model.vertices; ++i) result.row(model.input_of[i]) = internal.row(i);
+  for (int i = 0; i < model.vertices; ++i) result.row(model.input_of[i]) = rows.row(i);
   return result;
 }
 

@@ -33,7 +33,8 @@ State rest_state(const Model& model);
 // Returns the XXH64 of all positions, then all velocities, as little-endian doubles in the order of the input file.
 std::uint64_t state_hash(const Model& model, const State& state);
 
-// Returns the rows sorted from the model's order into the input file's.
-Positions in_input_order(const Model& model, const Positions& internal);
+// Vertices are renumbered in a Model (model.h); the input file's order is that of BodyDescription::mesh. Returns the
+// rows sorted from the model's order into the input file's.
+Positions in_input_order(const Model& model, const Positions& rows);
 
 }  // namespace supple

@@ -1,0 +1,221 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <memory>
+#include <thread>
+
+#include "app/verbs.h"
+#include "base/console.h"
+#include "base/error.h"
+#include "base/interrupts.h"
+#include "base/text.h"
+#include "base/timing.h"
+#include "film/progress.h"
+#include "film/redraw.h"
+#include "output/child_program.h"
+#include "output/png_file.h"
+
+namespace supple {
+namespace {
+
+// A drawing as the command line asks for it.
+struct DrawCommand {
+  DrawPlan plan;
+  std::string run, scene, out, still;
+  std::optional<std::size_t> frame, index;
+  std::optional<double> rate;
+  int of = 1, jobs = 1;
+  bool merge = false, quiet = false;
+
+  std::filesystem::path folder() const {
+    if (!out.empty()) return out;
+    std::string path = std::filesystem::path(run).lexically_normal().string();
+    if (path.ends_with('/')) path.pop_back();
+    return path + "-drawn";
+  }
+};
+
+int say_end(const DrawResult& result, const std::filesystem::path& folder) {
+  if (result.end == FilmEnd::done) return 0;
+  const bool interrupted = result.end == FilmEnd::interrupted;
+  say(stderr, fmt::format("supple: {}\n  kept: {} whole pictures in {}\n", interrupted ? "interrupted" : result.message,
+                          result.pictures, folder.string()));
+  return interrupted ? 130 : 1;
+}
+
+// Ends the film and tells about it. Returns the exit status.
+int finish_film(const DrawCommand& command, VideoEncoder& video, int pictures, double seconds) {
+  const VideoResult end = video.finish();
+  if (end.outcome == VideoOutcome::failed)
+    throw RunError(
+        fmt::format("no film: {}; the pictures are whole{}", end.reason, end.told.empty() ? "" : ". " + end.told));
+  if (command.quiet) return 0;
+  say(stdout, fmt::format("  {} pictures in {}\n", pictures, duration_text(seconds)));
+  const bool written = end.outcome == VideoOutcome::written;
+  say(stdout, written ? fmt::format("  film     {}\n", (command.folder() / "video.mp4").string())
+                      : fmt::format("  no film: {}\n", end.reason));
+  return 0;
+}
+
+VideoEncoder encoder_for(const DrawCommand& command, const LoadedDrawing& drawing) {
+  const SceneDef& scene = drawing.film.script.scene();
+  return {command.folder() / "video.mp4", scene.output.width, scene.output.height, drawing.rate};
+}
+
+// Makes the film of pictures that other processes have drawn.
+int merge_parts(const DrawCommand& command, const LoadedDrawing& drawing) {
+  const Stopwatch watch;
+  const auto count = static_cast<int>(drawing.frames.size());
+  const std::vector<int> missing = missing_pictures(drawing, command.folder());
+  if (!missing.empty()) {
+    throw RunError(fmt::format("{}: {} of {} pictures are not drawn yet, the first of them {:06}",
+                               command.folder().string(), missing.size(), count, missing.front()));
+  }
+  VideoEncoder video = encoder_for(command, drawing);
+  video.add_files(command.folder() / "frames", count);
+  return finish_film(command, video, count, watch.elapsed_ms() / 1000);
+}
+
+int draw_range(const DrawCommand& command, LoadedDrawing& drawing, PictureRange range, VideoEncoder* video) {
+  Progress progress(range.last - range.first, 0, command.quiet);
+  const auto tell = [&progress](int done) {
+    if (done > 0) progress.show(done);
+  };
+  const DrawResult result = draw_pictures(command.plan, drawing, command.folder(), range, video, tell);
+  progress.end();
+  return say_end(result, command.folder());
+}
+
+int draw_whole(const DrawCommand& command, LoadedDrawing& drawing) {
+  const Stopwatch watch;
+  const auto count = static_cast<int>(drawing.frames.size());
+  VideoEncoder video = encoder_for(command, drawing);
+  const int status = draw_range(command, drawing, {0, count}, &video);
+  return status == 0 ? finish_film(command, video, count, watch.elapsed_ms() / 1000) : status;
+}
+
+// The command that draws one part, as somebody would type it.
+std::vector<std::string> command_of_part(const DrawCommand& command, int index) {
+  const DrawPlan& plan = command.plan;
+  std::vector<std::string> words = {std::filesystem::read_symlink("/proc/self/exe").string(),
+                                    "draw",
+                                    command.run,
+                                    "--out",
+                                    command.folder().string(),
+                                    "--index",
+                                    std::to_string(index),
+                                    "--of",
+                                    std::to_string(command.jobs),
+                                    "--first",
+                                    std::to_string(plan.first),
+                                    "--every",
+                                    std::to_string(plan.every),
+                                    "--gl",
+                                    std::string(name_of(plan.gl)),
+                                    "--quiet"};
+  if (plan.last >= 0) words.insert(words.end(), {"--last", std::to_string(plan.last)});
+  if (plan.rate > 0) words.insert(words.end(), {"--rate", fmt::format("{}", plan.rate)});
+  if (!command.scene.empty()) words.insert(words.end(), {"--scene", command.scene});
+  for (const std::string& setting : plan.settings) words.insert(words.end(), {"--set", setting});
+  return words;
+}
+
+// Draws the parts in processes of their own, all at once, and makes the film.
+int draw_in_parts(const DrawCommand& command, const LoadedDrawing& drawing) {
+  const Stopwatch watch;
+  std::vector<std::optional<ProgramEnd>> ends(command.jobs);
+  std::vector<std::thread> waiting;
+  for (int part = 0; part < command.jobs; ++part) {
+    waiting.emplace_back(
+        [&, part] { ends[part] = run_program(command_of_part(command, part), [] { return interrupted(); }); });
+  }
+  for (std::thread& thread : waiting) thread.join();
+  if (interrupted()) {
+    const auto drawn = drawing.frames.size() - missing_pictures(drawing, command.folder()).size();
+    return say_end({FilmEnd::interrupted, "", static_cast<int>(drawn)}, command.folder());
+  }
+  for (const auto& end : ends) {
+    if (!end) throw RunError("the program cannot be started once more for a part");
+    if (end->status != 0)
+      throw RunError("a part " + how_it_ended(*end) + (end->output.empty() ? "" : ": " + end->output));
+  }
+  const auto count = static_cast<int>(drawing.frames.size());
+  VideoEncoder video = encoder_for(command, drawing);
+  video.add_files(command.folder() / "frames", count);
+  return finish_film(command, video, count, watch.elapsed_ms() / 1000);
+}
+
+// Writes one frame as a picture.
+int draw_one(const DrawCommand& command, LoadedDrawing& drawing) {
+  const int frame = static_cast<int>(command.frame.value_or(drawing.frames.front()));
+  const int frames = drawing.motion.front().frames();
+  if (frame >= frames)
+    throw InputError(fmt::format("--frame {}", frame), fmt::format("the run's last frame is {}", frames - 1));
+  const std::string file = command.still.empty() ? fmt::format("frame-{:06}.png", frame) : command.still;
+  const Image image = draw_still(command.plan, drawing, frame);
+  write_png(file, image.width, image.height, image.rgb);
+  if (!command.quiet) say(stdout, fmt::format("  {}\n", file));
+  return 0;
+}
+
+int draw(DrawCommand command) {
+  command.plan.run = command.run;
+  command.plan.scene = command.scene;
+  command.plan.rate = command.rate.value_or(0);
+  if (command.index && *command.index >= static_cast<std::size_t>(command.of))
+    throw InputError(fmt::format("--index {}", *command.index),
+                     fmt::format("there are {} parts (--of): 0 to {}", command.of, command.of - 1));
+  LoadedDrawing drawing = load_drawing(command.plan);
+  if (command.frame || !command.still.empty()) return draw_one(command, drawing);
+  open_drawing(command.folder(), drawing, command.index || command.merge);
+  catch_interrupts();
+  if (command.merge) return merge_parts(command, drawing);
+  if (command.index)
+    return draw_range(command, drawing, part_of(drawing, static_cast<int>(*command.index), command.of), nullptr);
+  return command.jobs > 1 ? draw_in_parts(command, drawing) : draw_whole(command, drawing);
+}
+
+void add_options(Verb& verb, DrawCommand& command) {
+  DrawPlan& plan = command.plan;
+  verb.option("RUN", command.run, "folder that supple render left").required();
+  verb.option("--out", command.out, "folder for the drawing [RUN-drawn]");
+  verb.option("--set", plan.settings,
+              "path=value over the run's, of what is seen: camera, look, output, colours; may be repeated")
+      .repeatable();
+  verb.option("--scene", command.scene, "the run's scene file, where it has moved or a copy has another camera");
+  verb.option("--first", plan.first, "first frame of the run").between(0, 1000000).shows_default();
+  verb.option("--last", plan.last, "last frame [the run's]").between(0, 1000000);
+  verb.option("--every", plan.every, "draw every Nth frame").between(1, 100000).shows_default();
+  verb.option("--rate", command.rate, "frames a second of the film [as fast as it happened]").between(0.01, 1000.0);
+  const Option frame = verb.option("--frame", command.frame, "draw this frame alone, into the file of --still")
+                           .between(std::size_t(0), std::size_t(1000000));
+  verb.option("--still", command.still, "file for one picture [frame-NNNNNN.png]").needs(frame);
+  Options what = verb.at_most_one_of("Parts", "frames are independent, so that several processes can draw them");
+  what.option("--jobs", command.jobs, "draw so many parts at a time, each in a process of its own").between(1, 1024);
+  const Option index = what.option("--index", command.index, "draw this part alone, from 0; makes no film")
+                           .between(std::size_t(0), std::size_t(100000));
+  what.flag("--merge", command.merge, "make the film of what has been drawn");
+  verb.option("--of", command.of, "the number of parts").needs(index).between(1, 100000);
+  verb.option(
+          "--gl", [&plan](const std::string& word) { plan.gl = *value_named<GlChoice>(word); },
+          word_list(all_names<GlChoice>()))
+      .one_of(all_names<GlChoice>());
+  verb.flag("--quiet", command.quiet, "say nothing but errors");
+}
+
+}  // namespace
+
+void add_draw(CommandLine& line) {
+  auto command = std::make_shared<DrawCommand>();
+  Verb verb = line.verb("draw", "Film a run again from its saved motion; nothing is simulated.");
+  verb.footer(
+      "Examples: supple draw out/squirrel --set camera.azimuth=40 --set output.width=1920 --set "
+      "output.height=1080\n"
+      "          supple draw out/squirrel --frame 120 --still poster.png\n"
+      "          supple draw out/squirrel --index 3 --of 8    (one of eight machines; --merge makes the film)\n"
+      "Leaves frames/, video.mp4 and draw.json. With the run's own settings the pictures are the run's to the byte.");
+  add_options(verb, *command);
+  verb.runs([command] { return draw(*command); });
+}
+
+}  // namespace supple

@@ -1,0 +1,99 @@
+#include "film/camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "render/view.h"
+
+namespace supple {
+namespace {
+
+template <class T>
+T between(const T& from, const T& to, double s) {
+  return from + s * (to - from);
+}
+
+// Returns the value at a time of those keys that have it; `fallback` where none has.
+template <class T>
+T value_at(const CameraDef& camera, double time, std::optional<T> CameraKey::*member, const T& fallback) {
+  const CameraKey *before = nullptr, *after = nullptr;
+  for (const CameraKey& key : camera.keys) {
+    if (!(key.*member)) continue;
+    if (key.time <= time) before = &key;
+    if (key.time > time && after == nullptr) after = &key;
+  }
+  if (before == nullptr && after == nullptr) return fallback;
+  if (before == nullptr) return *(after->*member);
+  if (after == nullptr) return *(before->*member);
+  double s = (time - before->time) / (after->time - before->time);
+  if (camera.ease == Ease::smooth) s = s * s * (3 - 2 * s);
+  return between(*(before->*member), *(after->*member), s);
+}
+
+Vec3 mean_of(const std::vector<float>& points) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i + 2 < points.size(); i += 3) sum += Vec3(points[i], points[i + 1], points[i + 2]);
+  return sum / std::max(1.0, static_cast<double>(points.size() / 3));
+}
+
+// Returns the number of the mesh that the camera follows: bodies come first, then colliders.
+std::size_t followed_mesh(const SceneDef& scene) {
+  std::size_t mesh = 0;
+  for (const BodyDef& body : scene.bodies) {
+    if (body.name == scene.camera.follow) return mesh;
+    ++mesh;
+  }
+  for (const ColliderDef& collider : scene.colliders) {
+    if (collider.name == scene.camera.follow) return mesh;
+    ++mesh;
+  }
+  return mesh;
+}
+
+bool will_fall(const SceneDef& scene, const BodyDef& body) { return body.handles.empty() && scene.gravity.y() < 0; }
+
+}  // namespace
+
+Bounds framed_box(const SceneDef& scene, const Stage& stage) {
+  Bounds box;
+  for (std::size_t m = 0; m < stage.meshes.size(); ++m) {
+    const DrawMesh& mesh = stage.meshes[m];
+    if (!mesh.framed) continue;
+    box.include(mesh.rest.lower);
+    box.include(mesh.rest.upper);
+    const bool falls = m < scene.bodies.size() && will_fall(scene, scene.bodies[m]) && mesh.rest.lower.y() > 0;
+    if (falls) box.include(Vec3(mesh.rest.lower.x(), 0, mesh.rest.lower.z()));  // the drawn ground is at y = 0
+  }
+  return box;
+}
+
+Camera camera_at(const SceneDef& scene, const Stage& stage, double time,
+                 const std::vector<std::vector<float>>& positions) {
+  const CameraDef& def = scene.camera;
+  const Bounds box = framed_box(scene, stage);
+  const double degree = std::numbers::pi / 180;
+  const double azimuth =
+      degree * (value_at(def, time, &CameraKey::azimuth_deg, def.azimuth_deg) + def.orbit_deg * time);
+  const double elevation = degree * value_at(def, time, &CameraKey::elevation_deg, def.elevation_deg);
+  const double fov = value_at(def, time, &CameraKey::fov_deg, def.fov_deg);
+  const Vec3 direction(std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+                       std::cos(azimuth) * std::cos(elevation));
+  Camera camera = framing(box, direction, fov, def.margin, static_cast<double>(stage.width) / stage.height);
+  const double distance = (camera.eye - camera.target).norm();
+  camera.target = value_at<Vec3>(def, time, &CameraKey::target, def.target.value_or(camera.target));
+  camera.eye = camera.target + value_at(def, time, &CameraKey::distance, def.distance.value_or(distance)) * direction;
+  camera.eye = value_at<Vec3>(def, time, &CameraKey::position, def.position.value_or(camera.eye));
+  if (def.follow.empty()) return camera;
+  const std::size_t mesh = followed_mesh(scene);
+  const Vec3 offset = camera.eye - camera.target;
+  const bool moved = mesh < positions.size() && !positions[mesh].empty();
+  const Vec3 center = moved ? mean_of(positions[mesh]) : stage.meshes[mesh].rest.center();
+  // A position stands in a fixed place to what is followed at rest.
+  camera.eye = center + offset;
+  if (def.position) camera.eye = *def.position + center - stage.meshes[mesh].rest.center();
+  camera.target = center;
+  return camera;
+}
+
+}  // namespace supple

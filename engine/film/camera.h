@@ -1,0 +1,18 @@
+// Finds where the camera of a film stands at a time.
+#pragma once
+
+#include "render/draw_list.h"
+#include "scene/scene_def.h"
+
+namespace supple {
+
+// Returns the box that a camera frames: the bodies and colliders at the start, and the ground below bodies that will
+// fall on it [m].
+Bounds framed_box(const SceneDef& scene, const Stage& stage);
+
+// Returns the camera at a time [s]. positions: by mesh, as in a DrawList; the camera moves along with the mesh that it
+// follows. Without them it stands where it would if that mesh were at rest.
+Camera camera_at(const SceneDef& scene, const Stage& stage, double time,
+                 const std::vector<std::vector<float>>& positions = {});
+
+}  // namespace supple

@@ -1,0 +1,257 @@
+#include "film/redraw.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/interrupts.h"
+#include "base/text.h"
+#include "film/drawn_film.h"
+#include "film/film_identity.h"
+#include "film/places.h"
+#include "output/json_difference.h"
+#include "output/json_text.h"
+#include "output/run_folder.h"
+#include "output/run_record.h"
+#include "output/whole_file.h"
+#include "render/renderer.h"
+
+namespace supple {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The values of a scene that change what is seen and nothing else, as generic_path() names them. A name also stands for
+// what lies below it.
+constexpr std::array seen = {
+    "title",        "camera",       "look",           "output.width",        "output.height",     "output.samples",
+    "body[].color", "body[].label", "body[].pattern", "body[].pattern_size", "body[].skin_cells", "collider[].color"};
+
+bool is_seen(const std::string& path) {
+  const std::string generic = generic_path(path);
+  return std::ranges::any_of(seen, [&generic](const std::string& one) {
+    return generic == one || (generic.starts_with(one) && generic[one.size()] == '.');
+  });
+}
+
+std::string member_text(const Json& object, const char* key) {
+  return object.contains(key) ? json_text(object[key]) : std::string();
+}
+
+// Returns the film's plan as the run had it, with the drawing's settings after the run's.
+FilmPlan plan_of_run(const DrawPlan& plan, const Json& info) {
+  const std::string source = (plan.run / "run.json").string();
+  const bool whole = info.contains("scene_file") && info["scene_file"].is_string() && info.contains("settings") &&
+                     info["settings"].is_array() && info.contains("scene");
+  if (!whole) throw InputError(source, "does not tell the run's scene and settings: an older program made the run");
+  FilmPlan film;
+  film.scene = plan.scene.empty() ? info["scene_file"].get<std::string>() : plan.scene.string();
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(film.scene, error))
+    throw InputError(film.scene, "the run's scene is no longer there; --scene FILE says where it is now");
+  for (const Json& setting : info["settings"]) film.settings.push_back(setting.get<std::string>());
+  film.settings.insert(film.settings.end(), plan.settings.begin(), plan.settings.end());
+  if (info.contains("sweep_point")) film.sweep_point = info["sweep_point"].get<std::size_t>();
+  return film;
+}
+
+// Leaves the changes of a replay that change what is simulated.
+std::string simulated_part(const std::string& replay) {
+  Json json = json_if_valid<Json>(replay);
+  if (!json.is_object()) return replay;
+  json.erase("title");
+  if (!json.contains("change") || !json["change"].is_array()) return json_text(json);
+  Json kept = Json::array();
+  for (const Json& change : json["change"]) {
+    const bool drawn = change.is_object() && change.contains("path") && change["path"].is_string() &&
+                       is_seen(change["path"].get<std::string>());
+    if (!drawn) kept.push_back(change);
+  }
+  json["change"] = kept;
+  return json_text(json);
+}
+
+// Refuses a scene that would have moved otherwise than the run did.
+void check_same_motion(const DrawPlan& plan, const Json& info, const LoadedFilm& film) {
+  std::vector<Problem> problems;
+  for (const JsonDifference& difference : differing_values(json_text(info["scene"]), film.info.scene_json)) {
+    if (is_seen(difference.path)) continue;
+    problems.push_back({film.info.scene_file, 0, 0,
+                        fmt::format("{} is {} here and was {} in the run: only what is seen may differ (camera, look, "
+                                    "output's width, height and samples, colours, labels, patterns)",
+                                    difference.path, difference.b, difference.a)});
+  }
+  if (simulated_part(member_text(info, "replay")) != simulated_part(film.info.replay_json))
+    problems.push_back({film.info.scene_file, 0, 0, "the replay changes other values than it did in the run"});
+  Json meshes = Json::array();
+  for (const RunInfo::Mesh& mesh : film.info.meshes) meshes.push_back({mesh.body, mesh.hash});
+  Json then = Json::array();
+  for (const Json& mesh : info.value("meshes", Json::array())) then.push_back({mesh["body"], mesh["xxh64"]});
+  if (problems.empty() && meshes != then)
+    problems.push_back(
+        {plan.run.string(), 0, 0, "the run had other meshes: their files, or the program, have changed"});
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+std::vector<PointCacheReader> motion_of(const RunRecord& run, const LoadedFilm& film) {
+  std::vector<PointCacheReader> motion;
+  for (const Body& body : film.bodies) {
+    motion.emplace_back(run.motion(body.def.name));
+    const auto vertices = static_cast<int>(body.description.mesh.rest.rows());
+    if (motion.back().points() == vertices) continue;
+    throw InputError(run.motion(body.def.name).string(),
+                     fmt::format("has {} points, and the body has {} vertices", motion.back().points(), vertices));
+  }
+  return motion;
+}
+
+std::vector<int> frames_of(const DrawPlan& plan, const std::vector<PointCacheReader>& motion) {
+  int count = motion.front().frames();
+  for (const PointCacheReader& body : motion) count = std::min(count, body.frames());
+  if (count == 0) throw InputError(plan.run.string(), "has no frame yet");
+  const int last = plan.last < 0 ? count - 1 : plan.last;
+  if (last >= count)
+    throw InputError(fmt::format("--last {}", last), fmt::format("the run's last frame is {}", count - 1));
+  if (plan.first > last)
+    throw InputError(fmt::format("--first {}", plan.first), fmt::format("lies after the last frame, {}", last));
+  std::vector<int> frames;
+  for (int frame = plan.first; frame <= last; frame += plan.every) frames.push_back(frame);
+  return frames;
+}
+
+// Gives draw lists of chosen frames, in ascending order.
+class Drawing {
+ public:
+  explicit Drawing(LoadedDrawing& drawing)
+      : drawing_(drawing),
+        scene_(drawing.film.script.scene()),
+        set_(collision_set(scene_)),
+        drawn_(drawing.film.script, drawing.film.bodies, set_, caption_font()) {}
+
+  const Stage& stage() const { return drawn_.stage(); }
+
+  DrawList list(int frame) {
+    follow_script(frame);
+    std::vector<Positions> motion;
+    std::vector<const Positions*> places;
+    for (PointCacheReader& body : drawing_.motion) motion.push_back(body.frame(frame));
+    for (const Positions& body : motion) places.push_back(&body);
+    return drawn_.list(scene_, places, set_, (frame + 1) / scene_.fps);
+  }
+
+ private:
+  // Brings the scene to the end of the frame.
+  void follow_script(int frame) {
+    const Script& script = drawing_.film.script;
+    std::vector<TimedChange> changes;
+    for (; followed_ <= frame; ++followed_) {
+      for (const TimedChange* change : script.at_work(followed_)) changes.push_back(*change);
+    }
+    if (changes.empty()) return;
+    scene_ = script.scene_at(frame);
+    set_ = collision_set(scene_);
+    drawn_.follow(changes, set_, drawing_.film.bodies);
+  }
+
+  LoadedDrawing& drawing_;
+  SceneDef scene_;  // at the end of the last frame that was asked for
+  CollisionSet set_;
+  DrawnFilm drawn_;
+  int followed_ = 0;  // frames whose changes are in scene_
+};
+
+}  // namespace
+
+LoadedDrawing load_drawing(const DrawPlan& plan) {
+  const RunRecord run = read_run(plan.run);
+  const Json info = parsed_json<Json>(run.info_json);
+  LoadedDrawing drawing{load_film(plan_of_run(plan, info), {}), {}, {}, 0, {}};
+  check_same_motion(plan, info, drawing.film);
+  drawing.motion = motion_of(run, drawing.film);
+  drawing.frames = frames_of(plan, drawing.motion);
+  drawing.rate = plan.rate > 0 ? plan.rate : drawing.film.script.scene().fps / plan.every;
+  Json identity = {
+      {"program", program_version()},
+      {"run", std::filesystem::absolute(plan.run).lexically_normal().string()},
+      {"frames", {{"first", drawing.frames.front()}, {"every", plan.every}, {"count", drawing.frames.size()}}},
+      {"rate", drawing.rate},
+      {"gl", name_of(plan.gl)},
+      {"scene", json_if_valid<Json>(drawing.film.info.scene_json)}};
+  if (!drawing.film.info.replay_json.empty()) identity["replay"] = json_if_valid<Json>(drawing.film.info.replay_json);
+  drawing.identity = json_text(identity, 1) + "\n";
+  return drawing;
+}
+
+void open_drawing(const std::filesystem::path& folder, const LoadedDrawing& drawing, bool keep) {
+  std::error_code error;
+  const std::filesystem::path record = folder / "draw.json";
+  const std::string source = "--out " + folder.string();
+  const bool known = std::filesystem::exists(record, error);
+  if (std::filesystem::exists(folder, error) && !std::filesystem::is_directory(folder, error))
+    throw InputError(source, "exists and is not a folder");
+  if (!known && std::filesystem::exists(folder, error) && !std::filesystem::is_empty(folder, error))
+    throw InputError(source, "holds files that no drawing left there (no draw.json); choose another folder");
+  if (known && keep) {
+    std::ifstream file(record);
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    const std::vector<std::string> differences = json_differences(text, drawing.identity, 3);
+    if (!differences.empty())
+      throw InputError(source,
+                       "holds another drawing, which differs in " + fmt::format("{}", fmt::join(differences, "; ")));
+    return;
+  }
+  std::filesystem::create_directories(folder / "frames", error);
+  if (error) throw RunError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+  if (known) {
+    for (const char* film : {"video.mp4", "video.part.mp4"}) std::filesystem::remove(folder / film, error);
+    remove_pictures(folder / "frames", 0);
+  }
+  write_whole_file(record, drawing.identity);
+}
+
+PictureRange part_of(const LoadedDrawing& drawing, int index, int count) {
+  const auto pictures = static_cast<long long>(drawing.frames.size());
+  return {static_cast<int>(pictures * index / count), static_cast<int>(pictures * (index + 1) / count)};
+}
+
+DrawResult draw_pictures(const DrawPlan& plan, LoadedDrawing& drawing, const std::filesystem::path& folder,
+                         PictureRange range, VideoEncoder* video, const std::function<void(int done)>& told) {
+  DrawResult result;
+  Drawing lists(drawing);
+  Pictures pictures(lists.stage(), plan.gl, shaders_folder(), PictureTargets{folder / "frames", true, video, 0});
+  for (int picture = range.first; picture < range.last; ++picture) {
+    if (interrupted()) {
+      result.end = FilmEnd::interrupted;
+      break;
+    }
+    if (!pictures.put(picture, lists.list(drawing.frames[picture]))) break;
+    result.pictures += static_cast<int>(pictures.take_written().size());
+    told(result.pictures);
+  }
+  pictures.finish();
+  result.pictures += static_cast<int>(pictures.take_written().size());
+  told(result.pictures);
+  result.message = pictures.error();
+  if (!result.message.empty()) result.end = FilmEnd::failed;
+  return result;
+}
+
+Image draw_still(const DrawPlan& plan, LoadedDrawing& drawing, int frame) {
+  Drawing lists(drawing);
+  return Renderer(lists.stage(), plan.gl, shaders_folder()).draw(lists.list(frame));
+}
+
+std::vector<int> missing_pictures(const LoadedDrawing& drawing, const std::filesystem::path& folder) {
+  std::vector<int> missing;
+  std::error_code error;
+  for (int picture = 0; picture < static_cast<int>(drawing.frames.size()); ++picture) {
+    if (!std::filesystem::exists(picture_file(folder / "frames", picture), error)) missing.push_back(picture);
+  }
+  return missing;
+}
+
+}  // namespace supple

@@ -1,0 +1,262 @@
+#include "output/run_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "output/json_text.h"
+#include "output/markup.h"
+#include "output/run_folder.h"
+#include "output/run_graphs.h"
+
+namespace supple {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::string_view style_sheet = R"css(
+:root { --ink: #1d1f21; --soft: #63686e; --line: #d9dbde; --faint: #f5f6f7; }
+* { box-sizing: border-box; }
+body { margin: 0 auto; padding: 1.5rem 1rem 3rem; max-width: 62rem; color: var(--ink); background: #fff;
+  font: 1rem/1.5 "Source Sans 3", "Source Sans Pro", Lato, "Helvetica Neue", Helvetica, Arial, "Liberation Sans", sans-serif; }
+h1 { font-size: 1.6rem; line-height: 1.2; margin: 0 0 0.3rem; }
+h2 { font-size: 1.1rem; margin: 2rem 0 0.5rem; }
+p { margin: 0 0 0.6rem; }
+.soft { color: var(--soft); }
+.warning { padding: 0.5rem 0.8rem; border-left: 4px solid #d55e00; background: #fdf3ec; overflow-wrap: anywhere; }
+video, .picture { display: block; width: 100%; height: auto; border-radius: 4px; background: var(--faint); margin: 1rem 0; }
+.graph { margin: 0 0 1.4rem; }
+.legend { display: flex; flex-wrap: wrap; gap: 0.1rem 1rem; font-size: 0.85rem; margin: 0 0 0.3rem 3.6rem; }
+.legend b { font-weight: 600; }
+.legend i { display: inline-block; width: 0.9rem; height: 3px; margin-right: 0.35rem; vertical-align: middle; }
+.legend output { display: inline-block; min-width: 4.2rem; font-variant-numeric: tabular-nums; }
+.area { position: relative; height: 9rem; margin-left: 3.6rem; border-left: 1px solid var(--line); border-bottom: 1px solid var(--line);
+  cursor: crosshair; touch-action: pan-y; }
+.area svg { position: absolute; inset: 0; width: 100%; height: 100%; overflow: visible; }
+.area path { fill: none; stroke-width: 1.6; vector-effect: non-scaling-stroke; }
+.tick { position: absolute; right: 100%; width: 3.4rem; margin-right: 0.3rem; text-align: right; font-size: 0.75rem; line-height: 1;
+  transform: translateY(-50%); color: var(--soft); font-variant-numeric: tabular-nums; }
+.rule { position: absolute; left: 0; right: 0; border-top: 1px solid #eceef0; }
+.cursor { position: absolute; top: 0; bottom: 0; width: 0; border-left: 1.5px solid #1d1f21; pointer-events: none; }
+.times { display: flex; justify-content: space-between; margin-left: 3.6rem; font-size: 0.75rem; color: var(--soft); }
+.box { overflow-x: auto; }
+table { border-collapse: collapse; font-size: 0.875rem; font-variant-numeric: tabular-nums; }
+th, td { padding: 0.25rem 0.7rem; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--line); }
+tbody tr[data-frame] { cursor: pointer; }
+tbody tr[data-frame]:hover { background: var(--faint); }
+dl { display: grid; grid-template-columns: max-content 1fr; gap: 0.1rem 1rem; font-size: 0.9rem; margin: 0; }
+dt { color: var(--soft); }
+dd { margin: 0; overflow-wrap: anywhere; }
+pre { white-space: pre-wrap; overflow-wrap: anywhere; font-size: 0.8rem; background: var(--faint); padding: 0.8rem; border-radius: 4px; }
+@media (max-width: 36rem) {
+  dl { grid-template-columns: 1fr; }
+  dd { margin-bottom: 0.3rem; }
+  .legend, .times { margin-left: 2.9rem; }
+  .area { margin-left: 2.9rem; height: 7rem; }
+  .tick { width: 2.7rem; }
+}
+)css";
+
+// The film's time moves the cursors; a click on a graph or on a row of the table moves the film.
+constexpr std::string_view script = R"js(
+"use strict";
+const data = JSON.parse(document.getElementById("data").textContent);
+const film = document.querySelector("video");
+const areas = [...document.querySelectorAll(".area")];
+const last = data.frames - 1;
+let shown = 0;
+function text(value) {
+  if (value === null) return "–";
+  const size = Math.abs(value);
+  return size !== 0 && (size < 0.01 || size >= 1e5) ? value.toExponential(1) : String(+value.toPrecision(3));
+}
+function show(frame) {
+  shown = Math.min(last, Math.max(0, frame));
+  for (const area of areas) area.querySelector(".cursor").style.left = 100 * (last ? shown / last : 0) + "%";
+  for (const out of document.querySelectorAll(".legend output")) out.value = text(data.series[out.dataset.series][shown]);
+  for (const out of document.querySelectorAll("output.frame")) out.value = "frame " + shown + ", " + (shown / data.rate).toFixed(2) + " s";
+}
+function seek(frame) {
+  if (film) { film.pause(); film.currentTime = (frame + 0.5) / data.rate; }
+  show(frame);
+}
+for (const area of areas) {
+  const move = event => {
+    const box = area.getBoundingClientRect();
+    seek(Math.min(last, Math.max(0, Math.round((event.clientX - box.left) / box.width * last))));
+  };
+  area.addEventListener("pointerdown", event => { area.setPointerCapture(event.pointerId); move(event); });
+  area.addEventListener("pointermove", event => { if (event.buttons) move(event); });
+}
+for (const row of document.querySelectorAll("tr[data-frame]")) row.addEventListener("click", () => seek(+row.dataset.frame));
+document.addEventListener("keydown", event => {
+  if (event.target === film || (event.key !== "ArrowLeft" && event.key !== "ArrowRight")) return;
+  event.preventDefault();
+  seek(shown + (event.key === "ArrowLeft" ? -1 : 1));
+});
+function follow() {
+  if (film && !film.paused) show(Math.floor(film.currentTime * data.rate + 1e-6));
+  requestAnimationFrame(follow);
+}
+if (film) film.addEventListener("seeked", () => { if (film.paused) show(Math.floor(film.currentTime * data.rate + 1e-6)); });
+show(0);
+follow();
+)js";
+
+std::string file_as_base64(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::vector<char> bytes{std::istreambuf_iterator<char>(file), {}};
+  return base64_text({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+}
+
+std::string film_html(const RunRecord& run) {
+  std::error_code error;
+  const auto picture_of = [&](std::size_t frame) {
+    return picture_file(run.folder / "frames", static_cast<int>(frame));
+  };
+  const bool poster = std::filesystem::exists(picture_of(0), error);
+  if (std::filesystem::exists(run.folder / "video.mp4", error)) {
+    return fmt::format(
+        "<video controls loop muted playsinline preload=\"auto\" {} src=\"data:video/mp4;base64,{}\"></video>\n",
+        poster ? "poster=\"data:image/png;base64," + file_as_base64(picture_of(0)) + "\"" : "",
+        file_as_base64(run.folder / "video.mp4"));
+  }
+  if (run.rows.empty() || !std::filesystem::exists(picture_of(run.rows.size() - 1), error))
+    return "<p class=\"soft\">This run has no film.</p>\n";
+  return fmt::format(
+      "<img class=\"picture\" alt=\"the last frame\" src=\"data:image/png;base64,{}\">\n"
+      "<p class=\"soft\">This run has no film; this is its last picture.</p>\n",
+      file_as_base64(picture_of(run.rows.size() - 1)));
+}
+
+std::string slowest_html(const std::vector<FrameRow>& rows) {
+  const auto total = [](const FrameRow& row) {
+    return row.step_ms + row.change_ms.value_or(0) + row.draw_ms.value_or(0) + row.render_ms.value_or(0);
+  };
+  std::vector<const FrameRow*> slowest;
+  for (const FrameRow& row : rows) slowest.push_back(&row);
+  std::ranges::stable_sort(slowest, [&](const FrameRow* a, const FrameRow* b) { return total(*a) > total(*b); });
+  slowest.resize(std::min<std::size_t>(slowest.size(), 10));
+  std::string html =
+      "<h2>Slowest frames</h2><div class=\"box\"><table><thead><tr><th>frame</th><th>solving "
+      "[ms]</th><th>evaluating</th>"
+      "<th>linear solves</th><th>contacts</th><th>changes</th><th>drawing</th><th>compressing</th><th>iterations</th>"
+      "<th>trials</th></tr></thead><tbody>\n";
+  const auto cell = [](const std::optional<double>& value) {
+    return value ? fmt::format("<td>{:.2f}</td>", *value) : std::string("<td>–</td>");
+  };
+  for (const FrameRow* row : slowest) {
+    double evaluating = 0, solving = 0;
+    std::optional<double> colliding, drawing;
+    int iterations = 0, trials = 0;
+    for (const BodyRow& body : row->bodies) {
+      evaluating += body.evaluate_ms;
+      solving += body.solve_ms;
+      iterations += body.iterations;
+      trials += body.line_search;
+      if (body.contact) colliding = colliding.value_or(0) + body.contact->collide_ms;
+    }
+    if (row->render_ms) drawing = row->draw_ms.value_or(0) + *row->render_ms;
+    html += fmt::format("<tr data-frame=\"{0}\"><td>{0}</td>", row->frame) + cell(row->step_ms) + cell(evaluating) +
+            cell(solving) + cell(colliding) + cell(row->change_ms) + cell(drawing) + cell(row->compress_ms) +
+            fmt::format("<td>{}</td><td>{}</td></tr>\n", iterations, trials);
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+std::string text_at(const Json& json, const char* key) {
+  if (!json.contains(key)) return "";
+  return json[key].is_string() ? json[key].get<std::string>() : json_text(json[key]);
+}
+
+std::string facts_html(const Json& info) {
+  std::string html = "<h2>What was run</h2><dl>\n";
+  const auto add = [&html](const std::string& name, const std::string& value) {
+    if (!value.empty()) html += "<dt>" + markup_text(name) + "</dt><dd>" + markup_text(value) + "</dd>\n";
+  };
+  std::string command;
+  for (const Json& word : info.value("command", Json::array()))
+    command += (command.empty() ? "" : " ") + word.get<std::string>();
+  add("command", command);
+  add("scene", text_at(info, "scene_file"));
+  for (const Json& mesh : info.value("meshes", Json::array()))
+    add("body " + text_at(mesh, "body"), fmt::format("{} vertices, {} elements ({})", text_at(mesh, "vertices"),
+                                                     text_at(mesh, "elements"), text_at(mesh, "source")));
+  const Json program = info.value("program", Json::object()), machine = info.value("machine", Json::object());
+  add("program", fmt::format("supple {}, {} kernels, {}", text_at(program, "version"), text_at(program, "kernels"),
+                             text_at(program, "build")));
+  add("machine", fmt::format("{}, {} threads", text_at(machine, "cpu"), text_at(machine, "threads")));
+  if (info.contains("gl")) add("drawn by", text_at(info["gl"], "renderer"));
+  html += "</dl>\n";
+  for (const char* part : {"scene", "replay"}) {
+    if (info.contains(part))
+      html += fmt::format("<details><summary>The {} as it was read</summary><pre>{}</pre></details>\n", part,
+                          markup_text(json_text(info[part], 1)));
+  }
+  return html;
+}
+
+// Everything in a JSON text that a page's script reads must not end the element that holds it.
+std::string data_html(const std::vector<FrameGraph>& graphs, std::size_t frames, double rate) {
+  Json series = Json::array();
+  for (const FrameGraph& graph : graphs) {
+    for (const FrameSeries& one : graph.series) {
+      Json values = Json::array();
+      for (const double value : one.values) values.push_back(std::isfinite(value) ? Json(value) : Json(nullptr));
+      series.push_back(std::move(values));
+    }
+  }
+  const Json data = {{"frames", frames}, {"rate", rate}, {"series", series}};
+  return "<script type=\"application/json\" id=\"data\">" + json_text(data) + "</script>\n";
+}
+
+std::string warnings_html(const RunRecord& run) {
+  std::ifstream file(run.folder / "profile.json");
+  const Json profile = json_if_valid<Json>(file);
+  std::string html;
+  if (profile.is_object() && profile.contains("verdict"))
+    html += "<p class=\"soft\">" + markup_text(text_at(profile, "verdict")) + "</p>\n";
+  if (!profile.is_object() || !profile.contains("warnings") || !profile["warnings"].is_array()) return html;
+  for (const Json& warning : profile["warnings"])
+    html += "<p class=\"warning\">" +
+            markup_text(warning.is_string() ? warning.get<std::string>() : json_text(warning)) + "</p>\n";
+  return html;
+}
+
+}  // namespace
+
+std::string run_page(const RunRecord& run) {
+  const Json info = parsed_json<Json>(run.info_json);
+  const Json scene = info.value("scene", Json::object());
+  std::string title = scene.is_object() ? text_at(scene, "title") : "";
+  if (title.empty()) title = std::filesystem::path(text_at(info, "scene_file")).stem().string();
+  const std::size_t frames = run.rows.size();
+  const double rate = frames > 0 && run.rows.front().time_s > 0 ? 1 / run.rows.front().time_s : 30;
+  const double seconds = static_cast<double>(frames) / rate;
+  std::string html =
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\">\n<title>" +
+      markup_text(title) + "</title>\n<style>" + std::string(style_sheet) + "</style></head><body>\n";
+  html += "<h1>" + markup_text(title) + "</h1>\n";
+  html += fmt::format("<p class=\"soft\">{} frames, {:.3g} s of film; {}. <output class=\"frame\"></output></p>\n",
+                      frames, seconds, markup_text(run.ended()));
+  html += warnings_html(run) + film_html(run);
+  std::vector<FrameGraph> graphs;
+  if (frames > 0) {
+    graphs = graphs_of(run.rows);
+    std::size_t first = 0;
+    for (const FrameGraph& graph : graphs) {
+      html += graph_html(graph, first, seconds);
+      first += graph.series.size();
+    }
+    html += slowest_html(run.rows);
+  }
+  html += facts_html(info);
+  html += data_html(graphs, frames, rate) + "<script>" + std::string(script) + "</script></body></html>\n";
+  return html;
+}
+
+}  // namespace supple

@@ -1,0 +1,172 @@
+// `supple draw`: a film again from a run's saved motion.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "output/png_file.h"
+#include "output/run_folder.h"
+#include "output/video.h"
+#include "support/bodies.h"
+#include "support/program.h"
+
+namespace supple {
+namespace {
+
+using test::read_file;
+using test::Result;
+using test::run;
+
+constexpr int frames = 12;
+
+// A run of a bar and a cloth above a ball, whose size, label and camera a replay changes.
+class DrawnRun : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<test::TemporaryFolder>();
+    std::ofstream(path("two.toml")) << R"(frames = 12
+[[body]]
+name = "bar"
+box = { extent = [0.4, 0.1, 0.1], cells = [8, 2, 2] }
+position = [0, 0.3, 0]
+material = { model = "neo-hookean", mu = 2e4, lambda = 4e4 }
+[[body]]
+name = "sheet"
+cloth = { extent = [0.4, 0.4], cells = [8, 8], stretch = 100, bend = 1 }
+turn_deg = [90, 0, 0]
+position = [0, 0.25, 0]
+[[collider]]
+name = "ball"
+shape = { sphere = { radius = 0.1 } }
+position = [0, 0.1, 0]
+keys = [{ t = 0 }, { t = 0.4, move = [0.1, 0, 0] }]
+[output]
+width = 96
+height = 64
+samples = 4
+)";
+    std::ofstream(path("replay.toml")) << R"(scene = "two.toml"
+[[change]]
+t = 0.1
+path = "collider.ball.shape.sphere.radius"
+value = 0.12
+[[change]]
+t = 0.2
+path = "body.bar.label"
+value = "the bar"
+[[change]]
+t = 0.1
+over = 0.2
+path = "camera.fov_deg"
+value = 40
+)";
+    const Result result = run(folder_->path, {"replay", "replay.toml", "--out", "run", "--quiet"});
+    ASSERT_EQ(result.status, 0) << result.err;
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+  static std::filesystem::path path(const std::string& name) { return folder_->path / name; }
+
+  static Result draw(const std::string& out, std::vector<std::string> more = {}) {
+    std::vector<std::string> words = {"draw", "run", "--out", out, "--quiet"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(folder_->path, words);
+  }
+  static std::string picture(const std::string& folder, int frame) {
+    return read_file(picture_file(path(folder) / "frames", frame));
+  }
+  static int pictures(const std::string& folder) {
+    int count = 0;
+    while (std::filesystem::exists(picture_file(path(folder) / "frames", count))) ++count;
+    return count;
+  }
+
+  static std::unique_ptr<test::TemporaryFolder> folder_;
+};
+std::unique_ptr<test::TemporaryFolder> DrawnRun::folder_;
+
+TEST_F(DrawnRun, HasTheBytesOfTheRunsPicturesAndFilm) {
+  const Result result = draw("same");
+  ASSERT_EQ(result.status, 0) << result.err;
+  ASSERT_EQ(pictures("same"), frames);
+  for (int frame = 0; frame < frames; ++frame) EXPECT_EQ(picture("same", frame), picture("run", frame)) << frame;
+  EXPECT_EQ(read_file(path("same") / "video.mp4"), read_file(path("run") / "video.mp4"));
+}
+
+TEST_F(DrawnRun, IsTheSameFromPartsOfSeveralProcesses) {
+  ASSERT_EQ(draw("jobs", {"--jobs", "3"}).status, 0);
+  for (const char* part : {"2", "0"}) ASSERT_EQ(draw("parts", {"--index", part, "--of", "3"}).status, 0);
+  const Result early = draw("parts", {"--merge"});
+  EXPECT_EQ(early.status, 1);
+  EXPECT_NE(early.err.find("4 of 12 pictures are not drawn yet, the first of them 000004"), std::string::npos)
+      << early.err;
+  ASSERT_EQ(draw("parts", {"--index", "1", "--of", "3"}).status, 0);
+  ASSERT_EQ(draw("parts", {"--merge"}).status, 0);
+  for (const char* folder : {"jobs", "parts"}) {
+    for (int frame = 0; frame < frames; ++frame) EXPECT_EQ(picture(folder, frame), picture("run", frame)) << frame;
+    EXPECT_EQ(read_file(path(folder) / "video.mp4"), read_file(path("run") / "video.mp4"));
+  }
+  const Result other = draw("parts", {"--index", "0", "--of", "3", "--set", "look.exposure=2"});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_NE(other.err.find("holds another drawing"), std::string::npos) << other.err;
+}
+
+TEST_F(DrawnRun, ShowsAnotherCameraSizeAndChoiceOfFrames) {
+  const Result result = draw("other", {"--set", "camera.position=[0.9, 0.5, 0.9]", "--set", "output.width=128",
+                                       "--first", "2", "--last", "9", "--every", "3"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(pictures("other"), 3);
+  EXPECT_EQ(read_png(picture_file(path("other") / "frames", 0)).width, 128);
+  if (count_video_frames(path("run") / "video.mp4") > 0) EXPECT_EQ(count_video_frames(path("other") / "video.mp4"), 3);
+  // A drawing may be drawn over; what is left of a longer one goes.
+  ASSERT_EQ(draw("other", {"--last", "0"}).status, 0);
+  EXPECT_EQ(pictures("other"), 1);
+  EXPECT_EQ(picture("other", 0), picture("run", 0));
+}
+
+TEST_F(DrawnRun, GivesOneFrameAsAPicture) {
+  ASSERT_EQ(run(folder_->path, {"draw", "run", "--frame", "7", "--still", "still.png"}).status, 0);
+  EXPECT_EQ(read_png(path("still.png")).rgb, read_png(picture_file(path("run") / "frames", 7)).rgb);
+  const Result late = run(folder_->path, {"draw", "run", "--frame", "12"});
+  EXPECT_EQ(late.status, 2);
+  EXPECT_NE(late.err.find("the run's last frame is 11"), std::string::npos) << late.err;
+}
+
+TEST_F(DrawnRun, RefusesWhatWouldHaveMovedOtherwise) {
+  const Result material = draw("none", {"--set", "body.bar.material.mu=1e4"});
+  EXPECT_EQ(material.status, 2);
+  EXPECT_NE(material.err.find("body.bar.material.mu is 10000.0 here and was 20000.0 in the run"), std::string::npos)
+      << material.err;
+  const Result mesh = draw("none", {"--set", "body.bar.box.cells=[9, 2, 2]"});
+  EXPECT_EQ(mesh.status, 2);
+  EXPECT_FALSE(std::filesystem::exists(path("none")));
+
+  std::string text = read_file(path("replay.toml"));
+  std::ofstream(path("sooner.toml")) << text.replace(text.find("t = 0.1"), 7, "t = 0.0");
+  const Result replay = draw("none", {"--scene", "sooner.toml"});
+  EXPECT_EQ(replay.status, 2);
+  EXPECT_NE(replay.err.find("the replay changes other values"), std::string::npos) << replay.err;
+  const Result gone = draw("none", {"--scene", "nowhere.toml"});
+  EXPECT_EQ(gone.status, 2);
+  EXPECT_NE(gone.err.find("nowhere.toml: the run's scene is no longer there"), std::string::npos) << gone.err;
+}
+
+TEST_F(DrawnRun, TakesAnotherCameraFromACopyOfTheReplay) {
+  std::string text = read_file(path("replay.toml"));
+  std::ofstream(path("wider.toml")) << text.replace(text.find("value = 40"), 10, "value = 60");
+  ASSERT_EQ(draw("wider", {"--scene", "wider.toml"}).status, 0);
+  EXPECT_EQ(picture("wider", 0), picture("run", 0));
+  EXPECT_NE(picture("wider", 11), picture("run", 11));
+}
+
+TEST_F(DrawnRun, KeepsOtherFoldersAsTheyAre) {
+  std::filesystem::create_directories(path("mine"));
+  std::ofstream(path("mine") / "letter.txt") << "dear";
+  const Result result = draw("mine");
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("holds files that no drawing left there"), std::string::npos) << result.err;
+  EXPECT_EQ(draw("run").status, 2);
+  EXPECT_EQ(pictures("run"), frames);
+}
+
+}  // namespace
+}  // namespace supple

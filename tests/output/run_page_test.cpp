@@ -1,0 +1,78 @@
+// The page of a run.
+#include "output/run_page.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "support/bodies.h"
+
+namespace supple {
+namespace {
+
+// A run of two bodies, one of which touches something, with a warning and names that HTML must not take for its own.
+RunRecord small_run(const std::filesystem::path& folder, int frames) {
+  RunRecord run;
+  run.folder = folder;
+  run.info_json = R"json({"command": ["supple", "render", "<b>"], "ended": "done", "scene_file": "/x/</script>.toml",
+    "scene": {"title": "A & B"}, "meshes": [{"body": "soft", "vertices": 8, "elements": 5, "source": "box"}],
+    "program": {"version": "1"}, "machine": {"cpu": "one", "threads": 2}})json";
+  for (int frame = 0; frame < frames; ++frame) {
+    FrameRow row;
+    row.frame = frame;
+    row.time_s = (frame + 1) / 25.0;
+    row.step_ms = frame == 3 ? 90 : 10;
+    row.bodies.resize(2);
+    row.bodies[0].name = "soft";
+    row.bodies[1].name = "hard";
+    row.bodies[0].error_estimate = 1e-5 * (frame + 1);
+    row.bodies[1].contact.emplace();
+    row.bodies[1].contact->contacts = frame;
+    run.rows.push_back(row);
+  }
+  std::ofstream(folder / "profile.json")
+      << R"({"verdict": "solving is 90 %", "warnings": ["body 'soft' gains <energy>"]})";
+  return run;
+}
+
+nlohmann::json data_of(const std::string& page) {
+  const std::string head = "id=\"data\">";
+  const std::size_t from = page.find(head) + head.size();
+  return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
+}
+
+TEST(RunPage, HoldsEveryFramesValuesForItsCursor) {
+  const test::TemporaryFolder folder;
+  const nlohmann::json data = data_of(run_page(small_run(folder.path, 6)));
+  EXPECT_EQ(data["frames"], 6);
+  EXPECT_NEAR(data["rate"].get<double>(), 25, 1e-9);
+  // Solving, an estimate for each body, a stretch for each, contacts and depth of one.
+  ASSERT_EQ(data["series"].size(), 7u);
+  EXPECT_EQ(data["series"][0], (std::vector<double>{10, 10, 10, 90, 10, 10}));
+  EXPECT_EQ(data["series"][5], (std::vector<double>{0, 1, 2, 3, 4, 5}));
+}
+
+TEST(RunPage, NeedsNoOtherFileAndTakesNoNameForMarkup) {
+  const test::TemporaryFolder folder;
+  const std::string page = run_page(small_run(folder.path, 6));
+  EXPECT_FALSE(std::regex_search(page, std::regex("(src|href)=\"(?!data:)"))) << "something is loaded";
+  EXPECT_EQ(page.find("http"), std::string::npos);
+  EXPECT_NE(page.find("<title>A &amp; B</title>"), std::string::npos);
+  EXPECT_NE(page.find("gains &lt;energy&gt;"), std::string::npos);
+  EXPECT_EQ(page.find("/x/</script>"), std::string::npos);
+  EXPECT_NE(page.find("This run has no film."), std::string::npos);
+  const std::size_t slowest = page.find("<tr data-frame=");
+  EXPECT_EQ(page.substr(slowest, 18), "<tr data-frame=\"3\"");
+}
+
+TEST(RunPage, TellsWhatWasRunBeforeThereAreFrames) {
+  const test::TemporaryFolder folder;
+  const std::string page = run_page(small_run(folder.path, 0));
+  EXPECT_NE(page.find("What was run"), std::string::npos);
+  EXPECT_EQ(page.find("class=\"area\""), std::string::npos);
+}
+
+}  // namespace
+}  // namespace supple
