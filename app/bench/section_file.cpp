@@ -85,7 +85,7 @@ std::optional<ReportSection> read_section(const std::filesystem::path& file, con
   std::ifstream stream(file);
   if (!stream) return std::nullopt;
   try {
-    const Json json = parsed_json<Json>(stream);
+    const Json json = parsed_json<Json>(std::string{std::istreambuf_iterator<char>(stream), {}});
     if (json.at("made_with") != made_with) return std::nullopt;
     ReportSection section{json.at("name"), json.at("heading"), json.at("text")};
     for (const Json& table : json.at("tables")) {

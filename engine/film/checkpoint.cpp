@@ -3,11 +3,11 @@
 #include <fmt/core.h>
 
 #include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/read_file.h"
 #include "output/json_difference.h"
 #include "output/json_text.h"
 
@@ -42,6 +42,7 @@ class Reader {
     return value;
   }
   Positions rows(std::size_t count) {
+    if (count > (bytes_.size() - at_) / (3 * sizeof(double))) fail();
     const std::string_view from = take(3 * sizeof(double) * count);
     Positions result(static_cast<Eigen::Index>(count), 3);
     std::memcpy(result.data(), from.data(), from.size());
@@ -84,36 +85,46 @@ std::string checkpoint_bytes(const Checkpoint& checkpoint, const std::string& id
   return bytes;
 }
 
+namespace {
+
+void check_identity(const Json& then, const std::string& now, const std::filesystem::path& path) {
+  const std::vector<std::string> differences = json_differences(exact_json_text(then), now);
+  if (differences.empty()) return;
+  std::string list;
+  for (const std::string& difference : differences) list += "\n  " + difference;
+  throw InputError(path.string(),
+                   fmt::format("is of another film than this one; the checkpoint says, and now it is:{}", list));
+}
+
+State read_body(const Json& body, Reader& reader) {
+  State state;
+  state.x = reader.rows(body.at("vertices"));
+  state.v = reader.rows(body.at("vertices"));
+  state.time = body.at("time_s");
+  state.anchors.points = reader.rows(body.at("handled"));
+  const Positions centers = reader.rows(body.at("handles"));
+  for (Eigen::Index h = 0; h < centers.rows(); ++h) state.anchors.centers.push_back(centers.row(h).transpose());
+  for (const Json& held : body.at("holds")) state.anchors.holds.push_back(held.get<bool>());
+  return state;
+}
+
+}  // namespace
+
 Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string& identity) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(path.string(), "cannot be read");
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const std::string bytes = read_file(path);
   Reader reader(bytes, path.string());
   if (bytes.size() < signature.size() + 16 || reader.take(signature.size()) != signature) reader.fail();
   std::uint64_t hash = 0;
   std::memcpy(&hash, bytes.data() + bytes.size() - sizeof hash, sizeof hash);
   if (hash != hash_bytes(bytes.data(), bytes.size() - sizeof hash)) reader.fail();
-  const Json head = parsed_json<Json>(reader.take(reader.number()));  // whole, as its hash says
-
-  const std::vector<std::string> differences = json_differences(exact_json_text(head["identity"]), identity);
-  if (!differences.empty()) {
-    std::string list;
-    for (const std::string& difference : differences) list += "\n  " + difference;
-    throw InputError(path.string(),
-                     fmt::format("is of another film than this one; the checkpoint says, and now it is:{}", list));
-  }
   Checkpoint checkpoint;
-  checkpoint.frames = head["frames"];
-  for (const Json& body : head["bodies"]) {
-    State state;
-    state.x = reader.rows(body["vertices"]);
-    state.v = reader.rows(body["vertices"]);
-    state.time = body["time_s"];
-    state.anchors.points = reader.rows(body["handled"]);
-    const Positions centers = reader.rows(body["handles"]);
-    for (Eigen::Index h = 0; h < centers.rows(); ++h) state.anchors.centers.push_back(centers.row(h).transpose());
-    for (const Json& held : body["holds"]) state.anchors.holds.push_back(held.get<bool>());
-    checkpoint.bodies.push_back(std::move(state));
+  try {
+    const Json head = parsed_json<Json>(reader.take(reader.number()));
+    check_identity(head.at("identity"), identity, path);
+    checkpoint.frames = head.at("frames");
+    for (const Json& body : head.at("bodies")) checkpoint.bodies.push_back(read_body(body, reader));
+  } catch (const Json::exception&) {  // its hash is right, so somebody wrote it so
+    reader.fail();
   }
   return checkpoint;
 }

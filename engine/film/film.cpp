@@ -168,7 +168,7 @@ bool make_frames(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const
   };
   guarded([&] {
     Zone prepare("prepare film");
-    log.emplace(folder, start.checkpoint_every, start.identity, start.kept_frames());
+    log.emplace(folder, start.checkpoint_every, start.identity, start.kept_frames(), plan.record);
     frames.emplace(plan, film, start, folder, solvers, *log, video);
     result.setup_ms = setup.elapsed_ms();
     loop.lap_ms();

@@ -3,11 +3,13 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <fstream>
 
 #include "base/error.h"
 #include "base/trace.h"
+#include "output/durable.h"
 #include "output/whole_file.h"
 
 namespace supple {
@@ -18,13 +20,14 @@ NotedRows noted_rows(const std::filesystem::path& file, int frames) {
   for (std::string line; int(noted.rows.size()) < frames && std::getline(stream, line);
        noted.bytes += std::int64_t(line.size()) + 1)
     noted.rows.push_back(row_of_line(line, file.string()));
+  if (stream.bad()) throw InputError(file.string(), "cannot be read");
   if (int(noted.rows.size()) < frames)
     throw InputError(file.string(), fmt::format("does not have the {} frames to go on from", frames));
   return noted;
 }
 
-FilmLog::FilmLog(const RunFolder& folder, int every, std::string identity, int kept)
-    : folder_(folder), every_(every), identity_(std::move(identity)), whole_(kept) {
+FilmLog::FilmLog(const RunFolder& folder, int every, std::string identity, int kept, std::filesystem::path record)
+    : folder_(folder), every_(every), identity_(std::move(identity)), record_(std::move(record)), whole_(kept) {
   const std::string source = folder.rows().string();
   NotedRows noted = noted_rows(folder.rows(), kept);
   rows_ = std::move(noted.rows);
@@ -54,8 +57,14 @@ void FilmLog::note_row() {
 void FilmLog::settle(Pictures* pictures) {
   const Zone zone("run's log");
   if (!broken_) note_rows(pictures);
-  for (; !waiting_.empty() && waiting_.front().first <= whole_; waiting_.pop_front())
-    write_whole_file(folder_.checkpoint(), waiting_.front().second);
+  for (; !waiting_.empty() && waiting_.front().first <= whole_; waiting_.pop_front()) {
+    // What the checkpoint rests on reaches the disk before it does: frames, motion, rows, and the record.
+    const auto now = std::filesystem::file_time_type::clock::now();
+    sync_tree(folder_.path(), synced_);
+    if (!record_.empty()) sync_to_disk(record_);
+    write_durable_file(folder_.checkpoint(), waiting_.front().second);
+    synced_ = now - std::chrono::seconds(2);  // clocks of file systems are coarse
+  }
 }
 
 void FilmLog::note_rows(Pictures* pictures) {

@@ -23,7 +23,8 @@ NotedRows noted_rows(const std::filesystem::path& file, int frames);
 class FilmLog {
  public:
   // every: frames between checkpoints; 0: none. kept: frames of an earlier run, after which this one resumes the film.
-  FilmLog(const RunFolder& folder, int every, std::string identity, int kept);
+  // record: a file outside of the folder that checkpoints rest on too; empty: none.
+  FilmLog(const RunFolder& folder, int every, std::string identity, int kept, std::filesystem::path record);
 
   const std::vector<FrameRow>& rows() const { return rows_; }
   bool keeps_checkpoints() const { return every_ > 0; }
@@ -50,6 +51,8 @@ class FilmLog {
   const RunFolder& folder_;
   int every_;
   std::string identity_;
+  std::filesystem::path record_;
+  std::filesystem::file_time_type synced_ = std::filesystem::file_time_type::min();  // older files are on the disk
   std::vector<FrameRow> rows_;
   int whole_ = 0;
   bool broken_ = false;  // the disk has refused a row

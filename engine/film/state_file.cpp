@@ -2,12 +2,12 @@
 
 #include <fmt/core.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/read_file.h"
 #include "output/json_text.h"
 #include "output/npy.h"
 #include "output/run_folder.h"
@@ -146,9 +146,9 @@ T value_of(const nlohmann::json& json, const std::string& file, const char* key)
 }
 
 nlohmann::json read_json(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw InputError(path, "no such file: this is not the folder of a state");
-  nlohmann::json json = json_if_valid<nlohmann::json>(file);
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) throw InputError(path, "no such file: this is not the folder of a state");
+  nlohmann::json json = json_if_valid<nlohmann::json>(read_file(path));
   if (!json.is_object() || json.value("format", nlohmann::json()) != "supple-state")
     throw InputError(path, "is not the description of a state (\"format\": \"supple-state\")");
   return json;

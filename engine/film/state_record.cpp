@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/read_file.h"
 #include "output/json_difference.h"
 #include "output/json_text.h"
 
@@ -64,12 +65,21 @@ std::size_t bytes_behind(const RecordHead& head, int frames) {
   return line_of(head).size() + bytes_of_frame(head) * static_cast<std::size_t>(frames);
 }
 
+// Reads the first line, but no more of it than the head of a record can have: a file that is not a record need not have
+// lines.
+std::string first_line(std::istream& file) {
+  constexpr std::size_t most_bytes = 32'000'000;
+  std::string line;
+  for (int c = file.get(); c != std::istream::traits_type::eof() && c != '\n' && line.size() < most_bytes;
+       c = file.get())
+    line += char(c);
+  return line;
+}
+
 RecordHead read_head(std::istream& file, const std::string& source) {
   RecordHead head;
   try {
-    std::string line;
-    std::getline(file, line);
-    const Json json = parsed_json<Json>(line);
+    const Json json = parsed_json<Json>(first_line(file));
     if (json.at("format") != format_name) throw InputError(source, "is a record of another version");
     head.program = json.at("program");
     head.kernels = json.at("kernels");
@@ -102,8 +112,7 @@ bool may_be_recorded_over(const std::filesystem::path& path) {
 
 void check_kept_record(const std::filesystem::path& path, const RecordHead& head, int kept_frames) {
   std::ifstream file(path, std::ios::binary);
-  std::string first;
-  std::getline(file, first);
+  const std::string first = first_line(file);
   if (file && first + '\n' != line_of(head))
     throw InputError(path.string(), "is not the record of this film's first frames");
   std::error_code error;
@@ -143,6 +152,7 @@ StateVerifier::StateVerifier(const std::filesystem::path& path, const RecordHead
                              int skipped_frames)
     : path_(path), file_(path, std::ios::binary), tolerance_(tolerance), first_frame_(skipped_frames) {
   const std::string source = path.string();
+  check_regular_file(path);
   if (!file_) throw InputError(source, "cannot be read");
   head_ = read_head(file_, source);
   const bool same_program = head_.program == now.program && head_.kernels == now.kernels;

@@ -8,15 +8,12 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <sstream>
-#include <system_error>
 
 #include "base/error.h"
+#include "base/read_file.h"
 
 namespace supple {
 namespace {
-
-constexpr std::uintmax_t largest_file = 1u << 30;
 
 // Splits a text into words and keeps their line numbers; '#' starts a comment.
 class Words {
@@ -77,19 +74,6 @@ class Words {
   std::size_t at_ = 0;
   int line_ = 1;
 };
-
-std::string read_text(const std::filesystem::path& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    throw InputError(path.string(), std::filesystem::exists(path, error) ? "is not a file" : "no such file");
-  }
-  if (std::filesystem::file_size(path, error) > largest_file) throw InputError(path.string(), "is larger than 1 GiB");
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file) throw InputError(path.string(), "cannot be read");
-  return std::move(text).str();
-}
 
 struct Lines {
   std::vector<int> tets, triangles;
@@ -263,7 +247,7 @@ void check_triangles(const Sections& read, const std::string& name) {
 
 MeshFile read_mesh(const std::filesystem::path& path) {
   const std::string name = path.string();
-  Words words(read_text(path), name);
+  Words words(read_file(path), name);
   Sections read = read_sections(words, Wanted::tetrahedra);
   if (read.file.mesh.rest.rows() == 0 || read.file.mesh.tets.rows() == 0)
     words.refuse("the file has no Vertices or no Tetrahedra");
@@ -275,7 +259,7 @@ MeshFile read_mesh(const std::filesystem::path& path) {
 
 TriMesh read_surface(const std::filesystem::path& path) {
   const std::string name = path.string();
-  Words words(read_text(path), name);
+  Words words(read_file(path), name);
   const Sections read = read_sections(words, Wanted::triangles);
   if (read.triangles.rows() == 0) words.refuse("the file has no Triangles");
   check_triangles(read, name);

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "geometry/announced_counts.h"
 #include "geometry/reader_process.h"
 #include "geometry/surface_stream.h"
 
@@ -24,7 +25,13 @@ void check_file(const std::filesystem::path& path) {
   if (error) throw InputError(name, "cannot be read");
   if (size == 0) throw InputError(name, "is empty");
   if (size > largest_file) throw InputError(name, "is larger than 1 GiB");
-  if (!std::ifstream(path, std::ios::binary)) throw InputError(name, "cannot be opened");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(name, "cannot be opened");
+  std::string begin(most_header_bytes, '\0');
+  file.read(begin.data(), std::streamsize(begin.size()));
+  begin.resize(std::size_t(file.gcount()));
+  const std::string wrong = announced_too_much(begin, size);
+  if (!wrong.empty()) throw InputError(name, wrong);
 }
 
 // Takes values off the front of the reader's bytes.

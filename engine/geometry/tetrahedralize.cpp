@@ -370,8 +370,9 @@ TetMesh tetrahedralize(const Shape& shape, int vertices, const std::string& sour
   }
   if (miss(best) > 0.03) {
     throw InputError(
-        source, fmt::format("cannot be meshed with {} vertices (nearest: {}): its thinnest part needs more of them",
-                            vertices, best.rest.rows()));
+        source,
+        fmt::format("cannot be meshed with {} vertices{}; {} is the nearest number that gives a mesh", vertices,
+                    best.rest.rows() > vertices ? ": its thinnest part needs more of them" : "", best.rest.rows()));
   }
   // With a volume far below the sampled one (whose own error is a few per cent), whole parts are missing.
   const double share = quality(best).volume / volume;

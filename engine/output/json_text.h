@@ -16,12 +16,10 @@ std::string json_text(const Json& json, int indent = -1);
 template <class Json>
 std::string exact_json_text(const Json& json, int indent = -1);
 
-// Throws nlohmann::json::parse_error where the text is not JSON.
+// Throws nlohmann::json::parse_error where the text is not JSON, or has more than 2000 levels.
 template <class Json>
 Json parsed_json(std::string_view text);
-template <class Json>
-Json parsed_json(std::istream& text);
-// Returns a discarded value where the text is not JSON.
+// Returns a discarded value where the text is not JSON, or has more than 2000 levels.
 template <class Json>
 Json json_if_valid(std::string_view text);
 template <class Json>

@@ -3,13 +3,13 @@
 #include <bit>
 #include <charconv>
 #include <cstring>
-#include <fstream>
 #include <iterator>
 #include <limits>
 #include <string>
 #include <string_view>
 
 #include "base/error.h"
+#include "base/read_file.h"
 #include "output/whole_file.h"
 
 namespace supple {
@@ -141,15 +141,9 @@ class HeaderReader {
   std::string_view text_;
 };
 
-std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path)) throw InputError(path.string(), "no such file");
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
 template <class T>
 NpyArray<T> read(const std::filesystem::path& path) {
-  const std::string bytes = bytes_of(path), name = path.string();
+  const std::string bytes = read_file(path), name = path.string();
   if (bytes.size() < preamble || !bytes.starts_with(signature)) throw InputError(name, "is not a .npy file");
   const int major = static_cast<unsigned char>(bytes[6]), minor = static_cast<unsigned char>(bytes[7]);
   if (major != 1 || minor != 0)

@@ -1,9 +1,9 @@
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/read_file.h"
 #include "output/json_text.h"
 #include "output/profile.h"
 
@@ -135,11 +135,10 @@ FrameRow row_of_line(const std::string& line, const std::string& source) {
 }
 
 std::vector<FrameRow> read_profile(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  if (!file) throw InputError(path.string(), "cannot be read");
+  const std::string text = read_file(path);
   return as_input_errors(path.string(), [&] {
     std::vector<FrameRow> rows;
-    const Json document = parsed_json<Json>(file);
+    const Json document = parsed_json<Json>(text);
     for (const Json& frame : document.at("frames")) rows.push_back(frame_row(frame));
     return rows;
   });

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "base/error.h"
+#include "base/read_file.h"
 #include "output/json_text.h"
 #include "output/whole_file.h"
 
@@ -166,9 +166,7 @@ void write_json(const ReportTable& table, const std::filesystem::path& folder) {
 }
 
 std::vector<std::vector<std::string>> read_csv(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(path.string(), "cannot be opened");
-  CsvReader reader({std::istreambuf_iterator<char>(file), {}}, path.string());
+  CsvReader reader(read_file(path), path.string());
   if (reader.done()) throw InputError(path.string(), "is empty; a table has at least a header");
   std::vector<std::vector<std::string>> records;
   while (!reader.done()) {

@@ -3,10 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/read_file.h"
 #include "output/json_text.h"
 
 namespace supple {
@@ -34,11 +34,11 @@ std::string RunRecord::ended() const {
 RunRecord read_run(const std::filesystem::path& folder) {
   std::error_code error;
   if (!std::filesystem::is_directory(folder, error)) throw InputError(folder.string(), "no such folder");
-  std::ifstream file(folder / "run.json");
-  if (!file) throw InputError(folder.string(), "there is no run.json in it: this is not the folder of a run");
+  if (!std::filesystem::exists(folder / "run.json", error))
+    throw InputError(folder.string(), "there is no run.json in it: this is not the folder of a run");
   RunRecord record;
   record.folder = folder;
-  const Json info = json_if_valid<Json>(file);
+  const Json info = json_if_valid<Json>(read_file(folder / "run.json"));
   if (!info.is_object()) throw InputError((folder / "run.json").string(), "is damaged: not a JSON object");
   record.info_json = exact_json_text(info);
   record.has_profile = std::filesystem::exists(folder / "profile.json", error);

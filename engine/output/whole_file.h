@@ -11,5 +11,7 @@ namespace supple {
 // Throws RunError naming the file and the system's reason; no temporary file is left behind.
 void write_whole_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 void write_whole_file(const std::filesystem::path& path, std::string_view text);
+// The same, and waits for the disk: after a loss of power the file is the earlier or the new one, and whole.
+void write_durable_file(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace supple

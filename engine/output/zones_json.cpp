@@ -1,8 +1,8 @@
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/read_file.h"
 #include "output/json_text.h"
 #include "output/zones.h"
 
@@ -104,10 +104,9 @@ std::string zones_json(const ZoneProfile& profile) {
 }
 
 ZoneProfile read_zones(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  if (!file) throw InputError(path.string(), "cannot be read");
+  const std::string text = read_file(path);
   try {
-    return profile_of(parsed_json<Json>(file), path.string());
+    return profile_of(parsed_json<Json>(text), path.string());
   } catch (const nlohmann::json::exception&) {
     throw InputError(path.string(), "is not a zones.json as this version writes it");
   }

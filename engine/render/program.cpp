@@ -2,16 +2,16 @@
 
 #include <fmt/core.h>
 
-#include <fstream>
+#include <sstream>
 
 #include "base/error.h"
+#include "base/read_file.h"
 
 namespace supple {
 namespace {
 
 std::string read_source(const std::filesystem::path& path, const std::vector<std::string>& definitions) {
-  std::ifstream file(path);
-  if (!file) throw RunError(fmt::format("{}: shader cannot be read", path.string()));
+  std::istringstream file(read_file(path));
   std::string source;
   for (std::string line; std::getline(file, line);) {
     constexpr std::string_view include = "#include \"";

@@ -67,6 +67,18 @@ Problem at(const Problem& place, std::string message) {
   return {place.source, place.line, place.column, std::move(message)};
 }
 
+// Near 1e16 sizes from the origin no number distinguishes the vertices of a body; elements lose digits long before
+// that.
+void check_distance(const Body& body, std::vector<Problem>& problems) {
+  const Positions& points = body.description.mesh.rest;
+  const double far = points.cwiseAbs().maxCoeff(), size = bounds_of(points).diagonal();
+  if (far <= 1e8 * size) return;
+  problems.push_back(
+      at(body.def.place, fmt::format("position of body '{}': {:.3g} m from the origin is more than 1e8 times "
+                                     "its size ({:.3g} m), where coordinates have too few digits",
+                                     body.def.name, far, size)));
+}
+
 void set_substances(Body& body, std::vector<Problem>& problems) {
   const BodyDef& def = body.def;
   BodyDescription& description = body.description;
@@ -216,6 +228,7 @@ std::vector<Body> assemble(const SceneDef& scene) {
       body.description.mesh = loaded.mesh;
       body.placement = placement(def, loaded.mesh.rest);
       apply(body.placement, body.description.mesh.rest);
+      check_distance(body, problems);
       body.regions = loaded.regions;
       body.cloth = loaded.cloth;
       if (!def.cloth) body.volume = quality(body.description.mesh).volume;

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 
+#include "base/read_file.h"
 #include "base/text.h"
 #include "scene/toml_document.h"
 
@@ -44,6 +44,8 @@ using Places = std::map<const toml::node*, toml::source_region>;
 // Finds the table that the last word of a path stands in. Tables on the way are made; elements of lists are found by
 // their names.
 toml::table& enter(toml::table& document, Places& places, const std::vector<std::string>& path, const Problem& place) {
+  if (path.size() > most_words)
+    fail(place, fmt::format("the path has {} words; {} are the most", path.size(), most_words));
   toml::table* table = &document;
   for (std::size_t depth = 0; depth + 1 < path.size(); ++depth) {
     toml::node* next = table->get(path[depth]);
@@ -104,17 +106,7 @@ Config& Config::operator=(Config&&) noexcept = default;
 Config::~Config() = default;
 
 Config Config::load(const std::filesystem::path& path, const std::filesystem::path& assets) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    throw InputError(path.string(), std::filesystem::exists(path, error) ? "is not a file" : "no such file");
-  }
-  if (std::filesystem::file_size(path, error) > largest_file)
-    throw InputError(path.string(), "is larger than 1 MB: not a scene");
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file) throw InputError(path.string(), "cannot be read");
-  Config config = parse(text.str(), path.string(), assets);
+  Config config = parse(read_file(path, largest_file), path.string(), assets);
   config.content_->folder = path.parent_path();
   return config;
 }
@@ -123,13 +115,8 @@ Config Config::parse(std::string_view text, const std::string& name, const std::
   auto content = std::make_unique<Content>();
   content->name = name;
   content->assets = assets;
-  if (text.size() > largest_file) throw InputError(name, "is larger than 1 MB: not a scene");
-  try {
-    content->document = toml::parse(text, name);
-  } catch (const toml::parse_error& error) {
-    const auto& at = error.source().begin;
-    throw InputError({Problem{name, int(at.line), int(at.column), fmt::format("not TOML: {}", error.description())}});
-  }
+  if (text.size() > largest_file) throw InputError(name, "is larger than 1.0 MB");
+  content->document = parsed_toml(text, name);
   return Config(std::move(content));
 }
 
@@ -145,10 +132,9 @@ void Config::set(const std::string& assignment, const std::vector<std::set<std::
   // paths.
   toml::table parsed;
   try {
-    parsed = toml::parse("value = " + value, source);
-  } catch (const toml::parse_error&) {
-    toml::value<std::string> word(value);
-    parsed = toml::parse("value = ''", source);
+    parsed = parsed_toml("value = " + value, source);
+  } catch (const InputError&) {
+    parsed = parsed_toml("value = ''", source);
     parsed.get("value")->as_string()->get() = value;
   }
 

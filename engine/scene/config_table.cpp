@@ -94,21 +94,13 @@ const toml::node* ConfigTable::find(const Key& key, const char* type, std::strin
   config_->content_->asked[table_].push_back(key.name);
   const toml::node* node = table_->get(key.name);
   const std::string generic = joined(generic_, key.name);
-  auto& known = config_->content_->known;
-  KnownKey key_here{joined(path_, key.name),
-                    generic,
-                    type,
-                    allowed,
-                    key.unit,
-                    key.meaning,
-                    node != nullptr ? shown(*node) : fallback};
-  const bool seen =
-      std::any_of(known.rbegin(), known.rend(), [&](const KnownKey& k) { return k.path == key_here.path; });
-  if (!seen) known.push_back(std::move(key_here));
-  auto& documented = config_->content_->documented;
-  const bool listed = std::any_of(documented.begin(), documented.end(),
-                                  [&](const DocumentedKey& d) { return d.path == generic && d.type == type; });
-  if (!listed) documented.push_back({generic, type, std::move(fallback), std::move(allowed), key.unit, key.meaning});
+  Config::Content& content = *config_->content_;
+  if (std::string path = joined(path_, key.name); content.known_paths.insert(path).second) {
+    content.known.push_back(
+        {std::move(path), generic, type, allowed, key.unit, key.meaning, node != nullptr ? shown(*node) : fallback});
+  }
+  if (content.documented_keys.insert(generic + '\n' + type).second)
+    content.documented.push_back({generic, type, std::move(fallback), std::move(allowed), key.unit, key.meaning});
   return node;
 }
 
@@ -127,6 +119,30 @@ void ConfigTable::wrong(const Key& key, const toml::node& node, const std::strin
   config_->complain(&node, fmt::format("{} = {}: must be {}", key.name, shown(node), allowed));
 }
 
+namespace {
+
+// Formulas raise numbers to the fourth power and multiply several of them; far beyond what any unit needs, their
+// products would leave the range of a double in a place that no longer knows the key.
+constexpr double most_of_any = 1e30;
+
+bool is_usable(double value) { return std::abs(value) <= most_of_any; }  // false for what is not finite
+
+std::string usable_text(double value) {
+  return std::isfinite(value) ? fmt::format("between {:g} and {:g}", -most_of_any, most_of_any) : "finite";
+}
+
+// Says what the numbers of a list must be, by the first that is none of that.
+std::string all_usable(const toml::node& node) {
+  std::string text = "finite";
+  walk(node, [&text](const toml::node& inner) {
+    const std::optional<double> value = inner.is_number() ? inner.value<double>() : std::nullopt;
+    if (value && std::isfinite(*value) && !is_usable(*value)) text = usable_text(*value);
+  });
+  return ", all " + text;
+}
+
+}  // namespace
+
 double ConfigTable::number(const Key& key, std::optional<double> fallback, const Range& range) const {
   const toml::node* node = find(key, "number", fallback ? number_text(*fallback) : "required", range.text());
   const double instead = fallback.value_or(range.contains(1) ? 1 : range.lowest);
@@ -135,9 +151,9 @@ double ConfigTable::number(const Key& key, std::optional<double> fallback, const
     return instead;
   }
   const std::optional<double> value = node->is_number() ? node->value<double>() : std::nullopt;
-  if (!value || !std::isfinite(*value) || !range.contains(*value)) {
-    const bool finite = value && std::isfinite(*value);
-    wrong(key, *node, finite ? range.text() : value ? "finite" : number_in(range) + word_hint(*node));
+  if (!value || !is_usable(*value) || !range.contains(*value)) {
+    const bool usable = value && is_usable(*value);
+    wrong(key, *node, usable ? range.text() : value ? usable_text(*value) : number_in(range) + word_hint(*node));
     return instead;
   }
   return *value;
@@ -240,7 +256,7 @@ std::optional<Eigen::Matrix<double, size, 1>> as_vector(const toml::node& node) 
   for (int k = 0; k < size; ++k) {
     const toml::node& element = (*list)[std::size_t(k)];
     const std::optional<double> x = element.is_number() ? element.value<double>() : std::nullopt;
-    if (!x || !std::isfinite(*x)) return std::nullopt;
+    if (!x || !is_usable(*x)) return std::nullopt;
     value[k] = *x;
   }
   return value;
@@ -262,7 +278,7 @@ Vec3 ConfigTable::vector(const Key& key, std::optional<Vec3> fallback, const Ran
     return range.contains(v.x()) && range.contains(v.y()) && range.contains(v.z());
   };
   if (value && fits(*value)) return *value;
-  wrong(key, *node, value ? allowed : "a list of " + allowed + ", all finite");
+  wrong(key, *node, value ? allowed : "a list of " + allowed + all_usable(*node));
   return instead;
 }
 
@@ -280,7 +296,7 @@ std::vector<Vec3> ConfigTable::vectors(const Key& key, std::size_t count) const 
     }
     if (values.size() == count && list->size() == count) return values;
   }
-  wrong(key, *node, allowed + ", all finite");
+  wrong(key, *node, allowed + all_usable(*node));
   return {};
 }
 
@@ -309,7 +325,7 @@ std::vector<std::pair<double, double>> ConfigTable::pairs(const Key& key, std::s
     }
     if (values.size() == list->size()) return values;
   }
-  wrong(key, *node, allowed + ", all finite");
+  wrong(key, *node, allowed + all_usable(*node));
   return {};
 }
 
@@ -377,7 +393,7 @@ std::optional<double> ConfigTable::number_or_word(const Key& key, const char* wo
   const toml::node* node = find(key, "number or word", fmt::format("\"{}\"", word), allowed);
   if (node == nullptr || node->value_exact<std::string>() == word) return std::nullopt;
   const std::optional<double> value = node->is_number() ? node->value<double>() : std::nullopt;
-  if (value && std::isfinite(*value) && range.contains(*value)) return value;
+  if (value && is_usable(*value) && range.contains(*value)) return value;
   wrong(key, *node, allowed + word_hint(*node));
   return std::nullopt;
 }

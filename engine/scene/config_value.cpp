@@ -105,11 +105,11 @@ void Config::Content::settle(const toml::node& copy, const ConfigValue& value) {
 
 std::optional<ConfigValue> ConfigValue::parse(const std::string& text) {
   try {
-    const toml::table table = toml::parse("value = " + text);
+    const toml::table table = parsed_toml("value = " + text, "");
     auto content = std::make_shared<Content>();
     content->node = clone(*table.get("value"));
     return ConfigValue(std::move(content));
-  } catch (const toml::parse_error&) {
+  } catch (const InputError&) {
     return std::nullopt;
   }
 }

@@ -11,6 +11,7 @@ namespace supple {
 namespace {
 
 constexpr std::size_t most_problems = 20;
+constexpr std::size_t most_checked = 2000;  // frames; a check takes 0.1 to 1 ms
 
 std::vector<Problem> problems_of(Config document) {
   (void)read_scene(document);
@@ -166,16 +167,32 @@ void Script::Parts::check_at(double time, const std::string& when, Reported& rep
   for (Problem& problem : found) report(std::move(problem), when, reported);
 }
 
+// Checks the frames in which changes are at work: all of them up to most_checked, and of longer films those that are
+// spread evenly, with those between where one is found to be wrong.
+void Script::Parts::check_frames(Reported& reported) {
+  std::vector<int> frames;
+  for (int frame = 0; frame < start.frames; ++frame) {
+    if (std::any_of(changes.begin(), changes.end(), [&](const TimedChange& c) { return at_work(c, frame); }))
+      frames.push_back(frame);
+  }
+  const auto check = [&](std::size_t i) {
+    check_at((frames[i] + 1) / start.fps, fmt::format(" (first in frame {})", frames[i]), reported);
+  };
+  const std::size_t stride = 1 + frames.size() / most_checked;
+  for (std::size_t first = 0; first < frames.size() && problems.size() < most_problems; first += stride) {
+    const std::size_t last = std::min(first + stride, frames.size()) - 1;
+    if (stride > 1 && problems_of(document_at((frames[last] + 1) / start.fps, changes.size())).empty()) continue;
+    for (std::size_t i = first; i <= last; ++i) check(i);
+  }
+}
+
 void Script::Parts::check_changes() {
   try {
     put_each();
     prepare_ramps();
     Reported reported;
     check_at(at_start, "", reported);
-    for (int frame = 0; frame < start.frames && problems.size() < most_problems; ++frame) {
-      if (std::any_of(changes.begin(), changes.end(), [&](const TimedChange& c) { return at_work(c, frame); }))
-        check_at((frame + 1) / start.fps, fmt::format(" (first in frame {})", frame), reported);
-    }
+    check_frames(reported);
   } catch (const InputError& error) {  // a change depends on one that was removed
     if (problems.empty()) throw;
   }

@@ -41,6 +41,7 @@ struct Script::Parts {
   void add_problems(std::vector<Problem> more);
   void report(Problem problem, const std::string& when, Reported& reported);
   void put_each();
+  void check_frames(Reported& reported);
   void prepare_ramps();
   std::vector<Problem> prepare(TimedChange& ramp, std::size_t index) const;
   void check_at(double time, const std::string& when, Reported& reported);

@@ -3,11 +3,19 @@
 #pragma once
 
 // The parser takes its assertions for a part of handling malformed files, and without them promises the compiler that
-// they hold. They stay in any build.
+// they hold. They stay in any build, and throw: parsed_toml() reports what they find as an error of syntax. None of
+// those that a file can reach stands in a function or a destructor that must not throw.
 #undef NDEBUG
-#include <cassert>
-
+namespace supple {
+struct TomlAssertion {};
+[[noreturn]] void toml_assertion_failed();
+}  // namespace supple
+#define TOML_ASSERT(expr) ((expr) ? static_cast<void>(0) : ::supple::toml_assertion_failed())
+// Documents are walked, copied and destroyed by recursion, so their depth is bounded.
+#define TOML_MAX_NESTED_VALUES 32
 #include <toml++/toml.h>
+
+#include <unordered_set>
 
 #include "scene/config.h"
 
@@ -24,6 +32,7 @@ struct Config::Content {
   std::map<const toml::table*, std::vector<std::string>> asked;  // the keys that readers asked for, by table
   std::vector<DocumentedKey> documented;
   std::vector<KnownKey> known;
+  std::unordered_set<std::string> known_paths, documented_keys;  // what the two lists hold, to look it up
   std::shared_ptr<KnownSurfaces> surfaces;
   // The places where copied nodes stood: the parser does not copy them.
   std::map<const toml::node*, toml::source_region> moved;
@@ -71,6 +80,11 @@ void walk(const toml::node& node, const Visit& visit) {
     for (const toml::node& inner : *list) walk(inner, visit);
   }
 }
+
+// Parses a text. `name` is what the places of its nodes say. Throws InputError with line and column where the text is
+// not TOML, and where a key has more than most_words words between dots.
+toml::table parsed_toml(std::string_view text, const std::string& name);
+inline constexpr std::size_t most_words = 32;
 
 // A value as messages show it.
 std::string shown(const toml::node& node);

@@ -103,6 +103,10 @@ TEST(Program, RefusesBadInputWithStatusTwoAndOneClearMessage) {
   EXPECT_EQ(run(folder.path, {"frobnicate"}).status, 2);
   EXPECT_EQ(run(folder.path, {"render", "typo.toml", "--threads", "0"}).status, 2);
   EXPECT_EQ(run(folder.path, {"info", "typo.toml"}).status, 2);
+  write_scene(folder.path / "head.toml");
+  const Result endless = run(folder.path, {"render", "head.toml", "--verify", "/dev/zero"});
+  EXPECT_EQ(endless.status, 2);
+  EXPECT_NE(endless.err.find("/dev/zero: is not a file\n"), std::string::npos) << endless.err;
   EXPECT_EQ(run(folder.path, {"--help"}).status, 0);
   EXPECT_EQ(run(folder.path, {"list"}).status, 0);
 }

@@ -28,8 +28,9 @@ TEST(Substances, YoungsModulusAndPoissonsRatioStandForTheModelsOwnParameters) {
   const SceneDef scene =
       scene_of(box_body("material = { model = \"stable-neo-hookean\", young = 2.6e4, poisson = 0.3 }\n"));
   const auto& material = std::get<StableNeoHookean>(scene.bodies[0].substance.material);
-  EXPECT_NEAR(material.mu, 1e4, 1e-9);
-  EXPECT_NEAR(material.lambda, 1.5e4 + 1e4, 1e-9);  // Lame's lambda plus mu
+  // Lame's parameters are 1e4 and 1.5e4; Smith, de Goes, Kim 2018, equation 16.
+  EXPECT_NEAR(material.mu, 4e4 / 3, 1e-9);
+  EXPECT_NEAR(material.lambda, 1.5e4 + 5e4 / 6, 1e-9);
 }
 
 TEST(Substances, SplinesAreReadFromControlPointsOrAsAPreset) {
@@ -77,8 +78,8 @@ TEST(Substances, AreRefusedWithWordsThatSayWhatIsAllowed) {
        "scene.toml:3:70: mu: not together with young and poisson, which say the same"},
       {"material = { model = \"polynomial\", young = 1e4, mu = 2 }",
        "scene.toml:3:44: model 'polynomial' has no Young's modulus and Poisson's ratio of its own"},
-      {"material = { model = \"stable-neo-hookean\", mu = 3, lambda = 1 }",
-       "scene.toml:3:12: lambda must be above mu/3: below, the rest shape of stable-neo-hookean is not stable"},
+      {"material = { model = \"stable-neo-hookean\", mu = 9, lambda = 1 }",
+       "scene.toml:3:12: lambda must be above mu/8: below, the rest shape of stable-neo-hookean is not stable"},
       {"material = { model = \"strain-limiting\", mu_1 = 3, low_1 = 1.2, high_1 = 1.5 }",
        "scene.toml:3:12: limits must enclose 1: low at most 1, high at least 1"},
       {"material = { model = \"spline\", a = [[0.5, -2], [1, 1], [2, 3]] }",

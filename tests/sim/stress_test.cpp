@@ -16,13 +16,14 @@ namespace {
 
 using Function = std::function<double(double)>;
 
-// Holds the derivatives of a, b and c.
+double nothing(double) { return 0; }
+
+// Holds the derivatives of a, b and c, and of a term d(I_C) that is no sum over stretches.
 struct Curves {
   Material material;
   Function a, b, c;
+  Function d = nothing;
 };
-
-double nothing(double) { return 0; }
 
 // Returns c' = (lambda log J - linear) / J, continued as a straight line below J = 0.1.
 Function log_volume(double linear, double lambda) {
@@ -79,7 +80,7 @@ std::vector<Curves> all_curves() {
       {FixedCorotated{mu, lambda}, [=](double s) { return 2 * mu * (s - 1); }, nothing,
        [=](double j) { return lambda * (j - 1); }},
       {StableNeoHookean{mu, lambda}, [=](double s) { return mu * s; }, nothing,
-       [=](double j) { return -mu + lambda * (j - 1); }},
+       [=](double j) { return -0.75 * mu + lambda * (j - 1); }, [=](double i) { return -mu / (2 * i + 2); }},
       {a, natural_spline(a.a.points()), nothing, natural_spline(a.c.points())},
       {b, natural_spline(b.a.points()), nothing, natural_spline(b.c.points())},
       {drawn, natural_spline(drawn.a.points()), natural_spline(drawn.b.points()), natural_spline(drawn.c.points())},
@@ -103,9 +104,10 @@ TEST(Stress, UniaxialTensionAndCompressionFollowTheClosedForms) {
     seen.insert(curves.material.index());
     for (double s = 0.05; s < 3; s += 0.05) {
       // For F = diag(s, 1, 1), the stress along is a'(s) + 2 b'(s) + c'(s), and the stress across is a'(1) + b'(1) + s
-      // b'(s) + s c'(s).
-      const double along = curves.a(s) + 2 * curves.b(s) + curves.c(s);
-      const double across = curves.a(1) + curves.b(1) + s * curves.b(s) + s * curves.c(s);
+      // b'(s) + s c'(s); d(I_C) adds 2 d' F.
+      const double of_norm = 2 * curves.d(s * s + 2);
+      const double along = curves.a(s) + 2 * curves.b(s) + curves.c(s) + s * of_norm;
+      const double across = curves.a(1) + curves.b(1) + s * curves.b(s) + s * curves.c(s) + of_norm;
       const double scale = std::abs(curves.a(s)) + std::abs(2 * curves.b(s)) + std::abs(curves.c(s)) + 1;
       const Mat3 stress = stress_at(curves.material, Vec3(s, 1, 1).asDiagonal());
       EXPECT_NEAR(stress(0, 0), along, 1e-8 * scale) << name_of(curves.material) << " at " << s;
@@ -124,7 +126,8 @@ TEST(Stress, SidesThatAreFreeCarryNoStressAtTheStretchThatTheClosedFormSays) {
       continue;
     for (const double s : {0.8, 0.9, 1.1, 1.3, 1.6}) {
       const auto side = [&](double t) {
-        return curves.a(t) + s * curves.b(s * t) + t * curves.b(t * t) + s * t * curves.c(s * t * t);
+        return curves.a(t) + s * curves.b(s * t) + t * curves.b(t * t) + s * t * curves.c(s * t * t) +
+               2 * t * curves.d(s * s + 2 * t * t);
       };
       double low = 0.6, high = 1.4;
       if (std::holds_alternative<Polynomial>(curves.material) || side(low) * side(high) > 0) continue;
@@ -132,7 +135,8 @@ TEST(Stress, SidesThatAreFreeCarryNoStressAtTheStretchThatTheClosedFormSays) {
         (side(0.5 * (low + high)) * side(high) > 0 ? high : low) = 0.5 * (low + high);
       const Mat3 stress = stress_at(curves.material, Vec3(s, low, low).asDiagonal());
       EXPECT_NEAR(stress(1, 1), 0, 1e-8) << name_of(curves.material) << " at " << s;
-      EXPECT_NEAR(stress(0, 0), curves.a(s) + 2 * low * curves.b(s * low) + low * low * curves.c(s * low * low), 1e-8);
+      const double along = curves.a(s) + 2 * low * curves.b(s * low) + low * low * curves.c(s * low * low);
+      EXPECT_NEAR(stress(0, 0), along + 2 * s * curves.d(s * s + 2 * low * low), 1e-8);
     }
   }
 }
@@ -146,7 +150,8 @@ TEST(Stress, SimpleShearFollowsTheClosedForms) {
       const double s = std::abs(gamma) / 2 + std::sqrt(1 + gamma * gamma / 4), t = 1 / s;
       const double found = stress_at(curves.material, f)(0, 1);
       const double expected =
-          std::copysign((s * (curves.a(s) + curves.b(s)) - t * (curves.a(t) + curves.b(t))) / (s + t), gamma);
+          std::copysign((s * (curves.a(s) + curves.b(s)) - t * (curves.a(t) + curves.b(t))) / (s + t), gamma) +
+          2 * gamma * curves.d(3 + gamma * gamma);
       EXPECT_NEAR(found, expected, 1e-8 * (1 + std::abs(expected))) << name_of(curves.material) << " at " << gamma;
     }
   }
@@ -182,7 +187,10 @@ TEST(Stiffness, FollowsEquationElevenInClosedFormForEveryMaterial) {
   near(NeoHookean{mu, lambda}, mu * by_mu + lambda * by_lambda);
   near(MooneyRivlin{2, 1, lambda}, 4 * by_mu + lambda * by_lambda);  // f = (mu_1 + 2 mu_2)(s - 1/s) + lambda log(s)/s
   near(FixedCorotated{mu, lambda}, 2 * mu + lambda);
-  near(StableNeoHookean{mu, lambda}, mu + lambda);
+  // 12 times the integral of (s-1) s/(s^2 + 3) over [1/2, 3/2]
+  const double by_barrier =
+      12 * over([](double s) { return s - std::log(s * s + 3) / 2 - std::sqrt(3) * std::atan(s / std::sqrt(3)); });
+  near(StableNeoHookean{mu, lambda}, mu * (1 - by_barrier) + lambda);
   // Both sides of a limit contribute 12 * 2 * integral of e * 2 mu (e - e_1) from e_1 to 1/2.
   const auto limited = [](double m, double e) { return 48 * m * ((0.125 - e * e * e) / 3 - e * (0.25 - e * e) / 2); };
   near(StrainLimiting{mu, 0.84, 1.16, 2, 0.65, 1.35}, limited(mu, 0.16) + limited(2, 0.35));

@@ -147,7 +147,7 @@ StoredProblem::Region StoredProblem::region_of(const nlohmann::json& json) {
   const auto constant = [](double value) { return Term{[=](double) { return value; }, zero}; };
   // Returns s^2 - 1, times a factor.
   const auto excess = [&](double factor) { return sum(power(factor, 0, 2), constant(-factor)); };
-  Region region{none, none, none};
+  Region region{none, none, none, none};
   if (model == "as-rigid-as-possible") {
     region.a = square;
   } else if (model == "polynomial") {
@@ -171,7 +171,9 @@ StoredProblem::Region StoredProblem::region_of(const nlohmann::json& json) {
     region.c = power(lambda / 2, 1, 2);
   } else if (model == "stable-neo-hookean") {
     region.a = excess(mu / 2);
-    region.c = sum(power(-mu, 1, 1), power(lambda / 2, 1, 2));
+    region.c = sum(power(-0.75 * mu, 1, 1), power(lambda / 2, 1, 2));
+    region.norm = {[=](double i) { return -mu / 2 * std::log((i + 1) / 4); },
+                   [=](double i) { return -mu / (2 * i + 2); }};
   } else if (model == "spline") {
     if (m.contains("a")) region.a = curve(m["a"]);
     if (m.contains("b")) region.b = curve(m["b"]);
@@ -243,7 +245,8 @@ void StoredProblem::add_tetrahedra(const Scheme& scheme, const Points& middle, c
     }
     const Region& region = regions_.at(std::size_t(region_of_tet_(t)));
     const double product = s.prod();
-    double density = region.c.value(product), size = std::abs(density);
+    const double norm = s.squaredNorm(), of_norm = region.norm.value(norm);
+    double density = region.c.value(product) + of_norm, size = std::abs(region.c.value(product)) + std::abs(of_norm);
     for (int i = 0; i < 3; ++i) {
       const double other = s[(i + 1) % 3], third = s[(i + 2) % 3];
       for (const double part : {region.a.value(s[i]), region.b.value(other * third)}) {
@@ -251,7 +254,7 @@ void StoredProblem::add_tetrahedra(const Scheme& scheme, const Points& middle, c
         size += std::abs(part);
       }
       slope[i] = region.a.slope(s[i]) + region.b.slope(s[i] * other) * other + region.b.slope(s[i] * third) * third +
-                 region.c.slope(product) * other * third;
+                 region.c.slope(product) * other * third + 2 * s[i] * region.norm.slope(norm);
     }
     Eigen::Matrix3d stress = left * slope.asDiagonal() * right.transpose();
     if (region.fibre > 0) {

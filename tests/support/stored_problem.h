@@ -38,6 +38,7 @@ class StoredProblem {
   };
   struct Region {
     Term a, b, c;
+    Term norm;         // of the squared norm of F
     double fibre = 0;  // kappa [Pa]
     Eigen::Vector3d direction = Eigen::Vector3d::UnitY();
     double stiffness = 0;  // k [Pa]

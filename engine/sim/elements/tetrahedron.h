@@ -2,7 +2,7 @@
 // (element_kernels.cpp dispatches once a chunk).
 #pragma once
 
-#include "sim/elements/svd.h"
+#include "sim/elements/polar_rotation.h"
 #include "sim/materials/parameters.h"
 
 namespace supple {

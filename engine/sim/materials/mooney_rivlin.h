@@ -6,6 +6,7 @@
 #include <array>
 
 #include "sim/materials/log_volume.h"
+#include "sim/materials/near_rest.h"
 #include "sim/materials/parameters.h"
 
 namespace supple {
@@ -34,21 +35,23 @@ struct MooneyRivlin {
   template <class V>
   V density(const Matrix3<V>& f, Matrix3<V>& stress) const {
     const Matrix3<V> cofactors = cofactor(f);
+    const V j = determinant(f, cofactors);
     V slope;
-    const V volume = LogVolume{mu_1 + 2 * mu_2, lambda}.value(determinant(f, cofactors), slope);
+    const V volume = LogVolume{mu_1 + 2 * mu_2, lambda}.beyond_linear(j, slope);
     const Symmetric3<V> c = symmetric_product(f, f);
     const Matrix3<V> fc = product(f, c);
     const V first = c.xx + c.yy + c.zz;
     // d II_C / dF = 2 (tr(C) F - F C)
     const V of_f = madd(V(mu_2), first, V(mu_1));
     for (int i = 0; i < 9; ++i) stress.m[i] = madd(of_f, f.m[i], madd(V(-mu_2), fc.m[i], slope * cofactors.m[i]));
-    return madd(V(0.5 * mu_1), first - V(3.0), madd(V(0.5 * mu_2), squared_norm(cofactors) - V(3.0), volume));
+    const NearRest<V> rest(c, j - V(1.0));
+    return madd(V(mu_1), rest.stretching, madd(V(mu_2), rest.shearing, volume));
   }
 
   // This is equation 10 with a = mu_1/2 (s^2 - 1), b = mu_2/2 (s^2 - 1) and c.
   double axial_stress(double s) const {
     double slope = 0;
-    LogVolume{mu_1 + 2 * mu_2, lambda}.value(s, slope);
+    LogVolume{mu_1 + 2 * mu_2, lambda}.beyond_linear(s, slope);
     return mu_1 * s + 2 * mu_2 * s + slope;
   }
   std::vector<double> seams() const { return {LogVolume::smallest_ratio}; }

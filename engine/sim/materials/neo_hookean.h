@@ -5,6 +5,7 @@
 #include <array>
 
 #include "sim/materials/log_volume.h"
+#include "sim/materials/near_rest.h"
 #include "sim/materials/parameters.h"
 
 namespace supple {
@@ -24,16 +25,17 @@ struct NeoHookean {
   template <class V>
   V density(const Matrix3<V>& f, Matrix3<V>& stress) const {
     const Matrix3<V> cofactors = cofactor(f);
+    const V j = determinant(f, cofactors);
     V slope;
-    const V volume = LogVolume{mu, lambda}.value(determinant(f, cofactors), slope);
+    const V volume = LogVolume{mu, lambda}.beyond_linear(j, slope);
     for (int i = 0; i < 9; ++i) stress.m[i] = madd(V(mu), f.m[i], slope * cofactors.m[i]);
-    return madd(V(0.5 * mu), squared_norm(f) - V(3.0), volume);
+    return madd(V(mu), NearRest<V>(symmetric_product(f, f), j - V(1.0)).stretching, volume);
   }
 
   // Equation 10 with a = mu/2 (s^2 - 1), b = 0 and the c of LogVolume; J = s, because the other stretches are 1.
   double axial_stress(double s) const {
     double slope = 0;
-    LogVolume{mu, lambda}.value(s, slope);
+    LogVolume{mu, lambda}.beyond_linear(s, slope);
     return mu * s + slope;
   }
   std::vector<double> seams() const { return {LogVolume::smallest_ratio}; }

@@ -23,7 +23,7 @@ std::vector<double> second_derivatives(const std::vector<ControlPoint>& p) {
 
 double of_curve(const SplineCurve& curve, double x) {
   double value = 0;
-  if (!curve.empty()) curve.value(x, value);
+  if (!curve.empty()) curve.beyond_linear(x, value);
   return value;
 }
 
@@ -59,15 +59,41 @@ SplineCurve::SplineCurve(std::vector<ControlPoint> points) : points_(std::move(p
                   (points_[n - 1].value - points_[n - 2].value) / width + width * second[n - 2] / 6, 0, 0};
   double energy = 0;
   for (std::size_t i = 0; i < n; ++i) {
+    pieces_[i + 1].from = points_[i].at;
     pieces_[i + 1].energy = energy;
-    if (i + 1 == n) break;
-    const std::array<double, 4>& c = pieces_[i + 1].c;
-    const double t = points_[i + 1].at - points_[i].at;
-    energy += t * (c[0] + t * (c[1] / 2 + t * (c[2] / 3 + t * c[3] / 4)));
+    if (i + 1 < n) energy += pieces_[i + 1].integral(points_[i + 1].at - points_[i].at);
   }
-  double slope = 0;
-  const double at_rest = value(1.0, slope);
-  for (Piece& piece : pieces_) piece.energy -= at_rest;
+  pieces_[0].from = points_[0].at;
+  pieces_[0].energy = 0;
+  count_from_rest();
+}
+
+// The same polynomial with t counted from another place.
+SplineCurve::Piece SplineCurve::Piece::about(double x) const {
+  const double t = x - from;
+  return {{c[0] + t * (c[1] + t * (c[2] + t * c[3])), c[1] + t * (2 * c[2] + 3 * t * c[3]), c[2] + 3 * t * c[3], c[3]},
+          x,
+          energy + integral(t)};
+}
+
+// Makes the energies those of beyond_linear(), and lets the pieces that reach 1 count from there.
+void SplineCurve::count_from_rest() {
+  const std::size_t n = points_.size();
+  const auto begin = [&](std::size_t piece) { return piece == 0 ? -HUGE_VAL : points_[piece - 1].at; };
+  const auto end = [&](std::size_t piece) { return piece == n ? HUGE_VAL : points_[piece].at; };
+  std::size_t with_rest = 0;
+  while (end(with_rest) <= 1) ++with_rest;
+  const Piece rest = pieces_[with_rest].about(1);
+  at_rest_ = rest.c[0];
+  for (std::size_t i = 0; i <= n; ++i) {
+    if (begin(i) <= 1 && end(i) >= 1) {
+      pieces_[i] = pieces_[i].about(1);
+      pieces_[i].c[0] = at_rest_;
+      pieces_[i].energy = 0;
+    } else {
+      pieces_[i].energy -= rest.energy + at_rest_ * (pieces_[i].from - 1);
+    }
+  }
 }
 
 Spline Spline::preset_a(const Lame& lame) {

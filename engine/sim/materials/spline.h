@@ -31,35 +31,45 @@ class SplineCurve {
   bool empty() const { return points_.empty(); }
   const std::vector<ControlPoint>& points() const { return points_; }
 
-  // Returns the integral of the curve from 1 to x; `slope` becomes the curve itself.
+  // The curve at 1 [Pa].
+  double slope_at_rest() const { return at_rest_; }
+
+  // Returns the integral from 1 to x of the curve less its value at 1; `slope` becomes the curve itself.
   template <class V>
-  V value(const V& x, V& slope) const {
-    Chosen<V> piece{V(points_.front().at), V(pieces_[0].c[0]), V(pieces_[0].c[1]), V(0.0), V(0.0),
-                    V(pieces_[0].energy)};
+  V beyond_linear(const V& x, V& slope) const {
+    const Piece& first = pieces_[0];
+    Chosen<V> piece{V(first.from), V(first.c[0]), V(first.c[1]), V(first.c[2]), V(first.c[3]), V(first.energy)};
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const Piece& next = pieces_[i + 1];
       const auto inside = x >= V(points_[i].at);
-      piece = {choose(inside, V(points_[i].at), piece.from), choose(inside, V(next.c[0]), piece.c0),
-               choose(inside, V(next.c[1]), piece.c1),       choose(inside, V(next.c[2]), piece.c2),
-               choose(inside, V(next.c[3]), piece.c3),       choose(inside, V(next.energy), piece.energy)};
+      piece = {choose(inside, V(next.from), piece.from), choose(inside, V(next.c[0]), piece.c0),
+               choose(inside, V(next.c[1]), piece.c1),   choose(inside, V(next.c[2]), piece.c2),
+               choose(inside, V(next.c[3]), piece.c3),   choose(inside, V(next.energy), piece.energy)};
     }
     const V t = x - piece.from;
-    slope = madd(t, madd(t, madd(t, piece.c3, piece.c2), piece.c1), piece.c0);
-    return madd(t, madd(t, madd(t, madd(t, V(0.25) * piece.c3, V(1.0 / 3) * piece.c2), V(0.5) * piece.c1), piece.c0),
-                piece.energy);
+    const V rise = t * madd(t, madd(t, piece.c3, piece.c2), piece.c1);
+    slope = rise + piece.c0;
+    const V bend = t * t * madd(t, madd(t, V(0.25) * piece.c3, V(1.0 / 3) * piece.c2), V(0.5) * piece.c1);
+    return madd(t, piece.c0 - V(at_rest_), bend + piece.energy);
   }
 
  private:
-  // The curve c0 + c1 t + c2 t^2 + c3 t^3 from a point on, and its integral up to there. The first piece lies before
-  // the first point and counts t from it too.
+  // The curve c0 + c1 t + c2 t^2 + c3 t^3 with t = x - from, and its integral beyond_linear() at `from`. The first
+  // piece lies before the first point. Those that reach 1 count from there, so that nothing cancels.
   struct Piece {
     std::array<double, 4> c;
-    double energy;
+    double from, energy;
+
+    double integral(double t) const { return t * (c[0] + t * (c[1] / 2 + t * (c[2] / 3 + t * c[3] / 4))); }
+    Piece about(double x) const;
   };
   template <class V>
   struct Chosen {
     V from, c0, c1, c2, c3, energy;
   };
+  void count_from_rest();
+
+  double at_rest_ = 0;
   std::vector<ControlPoint> points_;
   std::vector<Piece> pieces_;  // points + 1
 };

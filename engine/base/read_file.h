@@ -1,0 +1,20 @@
+// Reads files that come from outside. Only regular files are read, up to a size that the caller states: a device or a
+// pipe may have no end.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace supple {
+
+inline constexpr std::uintmax_t usual_most_bytes = 1'000'000'000;
+
+// Returns the file's content. Throws InputError that names the file: there is no such file, it is not a regular file,
+// it is larger than `most_bytes`, or the system's reason why it cannot be read.
+std::string read_file(const std::filesystem::path& path, std::uintmax_t most_bytes = usual_most_bytes);
+
+// Throws InputError as read_file() does when the path does not name a regular file.
+void check_regular_file(const std::filesystem::path& path);
+
+}  // namespace supple
