@@ -128,7 +128,8 @@ void FrameLoop::resume(const Checkpoint& checkpoint) {
     apply(script_.scene_at(checkpoint.frames - 1), script_.changes());
     forget_earlier();
   }
-  for (std::size_t b = 0; b < filmed_.size(); ++b) filmed_[b]->driver().restore(checkpoint.bodies[b]);
+  for (std::size_t b = 0; b < filmed_.size(); ++b)
+    filmed_[b]->resume(checkpoint.bodies[b], log_.rows().back().bodies.at(b));
 }
 
 // Drops the values from before the last frame's changes: a change that was spread over that frame is complete.
