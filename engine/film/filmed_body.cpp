@@ -55,10 +55,11 @@ FilmedBody::FilmedBody(const SceneDef& scene, Body& body, Model& model, const Co
       solvers_(solvers),
       threads_(threads),
       driver_(scene, body, model, set, solvers.steps, &threads),
-      motion_(folder.motion(body.def.name), model.vertices, kept_frames) {
+      motion_(folder.motion(body.def.name), model.vertices, kept_frames),
+      origin_(motion_origin(body.description.mesh.rest)) {
   start_budget({});
   if (!set.colliders.empty()) surface_ = touching_surface(body, model);
-  write_obj(folder.surface(body.def.name), body.description.mesh.rest, surface_of(body));
+  write_obj(folder.surface(body.def.name), body.description.mesh.rest, surface_of(body), origin_);
 }
 
 void FilmedBody::start_budget(const EnergyBalance& balance) {
@@ -138,7 +139,7 @@ void FilmedBody::measure(int frame, BodyRow& row) {
 
 void FilmedBody::save_motion() {
   const Zone zone("motion files", driver_.body().def.name);
-  motion_.add(in_input_order(model(), state().x));
+  motion_.add(in_input_order(model(), state().x).rowwise() - origin_.transpose());
 }
 
 void FilmedBody::save_state(int frame) {

@@ -54,6 +54,7 @@ class FilmedBody {
   std::unique_ptr<ErrorMeter> error_meter_;  // once an error is asked for
   std::uint64_t metered_model_ = 0;          // id of the model's values that the meter holds for
   PointCacheWriter motion_;
+  Vec3 origin_;                        // of the files of motion [m]
   std::optional<FieldWriter> fields_;  // once fields are asked for
 };
 
