@@ -68,6 +68,7 @@ void print_json(const FilmResult& result, const RunFolder& folder) {
       result.video_written ? nlohmann::ordered_json(folder.video().string()) : nlohmann::ordered_json(nullptr);
   json["video_message"] = result.video_message;
   json["verdict"] = verdict_on(result);
+  json["warnings"] = warnings_of(result.rows);
   say(stdout, fmt::format("{}\n", json_text(json)));
 }
 
@@ -79,6 +80,7 @@ int say_result(const FilmCommand& command, const FilmResult& result, const RunFo
   } else if (command.table && !command.plan.quiet && !result.rows.empty()) {
     print_result(result, folder, scene);
   }
+  for (const std::string& warning : warnings_of(result.rows)) say(stderr, fmt::format("warning: {}\n", warning));
   if (result.end == FilmEnd::failed) {
     say(stderr, fmt::format("supple: {}\n  kept: {} {} in {}\n", result.message,
                             std::max(int(result.rows.size()), result.kept_frames),
@@ -142,7 +144,7 @@ void add_film_options(Verb& verb, FilmCommand& command) {
   verb.option("--tolerance", plan.tolerance, "compare positions up to this, over the body's size, instead of all bits")
       .needs(verify)
       .between(0.0, 1.0);
-  verb.flag("--quiet", plan.quiet, "say nothing but errors");
+  verb.flag("--quiet", plan.quiet, "say nothing but errors, and warnings of what the film shows");
   verb.flag("--json", command.json, "the result as one line of JSON on standard output");
 }
 

@@ -54,6 +54,7 @@ const std::vector<Benchmark>& benchmarks() {
       {"figure7", "L-BFGS, Chebyshev, Newton", 0.3, bench_figure7},
       {"figure8", "initial Hessians", 0.3, bench_figure8},
       {"figure10", "a bar shaken hard", 0.5, bench_figure10},
+      {"stability", "hard cases for every material, each with a rule", 2, bench_stability},
       {"figure13", "window of L-BFGS", 0.3, bench_figure13},
       {"figure14", "step lengths of two line searches", 0.2, bench_figure14},
       {"figure15", "the interval of equation 11", 0.3, bench_figure15},

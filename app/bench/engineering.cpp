@@ -168,7 +168,7 @@ ReportSection bench_contact(const BenchSetting& setting) {
                               model.size);
       rows[m].ms.push_back(outcomes[m].step_ms);
       rows[m].trials.push_back(outcomes[m].trials);
-      rows[m].inverted += deformation(model, outcomes[m].x).inverted.value_or(0);
+      rows[m].inverted += deformation(model, outcomes[m].x).inverted;
     }
   }
   ReportSection section{"contact", "Contact three ways (section 4.3)"};

@@ -21,6 +21,8 @@ ReportSection bench_figure16(const BenchSetting& setting);
 ReportSection bench_figure17(const BenchSetting& setting);
 // stability.cpp
 ReportSection bench_figure10(const BenchSetting& setting);
+// stability_matrix.cpp
+ReportSection bench_stability(const BenchSetting& setting);
 // all_states.cpp
 ReportSection bench_profiles(const BenchSetting& setting);
 ReportSection bench_scenes(const BenchSetting& setting);

@@ -32,15 +32,18 @@ def read_arguments():
 
 
 def read_surface(path):
-    points, faces = [], []
+    """Points and faces, and the origin that both files of a body far from the world's origin are relative to."""
+    points, faces, origin = [], [], (0.0, 0.0, 0.0)
     with open(path) as file:
         for line in file:
             word, *numbers = line.split()
-            if word == "v":
+            if word == "#" and numbers[0] == "origin":
+                origin = tuple(float(number.rstrip(":")) for number in numbers[1:4])
+            elif word == "v":
                 points.append(tuple(map(float, numbers)))
             elif word == "f":
                 faces.append(tuple(int(number) - 1 for number in numbers))
-    return points, faces
+    return points, faces, Vector(origin)
 
 
 def cache_size(path):
@@ -54,7 +57,7 @@ def cache_size(path):
 
 def load_body(name, surface, cache):
     """Returns the points at rest, in supple's axes, and the number of frames."""
-    points, faces = read_surface(surface)
+    points, faces, origin = read_surface(surface)
     cached, frames = cache_size(cache)
     if cached != len(points):
         sys.exit(f"{cache}: {cached} points, and {surface} has {len(points)}")
@@ -62,13 +65,13 @@ def load_body(name, surface, cache):
     mesh.from_pydata(points, [], faces)
     mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
     body = bpy.data.objects.new(name, mesh)
-    body.matrix_world = TO_BLENDER
+    body.matrix_world = TO_BLENDER @ Matrix.Translation(origin)
     bpy.context.scene.collection.objects.link(body)
     motion = body.modifiers.new("motion", "MESH_CACHE")
     motion.cache_format = "PC2"
     motion.filepath = os.path.abspath(cache)
     motion.frame_start = 0
-    return points, frames
+    return [tuple(Vector(point) + origin) for point in points], frames
 
 
 def film_camera(scene, points):

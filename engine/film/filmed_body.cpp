@@ -6,7 +6,6 @@
 #include "film/state_file.h"
 #include "output/obj_file.h"
 #include "sim/model/measures.h"
-#include "sim/solver/energies.h"
 
 namespace supple {
 namespace {
@@ -56,9 +55,22 @@ FilmedBody::FilmedBody(const SceneDef& scene, Body& body, Model& model, const Co
       solvers_(solvers),
       threads_(threads),
       driver_(scene, body, model, set, solvers.steps, &threads),
-      motion_(folder.motion(body.def.name), model.vertices, kept_frames) {
+      motion_(folder.motion(body.def.name), model.vertices, kept_frames),
+      origin_(motion_origin(body.description.mesh.rest)) {
+  start_budget({});
   if (!set.colliders.empty()) surface_ = touching_surface(body, model);
-  write_obj(folder.surface(body.def.name), body.description.mesh.rest, surface_of(body));
+  write_obj(folder.surface(body.def.name), body.description.mesh.rest, surface_of(body), origin_);
+}
+
+void FilmedBody::start_budget(const EnergyBalance& balance) {
+  driver_.workspace().prepare(model(), driver_.inputs().solver);
+  budget_.start(model(), scene_.gravity, state(), driver_.workspace(), balance);
+}
+
+void FilmedBody::resume(const State& state, const BodyRow& row) {
+  driver_.restore(state);
+  const BalanceRow before = row.balance.value_or(BalanceRow{});
+  start_budget({before.total, before.put_in, before.from_nothing, before.exchanged});
 }
 
 std::string FilmedBody::advance(int frame, bool measure_error, BodyRow& row) {
@@ -68,7 +80,7 @@ std::string FilmedBody::advance(int frame, bool measure_error, BodyRow& row) {
     driver_.prepare_step(frame, substep);
     const bool measured = measure_error && substep + 1 == scene_.substeps;
     const State before = measured ? state() : State{};
-    const StepReport& report = driver_.step();
+    const StepReport& report = make_step();
     add_up(row, report);
     if (report.failed) return failure_text(frame, row.name, report.failure);
     if (!measured) continue;
@@ -77,6 +89,22 @@ std::string FilmedBody::advance(int frame, bool measure_error, BodyRow& row) {
   }
   measure(frame, row);
   return "";
+}
+
+// Makes the step that was prepared, and follows its energy.
+const StepReport& FilmedBody::make_step() {
+  Workspace& w = driver_.workspace();
+  {
+    const Zone zone("energy budget", driver_.body().def.name);
+    w.prepare(model(), driver_.inputs().solver);
+    budget_.before_step(model(), driver_.inputs(), state(), w);
+    start_of_step_ = state().x;
+  }
+  const StepReport& report = driver_.step();
+  if (report.failed) return report;
+  const Zone zone("energy budget", driver_.body().def.name);
+  budget_.after_step(model(), driver_.inputs(), start_of_step_, state(), w);
+  return report;
 }
 
 std::optional<double> FilmedBody::step_error(const State& before) {
@@ -92,13 +120,16 @@ void FilmedBody::measure(int frame, BodyRow& row) {
   const Deformation shape = deformation(model(), state().x);
   row.stretch = shape.stretch;
   row.inverted = shape.inverted;
+  row.collapsed = shape.collapsed;
   if (row.contact) {
     row.contact->penetration =
         penetration(driver_.set().colliders, driver_.inputs().collider_motions, state().x, surface_) / model().size;
   }
+  const EnergyBalance& balance = budget_.balance();
+  row.balance = {balance.total, balance.put_in, balance.from_nothing, balance.exchanged};
   if (scene_.output.energy) {
-    const Energies energy = energies(model(), state(), scene_.gravity, driver_.workspace());
-    row.energy = {energy.kinetic, energy.elastic, energy.gravitational};
+    const Energies& energy = budget_.energies();
+    row.energy = {energy.kinetic, energy.elastic, energy.gravitational, energy.springs, energy.contact};
   }
   if (!body.motions.empty() && !body.def.handles.front().grabs) {
     const double time = (frame + 1) / scene_.fps;
@@ -108,8 +139,9 @@ void FilmedBody::measure(int frame, BodyRow& row) {
 
 void FilmedBody::save_motion() {
   const Zone zone("motion files", driver_.body().def.name);
-  saved_motion_ = as_cached(in_input_order(model(), state().x));
-  motion_.add(saved_motion_);
+  const Positions written = as_cached(in_input_order(model(), state().x).rowwise() - origin_.transpose());
+  motion_.add(written);
+  saved_motion_ = written.rowwise() + origin_.transpose();
 }
 
 void FilmedBody::save_problem(int frame) {

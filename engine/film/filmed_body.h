@@ -6,6 +6,7 @@
 #include "output/point_cache.h"
 #include "output/profile.h"
 #include "output/run_folder.h"
+#include "sim/solver/energies.h"
 
 namespace supple {
 
@@ -19,6 +20,9 @@ class FilmedBody {
   DrivenBody& driver() { return driver_; }
   const Model& model() const { return driver_.model(); }
   const State& state() const { return driver_.state(); }
+
+  // Puts the body into a state of an earlier run, after the frame that a row tells of.
+  void resume(const State& state, const BodyRow& row);
 
   // Makes one frame's steps. Returns a message when the solver failed.
   std::string advance(int frame, bool measure_error, BodyRow& row);
@@ -36,6 +40,8 @@ class FilmedBody {
   void save_fields(int frame);
 
  private:
+  void start_budget(const EnergyBalance& balance);
+  const StepReport& make_step();
   void measure(int frame, BodyRow& row);
   std::optional<double> step_error(const State& before);
 
@@ -44,11 +50,14 @@ class FilmedBody {
   const FilmSolvers& solvers_;
   Threads& threads_;
   DrivenBody driver_;
+  EnergyBudget budget_;
+  Positions start_of_step_;                  // q [m]
   Triangles surface_;                        // the part that may touch, in the model's order; empty without colliders
   std::unique_ptr<ErrorMeter> error_meter_;  // once an error is asked for
   std::uint64_t metered_model_ = 0;          // id of the model's values that the meter holds for
   PointCacheWriter motion_;
-  Positions saved_motion_;
+  Vec3 origin_;                        // of the files of motion [m]
+  Positions saved_motion_;             // in the world
   std::optional<FieldWriter> fields_;  // once fields are asked for
 };
 

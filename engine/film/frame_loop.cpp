@@ -131,7 +131,8 @@ void FrameLoop::resume(const Checkpoint& checkpoint) {
     apply(script_.scene_at(checkpoint.frames - 1), script_.changes());
     end_last_changes();
   }
-  for (std::size_t b = 0; b < filmed_.size(); ++b) filmed_[b]->driver().restore(checkpoint.bodies[b]);
+  for (std::size_t b = 0; b < filmed_.size(); ++b)
+    filmed_[b]->resume(checkpoint.bodies[b], log_.rows().back().bodies.at(b));
 }
 
 // In the frame of a change, places go in even parts from the values in `earlier` to the new ones. That frame is over,

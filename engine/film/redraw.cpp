@@ -15,6 +15,7 @@
 #include "film/places.h"
 #include "output/json_difference.h"
 #include "output/json_text.h"
+#include "output/obj_file.h"
 #include "output/run_folder.h"
 #include "output/run_record.h"
 #include "output/whole_file.h"
@@ -138,7 +139,10 @@ class Drawing {
     follow_script(frame);
     std::vector<Positions> motion;
     std::vector<const Positions*> places;
-    for (PointCacheReader& body : drawing_.motion) motion.push_back(body.frame(frame));
+    for (std::size_t b = 0; b < drawing_.motion.size(); ++b) {
+      const Vec3 origin = motion_origin(drawing_.film.bodies[b].description.mesh.rest);
+      motion.push_back(drawing_.motion[b].frame(frame).rowwise() + origin.transpose());
+    }
     for (const Positions& body : motion) places.push_back(&body);
     return drawn_.list(scene_, places, set_, (frame + 1) / scene_.fps);
   }

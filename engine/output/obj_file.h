@@ -8,8 +8,16 @@
 
 namespace supple {
 
-// Writes nine significant digits, as many as point caches hold. The file is either whole or not there. Throws RunError
-// when the disk refuses.
-void write_obj(const std::filesystem::path& path, const Positions& points, const Triangles& triangles);
+// The place that a body's surface and motion are written relative to: zero, except far from the world's origin, where
+// single precision would lose the shape (1.6 cm at 2e5 m). A power of two divides it, so that nothing is rounded.
+Vec3 motion_origin(const Positions& rest);
+
+// Writes points less `origin` with nine significant digits, as many as point caches hold; a comment in the first line
+// tells the origin where it is not zero. The file is either whole or not there. Throws RunError when the disk refuses.
+void write_obj(const std::filesystem::path& path, const Positions& points, const Triangles& triangles,
+               const Vec3& origin = Vec3::Zero());
+
+// The origin that a file's first line tells; zero where it tells none.
+Vec3 origin_of_obj(const std::filesystem::path& path);
 
 }  // namespace supple

@@ -20,6 +20,11 @@ struct ContactRow {
   double penetration = 0;  // the surface's largest depth inside a collider, over the body's size
 };
 
+// What a body has and what it was given since the film began (sim/solver/energies.h) [J].
+struct BalanceRow {
+  double total = 0, put_in = 0, from_nothing = 0, exchanged = 0;
+};
+
 struct BodyRow {
   std::string name;
   double step_ms = 0, evaluate_ms = 0, solve_ms = 0, lbfgs_ms = 0, other_ms = 0;
@@ -29,8 +34,9 @@ struct BodyRow {
   bool error_measured = false;
   std::optional<double> error;                  // equation 12; null where the start is already the minimum to round-off
   double stretch = 0;                           // 99.9th percentile of the largest stretch, weighted by volume
-  std::optional<std::array<double, 3>> energy;  // kinetic, elastic, gravitational [J]; only when the scene asks for it
-  std::optional<int> inverted;                  // number of inverted tetrahedra; only for solids
+  std::optional<std::array<double, 5>> energy;  // kinetic, elastic, gravitational, springs, contact [J]; when asked for
+  std::optional<BalanceRow> balance;            // absent in profiles of earlier versions
+  std::optional<int> inverted, collapsed;       // numbers of tetrahedra turned inside out, and without volume
   std::optional<double> jiggle;                 // jiggle of the body over its size; only for bodies with a handle
   std::optional<ContactRow> contact;
   std::string stop_reason;
@@ -62,6 +68,10 @@ struct StageSummary {
   Distribution rest;
 };
 std::vector<StageSummary> summarize(const std::vector<FrameRow>& rows);
+
+// Says what went wrong physically and did not end the run, a sentence for each body and kind: energy from nothing,
+// elements that are inverted or without volume at the end.
+std::vector<std::string> warnings_of(const std::vector<FrameRow>& rows);
 
 // Writes rows as text (profile_json.cpp): all rows of a run, or one row as a line of its own.
 // verdict: on the whole run (verdict.h); empty: none.

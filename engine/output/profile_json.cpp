@@ -40,8 +40,17 @@ Json json_of(const BodyRow& body) {
     row["kinetic_energy"] = (*body.energy)[0];
     row["elastic_energy"] = (*body.energy)[1];
     row["gravitational_energy"] = (*body.energy)[2];
+    row["spring_energy"] = (*body.energy)[3];
+    row["contact_energy"] = (*body.energy)[4];
+  }
+  if (body.balance) {
+    row["energy"] = {{"total", body.balance->total},
+                     {"put_in", body.balance->put_in},
+                     {"from_nothing", body.balance->from_nothing},
+                     {"exchanged", body.balance->exchanged}};
   }
   if (body.inverted) row["inverted"] = *body.inverted;
+  if (body.collapsed) row["collapsed"] = *body.collapsed;
   if (body.jiggle) row["jiggle"] = *body.jiggle;
   row["stop_reason"] = body.stop_reason;
   return row;
@@ -92,9 +101,16 @@ BodyRow body_row(const Json& json) {
   json.at("stretch").get_to(row.stretch);
   if (json.contains("kinetic_energy")) {
     row.energy = {json.at("kinetic_energy").get<double>(), json.at("elastic_energy").get<double>(),
-                  json.at("gravitational_energy").get<double>()};
+                  json.at("gravitational_energy").get<double>(), json.value("spring_energy", 0.0),
+                  json.value("contact_energy", 0.0)};
+  }
+  if (json.contains("energy")) {
+    const Json& energy = json.at("energy");
+    row.balance = {energy.at("total").get<double>(), energy.at("put_in").get<double>(),
+                   energy.at("from_nothing").get<double>(), energy.at("exchanged").get<double>()};
   }
   read_if_there(json, "inverted", row.inverted);
+  read_if_there(json, "collapsed", row.collapsed);
   read_if_there(json, "jiggle", row.jiggle);
   json.at("stop_reason").get_to(row.stop_reason);
   return row;
@@ -156,6 +172,7 @@ std::string profile_json(const std::vector<FrameRow>& rows, const std::string& v
   document["frames"] = std::move(frames);
   document["summary"] = {{"frames", rows.size()}, {"first_frame", first}, {"without_first_frame", rest}};
   if (!verdict.empty()) document["summary"]["verdict"] = verdict;
+  document["summary"]["warnings"] = warnings_of(rows);
   return exact_json_text(document, 1) + "\n";
 }
 

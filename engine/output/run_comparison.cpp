@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "output/json_text.h"
+#include "output/obj_file.h"
 #include "output/point_cache.h"
 
 namespace supple {
@@ -48,8 +49,9 @@ BodyComparison compare_body(const RunRecord& a, const RunRecord& b, const std::s
   body.saved_b = motion_b.frames();
   body.size = bounds_of(motion_a.frame(0)).diagonal();
   if (body.vertices_a != body.vertices_b) return body;
+  const Vec3 apart = origin_of_obj(b.surface(name)) - origin_of_obj(a.surface(name));
   for (int frame = 0; frame < frames; ++frame) {
-    const Positions moved = motion_b.frame(frame) - motion_a.frame(frame);
+    const Positions moved = (motion_b.frame(frame) - motion_a.frame(frame)).rowwise() + apart.transpose();
     FrameDistance distance;
     for (Eigen::Index v = 0; v < moved.rows(); ++v) distance.largest = std::max(distance.largest, moved.row(v).norm());
     distance.rms = std::sqrt(moved.squaredNorm() / double(std::max<Eigen::Index>(1, moved.rows())));

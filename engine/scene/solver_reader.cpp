@@ -111,6 +111,10 @@ SolverSettings read_settings(const ConfigTable& table, SolverSettings s) {
   s.target_error =
       table.number({"target_error", "", "stop once the solver's own error estimate is below; 0 does all iterations"},
                    s.target_error, Range::between(0, 1));
+  s.rounds = table.integer({"rounds", "",
+                            "a step whose answer gains energy from nothing goes on, for so many times `iterations` in "
+                            "all; 1 never does"},
+                           s.rounds, Range::between(1, 100));
   return s;
 }
 

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "output/child_program.h"
+#include "output/obj_file.h"
 #include "output/point_cache.h"
 #include "output/vtu.h"
 #include "support/bodies.h"
@@ -84,6 +85,21 @@ TEST(Motion, HasTheSurfaceAtRestInTheOrderOfItsPointCache) {
     const Positions first = cache.frame(0);
     for (Eigen::Index i = 0; i < first.size(); ++i) EXPECT_NEAR(first.data()[i], rest[std::size_t(i)], 9.82 / 900);
   }
+}
+
+TEST(Motion, KeepsTheShapeOfABodyFarFromTheOrigin) {
+  const test::TemporaryFolder folder;
+  const std::string near =
+      "frames = 2\ngravity = [0, 0, 0]\n[[body]]\nname = \"box\"\nmaterial = \"jelly\"\n"
+      "box = { extent = [0.2, 0.1, 0.1], cells = [4, 2, 2] }\n";
+  const std::filesystem::path far = filmed(folder, near + "position = [200000.03, 7, -3]\n", {});
+  const Vec3 origin = origin_of_obj(far / "motion" / "box.obj");
+  EXPECT_NEAR(origin.x(), 2e5, 1);
+  const Positions there = PointCacheReader(far / "motion" / "box.pc2").frame(1);
+  (void)filmed(folder, near, {"--out", "near"});
+  EXPECT_EQ(origin_of_obj(folder.path / "near" / "motion" / "box.obj"), Vec3::Zero());
+  const Positions here = PointCacheReader(folder.path / "near" / "motion" / "box.pc2").frame(1);
+  EXPECT_LT(((there.rowwise() + (origin - Vec3(200000.03, 7, -3)).transpose()) - here).cwiseAbs().maxCoeff(), 1e-7);
 }
 
 TEST(Vtu, GivesBackItsArrays) {

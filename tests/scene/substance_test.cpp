@@ -256,5 +256,32 @@ TEST(StartStates, BodiesRecoverFromThem) {
   }
 }
 
+std::string warnings_about(const std::string& text) {
+  const SceneDef scene = scene_of(text);
+  std::string all;
+  for (const Problem& warning : warnings(scene, assemble(scene))) all += warning.text() + "\n";
+  return all;
+}
+
+TEST(Substances, WhatIsSoftForItsLoadOrSmallForItsStepsOrStiffInOneRegionIsWarnedOf) {
+  const std::string held = "[[body.handles]]\nname = \"end\"\nselect = { box = [[0, 0, 0], [0.1, 1, 1]] }\n";
+  const std::string soft = "material = { model = \"neo-hookean\", young = 1e3, poisson = 0.4 }\n";
+  EXPECT_NE(warnings_about(box_body(soft + held)).find("is soft for its load: its own weight strains it by "),
+            std::string::npos);
+  EXPECT_EQ(warnings_about("gravity = [0, 0, 0]\n" + box_body(soft + held)), "");
+  EXPECT_EQ(warnings_about(box_body(soft)), "");  // it falls freely
+  EXPECT_NE(warnings_about("[[body]]\nbox = { extent = [2e-7, 2e-7, 2e-7], cells = [1, 1, 1] }\nmaterial = \"rubber\"\n"
+                           "[[collider]]\nshape = { half_space = { normal = [0, 1, 0] } }\n")
+                .find("is small for its steps: gravity carries it by "),
+            std::string::npos);
+  const std::string shape =
+      "[[body]]\nshape = \"shapes/squirrel.toml\"\nvertices = 500\nsize = 0.4\n"
+      "material = { model = \"neo-hookean\", mu = 1e5 }\n";
+  EXPECT_EQ(warnings_about(shape), "");
+  EXPECT_NE(warnings_about(shape + "[body.regions.teeth]\nmaterial = { model = \"neo-hookean\", mu = 1e11 }\n")
+                .find("differ in stiffness by a factor of 1e+06"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace supple

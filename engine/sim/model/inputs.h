@@ -81,6 +81,7 @@ struct SolverSettings {
   LineSearch line_search = LineSearch::armijo;
   double armijo = 0.3;      // gamma
   double target_error = 0;  // stop when the error estimate falls below; 0: do all iterations
+  int rounds = 5;           // of `iterations`, at most, where the answer so far gains energy from nothing
   ContactSettings contact;
   ChebyshevSettings chebyshev;
 };

@@ -28,11 +28,13 @@ double weighted_top(std::vector<std::pair<double, double>>& pairs, double weight
   }
 }
 
+constexpr double without_volume = 1e-3;  // of the rest volume
+
 }  // namespace
 
 Deformation deformation(const Model& model, const Positions& x) {
   std::vector<std::pair<double, double>> stretches;  // stretch, weight
-  std::vector<double> inverted;                      // their volumes
+  std::vector<double> inverted, collapsed;           // their volumes
   stretches.reserve(model.elements);
   std::vector<double> largest, ratio;
   double total = 0, volume = 0;
@@ -50,6 +52,7 @@ Deformation deformation(const Model& model, const Positions& x) {
       const std::size_t block = lane / block_width * fields + weight_field;
       const double weight = model.field[range.first_field + block * block_width + lane % block_width];
       if (solid && ratio[lane] < 0) inverted.push_back(weight);
+      if (solid && std::abs(ratio[lane]) < without_volume) collapsed.push_back(weight);
       if (solid) volume += weight;
       solids += solid;
       stretches.emplace_back(largest[lane], weight);
@@ -59,8 +62,11 @@ Deformation deformation(const Model& model, const Positions& x) {
   Deformation result;
   if (solids > 0) {
     const double least = 1e-6 * volume / solids;
-    result.inverted =
-        static_cast<int>(std::count_if(inverted.begin(), inverted.end(), [least](double v) { return v > least; }));
+    const auto counted = [least](const std::vector<double>& volumes) {
+      return static_cast<int>(std::count_if(volumes.begin(), volumes.end(), [least](double v) { return v > least; }));
+    };
+    result.inverted = counted(inverted);
+    result.collapsed = counted(collapsed);
   }
   result.stretch = weighted_top(stretches, 0.001 * total);
   return result;

@@ -4,17 +4,16 @@
 
 #include <Eigen/Geometry>
 
-#include <optional>
-
 #include "sim/model/inputs.h"
 #include "sim/model/model.h"
 
 namespace supple {
 
 struct Deformation {
-  double stretch = 1;           // 99.9th percentile over elements of the largest stretch, weighted by rest volume; of
-                                // springs, of current over rest length, weighted by rest length
-  std::optional<int> inverted;  // tetrahedra with det F < 0 whose rest volume is above 1e-6 of the mean; none for cloth
+  double stretch = 1;  // 99.9th percentile over elements of the largest stretch, weighted by rest volume; of
+                       // springs, of current over rest length, weighted by rest length
+  int inverted = 0;    // tetrahedra with det F < 0 whose rest volume is above 1e-6 of the mean
+  int collapsed = 0;   // such tetrahedra with |det F| < 1e-3
 };
 Deformation deformation(const Model& model, const Positions& x);
 

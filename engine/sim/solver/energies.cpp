@@ -1,15 +1,81 @@
 #include "sim/solver/energies.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "sim/solver/energy_gain.h"
+
 namespace supple {
+namespace {
+
+void set_motion(const Model& model, const State& state, const Vec3& gravity, Energies& parts) {
+  parts.kinetic = parts.gravitational = 0;
+  for (int v = 0; v < model.free; ++v) {
+    parts.kinetic += 0.5 * model.mass[v] * state.v.row(v).squaredNorm();
+    parts.gravitational -= model.mass[v] * (state.x.row(v) - model.rest.row(v)).dot(gravity);
+  }
+}
+
+double spring_energy(const Model& model, const StepInputs& inputs, const Positions& x) {
+  double sum = 0;
+  for (std::size_t i = 0; i < model.handled.size(); ++i) {
+    const std::int32_t v = model.handled[i].vertex;
+    if (v < model.free) sum += 0.5 * model.handle_stiffness[v] * (x.row(v) - inputs.targets.row(i)).squaredNorm();
+  }
+  return sum;
+}
+
+}  // namespace
 
 Energies energies(const Model& model, const State& state, const Vec3& gravity, Workspace& w) {
   Energies result;
-  for (int v = 0; v < model.free; ++v) {
-    result.kinetic += 0.5 * model.mass[v] * state.v.row(v).squaredNorm();
-    result.gravitational -= model.mass[v] * (state.x.row(v) - model.rest.row(v)).dot(gravity);
-  }
+  set_motion(model, state, gravity, result);
   result.elastic = elastic_energy(model, w, state.x);
   return result;
+}
+
+void EnergyBudget::start(const Model& model, const Vec3& gravity, const State& state, Workspace& w,
+                         const EnergyBalance& balance) {
+  parts_ = supple::energies(model, state, gravity, w);
+  balance_ = balance;
+  balance_.total = parts_.total();
+  most_ = balance_.exchanged;
+  moved_ = 0;
+  lowest_ = balance_.total - balance_.put_in - balance_.from_nothing;
+  model_ = model.id;
+  has_targets_ = false;
+}
+
+void EnergyBudget::add_to_budget(double work) {
+  balance_.put_in += work;
+  moved_ += std::abs(work);
+}
+
+void EnergyBudget::before_step(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
+  Energies now = parts_;
+  set_motion(model, state, inputs.gravity, now);
+  if (model.id != model_) now.elastic = elastic_energy(model, w, state.x);
+  now.springs = spring_energy(model, inputs, state.x);
+  if (!has_targets_) parts_.springs = now.springs;
+  add_to_budget(now.total() - parts_.total());
+  parts_ = now;
+  model_ = model.id;
+  has_targets_ = true;
+}
+
+void EnergyBudget::after_step(const Model& model, const StepInputs& inputs, const Positions& q, const State& state,
+                              Workspace& w) {
+  add_to_budget(work_from_outside(model, q, w));
+  set_motion(model, state, inputs.gravity, parts_);
+  parts_.elastic = elastic_energy(model, w, state.x);
+  parts_.springs = spring_energy(model, inputs, state.x);
+  parts_.contact = contact_energy(w.current.contacts, state.x);
+  balance_.total = parts_.total();
+  const double own = balance_.total - balance_.put_in;
+  lowest_ = std::min(lowest_, own);
+  balance_.from_nothing = own - lowest_;
+  most_ = std::max(most_, parts_.kinetic + std::abs(parts_.elastic) + parts_.springs);
+  balance_.exchanged = most_ + moved_;
 }
 
 }  // namespace supple

@@ -53,8 +53,8 @@ Search backtrack(const Model& model, const StepInputs& inputs, Workspace& w, dou
     if (halving == 0) record.full = {accepted, change.slope / slope};
     if (!accepted || !std::isfinite(change.value)) {
       // Where slopes drown too, shorter steps only repeat the noise. A thousandth of it is next to nothing of a
-      // distance.
-      if (by_slope && -slope < 1e-3 * noise) return Search::exhausted;
+      // distance; a slope below the energy of the positions' last bits is nothing else.
+      if (by_slope && -slope < 1e-3 * noise + noise_of(model, 0, extent_of(model, w))) return Search::exhausted;
       continue;
     }
     if (!with_gradient) change = evaluate_trial(model, w, Wanted::gradient);

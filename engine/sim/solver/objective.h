@@ -33,4 +33,7 @@ double noise_of(const Model& model, double objective, double extent);
 // E(x) of all elements [J]. Overwrites the energies of the trial iterate.
 double elastic_energy(const Model& model, Workspace& workspace, const Positions& x);
 
+// The same, and leaves the forces of the elements in the workspace, by slot.
+double elastic_forces(const Model& model, Workspace& workspace, const Positions& x);
+
 }  // namespace supple

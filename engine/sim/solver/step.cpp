@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/trace.h"
+#include "sim/solver/energy_gain.h"
 #include "sim/solver/lbfgs.h"
 #include "sim/solver/line_search.h"
 
@@ -128,8 +129,20 @@ void accept(const Model& model, const StepInputs& inputs, Workspace& w, SearchRu
   w.report.history.push_back(record);
 }
 
-// Runs the iterations of algorithm 1 from the current iterate, which has been evaluated.
-void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, double enough) {
+// Whether the step, left as it is, would gain energy from nothing. That is looked at where the iterations had a hard
+// time alone, because it costs an evaluation.
+bool gains_energy(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
+  constexpr double much = 0.01;  // of the energies that were exchanged
+  const StepReport& report = w.report;
+  if (report.line_search <= 2 * report.iterations) return false;
+  const Stretch stretch(w.clock, Phase::evaluate, "check energy");
+  return share_from_nothing(model, inputs, state, w) > much;
+}
+
+// Runs the iterations of algorithm 1 from the current iterate, which has been evaluated. With the state that a step
+// began with, goes on for some rounds where the answer gains energy from nothing.
+void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, double enough,
+                    const State* state = nullptr) {
   const SolverSettings& solver = inputs.solver;
   StepReport& report = w.report;
   const std::size_t first = report.objective.size() - 1;
@@ -139,7 +152,13 @@ void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
   rule.begin(model, inputs, w);
 
   report.stop_reason = StopReason::iterations;
-  for (report.iterations = 0; report.iterations < solver.iterations;) {
+  report.iterations = 0;
+  for (int most = solver.iterations;;) {
+    if (report.iterations >= most) {
+      if (state == nullptr || most >= solver.rounds * solver.iterations || !gains_energy(model, inputs, *state, w))
+        break;
+      most += solver.iterations;
+    }
     const Descent descent = next_direction(model, inputs, w, rule);
     if (!std::isfinite(descent.slope)) return fail(model, w, "solve", descent.slope);
     if (descent.done || -descent.slope <= enough) {
@@ -284,7 +303,7 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   const double above_start = set_first_iterate(model, inputs, state, w);
   report.start_ms = w.clock.elapsed_ms();
   zone.next("iterate");
-  run_iterations(model, inputs, w, rule, 0);
+  run_iterations(model, inputs, w, rule, 0, &state);
   zone.next("end step");
   if (!report.failed && inputs.solver.line_search != LineSearch::none)
     descend_from_staying(model, inputs, state, w, rule);

@@ -1,0 +1,75 @@
+#include "sim/solver/energy_gain.h"
+
+#include <cmath>
+
+#include "sim/solver/objective.h"
+
+namespace supple {
+namespace {
+
+// Work of the elements on held vertices that were moved: what the handles had to put in.
+double work_of_handles(const Model& model, const Positions& q, Workspace& w) {
+  const Positions& x = w.current.x;
+  if ((x.bottomRows(model.vertices - model.free) - q.bottomRows(model.vertices - model.free)).isZero(0)) return 0;
+  elastic_forces(model, w, x);
+  double work = 0;
+  for (std::size_t slot = 0; slot < model.chunk_vertex.size(); ++slot) {
+    const std::int32_t v = model.chunk_vertex[slot];
+    if (v < model.free) continue;
+    for (int c = 0; c < 3; ++c) work += w.force[3 * slot + c] * (x(v, c) - q(v, c));
+  }
+  return work;
+}
+
+// Work of the contacts' forces, friction among them, along the way of each vertex.
+double work_of_contacts(const Positions& q, Workspace& w) {
+  Positions& force = w.scratch;
+  force.setZero();
+  add_contacts(w.current.contacts, w.contact.stick_length, w.current.x, nullptr, w.direction, &force, -1);
+  double work = 0;
+  for (const Contact& contact : w.current.contacts) {
+    const std::int32_t v = contact.vertex;
+    work += force.row(v).dot(w.current.x.row(v) - q.row(v));
+    force.row(v).setZero();  // a vertex may touch two colliders
+  }
+  return work;
+}
+
+// g without its inertia and without contact [J].
+double potential_of(const Model& model, const Workspace& w, const Iterate& at) {
+  const double inverse_h2 = 1 / (model.time_step * model.time_step);
+  double inertia = 0;
+  for (int v = 0; v < model.free; ++v)
+    inertia += 0.5 * inverse_h2 * model.mass[v] * (at.x.row(v) - w.y.row(v)).squaredNorm();
+  return at.g - inertia - contact_energy(at.contacts, at.x) -
+         friction_energy(at.contacts, w.contact.stick_length, at.x);
+}
+
+}  // namespace
+
+double work_from_outside(const Model& model, const Positions& q, Workspace& w) {
+  return (model.free < model.vertices ? work_of_handles(model, q, w) : 0) +
+         (w.current.contacts.empty() ? 0 : work_of_contacts(q, w));
+}
+
+double share_from_nothing(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
+  if (model.integrator != Integrator::backward_euler) return 0;
+  double kinetic = 0, before = 0, fallen = 0;
+  for (int v = 0; v < model.free; ++v) {
+    const Vec3 way = (w.current.x.row(v) - state.x.row(v)).transpose();
+    kinetic += 0.5 * model.mass[v] * way.squaredNorm() / (model.time_step * model.time_step);
+    before += 0.5 * model.mass[v] * state.v.row(v).squaredNorm();
+    fallen += model.mass[v] * way.dot(inputs.gravity);
+  }
+  const double after = potential_of(model, w, w.current);
+  const double work = work_from_outside(model, state.x, w);
+  w.trial.x = state.x;
+  w.trial.contacts.clear();
+  evaluate(model, w, w.trial, Wanted::value);
+  const double change = after - potential_of(model, w, w.trial);
+  w.trial.x.bottomRows(model.vertices - model.free) = w.current.x.bottomRows(model.vertices - model.free);
+  const double gained = kinetic - before + change - fallen - work;
+  return gained / (kinetic + before + std::abs(change) + std::abs(fallen) + std::abs(work));
+}
+
+}  // namespace supple

@@ -1,0 +1,22 @@
+// What handles and contacts put into a body, and whether a step has gained energy from nothing. An exact minimiser of
+// backward Euler's objective cannot where the elastic energy is convex between q and x: M (x - q - h v) / h^2 = m g -
+// grad E(x) gives K' - K + E(x) - E(q) - m g . (x - q) <= the work of what is moved from outside. A step that was left
+// far from its minimum can, again and again, without bound.
+#pragma once
+
+#include "sim/model/state.h"
+#include "sim/solver/workspace.h"
+
+namespace supple {
+
+// Returns the work over a step from q to the current iterate that hard handles and contacts do on the body, by the
+// forces at its end [J]. Evaluates all elements where a hard handle has moved, and then overwrites the workspace's
+// trial energies and forces.
+double work_from_outside(const Model& model, const Positions& q, Workspace& workspace);
+
+// Returns the energy that the step to the current iterate gained from nothing, over the energies that it exchanged: a
+// hundredth is much. Zero or less where it gained none, and for integrators other than backward Euler. Evaluates all
+// elements at q.
+double share_from_nothing(const Model& model, const StepInputs& inputs, const State& state, Workspace& workspace);
+
+}  // namespace supple

@@ -1,0 +1,158 @@
+// Cases that a solver finds hard, through the program: what fails physically is mended or said.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "support/bodies.h"
+#include "support/program.h"
+
+namespace supple {
+namespace {
+
+using test::profile_of;
+using test::Result;
+
+class HardCases : public testing::Test {
+ protected:
+  // Films a scene without pictures.
+  Result film(const std::string& scene, const std::vector<std::string>& more = {}) {
+    std::ofstream(folder_.path / "scene.toml") << scene;
+    std::vector<std::string> arguments = {"render", "scene.toml", "--no-images", "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Result result = test::run(folder_.path, arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    profile_ = profile_of(folder_.path / "out" / "scene");
+    return result;
+  }
+  const nlohmann::json& last() const { return profile_["frames"].back()["bodies"][0]; }
+  double largest(const char* key) const {
+    double value = 0;
+    for (const auto& frame : profile_["frames"]) value = std::max(value, frame["bodies"][0][key].get<double>());
+    return value;
+  }
+  double from_nothing() const {
+    double share = 0;
+    for (const auto& frame : profile_["frames"]) {
+      const auto& energy = frame["bodies"][0]["energy"];
+      share = std::max(share, energy["from_nothing"].get<double>() / energy["exchanged"].get<double>());
+    }
+    return share;
+  }
+
+  test::TemporaryFolder folder_;
+  nlohmann::json profile_;
+};
+
+// Under forty times the load that its stiffness bears.
+const std::string overloaded = R"(frames = 60
+[[body]]
+name = "bar"
+box = { extent = [0.2, 0.6, 0.2], cells = [4, 12, 4] }
+density = 1000
+material = { model = "neo-hookean", young = 1e3, poisson = 0.4 }
+[[body.handles]]
+name = "top"
+select = { box = [[0, 0.999, 0], [1, 1, 1]] }
+)";
+
+TEST_F(HardCases, AnOverloadedBodyGainsNoEnergy) {
+  EXPECT_EQ(film(overloaded).err, "");
+  EXPECT_LT(from_nothing(), 0.05);
+  EXPECT_LT(largest("stretch"), 30);
+  EXPECT_TRUE(profile_["summary"]["warnings"].empty());
+}
+
+TEST_F(HardCases, EnergyFromNothingIsSaidEvenQuietly) {
+  const Result result = film(overloaded, {"--set", "solver.rounds=1"});
+  EXPECT_GT(from_nothing(), 0.2);
+  ASSERT_GE(profile_["summary"]["warnings"].size(), 1u);
+  const std::string warning = profile_["summary"]["warnings"][0];
+  EXPECT_TRUE(warning.starts_with("body 'bar' gained energy from nothing, first in frame ")) << warning;
+  EXPECT_NE(result.err.find("warning: " + warning + "\n"), std::string::npos) << result.err;
+}
+
+TEST_F(HardCases, ACubeThatFallsFastDoesNotCollapseToAPoint) {
+  EXPECT_EQ(film(R"(frames = 60
+[[body]]
+name = "cube"
+box = { extent = [0.2, 0.2, 0.2], cells = [4, 4, 4] }
+density = 1000
+position = [0, 0.05, 0]
+velocity = [0, -10, 0]
+material = { model = "stable-neo-hookean", young = 2e4, poisson = 0.2 }
+[[collider]]
+shape = { half_space = { normal = [0, 1, 0] } }
+)")
+                .err,
+            "");
+  EXPECT_EQ(last()["inverted"], 0);
+  EXPECT_EQ(last()["collapsed"], 0);
+  EXPECT_NEAR(last()["stretch"].get<double>(), 1, 0.3);
+}
+
+// The energy of St. Venant-Kirchhoff does not know a body from its mirror image.
+TEST_F(HardCases, ElementsThatStayInvertedAreSaid) {
+  const Result result = film(R"(frames = 5
+gravity = [0, 0, 0]
+[[body]]
+name = "cube"
+box = { extent = [0.2, 0.2, 0.2], cells = [3, 3, 3] }
+start = { stretch = [-1, 1, 1] }
+material = { model = "st-venant-kirchhoff", young = 2e4, poisson = 0.2 }
+)");
+  EXPECT_EQ(last()["inverted"], 162);
+  const std::string warning = "body 'cube' has 162 elements turned inside out in its last frame";
+  EXPECT_EQ(result.err, "warning: " + warning + "\n");
+  EXPECT_EQ(profile_["summary"]["warnings"][0], warning);
+}
+
+TEST_F(HardCases, WorkOfHandlesAndCollidersIsNotEnergyFromNothing) {
+  film(R"(frames = 45
+[[body]]
+name = "bar"
+box = { extent = [0.4, 0.1, 0.1], cells = [8, 2, 2] }
+material = { model = "neo-hookean", young = 1e5, poisson = 0.3 }
+[[body.handles]]
+name = "end"
+select = { box = [[0, 0, 0], [0.1, 1, 1]] }
+keys = [{ t = 0 }, { t = 0.7, move = [0, 0.5, 0], turn_deg = [0, 0, 60] }, { t = 1.2, move = [0.5, 0.5, 0] }]
+)",
+       {"--set", "gravity=[0,0,0]"});
+  EXPECT_GT(last()["energy"]["put_in"].get<double>(), 0);
+  EXPECT_LT(from_nothing(), 0.05);
+  film(R"(frames = 45
+gravity = [0, 0, 0]
+[[body]]
+name = "cube"
+box = { extent = [0.1, 0.1, 0.1], cells = [3, 3, 3] }
+position = [0, 0.01, 0]
+material = { model = "neo-hookean", young = 1e5, poisson = 0.3 }
+[[collider]]
+name = "bat"
+shape = { box = { extent = [1, 0.1, 1] } }
+position = [0, -0.06, 0]
+keys = [{ t = 0 }, { t = 1, move = [0, 1, 0] }]
+)");
+  EXPECT_GT(last()["energy"]["put_in"].get<double>(), 0);
+  EXPECT_LT(from_nothing(), 0.05);
+}
+
+// The start of its steps is their minimum: there is nothing that an error could be a share of.
+TEST_F(HardCases, ABodyAtRestHasNoError) {
+  for (const char* material : {"neo-hookean", "corotated", "stable-neo-hookean"}) {
+    film(std::string(
+             "frames = 4\n[[body]]\nbox = { extent = [0.2, 0.2, 0.2], cells = [3, 3, 3] }\nposition = [0.3, 1, 0]\n") +
+             "material = { model = \"" + material + "\", young = 2e4, poisson = 0.3 }\n",
+         {"--error-every", "1"});
+    for (const auto& frame : profile_["frames"]) EXPECT_TRUE(frame["bodies"][0]["error"].is_null()) << material;
+  }
+}
+
+TEST_F(HardCases, ClothHasNoInvertedElements) {
+  film("frames = 2\n[[body]]\ncloth = { extent = [1, 1], cells = [4, 4], stretch = 100, shear = 10, bend = 1 }\n");
+  EXPECT_EQ(last()["inverted"], 0);
+  EXPECT_EQ(last()["collapsed"], 0);
+}
+
+}  // namespace
+}  // namespace supple
