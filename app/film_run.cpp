@@ -65,6 +65,7 @@ void print_json(const FilmResult& result, const RunFolder& folder) {
       result.video_written ? nlohmann::ordered_json(folder.video().string()) : nlohmann::ordered_json(nullptr);
   json["video_message"] = result.video_message;
   json["verdict"] = verdict_on(result);
+  json["warnings"] = penetration_warnings(result.rows);
   say(stdout, fmt::format("{}\n", json_text(json)));
 }
 
@@ -81,6 +82,8 @@ int say_result(const FilmCommand& command, const FilmResult& result, const RunFo
                             std::max(int(result.rows.size()), result.kept_frames),
                             command.plan.film_only ? "frames' motion" : "whole frames", folder.path().string()));
   }
+  for (const std::string& warning : penetration_warnings(result.rows))
+    say(stderr, fmt::format("warning: {}\n", warning));
   if (!unrecorded.empty()) say(stderr, fmt::format("supple: {}\n", unrecorded));
   if (result.video_failed) say(stderr, fmt::format("supple: {}\n", result.video_message));
   if (result.end == FilmEnd::interrupted) {
@@ -139,7 +142,7 @@ void add_film_options(Verb& verb, FilmCommand& command) {
   verb.option("--tolerance", plan.tolerance, "compare positions up to this, over the body's size, instead of all bits")
       .needs(verify)
       .between(0.0, 1.0);
-  verb.flag("--quiet", plan.quiet, "say nothing but errors");
+  verb.flag("--quiet", plan.quiet, "say nothing but errors, and what is wrong with the film");
   verb.flag("--json", command.json, "the result as one line of JSON on standard output");
 }
 
