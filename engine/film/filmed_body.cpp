@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "base/trace.h"
 #include "film/state_file.h"
 #include "output/obj_file.h"
@@ -122,8 +124,13 @@ void FilmedBody::measure(int frame, BodyRow& row) {
   row.inverted = shape.inverted;
   row.collapsed = shape.collapsed;
   if (row.contact) {
-    row.contact->penetration =
-        penetration(driver_.set().colliders, driver_.inputs().collider_motions, state().x, surface_) / model().size;
+    const std::vector<Collider>& colliders = driver_.set().colliders;
+    const std::vector<double> depths = penetrations(colliders, driver_.inputs().collider_motions, state().x, surface_);
+    const std::vector<Vec3>& forces = driver_.workspace().report.collider_forces;
+    for (std::size_t c = 0; c < colliders.size(); ++c) {
+      row.contact->colliders.push_back({colliders[c].name, depths[c] / model().size, forces[c].norm()});
+      row.contact->penetration = std::max(row.contact->penetration, depths[c] / model().size);
+    }
   }
   const EnergyBalance& balance = budget_.balance();
   row.balance = {balance.total, balance.put_in, balance.from_nothing, balance.exchanged};

@@ -68,15 +68,6 @@ std::vector<std::pair<std::int32_t, std::int32_t>> open_edges(const Triangles& t
   return open;
 }
 
-// Computes the signed solid angle over 4 pi: Van Oosterom and Strackee, The solid angle of a plane triangle, 1983,
-// equation 8.
-double winding_of_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const double la = a.norm(), lb = b.norm(), lc = c.norm();
-  const double y = a.dot(b.cross(c));
-  const double x = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-  return std::atan2(y, x) / (2 * std::numbers::pi);
-}
-
 }  // namespace
 
 // Builds the tree. It splits at the middle, along the axis that leaves the two smallest boxes, into counts that fill
@@ -215,6 +206,7 @@ TriangleSolid::TriangleSolid(TriMesh surface) : surface_(std::move(surface)), bo
     normals_.row(t) = length > 0 ? Eigen::RowVector3d((n / length).transpose()) : Eigen::RowVector3d::UnitY();
   }
   Builder(*this).build();
+  prepare_sides();
 }
 
 // Any single apex will do: open edges form closed lines, so that the other sides of these triangles cancel.
@@ -264,8 +256,8 @@ void TriangleSolid::nearest_in_leaf(const Vec3& p, std::int32_t index, Nearest& 
     if (squared[k] < best.squared) best = {squared[k], index, k, v[k], w[k]};
 }
 
-// Searches by branch and bound, the nearer child first.
-TriangleSolid::Nearest TriangleSolid::nearest(const Vec3& p) const {
+// Searches by branch and bound, the nearer child first. A leaf that is likely to be near saves most of the search.
+TriangleSolid::Nearest TriangleSolid::nearest(const Vec3& p, std::int32_t likely) const {
   struct Entry {
     double squared;
     std::int32_t node;
@@ -274,6 +266,7 @@ TriangleSolid::Nearest TriangleSolid::nearest(const Vec3& p) const {
   int top = 0;
   stack[std::size_t(top++)] = {0, 0};
   Nearest best{infinity, 0, 0, 0, 0};
+  if (likely >= 0) nearest_in_leaf(p, likely, best);
   while (top > 0) {
     const Entry entry = stack[std::size_t(--top)];
     if (!(entry.squared < best.squared)) continue;
@@ -298,134 +291,32 @@ TriangleSolid::Nearest TriangleSolid::nearest(const Vec3& p) const {
   return best;
 }
 
-double TriangleSolid::winding_number(const Vec3& p) const {
-  // A part counts as far beyond twice its radius, as in section 3.2 of the same paper.
-  constexpr double far = 2;
-  // At this distance the result is below round-off, and further away squares would overflow.
-  if ((p - bounds_.center()).cwiseAbs().maxCoeff() > 1e12 * (bounds_.diagonal() + on_surface_)) return 0;
-  std::array<std::int32_t, stack_size> stack;
-  int top = 0;
-  stack[std::size_t(top++)] = 0;
-  double sum = 0;
-  while (top > 0) {
-    const std::int32_t index = stack[std::size_t(--top)];
-    if (index < 0) {
-      const Leaf& leaf = leaves_[std::size_t(~index)];
-      for (int k = 0; k < leaf.count; ++k) {
-        const Eigen::Index t = leaf.triangle[std::size_t(k)];
-        sum += winding_of_triangle(corner(t, 0) - p, corner(t, 1) - p, corner(t, 2) - p);
-      }
-      continue;
-    }
-    const Node& node = nodes_[std::size_t(index)];
-    const Dipoles& dipoles = dipoles_[std::size_t(index)];
-    const Lanes3 d{dipoles.center.x - p.x(), dipoles.center.y - p.y(), dipoles.center.z - p.z()};
-    const Lanes squared = dot(d, d);
-    const Lanes reach = far * dipoles.radius;
-    const Lanes seen = dot(dipoles.area, d) / (squared * squared.sqrt() * (4 * std::numbers::pi));
-    for (int k = 0; k < width; ++k) {
-      if (node.lower.x[k] > node.upper.x[k]) continue;  // there is no child here
-      if (squared[k] > reach[k] * reach[k]) {
-        sum += seen[k];
-      } else {
-        stack[std::size_t(top++)] = node.child[std::size_t(k)];
-      }
-    }
-  }
-  return sum;
-}
-
-// Tells how the triangle meets the ray from p: +1 where the ray leaves through it, -1 where it enters, 0 where it
-// passes by. Seen along the ray, the triangle's winding around p is a sum over those edges that cross the level of p on
-// the far side of p. That side is computed from the edge's lower to its upper end, the same for both neighbours, so
-// that round-off can't let a ray slip between two triangles or count both.
-int TriangleSolid::crossing(const Vec3& p, const Corners& corners, int axis, int direction) {
-  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  int turns = 0;
-  for (int k = 0; k < 3; ++k) {
-    const Vec3& from = corners[std::size_t(k)];
-    const Vec3& to = corners[std::size_t((k + 1) % 3)];
-    const bool upward = to[v] >= p[v];
-    if ((from[v] >= p[v]) == upward) continue;
-    const Vec3& low = upward ? from : to;
-    const Vec3& high = upward ? to : from;
-    bool beyond = low[u] > p[u];
-    if (beyond != (high[u] > p[u]))
-      beyond = (high[u] - low[u]) * (p[v] - low[v]) > (p[u] - low[u]) * (high[v] - low[v]);
-    if (beyond) turns += upward ? 1 : -1;
-  }
-  if (turns == 0) return 0;
-  const auto ahead = [&](const Vec3& q) { return direction * (q[axis] - p[axis]) > 0; };
-  const int count = int(ahead(corners[0])) + int(ahead(corners[1])) + int(ahead(corners[2]));
-  if (count == 0) return 0;
-  if (count < 3) {
-    const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-    if (!(direction * turns * normal.dot(p - corners[0]) < 0)) return 0;
-  }
-  return direction * turns;
-}
-
-// Computes the winding number of a point in the box for the surface whose holes are closed by lids. It is a whole
-// number: the signed crossings of the axis-parallel ray to the nearest side of the box.
-int TriangleSolid::crossings(const Vec3& p) const {
-  int axis = 0, direction = 1;
-  double shortest = infinity;
-  for (int k = 0; k < 3; ++k) {
-    for (const int sign : {1, -1}) {
-      const double length = sign > 0 ? bounds_.upper[k] - p[k] : p[k] - bounds_.lower[k];
-      if (length < shortest) {
-        shortest = length;
-        axis = k;
-        direction = sign;
-      }
-    }
-  }
-  Vec3 lower = p, upper = p;  // the ray's box
-  (direction > 0 ? upper : lower)[axis] = direction * infinity;
-  std::array<std::int32_t, stack_size> stack;
-  int top = 0;
-  stack[std::size_t(top++)] = 0;
-  int sum = 0;
-  for (const Corners& lid : lids_) sum += crossing(p, lid, axis, direction);
-  while (top > 0) {
-    const std::int32_t index = stack[std::size_t(--top)];
-    if (index < 0) {
-      const Leaf& leaf = leaves_[std::size_t(~index)];
-      for (int k = 0; k < leaf.count; ++k) sum += crossing(p, corners(leaf.triangle[std::size_t(k)]), axis, direction);
-      continue;
-    }
-    const Node& node = nodes_[std::size_t(index)];
-    const auto met = (node.lower.x <= upper.x() && node.upper.x >= lower.x() && node.lower.y <= upper.y() &&
-                      node.upper.y >= lower.y() && node.lower.z <= upper.z() && node.upper.z >= lower.z())
-                         .eval();
-    for (int k = 0; k < width; ++k)
-      if (met[k]) stack[std::size_t(top++)] = node.child[std::size_t(k)];
-  }
-  return sum;
-}
-
-bool TriangleSolid::inside(const Vec3& p) const {
-  if ((p.array() < bounds_.lower.array()).any() || (p.array() > bounds_.upper.array()).any()) return false;
-  // Lids cost time in every query; with more than this many, the tree is faster.
-  constexpr std::size_t most_lids = 32;
-  if (lids_.size() > most_lids) return winding_number(p) > 0.5;
-  double of_lids = 0;
-  for (const Corners& lid : lids_) of_lids += winding_of_triangle(lid[0] - p, lid[1] - p, lid[2] - p);
-  return crossings(p) - of_lids > 0.5;
-}
-
 SurfacePoint TriangleSolid::closest(const Vec3& p) const {
   // Seen from very far away, all points of the surface are equally distant up to round-off, and squares overflow, so
   // the query starts from a nearer point.
   const Vec3 from_center = p - bounds_.center();
   const double far = 1e12 * (bounds_.diagonal() + on_surface_), away = from_center.cwiseAbs().maxCoeff();
-  const Nearest found = nearest(away > far ? Vec3(bounds_.center() + from_center / away * far) : p);
+  const Nearest found = nearest(away > far ? Vec3(bounds_.center() + from_center / away * far) : p, -1);
+  return seen_from(p, found, inside(p) ? -1 : 1);
+}
+
+SurfacePoint TriangleSolid::closest(const Vec3& p, std::int32_t& near) const {
+  const bool usual = sides_by_normals_ && (p - bounds_.center()).cwiseAbs().maxCoeff() <= 1e3 * bounds_.diagonal();
+  if (!usual) return closest(p);
+  const Nearest found = nearest(p, near);
+  near = found.leaf;
+  return seen_from(p, found, side_of(p, found));
+}
+
+Vec3 TriangleSolid::point_of(const Nearest& found) const {
   const Leaf& leaf = leaves_[std::size_t(found.leaf)];
-  const Vec3 point = get(leaf.a, found.lane) + found.v * get(leaf.ab, found.lane) + found.w * get(leaf.ac, found.lane);
-  const Vec3 offset = p - point;
-  const double largest = offset.cwiseAbs().maxCoeff(), sign = inside(p) ? -1 : 1;
-  if (largest <= on_surface_)
-    return {point, normals_.row(leaf.triangle[std::size_t(found.lane)]), sign * offset.norm()};
+  return get(leaf.a, found.lane) + found.v * get(leaf.ab, found.lane) + found.w * get(leaf.ac, found.lane);
+}
+
+SurfacePoint TriangleSolid::seen_from(const Vec3& p, const Nearest& found, double sign) const {
+  const Vec3 point = point_of(found), offset = p - point;
+  const double largest = offset.cwiseAbs().maxCoeff();
+  if (largest <= on_surface_) return {point, normals_.row(triangle_of(found)), sign * offset.norm()};
   const Vec3 direction = offset / largest;  // its square neither overflows nor vanishes
   const double length = direction.norm();
   return {point, sign / length * direction, sign * length * largest};

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "geometry/mesh.h"
@@ -21,6 +22,14 @@ class TriangleSolid {
 
   // Accepts any finite point. The distance is exact up to round-off of the surface's coordinates.
   SurfacePoint closest(const Vec3& p) const;
+
+  // The same for a caller that asks about places near each other: `near` is what the query before left in it, -1 before
+  // the first one. The side is found from the surface's normals where that is safe, and otherwise as above.
+  SurfacePoint closest(const Vec3& p, std::int32_t& near) const;
+
+  // Returns which share of the way from a, which lies outside, to b leads to where it first enters; nothing when it
+  // does not.
+  std::optional<double> entry(const Vec3& a, const Vec3& b) const;
 
   // Sums near parts exactly and far ones as dipoles; the result is accurate to about 0.1.
   double winding_number(const Vec3& p) const;
@@ -66,7 +75,16 @@ class TriangleSolid {
     return {corner(triangle, 0), corner(triangle, 1), corner(triangle, 2)};
   }
   void nearest_in_leaf(const Vec3& p, std::int32_t leaf, Nearest& best) const;
-  Nearest nearest(const Vec3& p) const;
+  Nearest nearest(const Vec3& p, std::int32_t likely) const;
+  std::int32_t triangle_of(const Nearest& found) const {
+    return leaves_[std::size_t(found.leaf)].triangle[std::size_t(found.lane)];
+  }
+  Vec3 point_of(const Nearest& found) const;
+  SurfacePoint seen_from(const Vec3& p, const Nearest& found, double sign) const;
+  double side_of(const Vec3& p, const Nearest& found) const;
+  void entry_in_leaf(const Vec3& a, const Vec3& way, std::int32_t leaf, double& first) const;
+  bool find_neighbours();
+  void prepare_sides();
   void close_holes();
   bool inside(const Vec3& p) const;
   int crossings(const Vec3& p) const;
@@ -80,6 +98,10 @@ class TriangleSolid {
   std::vector<Dipoles> dipoles_;  // one for each of nodes_
   std::vector<Leaf> leaves_;
   Positions normals_;  // unit normals of the triangles
+  // For sides by normals, where that is safe.
+  bool sides_by_normals_ = false;
+  Triangles neighbours_;      // of each triangle across its edges from corner 0 to 1, from 1 to 2, and from 2 to 0
+  Positions vertex_normals_;  // sums of the triangles' normals, weighted by their angles
 };
 
 }  // namespace supple

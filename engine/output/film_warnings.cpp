@@ -44,6 +44,7 @@ std::vector<std::string> warnings_of(const std::vector<FrameRow>& rows) {
       list.push_back(fmt::format("body '{}' has {} without volume in its last frame", end.name,
                                  count_text(*end.collapsed, "element")));
   }
+  for (std::string& warning : penetration_warnings(rows)) list.push_back(std::move(warning));
   return list;
 }
 

@@ -60,6 +60,70 @@ std::vector<StageSummary> summarize(const std::vector<FrameRow>& rows) {
   return result;
 }
 
+namespace {
+
+// Summarises what one collider did to one body.
+struct TouchSummary {
+  std::string body, collider;
+  double deepest = 0;  // over the body's size
+  int deepest_frame = 0, deep_frames = 0;
+  double force_sum = 0, largest_force = 0;  // [N]
+};
+
+constexpr double deep = 0.01;  // a depth that a viewer sees, over the body's size
+
+std::vector<TouchSummary> touch_summaries(const std::vector<FrameRow>& rows) {
+  std::vector<TouchSummary> list;
+  for (const FrameRow& row : rows) {
+    for (const BodyRow& body : row.bodies) {
+      if (!body.contact) continue;
+      for (const ColliderRow& collider : body.contact->colliders) {
+        auto found = std::find_if(list.begin(), list.end(), [&](const TouchSummary& one) {
+          return one.body == body.name && one.collider == collider.name;
+        });
+        if (found == list.end()) found = list.insert(list.end(), {body.name, collider.name});
+        if (collider.penetration > found->deepest) {
+          found->deepest = collider.penetration;
+          found->deepest_frame = row.frame;
+        }
+        found->deep_frames += collider.penetration > deep;
+        found->force_sum += collider.force;
+        found->largest_force = std::max(found->largest_force, collider.force);
+      }
+    }
+  }
+  std::erase_if(list, [](const TouchSummary& one) { return one.deepest <= 0 && one.largest_force <= 0; });
+  return list;
+}
+
+std::string touch_table(const std::vector<FrameRow>& rows) {
+  const std::vector<TouchSummary> list = touch_summaries(rows);
+  if (list.empty()) return "";
+  std::string text = fmt::format("\n  {:<14}{:<14}{:>13}{:>10}{:>14}{:>14}\n", "body", "collider", "penetration",
+                                 "at frame", "force N, mean", "most");
+  for (const TouchSummary& one : list) {
+    text += fmt::format("  {:<14}{:<14}{:>13.1e}{:>10}{:>14.3g}{:>14.3g}\n", one.body, one.collider, one.deepest,
+                        one.deepest > 0 ? fmt::format("{}", one.deepest_frame) : "-",
+                        one.force_sum / static_cast<double>(rows.size()), one.largest_force);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> penetration_warnings(const std::vector<FrameRow>& rows) {
+  std::vector<std::string> list;
+  for (const TouchSummary& one : touch_summaries(rows)) {
+    if (one.deepest <= deep) continue;
+    list.push_back(fmt::format(
+        "the surface of body '{}' was up to {:.2g} % of its size deep inside collider '{}' (at "
+        "frame {}; above {:g} % in {} of {} frames): a thickness, a finer mesh of the body or "
+        "substeps make that less",
+        one.body, 100 * one.deepest, one.collider, one.deepest_frame, 100 * deep, one.deep_frames, rows.size()));
+  }
+  return list;
+}
+
 std::string profile_table(const std::vector<FrameRow>& rows) {
   std::string text = fmt::format("  {:<10}{:>9}{:>9}{:>9}{:>9}{:>11}{:>10}\n", "ms/frame", "p50", "p95", "p99", "max",
                                  "first", "total s");
@@ -108,7 +172,7 @@ std::string profile_table(const std::vector<FrameRow>& rows) {
     }
     text += '\n';
   }
-  return text;
+  return text + touch_table(rows);
 }
 
 }  // namespace supple

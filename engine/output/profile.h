@@ -11,6 +11,13 @@
 
 namespace supple {
 
+// Describes the contact with one collider at the end of a frame.
+struct ColliderRow {
+  std::string name;
+  double penetration = 0;  // the surface's largest depth inside it, over the body's size
+  double force = 0;        // on the body [N]
+};
+
 // Describes the contact with colliders; it is absent where a scene has none.
 struct ContactRow {
   double collide_ms = 0;
@@ -18,6 +25,7 @@ struct ContactRow {
   int changes = 0;         // vertices that came into contact or left it, over the frame's iterations
   int cycles = 0;          // iterations that restored the contact set of the one before last
   double penetration = 0;  // the surface's largest depth inside a collider, over the body's size
+  std::vector<ColliderRow> colliders = {};
 };
 
 // What a body has and what it was given since the film began (sim/solver/energies.h) [J].
@@ -70,7 +78,7 @@ struct StageSummary {
 std::vector<StageSummary> summarize(const std::vector<FrameRow>& rows);
 
 // Says what went wrong physically and did not end the run, a sentence for each body and kind: energy from nothing,
-// elements that are inverted or without volume at the end.
+// elements that are inverted or without volume at the end, and depths inside colliders (penetration_warnings).
 std::vector<std::string> warnings_of(const std::vector<FrameRow>& rows);
 
 // Writes rows as text (profile_json.cpp): all rows of a run, or one row as a line of its own.
@@ -82,7 +90,10 @@ std::string row_line(const FrameRow& row);
 FrameRow row_of_line(const std::string& line, const std::string& source);
 std::vector<FrameRow> read_profile(const std::filesystem::path& path);
 
-// Gives a table for people: the stages, then the solver's figures by body.
+// Gives a table for people: the stages, then the solver's figures by body, and then what each collider did to it.
 std::string profile_table(const std::vector<FrameRow>& rows);
+
+// Tells for each body and collider where the body's surface was deeper inside than it should be.
+std::vector<std::string> penetration_warnings(const std::vector<FrameRow>& rows);
 
 }  // namespace supple

@@ -34,6 +34,9 @@ Json json_of(const BodyRow& body) {
     row["contact_changes"] = body.contact->changes;
     row["contact_cycles"] = body.contact->cycles;
     row["penetration"] = body.contact->penetration;
+    row["colliders"] = Json::array();
+    for (const ColliderRow& c : body.contact->colliders)
+      row["colliders"].push_back({{"name", c.name}, {"penetration", c.penetration}, {"force", c.force}});
   }
   row["stretch"] = body.stretch;
   if (body.energy) {
@@ -97,6 +100,10 @@ BodyRow body_row(const Json& json) {
     row.contact = {json.at("collide_ms").get<double>(), json.at("contacts").get<int>(),
                    json.at("contact_changes").get<int>(), json.at("contact_cycles").get<int>(),
                    json.at("penetration").get<double>()};
+    for (const Json& c : json.value("colliders", Json::array())) {  // earlier versions did not write them
+      row.contact->colliders.push_back(
+          {c.at("name").get<std::string>(), c.at("penetration").get<double>(), c.at("force").get<double>()});
+    }
   }
   json.at("stretch").get_to(row.stretch);
   if (json.contains("kinetic_energy")) {

@@ -217,12 +217,10 @@ std::string warnings_html(const RunRecord& run) {
   std::ifstream file(run.folder / "profile.json");
   const Json profile = json_if_valid<Json>(file);
   std::string html;
-  if (profile.is_object() && profile.contains("verdict"))
-    html += "<p class=\"soft\">" + markup_text(text_at(profile, "verdict")) + "</p>\n";
-  if (!profile.is_object() || !profile.contains("warnings") || !profile["warnings"].is_array()) return html;
-  for (const Json& warning : profile["warnings"])
-    html += "<p class=\"warning\">" +
-            markup_text(warning.is_string() ? warning.get<std::string>() : json_text(warning)) + "</p>\n";
+  if (profile.is_object() && profile.contains("summary") && profile["summary"].contains("verdict"))
+    html += "<p class=\"soft\">" + markup_text(text_at(profile["summary"], "verdict")) + "</p>\n";
+  for (const std::string& warning : warnings_of(run.rows))
+    html += "<p class=\"warning\">" + markup_text(warning) + "</p>\n";
   return html;
 }
 

@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "scene/body_mesh.h"
+#include "scene/overlaps.h"
 #include "scene/rotation.h"
 #include "scene/shape_reader.h"
 
@@ -243,6 +244,7 @@ std::vector<Body> assemble(const SceneDef& scene) {
       problems.insert(problems.end(), error.problems().begin(), error.problems().end());
     }
   }
+  find_overlaps(scene, bodies, problems);
   std::vector<Problem> unique;
   for (Problem& problem : problems) {
     const bool seen =
@@ -319,7 +321,7 @@ State start_state(const Model& model, const Body& body) {
   State state = rest_state(model);
   const Positions start = start_positions(body.def.start, body.description.mesh.rest, body.seed, body.description.name);
   for (int v = 0; v < model.vertices; ++v) {
-    state.x.row(v) = start.row(model.input_of[v]);
+    state.x.row(v) = start.row(model.input_of[v]) + body.start_move.transpose();
     state.v.row(v) = body.def.velocity.transpose();
   }
   for (const auto& [vertex, handle] : model.handled) {

@@ -22,6 +22,12 @@ struct DrawnBody {
 };
 
 struct Body {
+  // A collider that the body starts in, and how deep [m].
+  struct Overlap {
+    std::string collider;
+    double depth;
+  };
+
   BodyDef def;
   BodyDescription description;       // the mesh as placed, and its handles
   std::vector<KeyedMotion> motions;  // by handle
@@ -34,6 +40,8 @@ struct Body {
   ClothMesh cloth;
   TriMesh skin;                                // of a body made from a surface, in the file's frame
   std::uint64_t seed = 0;                      // of its random start
+  std::vector<Overlap> overlaps;               // at the start; what the scene does about them is in its definition
+  Vec3 start_move = Vec3(0, 0, 0);             // out of the colliders that it would start in [m]
   Eigen::Affine3d placement = no_placement();  // from the file's frame to the world: turned, scaled, moved
 };
 

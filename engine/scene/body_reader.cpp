@@ -232,6 +232,11 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
     read_substances(table, body);
   }
   body.start = read_start(table);
+  body.start_inside = table.word<StartInside>(
+      {"start_inside", "",
+       "when it starts inside a collider: moved out if a tenth of its size is enough, else pushed out; pushed out; or "
+       "an error"},
+      StartInside::move);
   body.velocity = table.vector({"velocity", "m/s", "at the start"}, Vec3(0, 0, 0));
   std::set<std::string> names;
   for (const ConfigTable& row : table.tables({"handles", "", "vertices that follow a motion from outside"})) {

@@ -105,6 +105,18 @@ struct SolverDef {
   double damping = 0;  // beta [s]
 };
 
+// What is done about a body that starts inside a collider.
+enum class StartInside {
+  move,   // it is moved out when a small move is enough, or else pushed out
+  push,   // it is pushed out while the film runs
+  error,  // the scene is refused
+};
+template <>
+struct Names<StartInside> {
+  static constexpr std::array table = {Name{StartInside::move, "move"}, Name{StartInside::push, "push"},
+                                       Name{StartInside::error, "error"}};
+};
+
 struct BodyDef {
   std::string name;
   std::string label;
@@ -122,6 +134,7 @@ struct BodyDef {
   std::optional<double> total_mass;  // spread over the volume, of cloth over the area [kg]
   SubstanceDef substance;            // of solids
   StartDef start;
+  StartInside start_inside = StartInside::move;
   Vec3 velocity = Vec3(0, 0, 0);  // at the start [m/s]
   std::vector<RegionDef> regions;
   std::vector<HandleDef> handles;

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "geometry/cloth.h"
+#include "scene/obstacle.h"
+#include "scene/overlaps.h"
 
 namespace supple {
 namespace {
@@ -96,6 +98,45 @@ void warn_of_substance(const Body& body, std::vector<Problem>& list) {
   }
 }
 
+// Whether a collider may stop what falls down a shaft of this width and depth, at any time.
+bool may_stop_a_fall(const Obstacle& obstacle, const Bounds& shaft) {
+  if (is_half_space(obstacle)) return true;
+  std::vector<double> times = {0};
+  for (const MotionKey& key : obstacle.def.keys) times.push_back(key.time);
+  const Bounds box = obstacle.def.shape.bounds();
+  Bounds swept;
+  for (const double time : times) {
+    const Vec3 center = obstacle.pose(time) * box.center();
+    const Vec3 reach = Vec3::Constant(0.5 * box.diagonal() + obstacle.def.thickness);
+    swept.include(center - reach);
+    swept.include(center + reach);
+  }
+  return (swept.upper.array() >= shaft.lower.array()).all() && (swept.lower.array() <= shaft.upper.array()).all();
+}
+
+// Warns of a body that falls through the ground, which every film shows at y = 0 and which stops nothing.
+void warn_of_fall(const SceneDef& scene, const Body& body, std::vector<Problem>& list) {
+  const double size = bounds_of(body.description.mesh.rest).diagonal(), duration = scene.frames / scene.fps;
+  for (std::size_t h = 0; h < body.description.handles.size(); ++h) {
+    if (body.def.handles[h].from < duration) return;
+  }
+  Bounds shaft =
+      bounds_of(start_positions(body.def.start, body.description.mesh.rest, body.seed, body.description.name));
+  const double bottom = shaft.lower.y(), g = -scene.gravity.y();
+  const double lowest = bottom + body.def.velocity.y() * duration - 0.5 * g * duration * duration;
+  if (g <= 0 || bottom < -0.01 * size || lowest > -0.5 * size) return;
+  const Vec3 drift = body.def.velocity * duration + 0.5 * duration * duration * scene.gravity;
+  shaft.include(shaft.lower + drift);
+  shaft.include(shaft.upper + drift);
+  for (const Obstacle& obstacle : collision_set(scene).obstacles) {
+    if (may_stop_a_fall(obstacle, shaft)) return;
+  }
+  list.push_back(at(body.def.place,
+                    fmt::format("body '{}' falls through the ground that the film shows: the scene has no collider "
+                                "there, such as [[collider]] shape = {{ half_space = {{ normal = [0, 1, 0] }} }}",
+                                body.def.name)));
+}
+
 }  // namespace
 
 double crossing_number(const Body& body) {
@@ -151,6 +192,9 @@ std::vector<Problem> warnings(const SceneDef& scene, const std::vector<Body>& bo
                                                     "{:.3g}; more iterations or substeps make it sharper",
                                                     body.def.name, body.def.solver.settings.iterations, crossing)));
     }
+    if (!body.overlaps.empty() && body.def.start_inside != StartInside::push)
+      list.push_back(at(body.def.place, overlap_text(body)));
+    warn_of_fall(scene, body, list);
     warn_of_substance(body, list);
     warn_of_weight(scene, body, box, list);
     warn_of_size(scene, body, box, list);

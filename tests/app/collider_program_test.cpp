@@ -90,6 +90,13 @@ TEST(ColliderProgram, ReportsContactsAndWhereTheCollidersWere) {
                           body["lbfgs_ms"].get<double>() + body["collide_ms"].get<double>() +
                           body["other_ms"].get<double>();
     EXPECT_NEAR(phases, body["step_ms"].get<double>(), 0.01);
+    ASSERT_EQ(body["colliders"].size(), 2u);
+    EXPECT_EQ(body["colliders"][0]["name"], "ground");
+    EXPECT_EQ(body["colliders"][0]["penetration"], body["penetration"]);
+    EXPECT_EQ(body["colliders"][1]["name"], "press");
+    EXPECT_EQ(body["colliders"][1]["force"], 0);
+    const bool pressed = body["contacts"].get<int>() > 0;
+    EXPECT_EQ(body["colliders"][0]["force"].get<double>() > 0, pressed);
     touching = std::max(touching, body["contacts"].get<int>());
     changes += body["contact_changes"].get<int>();
   }
@@ -109,6 +116,22 @@ TEST(ColliderProgram, ReportsContactsAndWhereTheCollidersWere) {
     EXPECT_NEAR(press.pose[2], 0.25, 1e-12);
     EXPECT_NEAR(std::abs(press.pose[5]), 1, 1e-12);
   }
+}
+
+// Edges are cut by a post that is narrower than a cell: only vertices touch.
+TEST(ColliderProgram, WarnsOfADepthAboveAHundredthAlsoWhenQuiet) {
+  const test::TemporaryFolder folder;
+  const std::string post =
+      "[[collider]]\nname = \"post\"\nshape = { capsule = { ends = [[0.05, -1, 0.05], [0.05, -0.005, 0.05]], radius = "
+      "0.01 "
+      "} }\n";
+  std::ofstream(folder.path / "s.toml") << box_scene << post;
+  const Result result = run(folder.path, render("s.toml"));
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_TRUE(result.err.starts_with("warning: the surface of body 'box' was up to ")) << result.err;
+  EXPECT_NE(result.err.find("% of its size deep inside collider 'post' (at frame "), std::string::npos) << result.err;
+  std::ofstream(folder.path / "s.toml") << box_scene << ground_and_press;
+  EXPECT_EQ(run(folder.path, render("s.toml")).err, "");
 }
 
 TEST(ColliderProgram, SaysNothingOfContactsWithoutColliders) {

@@ -288,5 +288,72 @@ TEST(TriangleSolid, GivesTheSameBitsEachTime) {
   }
 }
 
+// Queries that start from what the one before has found, along a way through each solid, and with jumps.
+TEST(TriangleSolid, AnswersToPlacesNearEachOtherAreThoseToEachAlone) {
+  const TriMesh ball = test::sphere_surface(1, 24, 12);
+  TriMesh hollow = test::inside_out(ball);
+  hollow.points *= 0.5;
+  const struct {
+    const char* name;
+    TriMesh mesh;
+  } cases[] = {{"box", test::box_surface(Vec3(1, 0.5, 0.25))},
+               {"torus", test::torus_surface(1, 0.4, 60, 30)},
+               {"shell", test::together(ball, hollow)},
+               {"overlapping balls", test::together(ball, test::moved(ball, Vec3(0.7, 0, 0)))},
+               {"ball with a hole", test::without_triangle(ball, 100)}};
+  for (const auto& [name, mesh] : cases) {
+    const TriangleSolid solid(mesh);
+    Points points(8);
+    std::int32_t near = -1;
+    Vec3 p = Vec3::Zero();
+    int inside = 0;
+    for (int i = 0; i < 40'000; ++i) {
+      p = i % 50 == 0 ? points.in_box(Vec3::Constant(2)) : Vec3(p + points.in_box(Vec3::Constant(0.03)));
+      if (i % 3 == 0) p = points.near_surface(mesh, i % 2 ? 1e-3 : 1e-7);
+      const SurfacePoint alone = solid.closest(p), found = solid.closest(p, near);
+      EXPECT_NEAR(found.distance, alone.distance, 1e-14) << name << " " << p.transpose();
+      EXPECT_NEAR((p - found.distance * found.normal - found.point).norm(), 0, 1e-11) << name << " " << p.transpose();
+      inside += alone.distance < 0;
+    }
+    EXPECT_GT(inside, 5000) << name;
+  }
+}
+
+TEST(TriangleSolid, AWayEntersWhereTheDistanceFirstVanishes) {
+  for (const TriMesh& mesh : {test::torus_surface(1, 0.4, 60, 30), test::box_surface(Vec3(1, 0.5, 0.25))}) {
+    const TriangleSolid solid(mesh);
+    Points points(9);
+    int met = 0;
+    for (int i = 0; i < 20'000; ++i) {
+      // Every third way runs along an axis, through vertices and edges.
+      const Vec3 a =
+          i % 3 ? points.in_box(Vec3::Constant(2)) : Vec3(2, 0.25 * (i / 3 % 17 - 8), 0.25 * (i / 51 % 17 - 8));
+      const Vec3 b = i % 3 ? points.in_box(Vec3::Constant(2)) : Vec3(-2, a.y(), a.z());
+      if (solid.closest(a).distance < 1e-6) continue;
+      const std::optional<double> share = solid.entry(a, b);
+      // The plain version steps as far as the distance allows.
+      const double length = (b - a).norm();
+      double gone = 0, field = solid.closest(a).distance;
+      for (int march = 0; march < 2000 && field > 1e-7 && gone < length; ++march) {
+        gone += field;
+        field = solid.closest(a + std::min(1.0, gone / length) * (b - a)).distance;
+      }
+      if (gone < length) {
+        // A way that grazes the surface nearly meets it for long before it does, or only nearly meets it at all.
+        if (!share) {
+          EXPECT_GT(solid.closest(a + gone / length * (b - a)).distance, -1e-9) << i;
+          continue;
+        }
+        EXPECT_GT(*share * length, gone - 1e-6) << i;
+        EXPECT_LT(std::abs(solid.closest(a + *share * (b - a)).distance), 1e-9) << i;
+        ++met;
+      } else {
+        EXPECT_FALSE(share.has_value() && *share < 1 - 1e-6) << i;
+      }
+    }
+    EXPECT_GT(met, 2000);
+  }
+}
+
 }  // namespace
 }  // namespace supple

@@ -116,7 +116,7 @@ TEST(Profile, RowsComeBackFromTheirText) {
   body.jiggle = 1.0 / 3;
   body.inverted = 2;
   body.energy = {1, 2, 3.5};
-  body.contact = {0.5, 4, 3, 2, 1e-3};
+  body.contact = {0.5, 4, 3, 2, 1e-3, {{"ground", 1e-3, 12.5}, {"press", 0, 0}}};
   body.stop_reason = "round-off";
   row.bodies = {body, BodyRow{}};
   const std::string line = row_line(row);
@@ -134,6 +134,33 @@ TEST(Profile, RowsComeBackFromTheirText) {
   EXPECT_THROW(row_of_line("{}", "a line"), InputError);
   EXPECT_THROW(row_of_line(line.substr(0, line.size() / 2), "a line"), InputError);
   EXPECT_THROW(read_profile(folder.path / "none.json"), InputError);
+}
+
+TEST(Profile, TellsWhatEachColliderDidAndWarnsOfDepthsAboveAHundredth) {
+  std::vector<FrameRow> rows(4);
+  for (int frame = 0; frame < 4; ++frame) {
+    rows[frame].frame = frame;
+    BodyRow soft;
+    soft.name = "soft";
+    const double deep = frame == 2 ? 0.05 : frame == 3 ? 0.02 : 0;
+    soft.contact = {0, 0, 0, 0, deep, {{"ground", 0.009, 10.0 * frame}, {"press", deep, 0}, {"wall", 0, 0}}};
+    rows[frame].bodies = {soft};
+  }
+  const std::vector<std::string> warnings = penetration_warnings(rows);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(
+      warnings[0].find("body 'soft' was up to 5 % of its size deep inside collider 'press' (at frame 2; above 1 % "
+                       "in 2 of 4 frames)"),
+      std::string::npos)
+      << warnings[0];
+  const std::string table = profile_table(rows);
+  const auto line = [&](const std::string& collider) {
+    const std::size_t at = table.find("  soft          " + collider);
+    return at == std::string::npos ? "" : table.substr(at, table.find('\n', at) - at);
+  };
+  EXPECT_EQ(line("ground"), "  soft          ground              9.0e-03         0            15            30");
+  EXPECT_EQ(line("press"), "  soft          press               5.0e-02         2             0             0");
+  EXPECT_EQ(line("wall"), "");
 }
 
 TEST(RunFolder, TakesOverItsOwnAndRefusesWhatOthersLeft) {

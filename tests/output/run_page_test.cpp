@@ -26,14 +26,14 @@ RunRecord small_run(const std::filesystem::path& folder, int frames) {
     row.step_ms = frame == 3 ? 90 : 10;
     row.bodies.resize(2);
     row.bodies[0].name = "soft";
-    row.bodies[1].name = "hard";
+    row.bodies[1].name = "hard & <wet>";
+    row.bodies[1].inverted = 3;
     row.bodies[0].error_estimate = 1e-5 * (frame + 1);
     row.bodies[1].contact.emplace();
     row.bodies[1].contact->contacts = frame;
     run.rows.push_back(row);
   }
-  std::ofstream(folder / "profile.json")
-      << R"({"verdict": "solving is 90 %", "warnings": ["body 'soft' gains <energy>"]})";
+  std::ofstream(folder / "profile.json") << R"({"summary": {"verdict": "solving is 90 % & more"}})";
   return run;
 }
 
@@ -60,7 +60,9 @@ TEST(RunPage, NeedsNoOtherFileAndTakesNoNameForMarkup) {
   EXPECT_FALSE(std::regex_search(page, std::regex("(src|href)=\"(?!data:)"))) << "something is loaded";
   EXPECT_EQ(page.find("http"), std::string::npos);
   EXPECT_NE(page.find("<title>A &amp; B</title>"), std::string::npos);
-  EXPECT_NE(page.find("gains &lt;energy&gt;"), std::string::npos);
+  EXPECT_NE(page.find("solving is 90 % &amp; more"), std::string::npos);
+  EXPECT_NE(page.find("class=\"warning\">body &#39;hard &amp; &lt;wet&gt;&#39; has 3 elements turned inside out"),
+            std::string::npos);
   EXPECT_EQ(page.find("/x/</script>"), std::string::npos);
   EXPECT_NE(page.find("This run has no film."), std::string::npos);
   const std::size_t slowest = page.find("<tr data-frame=");

@@ -8,73 +8,29 @@
 #include <Eigen/Dense>
 
 #include "baselines/reference.h"
-#include "geometry/tetrahedralize.h"
 #include "geometry/triangle_solid.h"
-#include "sim/solver/step.h"
-#include "support/bodies.h"
+#include "support/contact_scene.h"
 #include "support/surfaces.h"
 
 namespace supple {
 namespace {
 
 using test::bar;
+using test::cube;
 using test::Held;
+using test::moved_to;
 using test::shaken;
-
-Shape shape_of(const Primitive& primitive) {
-  Shape shape;
-  shape.root.parts.push_back({primitive});
-  return shape;
-}
+using test::shape_of;
 
 const Shape ground = shape_of(HalfSpace{Vec3::UnitY(), 0});
 
-Eigen::Isometry3d moved_to(const Vec3& place) {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translation() = place;
-  return pose;
-}
-
-// Makes a cube of n cells a side, 0.2 m wide, centred at the origin.
-BodyDescription cube(int cells, const Material& material = Corotated{3e4, 6e4}) {
-  BodyDescription body;
-  body.name = "cube";
-  body.mesh = box_mesh(Vec3(0.2, 0.2, 0.2), Eigen::Vector3i::Constant(cells));
-  body.mesh.rest.rowwise() -= Eigen::RowVector3d(0.1, 0.1, 0.1);
-  body.materials = {material};
-  body.precision = Precision::double_precision;
-  return body;
-}
-
-// A body among colliders, and what its steps need.
-struct ContactScene {
-  Model model;
-  std::vector<Collider> colliders;
-  StepInputs inputs;
-  State state;
-  Workspace w;
-
-  ContactScene(const BodyDescription& body, std::vector<Collider> all, const Vec3& place = Vec3::Zero())
-      : model(build_model(body)), colliders(std::move(all)), state(rest_state(model)) {
-    inputs = test::still_inputs(model);
-    inputs.colliders = &colliders;
-    inputs.collider_motions.resize(colliders.size());
-    state.x.rowwise() += place.transpose();
-  }
+// The scene of the tests, whose steps must not fail.
+struct ContactScene : test::ContactScene {
+  using test::ContactScene::ContactScene;
   const StepReport& advance() {
-    const StepReport& report = step(model, inputs, state, w);
+    const StepReport& report = step();
     EXPECT_FALSE(report.failed) << report.failure.what;
     return report;
-  }
-  Vec3 center() const { return state.x.colwise().mean().transpose(); }
-  double fastest() const { return state.v.rowwise().norm().maxCoeff(); }
-  double deepest(std::size_t collider) const {
-    double deepest = 0;
-    for (int v = 0; v < model.vertices; ++v) {
-      const Vec3 local = inputs.collider_motions[collider].end.inverse() * Vec3(state.x.row(v));
-      deepest = std::max(deepest, -colliders[collider].shape.distance(local));
-    }
-    return deepest;
   }
 };
 
@@ -196,7 +152,8 @@ TEST(Contact, DirectionsBendAsTheQuadraticModelWithThePlanesAheadDoes) {
     Positions direction = Positions::Zero(scene.model.free, 3);
     direction.col(1).setConstant(-0.03);
     Positions r = Positions::Zero(scene.model.free, 3), z(scene.model.free, 3);
-    apply_inverse(scene.model, {}, scene.w.correction, scene.w.solve_scratch, r, z);  // makes the system of what touches
+    apply_inverse(scene.model, {}, scene.w.correction, scene.w.solve_scratch, r,
+                  z);  // makes the system of what touches
 
     Eigen::MatrixXd system = dense_system(scene);
     for (const StiffDirection& s : scene.w.correction.wanted) stiffen(system, s.vertex, s.axis, s.stiffness);
@@ -406,6 +363,39 @@ TEST(Contact, FrictionHoldsOrSlidesAsCoulombSays) {
           << friction;
     }
   }
+}
+
+// Sticking is smooth, so what friction holds creeps a little.
+TEST(Contact, ABodyThatFrictionHoldsOnASlopeCreepsByLessThanATenThousandthOfItsSizeASecond) {
+  const double angle = 20 * 3.14159265358979 / 180;
+  const Vec3 normal(0, std::cos(angle), std::sin(angle));
+  BodyDescription body = cube(3, Corotated{3e5, 6e5});
+  body.mesh.rest = body.mesh.rest * Eigen::AngleAxisd(angle, Vec3::UnitX()).toRotationMatrix().transpose();
+  ContactScene scene(body, {{"slope", shape_of(HalfSpace{normal, 0}), 0, 0.5}}, 0.1 * normal);
+  for (int frame = 0; frame < 60; ++frame) scene.advance();
+  const Vec3 start = scene.center();
+  for (int frame = 0; frame < 90; ++frame) scene.advance();
+  EXPECT_LT((scene.center() - start).norm(), 3 * 1e-4 * scene.model.size);
+}
+
+TEST(Contact, AClothThatLiesOnABallStaysThere) {
+  BodyDescription net = test::spring_net(16);
+  for (double& mass : net.point_mass) mass *= 0.2;
+  net.mesh.rest.rowwise() -= Eigen::RowVector3d(0.19, 0.2, 0);  // it hangs a little more to one side
+  net.mesh.rest =
+      net.mesh.rest * Eigen::AngleAxisd(0.5 * 3.14159265358979, Vec3::UnitX()).toRotationMatrix().transpose();
+  ContactScene scene(net, {{"ball", shape_of(Sphere{0.15}), 0, 0.5}}, Vec3(0, 0.151, 0));
+  for (int frame = 0; frame < 150; ++frame) scene.advance();
+  const Positions start = scene.state.x;
+  const double seconds = 5;
+  for (int frame = 0; frame < 30 * seconds; ++frame) scene.advance();
+  double furthest = 0;
+  for (const Contact& contact : scene.w.current.contacts) {
+    if (contact.depth > 0)
+      furthest = std::max(furthest, (scene.state.x.row(contact.vertex) - start.row(contact.vertex)).norm());
+  }
+  EXPECT_GT(scene.w.contact.counts.touching, 20);
+  EXPECT_LT(furthest, seconds * 1e-3 * scene.model.size);
 }
 
 TEST(Contact, SameBitsWhateverTheWorkspaceDidBefore) {

@@ -48,6 +48,18 @@ void add_normal_forces(const std::vector<Contact>& contacts, const Positions& po
   }
 }
 
+void add_forces(const std::vector<Contact>& contacts, double stick_length, const Positions& point,
+                std::vector<Vec3>& by_collider) {
+  for (const Contact& contact : contacts) {
+    const Vec3 p = point.row(contact.vertex);
+    const double below = std::min(0.0, contact.normal.dot(p) - contact.offset);
+    by_collider[contact.collider] -= 2 * contact.stiffness * below * contact.normal;
+    if (contact.friction <= 0) continue;
+    const Vec3 slid = slip(contact, p);
+    by_collider[contact.collider] -= contact.friction * friction_slope_over_u(slid.norm(), stick_length) * slid;
+  }
+}
+
 ContactChange add_contacts(const std::vector<Contact>& contacts, double stick_length, const Positions& point,
                            const Positions* reference, const Positions& direction, Positions* gradient, double sign) {
   ContactChange change;

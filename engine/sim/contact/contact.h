@@ -39,6 +39,10 @@ double contact_energy(const std::vector<Contact>& contacts, const Positions& poi
 // Adds `sign` times the normal forces at a point to `force` [N].
 void add_normal_forces(const std::vector<Contact>& contacts, const Positions& point, double sign, Positions& force);
 
+// Adds the force of each contact at a point, friction included, to that of its collider on the body [N].
+void add_forces(const std::vector<Contact>& contacts, double stick_length, const Positions& point,
+                std::vector<Vec3>& by_collider);
+
 // The share of contacts in an objective.
 struct ContactChange {
   double value = 0;  // [J]

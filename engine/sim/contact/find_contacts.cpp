@@ -7,109 +7,27 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "sim/contact/way_out.h"
 
 namespace supple {
 namespace {
 
 constexpr int group_size = 64;     // consecutive vertices; the order of elimination keeps neighbours together
 constexpr int groups_a_chunk = 8;  // a thread takes so many; fixed, so that results do not depend on threads
-constexpr int most_marches = 200;  // of a ray; one that needs more only grazes the surface
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double furthest_way_out = 100;  // that is looked for, over the body's size
 
 int groups_of(const Model& model) { return (model.free + group_size - 1) / group_size; }
-
-// One collider over one step, in its own frame: a vertex goes from a = start^-1 q to b = end^-1 x, so that a moving
-// collider stands still.
-class View {
- public:
-  View(const Collider& collider, const ColliderMotion& motion, const ColliderTraits& traits)
-      : collider_(collider),
-        end_(motion.end),
-        to_start_(motion.start.inverse()),
-        to_end_(motion.end.inverse()),
-        traits_(traits) {}
-
-  Vec3 at_start(const Vec3& world) const { return to_start_ * world; }
-  Vec3 at_end(const Vec3& world) const { return to_end_ * world; }
-  Vec3 carried(const Vec3& world) const { return end_ * (to_start_ * world); }  // moved with the collider
-  const Eigen::Isometry3d& end() const { return end_; }
-
-  // The distance to the layer around the shape.
-  double distance(const Vec3& p) const { return collider_.shape.distance(p) - collider_.thickness; }
-  SurfacePoint closest(const Vec3& p) const {
-    SurfacePoint s = collider_.shape.closest(p);
-    s.point += collider_.thickness * s.normal;
-    s.distance -= collider_.thickness;
-    return s;
-  }
-
-  // How far a point at this distance from the layer can certainly go without meeting it.
-  double clear(double distance) const {
-    return std::max(0.0, traits_.certainty * (distance + collider_.thickness) - collider_.thickness);
-  }
-
-  // Tells whether a way is too short to lead through the shape.
-  bool short_way(double way) const { return way < traits_.half_thickness; }
-
-  // Returns how far along the way from a (outside) to b the layer is met; nothing when it is not. Steps as long as the
-  // distance never overshoot (Hart 1996, "Sphere tracing").
-  std::optional<double> meets(const Vec3& a, const Vec3& b, double field_at_a) const {
-    const double length = (b - a).norm();
-    const double close = 1e-9 * (length + std::abs(field_at_a));
-    double gone = 0, field = field_at_a;
-    for (int march = 0; march < most_marches && field > close; ++march) {
-      gone += clear(field);
-      if (gone >= length) return std::nullopt;
-      field = distance(a + gone / length * (b - a));
-    }
-    return length > 0 ? gone / length : 0.0;
-  }
-
- private:
-  const Collider& collider_;
-  Eigen::Isometry3d end_, to_start_, to_end_;
-  ColliderTraits traits_;
-};
-
-// The place where a vertex entered, or where it was if the step started inside.
-struct Entry {
-  SurfacePoint surface;
-  double way;  // from a to b, 0 to 1
-};
-
-// Finds where the way from a to b enters; nothing when it stays outside.
-std::optional<Entry> entry(const View& view, const Vec3& a, const Vec3& b, double field_at_a) {
-  if (field_at_a <= 0) return Entry{view.closest(a), 0};
-  const std::optional<double> way = view.meets(a, b, field_at_a);
-  if (!way) return std::nullopt;
-  return Entry{view.closest(a + *way * (b - a)), *way};
-}
-
-// Tells whether two normals belong to the two sides of a wall, not of an edge.
-bool opposite(const Vec3& a, const Vec3& b) { return a.dot(b) < -0.5; }
-
-// Finds the surface that holds a vertex which went from a to b: the closest one, unless it went through to another
-// side; then it is the one by which the vertex entered. Nothing when there is none within `reach`.
-std::optional<SurfacePoint> holding(const View& view, const Vec3& a, const Vec3& b, double field_at_a, double reach) {
-  const SurfacePoint here = view.closest(b);
-  if (view.short_way((b - a).norm() + std::max(0.0, -field_at_a)))
-    return here.distance < reach ? std::optional(here) : std::nullopt;
-  // The way leads straight onto the side that is closest: the usual case, which needs no ray.
-  if (here.distance < 0 && field_at_a > 0 && (a - here.point).dot(here.normal) >= 0) return here;
-  const std::optional<Entry> entered = entry(view, a, b, field_at_a);
-  if (!entered) return here.distance < reach ? std::optional(here) : std::nullopt;
-  if (here.distance < 0) return opposite(here.normal, entered->surface.normal) ? entered->surface : here;
-  // The vertex is outside again. A way that cuts a corner may pass; one that leaves on the far side may not.
-  const std::optional<double> back = view.meets(b, a, here.distance);
-  const SurfacePoint left = back ? view.closest(b + *back * (a - b)) : here;
-  if (opposite(left.normal, entered->surface.normal)) return entered->surface;
-  return here.distance < reach ? std::optional(here) : std::nullopt;
-}
 
 // A vertex that moved `way` since the step began, and would have moved `freely` if nothing held it, gets a plane within
 // this distance of a surface: an iteration may still move it that much further. What rests hardly moves, but the next
 // iteration may move it as far as gravity would.
 double reach_of(double way, double freely) { return 0.25 * std::max(way, freely); }
+
+// The way that a vertex may make out of an overlap in one step [m].
+double push_out_of(const Model& model, const StepInputs& inputs) {
+  return inputs.solver.contact.push_out * model.size * model.time_step;
+}
 
 // Everything that the examination of one vertex needs.
 struct Search {
@@ -118,18 +36,38 @@ struct Search {
   const Positions& x;
   ContactWork& work;
 
-  View view(std::size_t c) const { return View((*inputs.colliders)[c], inputs.collider_motions[c], work.traits[c]); }
+  ColliderView view(std::size_t c) const {
+    return ColliderView((*inputs.colliders)[c], inputs.collider_motions[c], work.traits[c]);
+  }
+
+  // The memory of queries for a vertex. Its first query starts from what the vertex before it in its group has found.
+  std::int32_t& memory(std::size_t c, int v) const {
+    std::int32_t& own = work.memory[c * model.free + v];
+    if (own < 0 && v % group_size > 0) own = work.memory[c * model.free + v - 1];
+    return own;
+  }
 
   // Returns the signed distance of vertex v at the start of the step, which is computed once.
-  double start_field(const View& view, std::size_t c, int v, const Vec3& a) const {
+  double start_field(const ColliderView& view, std::size_t c, int v, const Vec3& a) const {
     double& known = work.clearance[c * model.free + v];
-    if (std::isnan(known)) known = view.distance(a);
+    if (std::isnan(known)) known = view.distance(a, memory(c, v));
     return known;
   }
 
-  // Calls found(v, a, b, field_at_a, reach) for the vertices of a group that may have met collider c.
+  // Returns the least signed distance of all vertices at the start of the step, as far as it is negative.
+  double deepest_start(std::size_t c) const {
+    const ColliderView own = view(c);
+    double least = 0;
+    for (int v = 0; v < model.free; ++v) {
+      if (work.group_distance[c * groups_of(model) + v / group_size] >= 0) continue;
+      least = std::min(least, start_field(own, c, v, own.at_start(work.start.row(v))));
+    }
+    return least;
+  }
+
+  // Calls found(v, way, field_at_start, reach) for the vertices of a group that may have met collider c.
   template <class Found>
-  void near(std::size_t c, const View& view, int group, const Found& found) const {
+  void near(std::size_t c, const ColliderView& view, int group, const Found& found) const {
     const int groups = groups_of(model);
     const std::size_t at = c * groups + group;
     const double moved = work.group_move[group] + work.collider_move[at];
@@ -137,12 +75,11 @@ struct Search {
     if (moved + reach_of(moved, freely) < view.clear(work.group_distance[at])) return;
     const int end = std::min(model.free, (group + 1) * group_size);
     for (int v = group * group_size; v < end; ++v) {
-      const Vec3 a = view.at_start(work.start.row(v)), b = view.at_end(x.row(v));
-      const double way = (b - a).norm();
-      const double reach = reach_of(way, (view.at_end(work.prediction->row(v)) - a).norm());
-      const double field = start_field(view, c, v, a);
-      if (way + reach < view.clear(field)) continue;
-      found(v, a, b, field, reach);
+      const Way way = view.way(work.start.row(v), x.row(v));
+      const double reach = reach_of(way.length, view.length_to(work.prediction->row(v), way));
+      const double field = start_field(view, c, v, way.a);
+      if (way.length + reach < view.clear(field)) continue;
+      found(v, way, field, reach);
     }
   }
 };
@@ -156,6 +93,20 @@ void measure_moves(const Model& model, const Positions& x, const ContactWork& wo
     for (int v = group * group_size; v < end; ++v) most = std::max(most, (x.row(v) - work.start.row(v)).squaredNorm());
     moves[group] = std::sqrt(most);
   }
+}
+
+// Sets the plane of a vertex that started inside a collider which the body leaves by a common way: at the end of the
+// step it lies as much further along that way as it may go, or as it has left to go. It slides out without friction.
+void leave(const ColliderView& view, const Way& way, const Vec3& way_out, double field, double push_out,
+           std::int32_t& near, Contact& contact) {
+  const Eigen::Isometry3d motion = view.motion_after(0);
+  const Vec3 local = view.end().linear().transpose() * motion.linear() * way_out;
+  double left = 0;
+  for (double at = field; at < 0 && left < push_out; at = view.distance(way.a + left * local, near))
+    left += std::max(view.clear(-at), 0.02 * push_out);
+  contact.normal = motion.linear() * way_out;
+  contact.offset = contact.normal.dot(view.carried(way.q)) + std::min(left, push_out);
+  contact.depth = std::max(0.0, contact.offset - contact.normal.dot(way.x));
 }
 
 // Returns the normal force from which friction follows (Li et al. 2020, section 5.3, lag it too): the force of the
@@ -207,6 +158,24 @@ int changes_between(const std::vector<Contact>& a, const std::vector<Contact>& b
   }
 }
 
+// Finds a common way out where the body starts so deep inside a collider that it cannot leave it in this step.
+void find_way_out(const Model& model, const StepInputs& inputs, ContactWork& work) {
+  const std::vector<Collider>& colliders = *inputs.colliders;
+  const double push_out = push_out_of(model, inputs);
+  const Search search{model, inputs, work.start, work};
+  std::vector<std::size_t> deep;
+  for (std::size_t c = 0; c < colliders.size(); ++c) {
+    if (search.deepest_start(c) < -push_out) deep.push_back(c);
+  }
+  work.way_out.assign(colliders.size(), Vec3::Zero());
+  if (deep.empty()) return;
+  std::vector<Eigen::Isometry3d> poses;
+  for (const ColliderMotion& motion : inputs.collider_motions) poses.push_back(motion.start);
+  const std::optional<WayOut> way =
+      way_out(Obstacles(colliders, poses), work.start, 0.1 * push_out, furthest_way_out * model.size);
+  for (const std::size_t c : deep) work.way_out[c] = way ? way->direction : Vec3::Zero();
+}
+
 }  // namespace
 
 void forget_counts(ContactWork& work) {
@@ -224,6 +193,7 @@ void begin_contacts(const Model& model, const StepInputs& inputs, const Position
   work.stick_length = inputs.solver.contact.stick * model.size * model.time_step;
   work.start = q.topRows(model.free);
   work.clearance.assign(colliders * model.free, unknown);
+  work.memory.assign(colliders * model.free, -1);
   work.group_distance.resize(colliders * groups);
   work.collider_move.resize(colliders * groups);
   measure_moves(model, y, work, work.group_free_move);
@@ -237,37 +207,47 @@ void begin_contacts(const Model& model, const StepInputs& inputs, const Position
     const double radius = std::sqrt(
         (work.start.middleRows(first, count).rowwise() - center.transpose()).rowwise().squaredNorm().maxCoeff());
     for (std::size_t c = 0; c < colliders; ++c) {
+      std::int32_t near = -1;
       const ColliderMotion& motion = inputs.collider_motions[c];
-      const View view((*inputs.colliders)[c], motion, work.traits[c]);
-      work.group_distance[c * groups + group] =
-          view.distance(view.at_start(center)) - radius / work.traits[c].certainty;
+      const ColliderView view((*inputs.colliders)[c], motion, work.traits[c]);
       // A point at `radius` from the centre moves as the centre does, and turns about it.
       const double turn = Eigen::AngleAxisd(motion.end.linear() * motion.start.linear().transpose()).angle();
-      work.collider_move[c * groups + group] = (view.carried(center) - center).norm() + turn * radius;
+      double& moves = work.collider_move[c * groups + group];
+      moves = (view.carried(center) - center).norm() + turn * radius;
+      work.group_distance[c * groups + group] =
+          view.distance(view.at_start(center), near) - radius / work.traits[c].certainty;
     }
   }
+  find_way_out(model, inputs, work);
 }
 
 void find_contacts(const Model& model, const StepInputs& inputs, const Positions& x, Threads* threads,
                    ContactWork& work, std::vector<Contact>& found) {
   const ContactSettings& settings = inputs.solver.contact;
   const double h = model.time_step, unit_stiffness = settings.stiffness / (h * h);
-  const double push_out = settings.push_out * model.size * h;
+  const double push_out = push_out_of(model, inputs);
   found.clear();
   measure_moves(model, x, work, work.group_move);
   const int groups = groups_of(model);
   for (std::size_t c = 0; c < inputs.colliders->size(); ++c) {
     const Search search{model, inputs, x, work};
-    const View view = search.view(c);
+    const ColliderView view = search.view(c);
     const double friction = (*inputs.colliders)[c].friction;
-    const auto examine = [&](std::vector<Contact>& list, int v, const Vec3& a, const Vec3& b, double field,
-                             double reach) {
-      const std::optional<SurfacePoint> surface = holding(view, a, b, field, reach);
+    const auto examine = [&](std::vector<Contact>& list, int v, const Way& way, double field, double reach) {
+      Contact contact{v, static_cast<std::int32_t>(c), Vec3::Zero(), 0, unit_stiffness * model.mass[v], 0};
+      const Vec3& way_out = work.way_out[c];
+      std::int32_t& near = search.memory(c, v);
+      const bool leaving = !way_out.isZero(0);
+      if (leaving && field <= 0) {
+        leave(view, way, way_out, field, push_out, near, contact);
+        return list.push_back(contact);
+      }
+      const std::optional<SurfacePoint> surface = view.holding(way, field, reach, near);
       if (!surface) return;
-      Contact contact{v, static_cast<std::int32_t>(c),   view.end().linear() * surface->normal,
-                      0, unit_stiffness * model.mass[v], 0};
+      contact.normal = view.end().linear() * surface->normal;
+      if (leaving && contact.normal.dot(way_out) < 0.5) return;  // the others, which leave, pull it through
       // This much depth need not be undone in this step.
-      const double allowed = field < -push_out ? std::max(0.0, -view.closest(a).distance - push_out) : 0;
+      const double allowed = field < -push_out ? std::max(0.0, -view.closest(way.a, near).distance - push_out) : 0;
       contact.offset = contact.normal.dot(view.end() * surface->point) - allowed;
       contact.depth = std::max(0.0, contact.offset - contact.normal.dot(x.row(v)));
       if (friction > 0) {
@@ -286,9 +266,8 @@ void find_contacts(const Model& model, const StepInputs& inputs, const Positions
       std::vector<Contact>& list = work.by_chunk[chunk];
       list.clear();
       for (int group = chunk * groups_a_chunk; group < std::min(groups, (chunk + 1) * groups_a_chunk); ++group) {
-        search.near(c, view, group, [&](int v, const Vec3& a, const Vec3& b, double field, double reach) {
-          examine(list, v, a, b, field, reach);
-        });
+        search.near(c, view, group,
+                    [&](int v, const Way& way, double field, double reach) { examine(list, v, way, field, reach); });
       }
     });
     for (const auto& list : work.by_chunk) found.insert(found.end(), list.begin(), list.end());
@@ -307,24 +286,52 @@ void count_contacts(const std::vector<Contact>& before, const std::vector<Contac
   work.set_now = set;
 }
 
-double way_to_impact(const Model& model, const StepInputs& inputs, const Positions& x, double allowed,
-                     ContactWork& work) {
+namespace {
+
+// Returns which share of a way a vertex may go before it is deeper than `allowed` [m]. A vertex that touches already is
+// stopped only by a collider that comes to it: one that rests would be stopped on every step by its own weight.
+double share_to_impact(const ColliderView& view, const Way& way, double field, double allowed, std::int32_t& near) {
+  if (field <= 0) {
+    if (!view.moves()) return 1;
+    const Vec3 normal = view.closest(way.a, near).normal;
+    const double comes = -normal.dot(view.pace(view.way(way.q, way.q), 0)), falls = -normal.dot(view.pace(way, 0));
+    return std::min(comes, falls) > allowed ? allowed / falls : 1;
+  }
+  const std::optional<ColliderView::Entry> entered = view.entry(way, field, near);
+  if (!entered) return 1;
+  // Towards the surface, over a whole step.
+  const double falls = -entered->surface.normal.dot(view.pace(way, entered->way));
+  return falls * (1 - entered->way) > allowed ? entered->way + allowed / falls : 1;
+}
+
+}  // namespace
+
+Impact first_impact(const Model& model, const StepInputs& inputs, const Positions& x, double allowed,
+                    ContactWork& work) {
   measure_moves(model, x, work, work.group_move);
-  double least = 1;
+  Impact first;
   for (std::size_t c = 0; c < inputs.colliders->size(); ++c) {
     const Search search{model, inputs, x, work};
-    const View view = search.view(c);
+    const ColliderView view = search.view(c);
     for (int group = 0; group < groups_of(model); ++group) {
-      search.near(c, view, group, [&](int, const Vec3& a, const Vec3& b, double field, double) {
-        if (field <= 0) return;
-        const std::optional<Entry> entered = entry(view, a, b, field);
-        if (!entered) return;
-        const double fall = entered->surface.normal.dot(a - b);  // towards the surface, over the whole way
-        if (fall * (1 - entered->way) > allowed) least = std::min(least, entered->way + allowed / fall);
+      search.near(c, view, group, [&](int v, const Way& way, double field, double) {
+        const double share = share_to_impact(view, way, field, allowed, search.memory(c, v));
+        if (share < first.share) first = {share, static_cast<int>(c)};
       });
     }
   }
-  return least;
+  return first;
+}
+
+Eigen::Isometry3d motion_after(const StepInputs& inputs, int collider, double share) {
+  return ColliderView((*inputs.colliders)[collider], inputs.collider_motions[collider], {}).motion_after(share);
+}
+
+int most_touched(const std::vector<Contact>& contacts, std::size_t colliders) {
+  std::vector<int> touching(colliders, 0);
+  for (const Contact& contact : contacts) touching[contact.collider] += contact.depth > 0;
+  const auto most = std::max_element(touching.begin(), touching.end());
+  return most == touching.end() || *most == 0 ? -1 : static_cast<int>(most - touching.begin());
 }
 
 }  // namespace supple

@@ -6,28 +6,24 @@
 #include <vector>
 
 #include "base/threads.h"
+#include "sim/contact/collider_view.h"
 #include "sim/contact/contact.h"
-#include "sim/model/inputs.h"
 #include "sim/model/model.h"
 #include "sim/model/report.h"
 
 namespace supple {
 
-// Traits of a shape that a search asks for once.
-struct ColliderTraits {
-  double certainty;       // Shape::certainty
-  double half_thickness;  // Shape::half_thickness [m]
-};
-
 // The memory of the search for contacts within a step, and its scratch; empty while there are no colliders.
 struct ContactWork {
   std::vector<std::vector<Contact>> by_chunk;
   std::vector<double> clearance;          // signed distance at the start, colliders x free; NaN: not asked yet [m]
+  std::vector<std::int32_t> memory;       // of queries for a vertex (ColliderView::closest), colliders x free
   std::vector<double> group_distance;     // least distance of a group's vertices at the start, colliders x groups [m]
   std::vector<double> group_move;         // largest of a group's vertices, start to iterate [m]
   std::vector<double> group_free_move;    // the same, start to prediction [m]
   std::vector<double> collider_move;      // of the collider's own points near a group, colliders x groups [m]
   std::vector<ColliderTraits> traits;     // by collider
+  std::vector<Vec3> way_out;              // by collider: of a body that starts deep inside it; zero: it does not
   Positions start;                        // q of the free vertices [m]
   const Positions* prediction = nullptr;  // y of the step, the caller's, n x 3 [m]
   double stick_length = 0;                // friction is whole above this slip in a step [m]
@@ -43,10 +39,22 @@ void begin_contacts(const Model& model, const StepInputs& inputs, const Position
 void find_contacts(const Model& model, const StepInputs& inputs, const Positions& x, Threads* threads,
                    ContactWork& work, std::vector<Contact>& found);
 
-// How much of the way from q to x the body can go before a vertex is deeper than `allowed` [m] below a surface that it
-// enters on the way, 0 to 1.
-double way_to_impact(const Model& model, const StepInputs& inputs, const Positions& x, double allowed,
-                     ContactWork& work);
+// The share of a step after which a vertex is deeper in a collider than it may be, and which collider that is.
+struct Impact {
+  double share = 1;
+  int collider = -1;  // -1: there is none
+};
+
+// Finds how much of the way from q to x the body can go before a vertex is deeper than `allowed` [m] below a surface
+// that it enters on the way, or that comes to it.
+Impact first_impact(const Model& model, const StepInputs& inputs, const Positions& x, double allowed,
+                    ContactWork& work);
+
+// Returns the motion of a collider in the rest of a step, after a share of it.
+Eigen::Isometry3d motion_after(const StepInputs& inputs, int collider, double share);
+
+// Returns the collider that most vertices touch; -1 when nothing touches.
+int most_touched(const std::vector<Contact>& contacts, std::size_t colliders);
 
 // Counts what changed between the contacts of two iterates, the later of which has just been accepted.
 void count_contacts(const std::vector<Contact>& before, const std::vector<Contact>& now, ContactWork& work);

@@ -25,6 +25,8 @@ struct Collider {
 struct ColliderMotion {
   Eigen::Isometry3d start = no_motion();
   Eigen::Isometry3d end = no_motion();
+
+  bool moves() const { return start.matrix() != end.matrix(); }
 };
 
 // The treatment of L-BFGS' pairs when the contacts change: the planes of the iteration that made a pair are not those

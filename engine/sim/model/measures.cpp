@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "geometry/shape_probe.h"
 #include "sim/elements/element_kernels.h"
 
 namespace supple {
@@ -80,31 +81,51 @@ double jiggle(const Model& model, const Positions& x, const Eigen::Isometry3d& m
   return std::sqrt(furthest2) / model.size;
 }
 
+namespace {
+
+// Returns the largest depth in one shape, or `known` where none is larger.
+double deepest_in(const Shape& shape, const Eigen::Isometry3d& pose, const Positions& x, const Triangles& triangles,
+                  double known) {
+  const Eigen::Isometry3d to_local = pose.inverse();
+  const double certainty = shape.certainty();
+  const ShapeProbe probe(shape);
+  std::int32_t near = -1;
+  double deepest = known;
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    Vec3 corner[3];
+    for (int k = 0; k < 3; ++k) corner[k] = to_local * Vec3(x.row(triangles(t, k)));
+    const Vec3 center = (corner[0] + corner[1] + corner[2]) / 3;
+    double reach = 0;
+    for (const Vec3& p : corner) reach = std::max(reach, (p - center).norm());
+    const double at_center = probe.distance(center, near);
+    if (certainty * at_center > reach) continue;
+    const auto look = [&](const Vec3& p) {
+      if (probe.distance(p, near) < -deepest) deepest = std::max(deepest, -probe.closest(p, near).distance);
+    };
+    look(center);
+    for (int k = 0; k < 3; ++k) {
+      look(corner[k]);
+      look(0.5 * (corner[k] + corner[(k + 1) % 3]));
+    }
+  }
+  return deepest;
+}
+
+}  // namespace
+
+std::vector<double> penetrations(const std::vector<Collider>& colliders, const std::vector<ColliderMotion>& motions,
+                                 const Positions& x, const Triangles& triangles) {
+  std::vector<double> depths;
+  for (std::size_t c = 0; c < colliders.size(); ++c)
+    depths.push_back(deepest_in(colliders[c].shape, motions[c].end, x, triangles, 0));
+  return depths;
+}
+
 double penetration(const std::vector<Collider>& colliders, const std::vector<ColliderMotion>& motions,
                    const Positions& x, const Triangles& triangles) {
   double deepest = 0;
-  for (std::size_t c = 0; c < colliders.size(); ++c) {
-    const Shape& shape = colliders[c].shape;
-    const Eigen::Isometry3d to_local = motions[c].end.inverse();
-    const double certainty = shape.certainty();
-    for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-      Vec3 corner[3];
-      for (int k = 0; k < 3; ++k) corner[k] = to_local * Vec3(x.row(triangles(t, k)));
-      const Vec3 center = (corner[0] + corner[1] + corner[2]) / 3;
-      double reach = 0;
-      for (const Vec3& p : corner) reach = std::max(reach, (p - center).norm());
-      const double at_center = shape.distance(center);
-      if (certainty * at_center > reach) continue;
-      const auto look = [&](const Vec3& p) {
-        if (shape.distance(p) < -deepest) deepest = std::max(deepest, -shape.closest(p).distance);
-      };
-      look(center);
-      for (int k = 0; k < 3; ++k) {
-        look(corner[k]);
-        look(0.5 * (corner[k] + corner[(k + 1) % 3]));
-      }
-    }
-  }
+  for (std::size_t c = 0; c < colliders.size(); ++c)
+    deepest = deepest_in(colliders[c].shape, motions[c].end, x, triangles, deepest);
   return deepest;
 }
 

@@ -60,6 +60,7 @@ struct StepReport {
   StopReason stop_reason = StopReason::iterations;
   ContactCounts contacts;
   Vec3 contact_force = Vec3(0, 0, 0);  // of all colliders on the body, at the end of the step [N]
+  std::vector<Vec3> collider_forces;   // of each of them; empty where there are none [N]
   bool failed = false;
   StepFailure failure;
 };

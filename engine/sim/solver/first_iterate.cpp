@@ -1,5 +1,6 @@
 #include "sim/solver/first_iterate.h"
 
+#include <Eigen/SVD>
 #include <optional>
 #include <utility>
 
@@ -20,6 +21,10 @@ void find_contacts_of(const Model& model, const StepInputs& inputs, Workspace& w
 
 void set_trial(const Model& model, Workspace& w, double alpha) {
   w.trial.x.topRows(model.free) = w.current.x.topRows(model.free) + alpha * w.direction;
+}
+
+void carry(const Model& model, const Eigen::Isometry3d& motion, Positions& x) {
+  for (int v = 0; v < model.free; ++v) x.row(v) = (motion * Vec3(x.row(v))).transpose();
 }
 
 void inertial_prediction(const Model& model, const StepInputs& inputs, const State& state, Positions& y) {
@@ -85,14 +90,65 @@ void forget_start(Workspace& w) {
   forget_counts(w.contact);
 }
 
+// The rigid motion of what hard handles hold, over a step: from rotation * (q - from) to a place relative to `to`.
+struct HandleMotion {
+  Vec3 from, to;
+  Eigen::AngleAxisd turn;
+};
+
+// Fits a rigid motion to the held vertices (Kabsch 1976, "A solution for the best rotation to relate two sets of
+// vectors").
+HandleMotion motion_of_handles(const Model& model, const State& state, const Workspace& w) {
+  const int held = model.vertices - model.free;
+  const auto before = state.x.bottomRows(held), after = w.current.x.bottomRows(held);
+  const Eigen::RowVector3d from = before.colwise().mean(), to = after.colwise().mean();
+  const Mat3 moments = (after.rowwise() - to).transpose() * (before.rowwise() - from);
+  const Eigen::JacobiSVD<Mat3> svd(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Mat3 u = svd.matrixU();
+  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;
+  return {from.transpose(), to.transpose(), Eigen::AngleAxisd(Mat3(u * svd.matrixV().transpose()))};
+}
+
+// Tries first iterates in which the body turns with its handles. Where they turn far in a step, straight ways to their
+// targets lead through each other: the body would start torn and inside out. How much a vertex follows is its share in
+// the solution of A_ff s = -A_fh 1, by the model that spreads the handles' ways; or else it follows wholly, as a stiff
+// body does. The current iterate stays where it is the better one.
+void turn_with_handles(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
+  constexpr double least_turn = 0.3;  // [rad]; below, what straight ways do to the elements is soon undone
+  const HandleMotion motion = motion_of_handles(model, state, w);
+  if (motion.turn.angle() < least_turn) return;
+  Stretch stretch(w.clock, Phase::solve, "solve");
+  Positions& shares = w.scratch;
+  shares.setZero();
+  for (const Model::Coupling& entry : model.couplings) shares(entry.free, 0) -= entry.value;
+  model.factor.solve(shares.data(), w.direction.data(), w.solve_scratch.data());
+  shares = w.direction;
+  stretch.next(Phase::evaluate, "turn with handles");
+  for (const bool wholly : {false, true}) {
+    for (int v = 0; v < model.free; ++v) {
+      const double share = wholly ? 1 : shares(v, 0);
+      const Vec3 q = state.x.row(v), free_way = w.y.row(v) - state.x.row(v);
+      w.trial.x.row(v) = (Eigen::AngleAxisd(share * motion.turn.angle(), motion.turn.axis()) * (q - motion.from) +
+                          motion.from + share * (motion.to - motion.from) + (1 - share) * free_way)
+                             .transpose();
+    }
+    find_contacts_of(model, inputs, w, w.trial);
+    evaluate(model, w, w.trial, Wanted::gradient);
+    if (!(w.trial.g < w.current.g)) continue;
+    std::swap(w.current, w.trial);
+    w.report.objective.back() = w.current.g;
+    forget_counts(w.contact);
+    if (has_colliders(inputs)) count_contacts(w.trial.contacts, w.current.contacts, w.contact);
+  }
+}
+
 // Sets a first iterate that fits the handles. The paper starts from y; with rows eliminated, y leaves the elements
 // beside a handle torn by all that the handle did not do freely (its keyed motion, and the fall that it did not take),
 // often by more than their size. So the handles' departure from y is spread into the body by the quadratic model that
-// also gives the directions, A_ff d_f = -A_fh d_h: one solve. docs/results.md ("Error of the polynomial
-// head") says what starting from y cost in earlier films. This costs one
-// evaluation more, because y stays the first iterate where it is the better one. Returns g(y), the handles at their
-// targets, when the first iterate is another one.
-std::optional<double> spread_handles(const Model& model, const StepInputs& inputs, Workspace& w) {
+// also gives the directions, A_ff d_f = -A_fh d_h: one solve. docs/results.md ("Error of the polynomial head") says what
+// starting from y cost in earlier films. This costs one evaluation more, because y stays the first iterate where it is
+// the better one. Returns g(y), the handles at their targets, when the first iterate is another one.
+std::optional<double> spread_handles(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
   if (model.couplings.empty()) return std::nullopt;
   Positions& right = w.scratch;
   right.setZero();
@@ -109,27 +165,39 @@ std::optional<double> spread_handles(const Model& model, const StepInputs& input
   set_trial(model, w, 1);
   std::swap(w.current, w.trial);
   evaluate_start(model, inputs, w);
+  turn_with_handles(model, inputs, state, w);
   if (w.current.g <= at_y) return at_y;
-  std::swap(w.current, w.trial);
+  w.current.x.topRows(model.free) = w.y.topRows(model.free);
   forget_start(w);
   return std::nullopt;
 }
 
 // A first iterate far below a surface would start from torn or inverted elements, or beyond the collider. So the body
-// goes only as far as the first impact and a little further. Returns whether it was stopped.
+// goes only as far as the first impact and a little further. If the collider moves, the body then goes on with it: at
+// the end of the step, it lies before the collider as it would if the same impact were seen from the collider. That
+// is not better for a body that is held, or that is carried into another collider; there, the lower objective decides.
+// Returns whether it was stopped.
 bool stop_at_impact(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
   if (!has_colliders(inputs)) return false;
   const Stretch stretch(w.clock, Phase::collide, "stop at impact");
   Positions& x = w.current.x;
-  const double way = way_to_impact(model, inputs, x, deepest_start * model.size, w.contact);
-  if (way < 1) x.topRows(model.free) = state.x.topRows(model.free) + way * (x - state.x).topRows(model.free);
-  return way < 1;
+  const Impact impact = first_impact(model, inputs, x, deepest_start * model.size, w.contact);
+  if (impact.collider < 0) return false;
+  x.topRows(model.free) = state.x.topRows(model.free) + impact.share * (x - state.x).topRows(model.free);
+  if (!inputs.collider_motions[impact.collider].moves()) return true;
+  find_contacts_of(model, inputs, w, w.current);
+  evaluate(model, w, w.current, Wanted::value);
+  w.trial.x.topRows(model.free) = x.topRows(model.free);
+  carry(model, motion_after(inputs, impact.collider, impact.share), w.trial.x);
+  find_contacts_of(model, inputs, w, w.trial);
+  evaluate(model, w, w.trial, Wanted::value);
+  if (w.trial.g < w.current.g) std::swap(w.current, w.trial);
+  return true;
 }
 
 // A body that rests on something, or slides along it, starts better without the fall that y has in it, which would
 // leave all that it rests on g h^2 deep in its colliders: from q + h v. Costs an evaluation, and only where something
-// touches. Friction is treated as in
-// descend_from_staying().
+// touches. Friction is treated as in descend_from_staying().
 void start_where_better(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
   if (!has_colliders(inputs) || w.contact.counts.touching == 0) return;
   const Stretch stretch(w.clock, Phase::evaluate, "start where better");
@@ -149,7 +217,7 @@ void start_where_better(const Model& model, const StepInputs& inputs, const Stat
 }  // namespace
 
 double set_first_iterate(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
-  const std::optional<double> at_y = spread_handles(model, inputs, w);
+  const std::optional<double> at_y = spread_handles(model, inputs, state, w);
   const bool stopped = stop_at_impact(model, inputs, state, w);
   if (stopped) forget_start(w);
   if (stopped || !at_y) evaluate_start(model, inputs, w);

@@ -24,6 +24,9 @@ void evaluate_start(const Model& model, const StepInputs& inputs, Workspace& wor
 // Finds the contacts of an iterate; does nothing without colliders.
 void find_contacts_of(const Model& model, const StepInputs& inputs, Workspace& workspace, Iterate& iterate);
 
+// Moves the free vertices by a rigid motion.
+void carry(const Model& model, const Eigen::Isometry3d& motion, Positions& x);
+
 // workspace.trial.x = x + alpha d for the free vertices; handled ones stay at their targets.
 void set_trial(const Model& model, Workspace& workspace, double alpha);
 

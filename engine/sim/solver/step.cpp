@@ -202,17 +202,26 @@ void clear(StepReport& report) {
   report.history.clear();
   std::vector<double> objective = std::move(report.objective);
   std::vector<IterationRecord> history = std::move(report.history);
+  std::vector<Vec3> forces = std::move(report.collider_forces);
+  forces.clear();
   report = StepReport{};
   report.objective = std::move(objective);
   report.history = std::move(history);
+  report.collider_forces = std::move(forces);
 }
 
 // Sets the trial iterate to where the body was, with its handles moved. A body that nothing holds is also carried along
-// with its centre of mass, which costs no elastic energy and keeps its momentum.
+// with its centre of mass, which costs no elastic energy and keeps its momentum. Among colliders it stays as seen from
+// the one that it touches most.
 void set_staying(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
   Positions& x = w.trial.x;
   x.topRows(model.free) = state.x.topRows(model.free);
-  if (!model.free_floating || has_colliders(inputs)) return;  // it might be carried into a collider
+  if (has_colliders(inputs)) {
+    const int collider = most_touched(w.current.contacts, inputs.colliders->size());
+    if (collider >= 0 && inputs.collider_motions[collider].moves()) carry(model, motion_after(inputs, collider, 0), x);
+    return;
+  }
+  if (!model.free_floating) return;
   Eigen::RowVector3d moved = Eigen::RowVector3d::Zero();
   for (int v = 0; v < model.free; ++v) moved += model.mass[v] * (w.y.row(v) - state.x.row(v));
   moved /= model.total_mass;
@@ -264,7 +273,9 @@ void set_velocity(const Model& model, const Positions& x, State& state) {
   state.v.bottomRows(held) = (x - state.x).bottomRows(held) / h;
 }
 
-void report_contacts(Workspace& w) {
+void report_contacts(const StepInputs& inputs, Workspace& w) {
+  w.report.collider_forces.resize(inputs.colliders->size(), Vec3::Zero());
+  add_forces(w.current.contacts, w.contact.stick_length, w.current.x, w.report.collider_forces);
   w.report.contacts = w.contact.counts;
   Positions& force = w.scratch;
   force.setZero();
@@ -315,7 +326,7 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
     state.x = x;
     state.time += model.time_step;
   }
-  if (has_colliders(inputs)) report_contacts(w);
+  if (has_colliders(inputs)) report_contacts(inputs, w);
   report_times(w);
   return report;
 }

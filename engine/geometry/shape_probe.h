@@ -1,0 +1,34 @@
+// Asks a shape about many places near each other. A shape that is one closed surface from a file answers faster when it
+// knows what it has answered to a place nearby; other shapes answer as they always do.
+#pragma once
+
+#include <optional>
+
+#include "geometry/shape.h"
+
+namespace supple {
+
+class ShapeProbe {
+ public:
+  // The shape must outlive the probe.
+  explicit ShapeProbe(const Shape& shape);
+
+  // `near` is the memory of one caller, what the query before left in it, and -1 before the first one.
+  double distance(const Vec3& p, std::int32_t& near) const;
+  SurfacePoint closest(const Vec3& p, std::int32_t& near) const;
+
+  // Tells whether the shape can say where a straight way enters it.
+  bool knows_entries() const { return solid_ != nullptr; }
+  // Returns which share of the way from a, which lies outside, to b leads to where it first enters; nothing when it
+  // does not. Only for shapes that know entries.
+  std::optional<double> entry(const Vec3& a, const Vec3& b) const { return solid_->entry(local(a), local(b)); }
+
+ private:
+  Vec3 local(const Vec3& p) const { return surface_->to_local * p / surface_->scale; }
+
+  const Shape& shape_;
+  const ShapePart* surface_ = nullptr;    // the whole shape, where that is one closed surface
+  const TriangleSolid* solid_ = nullptr;  // its triangles, in their own frame
+};
+
+}  // namespace supple

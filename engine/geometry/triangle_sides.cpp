@@ -1,0 +1,275 @@
+// Tells on which side of a solid's surface a point lies, and where a way enters the solid.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <tuple>
+
+#include "geometry/triangle_solid.h"
+
+namespace supple {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr int stack_size = 64;  // as for the closest point
+
+template <class L>
+auto dot(const L& a, const L& b) {
+  return (a.x * b.x + a.y * b.y + a.z * b.z).eval();
+}
+
+// Computes the signed solid angle over 4 pi: Van Oosterom and Strackee, The solid angle of a plane triangle, 1983,
+// equation 8.
+double winding_of_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double la = a.norm(), lb = b.norm(), lc = c.norm();
+  const double y = a.dot(b.cross(c));
+  const double x = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+  return std::atan2(y, x) / (2 * std::numbers::pi);
+}
+
+}  // namespace
+
+double TriangleSolid::winding_number(const Vec3& p) const {
+  // A part counts as far beyond twice its radius, as in section 3.2 of the same paper.
+  constexpr double far = 2;
+  // At this distance the result is below round-off, and further away squares would overflow.
+  if ((p - bounds_.center()).cwiseAbs().maxCoeff() > 1e12 * (bounds_.diagonal() + on_surface_)) return 0;
+  std::array<std::int32_t, stack_size> stack;
+  int top = 0;
+  stack[std::size_t(top++)] = 0;
+  double sum = 0;
+  while (top > 0) {
+    const std::int32_t index = stack[std::size_t(--top)];
+    if (index < 0) {
+      const Leaf& leaf = leaves_[std::size_t(~index)];
+      for (int k = 0; k < leaf.count; ++k) {
+        const Eigen::Index t = leaf.triangle[std::size_t(k)];
+        sum += winding_of_triangle(corner(t, 0) - p, corner(t, 1) - p, corner(t, 2) - p);
+      }
+      continue;
+    }
+    const Node& node = nodes_[std::size_t(index)];
+    const Dipoles& dipoles = dipoles_[std::size_t(index)];
+    const Lanes3 d{dipoles.center.x - p.x(), dipoles.center.y - p.y(), dipoles.center.z - p.z()};
+    const Lanes squared = dot(d, d);
+    const Lanes reach = far * dipoles.radius;
+    const Lanes seen = dot(dipoles.area, d) / (squared * squared.sqrt() * (4 * std::numbers::pi));
+    for (int k = 0; k < width; ++k) {
+      if (node.lower.x[k] > node.upper.x[k]) continue;  // there is no child here
+      if (squared[k] > reach[k] * reach[k]) {
+        sum += seen[k];
+      } else {
+        stack[std::size_t(top++)] = node.child[std::size_t(k)];
+      }
+    }
+  }
+  return sum;
+}
+
+// Tells how the triangle meets the ray from p: +1 where the ray leaves through it, -1 where it enters, 0 where it
+// passes by. Seen along the ray, the triangle's winding around p is a sum over those edges that cross the level of p on
+// the far side of p. That side is computed from the edge's lower to its upper end, the same for both neighbours, so
+// that round-off can't let a ray slip between two triangles or count both.
+int TriangleSolid::crossing(const Vec3& p, const Corners& corners, int axis, int direction) {
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  int turns = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3& from = corners[std::size_t(k)];
+    const Vec3& to = corners[std::size_t((k + 1) % 3)];
+    const bool upward = to[v] >= p[v];
+    if ((from[v] >= p[v]) == upward) continue;
+    const Vec3& low = upward ? from : to;
+    const Vec3& high = upward ? to : from;
+    bool beyond = low[u] > p[u];
+    if (beyond != (high[u] > p[u]))
+      beyond = (high[u] - low[u]) * (p[v] - low[v]) > (p[u] - low[u]) * (high[v] - low[v]);
+    if (beyond) turns += upward ? 1 : -1;
+  }
+  if (turns == 0) return 0;
+  const auto ahead = [&](const Vec3& q) { return direction * (q[axis] - p[axis]) > 0; };
+  const int count = int(ahead(corners[0])) + int(ahead(corners[1])) + int(ahead(corners[2]));
+  if (count == 0) return 0;
+  if (count < 3) {
+    const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    if (!(direction * turns * normal.dot(p - corners[0]) < 0)) return 0;
+  }
+  return direction * turns;
+}
+
+// Computes the winding number of a point in the box for the surface whose holes are closed by lids. It is a whole
+// number: the signed crossings of the axis-parallel ray to the nearest side of the box.
+int TriangleSolid::crossings(const Vec3& p) const {
+  int axis = 0, direction = 1;
+  double shortest = infinity;
+  for (int k = 0; k < 3; ++k) {
+    for (const int sign : {1, -1}) {
+      const double length = sign > 0 ? bounds_.upper[k] - p[k] : p[k] - bounds_.lower[k];
+      if (length < shortest) {
+        shortest = length;
+        axis = k;
+        direction = sign;
+      }
+    }
+  }
+  Vec3 lower = p, upper = p;  // the ray's box
+  (direction > 0 ? upper : lower)[axis] = direction * infinity;
+  std::array<std::int32_t, stack_size> stack;
+  int top = 0;
+  stack[std::size_t(top++)] = 0;
+  int sum = 0;
+  for (const Corners& lid : lids_) sum += crossing(p, lid, axis, direction);
+  while (top > 0) {
+    const std::int32_t index = stack[std::size_t(--top)];
+    if (index < 0) {
+      const Leaf& leaf = leaves_[std::size_t(~index)];
+      for (int k = 0; k < leaf.count; ++k) sum += crossing(p, corners(leaf.triangle[std::size_t(k)]), axis, direction);
+      continue;
+    }
+    const Node& node = nodes_[std::size_t(index)];
+    const auto met = (node.lower.x <= upper.x() && node.upper.x >= lower.x() && node.lower.y <= upper.y() &&
+                      node.upper.y >= lower.y() && node.lower.z <= upper.z() && node.upper.z >= lower.z())
+                         .eval();
+    for (int k = 0; k < width; ++k)
+      if (met[k]) stack[std::size_t(top++)] = node.child[std::size_t(k)];
+  }
+  return sum;
+}
+
+bool TriangleSolid::inside(const Vec3& p) const {
+  if ((p.array() < bounds_.lower.array()).any() || (p.array() > bounds_.upper.array()).any()) return false;
+  // Lids cost time in every query; with more than this many, the tree is faster.
+  constexpr std::size_t most_lids = 32;
+  if (lids_.size() > most_lids) return winding_number(p) > 0.5;
+  double of_lids = 0;
+  for (const Corners& lid : lids_) of_lids += winding_of_triangle(lid[0] - p, lid[1] - p, lid[2] - p);
+  return crossings(p) - of_lids > 0.5;
+}
+
+namespace {
+
+// An edge of a triangle, as its neighbour on the other side sees it.
+struct HalfEdge {
+  std::int32_t from, to;
+  std::int32_t triangle;
+  int side;  // 0: from corner 0 to 1, 1: from 1 to 2, 2: from 2 to 0
+};
+
+std::vector<HalfEdge> half_edges(const Triangles& triangles) {
+  std::vector<HalfEdge> edges;
+  for (std::int32_t t = 0; t < triangles.rows(); ++t) {
+    for (int k = 0; k < 3; ++k) edges.push_back({triangles(t, k), triangles(t, (k + 1) % 3), t, k});
+  }
+  return edges;
+}
+
+}  // namespace
+
+// Pairs each edge with the same edge of its neighbour. Returns false when some edge has not exactly one neighbour.
+bool TriangleSolid::find_neighbours() {
+  std::vector<HalfEdge> forward = half_edges(surface_.triangles), backward = forward;
+  for (HalfEdge& e : backward) std::swap(e.from, e.to);
+  const auto before = [](const HalfEdge& l, const HalfEdge& r) {
+    return std::tie(l.from, l.to, l.triangle) < std::tie(r.from, r.to, r.triangle);
+  };
+  std::sort(forward.begin(), forward.end(), before);
+  std::sort(backward.begin(), backward.end(), before);
+  neighbours_.resize(surface_.triangles.rows(), 3);
+  for (std::size_t i = 0; i < forward.size(); ++i) {
+    const HalfEdge &f = forward[i], &b = backward[i];
+    const bool repeated = i > 0 && forward[i - 1].from == f.from && forward[i - 1].to == f.to;
+    if (repeated || f.from != b.from || f.to != b.to) return false;
+    neighbours_(f.triangle, f.side) = b.triangle;
+  }
+  return true;
+}
+
+// Where every edge has one neighbour and all parts of the surface have empty space before them, a point's side follows
+// from the normals around its closest point alone: Baerentzen and Aanaes, Signed distance computation using the angle
+// weighted pseudonormal, 2005. Overlapping parts, of which some lie inside others, need the winding number.
+void TriangleSolid::prepare_sides() {
+  if (!lids_.empty() || !find_neighbours()) return;
+  vertex_normals_.setZero(surface_.points.rows(), 3);
+  for (Eigen::Index t = 0; t < surface_.triangles.rows(); ++t) {
+    const Vec3 middle = (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3;
+    const double edge = (corner(t, 1) - corner(t, 0)).norm();
+    if (inside(middle + 1e-3 * edge * normals_.row(t).transpose())) return;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 l = corner(t, (k + 1) % 3) - corner(t, k), r = corner(t, (k + 2) % 3) - corner(t, k);
+      vertex_normals_.row(surface_.triangles(t, k)) += std::atan2(l.cross(r).norm(), l.dot(r)) * normals_.row(t);
+    }
+  }
+  sides_by_normals_ = true;
+}
+
+double TriangleSolid::side_of(const Vec3& p, const Nearest& found) const {
+  constexpr double at_edge = 1e-12;
+  const std::int32_t t = triangle_of(found);
+  const double weight[3] = {1 - found.v - found.w, found.v, found.w};  // of the corners
+  int zeros = 0, zero = 0, whole = 0;
+  for (int k = 0; k < 3; ++k) {
+    if (weight[k] <= at_edge) {
+      ++zeros;
+      zero = k;
+    } else {
+      whole = k;
+    }
+  }
+  Eigen::RowVector3d normal = normals_.row(t);
+  if (zeros == 1) normal += normals_.row(neighbours_(t, (zero + 1) % 3));
+  if (zeros == 2) normal = vertex_normals_.row(surface_.triangles(t, whole));
+  return normal.dot(p - point_of(found)) < 0 ? -1 : 1;
+}
+
+// Follows Moeller and Trumbore, Fast, minimum storage ray-triangle intersection, 1997, for four triangles at once. Only
+// triangles that face the way count; a way that slips between two of them by round-off meets both.
+void TriangleSolid::entry_in_leaf(const Vec3& a, const Vec3& way, std::int32_t index, double& first) const {
+  constexpr double slack = 1e-9;
+  const Leaf& leaf = leaves_[std::size_t(index)];
+  const auto cross = [](const auto& l, const auto& r) {
+    return Lanes3{l.y * r.z - l.z * r.y, l.z * r.x - l.x * r.z, l.x * r.y - l.y * r.x};
+  };
+  const Lanes3 d{Lanes::Constant(way.x()), Lanes::Constant(way.y()), Lanes::Constant(way.z())};
+  const Lanes3 from{a.x() - leaf.a.x, a.y() - leaf.a.y, a.z() - leaf.a.z};
+  const Lanes3 across = cross(d, leaf.ac), turned = cross(from, leaf.ab);
+  const Lanes facing = dot(leaf.ab, across);
+  const Lanes v = dot(from, across) / facing, w = dot(d, turned) / facing, share = dot(leaf.ac, turned) / facing;
+  for (int k = 0; k < leaf.count; ++k) {
+    const bool met = facing[k] > 0 && v[k] >= -slack && w[k] >= -slack && v[k] + w[k] <= 1 + slack;
+    if (met && share[k] >= 0 && share[k] < first) first = share[k];
+  }
+}
+
+std::optional<double> TriangleSolid::entry(const Vec3& a, const Vec3& b) const {
+  const Vec3 way = b - a;
+  Vec3 inverse;
+  for (int k = 0; k < 3; ++k) inverse[k] = 1 / (std::abs(way[k]) > 1e-290 ? way[k] : 1e-290);
+  double first = 1 + 1e-12;
+  std::array<std::int32_t, stack_size> stack;
+  int top = 0;
+  stack[std::size_t(top++)] = 0;
+  while (top > 0) {
+    const std::int32_t index = stack[std::size_t(--top)];
+    if (index < 0) {
+      entry_in_leaf(a, way, ~index, first);
+      continue;
+    }
+    const Node& node = nodes_[std::size_t(index)];
+    const auto slab = [&](const Lanes& lower, const Lanes& upper, int k, Lanes& in, Lanes& out) {
+      const Lanes l = (lower - a[k]) * inverse[k], u = (upper - a[k]) * inverse[k];
+      in = in.max(l.min(u));
+      out = out.min(l.max(u));
+    };
+    Lanes in = Lanes::Zero(), out = Lanes::Constant(first);
+    slab(node.lower.x, node.upper.x, 0, in, out);
+    slab(node.lower.y, node.upper.y, 1, in, out);
+    slab(node.lower.z, node.upper.z, 2, in, out);
+    for (int k = 0; k < width; ++k) {
+      if (node.lower.x[k] > node.upper.x[k]) continue;  // there is no child here
+      if (in[k] <= out[k] + 1e-12) stack[std::size_t(top++)] = node.child[std::size_t(k)];
+    }
+  }
+  return first <= 1 ? std::optional(first) : std::nullopt;
+}
+
+}  // namespace supple

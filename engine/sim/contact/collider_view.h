@@ -1,0 +1,90 @@
+// One collider over one step, seen from its own frame, where it stands still: the ways of points of the world through
+// that frame, and the surfaces that they meet. A collider that turns far in a step bends these ways into arcs; between
+// the two poses of a step it moves evenly. Not here: which vertices are looked at (find_contacts.h).
+#pragma once
+
+#include <optional>
+
+#include "geometry/shape_probe.h"
+#include "sim/model/inputs.h"
+
+namespace supple {
+
+// Traits of a shape that a search asks for once.
+struct ColliderTraits {
+  double certainty;       // Shape::certainty
+  double half_thickness;  // Shape::half_thickness [m]
+};
+
+// The way of a point of the world through the collider's frame, from q when the step starts to x when it ends.
+struct Way {
+  Vec3 q, x;      // in the world [m]
+  Vec3 a, b;      // its ends in the collider's frame [m]
+  double length;  // of the way, or more [m]
+};
+
+class ColliderView {
+ public:
+  ColliderView(const Collider& collider, const ColliderMotion& motion, const ColliderTraits& traits);
+
+  const Eigen::Isometry3d& end() const { return end_; }
+  Vec3 at_start(const Vec3& world) const { return to_start_ * world; }
+  Vec3 carried(const Vec3& world) const { return end_ * (to_start_ * world); }  // moved with the collider
+  Way way(const Vec3& q, const Vec3& x) const {
+    Way way{q, x, to_start_ * q, to_end_ * x, 0};
+    way.length = bends_ ? bent_length(q, x) : (way.b - way.a).norm();
+    return way;
+  }
+  // Returns the length that a way would have if it ended at x.
+  double length_to(const Vec3& x, const Way& way) const {
+    return bends_ ? bent_length(way.q, x) : (to_end_ * x - way.a).norm();
+  }
+
+  // Returns where a way is after a share of the step.
+  Vec3 at(const Way& way, double share) const;
+  // Returns how fast it leads there, in metres a step.
+  Vec3 pace(const Way& way, double share) const;
+  // Returns the motion of the collider in the rest of the step.
+  Eigen::Isometry3d motion_after(double share) const;
+  bool moves() const { return moves_; }
+
+  // Returns the distance to the layer around the shape. `near` is the memory of a caller that asks about places near
+  // each other: what the query before left in it, -1 before the first one.
+  double distance(const Vec3& p, std::int32_t& near) const { return shape_.distance(p, near) - collider_.thickness; }
+  // Returns the closest point of that layer's surface.
+  SurfacePoint closest(const Vec3& p, std::int32_t& near) const;
+
+  // Returns how far a point at this distance from the layer can certainly go without meeting it.
+  double clear(double distance) const {
+    return std::max(0.0, traits_.certainty * (distance + collider_.thickness) - collider_.thickness);
+  }
+
+  // The place where a vertex entered, or where it was if the step started inside.
+  struct Entry {
+    SurfacePoint surface;
+    double way;  // share of the step, 0 to 1
+  };
+  // Finds where a way enters; nothing when it stays outside.
+  std::optional<Entry> entry(const Way& way, double field_at_a, std::int32_t& near) const;
+
+  // Finds the surface that holds a vertex at the end of its way: the closest one, unless it went through to another
+  // side; then it is the one by which the vertex entered. Nothing when there is none within `reach`.
+  std::optional<SurfacePoint> holding(const Way& way, double field_at_a, double reach, std::int32_t& near) const;
+
+ private:
+  double bent_length(const Vec3& q, const Vec3& x) const;
+  // Tells whether a way is too short to lead through the shape.
+  bool short_way(double way) const { return way < traits_.half_thickness; }
+  std::optional<double> meets(const Way& way, double from, double to, double field_at_start, std::int32_t& near) const;
+  Eigen::Isometry3d pose(double share) const;
+
+  const Collider& collider_;
+  ShapeProbe shape_;
+  Eigen::Isometry3d start_, end_, to_start_, to_end_;
+  ColliderTraits traits_;
+  bool moves_ = false;
+  bool bends_ = false;        // whether it turns so far that ways are arcs
+  Vec3 turn_ = Vec3::Zero();  // in a step, about the world's axes, where it bends ways [rad]
+};
+
+}  // namespace supple
