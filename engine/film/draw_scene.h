@@ -2,7 +2,7 @@
 #pragma once
 
 #include "render/draw_list.h"
-#include "scene/assemble.h"
+#include "scene/drawn_body.h"
 #include "scene/obstacle.h"
 
 namespace supple {

@@ -19,10 +19,10 @@ std::vector<Camera> cameras_of(const Script& script, const Stage& stage) {
 
 }  // namespace
 
-DrawnFilm::DrawnFilm(const Script& script, const std::vector<Body>& bodies, const CollisionSet& set,
-                     const std::string& font) {
+DrawnFilm::DrawnFilm(const Script& script, const std::vector<Body>& bodies, std::vector<DrawnBody> drawn,
+                     const CollisionSet& set, const std::string& font)
+    : drawn_(std::move(drawn)) {
   const SceneDef& scene = script.scene();
-  for (const Body& body : bodies) drawn_.push_back(drawn_body(scene, body));
   collider_skins_ = collider_skins(set.obstacles, bodies);
   // Cameras frame the bodies' boxes, which do not depend on the skins.
   const Stage fine = make_stage(scene, bodies, drawn_, set.obstacles, collider_skins_, font);

@@ -12,8 +12,9 @@ namespace supple {
 
 class DrawnFilm {
  public:
-  // The script tells all cameras of the film, to which the skins' resolution is fitted.
-  DrawnFilm(const Script& script, const std::vector<Body>& bodies, const CollisionSet& set, const std::string& font);
+  // The script tells all cameras of the film, to which the skins' resolution is fitted. drawn: of each body.
+  DrawnFilm(const Script& script, const std::vector<Body>& bodies, std::vector<DrawnBody> drawn,
+            const CollisionSet& set, const std::string& font);
 
   const Stage& stage() const { return stage_; }
 

@@ -107,7 +107,7 @@ FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
       log_(log),
       verifier_(start.verifier ? &*start.verifier : nullptr) {
   if (plan.pictures != FilmPictures::none) {
-    drawn_.emplace(script_, bodies_, set_, caption_font());
+    drawn_.emplace(script_, bodies_, std::move(film.drawn), set_, caption_font());
     pictures_.emplace(drawn_->stage(), plan.gl, shaders_folder(),
                       PictureTargets{&folder, !plan.film_only, video, first_});
   }

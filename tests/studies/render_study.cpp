@@ -47,11 +47,8 @@ Take simulate(const std::filesystem::path& path, int frames, const std::vector<s
   const CollisionSet set = collision_set(scene);
   Threads threads(2);
   std::vector<Model> models;
-  std::vector<DrawnBody> drawn;
-  for (const Body& body : bodies) {
-    models.push_back(build_model(body.description));
-    drawn.push_back(drawn_body(scene, body));
-  }
+  std::vector<DrawnBody> drawn = drawn_bodies(bodies);
+  for (const Body& body : bodies) models.push_back(build_model(body.description));
   const std::vector<Skin> colliders = collider_skins(set.obstacles, bodies);
   Take take;
   const Stage fine = make_stage(scene, bodies, drawn, set.obstacles, colliders, caption_font());
@@ -100,13 +97,15 @@ int main(int argc, char** argv) {
     wall.push_back(watch.elapsed_ms());
     cpu.push_back(cpu_ms() - before);
   }
-  fmt::print("{} triangles, {}x{}: wall {:.1f} ms (least {:.1f}), cores {:.1f} ms (least {:.1f})\n", triangles, image.width,
-             image.height, median(wall), *std::ranges::min_element(wall), median(cpu), *std::ranges::min_element(cpu));
+  fmt::print("{} triangles, {}x{}: wall {:.1f} ms (least {:.1f}), cores {:.1f} ms (least {:.1f})\n", triangles,
+             image.width, image.height, median(wall), *std::ranges::min_element(wall), median(cpu),
+             *std::ranges::min_element(cpu));
   start_trace();
   for (int i = 0; i < repeats; ++i) image = renderer.draw(take.lists[std::size_t(i) % take.lists.size()]);
   std::map<std::string, std::vector<double>> stages;
   for (const ThreadTrace& thread : stop_trace()) {
-    for (const TraceEvent& event : thread.events) stages[event.name].push_back(1e-6 * double(event.end_ns - event.begin_ns));
+    for (const TraceEvent& event : thread.events)
+      stages[event.name].push_back(1e-6 * double(event.end_ns - event.begin_ns));
   }
   for (auto& [name, times] : stages) fmt::print("  {:<16}{:8.2f} ms\n", name, median(times));
   write_png(argv[2], image.width, image.height, image.rgb);
