@@ -1,6 +1,7 @@
 // Makes what the renderer draws from bodies, colliders and their states.
 #pragma once
 
+#include "base/threads.h"
 #include "render/draw_list.h"
 #include "scene/drawn_body.h"
 #include "scene/obstacle.h"
@@ -29,7 +30,8 @@ Camera make_camera(const SceneDef& scene, const Stage& stage);
 void fit_to_cameras(std::vector<DrawnBody>& drawn, const std::vector<Body>& bodies, const std::vector<Camera>& cameras,
                     int height);
 
-// x y z by skin vertex.
-std::vector<float> skin_positions(const DrawnBody& drawn, const Model& model, const State& state);
+// x y z by skin vertex. threads: null where the calling thread does it all.
+std::vector<float> skin_positions(const DrawnBody& drawn, const Model& model, const State& state,
+                                  Threads* threads = nullptr);
 
 }  // namespace supple

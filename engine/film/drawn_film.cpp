@@ -36,11 +36,11 @@ void DrawnFilm::renew(std::size_t collider, const CollisionSet& set, const std::
 }
 
 DrawList DrawnFilm::list(const SceneDef& scene, const std::vector<std::unique_ptr<FilmedBody>>& bodies,
-                         const CollisionSet& set, double time) {
+                         const CollisionSet& set, double time, Threads& threads) {
   DrawList result;
   result.camera = make_camera(scene, stage_);
   for (std::size_t b = 0; b < bodies.size(); ++b)
-    result.positions.push_back(skin_positions(drawn_[b], bodies[b]->model(), bodies[b]->state()));
+    result.positions.push_back(skin_positions(drawn_[b], bodies[b]->model(), bodies[b]->state(), &threads));
   add_colliders(set.obstacles, collider_skins_, time, result);
   for (const std::size_t c : std::exchange(renewed_, {}))
     result.renewed.emplace_back(bodies.size() + c, collider_mesh(set.obstacles[c], collider_skins_[c]));

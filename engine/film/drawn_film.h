@@ -23,7 +23,7 @@ class DrawnFilm {
 
   // A frame's list: positions, and all that has changed since the last list.
   DrawList list(const SceneDef& scene, const std::vector<std::unique_ptr<FilmedBody>>& bodies, const CollisionSet& set,
-                double time);
+                double time, Threads& threads);
 
  private:
   std::vector<DrawnBody> drawn_;

@@ -88,7 +88,7 @@ bool FrameLoop::show(int frame, FrameRow& row) {
   if (!pictures_ || !drawn) return true;
   Zone zone("draw list");
   const Stopwatch watch;
-  DrawList list = drawn_->list(scene_, filmed_, set_, row.time_s);
+  DrawList list = drawn_->list(scene_, filmed_, set_, row.time_s, threads_);
   row.draw_ms = watch.elapsed_ms();
   zone.next("wait for render");
   return pictures_->put(frame, std::move(list));

@@ -9,6 +9,7 @@ namespace supple {
 // The drawn surface of a body: a skin carried by its elements, or (vertex_of) the mesh's own boundary.
 struct DrawnBody {
   Skin skin;
+  Triangles casters;                    // of the skin, that cast its shadow; empty: all of them
   Embedding embedding;                  // when the skin is finer than the mesh
   std::vector<std::int32_t> vertex_of;  // when it is the boundary: mesh vertex by skin vertex
   bool two_sided = false;
