@@ -4,6 +4,7 @@
 #include "base/console.h"
 #include "base/error.h"
 #include "film/places.h"
+#include "film/progress.h"
 #include "scene/script_trial.h"
 #include "scene/sweep.h"
 #include "scene/warnings.h"
@@ -11,14 +12,18 @@
 namespace supple {
 namespace {
 
-int check(const std::string& name, const std::vector<std::string>& settings) {
+int check(const std::string& name, const std::vector<std::string>& settings, bool cache) {
   const Script script = Script::load(scene_file(name), assets_folder(), settings);
   const SceneDef& scene = script.scene();
   if (scene.sweep_points > 0 && !script.is_replay()) {
     check_sweep_points(scene_file(name), assets_folder(), settings,
                        load_sweep(scene_file(name), assets_folder(), settings));
   }
-  const std::vector<Body> bodies = assemble(scene);
+  std::vector<Body> bodies;
+  {
+    MakingLine line(false);
+    bodies = assemble(scene, making_with(cache, line));
+  }
   try_changes(script, bodies);
   for (const Body& body : bodies) {
     for (const std::string& note : body.notes) say(stdout, fmt::format("note: {}: {}\n", body.source, note));
@@ -53,11 +58,13 @@ int check(const std::string& name, const std::vector<std::string>& settings) {
 void add_check(CommandLine& line) {
   auto name = std::make_shared<std::string>();
   auto settings = std::make_shared<std::vector<std::string>>();
-  Verb verb = line.verb("check", "Every error and warning of a scene or replay at once; writes nothing.");
+  auto no_cache = std::make_shared<bool>(false);
+  Verb verb = line.verb("check", "Every error and warning of a scene or replay at once; writes nothing but the cache.");
   verb.footer("Example: supple check my-scene.toml");
   verb.option("SCENE|REPLAY", *name, "scene or replay file, or the name of one that ships").required();
   verb.option("--set", *settings, "path=value over the scene's; may be repeated").repeatable();
-  verb.runs([name, settings] { return check(*name, *settings); });
+  verb.flag("--no-cache", *no_cache, "make meshes anew; keep none in the user's cache folder");
+  verb.runs([name, settings, no_cache] { return check(*name, *settings, !*no_cache); });
 }
 
 }  // namespace supple

@@ -8,6 +8,7 @@
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/text.h"
+#include "base/user_cache.h"
 #include "base/variants.h"
 #include "film/places.h"
 #include "geometry/surface_file.h"
@@ -123,6 +124,20 @@ Finding disk() {
   return finding;
 }
 
+// Meshes and skins are kept in a folder of the user's; without it, they are made anew for each film.
+Finding cache() {
+  const UserCache cache = UserCache::of_user();
+  const char* purpose = "keeps meshes and skins from run to run";
+  if (cache.folder().empty()) return {"cache", false, false, "neither XDG_CACHE_HOME nor HOME is set", purpose, ""};
+  std::filesystem::path place = cache.folder();  // or the first folder above it that is there
+  std::error_code error;
+  while (!std::filesystem::exists(place, error) && place.has_relative_path()) place = place.parent_path();
+  const bool writable = access(place.c_str(), W_OK) == 0;
+  const std::string used = fmt::format("{} of {} used", bytes_text(cache.used_bytes()), bytes_text(cache.most_bytes()));
+  return {"cache", writable, false, fmt::format("{}: {}", cache.folder().string(), writable ? used : "not writable"),
+          purpose, ""};
+}
+
 // Tells which instructions the build uses, and whether the processor has them. A build for one machine has no other
 // kernels.
 Finding processor() {
@@ -160,6 +175,7 @@ std::vector<Finding> findings() {
           font(),
           surface_reader(),
           scenes(),
+          cache(),
           disk()};
 }
 

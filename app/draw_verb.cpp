@@ -115,6 +115,7 @@ std::vector<std::string> command_of_part(const DrawCommand& command, int index) 
                                     "--quiet"};
   if (plan.last >= 0) words.insert(words.end(), {"--last", std::to_string(plan.last)});
   if (plan.rate > 0) words.insert(words.end(), {"--rate", fmt::format("{}", plan.rate)});
+  if (!plan.cache) words.emplace_back("--no-cache");
   if (!command.scene.empty()) words.insert(words.end(), {"--scene", command.scene});
   for (const std::string& setting : plan.settings) words.insert(words.end(), {"--set", setting});
   return words;
@@ -162,6 +163,7 @@ int draw(DrawCommand command) {
   command.plan.run = command.run;
   command.plan.scene = command.scene;
   command.plan.rate = command.rate.value_or(0);
+  command.plan.quiet = command.quiet;
   if (command.index && *command.index >= static_cast<std::size_t>(command.of))
     throw InputError(fmt::format("--index {}", *command.index),
                      fmt::format("there are {} parts (--of): 0 to {}", command.of, command.of - 1));
@@ -200,6 +202,9 @@ void add_options(Verb& verb, DrawCommand& command) {
           "--gl", [&plan](const std::string& word) { plan.gl = *value_named<GlChoice>(word); },
           word_list(all_names<GlChoice>()))
       .one_of(all_names<GlChoice>());
+  verb.flag(
+      "--no-cache", [&plan] { plan.cache = false; },
+      "make meshes and skins again; keep none in the user's cache folder");
   verb.flag("--quiet", command.quiet, "say nothing but errors");
 }
 

@@ -144,6 +144,9 @@ void add_film_options(Verb& verb, FilmCommand& command) {
   verb.option("--tolerance", plan.tolerance, "compare positions up to this, over the body's size, instead of all bits")
       .needs(verify)
       .between(0.0, 1.0);
+  verb.flag(
+      "--no-cache", [&plan] { plan.cache = false; },
+      "make meshes and skins again; keep none in the user's cache folder");
   verb.flag("--quiet", plan.quiet, "say nothing but errors, and warnings of what the film shows");
   verb.flag("--json", command.json, "the result as one line of JSON on standard output");
 }
@@ -169,12 +172,14 @@ int run_film(const FilmCommand& command, const std::vector<std::string>& words, 
   LoadedFilm film = load_film(plan, words);
   const SceneDef& scene = film.script.scene();
   if (!plan.quiet) say_remarks(film);
-  build_models(film);
+  build_models(plan, film);
   if (!plan.quiet) say_bodies(film.info);
   FilmStart start = check_film(plan, film);
   if (start.verifier && !start.verifier->remark().empty())
     say(stderr, fmt::format("note: {}: {}\n", plan.verify, start.verifier->remark()));
   const RunFolder folder = open_folder(start, film);
+  if (!plan.quiet && plan.pictures == FilmPictures::all && !plan.film_only)
+    say(stderr, fmt::format("frames appear in {}\n", folder.frames().string()));
 
   catch_interrupts();
   const double before_film = setup.elapsed_ms();

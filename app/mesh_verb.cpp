@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/timing.h"
 #include "film/places.h"
+#include "film/progress.h"
 #include "geometry/mesh_file.h"
 #include "geometry/tetrahedralize.h"
 #include "scene/shape_reader.h"
@@ -24,17 +25,22 @@ int make_mesh(const std::string& input, const std::string& output, int vertices)
   const Stopwatch watch;
   const std::filesystem::path path = shape_file(input);
   TetMesh mesh;
+  MakingLine line(false);
+  const auto heard = [&](int attempt, double share) {
+    line.show(fmt::format("meshing {}: attempt {}, {:.0f} %", path.string(), attempt, 100 * share));
+  };
   if (path.extension() == ".mesh") {
     MeshFile file = read_mesh(path);
     for (const std::string& note : file.notes) say(stdout, fmt::format("note: {}\n", note));
     mesh = std::move(file.mesh);
   } else if (path.extension() == ".toml") {
-    mesh = tetrahedralize(load_shape(path, assets_folder()), vertices, path.string());
+    mesh = tetrahedralize(load_shape(path, assets_folder()), vertices, path.string(), heard);
   } else {
     const Shape shape = load_surface(path);
     for (const std::string& note : shape.notes) say(stdout, fmt::format("note: {}\n", note));
-    mesh = tetrahedralize(shape, vertices, path.string());
+    mesh = tetrahedralize(shape, vertices, path.string(), heard);
   }
+  line.end();
   write_mesh(output, mesh);
   say(stdout, mesh_summary(mesh));
   say(stdout, fmt::format("written         {} ({:.2f} s)\n", output, watch.elapsed_ms() / 1000));

@@ -96,6 +96,9 @@ void add_options(Verb& verb, SweepOptions& options) {
   const Option images = verb.flag("--images", options.images, "film every point; otherwise the last frame is drawn");
   verb.flag("--no-images", options.no_images, "simulate only").excludes(images);
   verb.option("--gl", request.gl, word_list(all_names<GlChoice>())).one_of(all_names<GlChoice>());
+  verb.flag(
+      "--no-cache", [&request] { request.cache = false; },
+      "make meshes and skins anew; keep none in the user's cache folder");
   verb.flag("--quiet", request.quiet, "say nothing but errors");
 }
 

@@ -72,6 +72,7 @@ FilmPlan film_of(const SweepRequest& request, std::size_t point) {
   film.video = request.pictures == FilmPictures::all;
   film.checkpoint_every = 0;
   film.gl = *value_named<GlChoice>(request.gl);
+  film.cache = request.cache;
   film.quiet = request.quiet;
   return film;
 }

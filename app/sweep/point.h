@@ -23,6 +23,7 @@ struct SweepRequest {
   int error_every = 0;
   int threads = 1;  // of a point
   std::string gl = "auto";
+  bool cache = true;
   bool quiet = false;
 
   std::filesystem::path folder(std::size_t point) const;

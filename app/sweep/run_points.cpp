@@ -39,6 +39,7 @@ std::vector<std::string> command_of(const SweepRequest& request, std::size_t poi
   if (request.error_every > 0) words.insert(words.end(), {"--error-every", std::to_string(request.error_every)});
   if (request.pictures == FilmPictures::none) words.emplace_back("--no-images");
   if (request.pictures == FilmPictures::all) words.emplace_back("--images");
+  if (!request.cache) words.emplace_back("--no-cache");
   return words;
 }
 

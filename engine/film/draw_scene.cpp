@@ -86,6 +86,7 @@ Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const s
     DrawMesh mesh = mesh_of(skin, drawn[b].layers);
     mesh.label = bodies[b].def.label;
     mesh.printed = bodies[b].def.pattern == Pattern::checks ? Printed::checks : Printed::grid;
+    mesh.shadow_triangles.assign(drawn[b].casters.data(), drawn[b].casters.data() + drawn[b].casters.size());
     mesh.two_sided = drawn[b].two_sided;
     mesh.color = drawn[b].color;
     mesh.rest = bounds_of(bodies[b].description.mesh.rest);
@@ -123,6 +124,8 @@ void fit_to_pixels(DrawnBody& drawn, const TetMesh& mesh, double pixel) {
   }
   embedding.corners.conservativeResize(static_cast<Eigen::Index>(kept.size()), 4);
   embedding.weights.conservativeResize(static_cast<Eigen::Index>(kept.size()), 4);
+  // A texel of the shadow map is about as large as a pixel, and a shadow shows neither normals nor paint.
+  drawn.casters = simplified(drawn.skin, 0.8 * pixel, 2 * mean_edge(mesh), {});
 }
 
 }  // namespace
@@ -138,15 +141,20 @@ void fit_to_cameras(std::vector<DrawnBody>& drawn, const std::vector<Body>& bodi
   }
 }
 
-std::vector<float> skin_positions(const DrawnBody& drawn, const Positions& mesh) {
-  Positions points;
-  if (drawn.vertex_of.empty()) {
-    apply(drawn.embedding, mesh, points);
-  } else {
-    points.resize(drawn.vertex_of.size(), 3);
-    for (std::size_t v = 0; v < drawn.vertex_of.size(); ++v) points.row(v) = mesh.row(drawn.vertex_of[v]);
-  }
-  return as_floats(points);
+std::vector<float> skin_positions(const DrawnBody& drawn, const Positions& mesh, Threads* threads) {
+  const bool carried = drawn.vertex_of.empty();
+  const Embedding& embedding = drawn.embedding;
+  const Eigen::Index count = carried ? embedding.corners.rows() : Eigen::Index(drawn.vertex_of.size());
+  std::vector<float> result(3 * std::size_t(count));
+  constexpr Eigen::Index chunk = 4096;
+  run_chunks(threads, static_cast<int>((count + chunk - 1) / chunk), 12 * count, [&](int number) {
+    const Eigen::Index end = std::min(count, (number + 1) * chunk);
+    for (Eigen::Index v = number * chunk; v < end; ++v) {
+      const Vec3 point = carried ? embedded_point(embedding, v, mesh) : Vec3(mesh.row(drawn.vertex_of[v]));
+      for (int k = 0; k < 3; ++k) result[3 * std::size_t(v) + std::size_t(k)] = static_cast<float>(point[k]);
+    }
+  });
+  return result;
 }
 
 }  // namespace supple

@@ -1,8 +1,9 @@
 // Makes what the renderer draws from bodies, colliders and their states.
 #pragma once
 
+#include "base/threads.h"
 #include "render/draw_list.h"
-#include "scene/assemble.h"
+#include "scene/drawn_body.h"
 #include "scene/obstacle.h"
 
 namespace supple {
@@ -27,6 +28,7 @@ void fit_to_cameras(std::vector<DrawnBody>& drawn, const std::vector<Body>& bodi
                     int height);
 
 // Returns x y z by skin vertex. mesh: the positions of the body's mesh vertices, in the order of the input file [m].
-std::vector<float> skin_positions(const DrawnBody& drawn, const Positions& mesh);
+// threads: null where the calling thread does it all.
+std::vector<float> skin_positions(const DrawnBody& drawn, const Positions& mesh, Threads* threads = nullptr);
 
 }  // namespace supple

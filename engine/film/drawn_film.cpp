@@ -23,10 +23,10 @@ std::vector<Camera> cameras_of(const Script& script, const Stage& stage) {
 
 }  // namespace
 
-DrawnFilm::DrawnFilm(const Script& script, const std::vector<Body>& bodies, const CollisionSet& set,
-                     const std::string& font) {
+DrawnFilm::DrawnFilm(const Script& script, const std::vector<Body>& bodies, std::vector<DrawnBody> drawn,
+                     const CollisionSet& set, const std::string& font)
+    : drawn_(std::move(drawn)) {
   const SceneDef& scene = script.scene();
-  for (const Body& body : bodies) drawn_.push_back(drawn_body(scene, body));
   collider_skins_ = collider_skins(set.obstacles, bodies);
   // Cameras frame the bodies' boxes, which do not depend on the skins.
   const Stage fine = make_stage(scene, bodies, drawn_, set.obstacles, collider_skins_, font);
@@ -48,9 +48,10 @@ void DrawnFilm::follow(const std::vector<TimedChange>& changes, const CollisionS
 }
 
 DrawList DrawnFilm::list(const SceneDef& scene, const std::vector<const Positions*>& motion, const CollisionSet& set,
-                         double time) {
+                         double time, Threads& threads) {
   DrawList result;
-  for (std::size_t b = 0; b < motion.size(); ++b) result.positions.push_back(skin_positions(drawn_[b], *motion[b]));
+  for (std::size_t b = 0; b < motion.size(); ++b)
+    result.positions.push_back(skin_positions(drawn_[b], *motion[b], &threads));
   add_colliders(set.obstacles, collider_skins_, time, result);
   result.camera = camera_at(scene, stage_, time, result.positions);
   for (const std::size_t c : std::exchange(renewed_, {}))

@@ -11,8 +11,9 @@ namespace supple {
 
 class DrawnFilm {
  public:
-  // The script tells all cameras of the film, to which the skins' resolution is fitted.
-  DrawnFilm(const Script& script, const std::vector<Body>& bodies, const CollisionSet& set, const std::string& font);
+  // The script tells all cameras of the film, to which the skins' resolution is fitted. drawn: of each body.
+  DrawnFilm(const Script& script, const std::vector<Body>& bodies, std::vector<DrawnBody> drawn,
+            const CollisionSet& set, const std::string& font);
 
   const Stage& stage() const { return stage_; }
 
@@ -22,7 +23,7 @@ class DrawnFilm {
   // Makes a frame's list: positions, and all that has changed since the last list. motion: by body, the positions of
   // its mesh as motion/ has them [m]. time: the frame's end [s].
   DrawList list(const SceneDef& scene, const std::vector<const Positions*>& motion, const CollisionSet& set,
-                double time);
+                double time, Threads& threads);
 
  private:
   std::vector<DrawnBody> drawn_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <future>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -15,6 +16,7 @@
 #include "film/film_solvers.h"
 #include "film/frame_loop.h"
 #include "film/places.h"
+#include "film/progress.h"
 #include "output/child_program.h"
 #include "output/chrome_trace.h"
 #include "output/json_text.h"
@@ -41,7 +43,7 @@ LoadedFilm load_film(const FilmPlan& plan, const std::vector<std::string>& comma
   std::vector<std::string> settings = plan.settings;
   if (plan.frames > 0) settings.push_back(fmt::format("frames={}", plan.frames));
   if (plan.seed >= 0) settings.push_back(fmt::format("seed={}", plan.seed));
-  LoadedFilm film{Script::load(file, assets_folder(), settings, plan.sweep_point), {}, {}, {}};
+  LoadedFilm film{Script::load(file, assets_folder(), settings, plan.sweep_point), {}, {}, {}, {}};
   film.info.command = command;
   film.info.scene_file = std::filesystem::absolute(file).lexically_normal().string();
   film.info.settings = settings;
@@ -53,7 +55,8 @@ LoadedFilm load_film(const FilmPlan& plan, const std::vector<std::string>& comma
       plan.threads > 0 ? plan.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   check_save_states(plan.save_states, film.script.scene(), {}, 0);
   zone.next("assemble meshes");
-  film.bodies = assemble(film.script.scene());
+  MakingLine tells(plan.quiet);
+  film.bodies = assemble(film.script.scene(), making_with(plan.cache, tells));
   for (const Body& body : film.bodies) {
     const TetMesh& mesh = body.description.mesh;
     const auto elements = static_cast<int>(mesh.tets.rows() + body.description.springs.size());
@@ -62,10 +65,24 @@ LoadedFilm load_film(const FilmPlan& plan, const std::vector<std::string>& comma
   return film;
 }
 
-void build_models(LoadedFilm& film) {
+void build_models(const FilmPlan& plan, LoadedFilm& film) {
   const Zone zone("build models");
   try_changes(film.script, film.bodies);
+  std::future<void> skins;
+  if (plan.pictures != FilmPictures::none) {
+    skins = std::async(std::launch::async, [&plan, &film] {
+      name_thread("skins");
+      make_skins(plan, film);
+    });
+  }
   for (const Body& body : film.bodies) film.models.push_back(build_model(body.description));
+  if (skins.valid()) skins.get();
+}
+
+void make_skins(const FilmPlan& plan, LoadedFilm& film) {
+  const Zone zone("make skins");
+  MakingLine tells(plan.quiet);
+  film.drawn = drawn_bodies(film.bodies, making_with(plan.cache, tells));
 }
 
 namespace {

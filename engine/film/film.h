@@ -15,7 +15,7 @@
 #include "output/folder_lock.h"
 #include "output/profile.h"
 #include "output/run_folder.h"
-#include "scene/assemble.h"
+#include "scene/drawn_body.h"
 #include "scene/script.h"
 
 namespace supple {
@@ -26,15 +26,18 @@ struct FilmSolvers;  // film_solvers.h
 struct LoadedFilm {
   Script script;
   std::vector<Body> bodies;
-  std::vector<Model> models;  // by body, once build_models has made them
-  RunInfo info;               // for run.json; filled in as the film goes along
+  std::vector<Model> models;     // by body, once build_models has made them
+  std::vector<DrawnBody> drawn;  // by body, once build_models has made them; empty without pictures
+  RunInfo info;                  // for run.json; filled in as the film goes along
 };
 
 // Reads the scene and its meshes. command: as the program was called. Throws InputError.
 LoadedFilm load_film(const FilmPlan& plan, const std::vector<std::string>& command);
 
-// Tries every change of the script, and builds the models. Throws InputError.
-void build_models(LoadedFilm& film);
+// Tries every change of the script, and builds the models, and with pictures what is drawn of them. Throws InputError.
+void build_models(const FilmPlan& plan, LoadedFilm& film);
+// Makes what is drawn of the bodies. build_models calls this, beside its other work.
+void make_skins(const FilmPlan& plan, LoadedFilm& film);
 
 // How a film starts: where, and after which frames of an earlier run.
 struct FilmStart {

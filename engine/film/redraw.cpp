@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/interrupts.h"
 #include "base/text.h"
+#include "base/threads.h"
 #include "film/drawn_film.h"
 #include "film/film_identity.h"
 #include "film/places.h"
@@ -50,6 +51,8 @@ FilmPlan plan_of_run(const DrawPlan& plan, const Json& info) {
                      info["settings"].is_array() && info.contains("scene");
   if (!whole) throw InputError(source, "does not tell the run's scene and settings: an older program made the run");
   FilmPlan film;
+  film.cache = plan.cache;
+  film.quiet = plan.quiet;
   film.scene = plan.scene.empty() ? info["scene_file"].get<std::string>() : plan.scene.string();
   std::error_code error;
   if (!std::filesystem::is_regular_file(film.scene, error))
@@ -131,7 +134,8 @@ class Drawing {
       : drawing_(drawing),
         scene_(drawing.film.script.scene()),
         set_(collision_set(scene_)),
-        drawn_(drawing.film.script, drawing.film.bodies, set_, caption_font()) {}
+        drawn_(drawing.film.script, drawing.film.bodies, drawing.film.drawn, set_, caption_font()),
+        threads_(drawing.film.info.threads) {}
 
   const Stage& stage() const { return drawn_.stage(); }
 
@@ -144,7 +148,7 @@ class Drawing {
       motion.push_back(drawing_.motion[b].frame(frame).rowwise() + origin.transpose());
     }
     for (const Positions& body : motion) places.push_back(&body);
-    return drawn_.list(scene_, places, set_, (frame + 1) / scene_.fps);
+    return drawn_.list(scene_, places, set_, (frame + 1) / scene_.fps, threads_);
   }
 
  private:
@@ -165,6 +169,7 @@ class Drawing {
   SceneDef scene_;  // at the end of the last frame that was asked for
   CollisionSet set_;
   DrawnFilm drawn_;
+  Threads threads_;
   int followed_ = 0;  // frames whose changes are in scene_
 };
 
@@ -173,8 +178,10 @@ class Drawing {
 LoadedDrawing load_drawing(const DrawPlan& plan) {
   const RunRecord run = read_run(plan.run);
   const Json info = parsed_json<Json>(run.info_json);
-  LoadedDrawing drawing{load_film(plan_of_run(plan, info), {}), {}, {}, 0, {}};
+  const FilmPlan film = plan_of_run(plan, info);
+  LoadedDrawing drawing{load_film(film, {}), {}, {}, 0, {}};
   check_same_motion(plan, info, drawing.film);
+  make_skins(film, drawing.film);
   drawing.motion = motion_of(run, drawing.film);
   drawing.frames = frames_of(plan, drawing.motion);
   drawing.rate = plan.rate > 0 ? plan.rate : drawing.film.script.scene().fps / plan.every;

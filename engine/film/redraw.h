@@ -24,6 +24,8 @@ struct DrawPlan {
   int first = 0, last = -1, every = 1;  // frames of the run; a negative last one is the run's
   double rate = 0;                      // frames a second of the film; 0: as fast as it happened
   GlChoice gl = GlChoice::automatic;
+  bool cache = true;   // of meshes and skins
+  bool quiet = false;  // no progress while meshing
 };
 
 // A run that is ready to be drawn.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <tuple>
 
 namespace supple {
 namespace {
@@ -19,9 +20,12 @@ struct FaceUse {
   int face;
 };
 
+// Lists all faces, sorted by their keys and then by element. They are counted into their places by the first vertex of
+// the key, which leaves few to be compared with each other.
 std::vector<FaceUse> sorted_faces(const Tetrahedra& tets) {
-  std::vector<FaceUse> uses;
-  uses.reserve(static_cast<std::size_t>(tets.rows()) * 4);
+  std::vector<FaceUse> unsorted;
+  unsorted.reserve(static_cast<std::size_t>(tets.rows()) * 4);
+  std::vector<std::size_t> begin(tets.rows() == 0 ? 2 : static_cast<std::size_t>(tets.maxCoeff()) + 2, 0);
   for (Eigen::Index e = 0; e < tets.rows(); ++e) {
     for (int face = 0; face < 4; ++face) {
       FaceUse use;
@@ -29,11 +33,19 @@ std::vector<FaceUse> sorted_faces(const Tetrahedra& tets) {
       std::sort(use.key.begin(), use.key.end());
       use.element = static_cast<std::int32_t>(e);
       use.face = face;
-      uses.push_back(use);
+      ++begin[static_cast<std::size_t>(use.key[0]) + 1];
+      unsorted.push_back(use);
     }
   }
-  std::sort(uses.begin(), uses.end(),
-            [](const FaceUse& a, const FaceUse& b) { return a.key != b.key ? a.key < b.key : a.element < b.element; });
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<FaceUse> uses(unsorted.size());
+  std::vector<std::size_t> next = begin;
+  for (const FaceUse& use : unsorted) uses[next[static_cast<std::size_t>(use.key[0])]++] = use;
+  const auto before = [](const FaceUse& a, const FaceUse& b) {
+    return std::tie(a.key[1], a.key[2], a.element) < std::tie(b.key[1], b.key[2], b.element);
+  };
+  for (std::size_t v = 0; v + 1 < begin.size(); ++v)
+    std::sort(uses.begin() + std::ptrdiff_t(begin[v]), uses.begin() + std::ptrdiff_t(begin[v + 1]), before);
   return uses;
 }
 

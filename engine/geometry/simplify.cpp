@@ -99,7 +99,12 @@ Triangles simplified(const Skin& skin, double error, double longest, const std::
   for (int pass = 0; pass < passes; ++pass)
     plain = simplified_by_cells(skin, plain, longest, static_cast<double>(pass) / passes, error / passes);
   plain.insert(plain.end(), bordering.begin(), bordering.end());
-  return Eigen::Map<const Triangles>(plain.data(), static_cast<Eigen::Index>(plain.size() / 3), 3);
+  // Triangles that share vertices follow each other, so that a rasteriser computes few vertices twice.
+  Triangles result(static_cast<Eigen::Index>(plain.size() / 3), 3);
+  const auto* corners = reinterpret_cast<const unsigned*>(plain.data());
+  meshopt_optimizeVertexCache(reinterpret_cast<unsigned*>(result.data()), corners, plain.size(),
+                              static_cast<std::size_t>(skin.rest.points.rows()));
+  return result;
 }
 
 std::vector<std::int32_t> remove_unused_vertices(Skin& skin) {

@@ -221,14 +221,11 @@ Embedding embed(const Positions& points, const TetMesh& mesh) {
   return result;
 }
 
-void apply(const Embedding& embedding, const Positions& mesh_positions, Positions& result) {
-  result.resize(embedding.corners.rows(), 3);
-  for (Eigen::Index v = 0; v < result.rows(); ++v) {
-    result.row(v) = embedding.weights(v, 0) * mesh_positions.row(embedding.corners(v, 0)) +
-                    embedding.weights(v, 1) * mesh_positions.row(embedding.corners(v, 1)) +
-                    embedding.weights(v, 2) * mesh_positions.row(embedding.corners(v, 2)) +
-                    embedding.weights(v, 3) * mesh_positions.row(embedding.corners(v, 3));
-  }
+Vec3 embedded_point(const Embedding& embedding, Eigen::Index point, const Positions& mesh_positions) {
+  Vec3 sum = Vec3::Zero();
+  for (int k = 0; k < 4; ++k)
+    sum += embedding.weights(point, k) * mesh_positions.row(embedding.corners(point, k)).transpose();
+  return sum;
 }
 
 }  // namespace supple

@@ -50,7 +50,7 @@ struct Embedding {
 // of.
 Embedding embed(const Positions& points, const TetMesh& mesh);
 
-// Sets `result` to the embedded points at the mesh's current positions.
-void apply(const Embedding& embedding, const Positions& mesh_positions, Positions& result);
+// Where an embedded point lies at the mesh's current positions.
+Vec3 embedded_point(const Embedding& embedding, Eigen::Index point, const Positions& mesh_positions);
 
 }  // namespace supple

@@ -23,7 +23,8 @@ constexpr int long_edges = 3;  // the first three are the long ones
 
 class IsosurfaceStuffing {
  public:
-  IsosurfaceStuffing(const Shape& shape, double spacing, const Vec3& shift) : shape_(shape), spacing_(spacing) {
+  IsosurfaceStuffing(const Shape& shape, double spacing, const Vec3& shift, const std::function<void(double)>& heard)
+      : shape_(shape), spacing_(spacing), heard_(heard) {
     const Bounds box = shape.bounds();
     origin_ = box.lower - (1.5 * Vec3::Ones() + shift) * spacing;
     for (int axis = 0; axis < 3; ++axis) {
@@ -75,9 +76,16 @@ class IsosurfaceStuffing {
   Vec3 lattice_position(const Site& s) const { return origin_ + 0.5 * spacing_ * Vec3(s[0], s[1], s[2]); }
   Vec3 position(const Site& s) const { return lattice_position(s) + moved_[id(s)]; }
 
+  // Tells that a layer of the lattice has been passed once more. Sampling and finding cuts take nearly all of the time.
+  void tell_layer() {
+    constexpr int passes = 2;
+    if (heard_) heard_(std::min(1.0, ++layers_done_ / double(passes * (2 * cells_[2] + 1))));
+  }
+
   template <class Visit>
-  void for_each_site(const Visit& visit) const {
+  void for_each_site(const Visit& visit) {
     for (int k = 0; k <= 2 * cells_[2]; ++k) {
+      tell_layer();
       for (int j = k % 2; j <= 2 * cells_[1] - k % 2; j += 2) {
         for (int i = k % 2; i <= 2 * cells_[0] - k % 2; i += 2) visit(Site{i, j, k});
       }
@@ -304,6 +312,8 @@ class IsosurfaceStuffing {
 
   const Shape& shape_;
   const double spacing_;
+  const std::function<void(double)>& heard_;
+  int layers_done_ = 0;  // of both passes
   Vec3 origin_;
   std::array<int, 3> cells_{};
   std::vector<double> field_;     // distance at each site; 0 where the site was moved onto the surface
@@ -332,8 +342,8 @@ double sampled_volume(const Shape& shape, const Bounds& box) {
 
 }  // namespace
 
-TetMesh stuff_lattice(const Shape& shape, double spacing, const Vec3& shift) {
-  TetMesh mesh = one_manifold_piece(IsosurfaceStuffing(shape, spacing, shift).run());
+TetMesh stuff_lattice(const Shape& shape, double spacing, const Vec3& shift, const std::function<void(double)>& heard) {
+  TetMesh mesh = one_manifold_piece(IsosurfaceStuffing(shape, spacing, shift, heard).run());
   mesh.regions.resize(static_cast<std::size_t>(mesh.tets.rows()));
   for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
     Vec3 centroid = Vec3::Zero();
@@ -343,7 +353,7 @@ TetMesh stuff_lattice(const Shape& shape, double spacing, const Vec3& shift) {
   return mesh;
 }
 
-TetMesh tetrahedralize(const Shape& shape, int vertices, const std::string& source) {
+TetMesh tetrahedralize(const Shape& shape, int vertices, const std::string& source, const MeshingProgress& heard) {
   const Bounds box = shape.bounds();
   if (box.empty()) throw InputError(source, "the shape is empty: add a part such as sphere = { radius = 0.1 }");
   if (box.extent().maxCoeff() > 1e6) {
@@ -362,7 +372,10 @@ TetMesh tetrahedralize(const Shape& shape, int vertices, const std::string& sour
     // After six attempts at the same alignment the lattice itself is shifted, because small bodies gain and lose whole
     // layers of vertices at once.
     const Vec3 shift = Vec3(0.31, 0.17, 0.43) * (attempt < 6 ? 0.0 : 0.37 * attempt);
-    TetMesh mesh = stuff_lattice(shape, spacing, shift - Vec3(shift.array().floor()));
+    const auto told = [&](double share) {
+      if (heard) heard(attempt + 1, share);
+    };
+    TetMesh mesh = stuff_lattice(shape, spacing, shift - Vec3(shift.array().floor()), told);
     const double count = std::max<double>(static_cast<double>(mesh.rest.rows()), 1.0);
     if (best.rest.rows() == 0 || miss(mesh) < miss(best)) best = std::move(mesh);
     if (miss(best) < 0.01 || (attempt >= 8 && miss(best) < 0.03)) break;

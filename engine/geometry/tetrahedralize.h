@@ -4,18 +4,23 @@
 // meant for sharp edges, which come out rounded at the lattice's scale (box_mesh makes boxes).
 #pragma once
 
+#include <functional>
+
 #include "geometry/mesh.h"
 #include "geometry/shape.h"
 
 namespace supple {
 
 // Makes one connected manifold body with about `vertices` vertices (within 3 %); its regions follow the shape's tags.
-// Throws InputError (naming `source`) if the shape is unbounded or empty, or too thin for that many vertices.
-TetMesh tetrahedralize(const Shape& shape, int vertices, const std::string& source);
+// Throws InputError (naming `source`) if the shape is unbounded or empty, or too thin for that many vertices. A mesh is
+// found in several attempts, the first of them 1; `heard` hears the share of an attempt that is done, 0 to 1.
+using MeshingProgress = std::function<void(int attempt, double share)>;
+TetMesh tetrahedralize(const Shape& shape, int vertices, const std::string& source, const MeshingProgress& heard = {});
 
 // Does the same at a given lattice spacing [m]; `shift` (in fractions of the spacing) moves the lattice against the
-// shape.
-TetMesh stuff_lattice(const Shape& shape, double spacing, const Vec3& shift = Vec3::Zero());
+// shape. heard: hears the share that is done.
+TetMesh stuff_lattice(const Shape& shape, double spacing, const Vec3& shift = Vec3::Zero(),
+                      const std::function<void(double)>& heard = {});
 
 // Makes a box from the origin to `extent` with `cells` cells along each axis. Each cell is cut into six tetrahedra
 // around one diagonal, mirrored from cell to cell so that no direction is preferred.

@@ -22,15 +22,6 @@ std::string cpu_name() {
   return "unknown";
 }
 
-std::uint64_t program_identity() {
-  static const std::uint64_t identity = [] {
-    std::ifstream file("/proc/self/exe", std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-    return hash_text(bytes);
-  }();
-  return identity;
-}
-
 std::string program_version() { return SUPPLE_VERSION; }
 std::string build_flags() { return SUPPLE_BUILD_FLAGS; }
 

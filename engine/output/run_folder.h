@@ -72,7 +72,6 @@ class RunFolder {
 // These functions give the program's version and how it was built, as run.json holds them.
 std::string program_version();
 std::string build_flags();
-std::uint64_t program_identity();  // XXH64 of the program's file, so that every build has another one
-std::string cpu_name();            // name of this machine's processor; "unknown" where the system does not tell
+std::string cpu_name();  // name of this machine's processor; "unknown" where the system does not tell
 
 }  // namespace supple

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "output/child_program.h"
 
@@ -45,7 +46,8 @@ class VideoEncoder {
   VideoResult failure(std::string reason, std::string told = "") const;
 
   std::filesystem::path video_, part_;
-  std::size_t frame_bytes_;
+  int width_, height_;
+  std::vector<std::uint8_t> planes_;  // scratch
   int frames_ = 0;
   bool taken_ = true;   // all frames so far
   std::string unread_;  // why a file could not be added

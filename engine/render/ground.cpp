@@ -19,11 +19,12 @@ void set_light(const Program& program, const StageLight& light) {
   program.set("ray_up", light.rays.up);
 }
 
-Ground::Ground(const GlTable& gl, const std::filesystem::path& shaders, int width, int height,
-               const Bounds& bounds, double largest_body)
+Ground::Ground(const GlTable& gl, const std::filesystem::path& shaders, int width, int height, const Bounds& bounds,
+               double largest_body)
     : gl_(gl),
       bare_(gl, shaders, "tiles", "ground"),
       arriving_(gl, shaders, "tiles", "ground_light"),
+      arriving_unshadowed_(gl, shaders, "tiles", "ground_light", {"UNSHADOWED"}),
       shaded_(gl, shaders, "tiles", "ground", {"SHADED"}),
       width_(width),
       height_(height),
@@ -31,6 +32,7 @@ Ground::Ground(const GlTable& gl, const std::filesystem::path& shaders, int widt
       radius_(0.5 * bounds.diagonal() + largest_body),
       occlusion_(bounds, largest_body),
       tiles_(width, height),
+      open_tiles_(width, height),
       tile_buffer_(gl) {
   const auto check = [&] {
     if (gl_.CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
@@ -118,14 +120,14 @@ void Ground::mark_occlusion(const Eigen::Matrix4f& view, const std::vector<float
       if (open[std::size_t(v) * GroundOcclusion::cells + u] >= seen) continue;
       const auto x = static_cast<float>(occlusion_.origin_x() + (u + 0.5) * cell);
       const auto z = static_cast<float>(occlusion_.origin_z() + (v + 0.5) * cell);
-      const auto wide = static_cast<float>(cell);  // a texel is blended into half of its neighbours
+      const auto wide = static_cast<float>(2 * cell);  // the shader blends a texel into two neighbours on each side
       const auto first = static_cast<std::uint32_t>(corners.size() / 3);
-      corners.insert(corners.end(), {x - wide, 0, z - wide, x + wide, 0, z - wide, x - wide, 0, z + wide, x + wide, 0,
-                                     z + wide});
+      corners.insert(corners.end(),
+                     {x - wide, 0, z - wide, x + wide, 0, z - wide, x - wide, 0, z + wide, x + wide, 0, z + wide});
       triangles.insert(triangles.end(), {first, first + 1, first + 2, first + 1, first + 2, first + 3});
     }
   }
-  tiles_.mark(corners, triangles, view);
+  open_tiles_.mark(corners, triangles, view);
 }
 
 void Ground::draw(GLuint picture, const Eigen::Matrix4f& view, const StageLight& light, const ShadowMap& shadows,
@@ -137,29 +139,39 @@ void Ground::draw(GLuint picture, const Eigen::Matrix4f& view, const StageLight&
 
   const std::vector<float>& open = occlusion_.compute(meshes, positions);
   tiles_.clear();
+  open_tiles_.clear();
   mark_shadows(view, light, shadows.widest_penumbra(), meshes, positions);
   mark_occlusion(view, open);
-  gl_.ActiveTexture(GL_TEXTURE0);
-  gl_.BindTexture(GL_TEXTURE_2D, occlusion_texture_);
-  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R32F, GroundOcclusion::cells, GroundOcclusion::cells, 0, GL_RED, GL_FLOAT,
-                 open.data());
-  const std::vector<float>& corners = tiles_.corners();
-  gl_.BindFramebuffer(GL_FRAMEBUFFER, light_framebuffer_);
-  gl_.Viewport(0, 0, (width_ + 1) / 2, (height_ + 1) / 2);
-  gl_.ClearColor(1, 1, 1, 1);
-  gl_.Clear(GL_COLOR_BUFFER_BIT);
-  set_stage(arriving_, light);
-  arriving_.set("occlusion_area", Vec3(occlusion_.origin_x(), occlusion_.origin_z(), occlusion_.extent()));
-  arriving_.set("unseen", double(GroundOcclusion::unseen));
-  arriving_.set_texture("occlusion_map", 0, GL_TEXTURE_2D, occlusion_texture_);
-  shadows.bind(arriving_, 1);
-  tile_buffer_.draw(corners);
+  open_tiles_.unmark(tiles_);
+  draw_arriving(light, shadows, open);
 
   gl_.BindFramebuffer(GL_FRAMEBUFFER, picture);
   gl_.Viewport(0, 0, width_, height_);
   set_stage(shaded_, light);
   shaded_.set_texture("arriving", 0, GL_TEXTURE_2D, light_);
-  tile_buffer_.draw(corners);
+  tile_buffer_.draw(tiles_.corners());
+  tile_buffer_.draw(open_tiles_.corners());
+}
+
+// Finds the light in all tiles. Shadows are looked for only where there may be one.
+void Ground::draw_arriving(const StageLight& light, const ShadowMap& shadows, const std::vector<float>& open) {
+  gl_.ActiveTexture(GL_TEXTURE0);
+  gl_.BindTexture(GL_TEXTURE_2D, occlusion_texture_);
+  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R32F, GroundOcclusion::cells, GroundOcclusion::cells, 0, GL_RED, GL_FLOAT,
+                 open.data());
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, light_framebuffer_);
+  gl_.Viewport(0, 0, (width_ + 1) / 2, (height_ + 1) / 2);
+  gl_.ClearColor(1, 1, 1, 1);
+  gl_.Clear(GL_COLOR_BUFFER_BIT);
+  for (const bool shadowed : {true, false}) {
+    const Program& program = shadowed ? arriving_ : arriving_unshadowed_;
+    set_stage(program, light);
+    program.set("occlusion_area", Vec3(occlusion_.origin_x(), occlusion_.origin_z(), occlusion_.extent()));
+    program.set("unseen", double(GroundOcclusion::unseen));
+    program.set_texture("occlusion_map", 0, GL_TEXTURE_2D, occlusion_texture_);
+    if (shadowed) shadows.bind(program, 1);
+    tile_buffer_.draw((shadowed ? tiles_ : open_tiles_).corners());
+  }
 }
 
 }  // namespace supple

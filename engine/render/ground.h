@@ -48,17 +48,19 @@ class Ground {
   void mark_shadows(const Eigen::Matrix4f& view, const StageLight& light, double penumbra,
                     const std::vector<DrawMesh>& meshes, const std::vector<std::vector<float>>& positions);
   void mark_occlusion(const Eigen::Matrix4f& view, const std::vector<float>& open);
+  void draw_arriving(const StageLight& light, const ShadowMap& shadows, const std::vector<float>& open);
   void set_stage(const Program& program, const StageLight& light) const;
 
   const GlTable& gl_;
-  Program bare_, arriving_, shaded_;
+  Program bare_, arriving_, arriving_unshadowed_, shaded_;
   int width_, height_;
   Vec3 center_;
   double radius_;  // of the stage [m]
   GroundOcclusion occlusion_;
-  Tiles tiles_;  // that shadows or occlusion reach
+  Tiles tiles_;       // that shadows may reach
+  Tiles open_tiles_;  // the others that have a body above them
   TileBuffer tile_buffer_;
-  GLuint framebuffer_ = 0, color_ = 0;  // the bare ground and background
+  GLuint framebuffer_ = 0, color_ = 0;        // the bare ground and background
   GLuint light_framebuffer_ = 0, light_ = 0;  // key light and open sky, at half the resolution
   GLuint occlusion_texture_ = 0;
   std::optional<Eigen::Matrix4f> bare_view_;  // that the bare ground was drawn with

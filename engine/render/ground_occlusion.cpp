@@ -15,8 +15,9 @@ GroundOcclusion::GroundOcclusion(const Bounds& stage, double largest_body)
 
 // Notes that there is a surface at a point.
 void GroundOcclusion::lower(float x, float y, float z) {
-  const double cell = extent_ / cells;
-  const double u = (x - origin_x_) / cell, v = (z - origin_z_) / cell;
+  if (y > reach_) return;
+  const double cell = extent_ / cells, by_cell = cells / extent_;
+  const double u = (x - origin_x_) * by_cell, v = (z - origin_z_) * by_cell;
   if (!(u >= 0 && v >= 0 && u < cells && v < cells)) return;
   float& low = lowest_[std::size_t(v) * cells + std::size_t(u)];
   low = std::min(low, std::max(y, static_cast<float>(0.35 * cell)));

@@ -78,8 +78,9 @@ Renderer::Renderer(const Stage& stage, GlChoice choice, const std::filesystem::p
   ground_ = std::make_unique<Ground>(gl_, shaders, stage_.width, stage_.height, bounds_, largest_body_);
   captions_ = std::make_unique<Captions>(gl_, shaders, stage_.font, stage_.width, stage_.height);
   tile_buffer_ = std::make_unique<TileBuffer>(gl_);
+  make_shading_program();
   check_test_picture();
-  take_meshes();
+  surfaces_ = std::make_unique<SurfaceBuffers>(gl_, stage_.meshes);
   captions_->renew(stage_.meshes);
   check_gl(gl_, "preparing the stage");
 }
@@ -133,9 +134,8 @@ void Renderer::make_targets() {
   check("picture");
 }
 
-// Makes the buffers of the stage's meshes, and a program that shades what they have and no more.
-void Renderer::take_meshes() {
-  surfaces_ = std::make_unique<SurfaceBuffers>(gl_, stage_.meshes);
+// Makes a program that shades what the stage's meshes have and no more.
+void Renderer::make_shading_program() {
   std::vector<std::string> definitions = {fmt::format("SAMPLES {}", samples_)};
   if (std::ranges::any_of(stage_.meshes, [](const DrawMesh& mesh) { return !mesh.layers.empty(); }))
     definitions.emplace_back("PAINTED");
@@ -153,7 +153,7 @@ void Renderer::take_meshes() {
 }
 
 // Some software rasterisers accept a multisampled framebuffer and leave it blank, without an error; a triangle drawn
-// into it shows whether this one does.
+// into it shows whether this one does. It is shaded by the film's own program, which takes long to compile.
 void Renderer::check_test_picture() {
   DrawMesh mesh;
   mesh.triangles = {0, 1, 2};
@@ -164,7 +164,7 @@ void Renderer::check_test_picture() {
   Stage test;
   test.meshes.push_back(mesh);
   std::swap(stage_.meshes, test.meshes);
-  take_meshes();
+  surfaces_ = std::make_unique<SurfaceBuffers>(gl_, stage_.meshes);
   DrawList list;
   list.camera = {Vec3(0, 1, 3), Vec3(0, 1, 0), 30};
   list.positions = {{-9, 0, 0, 9, 0, 0, 0, 9, 0}};
@@ -182,7 +182,10 @@ void Renderer::check_test_picture() {
 
 void Renderer::upload(const DrawList& list) {
   for (const auto& [m, mesh] : list.renewed) stage_.meshes[m] = mesh;
-  if (!list.renewed.empty()) take_meshes();
+  if (!list.renewed.empty()) {
+    surfaces_ = std::make_unique<SurfaceBuffers>(gl_, stage_.meshes);
+    make_shading_program();
+  }
   for (const auto& [m, caption] : list.captions) {
     stage_.meshes[m].label = caption;
     captions_->renew(m, stage_.meshes[m]);
@@ -258,14 +261,17 @@ Image Renderer::draw(const DrawList& list) {
 
 Image Renderer::read_picture() {
   gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, picture_framebuffer_);
-  gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
-  const std::size_t row = std::size_t(stage_.width) * 3;
-  Image image{stage_.width, stage_.height, std::vector<std::uint8_t>(row * stage_.height)};
-  gl_.ReadPixels(0, 0, stage_.width, stage_.height, GL_RGB, GL_UNSIGNED_BYTE, image.rgb.data());
+  // Four bytes a pixel are what the picture has, and a software rasteriser copies them as they are.
+  const std::size_t width = std::size_t(stage_.width);
+  pixels_.resize(4 * width * stage_.height);
+  gl_.ReadPixels(0, 0, stage_.width, stage_.height, GL_RGBA, GL_UNSIGNED_BYTE, pixels_.data());
   check_gl(gl_, "drawing a frame");
-  for (int y = 0; y < stage_.height / 2; ++y) {  // GL's rows begin at the bottom
-    const auto low = image.rgb.begin() + std::ptrdiff_t(row) * y;
-    std::swap_ranges(low, low + std::ptrdiff_t(row), image.rgb.end() - std::ptrdiff_t(row) * (y + 1));
+  Image image{stage_.width, stage_.height, std::vector<std::uint8_t>(3 * width * stage_.height)};
+  for (int y = 0; y < stage_.height; ++y) {  // GL's rows begin at the bottom
+    const std::uint8_t* from = &pixels_[4 * width * std::size_t(stage_.height - 1 - y)];
+    std::uint8_t* to = &image.rgb[3 * width * std::size_t(y)];
+    for (std::size_t x = 0; x < width; ++x)
+      for (std::size_t k = 0; k < 3; ++k) to[3 * x + k] = from[4 * x + k];
   }
   return image;
 }

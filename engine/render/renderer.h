@@ -40,7 +40,7 @@ class Renderer {
 
  private:
   void make_targets();
-  void take_meshes();
+  void make_shading_program();
   void check_test_picture();
   void upload(const DrawList& list);
   void draw_visibility(const Eigen::Matrix4f& view);
@@ -66,6 +66,7 @@ class Renderer {
   std::unique_ptr<Captions> captions_;
   std::unique_ptr<TileBuffer> tile_buffer_;
   Tiles tiles_;
+  std::vector<std::uint8_t> pixels_;  // scratch: the picture as it is read back
 };
 
 }  // namespace supple

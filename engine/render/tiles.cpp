@@ -14,35 +14,53 @@ Tiles::Tiles(int width, int height)
 
 void Tiles::clear() { std::ranges::fill(marked_, std::uint8_t{0}); }
 
+// Finds the tile of each vertex. Returns whether all of them lie before the camera. Plain numbers rather than matrices
+// let the compiler compute several vertices at once.
+bool Tiles::find_tiles(const std::vector<float>& positions, const Eigen::Matrix4f& view) {
+  const std::size_t vertices = positions.size() / 3;
+  column_of_.resize(vertices);
+  row_of_.resize(vertices);
+  const float across = 0.5f * static_cast<float>(width_) / edge, up = 0.5f * static_cast<float>(height_) / edge;
+  const auto columns = static_cast<float>(columns_), rows = static_cast<float>(rows_);
+  const float x_x = view(0, 0), x_y = view(0, 1), x_z = view(0, 2), x_0 = view(0, 3);
+  const float y_x = view(1, 0), y_y = view(1, 1), y_z = view(1, 2), y_0 = view(1, 3);
+  const float w_x = view(3, 0), w_y = view(3, 1), w_z = view(3, 2), w_0 = view(3, 3);
+  int behind = 0;
+  for (std::size_t v = 0; v < vertices; ++v) {
+    const float x = positions[3 * v], y = positions[3 * v + 1], z = positions[3 * v + 2];
+    const float w = w_x * x + w_y * y + w_z * z + w_0;
+    behind |= w > 1e-6f ? 0 : 1;
+    const float scale = 1 / w;
+    // One tile beside the picture stands for all that lies there.
+    const float column = ((x_x * x + x_y * y + x_z * z + x_0) * scale + 1) * across;
+    const float row = ((y_x * x + y_y * y + y_z * z + y_0) * scale + 1) * up;
+    column_of_[v] = static_cast<std::int32_t>(std::floor(std::clamp(column, -1.0f, columns)));
+    row_of_[v] = static_cast<std::int32_t>(std::floor(std::clamp(row, -1.0f, rows)));
+  }
+  return behind == 0;
+}
+
 void Tiles::mark(const std::vector<float>& positions, const std::vector<std::uint32_t>& triangles,
                  const Eigen::Matrix4f& view) {
-  tile_of_.resize(positions.size() / 3 * 2);
-  const float across = 0.5f * static_cast<float>(width_) / edge, up = 0.5f * static_cast<float>(height_) / edge;
-  bool behind = false;
-  // One tile beside the picture stands for all that lies there.
-  const auto tile = [](float place, int count) {
-    return static_cast<std::int16_t>(std::floor(std::clamp(place, -1.0f, static_cast<float>(count))));
-  };
-  for (std::size_t v = 0; v < positions.size() / 3; ++v) {
-    const Eigen::Vector4f clip = view * Eigen::Vector4f(positions[3 * v], positions[3 * v + 1], positions[3 * v + 2], 1);
-    behind = behind || !(clip.w() > 1e-6f);
-    const float scale = 1 / clip.w();
-    tile_of_[2 * v] = tile((clip.x() * scale + 1) * across, columns_);
-    tile_of_[2 * v + 1] = tile((clip.y() * scale + 1) * up, rows_);
-  }
-  if (behind) {
+  if (!find_tiles(positions, view)) {
     std::ranges::fill(marked_, std::uint8_t{1});
     return;
   }
   for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) {
-    const std::int16_t* a = &tile_of_[2 * triangles[t]];
-    const std::int16_t* b = &tile_of_[2 * triangles[t + 1]];
-    const std::int16_t* c = &tile_of_[2 * triangles[t + 2]];
-    const int left = std::max<int>(0, std::min({a[0], b[0], c[0]})), right = std::max({a[0], b[0], c[0]});
-    const int low = std::max<int>(0, std::min({a[1], b[1], c[1]})), high = std::max({a[1], b[1], c[1]});
-    for (int y = low; y <= std::min(high, rows_ - 1); ++y) {
-      for (int x = left; x <= std::min(right, columns_ - 1); ++x) marked_[std::size_t(y) * columns_ + x] = 1;
+    const std::uint32_t a = triangles[t], b = triangles[t + 1], c = triangles[t + 2];
+    const int left = std::max(0, std::min({column_of_[a], column_of_[b], column_of_[c]}));
+    const int right = std::min(columns_ - 1, std::max({column_of_[a], column_of_[b], column_of_[c]}));
+    const int low = std::max(0, std::min({row_of_[a], row_of_[b], row_of_[c]}));
+    const int high = std::min(rows_ - 1, std::max({row_of_[a], row_of_[b], row_of_[c]}));
+    for (int y = low; y <= high; ++y) {
+      for (int x = left; x <= right; ++x) marked_[std::size_t(y) * columns_ + x] = 1;
     }
+  }
+}
+
+void Tiles::unmark(const Tiles& others) {
+  for (std::size_t i = 0; i < marked_.size(); ++i) {
+    if (others.marked_[i] != 0) marked_[i] = 0;
   }
 }
 
@@ -70,7 +88,8 @@ const std::vector<float>& Tiles::corners() {
       if (!marked(x, y)) continue;
       int end = x + 1;
       while (end < columns_ && marked(end, y)) ++end;
-      const float left = clip(x, width_), right = clip(end, width_), low = clip(y, height_), high = clip(y + 1, height_);
+      const float left = clip(x, width_), right = clip(end, width_), low = clip(y, height_),
+                  high = clip(y + 1, height_);
       corners_.insert(corners_.end(), {left, low, right, low, right, high, left, low, right, high, left, high});
       x = end;
     }

@@ -21,6 +21,9 @@ class Tiles {
   void mark(const std::vector<float>& positions, const std::vector<std::uint32_t>& triangles,
             const Eigen::Matrix4f& view);
 
+  // Unmarks the tiles that are marked in another set of the same picture.
+  void unmark(const Tiles& others);
+
   // Marks what lies within this many pixels of a marked tile too.
   void widen(double pixels);
 
@@ -31,10 +34,12 @@ class Tiles {
   const std::vector<float>& corners();
 
  private:
+  bool find_tiles(const std::vector<float>& positions, const Eigen::Matrix4f& view);
+
   int width_, height_, columns_, rows_;
   std::vector<std::uint8_t> marked_;
   std::vector<float> corners_;
-  std::vector<std::int16_t> tile_of_;  // x y by vertex
+  std::vector<std::int32_t> column_of_, row_of_;  // by vertex
 };
 
 }  // namespace supple

@@ -7,7 +7,6 @@
 #include "scene/body_mesh.h"
 #include "scene/overlaps.h"
 #include "scene/rotation.h"
-#include "scene/shape_reader.h"
 
 namespace supple {
 namespace {
@@ -211,10 +210,10 @@ void update_body(Body& body, const SceneDef& scene, const BodyDef& def) {
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 
-std::vector<Body> assemble(const SceneDef& scene) {
+std::vector<Body> assemble(const SceneDef& scene, const Making& making) {
   std::vector<Body> bodies;
   std::vector<Problem> problems;
-  MeshCache meshes;
+  MeshCache meshes(making);
   for (const BodyDef& def : scene.bodies) {
     try {
       const Loaded& loaded = meshes.get(scene, def);
@@ -225,6 +224,8 @@ std::vector<Body> assemble(const SceneDef& scene) {
       body.files = loaded.files;
       body.seed = scene.seed;
       body.skin = loaded.skin;
+      body.shape = loaded.shape;
+      body.unplaced = loaded.mesh.rest;
       body.description.name = def.name;
       body.description.mesh = loaded.mesh;
       body.placement = placement(def, loaded.mesh.rest);
@@ -253,52 +254,6 @@ std::vector<Body> assemble(const SceneDef& scene) {
   }
   if (!unique.empty()) throw InputError(std::move(unique));
   return bodies;
-}
-
-namespace {
-
-// The edge of the printed squares [m]; 0: nothing is printed.
-double square_of(const Body& body) {
-  if (body.def.pattern == Pattern::none) return 0;
-  if (body.def.pattern_size) return *body.def.pattern_size;
-  const Mat3 turn = rotation_from_degrees(body.def.turn_deg).toRotationMatrix();
-  Vec3 extent = bounds_of(body.description.mesh.rest * turn).extent();
-  std::sort(extent.begin(), extent.end());
-  return body.def.cloth ? extent[2] / 20 : extent[1] / 6;
-}
-
-}  // namespace
-
-DrawnBody drawn_body(const SceneDef& scene, const Body& body) {
-  DrawnBody drawn;
-  const TetMesh& placed = body.description.mesh;
-  drawn.two_sided = body.def.cloth || !std::holds_alternative<AtRest>(body.def.start);
-  if (!body.def.surface.empty()) {
-    std::vector<std::int32_t> vertex_of;
-    drawn.skin = skin_of_surface(body.skin.points, body.skin.triangles, square_of(body), vertex_of);
-    apply(body.placement, drawn.skin.rest.points);
-    drawn.embedding = embed(drawn.skin.rest.points, placed);
-    drawn.color = body.def.color.value_or(Shape{}.color);
-    return drawn;
-  }
-  if (body.def.shape.empty()) {
-    const Triangles surface = body.def.cloth ? body.cloth.surface.triangles : boundary_faces(placed.tets);
-    // In the body's own directions, so that the print lies along its edges however it stands.
-    const Mat3 turn = rotation_from_degrees(body.def.turn_deg).toRotationMatrix();
-    drawn.skin = skin_of_surface(placed.rest * turn, surface, square_of(body), drawn.vertex_of);
-    for (std::size_t v = 0; v < drawn.vertex_of.size(); ++v)
-      drawn.skin.rest.points.row(v) = placed.rest.row(drawn.vertex_of[v]);
-    drawn.color = body.def.color.value_or(Shape{}.color);
-    return drawn;
-  }
-  const Shape shape = load_shape(body.def.shape, scene.assets);
-  const double scale = std::cbrt(body.placement.linear().determinant());
-  drawn.skin = skin_of(shape, bounds_of(placed.rest).extent().maxCoeff() / scale / body.def.skin_cells);
-  apply(body.placement, drawn.skin.rest.points);
-  drawn.embedding = embed(drawn.skin.rest.points, placed);
-  drawn.color = body.def.color.value_or(shape.color);
-  drawn.layers = shape.paint;
-  return drawn;
 }
 
 namespace {

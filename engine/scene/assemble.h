@@ -1,25 +1,15 @@
-// Makes ready-to-run objects from definitions: meshes are read or made, placed and scaled, handles are chosen, and
-// skins are prepared.
+// Makes ready-to-run objects from definitions: meshes are read or made, placed and scaled, and handles are chosen. What
+// is drawn of them is made in drawn_body.h.
 #pragma once
 
 #include "geometry/cloth.h"
 #include "geometry/pose.h"
-#include "geometry/skin.h"
 #include "scene/keyed_motion.h"
+#include "scene/making.h"
 #include "scene/scene_def.h"
 #include "sim/model/state.h"
 
 namespace supple {
-
-// The drawn surface of a body: a skin carried by its elements, or (vertex_of) the mesh's own boundary.
-struct DrawnBody {
-  Skin skin;
-  Embedding embedding;                  // when the skin is finer than the mesh
-  std::vector<std::int32_t> vertex_of;  // when it is the boundary: mesh vertex by skin vertex
-  bool two_sided = false;
-  Vec3 color;
-  std::vector<PaintLayer> layers;  // colours only; their areas live in the skin
-};
 
 struct Body {
   // A collider that the body starts in, and how deep [m].
@@ -39,6 +29,8 @@ struct Body {
   double volume = 0;                 // of its tetrahedra at rest [m^3]
   ClothMesh cloth;
   TriMesh skin;                                // of a body made from a surface, in the file's frame
+  Shape shape;                                 // of a body made from a shape, in the file's frame
+  Positions unplaced;                          // the rest positions of the mesh in the file's frame
   std::uint64_t seed = 0;                      // of its random start
   std::vector<Overlap> overlaps;               // at the start; what the scene does about them is in its definition
   Vec3 start_move = Vec3(0, 0, 0);             // out of the colliders that it would start in [m]
@@ -47,13 +39,10 @@ struct Body {
 
 // Makes all bodies of a scene. Throws InputError with the problems of all bodies at once: unreadable meshes, empty
 // selections, regions that the mesh does not have.
-std::vector<Body> assemble(const SceneDef& scene);
+std::vector<Body> assemble(const SceneDef& scene, const Making& making = {});
 
 // Applies what may change while a body moves (live.h), as the scene's definition of it now says. Throws InputError.
 void update_body(Body& body, const SceneDef& scene, const BodyDef& def);
-
-// Makes what is drawn of a body. It is made apart from the body, so that a run without images does not pay for it.
-DrawnBody drawn_body(const SceneDef& scene, const Body& body);
 
 // The state in which a body starts: handled vertices are at rest, and handles move them from there.
 State start_state(const Model& model, const Body& body);

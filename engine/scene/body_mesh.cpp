@@ -1,6 +1,9 @@
 #include "scene/body_mesh.h"
 
+#include "base/hash.h"
+#include "geometry/mesh_bytes.h"
 #include "geometry/mesh_file.h"
+#include "geometry/surface_file.h"
 #include "geometry/tetrahedralize.h"
 #include "scene/shape_reader.h"
 
@@ -26,6 +29,42 @@ Loaded loaded_box(const BoxDef& def) {
   return loaded;
 }
 
+TetMesh tetrahedra(const Shape& shape, int vertices, const std::string& source, const Making& making) {
+  return tetrahedralize(shape, vertices, source, [&](int attempt, double share) {
+    if (making.tell)
+      making.tell(
+          fmt::format("meshing {} with {} vertices: attempt {}, {:.0f} %", source, vertices, attempt, 100 * share));
+  });
+}
+
+// make_shape: called only where the mesh has not been kept.
+template <class MakeShape>
+TetMesh kept_tetrahedra(const Loaded& loaded, int vertices, const Making& making, const MakeShape& make_shape) {
+  return kept_or_made(making.cache, fmt::format("mesh of {} vertices from {}", vertices, content_name(loaded.files)),
+                      tet_mesh_from, [&] { return tetrahedra(make_shape(), vertices, loaded.source, making); });
+}
+
+Loaded loaded_surface(const BodyDef& def, const Making& making) {
+  Loaded loaded;
+  loaded.source = def.surface.string();
+  loaded.skin = read_closed_surface(def.surface, &loaded.notes);
+  loaded.files = {source_of(def.surface, loaded.skin)};
+  loaded.regions = Shape{}.regions;
+  loaded.mesh = kept_tetrahedra(loaded, def.vertices, making, [&] { return shape_of(loaded.skin); });
+  return loaded;
+}
+
+Loaded loaded_shape(const SceneDef& scene, const BodyDef& def, const Making& making) {
+  Loaded loaded;
+  loaded.source = def.shape.string();
+  loaded.shape = load_shape(def.shape, scene.assets);
+  loaded.regions = loaded.shape.regions;
+  loaded.notes = loaded.shape.notes;
+  loaded.files = loaded.shape.files;
+  loaded.mesh = kept_tetrahedra(loaded, def.vertices, making, [&]() -> const Shape& { return loaded.shape; });
+  return loaded;
+}
+
 // Turns the element references of a file into the tags 0, 1, ... Reference 0 is the body without a tag.
 void name_references(Loaded& loaded) {
   std::map<int, int> tag = {{0, 0}};
@@ -39,6 +78,12 @@ void name_references(Loaded& loaded) {
 
 }  // namespace
 
+std::string content_name(const std::vector<SourceFile>& files) {
+  std::string name;
+  for (const SourceFile& file : files) name += (name.empty() ? "" : " ") + hash_text_form(file.hash);
+  return name;
+}
+
 const Loaded& MeshCache::get(const SceneDef& scene, const BodyDef& def) {
   std::string key = !def.mesh.empty() ? def.mesh.string()
                                       : fmt::format("{}{}#{}", def.shape.string(), def.surface.string(), def.vertices);
@@ -51,14 +96,7 @@ const Loaded& MeshCache::get(const SceneDef& scene, const BodyDef& def) {
   } else if (def.box) {
     loaded = loaded_box(*def.box);
   } else if (def.mesh.empty()) {
-    loaded.source = def.surface.empty() ? def.shape.string() : def.surface.string();
-    const Shape shape = def.surface.empty() ? load_shape(def.shape, scene.assets) : load_surface(def.surface);
-    loaded.mesh = tetrahedralize(shape, def.vertices, loaded.source);
-    loaded.regions = shape.regions;
-    loaded.notes = shape.notes;
-    loaded.files = shape.files;
-    if (!def.surface.empty())
-      loaded.skin = std::get<ClosedSurface>(shape.root.parts.front().primitive).solid->surface();
+    loaded = def.surface.empty() ? loaded_shape(scene, def, making_) : loaded_surface(def, making_);
   } else {
     loaded.source = def.mesh.string();
     MeshFile file = read_mesh(def.mesh);

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "geometry/cloth.h"
+#include "scene/making.h"
 #include "scene/scene_def.h"
 
 namespace supple {
@@ -16,16 +17,24 @@ struct Loaded {
   std::vector<SourceFile> files;
   ClothMesh cloth;
   TriMesh skin;  // of a body made from a surface, as it was read
+  Shape shape;   // of a body made from a shape
 };
 
-// Reads or makes each mesh once, also when several bodies share it.
+// Reads or makes each mesh once, also when several bodies share it. Meshes that take long to make are kept from run to
+// run.
 class MeshCache {
  public:
+  explicit MeshCache(const Making& making = {}) : making_(making) {}
+
   // Throws InputError.
   const Loaded& get(const SceneDef& scene, const BodyDef& def);
 
  private:
+  const Making making_;
   std::map<std::string, Loaded> loaded_;
 };
+
+// Names what files say, whatever their places are.
+std::string content_name(const std::vector<SourceFile>& files);
 
 }  // namespace supple

@@ -201,13 +201,21 @@ Shape read_single_part(const ConfigTable& table) {
   return shape;
 }
 
-Shape load_surface(const std::filesystem::path& path) {
+Shape shape_of(TriMesh closed_surface) {
   Shape shape;
   ShapePart part;
-  TriMesh triangles = read_closed_surface(path, &shape.notes);
-  shape.files.push_back(source_of(path, triangles));
-  part.primitive = ClosedSurface{std::make_shared<TriangleSolid>(std::move(triangles))};
+  part.primitive = ClosedSurface{std::make_shared<TriangleSolid>(std::move(closed_surface))};
   shape.root.parts.push_back(std::move(part));
+  return shape;
+}
+
+Shape load_surface(const std::filesystem::path& path) {
+  std::vector<std::string> notes;
+  TriMesh triangles = read_closed_surface(path, &notes);
+  const SourceFile source = source_of(path, triangles);
+  Shape shape = shape_of(std::move(triangles));
+  shape.notes = std::move(notes);
+  shape.files.push_back(source);
   return shape;
 }
 

@@ -12,6 +12,9 @@ Shape read_shape(const ConfigTable& table);
 // Reads a table that is one part, such as { sphere = { radius = 1 } }.
 Shape read_single_part(const ConfigTable& table);
 
+// The solid inside a closed surface.
+Shape shape_of(TriMesh closed_surface);
+
 // Reads a file with a closed surface (OBJ, PLY, STL, glTF, OFF); the shape is the solid inside. Throws InputError.
 Shape load_surface(const std::filesystem::path& path);
 

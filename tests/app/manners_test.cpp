@@ -188,7 +188,7 @@ TEST(Doctor, SaysWhatThereIsAndWhatIsMissing) {
   }
   EXPECT_EQ(ready, told["ready"].get<bool>());
   EXPECT_EQ(names, (std::set<std::string>{"processor", "cores", "OpenGL", "ffmpeg", "ffprobe", "gnuplot", "font",
-                                          "surface reader", "scenes", "disk"}));
+                                          "surface reader", "scenes", "cache", "disk"}));
 }
 
 TEST(Doctor, MissesWhatIsNotInPath) {

@@ -230,8 +230,8 @@ TEST(Skin, LiesOnTheSurfaceAndFollowsItsElements) {
   a << 1.1, 0.2, 0, -0.1, 0.9, 0.3, 0, 0.1, 1.2;
   const Positions moved = (mesh.rest * a.transpose()).rowwise() + Eigen::RowVector3d(1, 2, 3);
   const Positions expected = (skin.rest.points * a.transpose()).rowwise() + Eigen::RowVector3d(1, 2, 3);
-  Positions found;
-  apply(embedding, moved, found);
+  Positions found(expected.rows(), 3);
+  for (Eigen::Index v = 0; v < found.rows(); ++v) found.row(v) = embedded_point(embedding, v, moved).transpose();
   EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 1e-10);
   EXPECT_GT(embedding.weights.minCoeff(), -3.0);  // no vertex lies far outside its element
   for (const float open : skin.occlusion) EXPECT_TRUE(open >= 0 && open <= 1);

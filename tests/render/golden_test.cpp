@@ -59,11 +59,8 @@ Picture picture_of(const Shot& shot, const Settings& more = {}) {
   settings.insert(settings.end(), more.begin(), more.end());
   const test::Film film(shot.scene, settings);
   std::vector<State> states;
-  std::vector<DrawnBody> drawn;
-  for (std::size_t b = 0; b < film.bodies.size(); ++b) {
-    states.push_back(start_state(film.models[b], film.bodies[b]));
-    drawn.push_back(drawn_body(film.scene, film.bodies[b]));
-  }
+  std::vector<DrawnBody> drawn = drawn_bodies(film.bodies);
+  for (std::size_t b = 0; b < film.bodies.size(); ++b) states.push_back(start_state(film.models[b], film.bodies[b]));
   film.play(1, shot.frames,
             [&](std::size_t b, int, const State&, const StepInputs&, const State& after) { states[b] = after; });
   const std::vector<Skin> colliders = collider_skins(film.set.obstacles, film.bodies);

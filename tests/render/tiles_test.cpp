@@ -50,6 +50,24 @@ TEST(Tiles, TheCornersCoverTheMarkedTilesAndNothingElse) {
   EXPECT_NEAR(area * width * height / 4, expected, 1);
 }
 
+TEST(Tiles, ThoseOfAnotherSetCanBeTakenAway) {
+  Tiles all(width, height), some(width, height);
+  all.mark({-1, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 1, 2}, view());
+  some.mark({0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 1, 2}, view());
+  Tiles rest = all;
+  rest.unmark(some);
+  int taken = 0, left = 0;
+  for (int y = 0; y < height / Tiles::edge; ++y) {
+    for (int x = 0; x < width / Tiles::edge; ++x) {
+      EXPECT_EQ(rest.marked(x, y), all.marked(x, y) && !some.marked(x, y));
+      taken += all.marked(x, y) && some.marked(x, y) ? 1 : 0;
+      left += rest.marked(x, y) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(taken, 0);
+  EXPECT_GT(left, 0);
+}
+
 TEST(Tiles, ATriangleThatReachesBehindTheCameraMarksThemAll) {
   Tiles tiles(width, height);
   tiles.mark({0, 0, 0, 1, 0, 0, 0, 0, 9}, {0, 1, 2}, view());

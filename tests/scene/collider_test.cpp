@@ -4,8 +4,8 @@
 
 #include <fstream>
 
-#include "scene/assemble.h"
 #include "scene/body_mesh.h"
+#include "scene/drawn_body.h"
 #include "scene/obstacle.h"
 #include "scene/scene_reader.h"
 #include "support/bodies.h"
@@ -328,7 +328,7 @@ TEST(SurfaceBody, IsMeshedWithItsNotesItsRegionsAndItsSkin) {
   const Bounds placed = bounds_of(bodies[0].description.mesh.rest);
   EXPECT_NEAR(placed.lower.y(), 2, 1e-9);
   EXPECT_LT((placed.extent() - Vec3(1, 0.5, 0.5)).norm(), 0.02);
-  const DrawnBody drawn = drawn_body(scene, bodies[0]);
+  const DrawnBody drawn = drawn_bodies(bodies).front();
   EXPECT_EQ(drawn.skin.rest.triangles.rows(), 12);
   EXPECT_NEAR(bounds_of(drawn.skin.rest.points).center().y(), placed.center().y(), 0.02);
 }

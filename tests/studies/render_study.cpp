@@ -48,11 +48,8 @@ Take simulate(const std::filesystem::path& path, int frames, const std::vector<s
   const CollisionSet set = collision_set(scene);
   Threads threads(2);
   std::vector<Model> models;
-  std::vector<DrawnBody> drawn;
-  for (const Body& body : bodies) {
-    models.push_back(build_model(body.description));
-    drawn.push_back(drawn_body(scene, body));
-  }
+  std::vector<DrawnBody> drawn = drawn_bodies(bodies);
+  for (const Body& body : bodies) models.push_back(build_model(body.description));
   const std::vector<Skin> colliders = collider_skins(set.obstacles, bodies);
   Take take;
   const Stage fine = make_stage(scene, bodies, drawn, set.obstacles, colliders, caption_font());

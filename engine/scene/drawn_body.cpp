@@ -1,0 +1,99 @@
+#include "scene/drawn_body.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "geometry/mesh_bytes.h"
+#include "scene/body_mesh.h"
+#include "scene/rotation.h"
+
+namespace supple {
+namespace {
+
+Mat3 turn_of(const Body& body) { return rotation_from_degrees(body.def.turn_deg).toRotationMatrix(); }
+
+double scale_of(const Body& body) { return std::cbrt(body.placement.linear().determinant()); }
+
+// The edge of the printed squares [m]; 0: nothing is printed.
+double square_of(const Body& body) {
+  if (body.def.pattern == Pattern::none) return 0;
+  if (body.def.pattern_size) return *body.def.pattern_size;
+  Vec3 extent = bounds_of(body.description.mesh.rest * turn_of(body)).extent();
+  std::sort(extent.begin(), extent.end());
+  return body.def.cloth ? extent[2] / 20 : extent[1] / 6;
+}
+
+// A skin in the file's frame and the elements that carry it: the same for all bodies that differ in their place, size
+// and substance alone. The number is the edge of the skin's cells or of the printed squares, in the file's units.
+struct SkinRequest {
+  const Body& body;
+  double number;
+
+  CarriedSkin make() const {
+    CarriedSkin carried;
+    std::vector<std::int32_t> vertex_of;
+    carried.skin = body.def.shape.empty() ? skin_of_surface(body.skin.points, body.skin.triangles, number, vertex_of)
+                                          : skin_of(body.shape, number);
+    carried.embedding = embed(carried.skin.rest.points, {body.unplaced, body.description.mesh.tets, {}});
+    return carried;
+  }
+
+  // Says all that the skin depends on.
+  std::string name() const {
+    return fmt::format("skin {:a} over {} vertices from {}", number, body.def.vertices, content_name(body.files));
+  }
+};
+
+SkinRequest request_for(const Body& body) {
+  if (body.def.shape.empty()) return {body, square_of(body) / scale_of(body)};
+  return {body, bounds_of(body.unplaced * turn_of(body).transpose()).extent().maxCoeff() / body.def.skin_cells};
+}
+
+// Draws the mesh's own boundary.
+DrawnBody drawn_mesh(const Body& body) {
+  DrawnBody drawn;
+  const TetMesh& placed = body.description.mesh;
+  const Triangles surface = body.def.cloth ? body.cloth.surface.triangles : boundary_faces(placed.tets);
+  // In the body's own directions, so that the print lies along its edges however it stands.
+  drawn.skin = skin_of_surface(placed.rest * turn_of(body), surface, square_of(body), drawn.vertex_of);
+  for (std::size_t v = 0; v < drawn.vertex_of.size(); ++v)
+    drawn.skin.rest.points.row(v) = placed.rest.row(drawn.vertex_of[v]);
+  drawn.color = body.def.color.value_or(Shape{}.color);
+  return drawn;
+}
+
+}  // namespace
+
+std::vector<DrawnBody> drawn_bodies(const std::vector<Body>& bodies, const Making& making) {
+  std::vector<DrawnBody> result;
+  std::map<std::string, CarriedSkin> skins;  // by name
+  for (const Body& body : bodies) {
+    DrawnBody drawn;
+    if (body.def.surface.empty() && body.def.shape.empty()) {
+      drawn = drawn_mesh(body);
+    } else {
+      const SkinRequest request = request_for(body);
+      const std::string name = request.name();
+      auto known = skins.find(name);
+      if (known == skins.end()) {
+        if (making.tell) making.tell(fmt::format("making the drawn skin of {}", body.source));
+        known = skins.emplace(name, kept_or_made(making.cache, name, carried_skin_from, [&] { return request.make(); }))
+                    .first;
+      }
+      drawn.skin = known->second.skin;
+      drawn.embedding = known->second.embedding;
+      for (Eigen::Index v = 0; v < drawn.skin.rest.points.rows(); ++v)
+        drawn.skin.rest.points.row(v) = (body.placement * Vec3(drawn.skin.rest.points.row(v))).transpose();
+      drawn.color = body.def.color.value_or(body.shape.color);
+      drawn.layers = body.shape.paint;
+    }
+    drawn.two_sided = body.def.cloth || !std::holds_alternative<AtRest>(body.def.start);
+    result.push_back(std::move(drawn));
+  }
+  return result;
+}
+
+}  // namespace supple

@@ -1,0 +1,23 @@
+// What is drawn of bodies, made apart from them, so that a run without images does not pay for it.
+#pragma once
+
+#include "geometry/skin.h"
+#include "scene/assemble.h"
+
+namespace supple {
+
+// The drawn surface of a body: a skin carried by its elements, or (vertex_of) the mesh's own boundary.
+struct DrawnBody {
+  Skin skin;
+  Triangles casters;                    // of the skin, that cast its shadow; empty: all of them
+  Embedding embedding;                  // when the skin is finer than the mesh
+  std::vector<std::int32_t> vertex_of;  // when it is the boundary: mesh vertex by skin vertex
+  bool two_sided = false;
+  Vec3 color;
+  std::vector<PaintLayer> layers;  // colours only; their areas live in the skin
+};
+
+// Makes what is drawn of each body. Bodies that are drawn alike share the work, and skins are kept from run to run.
+std::vector<DrawnBody> drawn_bodies(const std::vector<Body>& bodies, const Making& making = {});
+
+}  // namespace supple
