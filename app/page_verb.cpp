@@ -10,10 +10,10 @@
 namespace supple {
 
 void add_page(CommandLine& line) {
-  struct Options {
+  struct PageOptions {
     std::string run, out;
   };
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PageOptions>();
   Verb verb = line.verb("page", "One HTML page of a run: film, times, errors, contacts, slowest frames.");
   verb.footer(
       "Example: supple page out/squirrel\n"
