@@ -138,7 +138,9 @@ TEST(Method, PartsCanBeSetByTheirPaths) {
 
 TEST(Chebyshev, WithoutAnIterationLeftToAccelerateIsWarnedOf) {
   const auto warning = [](const std::string& lines) {
-    Config config = scene_with(lines);
+    Config config = Config::parse(
+        "gravity = [0, 0, 0]\n[solver]\n" + lines + "\n[[body]]\nbox = { extent = [1, 1, 1] }\nmaterial = \"jelly\"\n",
+        "scene.toml", test::assets);
     const SceneDef scene = read_scene(config);
     config.finish();
     const std::vector<Problem> list = warnings(scene, assemble(scene));

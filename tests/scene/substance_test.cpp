@@ -126,7 +126,7 @@ TEST(Substances, AreRefusedWithWordsThatSayWhatIsAllowed) {
 
 TEST(Substances, SoftenedFitsAndBodiesThatStayFlatAreWarnedOf) {
   const auto warning = [](const std::string& text) {
-    const SceneDef scene = scene_of(box_body(text));
+    const SceneDef scene = scene_of("gravity = [0, 0, 0]\n" + box_body(text));
     const std::vector<Problem> list = warnings(scene, assemble(scene));
     return list.empty() ? std::string("nothing") : list.front().message;
   };

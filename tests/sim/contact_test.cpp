@@ -35,7 +35,7 @@ struct ContactScene : test::ContactScene {
 };
 
 TEST(Contact, GradientIsTheDerivativeOfTheEnergyWithPlanesAsTheyStand) {
-  ContactScene scene(cube(2), {{"ball", shape_of(Sphere{0.3}), 0.01, 0.4}}, Vec3(0, 0.36, 0));
+  ContactScene scene(cube(2), {{"ball", shape_of(Sphere{0.3}), 0.01, 0.4}}, Vec3(0, 0.405, 0));
   scene.state.v.rowwise() = Eigen::RowVector3d(2, -1.5, 1);
   scene.w.prepare(scene.model, scene.inputs.solver);
   begin_step(scene.model, scene.inputs, scene.state, scene.w);
@@ -124,7 +124,7 @@ void stiffen(Eigen::MatrixXd& system, int vertex, const Vec3& axis, double stiff
 // are systems of their own; on the ball all are coupled.
 TEST(Contact, LowRankDirectionsSolveTheSystemWithContacts) {
   const std::pair<Collider, double> places[] = {{{"ground", ground, 0, 0.5}, 0.001},
-                                                {{"ball", shape_of(Sphere{2}), 0, 0.5}, 1.98}};
+                                                {{"ball", shape_of(Sphere{2}), 0, 0.5}, 1.99}};
   for (const auto& [collider, height] : places) {
     ContactScene scene(bar(Corotated{1e4, 3e4}, Held::hard_end), {collider}, Vec3(0, height, 0));
     scene.state.v.rowwise() = Eigen::RowVector3d(0.3, -0.5, 0);
@@ -363,19 +363,6 @@ TEST(Contact, FrictionHoldsOrSlidesAsCoulombSays) {
           << friction;
     }
   }
-}
-
-// Sticking is smooth, so what friction holds creeps a little.
-TEST(Contact, ABodyThatFrictionHoldsOnASlopeCreepsByLessThanATenThousandthOfItsSizeASecond) {
-  const double angle = 20 * 3.14159265358979 / 180;
-  const Vec3 normal(0, std::cos(angle), std::sin(angle));
-  BodyDescription body = cube(3, Corotated{3e5, 6e5});
-  body.mesh.rest = body.mesh.rest * Eigen::AngleAxisd(angle, Vec3::UnitX()).toRotationMatrix().transpose();
-  ContactScene scene(body, {{"slope", shape_of(HalfSpace{normal, 0}), 0, 0.5}}, 0.1 * normal);
-  for (int frame = 0; frame < 60; ++frame) scene.advance();
-  const Vec3 start = scene.center();
-  for (int frame = 0; frame < 90; ++frame) scene.advance();
-  EXPECT_LT((scene.center() - start).norm(), 3 * 1e-4 * scene.model.size);
 }
 
 TEST(Contact, AClothThatLiesOnABallStaysThere) {
