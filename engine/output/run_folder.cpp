@@ -179,8 +179,8 @@ std::string info_json(const RunInfo& info) {
   return json_text(json, 1) + "\n";
 }
 
-void RunFolder::write_info(const RunInfo& info) const { write_whole_file(path_ / "run.json", info_json(info)); }
+void RunFolder::write_info(const RunInfo& info) const { write_durable_file(path_ / "run.json", info_json(info)); }
 
-void RunFolder::write_profile(const std::string& json) const { write_whole_file(path_ / "profile.json", json); }
+void RunFolder::write_profile(const std::string& json) const { write_durable_file(path_ / "profile.json", json); }
 
 }  // namespace supple

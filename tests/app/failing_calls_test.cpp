@@ -35,8 +35,8 @@ samples = 1
 )";
   }
   ~FailingCalls() override {
-    for (const char* name :
-         {"LD_PRELOAD", "FAILING_FOLDER", "FAILING_CALL", "FAILING_AT", "FAILING_COUNT", "FAILING_PROGRAM"})
+    for (const char* name : {"LD_PRELOAD", "FAILING_FOLDER", "FAILING_CALL", "FAILING_AT", "FAILING_COUNT",
+                             "FAILING_PLUG", "FAILING_PROGRAM"})
       ::unsetenv(name);
   }
 
@@ -105,6 +105,36 @@ samples = 1
 
   test::TemporaryFolder folder_;
 };
+
+// The plug is pulled at every fourth write of a film: what was not synced is gone, whole files and names in folders.
+// --resume then makes the film of a run that nothing disturbed, or starts anew where there was no checkpoint yet.
+TEST_F(FailingCalls, APulledPlugLosesNothingThatACheckpointRestsOn) {
+  const std::vector<std::string> film = {"render", "bar.toml",  "--quiet", "--no-images", "--checkpoint-every",
+                                         "2",      "--threads", "1",       "--frames",    "9"};
+  const std::filesystem::path out = folder_.path / "out" / "bar";
+  ASSERT_EQ(test::run(folder_.path, film).status, 0);
+  const std::string motion = test::read_file(out / "motion" / "bar.pc2");
+  int resumed = 0;
+  for (int at = 1;; at += 4) {
+    SCOPED_TRACE(fmt::format("plug pulled at write {}", at));
+    std::filesystem::remove_all(folder_.path / "out");
+    ::setenv("FAILING_PLUG", "1", 1);
+    const Result pulled = run_with("write", at, film);
+    ::unsetenv("FAILING_PLUG");
+    if (pulled.status == 0) break;
+    EXPECT_EQ(pulled.status, 99) << pulled.err;
+    std::vector<std::string> again = film;
+    const bool had_checkpoint = std::filesystem::exists(out / "checkpoint" / "state");
+    if (had_checkpoint) again.push_back("--resume");
+    resumed += had_checkpoint;
+    if (!had_checkpoint) std::filesystem::remove_all(folder_.path / "out");
+    const Result result = test::run(folder_.path, again);
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(test::read_file(out / "motion" / "bar.pc2"), motion);
+    EXPECT_EQ(test::profile_of(out)["frames"].size(), 9u);
+  }
+  EXPECT_GE(resumed, 3);
+}
 
 const std::vector<std::string> film = {"render", "bar.toml",  "--quiet", "--no-video", "--checkpoint-every",
                                        "2",      "--threads", "1"};

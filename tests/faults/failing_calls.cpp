@@ -3,7 +3,8 @@
 //   FAILING_FOLDER   only paths below it count
 //   FAILING_CALL     open, read, write, fsync or rename; stdio's calls count as those that they make
 //   FAILING_AT       n, from 1; 0: none fails
-//   FAILING_COUNT    a file that gets the number of such calls when the program ends
+//   FAILING_PLUG     1: instead of failing, that call pulls the plug: what was not synced is dropped, and the program
+//   ends FAILING_COUNT    a file that gets the number of such calls when the program ends
 // Programs that the tested one starts inherit the environment; only FAILING_PROGRAM counts.
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -17,6 +18,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -25,7 +30,13 @@ namespace {
 struct Plan {
   std::string folder, call, count_file;
   long at = 0;
+  bool pulls_plug = false;
   std::atomic<long> calls{0};
+
+  // What a disk would have: the size of each file when it was synced last, and the names in synced folders.
+  std::mutex guard;
+  std::map<std::string, off_t> synced;
+  std::set<std::string> names;
 
   Plan() {
     const auto value = [](const char* name) {
@@ -38,6 +49,7 @@ struct Plan {
     call = value("FAILING_CALL");
     count_file = value("FAILING_COUNT");
     at = std::atol(value("FAILING_AT").c_str());
+    pulls_plug = value("FAILING_PLUG") == "1";
   }
   ~Plan() {
     if (count_file.empty()) return;
@@ -53,8 +65,46 @@ struct Plan {
   bool fails(const char* kind, const std::string& path) {
     if (folder.empty() || call != kind || path.rfind(folder + "/", 0) != 0) return false;
     if (++calls != at) return false;
+    if (pulls_plug) pull_plug();
     errno = std::strcmp(kind, "write") == 0 ? ENOSPC : EIO;
     return true;
+  }
+
+  bool follows(const std::string& path) const { return pulls_plug && path.rfind(folder + "/", 0) == 0; }
+
+  void note_sync(const std::string& path) {
+    if (!follows(path)) return;
+    const std::lock_guard<std::mutex> lock(guard);
+    std::error_code error;
+    if (!std::filesystem::is_directory(path, error)) {
+      synced[path] = static_cast<off_t>(std::filesystem::file_size(path, error));
+      return;
+    }
+    names.insert(path);
+    for (const auto& entry : std::filesystem::directory_iterator(path, error)) names.insert(entry.path().string());
+  }
+  // The content moves with the file; the name is on the disk once its folder is synced.
+  void note_rename(const std::string& from, const std::string& to) {
+    if (!follows(to)) return;
+    const std::lock_guard<std::mutex> lock(guard);
+    const auto known = synced.find(from);
+    synced[to] = known != synced.end() ? known->second : 0;
+    synced.erase(from);
+  }
+  [[noreturn]] void pull_plug() {
+    const std::lock_guard<std::mutex> lock(guard);
+    std::error_code error;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, error)) {
+      const std::string path = entry.path().string();
+      if (!entry.is_regular_file(error)) continue;
+      if (names.count(path) == 0) {
+        ::unlink(path.c_str());
+      } else if (const auto size = synced.find(path);
+                 size == synced.end() || size->second < off_t(entry.file_size(error))) {
+        (void)!::truncate(path.c_str(), size == synced.end() ? 0 : size->second);
+      }
+    }
+    ::_exit(99);
   }
 };
 
@@ -129,10 +179,14 @@ extern "C" int fflush(std::FILE* file) {
 
 extern "C" int fsync(int file) {
   if (plan().fails("fsync", path_of(file))) return -1;
-  return next<int (*)(int)>("fsync")(file);
+  const int result = next<int (*)(int)>("fsync")(file);
+  if (result == 0) plan().note_sync(path_of(file));
+  return result;
 }
 
 extern "C" int rename(const char* from, const char* to) {
   if (plan().fails("rename", absolute(from))) return -1;
-  return next<int (*)(const char*, const char*)>("rename")(from, to);
+  const int result = next<int (*)(const char*, const char*)>("rename")(from, to);
+  if (result == 0) plan().note_rename(absolute(from), absolute(to));
+  return result;
 }

@@ -1,0 +1,12 @@
+// Included before all else where clang builds: Debian 12's clang deduces no template arguments of aggregates
+// (P1816, C++20), which the tables of names rely on (base/names.h).
+#pragma once
+
+namespace supple {
+
+template <class E>
+struct Name;
+template <class E>
+Name(E, const char*) -> Name<E>;
+
+}  // namespace supple
