@@ -54,10 +54,11 @@ float light_reaching(vec3 position, vec3 normal, float in_map) {
   if (!inside) casters = 0.0;
   // The border takes as many taps on a spiral as it needs, one at a time, because a software rasteriser runs through a
   // loop's body once even when no pixel of a block wants it.
-  // In a hollow, all of them may meet the walls while the light still reaches the point itself.
+  // In a hollow, all of the wide taps may meet the walls while the light still reaches the point itself, or a part of
+  // the light where the border is narrow.
   bool reached = depth_at(texel) >= above;
-  bool border = casters > 0.5 && (casters < 7.5 || reached) && !turned_away;
   float radius = clamp(penumbra_slope * (depth - caster_depth / max(casters, 1.0)), 1.0, widest_penumbra);
+  bool border = casters > 0.5 && (casters < 7.5 || reached || radius < 0.7 * widest_penumbra) && !turned_away;
   const mat2 golden = mat2(-0.7373688, 0.6754903, -0.6754903, -0.7373688);
   float lit = 0.0, taken = 0.0;
   int taps = border ? most_taps : 0;

@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cstring>
 
 #include "base/error.h"
 #include "base/trace.h"
@@ -270,8 +271,9 @@ Image Renderer::read_picture() {
   for (int y = 0; y < stage_.height; ++y) {  // GL's rows begin at the bottom
     const std::uint8_t* from = &pixels_[4 * width * std::size_t(stage_.height - 1 - y)];
     std::uint8_t* to = &image.rgb[3 * width * std::size_t(y)];
-    for (std::size_t x = 0; x < width; ++x)
-      for (std::size_t k = 0; k < 3; ++k) to[3 * x + k] = from[4 * x + k];
+    // The fourth byte of a pixel is written over by the next one, which is faster than to copy three.
+    for (std::size_t x = 0; x + 1 < width; ++x) std::memcpy(to + 3 * x, from + 4 * x, 4);
+    std::memcpy(to + 3 * (width - 1), from + 4 * (width - 1), 3);
   }
   return image;
 }
