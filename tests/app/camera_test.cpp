@@ -11,7 +11,7 @@
 namespace supple {
 namespace {
 
-constexpr const char* cube = R"(
+const std::string cube = R"(
 [[body]]
 name = "cube"
 box = { extent = [1, 1, 1], cells = [2, 2, 2] }
@@ -60,14 +60,13 @@ TEST(Camera, FramesAnyBoxFromAnyDirectionAndNoWiderThanItMust) {
 
 TEST(Camera, HasTheGroundInViewBelowABodyThatWillFall) {
   const SceneDef falls = test::scene_of(cube);
-  const SceneDef floats = test::scene_of(std::string("gravity = [0, 0, 0]\n") + cube);
+  const SceneDef floats = test::scene_of("gravity = [0, 0, 0]\n" + cube);
   EXPECT_EQ(framed_box(falls, stage_with_cube()).lower.y(), 0);
   EXPECT_EQ(framed_box(floats, stage_with_cube()).lower.y(), 2);
 }
 
 TEST(Camera, GoesRoundItsTarget) {
-  const SceneDef scene =
-      test::scene_of(std::string(cube) + "[camera]\nazimuth = 0\nelevation = 0\norbit = 45\ndistance = 4\n");
+  const SceneDef scene = test::scene_of(cube + "[camera]\nazimuth = 0\nelevation = 0\norbit = 45\ndistance = 4\n");
   const Stage stage = stage_with_cube();
   const Camera start = camera_at(scene, stage, 0), later = camera_at(scene, stage, 2);
   EXPECT_LT((start.eye - start.target - Vec3(0, 0, 4)).norm(), 1e-12);
@@ -76,7 +75,7 @@ TEST(Camera, GoesRoundItsTarget) {
 }
 
 TEST(Camera, MovesFromKeyToKeyAndEachValueByItself) {
-  const SceneDef scene = test::scene_of(std::string(cube) + R"([camera]
+  const SceneDef scene = test::scene_of(cube + R"([camera]
 ease = "linear"
 distance = 4
 elevation = 0
@@ -94,7 +93,7 @@ keys = [{ t = 1, azimuth = 0, fov_deg = 20 }, { t = 2, distance = 8 }, { t = 3, 
 }
 
 TEST(Camera, MovesAlongWithWhatItFollows) {
-  const SceneDef scene = test::scene_of(std::string(cube) + "[camera]\nfollow = \"cube\"\n");
+  const SceneDef scene = test::scene_of(cube + "[camera]\nfollow = \"cube\"\n");
   const Stage stage = stage_with_cube();
   const Vec3 moved(3, -1, 2);
   std::vector<float> points;
@@ -110,7 +109,7 @@ TEST(Camera, MovesAlongWithWhatItFollows) {
 
 TEST(Camera, RefusesValuesThatSayTheSameTwice) {
   const auto problem = [](const std::string& camera) {
-    const std::vector<std::string> problems = test::problems_of(std::string(cube) + "[camera]\n" + camera);
+    const std::vector<std::string> problems = test::problems_of(cube + "[camera]\n" + camera);
     return problems.size() == 1 ? problems.front() : std::to_string(problems.size()) + " problems";
   };
   EXPECT_NE(problem("position = [0, 1, 3]\norbit = 3").find("give one or the others"), std::string::npos);

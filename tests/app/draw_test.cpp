@@ -116,7 +116,9 @@ TEST_F(DrawnRun, ShowsAnotherCameraSizeAndChoiceOfFrames) {
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(pictures("other"), 3);
   EXPECT_EQ(read_png(picture_file(path("other") / "frames", 0)).width, 128);
-  if (count_video_frames(path("run") / "video.mp4") > 0) EXPECT_EQ(count_video_frames(path("other") / "video.mp4"), 3);
+  if (count_video_frames(path("run") / "video.mp4") > 0) {
+    EXPECT_EQ(count_video_frames(path("other") / "video.mp4"), 3);
+  }
   // A drawing may be drawn over; what is left of a longer one goes.
   ASSERT_EQ(draw("other", {"--last", "0"}).status, 0);
   EXPECT_EQ(pictures("other"), 1);

@@ -1,4 +1,5 @@
 // Tests scene files: what is refused and in which words, and that the documentation lists what the readers ask for.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
