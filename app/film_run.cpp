@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "base/timing.h"
 #include "output/json_text.h"
+#include "output/unsolved.h"
 #include "scene/script_trial.h"
 
 namespace supple {
@@ -81,6 +82,8 @@ int say_result(const FilmCommand& command, const FilmResult& result, const RunFo
                             std::max(int(result.rows.size()), result.kept_frames),
                             command.plan.film_only ? "frames' motion" : "whole frames", folder.path().string()));
   }
+  if (const std::string unsolved = unsolved_text(result.rows); !unsolved.empty())
+    say(stderr, fmt::format("warning: {}\n", unsolved));
   if (!unrecorded.empty()) say(stderr, fmt::format("supple: {}\n", unrecorded));
   if (result.video_failed) say(stderr, fmt::format("supple: {}\n", result.video_message));
   if (result.end == FilmEnd::interrupted) {

@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view signature = "supple checkpoint 1\n";
+constexpr std::string_view signature = "supple checkpoint 2\n";
 
 void append(std::string& bytes, const Positions& rows) {
   bytes.append(reinterpret_cast<const char*>(rows.data()), sizeof(double) * static_cast<std::size_t>(rows.size()));
@@ -68,7 +68,8 @@ std::string checkpoint_bytes(const Checkpoint& checkpoint, const std::string& id
                               {"handled", body.anchors.points.rows()},
                               {"handles", body.anchors.centers.size()},
                               {"holds", holds},
-                              {"time_s", body.time}});
+                              {"time_s", body.time},
+                              {"matrix_vertices", body.matrix.rows()}});
   }
   const std::string text = exact_json_text(head);
   std::string bytes(signature);
@@ -79,6 +80,7 @@ std::string checkpoint_bytes(const Checkpoint& checkpoint, const std::string& id
     append(bytes, body.v);
     append(bytes, body.anchors.points);
     for (const Vec3& center : body.anchors.centers) append(bytes, center.transpose());
+    append(bytes, body.matrix);
   }
   append_number(bytes, hash_text(bytes));
   return bytes;
@@ -112,6 +114,7 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string&
     state.anchors.points = reader.rows(body["handled"]);
     const Positions centers = reader.rows(body["handles"]);
     for (Eigen::Index h = 0; h < centers.rows(); ++h) state.anchors.centers.push_back(centers.row(h).transpose());
+    state.matrix = reader.rows(body["matrix_vertices"]);
     for (const Json& held : body["holds"]) state.anchors.holds.push_back(held.get<bool>());
     checkpoint.bodies.push_back(std::move(state));
   }
