@@ -15,6 +15,7 @@
 #include "output/json_text.h"
 #include "output/run_page.h"
 #include "output/run_record.h"
+#include "output/unsolved.h"
 #include "output/whole_file.h"
 #include "scene/script_trial.h"
 
@@ -86,6 +87,8 @@ int say_result(const FilmCommand& command, const FilmResult& result, const RunFo
                             std::max(int(result.rows.size()), result.kept_frames),
                             command.plan.film_only ? "frames' motion" : "whole frames", folder.path().string()));
   }
+  if (const std::string unsolved = unsolved_text(result.rows); !unsolved.empty())
+    say(stderr, fmt::format("warning: {}\n", unsolved));
   if (!unrecorded.empty()) say(stderr, fmt::format("supple: {}\n", unrecorded));
   if (result.video_failed) say(stderr, fmt::format("supple: {}\n", result.video_message));
   if (result.end == FilmEnd::interrupted) {

@@ -10,12 +10,9 @@
 #include "scene/scene_reader.h"
 
 namespace supple {
-namespace {
+namespace {}  // namespace
 
-constexpr int most_vertices = 4000;  // of subjects where every method runs to the end
-
-// All bodies of all scenes that ship, by scene.
-std::vector<SubjectChoice> everything() {
+std::vector<SubjectChoice> all_subjects() {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(assets_folder() / "scenes"))
     files.push_back(entry.path());
@@ -29,6 +26,8 @@ std::vector<SubjectChoice> everything() {
   return choices;
 }
 
+namespace {
+
 struct MethodTimes {
   SolverEntry entry;
   std::vector<std::vector<double>> times = {};  // by tolerance, by state; infinity: not reached [ms]
@@ -37,6 +36,7 @@ struct MethodTimes {
 
 std::vector<MethodTimes> all_methods() {
   return {{{"ours", Method::quasi_newton, 200}},
+          {{"ours, tangent", Method::quasi_newton, 200, 5, LineSearch::armijo, {}, SystemMatrix::tangent}},
           {{"Projective Dynamics", Method::projective_dynamics, 300}},
           {{"Chebyshev", Method::chebyshev, 300}},
           {{"Newton", Method::newton, 15}},
@@ -146,7 +146,7 @@ ReportSection bench_profiles(const BenchSetting& setting) {
                  "last error",
                  "minimum confirmed"};
   int bodies = 0, unsure = 0, states_in_all = 0;
-  for (const SubjectChoice& choice : everything()) {
+  for (const SubjectChoice& choice : all_subjects()) {
     Subject subject(choice);
     if (subject.model.vertices > most_vertices) continue;
     ++bodies;
@@ -216,11 +216,11 @@ ReportSection bench_scenes(const BenchSetting& setting) {
     SolverComparison comparison(subject, *setting.threads);
     const std::vector<BenchState> states = states_of(subject, {frame - 6, frame}, setting);
     const BenchState& state = states.back();
-    std::vector<SolverEntry> entries = {{"ours", Method::quasi_newton, 100},
-                                        {"Projective Dynamics", Method::projective_dynamics, 100},
-                                        {"Chebyshev", Method::chebyshev, 100},
-                                        {"Newton", Method::newton, 12},
-                                        {"Newton, 15 CG", Method::newton_cg(15), 40}};
+    std::vector<SolverEntry> entries = {
+        {"ours", Method::quasi_newton, 100},          {"Projective Dynamics", Method::projective_dynamics, 100},
+        {"Chebyshev", Method::chebyshev, 100},        {"Newton", Method::newton, 12},
+        {"Newton, 15 CG", Method::newton_cg(15), 40}, {"ours, tangent", Method::quasi_newton, 100}};
+    entries.back().matrix = SystemMatrix::tangent;
     entries[2].chebyshev = trained_chebyshev(comparison, states.front());
     const std::vector<Outcome> outcomes = comparison.run(state, entries, 2, 2000);
     const Minimum lowest = comparison.reference(state, outcomes);

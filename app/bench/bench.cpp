@@ -68,6 +68,7 @@ const std::vector<Benchmark>& benchmarks() {
       {"hanging", "the tip of a hanging bar by method", 0.5, bench_hanging},
       {"ablation", "from the published settings to ours", 0.3, bench_ablation},
       {"contact", "contact three ways", 0.5, bench_contact},
+      {"matrix", "a matrix that follows the body", 4, bench_matrix},
   };
   return list;
 }

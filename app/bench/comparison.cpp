@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/interrupts.h"
+#include "sim/solver/matrix_rule.h"
 
 namespace supple {
 
@@ -25,6 +26,7 @@ void add_times(Outcome& outcome, const StepReport& report) {
   for (const IterationRecord& record : report.history) ms.push_back(record.elapsed_ms);
   outcome.steps.push_back(report.step_ms);
   outcome.overheads.push_back(report.lbfgs_ms);
+  outcome.matrix_ms = outcome.ms.empty() ? report.matrix_ms : std::min(outcome.matrix_ms, report.matrix_ms);
   if (outcome.ms.empty()) {
     outcome.ms = ms;
     return;
@@ -49,6 +51,8 @@ std::vector<Outcome> SolverComparison::run(const BenchState& state, const std::v
       SearchRule& rule = rule_of(entries[m]);
       State after = state.before;
       workspace_.correction = {};  // no solver may use what another one learned of A^-1
+      // The matrix that a film would have at hand here is.
+      if (inputs.solver.matrix == SystemMatrix::tangent) prepare_matrix(subject_.model, state.before, workspace_);
       const StepReport& report = step(subject_.model, inputs, after, workspace_, rule);
       outcome.used_ms += report.step_ms;
       if (repeat > 0) {
@@ -60,6 +64,7 @@ std::vector<Outcome> SolverComparison::run(const BenchState& state, const std::v
       outcome.stop_reason = report.stop_reason;
       outcome.iterations = report.iterations;
       outcome.trials = report.line_search;
+      outcome.error_estimate = report.error_estimate;
       outcome.history = report.history;
       outcome.x = after.x;
       if (report.failed) continue;
@@ -103,6 +108,7 @@ StepInputs SolverComparison::inputs_of(const BenchState& state, const SolverEntr
   inputs.solver.history = entry.history;
   inputs.solver.line_search = entry.line_search;
   inputs.solver.chebyshev = entry.chebyshev;
+  inputs.solver.matrix = entry.matrix;
   inputs.solver = settings_of(entry.method, inputs.solver);
   return inputs;
 }

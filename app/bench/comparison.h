@@ -18,6 +18,7 @@ struct SolverEntry {
   int history = 5;
   LineSearch line_search = LineSearch::armijo;
   ChebyshevSettings chebyshev = {};
+  SystemMatrix matrix = SystemMatrix::constant;  // of quasi-Newton: the paper's
 };
 
 // The result of one solver on one state. Lists go by iteration, the first iterate first.
@@ -28,6 +29,8 @@ struct Outcome {
   std::vector<IterationRecord> history;
   double step_ms = 0, median_ms = 0;  // of the whole step, least and median
   double overhead_ms = 0;             // of L-BFGS without its solve
+  double matrix_ms = 0;               // of making the matrix, least: in all of `ms`
+  double error_estimate = 0;          // the solver's own
   int iterations = 0, trials = 0;
   bool failed = false;
   StopReason stop_reason = StopReason::iterations;

@@ -34,6 +34,20 @@ ReportSection bench_hanging(const BenchSetting& setting);
 // engineering.cpp
 ReportSection bench_ablation(const BenchSetting& setting);
 ReportSection bench_contact(const BenchSetting& setting);
+// matrix.cpp
+ReportSection bench_matrix(const BenchSetting& setting);
+
+// The renewals of a film that is played with the scene's own settings.
+struct Renewals {
+  double a_frame = 0;  // how many
+  double ms = 0;       // what they cost in a frame, the examination of whether one is due included
+};
+Renewals count_renewals(Subject& subject, Threads& threads);
+
+constexpr int most_vertices = 4000;  // of subjects that are solved to the end in many states
+
+// All bodies of all scenes that ship, by scene.
+std::vector<SubjectChoice> all_subjects();
 
 // Plays or reads back a subject's states before these frames, in the report's folder.
 std::vector<BenchState> states_of(Subject& subject, const std::vector<int>& frames, const BenchSetting& setting);

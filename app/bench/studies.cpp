@@ -63,8 +63,9 @@ struct Played {
   double ms_a_frame = 0;
 };
 
-Played play(Subject& subject, Method method, int iterations, int frames, Threads& threads) {
-  DrivenBody driver(subject.scene, subject.body, subject.model, subject.set, solver_instead(method, iterations),
+Played play(Subject& subject, Method method, int iterations, int frames, Threads& threads,
+            SystemMatrix matrix = SystemMatrix::constant) {
+  DrivenBody driver(subject.scene, subject.body, subject.model, subject.set, solver_instead(method, iterations, matrix),
                     &threads);
   Played played;
   for (int frame = 0; frame < frames; ++frame) {
@@ -177,15 +178,19 @@ ReportSection bench_hanging(const BenchSetting& setting) {
       subject.size_text(), solved(tip, 0), solved(tip, 1), solved(tip, 2));
   ReportTable table{"hanging", "The tip by method"};
   table.columns = {"method", "iterations", "a step [ms]", "tip x [m]", "tip y [m]", "from the solved one [mm]"};
+  const auto add = [&](const std::string& label, int iterations, const Played& played) {
+    const Eigen::RowVector3d at = played.x.row(tip);
+    table.rows.push_back({label, std::to_string(iterations), number_text(played.ms_a_frame), number_text(at.x(), 4),
+                          number_text(at.y(), 4), number_text(1000 * (at - solved.row(tip)).norm())});
+  };
+  for (const int iterations : {3, 5, 10, 20})
+    add("quasi-newton, tangent", iterations,
+        play(subject, Method::quasi_newton, iterations, frames, *setting.threads, SystemMatrix::tangent));
   for (const Method& method : compared_methods()) {
     if (method.matrix == StartMatrix::contact) continue;
     const bool newton = method == Method::newton || method == Method::newton_shifted;
     for (const int iterations : newton ? std::vector<int>{1, 2} : std::vector<int>{5, 10, 20}) {
-      const Played played = play(subject, method, iterations, frames, *setting.threads);
-      const Eigen::RowVector3d at = played.x.row(tip);
-      table.rows.push_back({name_of(method), std::to_string(iterations), number_text(played.ms_a_frame),
-                            number_text(at.x(), 4), number_text(at.y(), 4),
-                            number_text(1000 * (at - solved.row(tip)).norm())});
+      add(name_of(method), iterations, play(subject, method, iterations, frames, *setting.threads));
     }
   }
   section.tables.push_back(std::move(table));

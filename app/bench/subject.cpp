@@ -56,11 +56,12 @@ Solvers scenes_own_solver() {
           [](const SolverDef& solver) { return settings_of(solver.method, solver.settings); }};
 }
 
-Solvers solver_instead(Method method, int iterations) {
+Solvers solver_instead(Method method, int iterations, SystemMatrix matrix) {
   return {[method](const SolverDef&, const Model& model) { return make_rule(method, model); },
-          [method, iterations](const SolverDef& solver) {
+          [method, iterations, matrix](const SolverDef& solver) {
             SolverSettings settings = solver.settings;
             settings.iterations = iterations;
+            settings.matrix = matrix;
             return settings_of(method, settings);
           }};
 }

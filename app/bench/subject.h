@@ -19,7 +19,7 @@ struct SubjectChoice {
 
 // The solver that a scene names, and another one in its place.
 Solvers scenes_own_solver();
-Solvers solver_instead(Method method, int iterations);
+Solvers solver_instead(Method method, int iterations, SystemMatrix matrix = SystemMatrix::constant);
 
 // One step to be made.
 struct BenchState {

@@ -41,6 +41,7 @@ class LbfgsFrom final : public SearchRule {
     rule_.accepted(model, inputs, w);
   }
   void contacts_changed(const StepInputs& inputs) override { rule_.contacts_changed(inputs); }
+  bool looks_beyond() const override { return rule_.looks_beyond(); }
   bool forget() override { return rule_.forget(); }
 
  private:
@@ -107,6 +108,7 @@ std::unique_ptr<SearchRule> make_rule(const Method& method, const Model& model) 
 
 SolverSettings settings_of(const Method& method, SolverSettings settings) {
   if (method.acceleration != Acceleration::lbfgs) settings.history = 0;
+  if (method != Method::quasi_newton) settings.matrix = SystemMatrix::constant;
   if (method.matrix == StartMatrix::hecht) settings.line_search = LineSearch::none;
   return settings;
 }

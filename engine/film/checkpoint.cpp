@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view signature = "supple checkpoint 1\n";
+constexpr std::string_view signature = "supple checkpoint 2\n";
 
 void append(std::string& bytes, const Positions& rows) {
   bytes.append(reinterpret_cast<const char*>(rows.data()), sizeof(double) * static_cast<std::size_t>(rows.size()));
@@ -69,7 +69,8 @@ std::string checkpoint_bytes(const Checkpoint& checkpoint, const std::string& id
                               {"handled", body.anchors.points.rows()},
                               {"handles", body.anchors.centers.size()},
                               {"holds", holds},
-                              {"time_s", body.time}});
+                              {"time_s", body.time},
+                              {"matrix_vertices", body.matrix.rows()}});
   }
   const std::string text = exact_json_text(head);
   std::string bytes(signature);
@@ -80,6 +81,7 @@ std::string checkpoint_bytes(const Checkpoint& checkpoint, const std::string& id
     append(bytes, body.v);
     append(bytes, body.anchors.points);
     for (const Vec3& center : body.anchors.centers) append(bytes, center.transpose());
+    append(bytes, body.matrix);
   }
   append_number(bytes, hash_text(bytes));
   return bytes;
@@ -104,6 +106,7 @@ State read_body(const Json& body, Reader& reader) {
   state.anchors.points = reader.rows(body.at("handled"));
   const Positions centers = reader.rows(body.at("handles"));
   for (Eigen::Index h = 0; h < centers.rows(); ++h) state.anchors.centers.push_back(centers.row(h).transpose());
+  state.matrix = reader.rows(body.at("matrix_vertices"));
   for (const Json& held : body.at("holds")) state.anchors.holds.push_back(held.get<bool>());
   return state;
 }

@@ -17,12 +17,13 @@ void add_up(BodyRow& row, const StepReport& report) {
   row.evaluate_ms += report.evaluate_ms;
   row.solve_ms += report.solve_ms;
   row.lbfgs_ms += report.lbfgs_ms;
+  row.matrix_ms += report.matrix_ms;
   row.other_ms += report.other_ms;
   row.iterations += report.iterations;
   row.line_search += report.line_search;
   row.objective_start = report.objective.empty() ? 0 : report.objective.front();
   row.objective_end = report.objective.empty() ? 0 : report.objective.back();
-  row.error_estimate = report.error_estimate;
+  row.error_estimate = std::max(row.error_estimate, report.error_estimate);  // of the worst step of the frame
   row.stop_reason = name_of(report.stop_reason);
   if (!row.contact) return;
   row.contact->collide_ms += report.collide_ms;

@@ -57,6 +57,7 @@ Json solver_json(const StepProblem& problem) {
   const ContactSettings& c = s.contact;
   return {{"iterations", s.iterations},
           {"history", s.history},
+          {"matrix", name_of(s.matrix)},
           {"line_search", name_of(s.line_search)},
           {"armijo", s.armijo},
           {"target_error", s.target_error},

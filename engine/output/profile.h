@@ -35,7 +35,7 @@ struct BalanceRow {
 
 struct BodyRow {
   std::string name;
-  double step_ms = 0, evaluate_ms = 0, solve_ms = 0, lbfgs_ms = 0, other_ms = 0;
+  double step_ms = 0, evaluate_ms = 0, solve_ms = 0, lbfgs_ms = 0, matrix_ms = 0, other_ms = 0;
   int iterations = 0, line_search = 0;
   double objective_start = 0, objective_end = 0;  // [J]
   double error_estimate = 0;

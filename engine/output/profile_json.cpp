@@ -6,6 +6,7 @@
 #include "base/read_file.h"
 #include "output/json_text.h"
 #include "output/profile.h"
+#include "output/unsolved.h"
 
 namespace supple {
 namespace {
@@ -21,6 +22,7 @@ Json json_of(const BodyRow& body) {
               {"evaluate_ms", rounded_ms(body.evaluate_ms)},
               {"solve_ms", rounded_ms(body.solve_ms)},
               {"lbfgs_ms", rounded_ms(body.lbfgs_ms)},
+              {"matrix_ms", rounded_ms(body.matrix_ms)},
               {"other_ms", rounded_ms(body.other_ms)},
               {"iterations", body.iterations},
               {"line_search", body.line_search},
@@ -88,6 +90,7 @@ BodyRow body_row(const Json& json) {
   json.at("evaluate_ms").get_to(row.evaluate_ms);
   json.at("solve_ms").get_to(row.solve_ms);
   json.at("lbfgs_ms").get_to(row.lbfgs_ms);
+  row.matrix_ms = json.value("matrix_ms", 0.0);  // earlier programs did not write it
   json.at("other_ms").get_to(row.other_ms);
   json.at("iterations").get_to(row.iterations);
   json.at("line_search").get_to(row.line_search);
@@ -178,6 +181,12 @@ std::string profile_json(const std::vector<FrameRow>& rows, const std::string& v
   Json document;
   document["frames"] = std::move(frames);
   document["summary"] = {{"frames", rows.size()}, {"first_frame", first}, {"without_first_frame", rest}};
+  for (const UnsolvedStep& step : unsolved_steps(rows)) {
+    document["summary"]["unsolved"].push_back({{"frame", step.frame},
+                                               {"body", step.body},
+                                               {"error_estimate", step.error_estimate},
+                                               {"trials_per_iteration", step.trials}});
+  }
   if (!verdict.empty()) document["summary"]["verdict"] = verdict;
   document["summary"]["warnings"] = warnings_of(rows);
   return exact_json_text(document, 1) + "\n";

@@ -26,6 +26,8 @@ constexpr auto patterns = std::to_array<LivePattern>({
     {"solver.damping", new_factor},
     {"solver.iterations", nothing},
     {"solver.history", nothing},
+    {"solver.matrix", nothing},
+    {"solver.rounds", nothing},
     {"solver.chebyshev_delay", nothing},
     {"solver.chebyshev_radius", nothing},
     {"solver.line_search", nothing},

@@ -101,6 +101,10 @@ SolverSettings read_settings(const ConfigTable& table, SolverSettings s) {
                     s.iterations, Range::between(1, 10000));
   s.history =
       table.integer({"history", "", "window m of L-BFGS; 0 is plain quasi-Newton"}, s.history, Range::between(0, 100));
+  s.matrix = table.word<SystemMatrix>(
+      {"matrix", "",
+       "what directions of quasi-newton start from: a matrix that follows the body, or the paper's M/h^2 + L"},
+      s.matrix);
   s.chebyshev.delay = table.integer({"chebyshev_delay", "", "iterations of chebyshev before it accelerates"},
                                     s.chebyshev.delay, Range::between(0, 10000));
   s.chebyshev.radius = table.number({"chebyshev_radius", "", "spectral radius that chebyshev assumes of an iteration"},

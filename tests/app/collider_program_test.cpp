@@ -88,7 +88,7 @@ TEST(ColliderProgram, ReportsContactsAndWhereTheCollidersWere) {
     EXPECT_LT(body["penetration"].get<double>(), 1e-3);
     const double phases = body["evaluate_ms"].get<double>() + body["solve_ms"].get<double>() +
                           body["lbfgs_ms"].get<double>() + body["collide_ms"].get<double>() +
-                          body["other_ms"].get<double>();
+                          body["matrix_ms"].get<double>() + body["other_ms"].get<double>();
     EXPECT_NEAR(phases, body["step_ms"].get<double>(), 0.01);
     ASSERT_EQ(body["colliders"].size(), 2u);
     EXPECT_EQ(body["colliders"][0]["name"], "ground");

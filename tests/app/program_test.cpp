@@ -71,7 +71,8 @@ TEST(Program, LeavesAFolderThatExplainsItself) {
   EXPECT_TRUE(body["error"].is_number());
   EXPECT_FALSE(profile["frames"][1]["bodies"][0].contains("error"));
   const double phases = body["evaluate_ms"].get<double>() + body["solve_ms"].get<double>() +
-                        body["lbfgs_ms"].get<double>() + body["other_ms"].get<double>();
+                        body["lbfgs_ms"].get<double>() + body["matrix_ms"].get<double>() +
+                        body["other_ms"].get<double>();
   EXPECT_NEAR(phases, body["step_ms"].get<double>(), 0.01);
   EXPECT_EQ(std::filesystem::file_size(out / "motion" / "head.pc2") % 12, 32 % 12);
 }

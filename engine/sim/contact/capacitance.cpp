@@ -56,19 +56,19 @@ void Capacitance::clear() {
   lists_.clear();
 }
 
-void Capacitance::begin_step(const Model& model) {
+void Capacitance::begin_step(const System& system) {
   clear();
-  if (entries_.stored_numbers() > model.factor.stored_numbers()) entries_.clear();
+  if (entries_.stored_numbers() > system.factor.stored_numbers()) entries_.clear();
 }
 
-bool Capacitance::set(const Model& model, const std::vector<StiffDirection>& wanted) {
+bool Capacitance::set(const System& system, const std::vector<StiffDirection>& wanted) {
   if (alike(directions_, wanted)) return true;
   clear();
-  return append(model, wanted);
+  return append(system, wanted);
 }
 
 // A list that has grown at its end keeps its factor; where lists became one, all are factored anew.
-bool Capacitance::append(const Model& model, const std::vector<StiffDirection>& more) {
+bool Capacitance::append(const System& system, const std::vector<StiffDirection>& more) {
   const std::size_t lists_before = lists_.size();
   std::vector<Eigen::Index> sizes;
   for (const CoupledDirections& list : lists_) sizes.push_back(static_cast<Eigen::Index>(list.members.size()));
@@ -81,11 +81,13 @@ bool Capacitance::append(const Model& model, const std::vector<StiffDirection>& 
     merged |= lists_.size() < count;
     directions_.push_back(direction);
   }
-  entries_.learn(model.factor, touched);
+  if (entries_of_ != system.id) entries_.clear();
+  entries_of_ = system.id;
+  entries_.learn(system.factor, touched);
   factors_.resize(std::max(factors_.size(), lists_.size()));
   for (std::size_t i = 0; i < lists_.size(); ++i) {
     factors_[i].factored = merged || i >= lists_before ? 0 : sizes[i];
-    if (extend(model, lists_[i], factors_[i])) continue;
+    if (extend(system, lists_[i], factors_[i])) continue;
     clear();
     return false;
   }
@@ -93,19 +95,19 @@ bool Capacitance::append(const Model& model, const std::vector<StiffDirection>& 
 }
 
 // Directions of one vertex that come one after the other share an entry.
-void Capacitance::fill_row(const Model& model, const CoupledDirections& list, Eigen::Index row, float* values) {
+void Capacitance::fill_row(const System& system, const CoupledDirections& list, Eigen::Index row, float* values) {
   const StiffDirection& own = directions_[list.members[row]];
   std::int32_t other = -1;
   float entry = 0;
   for (Eigen::Index j = 0; j <= row; ++j) {
     const StiffDirection& s = directions_[list.members[j]];
-    if (s.vertex != other) entry = entries_.entry(model.factor, own.vertex, other = s.vertex);
+    if (s.vertex != other) entry = entries_.entry(system.factor, own.vertex, other = s.vertex);
     values[j] = static_cast<float>(own.axis.dot(s.axis)) * entry;
   }
   values[row] += static_cast<float>(1 / own.stiffness);
 }
 
-bool Capacitance::extend(const Model& model, const CoupledDirections& list, Factor& factor) {
+bool Capacitance::extend(const System& system, const CoupledDirections& list, Factor& factor) {
   const auto n = static_cast<Eigen::Index>(list.members.size()), first = factor.factored, more = n - first;
   if (more == 0) return true;
   RowMatrix& lower = factor.lower;
@@ -114,7 +116,7 @@ bool Capacitance::extend(const Model& model, const CoupledDirections& list, Fact
     larger.topLeftCorner(first, first) = lower.topLeftCorner(first, first);
     lower.swap(larger);
   }
-  for (Eigen::Index i = first; i < n; ++i) fill_row(model, list, i, lower.row(i).data());
+  for (Eigen::Index i = first; i < n; ++i) fill_row(system, list, i, lower.row(i).data());
   auto below = lower.block(first, 0, more, first);
   auto corner = lower.block(first, first, more, more);
   if (first > 0) {

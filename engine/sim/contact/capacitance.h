@@ -1,14 +1,14 @@
 // The small dense system of the Woodbury identity, K^-1 + N^T A^-1 N over some stiff directions: it gives the forces at
 // contacts that keep them from moving. It takes the entries of A^-1 among touched vertices alone, which are kept from
-// step to step. Directions at right angles do not feel each other, because A is the same for x, y and z: on flat ground
-// normals and both tangents are three systems. All in single precision.
+// step to step as long as A stays. Directions at right angles do not feel each other, because A is the same for x, y
+// and z: on flat ground normals and both tangents are three systems. All in single precision.
 #pragma once
 
 #include <vector>
 
 #include "base/types.h"
 #include "sim/linear/inverse_entries.h"
-#include "sim/model/model.h"
+#include "sim/model/system.h"
 
 namespace supple {
 
@@ -36,12 +36,12 @@ class Capacitance {
   void clear();
 
   // Makes a step independent of those before, except for entries that would be found again.
-  void begin_step(const Model& model);
+  void begin_step(const System& system);
 
   // Makes the system of these directions; does nothing when it is that of nearly the same already: a correction need
   // not be exact. Returns false when it is not positive definite.
-  bool set(const Model& model, const std::vector<StiffDirection>& wanted);
-  bool append(const Model& model, const std::vector<StiffDirection>& more);
+  bool set(const System& system, const std::vector<StiffDirection>& wanted);
+  bool append(const System& system, const std::vector<StiffDirection>& more);
 
   // Solves in place; by direction.
   void solve(Eigen::VectorXf& answer) const;
@@ -55,13 +55,14 @@ class Capacitance {
     RowMatrix lower;            // Cholesky factor, in its top left corner
     Eigen::Index factored = 0;  // members that it holds already
   };
-  bool extend(const Model& model, const CoupledDirections& list, Factor& factor);
-  void fill_row(const Model& model, const CoupledDirections& list, Eigen::Index row, float* values);
+  bool extend(const System& system, const CoupledDirections& list, Factor& factor);
+  void fill_row(const System& system, const CoupledDirections& list, Eigen::Index row, float* values);
 
   std::vector<StiffDirection> directions_;
   std::vector<CoupledDirections> lists_;
   std::vector<Factor> factors_;  // of the lists
   InverseEntries entries_;
+  std::uint64_t entries_of_ = 0;  // System::id
 };
 
 }  // namespace supple

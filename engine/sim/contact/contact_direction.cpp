@@ -34,6 +34,10 @@ std::size_t most_coupled_directions(const Model& model) {
 
 namespace {
 
+const System& system_of(const Model& model, const ContactCorrection& c) {
+  return c.matrix != nullptr ? *c.matrix : model;
+}
+
 // An order of vertices of which every beginning is spread evenly over their numbers (van der Corput's sequence), and so
 // over the body, whose order of elimination keeps neighbours together. It does not change from step to step, so that
 // few vertices are ever chosen.
@@ -74,21 +78,21 @@ void split(ContactCorrection& c, std::size_t most) {
                    [](const StiffDirection& a, const StiffDirection& b) { return a.vertex < b.vertex; });
 }
 
-FactorPart part_of(const Model& model, const std::vector<StiffDirection>& directions) {
+FactorPart part_of(const System& system, const std::vector<StiffDirection>& directions) {
   std::vector<std::int32_t> vertices;
   for (const StiffDirection& s : directions) vertices.push_back(s.vertex);
-  return paths_to_root(model.factor, vertices);
+  return paths_to_root(system.factor, vertices);
 }
 
 // The share of a motion that is left to a vertex in a direction of the rest.
-double share(const Model& model, const StiffDirection& s) {
-  return std::sqrt(model.diagonal[s.vertex] / (model.diagonal[s.vertex] + s.stiffness));
+double share(const System& system, const StiffDirection& s) {
+  return std::sqrt(system.diagonal[s.vertex] / (system.diagonal[s.vertex] + s.stiffness));
 }
 
 // Scales the motion of the rest: T. A vertex with several directions that are not at right angles goes through them in
 // turn, and back in the opposite order.
-void scale_rest(const Model& model, const StiffDirection& s, Positions& r) {
-  r.row(s.vertex) -= (1 - share(model, s)) * r.row(s.vertex).dot(s.axis) * s.axis.transpose();
+void scale_rest(const System& system, const StiffDirection& s, Positions& r) {
+  r.row(s.vertex) -= (1 - share(system, s)) * r.row(s.vertex).dot(s.axis) * s.axis.transpose();
 }
 
 // H = P A^-1 P + N diag(1 / (a + k)) N^T.
@@ -98,9 +102,10 @@ void apply_diagonal(const Model& model, ContactCorrection& c, SolveScratch& scra
     const StiffDirection& s = c.wanted[i];
     const double part = r.row(s.vertex).dot(s.axis);
     r.row(s.vertex) -= part * s.axis.transpose();
-    c.answer[static_cast<Eigen::Index>(i)] = static_cast<float>(part / (model.diagonal[s.vertex] + s.stiffness));
+    c.answer[static_cast<Eigen::Index>(i)] =
+        static_cast<float>(part / (system_of(model, c).diagonal[s.vertex] + s.stiffness));
   }
-  solve_system(model, r, z, scratch);
+  solve_system(model, system_of(model, c), r, z, scratch);
   for (std::size_t i = c.wanted.size(); i-- > 0;) {
     const StiffDirection& s = c.wanted[i];
     z.row(s.vertex) += (c.answer[static_cast<Eigen::Index>(i)] - z.row(s.vertex).dot(s.axis)) * s.axis.transpose();
@@ -126,7 +131,7 @@ void finish(const Model& model, ContactCorrection& c, const Positions& r, Positi
 
 // z = (A + K')^-1 r; r gets the forces at the contacts.
 void apply_low_rank(const Model& model, ContactCorrection& c, Positions& r, Positions& z) {
-  c.solve.begin(model.factor, r.data());
+  c.solve.begin(system_of(model, c).factor, r.data());
   c.solve.look(c.part);
   const std::vector<StiffDirection>& directions = c.system.directions();
   c.answer.resize(static_cast<Eigen::Index>(directions.size()));
@@ -139,25 +144,25 @@ void apply_low_rank(const Model& model, ContactCorrection& c, Positions& r, Posi
 
 }  // namespace
 
-void begin_corrections(const Model& model, ContactCorrection& c) { c.system.begin_step(model); }
+void begin_corrections(const Model& model, ContactCorrection& c) { c.system.begin_step(system_of(model, c)); }
 
 void apply_inverse(const Model& model, const ContactSettings& settings, ContactCorrection& c, SolveScratch& scratch,
                    Positions& r, Positions& z) {
   if (c.wanted.empty() || settings.direction == ContactDirection::ignored) {
     c.system.clear();
-    return solve_system(model, r, z, scratch);
+    return solve_system(model, system_of(model, c), r, z, scratch);
   }
   if (settings.direction == ContactDirection::diagonal) return apply_diagonal(model, c, scratch, r, z);
   split(c, affordable(model, c.wanted));
-  if (!c.system.set(model, c.together)) c.rest = c.wanted;
-  c.part = part_of(model, c.system.directions());
-  for (const StiffDirection& s : c.rest) scale_rest(model, s, r);
+  if (!c.system.set(system_of(model, c), c.together)) c.rest = c.wanted;
+  c.part = part_of(system_of(model, c), c.system.directions());
+  for (const StiffDirection& s : c.rest) scale_rest(system_of(model, c), s, r);
   if (c.system.directions().empty()) {
-    solve_system(model, r, z, scratch);
+    solve_system(model, system_of(model, c), r, z, scratch);
   } else {
     apply_low_rank(model, c, r, z);
   }
-  for (std::size_t i = c.rest.size(); i-- > 0;) scale_rest(model, c.rest[i], z);
+  for (std::size_t i = c.rest.size(); i-- > 0;) scale_rest(system_of(model, c), c.rest[i], z);
 }
 
 namespace {
@@ -171,17 +176,17 @@ double gap_after(const Contact& contact, const Positions& x, const Positions& di
 void bend(const Model& model, const std::vector<StiffDirection>& ahead, const std::vector<float>& gaps,
           ContactCorrection& c, Positions& direction) {
   const auto before = static_cast<Eigen::Index>(c.system.directions().size());
-  if (!c.system.append(model, ahead)) return;
+  if (!c.system.append(system_of(model, c), ahead)) return;
   c.answer = Eigen::VectorXf::Zero(static_cast<Eigen::Index>(c.system.directions().size()));
   std::copy(gaps.begin(), gaps.end(), c.answer.data() + before);
   c.system.solve(c.answer);
-  const FactorPart part = part_of(model, c.system.directions());
+  const FactorPart part = part_of(system_of(model, c), c.system.directions());
   c.push.setZero(model.free, 3);
   c.back.resize(model.free, 3);
-  c.solve.begin_from_zero(model.factor, c.answer.cwiseAbs().maxCoeff());
+  c.solve.begin_from_zero(system_of(model, c).factor, c.answer.cwiseAbs().maxCoeff());
   add_answer(c, part, c.push);
   finish(model, c, c.push, c.back);
-  for (const StiffDirection& s : c.rest) scale_rest(model, s, c.back);
+  for (const StiffDirection& s : c.rest) scale_rest(system_of(model, c), s, c.back);
   direction += c.back;
 }
 

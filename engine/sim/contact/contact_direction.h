@@ -22,6 +22,7 @@ namespace supple {
 
 // Scratch of the corrections, empty until a contact is made.
 struct ContactCorrection {
+  const System* matrix = nullptr;              // A here: the matrix in force, of the step; null: the model's own
   std::vector<StiffDirection> wanted;          // those of the contacts in force: normals, then tangents
   std::size_t normals = 0;                     // how many of these are normals
   std::vector<StiffDirection> together, rest;  // how they are treated

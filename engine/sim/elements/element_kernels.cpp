@@ -3,7 +3,7 @@
 
 #include "base/lanes.h"
 #include "base/variants.h"
-#include "sim/elements/tetrahedron_stiffness.h"
+#include "sim/elements/tetrahedron_scalar_stiffness.h"
 
 namespace supple {
 namespace {
@@ -132,6 +132,22 @@ void stiffness(const ElementChunk& chunk, const double* x, bool project, double*
   });
 }
 
+void scalar_stiffness(const ElementChunk& chunk, const double* x, double axial, double* out) {
+  dispatch(chunk, [&]<class Formula>(const Formula& formula) {
+    constexpr int numbers = packed_size(Formula::corners - 1);
+    for_each_register<Formula>(chunk, x, [&](const auto& place, const auto& field, std::size_t first) {
+      Lanes packed[numbers];
+      formula.scalar_stiffness(place, field, Lanes(axial), packed);
+      alignas(64) double numbers_of[lanes];
+      for (int n = 0; n < numbers; ++n) {
+        packed[n].store_aligned(numbers_of);
+        for (int i = 0; i < lanes; ++i) out[(first + i) * numbers + n] = numbers_of[i];
+      }
+    });
+    return 0.0;
+  });
+}
+
 void stretches(const ElementChunk& chunk, const double* x, double* largest, double* volume) {
   dispatch(chunk, [&]<class Formula>(const Formula& formula) {
     for_each_register<Formula>(chunk, x, [&](const auto& place, const auto& field, std::size_t first) {
@@ -147,6 +163,6 @@ void stretches(const ElementChunk& chunk, const double* x, double* largest, doub
 }  // namespace
 
 extern const ElementKernels SUPPLE_TABLE(element);
-const ElementKernels SUPPLE_TABLE(element) = {elements, stiffness, stretches};
+const ElementKernels SUPPLE_TABLE(element) = {elements, stiffness, scalar_stiffness, stretches};
 
 }  // namespace supple

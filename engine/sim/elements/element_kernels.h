@@ -37,12 +37,18 @@ struct ElementKernels {
   // follow from translations [N/m].
   void (*stiffness)(const ElementChunk& chunk, const double* x, bool project, double* out);
 
+  // Writes a third of the trace of each 3 x 3 block of the projected second derivatives: by lane, the packed lower
+  // triangle over all corners but the first (scalar_numbers of them). The stiffness of a tetrahedron along a principal
+  // axis is not less than `axial` of what a stretch along it alone meets. [N/m]
+  void (*scalar_stiffness)(const ElementChunk& chunk, const double* x, double axial, double* out);
+
   // Writes by lane the largest stretch, and the volume over that at rest, which is negative where an element is
   // inverted.
   void (*stretches)(const ElementChunk& chunk, const double* x, double* largest, double* volume);
 };
 
 constexpr int stiffness_numbers(ElementKind kind) { return kind == ElementKind::tetrahedron ? 45 : 6; }
+constexpr int scalar_numbers(ElementKind kind) { return kind == ElementKind::tetrahedron ? 6 : 1; }
 
 // Returns the loops of the widest variant that this machine can run, or of any variant that it can (base/variants.h).
 const ElementKernels& element_kernels();

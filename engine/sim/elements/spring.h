@@ -51,6 +51,18 @@ struct SpringElement {
         out[at] = field[1] * madd(V(1.0) - across, d[i] * d[j] / squared, i == j ? across : V(0.0));
     }
   }
+
+  // A third of the trace of that, projected: k (1 + 2 (1 - r/l)) / 3 [N/m]. A net of springs, whose directions differ
+  // from one to the next, needs no more along each.
+  template <class V>
+  void scalar_stiffness(const V (&x)[2][3], const V (&field)[fields], const V&, V (&out)[1]) const {
+    using std::max;
+    using std::sqrt;
+    const V d[3] = {x[1][0] - x[0][0], x[1][1] - x[0][1], x[1][2] - x[0][2]};
+    const V length = max(sqrt(madd(d[0], d[0], madd(d[1], d[1], d[2] * d[2]))), V(1e-8) * field[0]);
+    const V across = max(V(1.0) - field[0] / choose(length > V(0.0), length, V(1.0)), V(0.0));
+    out[0] = V(1.0 / 3) * field[1] * madd(V(2.0), across, V(1.0));
+  }
 };
 
 }  // namespace supple

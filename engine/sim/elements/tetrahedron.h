@@ -151,6 +151,10 @@ struct TetrahedronFormula : Tetrahedron {
   // Defined in tetrahedron_stiffness.h.
   template <class V>
   void stiffness(const V (&x)[4][3], const V (&field)[fields], bool project, V (&out)[45]) const;
+
+  // Defined in tetrahedron_scalar_stiffness.h.
+  template <class V>
+  void scalar_stiffness(const V (&x)[4][3], const V (&field)[fields], const V& axial, V (&out)[6]) const;
 };
 
 }  // namespace supple

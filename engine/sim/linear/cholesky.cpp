@@ -119,14 +119,26 @@ void CholeskyFactor::factorize(const Eigen::SparseMatrix<double>& matrix, Precis
   precision_ = precision;
   single_.resize(precision == Precision::single_precision ? first_value_.back() : 0);
   double_.resize(precision == Precision::double_precision ? first_value_.back() : 0);
-  Multifrontal fronts(elimination_);
-  AlignedVector<double> columns(elimination_.most_column_numbers);
+  Room room;
+  if (!renew(matrix, room))
+    throw RunError(fmt::format("the stiffness matrix is not positive definite (unknown {})", room.failed_));
+}
+
+CholeskyFactor::Room::Room() = default;
+CholeskyFactor::Room::~Room() = default;
+
+bool CholeskyFactor::renew(const Eigen::SparseMatrix<double>& matrix, Room& room) {
+  SUPPLE_CHECK(matrix.nonZeros(), ==, Eigen::Index(inner_.size()));
+  if (!room.fronts_) room.fronts_ = std::make_unique<Multifrontal>(elimination_);
+  room.columns_.resize(elimination_.most_column_numbers);
+  room.fronts_->begin();
   for (const std::int32_t s : elimination_.order) {
-    const int failed = fronts.eliminate(matrix, s, columns.data());
-    if (failed >= 0) throw RunError(fmt::format("the stiffness matrix is not positive definite (unknown {})", failed));
-    precision == Precision::single_precision ? store_panels(s, columns.data(), single_)
-                                             : store_panels(s, columns.data(), double_);
+    room.failed_ = room.fronts_->eliminate(matrix, s, room.columns_.data());
+    if (room.failed_ >= 0) return false;
+    precision_ == Precision::single_precision ? store_panels(s, room.columns_.data(), single_)
+                                              : store_panels(s, room.columns_.data(), double_);
   }
+  return true;
 }
 
 // Columns of a front become rows of its panels, the diagonal inverted; above it 0.

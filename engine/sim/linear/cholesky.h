@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -34,6 +35,8 @@ struct Names<Precision> {
 // into denormals.
 double solve_scale(const double* numbers, int count);
 
+class Multifrontal;
+
 class CholeskyFactor {
  public:
   CholeskyFactor() = default;
@@ -43,6 +46,22 @@ class CholeskyFactor {
   // pattern of the last one, in its precision, costs the numbers alone. Throws RunError when it is not positive
   // definite, naming the column; the factor then solves nothing.
   void factorize(const Eigen::SparseMatrix<double>& matrix, Precision precision);
+
+  // Room for factoring anew, which then allocates nothing. It belongs to one factor, which must stay where it is.
+  class Room {
+   public:
+    Room();
+    ~Room();
+
+   private:
+    friend class CholeskyFactor;
+    std::unique_ptr<Multifrontal> fronts_;
+    AlignedVector<double> columns_;
+    int failed_ = -1;  // the unknown whose pivot was not positive
+  };
+  // Factors a matrix with the pattern of the last one, in its precision. Returns false where it is not positive
+  // definite; the factor then solves nothing.
+  bool renew(const Eigen::SparseMatrix<double>& matrix, Room& room);
 
   int size() const { return size_; }
   std::int64_t stored_numbers() const { return static_cast<std::int64_t>(single_.size() + double_.size()); }

@@ -63,6 +63,17 @@ struct ContactSettings {
   ContactDirection direction = ContactDirection::low_rank;
 };
 
+// The matrix that quasi-Newton directions start from.
+enum class SystemMatrix {
+  constant,  // A = M/h^2 + L: the paper's
+  tangent,   // one that follows the body (model/tangent_system.h)
+};
+template <>
+struct Names<SystemMatrix> {
+  static constexpr std::array table = {Name{SystemMatrix::constant, "constant"},
+                                       Name{SystemMatrix::tangent, "tangent"}};
+};
+
 enum class LineSearch { armijo, wolfe, none };
 template <>
 struct Names<LineSearch> {
@@ -80,6 +91,7 @@ struct ChebyshevSettings {
 struct SolverSettings {
   int iterations = 10;
   int history = 5;  // window m of L-BFGS; 0 is plain quasi-Newton
+  SystemMatrix matrix = SystemMatrix::constant;
   LineSearch line_search = LineSearch::armijo;
   double armijo = 0.3;      // gamma
   double target_error = 0;  // stop when the error estimate falls below; 0: do all iterations

@@ -1,6 +1,7 @@
 #include "sim/model/model.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "base/error.h"
 #include "sim/model/model_values.h"
@@ -121,7 +122,9 @@ ElementChunk Model::chunk(int index) const {
 }
 
 Model build_model(const BodyDescription& body) {
+  static std::atomic<std::uint64_t> structures{0};
   Model model;
+  model.structure = ++structures;
   model.name = body.name;
   model.vertices = static_cast<int>(body.mesh.rest.rows());
   model.size = bounds_of(body.mesh.rest).diagonal();

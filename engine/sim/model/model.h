@@ -11,8 +11,8 @@
 #include "geometry/mesh.h"
 #include "sim/elements/element_kernels.h"
 #include "sim/elements/element_records.h"
-#include "sim/linear/cholesky.h"
 #include "sim/materials/material.h"
+#include "sim/model/system.h"
 
 namespace supple {
 
@@ -58,8 +58,9 @@ struct BodyDescription {
   Precision precision = Precision::single_precision;  // of the factor, hence of search directions
 };
 
-struct Model {
-  std::uint64_t id = 0;  // changes whenever its numbers are set, so that what was derived from them can be renewed
+// As a System it is A = w M/h^2 + (e theta^2 + beta/h) L + springs of handles.
+struct Model : System {
+  std::uint64_t structure = 0;  // tells models apart that were built from different descriptions; values leave it
   std::string name;
   int vertices = 0;  // n
   int free = 0;      // vertices that the solver moves: 0 .. free-1
@@ -107,13 +108,7 @@ struct Model {
     std::int32_t vertex;
     std::int32_t handle;
   };
-  std::vector<HandleVertex> handled;  // the order of StepInputs::targets
-  struct Coupling {                   // an entry of A between a free vertex and one that a hard handle holds
-    std::int32_t free;
-    std::int32_t held;
-    double value;
-  };
-  std::vector<Coupling> couplings;       // sorted by free vertex
+  std::vector<HandleVertex> handled;     // the order of StepInputs::targets
   std::vector<double> handle_stiffness;  // of the spring at each free vertex, 0: none [N/m]; empty when all are hard
   bool free_floating = false;            // nothing holds it: A has the translations as known eigenvectors
 
@@ -124,9 +119,6 @@ struct Model {
     std::vector<double> value;
   };
   SparseRows damping;
-
-  std::vector<double> diagonal;  // of A, by free vertex [N/m]
-  CholeskyFactor factor;         // of A = w M/h^2 + (e theta^2 + beta/h) L + springs of handles, over the free vertices
 
   ElementChunk chunk(int index) const;
 };

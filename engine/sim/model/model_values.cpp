@@ -200,10 +200,10 @@ void ModelValues::set(Model& model, const BodyDescription& body) {
   set_handle_springs(model, body);
   add_up_elastic(model);
   try {
-    const Eigen::SparseMatrix<double> system = system_matrix(model, body.damping);
-    const Eigen::VectorXd diagonal = system.diagonal();
+    model.matrix = system_matrix(model, body.damping);
+    const Eigen::VectorXd diagonal = model.matrix.diagonal();
     model.diagonal.assign(diagonal.begin(), diagonal.end());
-    model.factor.factorize(system, body.precision);
+    model.factor.factorize(model.matrix, body.precision);
   } catch (const RunError& error) {
     throw RunError(fmt::format("body '{}': {}", body.name, error.what()));
   }

@@ -47,16 +47,18 @@ struct StepReport {
   double solve_ms = 0;     // A d = r
   double lbfgs_ms = 0;     // recursions
   double collide_ms = 0;   // finding contacts; 0 without colliders
-  double other_ms = 0;     // the rest; the five add up to step_ms
+  double matrix_ms = 0;    // renewing the matrix of directions; 0 in most steps
+  double other_ms = 0;     // the rest; the six add up to step_ms
   double start_ms = 0;     // until the first iterate was evaluated
   int iterations = 0;
   int line_search = 0;                   // trial evaluations
   std::vector<double> objective;         // g by iteration, the start first; reserved by the workspace [J]
   std::vector<IterationRecord> history;  // by iteration
   double decrease = 0;                   // g(start) - g(end), summed without cancellation [J]
-  double remaining_estimate = 0;         // g(end) - g*, continuing the decreases as they shrank [J]
+  double remaining_estimate = 0;         // g(end) - g*, from the decrement or from how decreases shrank [J]
   double error_estimate = 0;             // of equation 12, from that
   double slope = 0;                      // tr(grad^T d) of the last direction [J]
+  double decrement = 0;                  // half of that at the end, downhill: what a quadratic g would still lose [J]
   StopReason stop_reason = StopReason::iterations;
   ContactCounts contacts;
   Vec3 contact_force = Vec3(0, 0, 0);  // of all colliders on the body, at the end of the step [N]

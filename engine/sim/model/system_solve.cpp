@@ -13,8 +13,12 @@ void restore_translation(const Model& model, const Positions& r, Positions& z) {
 }
 
 void solve_system(const Model& model, const Positions& r, Positions& z, SolveScratch& scratch) {
+  solve_system(model, model, r, z, scratch);
+}
+
+void solve_system(const Model& model, const System& system, const Positions& r, Positions& z, SolveScratch& scratch) {
   scratch.resize(4 * std::size_t(model.free));
-  model.factor.solve(r.data(), z.data(), scratch.data());
+  system.factor.solve(r.data(), z.data(), scratch.data());
   if (model.free_floating) restore_translation(model, r, z);
 }
 

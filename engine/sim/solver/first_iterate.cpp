@@ -59,6 +59,7 @@ void begin_step(const Model& model, const StepInputs& inputs, const State& state
   SUPPLE_CHECK(state.v.rows(), ==, model.vertices);
   inertial_prediction(model, inputs, state, w.y);
   w.start_positions = &state.x;
+  w.system = w.correction.matrix = &model;
   if (needs_start(model)) w.start_copy = state.x;
   w.current.contacts.clear();
   w.trial.contacts.clear();
@@ -145,19 +146,19 @@ void turn_with_handles(const Model& model, const StepInputs& inputs, const State
 // Sets a first iterate that fits the handles. The paper starts from y; with rows eliminated, y leaves the elements
 // beside a handle torn by all that the handle did not do freely (its keyed motion, and the fall that it did not take),
 // often by more than their size. So the handles' departure from y is spread into the body by the quadratic model that
-// also gives the directions, A_ff d_f = -A_fh d_h: one solve. docs/results.md ("Error of the polynomial head") says what
-// starting from y cost in earlier films. This costs one evaluation more, because y stays the first iterate where it is
-// the better one. Returns g(y), the handles at their targets, when the first iterate is another one.
+// also gives the directions, A_ff d_f = -A_fh d_h: one solve. docs/results.md ("Error of the polynomial head") says
+// what starting from y cost in earlier films. This costs one evaluation more, because y stays the first iterate where
+// it is the better one. Returns g(y), the handles at their targets, when the first iterate is another one.
 std::optional<double> spread_handles(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
-  if (model.couplings.empty()) return std::nullopt;
+  if (w.system->couplings.empty()) return std::nullopt;
   Positions& right = w.scratch;
   right.setZero();
-  for (const Model::Coupling& entry : model.couplings) {
+  for (const System::Coupling& entry : w.system->couplings) {
     right.row(entry.free) -= entry.value * (w.current.x.row(entry.held) - w.y.row(entry.held));
   }
   if (right.isZero(0)) return std::nullopt;
   Stretch stretch(w.clock, Phase::solve, "solve");
-  model.factor.solve(right.data(), w.direction.data(), w.solve_scratch.data());
+  w.system->factor.solve(right.data(), w.direction.data(), w.solve_scratch.data());
   stretch.next(Phase::evaluate, "spread handles");
   find_contacts_of(model, inputs, w, w.current);
   evaluate(model, w, w.current, Wanted::value);

@@ -33,6 +33,8 @@ class InitialInverse {
   // Computes z = A0^-1 r for the free vertices; overwrites r.
   virtual void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r,
                      Positions& z) = 0;
+  // As SearchRule::looks_beyond.
+  virtual bool looks_beyond() const { return false; }
   // Called after the recursion: may bend workspace.direction and returns true then.
   virtual bool bend(const Model&, const StepInputs&, Workspace&) { return false; }
 };
@@ -64,6 +66,7 @@ class LbfgsRule : public SearchRule {
   void contacts_changed(const StepInputs& inputs) override {
     if (inputs.solver.contact.history == ContactHistory::dropped) history_.clear();
   }
+  bool looks_beyond() const override { return initial_.looks_beyond(); }
   bool forget() override { return history_.forget(); }
 
  private:
@@ -71,13 +74,14 @@ class LbfgsRule : public SearchRule {
   PairHistory history_;
 };
 
-// The paper's initial Hessian: A = M/h^2 + L, which never changes, by its factor, with contacts as in
-// contact_direction.h.
+// The matrix in force, Workspace::system, by its factor, with contacts as in contact_direction.h: the paper's
+// A = M/h^2 + L, or one that follows the body (matrix_rule.h).
 class SystemInverse final : public InitialInverse {
  public:
   void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override {
     apply_inverse(model, inputs.solver.contact, workspace.correction, workspace.solve_scratch, r, z);
   }
+  bool looks_beyond() const override { return true; }
   bool bend(const Model& model, const StepInputs& inputs, Workspace& workspace) override {
     return foresee_contacts(model, inputs.solver.contact, workspace.current.contacts, workspace.current.x,
                             workspace.correction, workspace.direction);

@@ -24,6 +24,9 @@ class SearchRule {
   // The contacts of the new iterate are not those of the last.
   virtual void contacts_changed(const StepInputs&) {}
 
+  // Whether a direction costs so little that one more is worth what it tells of the last iterate.
+  virtual bool looks_beyond() const { return false; }
+
   // Forgets what earlier iterations taught, when the direction was of no use. Returns false when there was nothing to
   // forget.
   virtual bool forget() { return false; }

@@ -9,13 +9,15 @@
 #include "sim/solver/energy_gain.h"
 #include "sim/solver/lbfgs.h"
 #include "sim/solver/line_search.h"
+#include "sim/solver/matrix_rule.h"
 
 namespace supple {
 namespace {
 
 // Estimates what the remaining decreases would add up to if they went on as they did since objective[first]: the
-// numerator of equation 12, without a reference [J]. Decreases of quasi-Newton iterations shrink unevenly, so the ratio
-// is averaged over the last three. Where there are too few, the estimate is as much again as was gained.
+// numerator of equation 12, without a reference, for rules that do not look beyond the last iterate [J]. Decreases of
+// quasi-Newton iterations shrink unevenly, so the ratio is averaged over the last three. Where there are too few, the
+// estimate is as much again as was gained.
 double estimate_remaining(const StepReport& report, std::size_t first) {
   const std::vector<double>& g = report.objective;
   const std::size_t steps = g.size() - 1 - first;
@@ -31,6 +33,14 @@ double estimate_remaining(const StepReport& report, std::size_t first) {
 // Returns the share that is left of all that there was to gain.
 double as_error(double remaining, double gained) {
   return remaining > 0 ? remaining / (std::max(gained, 0.0) + remaining) : 0;
+}
+
+// What is left to gain, over half of |tr(grad^T d)| at the end: that would be all of it if the matrix of d, corrected
+// by L-BFGS, were the Hessian. docs/method.md ("Error and its estimate") says how it was found.
+constexpr double share_of_decrement = 2;
+
+bool is_near_enough(const StepReport& report, const SolverSettings& solver) {
+  return solver.target_error > 0 && as_error(report.remaining_estimate, report.decrease) < solver.target_error;
 }
 
 int first_bad_vertex(const Model& model, const Positions& x) {
@@ -152,17 +162,27 @@ void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
   rule.begin(model, inputs, w);
 
   report.stop_reason = StopReason::iterations;
+  report.decrement = 0;
   report.iterations = 0;
   for (int most = solver.iterations;;) {
-    if (report.iterations >= most) {
-      if (state == nullptr || most >= solver.rounds * solver.iterations || !gains_energy(model, inputs, *state, w))
-        break;
+    bool spent = report.iterations >= most;
+    if (spent && state != nullptr && most < solver.rounds * solver.iterations &&
+        gains_energy(model, inputs, *state, w)) {
       most += solver.iterations;
+      spent = false;
     }
+    if (spent && !rule.looks_beyond()) break;
     const Descent descent = next_direction(model, inputs, w, rule);
     if (!std::isfinite(descent.slope)) return fail(model, w, "solve", descent.slope);
+    report.decrement = descent.done ? 0 : -0.5 * descent.slope;
+    if (rule.looks_beyond()) report.remaining_estimate = share_of_decrement * report.decrement;
     if (descent.done || -descent.slope <= enough) {
       report.stop_reason = StopReason::round_off;
+      break;
+    }
+    if (spent) break;
+    if (is_near_enough(report, solver)) {
+      report.stop_reason = StopReason::target_error;
       break;
     }
     Change change{};
@@ -174,8 +194,9 @@ void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
     }
     accept(model, inputs, w, rule, change, record);
     if (absurd(model, w.current.g, start)) return fail(model, w, "line search", w.current.g);
+    if (rule.looks_beyond()) continue;
     report.remaining_estimate = estimate_remaining(report, first);
-    if (solver.target_error > 0 && as_error(report.remaining_estimate, report.decrease) < solver.target_error) {
+    if (is_near_enough(report, solver)) {
       report.stop_reason = StopReason::target_error;
       break;
     }
@@ -290,8 +311,10 @@ void report_times(Workspace& w) {
   report.solve_ms = w.clock.spent_ms(Phase::solve);
   report.lbfgs_ms = w.clock.spent_ms(Phase::lbfgs);
   report.collide_ms = w.clock.spent_ms(Phase::collide);
+  report.matrix_ms = w.clock.spent_ms(Phase::matrix);
   report.other_ms = w.clock.spent_ms(Phase::other);
-  report.step_ms = report.evaluate_ms + report.solve_ms + report.lbfgs_ms + report.collide_ms + report.other_ms;
+  report.step_ms =
+      report.evaluate_ms + report.solve_ms + report.lbfgs_ms + report.collide_ms + report.matrix_ms + report.other_ms;
 }
 
 }  // namespace
@@ -310,6 +333,7 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   StepReport& report = w.report;
   clear(report);
   begin_step(model, inputs, state, w);
+  choose_matrix(model, inputs, state, w);
   zone.next("first iterate");
   const double above_start = set_first_iterate(model, inputs, state, w);
   report.start_ms = w.clock.elapsed_ms();
@@ -322,6 +346,7 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   const Positions& x = w.current.x;
   if (!report.failed && !x.allFinite()) fail(model, w, "step", std::numeric_limits<double>::quiet_NaN());
   if (!report.failed) {
+    remember_matrix(model, w, state);
     set_velocity(model, x, state);
     state.x = x;
     state.time += model.time_step;

@@ -9,7 +9,7 @@
 
 namespace supple {
 
-enum class Phase { other, evaluate, solve, lbfgs, collide };
+enum class Phase { other, evaluate, solve, lbfgs, collide, matrix };
 
 class StepClock {
  public:
@@ -42,7 +42,7 @@ class StepClock {
 
   Clock::time_point begin_, since_;
   Phase phase_ = Phase::other;
-  std::array<Clock::duration, 5> spent_{};
+  std::array<Clock::duration, 6> spent_{};
 };
 
 // A stretch of a step: a zone of the trace whose time belongs to a phase, except for what stretches inside it take for

@@ -5,6 +5,7 @@
 #include "sim/contact/contact_direction.h"
 #include "sim/contact/find_contacts.h"
 #include "sim/model/report.h"
+#include "sim/model/tangent_system.h"
 #include "sim/solver/iterate.h"
 #include "sim/solver/step_clock.h"
 
@@ -26,6 +27,12 @@ struct Workspace {
   // The point where the solver is, and the one at which it looks.
   Iterate current, trial;
   Positions direction;  // from the current iterate, n_free x 3 [m]
+
+  // The matrix that directions start from, of the step in hand: the model's own A, or the one that follows the body.
+  const System* system = nullptr;
+  TangentSystem tangent;
+  Positions matrix_place;  // q + h v, where the step in hand makes the tangent matrix if it does, n x 3 [m]
+  bool renewed = false;    // it did
 
   // L-BFGS' pairs, a ring.
   std::vector<Positions> step_pairs, gradient_pairs;  // s [m] and t [N]

@@ -1,0 +1,181 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/bench/sections.h"
+#include "base/error.h"
+
+namespace supple {
+namespace {
+
+constexpr int film_frames = 66;  // of which the renewals are counted
+const std::vector<int> sampled_frames = {18, 30, 42, 54, 65};
+constexpr int most_iterations = 60;
+constexpr double tolerances[] = {1e-4, 1e-6};
+
+}  // namespace
+
+Renewals count_renewals(Subject& subject, Threads& threads) {
+  Renewals result;
+  DrivenBody driver(subject.scene, subject.body, subject.model, subject.set, scenes_own_solver(), &threads);
+  for (int frame = 0; frame < film_frames; ++frame) {
+    const StepReport& last = driver.make_frame(frame, [&](const StepReport& report) {
+      result.a_frame += driver.workspace().renewed ? 1.0 / film_frames : 0;
+      if (frame > 0) result.ms += report.matrix_ms / (film_frames - 1);
+    });
+    if (last.failed) throw RunError(fmt::format("{}: frame {} failed", subject.choice.scene, frame));
+  }
+  return result;
+}
+
+namespace {
+
+// What one matrix did on a body's states.
+struct Score {
+  double log_error = 0, trials = 0, iterations = 0;
+  double log_ms[std::size(tolerances)] = {};  // without renewals
+  bool missed[std::size(tolerances)] = {};    // some state was not solved to it
+};
+
+// How far the estimates are from the errors, as factors.
+struct Estimates {
+  std::vector<double> ratios = {};
+};
+
+void add(Score& score, const Outcome& whole_run, const Outcome& ten, double lowest, const Renewals& renewals) {
+  const std::vector<double> errors = errors_of(ten, lowest);
+  score.log_error += std::log(std::max(errors.back(), 1e-15));
+  score.trials += ten.trials;
+  score.iterations += ten.iterations;
+  for (std::size_t t = 0; t < std::size(tolerances); ++t) {
+    const double ms = time_to(whole_run, lowest, tolerances[t]);
+    score.missed[t] |= !std::isfinite(ms);
+    score.log_ms[t] += std::log((std::isfinite(ms) ? ms : whole_run.ms.back()) + renewals.ms);
+  }
+}
+
+// Where the step itself made a matrix, its time is in the times of that state already, and all others are as if none
+// were ever made; so it is taken out, and each state gets the film's average in its place.
+void take_out_renewal(Outcome& outcome) {
+  for (double& ms : outcome.ms) ms -= outcome.matrix_ms;
+}
+
+struct Means {
+  double error = 0, to[std::size(tolerances)] = {};
+  int bodies = 0;
+};
+
+void add_row(ReportTable& table, const Subject& subject, const Score (&scores)[2], const Renewals& renewals, double n,
+             Means& means) {
+  const auto mean = [n](double sum) { return std::exp(sum / n); };
+  const auto text = [&](const Score& s, std::size_t t) {
+    return number_text(mean(s.log_ms[t])) + (s.missed[t] ? " (not all)" : "");
+  };
+  std::vector<std::string> row = {subject.choice.scene,
+                                  subject.choice.body,
+                                  std::to_string(subject.model.vertices),
+                                  number_text(mean(scores[0].log_error)),
+                                  number_text(mean(scores[1].log_error)),
+                                  number_text(mean(scores[0].log_error - scores[1].log_error)),
+                                  number_text(scores[0].trials / scores[0].iterations),
+                                  number_text(scores[1].trials / scores[1].iterations)};
+  for (std::size_t t = 0; t < std::size(tolerances); ++t) {
+    row.push_back(text(scores[0], t));
+    row.push_back(text(scores[1], t));
+    row.push_back(number_text(mean(scores[1].log_ms[t] - scores[0].log_ms[t])));
+    means.to[t] += (scores[1].log_ms[t] - scores[0].log_ms[t]) / n;
+  }
+  means.error += (scores[0].log_error - scores[1].log_error) / n;
+  ++means.bodies;
+  row.push_back(number_text(renewals.a_frame));
+  row.push_back(number_text(renewals.ms));
+  table.rows.push_back(std::move(row));
+}
+
+std::string text_of(const Means& means) {
+  const double n = means.bodies;
+  return fmt::format(
+      "the error after ten iterations is {:.1f} times smaller, the time to 1e-4 {:.2f} and to 1e-6 {:.2f} times that "
+      "of "
+      "the constant matrix (geometric means over {} bodies)",
+      std::exp(means.error / n), std::exp(means.to[0] / n), std::exp(means.to[1] / n), means.bodies);
+}
+
+std::string text_of(const Estimates& estimates, const char* label) {
+  double within = 0, too_small = 0;
+  for (const double ratio : estimates.ratios) {
+    within += ratio >= 1.0 / 3 && ratio <= 3;
+    too_small += ratio < 0.1;
+  }
+  const auto n = static_cast<double>(estimates.ratios.size());
+  return fmt::format("{}: within a factor of 3 on {:.0f} % of {} states, more than ten times too small on {:.0f} %",
+                     label, 100 * within / n, estimates.ratios.size(), 100 * too_small / n);
+}
+
+}  // namespace
+
+ReportSection bench_matrix(const BenchSetting& setting) {
+  ReportTable tables[2] = {{"matrix", "Scenes without colliders"}, {"matrix-colliders", "Scenes with colliders"}};
+  for (ReportTable& table : tables)
+    table.columns = {"scene",
+                     "body",
+                     "vertices",
+                     "error after 10, constant",
+                     "error after 10, tangent",
+                     "times nearer",
+                     "trials an iteration, constant",
+                     "trials an iteration, tangent",
+                     "to 1e-4, constant [ms]",
+                     "to 1e-4, tangent [ms]",
+                     "to 1e-4, ratio",
+                     "to 1e-6, constant [ms]",
+                     "to 1e-6, tangent [ms]",
+                     "to 1e-6, ratio",
+                     "renewals a frame",
+                     "their time a frame [ms]"};
+  Means means[2];
+  Estimates estimates[2];
+  for (const SubjectChoice& choice : all_subjects()) {
+    Subject subject(choice);
+    if (subject.model.vertices > most_vertices || subject.body.def.solver.method != Method::quasi_newton) continue;
+    say_doing(setting, fmt::format("{}, {} ({})", choice.scene, choice.body, subject.size_text()));
+    const Renewals renewals = count_renewals(subject, *setting.threads);
+    SolverComparison comparison(subject, *setting.threads);
+    Score scores[2];
+    int states = 0;
+    for (const BenchState& state : states_of(subject, sampled_frames, setting)) {
+      std::vector<SolverEntry> entries = {{"constant", Method::quasi_newton, most_iterations},
+                                          {"constant, ten", Method::quasi_newton, 10},
+                                          {"tangent", Method::quasi_newton, most_iterations},
+                                          {"tangent, ten", Method::quasi_newton, 10}};
+      entries[2].matrix = entries[3].matrix = SystemMatrix::tangent;
+      std::vector<Outcome> outcomes = comparison.run(state, entries, 3, 1000);
+      const Minimum lowest = comparison.reference(state, outcomes);
+      const double scale = subject.model.total_mass * std::pow(subject.model.size / subject.model.time_step, 2);
+      if (!(lowest.below_y > 1e-12 * scale)) continue;  // at rest: nothing to solve
+      ++states;
+      for (int m = 0; m < 2; ++m) {
+        take_out_renewal(outcomes[2 * m]);
+        add(scores[m], outcomes[2 * m], outcomes[2 * m + 1], lowest.below_y, m == 1 ? renewals : Renewals{});
+        const double error = last_error(outcomes[2 * m + 1], lowest.below_y);
+        if (error > 1e-13) estimates[m].ratios.push_back(outcomes[2 * m + 1].error_estimate / error);
+      }
+    }
+    const int group = subject.set.colliders.empty() ? 0 : 1;
+    if (states > 0) add_row(tables[group], subject, scores, renewals, states, means[group]);
+  }
+  ReportSection section{"matrix", "A matrix that follows the body"};
+  section.text = fmt::format(
+      "The constant matrix M/h^2 + L beside the tangent one, on states of all bodies of up to {} vertices, geometric "
+      "means "
+      "over their frames. Times of the tangent contain the renewals that its film had, on average over {} frames. "
+      "Without "
+      "colliders {}; with colliders {}. Estimates of the error after ten iterations, {}; {}.",
+      most_vertices, film_frames, text_of(means[0]), text_of(means[1]), text_of(estimates[0], "constant"),
+      text_of(estimates[1], "tangent"));
+  for (ReportTable& table : tables) section.tables.push_back(std::move(table));
+  return section;
+}
+
+}  // namespace supple
