@@ -58,7 +58,7 @@ struct Names<ContactDirection> {
 struct ContactSettings {
   double stiffness = 1e4;  // k_c over m_i / h^2
   double push_out = 1;     // fastest way out of an overlap [body sizes / s]
-  double stick = 1e-3;     // friction is whole above this speed [body sizes / s]
+  double stick = 1.5e-4;   // friction is whole above this speed [body sizes / s]
   ContactHistory history = ContactHistory::current;
   ContactDirection direction = ContactDirection::low_rank;
 };
