@@ -40,8 +40,7 @@ class FrameLoop {
   void forget_earlier();
   void apply(SceneDef scene, const std::vector<TimedChange>& changes);
   void renew_changed_surfaces(const std::vector<TimedChange>& changes);
-  void make_steps(int frame, FrameRow& row, std::vector<std::string>& messages);
-  int side_by_side() const;
+  std::string advance_body(int frame, FilmedBody& body, FrameRow& row);
   Checkpoint checkpoint_after(int frames) const;
   void keep_state_before(int frame);  // the state before it, in case that the frame fails
   void add_checkpoint(int frames);
@@ -54,8 +53,7 @@ class FrameLoop {
   SceneDef scene_;  // of the frame in progress
   CollisionSet set_;
   Threads threads_;
-  Threads alone_{1};  // for the steps of bodies that go side by side
-  int first_;         // frame that is made
+  int first_;  // frame that is made
   FilmLog& log_;
   StateVerifier* verifier_;         // null: there is nothing to compare with
   Checkpoint before_;               // the frame in progress, in case that it fails
