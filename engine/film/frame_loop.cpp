@@ -1,7 +1,6 @@
 #include "film/frame_loop.h"
 
 #include <algorithm>
-#include <exception>
 
 #include "base/hash.h"
 #include "base/interrupts.h"
@@ -45,50 +44,18 @@ void FrameLoop::apply_replay(int frame, FrameRow& row) {
   row.change_ms = watch.elapsed_ms();
 }
 
-// The number of bodies that make their steps side by side, one thread each. Those that are left over take turns, with
-// all threads inside their steps: three bodies of one size would keep two threads busy for two bodies' time either way,
-// but one and a half is enough. A profile tells zones apart by the thread that makes the frames, and so bodies take
-// turns there.
-int FrameLoop::side_by_side() const {
-  const int bodies = static_cast<int>(bodies_.size()), threads = threads_.count();
-  return plan_.trace || threads == 1 ? 0 : bodies / threads * threads;
-}
-
-void FrameLoop::make_steps(int frame, FrameRow& row, std::vector<std::string>& messages) {
-  const bool measure_error = plan_.error_every > 0 && frame % plan_.error_every == 0;
-  const int first_in_turn = side_by_side();
-  std::vector<std::exception_ptr> errors(filmed_.size());
-  const auto make = [&](int b) {
-    try {
-      messages[b] = filmed_[b]->advance(frame, measure_error, row.bodies[b]);
-    } catch (...) {
-      errors[b] = std::current_exception();
-    }
-  };
-  threads_.run(first_in_turn, make);
-  for (int b = first_in_turn; b < static_cast<int>(filmed_.size()); ++b) make(b);
-  for (const std::exception_ptr& error : errors)
-    if (error) std::rethrow_exception(error);
-}
-
 // Makes one frame's steps of all bodies: FilmedBody::advance prepares and makes each of them by its DrivenBody, which
 // calls step() (sim/solver/step.h). Returns why it failed; empty: it did not.
 std::string FrameLoop::step_bodies(int frame, FrameRow& row) {
-  if (std::ranges::find(plan_.save_states, frame) != plan_.save_states.end()) {
-    for (const auto& body : filmed_) body->save_problem(frame);
-  }
-  row.bodies.resize(filmed_.size());
-  std::vector<std::string> messages(filmed_.size());
-  make_steps(frame, row, messages);
+  const bool save_states = std::ranges::find(plan_.save_states, frame) != plan_.save_states.end();
   std::vector<std::uint64_t> hashes;
-  for (std::size_t b = 0; b < filmed_.size(); ++b) {
-    if (!messages[b].empty()) return messages[b];
-    row.step_ms += row.bodies[b].step_ms;
-    const FilmedBody& body = *filmed_[b];
-    hashes.push_back(state_hash(body.model(), body.state()));
-    if (verifier_ == nullptr) continue;
-    const std::string difference = verifier_->compare(frame, body.model(), body.state());
-    if (!difference.empty()) return difference;
+  for (const auto& body : filmed_) {
+    if (save_states) body->save_problem(frame);
+    std::string message = step_body(frame, *body, row);
+    if (!message.empty()) return message;
+    hashes.push_back(state_hash(body->model(), body->state()));
+    if (verifier_ != nullptr) message = verifier_->compare(frame, body->model(), body->state());
+    if (!message.empty()) return message;
   }
   // A record holds whole frames: nothing is added before every body has made its steps.
   for (const auto& body : filmed_) {
@@ -98,6 +65,14 @@ std::string FrameLoop::step_bodies(int frame, FrameRow& row) {
   row.state_hash =
       hashes.size() == 1 ? hashes.front() : hash_bytes(hashes.data(), sizeof(hashes.front()) * hashes.size());
   return "";
+}
+
+std::string FrameLoop::step_body(int frame, FilmedBody& body, FrameRow& row) {
+  const bool measure_error = plan_.error_every > 0 && frame % plan_.error_every == 0;
+  row.bodies.emplace_back();
+  std::string message = body.advance(frame, measure_error, row.bodies.back());
+  if (message.empty()) row.step_ms += row.bodies.back().step_ms;
+  return message;
 }
 
 void FrameLoop::save_outputs(int frame, const FrameRow& row) {
@@ -140,9 +115,8 @@ FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
                       PictureTargets{folder.frames(), !plan.film_only, video, first_});
   }
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    Threads& threads = static_cast<int>(b) < side_by_side() ? alone_ : threads_;
     filmed_.push_back(
-        std::make_unique<FilmedBody>(scene_, bodies_[b], film.models[b], set_, folder, solvers, threads, first_));
+        std::make_unique<FilmedBody>(scene_, bodies_[b], film.models[b], set_, folder, solvers, threads_, first_));
   }
   if (!set_.obstacles.empty()) poses_.emplace(folder.colliders(), first_ * int(set_.obstacles.size()));
   if (start.checkpoint) resume(*start.checkpoint);

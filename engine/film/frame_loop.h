@@ -41,8 +41,7 @@ class FrameLoop {
   void resume(const Checkpoint& checkpoint);
   void end_last_changes();
   void apply(SceneDef scene, const std::vector<TimedChange>& changes);
-  void make_steps(int frame, FrameRow& row, std::vector<std::string>& messages);
-  int side_by_side() const;
+  std::string step_body(int frame, FilmedBody& body, FrameRow& row);
   Checkpoint checkpoint_after(int frames) const;
   void keep_checkpoint_before(int frame);
   void add_checkpoint(int frames);
@@ -55,8 +54,7 @@ class FrameLoop {
   SceneDef scene_;    // of the frame in progress
   CollisionSet set_;  // the colliders of the frame in progress
   Threads threads_;
-  Threads alone_{1};  // for the steps of bodies that go side by side
-  int first_;         // the first frame that this run makes; those before it are an earlier run's
+  int first_;  // the first frame that this run makes; those before it are an earlier run's
   FilmLog& log_;
   StateVerifier* verifier_;         // of --verify; null without it
   Checkpoint before_;               // taken before the frame in progress; empty when the film keeps none
