@@ -16,17 +16,26 @@ constexpr double tolerances[] = {1e-4, 1e-6};
 
 }  // namespace
 
+// Medians, of examinations and of renewals each for itself: what else the machine did in a frame does not count.
 Renewals count_renewals(Subject& subject, Threads& threads) {
-  Renewals result;
-  DrivenBody driver(subject.scene, subject.body, subject.model, subject.set, scenes_own_solver(), &threads);
+  std::vector<double> renewing, examining;
+  DrivenBody driver(subject.scene, subject.body, subject.model, subject.set,
+                    solver_instead(Method::quasi_newton, 10, SystemMatrix::tangent), &threads);
   for (int frame = 0; frame < film_frames; ++frame) {
     const StepReport& last = driver.make_frame(frame, [&](const StepReport& report) {
-      result.a_frame += driver.workspace().renewed ? 1.0 / film_frames : 0;
-      if (frame > 0) result.ms += report.matrix_ms / (film_frames - 1);
+      (driver.workspace().renewed ? renewing : examining).push_back(report.matrix_ms);
     });
     if (last.failed) throw RunError(fmt::format("{}: frame {} failed", subject.choice.scene, frame));
   }
-  return result;
+  const auto median = [](std::vector<double> ms) {
+    if (ms.empty()) return 0.0;
+    std::sort(ms.begin(), ms.end());
+    return ms[ms.size() / 2];
+  };
+  const double share = 1.0 / film_frames;
+  return {share * static_cast<double>(renewing.size()),
+          share * (static_cast<double>(renewing.size()) * median(renewing) +
+                   static_cast<double>(examining.size()) * median(examining))};
 }
 
 namespace {

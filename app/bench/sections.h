@@ -37,7 +37,7 @@ ReportSection bench_contact(const BenchSetting& setting);
 // matrix.cpp
 ReportSection bench_matrix(const BenchSetting& setting);
 
-// The renewals of a film that is played with the scene's own settings.
+// The renewals of a film that is played with ten iterations a step and the tangent matrix.
 struct Renewals {
   double a_frame = 0;  // how many
   double ms = 0;       // what they cost in a frame, the examination of whether one is due included
