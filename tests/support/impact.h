@@ -24,7 +24,7 @@ struct FilmMeasures {
     const Deformation shape = deformation(scene.model, scene.state.x);
     end_energy = all.kinetic + all.elastic;
     end_stretch = shape.stretch;
-    end_inverted = shape.inverted.value_or(0);
+    end_inverted = shape.inverted;
     energy = std::max(energy, end_energy);
     stretch = std::max(stretch, end_stretch);
     inverted = std::max(inverted, end_inverted);
