@@ -113,7 +113,7 @@ TEST(Info, TellsOfARun) {
   expect_lines(
       result.out,
       {"run             my run\n", "render bar.toml --no-images --quiet --error-every 2 --out 'my run'\n",
-       "scene           bar.toml\n", "body            'bar': 45 vertices", "ended           done\n",
+       "/bar.toml\n", "body            'bar': 45 vertices", "ended           done\n",
        "frames          4 in profile.json, 0 pictures\n", "film            none\n",
        "errors          measured at 2 of 4 frames\n", "ms/frame", "error mean", "    motion/ ", "    profile.json "});
 }

@@ -247,6 +247,7 @@ surface = "surfaces/stairs.obj"
 shape = {{}}
 keys = [{{ t = 0 }}]
 [camera]
+keys = [{{ t = 0 }}]
 [look]
 [output]
 [sweep.values]

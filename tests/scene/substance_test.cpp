@@ -269,7 +269,7 @@ TEST(Substances, WhatIsSoftForItsLoadOrSmallForItsStepsOrStiffInOneRegionIsWarne
   EXPECT_NE(warnings_about(box_body(soft + held)).find("is soft for its load: its own weight strains it by "),
             std::string::npos);
   EXPECT_EQ(warnings_about("gravity = [0, 0, 0]\n" + box_body(soft + held)), "");
-  EXPECT_EQ(warnings_about(box_body(soft)), "");  // it falls freely
+  EXPECT_EQ(warnings_about(box_body(soft)).find("soft for its load"), std::string::npos);  // it falls freely
   EXPECT_NE(warnings_about("[[body]]\nbox = { extent = [2e-7, 2e-7, 2e-7], cells = [1, 1, 1] }\nmaterial = \"rubber\"\n"
                            "[[collider]]\nshape = { half_space = { normal = [0, 1, 0] } }\n")
                 .find("is small for its steps: gravity carries it by "),
@@ -277,7 +277,7 @@ TEST(Substances, WhatIsSoftForItsLoadOrSmallForItsStepsOrStiffInOneRegionIsWarne
   const std::string shape =
       "[[body]]\nshape = \"shapes/squirrel.toml\"\nvertices = 500\nsize = 0.4\n"
       "material = { model = \"neo-hookean\", mu = 1e5 }\n";
-  EXPECT_EQ(warnings_about(shape), "");
+  EXPECT_EQ(warnings_about(shape).find("differ in stiffness"), std::string::npos);
   EXPECT_NE(warnings_about(shape + "[body.regions.teeth]\nmaterial = { model = \"neo-hookean\", mu = 1e11 }\n")
                 .find("differ in stiffness by a factor of 1e+06"),
             std::string::npos);
