@@ -17,7 +17,7 @@ std::vector<CLI::App*> visible_verbs(CLI::App& app) {
   return app.get_subcommands([](CLI::App* verb) { return !verb->get_group().empty(); });
 }
 
-// The message for a first word that is no verb, for which CLI11 would only say that a subcommand is required.
+// Returns the message for a first word that is not a verb; CLI11 alone would only say that a subcommand is required.
 std::string unknown_word(CLI::App& app, const std::string& word) {
   std::vector<std::string> known = {"--help", "--version"};
   for (const CLI::App* verb : visible_verbs(app)) known.push_back(verb->get_name());
@@ -26,7 +26,7 @@ std::string unknown_word(CLI::App& app, const std::string& word) {
                      nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
 }
 
-// The words of a closed choice, which CLI11 describes as "{a,b,c}".
+// Returns the words of a closed choice, which CLI11 describes as "{a,b,c}".
 std::vector<std::string> choices_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const std::size_t begin = type.find('{'), end = type.find('}');
@@ -37,7 +37,7 @@ std::vector<std::string> choices_of(const CLI::Option& option) {
   return words;
 }
 
-// Appends the options of an app, and of the groups in it.
+// Appends the options of an app and of its groups.
 void describe(CLI::App& app, bool offered, std::vector<DescribedOption>& list) {
   for (const CLI::Option* option : app.get_options()) {
     DescribedOption each;

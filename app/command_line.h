@@ -1,5 +1,6 @@
-// The command line: each verb describes its options here. Reading the words, the checks of values and the texts of
-// --help are CLI11's; command_line.cpp is the only unit that includes that library, because it takes long to compile.
+// Defines the command line, on which each verb describes its options. CLI11 reads the words, checks the values and
+// writes the texts of --help. command_line.cpp is the only unit that includes that library, because it takes long to
+// compile.
 #pragma once
 
 #include <cstddef>
@@ -16,10 +17,10 @@ class Option;
 
 namespace supple {
 
-// The program runs this once it has understood the command line. It returns the exit status.
+// An action is what the program runs once it has understood the command line. It returns the exit status.
 using Action = std::function<int()>;
 
-// An option or a place on the line that has been added, and what is asked of its values.
+// Refers to an option or a positional argument that has been added, and states what its values must satisfy.
 class Option {
  public:
   explicit Option(CLI::Option* option) : option_(option) {}
@@ -35,14 +36,14 @@ class Option {
   Option& needs(const Option& other);
   Option& excludes(const Option& other);
   Option& excludes(const std::vector<std::string>& names);  // of options that have been added
-  Option& shows_default();  // --help tells what the variable holds now
+  Option& shows_default();                                  // --help tells what the variable holds now
 
  private:
   CLI::Option* option_;
 };
 
-// A set of options. The variables that they fill must live until the action has run. A name that does not begin with a
-// dash is that of a place on the line.
+// Holds a set of options. The variables that they fill must live until the action has run. A name that does not begin
+// with a dash denotes a positional argument.
 class Options {
  public:
   explicit Options(CLI::App* app) : app_(app) {}
@@ -79,7 +80,7 @@ class Verb : public Options {
   CommandLine* line_;
 };
 
-// What an option, or a place on the line, takes.
+// Describes an option or a positional argument: its names and the values that it takes.
 struct DescribedOption {
   std::vector<std::string> names;  // with their dashes; of a place its name
   bool place = false;
@@ -102,8 +103,8 @@ class CommandLine {
   Verb verb(const std::string& name, const std::string& meaning);
   const std::vector<std::string>& words() const { return words_; }  // as the program was called
 
-  // Reads the words. Where nothing is left to do, because help was asked for or a word is wrong (it says which), the
-  // exit status is returned.
+  // Reads the words. Returns the exit status where nothing is left to do, because help was asked for or a word is wrong
+  // (a message then says which).
   std::optional<int> read();
   // Runs the action of the verb that was called.
   int run() const { return action_(); }

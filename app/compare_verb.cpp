@@ -33,7 +33,7 @@ std::string states_text(const RunComparison& c) {
   return text;
 }
 
-// Tells of bodies whose saved motion is not that of the states; empty where there are none.
+// Lists the bodies whose saved motion differs although their states do not; empty where there are none.
 std::string motion_text(const RunComparison& c) {
   std::string text;
   for (const BodyComparison& body : c.bodies) {
@@ -133,7 +133,7 @@ std::string csv_of(const RunComparison& c) {
   return csv_text(records);
 }
 
-// Status 1 means here that the runs differ, so a file that cannot be written is refused as wrong input.
+// Exit status 1 means here that the runs differ, so a file that cannot be written is reported as wrong input.
 void write_csv(const std::string& file, const RunComparison& comparison) {
   try {
     write_whole_file(file, csv_of(comparison));

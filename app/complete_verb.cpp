@@ -1,5 +1,5 @@
-// Answers what a shell asks while a command is typed: which words fit. The answer comes from the command line's own
-// description, so there is no second list of verbs and options to keep.
+// Answers the shell, which asks while a command is typed, with the words that fit. The answer comes from the command
+// line's own description, so there is no second list of verbs and options to maintain.
 #include <algorithm>
 #include <memory>
 
@@ -14,7 +14,8 @@ constexpr const char* files_too = "/";  // a line of its own in the answer: name
 
 using Words = std::vector<std::string>;
 
-// The words that an option or a place on the line can hold. Its own name tells which of the names that ship fit.
+// Returns the words that an option or a positional argument can take. The name of a positional argument tells which of
+// the names that ship fit.
 Words values_of(const DescribedOption& option) {
   if (!option.choices.empty()) return option.choices;
   Words words;
@@ -35,7 +36,7 @@ const DescribedOption* option_named(const DescribedVerb& verb, const std::string
   return found == verb.options.end() ? nullptr : &*found;
 }
 
-// The words that can stand last on the line.
+// Returns the words that can stand last on the line.
 Words fitting(const CommandLine& all, const Words& line) {
   Words words;
   const std::vector<DescribedVerb> verbs = all.verbs();
@@ -82,7 +83,7 @@ void add_complete(CommandLine& line) {
   Verb verb = line.verb("complete", "Words that can go on a command line; asked by the shell.");
   verb.hide();  // not for people
   verb.footer("Example: supple complete -- render squirrel --gl ''");
-  // Declared so that the line may hold anything; what is read is the command as it was called.
+  // This option is declared so that the line may hold anything; the words are read from the command as it was called.
   auto declared = std::make_shared<Words>();
   verb.option("WORDS", *declared, "the line after 'supple', the last word as far as it was typed");
   const Words& called = line.words();

@@ -20,7 +20,7 @@
 namespace supple {
 namespace {
 
-// One thing that the program uses.
+// Describes one thing that the program uses.
 struct Finding {
   std::string name;
   bool ok = false;
@@ -32,7 +32,7 @@ struct Finding {
 
 constexpr std::uintmax_t enough_disk = 1'000'000'000;  // bytes: some hundred frames at 1280 x 720, and the film
 
-// Draws a triangle with the film's own shaders, and tells whether that works.
+// Draws a triangle with the film's own shaders and reports whether that works.
 Finding opengl() {
   Finding finding{"OpenGL", false, true, "", "draws the pictures", "libosmesa6, or libegl1 and libgl1-mesa-dri"};
   try {
@@ -60,7 +60,8 @@ Finding opengl() {
   return finding;
 }
 
-// The version that a program tells in its first line, as in "ffmpeg version 5.1.6" or "gnuplot 5.4 patchlevel 4".
+// Reports the version that a program prints in its first line, as in "ffmpeg version 5.1.6" or "gnuplot 5.4 patchlevel
+// 4".
 Finding tool(const std::string& name, const char* option, bool needed, const char* purpose, const char* package) {
   Finding finding{name, false, needed, "not found in PATH", purpose, package};
   const auto told = run_program({name, option});
@@ -138,7 +139,7 @@ Finding cache() {
           purpose, ""};
 }
 
-// Tells which instructions the build uses, and whether the processor has them. A build for one machine has no other
+// Reports which instructions the build uses and whether the processor has them. A build for one machine has no other
 // kernels.
 Finding processor() {
   std::vector<std::string> missing, used;

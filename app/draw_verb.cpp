@@ -18,7 +18,7 @@
 namespace supple {
 namespace {
 
-// A drawing as the command line asks for it.
+// Describes a drawing as the command line asks for it.
 struct DrawCommand {
   DrawPlan plan;
   std::string run, scene, out, still;
@@ -43,7 +43,7 @@ int say_end(const DrawResult& result, const std::filesystem::path& folder) {
   return interrupted ? 130 : 1;
 }
 
-// Ends the film and tells about it. Returns the exit status.
+// Ends the film and prints the result. Returns the exit status.
 int finish_film(const DrawCommand& command, VideoEncoder& video, int pictures, double seconds) {
   const VideoResult end = video.finish();
   if (end.outcome == VideoOutcome::failed)
@@ -62,7 +62,7 @@ VideoEncoder encoder_for(const DrawCommand& command, const LoadedDrawing& drawin
   return {command.folder() / "video.mp4", scene.output.width, scene.output.height, drawing.rate};
 }
 
-// Makes the film of pictures that other processes have drawn.
+// Makes the film from pictures that other processes have drawn.
 int merge_parts(const DrawCommand& command, const LoadedDrawing& drawing) {
   const Stopwatch watch;
   const auto count = static_cast<int>(drawing.frames.size());
@@ -94,7 +94,7 @@ int draw_whole(const DrawCommand& command, LoadedDrawing& drawing) {
   return status == 0 ? finish_film(command, video, count, watch.elapsed_ms() / 1000) : status;
 }
 
-// The command that draws one part, as somebody would type it.
+// Returns the command that draws one part, as a user would type it.
 std::vector<std::string> command_of_part(const DrawCommand& command, int index) {
   const DrawPlan& plan = command.plan;
   std::vector<std::string> words = {std::filesystem::read_symlink("/proc/self/exe").string(),
@@ -121,7 +121,7 @@ std::vector<std::string> command_of_part(const DrawCommand& command, int index) 
   return words;
 }
 
-// Draws the parts in processes of their own, all at once, and makes the film.
+// Draws the parts in processes of their own, all at the same time, and makes the film.
 int draw_in_parts(const DrawCommand& command, const LoadedDrawing& drawing) {
   const Stopwatch watch;
   std::vector<std::optional<ProgramEnd>> ends(command.jobs);

@@ -22,7 +22,7 @@
 namespace supple {
 namespace {
 
-// Says warnings, and what reading meshes had to say.
+// Prints warnings, and the notes from reading meshes.
 void say_remarks(const LoadedFilm& film) {
   const SceneDef& scene = film.script.scene();
   if (scene.sweep_points > 0) {
@@ -73,7 +73,8 @@ void print_json(const FilmResult& result, const RunFolder& folder) {
   say(stdout, fmt::format("{}\n", json_text(json)));
 }
 
-// Tells how the film went; returns the exit status. unrecorded: what the disk refused at the end.
+// Prints how the film ended; returns the exit status. unrecorded: the message of a final record that could not be
+// written.
 int say_result(const FilmCommand& command, const FilmResult& result, const RunFolder& folder, const SceneDef& scene,
                const std::string& unrecorded) {
   if (command.json) {
@@ -101,7 +102,7 @@ int say_result(const FilmCommand& command, const FilmResult& result, const RunFo
   return result.end == FilmEnd::done && !result.video_failed && unrecorded.empty() ? 0 : 1;
 }
 
-// Says how the comparison with a record went. Returns false when there was nothing to compare.
+// Prints the result of the comparison with a record. Returns false when there was nothing to compare.
 bool say_verdict(const FilmCommand& command, const StateVerifier& verifier, int frames) {
   const bool compared = verifier.compared_any(frames);
   say(command.json || !compared ? stderr : stdout, fmt::format("  {}\n", verifier.verdict(frames)));

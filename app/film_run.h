@@ -1,5 +1,5 @@
-// A film from the command line to its folder, with words on the terminal: what the verbs that run a scene have in
-// common. Not here: the film itself (film/film.h).
+// Makes a film from the command line, up to its folder, with messages on the terminal. The verbs that run a scene share
+// this. Not here: the film itself (film/film.h).
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace supple {
 
-// A film as the command line asks for it.
+// Describes a film as the command line asks for it.
 struct FilmCommand {
   FilmPlan plan;
   bool json = false;  // the result as one line of JSON
@@ -19,16 +19,16 @@ struct FilmCommand {
   bool page = false;  // a page of the run (output/run_page.h)
 };
 
-// Adds the options that every run of a scene has. --resume is not among them: it is for single films.
+// Adds the options that every run of a scene has. --resume is not among them, because it is for single films only.
 void add_film_options(Verb& verb, FilmCommand& command);
 
-// Makes a verb one that films what its argument names. words: as the program was called.
+// Makes a verb that films what its argument names. words: the command line with which the program was called.
 struct FilmArgument {
   const char *name, *meaning;
 };
 void add_film(Verb& verb, const FilmArgument& argument, const std::vector<std::string>& words);
 
-// The record of a run once it is over, for callers that examine it.
+// Holds the record of a run after its end, for callers that examine it.
 struct FilmRecord {
   RunInfo info;
   std::filesystem::path folder;
@@ -38,8 +38,8 @@ struct FilmRecord {
   std::vector<ThreadTrace> trace;  // when one was asked for
 };
 
-// Makes a film and tells how it went. Returns the exit status. words: as the program was called, for run.json. record:
-// null where the caller does not look closer.
+// Makes a film and prints how it ended. Returns the exit status. words: the command line with which the program was
+// called, for run.json. record: null where the caller does not need it.
 int run_film(const FilmCommand& command, const std::vector<std::string>& words, FilmRecord* record = nullptr);
 
 }  // namespace supple

@@ -14,7 +14,8 @@
 namespace supple {
 namespace {
 
-// The disk tells which kind an input is: a folder is a run, a .mesh file is a mesh, and all else is a scene.
+// The kind of an input follows from what is on the disk: a folder is a run, a .mesh file is a mesh, and all else is a
+// scene.
 int inform(const std::string& input, bool live) {
   std::error_code error;
   const std::filesystem::path path = input;

@@ -13,7 +13,7 @@
 namespace supple {
 namespace {
 
-// The least time of three factorisations on this machine [ms].
+// Returns the least time of three factorisations on this machine [ms].
 double cost_of_factor(const Body& body) {
   Model model = build_model(body.description);
   ModelValues values(model, body.description);

@@ -1,5 +1,5 @@
-// The program supple makes films of soft bodies from scene files. Exit status: 0 done, 1 the run failed, 2 the input is
-// wrong, 130 interrupted.
+// The program supple makes films of soft bodies from scene files. Its exit status is 0 when it is done, 1 when the run
+// failed, 2 when the input is wrong, and 130 when it was interrupted.
 #include <fcntl.h>
 #include <fmt/core.h>
 #include <unistd.h>
@@ -36,8 +36,8 @@ int run(int argc, char** argv) {
   return status == 0 && !said ? 1 : status;
 }
 
-// A file that is opened while a standard stream is closed would get the stream's number, and then its words. A user who
-// closes a stream wants to hear nothing, so such a stream leads nowhere.
+// A file that is opened while a standard stream is closed would get the stream's number, and the stream's text would go
+// into the file. A user who closes a stream wants no output from it, so such a stream leads to /dev/null.
 void open_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(stream, F_GETFD) < 0) (void)::open("/dev/null", O_RDWR);  // the lowest that is free: this one

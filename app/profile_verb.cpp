@@ -52,7 +52,7 @@ long lost_zones(const std::vector<ThreadTrace>& threads) {
   return lost;
 }
 
-// Writes the profile into the folder and tells about it.
+// Writes the profile into the folder and prints a summary of it.
 void report(const ProfileCommand& request, const ZoneProfile& profile, const std::filesystem::path& folder) {
   write_whole_file(folder / "zones.json", zones_json(profile));
   std::string no_plot;
@@ -87,7 +87,7 @@ int profile_once(const ProfileCommand& request, const std::vector<std::string>& 
   return 0;
 }
 
-// The command line of one repeat.
+// Returns the command line of one repeat.
 std::vector<std::string> one_repeat(const std::vector<std::string>& command, const std::filesystem::path& folder) {
   std::vector<std::string> words = {std::filesystem::read_symlink("/proc/self/exe").string()};
   for (std::size_t i = 1; i < command.size(); ++i) {
@@ -104,7 +104,7 @@ std::vector<std::string> one_repeat(const std::vector<std::string>& command, con
 }
 
 // Profiles repeats, each in a process of its own, because the place of a process's memory changes the time of a zone by
-// more than 10 %, for all of its frames. Repeats before one that fails or is interrupted are reported.
+// more than 10 %, in all of its frames. The repeats before one that fails or is interrupted are reported.
 int profile(const ProfileCommand& request, const std::vector<std::string>& command) {
   const SceneDef scene =
       Script::load(scene_file(request.film.plan.scene), assets_folder(), request.film.plan.settings).scene();
@@ -140,7 +140,7 @@ int profile(const ProfileCommand& request, const std::vector<std::string>& comma
   return status;
 }
 
-// The zones.json that is meant: the file itself, or the one in a profile's folder.
+// Returns the path of zones.json: the name itself, or the file in a profile's folder of that name.
 std::string zones_file(const std::string& name) {
   std::error_code error;
   return std::filesystem::is_directory(name, error) ? (std::filesystem::path(name) / "zones.json").string() : name;
@@ -180,7 +180,7 @@ int run(const ProfileCommand& request, const std::vector<std::string>& command) 
   return compare(request);
 }
 
-// A comparison runs nothing, so the options of a run have no meaning with it.
+// A comparison runs nothing, so the options of a run mean nothing with it.
 void check_compare_options(const Verb& verb) {
   for (const std::string& name : verb.given()) {
     if (name != "--compare" && name != "--json" && name != "--quiet")

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The text at a path such as {"program", "version"}; "not known" where an older program did not write it.
+// Returns the text at a path such as {"program", "version"}, or "not known" where an older program did not write it.
 std::string value_at(const Json& info, const std::vector<std::string>& path) {
   const Json* value = &info;
   for (const std::string& key : path) {
@@ -25,7 +25,7 @@ std::string value_at(const Json& info, const std::vector<std::string>& path) {
                                       : value->dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-// The command as it can be typed again.
+// Returns the command in a form that can be typed again.
 std::string command_text(const Json& info) {
   if (!info.contains("command") || !info["command"].is_array()) return "not known";
   std::vector<std::string> words;
@@ -40,7 +40,7 @@ struct FileCount {
   std::uintmax_t bytes = 0;
 };
 
-// Counts what lies directly in a run's folder: files by name, and folders (with a '/') with all that is in them.
+// Counts what lies directly in a run's folder: files by name, and folders (with a '/') with all that they contain.
 std::map<std::string, FileCount> contents_of(const std::filesystem::path& folder) {
   std::map<std::string, FileCount> contents;
   std::error_code error;
@@ -60,7 +60,7 @@ std::map<std::string, FileCount> contents_of(const std::filesystem::path& folder
   return contents;
 }
 
-// Counts the pictures from frame 0 on up to the first gap.
+// Counts the pictures from frame 0 up to the first gap.
 int whole_pictures(const std::filesystem::path& folder) {
   std::error_code error;
   int frame = 0;

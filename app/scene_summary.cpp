@@ -15,7 +15,7 @@ namespace {
 
 constexpr int tried_frames = 5;
 
-// The median of the first frames' steps, or why there is none.
+// Returns the median time of the first frames' steps, or why there is none.
 std::string cost_text(const SceneDef& scene, Body& body, Model& model, const CollisionSet& set, Threads& threads) {
   const FrameCost cost =
       cost_of_frames(scene, body, model, set, all_solvers().steps, threads, std::min(tried_frames, scene.frames));
@@ -72,14 +72,14 @@ std::string body_text(const SceneDef& scene, Body& body, const CollisionSet& set
   return text + fmt::format("  costs           {}\n", cost_text(scene, body, model, set, threads));
 }
 
-// The value that a change leads to, and how.
+// Describes the value that a change leads to, and how it gets there.
 std::string course_text(const TimedChange& change) {
   if (change.over <= 0) return fmt::format("becomes {}", printable(change.to.whole_text()));
   return fmt::format("from {} to {} over {:g} s, {}{}", change.from->whole_text(), change.to.whole_text(), change.over,
                      name_of(change.ease), change.by == RampRule::ratio ? " by ratio" : "");
 }
 
-// The frames in which a change is at work, and what must be made anew in each of them.
+// Names the frames in which a change takes effect, and what must be recomputed in each of them.
 std::string frames_text(const Script& script, const TimedChange& change) {
   int first = -1, count = 0;
   for (int frame = 0; frame < script.scene().frames; ++frame) {

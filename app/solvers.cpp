@@ -6,7 +6,7 @@
 namespace supple {
 namespace {
 
-// Measures against the minimum that the reference finds.
+// Measures errors against the minimum that the reference finds.
 class ReferenceMeter : public ErrorMeter {
  public:
   ReferenceMeter(const Model& model, Threads& threads) : reference_(model) { workspace_.threads = &threads; }

@@ -1,4 +1,4 @@
-// The solvers that the program offers: those of engine/baselines, as films and estimates of cost take them.
+// Provides the solvers that the program offers, those of engine/baselines, to films and to estimates of cost.
 #pragma once
 
 #include "film/film_solvers.h"

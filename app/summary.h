@@ -9,18 +9,18 @@
 
 namespace supple {
 
-// Tells a mesh's counts, extent and quality.
+// Describes a mesh: its counts, extent and quality.
 std::string mesh_summary(const TetMesh& mesh);
 
-// Describes a scene or replay and its bodies, and tells what a frame's steps cost on this machine: the first frames are
-// simulated, on this many threads, and nothing is written. Throws InputError as loading a scene does.
+// Describes a scene or replay and its bodies, and measures what a frame's steps cost on this machine: it simulates the
+// first frames with this many threads and writes nothing. Throws InputError as loading a scene does.
 std::string scene_summary(const std::filesystem::path& file, int threads);
 
-// Lists the values of a scene or replay that may change while it runs: path, type, unit, value, what is allowed, what a
-// change costs. A new factor is timed. Throws InputError as loading a scene does.
+// Lists the values of a scene or replay that may change while it runs, each with its path, type, unit, value, allowed
+// values and the cost of a change. The time of a new factor is measured. Throws InputError as loading a scene does.
 std::string live_summary(const std::filesystem::path& file);
 
-// Tells what was run, how it ended, its times, and which files are there.
+// Describes what was run, how it ended, its times, and which files there are.
 std::string run_summary(const RunRecord& run);
 
 }  // namespace supple

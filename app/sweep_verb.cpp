@@ -15,7 +15,7 @@
 namespace supple {
 namespace {
 
-// A sweep as the command line asks for it.
+// Describes a sweep as the command line asks for it.
 struct SweepOptions {
   SweepRequest request;
   std::string out;

@@ -1,4 +1,5 @@
-// The program's verbs, a file each. Each adds itself to the command line, with the action that it stands for.
+// Declares the program's verbs, each of which has a file of its own. Each adds itself to the command line, together
+// with the action that it performs.
 #pragma once
 
 #include "app/command_line.h"

@@ -1,5 +1,5 @@
-// Reads every #include of ours, compares it with the arrows between the folders, and keeps third parties in their
-// cages.
+// Reads every #include of this project, compares it with the allowed directions between the folders, and checks that
+// headers of third parties are included only where they may be.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -23,8 +23,8 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"film", {"film", "scene", "sim", "render", "output", "geometry", "base"}},
 };
 
-// Lists the rooms of engine/sim, and those that each may include from: solver -> contact -> model -> linear, elements
-// -> materials. A file that lies in none of them may include from all.
+// Lists the subfolders of engine/sim, and those from which each may include: solver -> contact -> model -> linear,
+// elements -> materials. A file that lies in none of them may include from all.
 const std::map<std::string, std::set<std::string>> rooms = {
     {"materials", {"materials"}},
     {"elements", {"elements", "materials"}},
@@ -87,7 +87,7 @@ TEST(House, EveryIncludeFollowsTheArrows) {
   EXPECT_GT(checked, 50);
 }
 
-// The room that a path such as sim/model/state.h lies in; empty when it is not a file of a room.
+// Returns the subfolder of a path such as sim/model/state.h; empty when the file is in none.
 std::string room_of(const std::string& path) {
   std::smatch match;
   static const std::regex pattern("sim/([a-z]+)/.*");
@@ -125,8 +125,7 @@ TEST(House, DefinitionsOfScenesIncludeNoReader) {
     EXPECT_FALSE(seen.contains(reader)) << reader;
 }
 
-// The benchmarks are a client of the engine in their own right. The verbs reach them through one header, and they do
-// not know the verbs.
+// The benchmarks use the engine directly. The verbs reach them through one header, and they do not depend on the verbs.
 TEST(House, BenchmarksAndVerbsMeetInOneHeader) {
   int entries = 0;
   for (const Include& include : all_includes()) {

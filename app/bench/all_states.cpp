@@ -127,7 +127,8 @@ ReportTable profile_table(const std::vector<MethodTimes>& list, const std::strin
 }  // namespace
 
 ReportSection bench_profiles(const BenchSetting& setting) {
-  // Bodies that can touch something are in a group of their own, because directions see contacts in different ways.
+  // Bodies that can touch something form a group of their own, because the methods treat contacts in their directions
+  // in different ways.
   std::vector<MethodTimes> groups[2] = {all_methods(), all_methods()};
   for (auto& group : groups) {
     for (MethodTimes& method : group) method.times.resize(std::size(tolerances));
@@ -282,7 +283,7 @@ ReportSection bench_minima(const BenchSetting& setting) {
       for (const Outcome& outcome : outcomes) {
         const double away = (outcome.x - lowest.x).rowwise().norm().maxCoeff() / subject.model.size;
         const bool equal = !outcome.failed && away < 1e-8;
-        // Another minimum is one that a search from there does not leave.
+        // An outcome is at another minimum when a search that starts from it does not reach the lowest one.
         const bool elsewhere =
             !equal && !outcome.failed && comparison.reference(state, {outcome}).below_y < (1 - 1e-9) * lowest.below_y;
         same += equal;

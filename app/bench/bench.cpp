@@ -75,7 +75,7 @@ const std::vector<Benchmark>& benchmarks() {
 
 namespace {
 
-// All that a finished section depends on: one that was made with something else is made again.
+// Returns all that a finished section depends on. A section that was made with other values is made again.
 std::string fingerprint(const BenchSetting& setting) {
   return fmt::format("{}; {}; {}; {}; {} threads; {}; paper meshes: {}", hash_text_form(program_identity()),
                      program_version(), build_flags(), variant_name(best_variant()), setting.threads->count(),

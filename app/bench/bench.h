@@ -1,4 +1,4 @@
-// The benchmarks of `supple bench`, for the verb: each makes one section of the report page. This is the one header of
+// Declares the benchmarks of `supple bench`. Each makes one section of the report page. This is the only header of
 // app/bench that the rest of the program includes.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace supple {
 
-// The setting that every benchmark is given.
+// Holds the setting that every benchmark is given.
 struct BenchSetting {
   std::filesystem::path out;                          // folder of the report
   std::optional<std::filesystem::path> paper_meshes;  // folder with the paper's meshes

@@ -37,8 +37,8 @@ void add_times(Outcome& outcome, const StepReport& report) {
 
 }  // namespace
 
-// Repeats are the outer loop, so that what slows the machine for a while slows all solvers. The first round warms
-// caches and gives the results; its times do not count.
+// The repeats are the outer loop, so that whatever slows the machine for a while slows all solvers. The first round
+// warms the caches and gives the results; its times do not count.
 std::vector<Outcome> SolverComparison::run(const BenchState& state, const std::vector<SolverEntry>& entries,
                                            int repeats, double budget_ms) {
   std::vector<Outcome> outcomes(entries.size());
@@ -68,7 +68,7 @@ std::vector<Outcome> SolverComparison::run(const BenchState& state, const std::v
       outcome.history = report.history;
       outcome.x = after.x;
       if (report.failed) continue;
-      // Summed from the end backwards, so that gains near the minimum keep their last digits.
+      // The sum runs from the last iterate backwards, so that gains near the minimum keep their last digits.
       double left = gained(subject_.model, inputs, state.before, outcome.x, reference_workspace_);
       outcome.gained.assign(outcome.history.size() + 1, left);
       for (std::size_t k = outcome.history.size(); k-- > 0;) {
@@ -91,7 +91,7 @@ std::vector<Outcome> SolverComparison::run(const BenchState& state, const std::v
   return outcomes;
 }
 
-// Puts the subject into a state. What was prepared for other values of its model is made anew.
+// Puts the subject into a state. Whatever was prepared for other values of its model is prepared again.
 const StepInputs& SolverComparison::put(const BenchState& state) {
   const StepInputs& inputs = subject_.inputs(state);
   if (prepared_for_ != subject_.model.id) {

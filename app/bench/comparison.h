@@ -1,5 +1,5 @@
-// Compares solvers on one state: how long they take, and how near the minimum they come. Everything is measured inside
-// one run, from the same state, with the same threads.
+// Compares solvers on one state: how long they take, and how close to the minimum they come. Everything is measured
+// within one run, from the same state and with the same threads.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace supple {
 
-// A solver in a comparison, with its settings.
+// Describes a solver in a comparison, with its settings.
 struct SolverEntry {
   std::string label;
   Method method = Method::quasi_newton;
@@ -21,7 +21,7 @@ struct SolverEntry {
   SystemMatrix matrix = SystemMatrix::constant;  // of quasi-Newton: the paper's
 };
 
-// The result of one solver on one state. Lists go by iteration, the first iterate first.
+// Holds the result of one solver on one state. Lists go by iteration, with the first iterate first.
 struct Outcome {
   std::string label;
   std::vector<double> gained;  // g(y) - g(x_k) [J]
@@ -39,20 +39,21 @@ struct Outcome {
   double used_ms = 0;                    // by all runs
 };
 
-// Is thrown between two runs once a signal asked for an end.
+// This is thrown between two runs when a signal has asked the program to end.
 struct BenchInterrupted {};
 
-// Prepared solvers of one subject; patterns and constant factors are made once, outside of what is measured.
+// Keeps the prepared solvers of one subject. Patterns and constant factors are computed once, outside of what is
+// measured.
 class SolverComparison {
  public:
-  // Both must outlive this object.
+  // Both arguments must outlive this object.
   SolverComparison(Subject& subject, Threads& threads)
       : subject_(subject), lowest_(subject.model), prepared_for_(subject.model.id) {
     workspace_.threads = reference_workspace_.threads = &threads;
   }
 
-  // Runs every solver `repeats` times (at least once) from the state, after one run that is not timed; all take turns.
-  // budget_ms: a solver is not repeated any more once it has used this [ms].
+  // Runs every solver `repeats` times (at least once) from the state, after one run that is not timed. The solvers take
+  // turns. budget_ms: a solver that has used more than this time is not repeated any more [ms].
   std::vector<Outcome> run(const BenchState& state, const std::vector<SolverEntry>& entries, int repeats,
                            double budget_ms = 4000);
 
@@ -77,17 +78,17 @@ class SolverComparison {
   std::uint64_t prepared_for_;  // id of the values of the subject's model
 };
 
-// Equation 12 by iteration: 1 - gained / whole. Empty when the run failed.
+// Evaluates equation 12 for each iteration: 1 - gained / whole. The list is empty when the run failed.
 std::vector<double> errors_of(const Outcome& outcome, double whole);
 
-// Equation 12 at the end; NaN when the run failed.
+// Evaluates equation 12 at the end of the run; NaN when the run failed.
 double last_error(const Outcome& outcome, double whole);
 
-// The first time at which the error is at most `tolerance`; infinity when it never is [ms].
+// Returns the first time at which the error is at most `tolerance`, or infinity when it never is [ms].
 double time_to(const Outcome& outcome, double whole, double tolerance);
 
-// Finds the radius that makes Chebyshev's method best after 30 iterations on a training state, with the delay of
-// Wang 2015.
+// Finds the radius with which Chebyshev's method comes closest to the minimum after 30 iterations on a training state,
+// with the delay of Wang 2015.
 ChebyshevSettings trained_chebyshev(SolverComparison& comparison, const BenchState& training);
 
 }  // namespace supple

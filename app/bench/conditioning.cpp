@@ -15,7 +15,7 @@ namespace {
 
 using Dense = Eigen::MatrixXd;
 
-// The 24 rotations that turn a cube into itself.
+// Returns the 24 rotations that map a cube onto itself.
 std::vector<Mat3> cube_rotations() {
   std::vector<Mat3> rotations;
   std::array<int, 3> axes = {0, 1, 2};
@@ -29,7 +29,7 @@ std::vector<Mat3> cube_rotations() {
   return rotations;
 }
 
-// The body is stretched along x by `stretch` and then turned, both about its middle.
+// Returns a state at rest in which the body is stretched along x by `stretch` and then rotated, both about its middle.
 BenchState released(const Subject& subject, double stretch, const Mat3& rotation) {
   BenchState state{0, start_state(subject.model, subject.body), 0};
   state.before.v.setZero();
@@ -39,7 +39,8 @@ BenchState released(const Subject& subject, double stretch, const Mat3& rotation
   return state;
 }
 
-// Largest over smallest eigenvalue of A^-1 H, and the smallest.
+// Holds the condition number of A^-1 H, which is its largest eigenvalue over its smallest one, and the smallest
+// eigenvalue.
 struct Conditioning {
   double number, smallest;
 };
@@ -51,7 +52,7 @@ Conditioning conditioning(const Dense& a, const Dense& h) {
 
 Dense dense_of(const SparseMatrix& lower) { return Dense(Dense(lower).selfadjointView<Eigen::Lower>()); }
 
-// M/h^2 + L for x, y and z.
+// Returns M/h^2 + L for x, y and z together.
 Dense ours_of(const Model& model) {
   const Dense one = Dense(system_matrix_of(model));
   Dense three = Dense::Zero(3 * model.free, 3 * model.free);

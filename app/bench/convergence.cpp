@@ -8,7 +8,7 @@
 namespace supple {
 namespace {
 
-// The example of all convergence figures: the twisting bar, on the paper's mesh when it is there.
+// Returns the example of all convergence figures: the twisting bar, on the paper's mesh where that is available.
 SubjectChoice twisting_bar(const BenchSetting& setting) {
   const SubjectChoice ours{"twisting-bar", "bar"};
   return with_paper_mesh(setting, ours, "longbar2.mesh").value_or(ours);

@@ -14,7 +14,7 @@
 namespace supple {
 namespace {
 
-// The least of several runs [ms].
+// Returns the least time of several runs [ms].
 template <class Body>
 double least_ms(int repeats, const Body& body) {
   double least = 1e300;
@@ -26,8 +26,8 @@ double least_ms(int repeats, const Body& body) {
   return least;
 }
 
-// Energies and forces of a polynomial material element by element: F, a singular value decomposition, the slopes of
-// mu (s - 1)^4, forces added to vertices. A straightforward program does this; the numbers are of type T.
+// Computes energies and forces of a polynomial material element by element, as a straightforward program would: F, a
+// singular value decomposition, the slopes of mu (s - 1)^4, and forces added to vertices. The numbers are of type T.
 template <class T>
 T plain_evaluation(const std::vector<ElementView>& elements, const Positions& x, double mu, std::vector<T>& force) {
   using Matrix = Eigen::Matrix<T, 3, 3>;

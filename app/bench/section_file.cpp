@@ -12,7 +12,7 @@ namespace {
 using Json = nlohmann::json;
 
 Json numbers(const std::vector<double>& values) {
-  // JSON has no infinities, so these are stored as text.
+  // JSON has no infinities, so they are stored as text.
   Json list = Json::array();
   for (const double v : values) std::isfinite(v) ? list.push_back(v) : list.push_back(std::to_string(v));
   return list;

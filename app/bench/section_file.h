@@ -1,4 +1,4 @@
-// Finished sections of a report, stored so that an interrupted run can be resumed where it stopped.
+// Stores finished sections of a report, so that an interrupted run can be resumed where it stopped.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,8 @@
 
 namespace supple {
 
-// made_with: program, build, machine and options in words; a section made with others is not read back.
+// made_with: describes the program, the build, the machine and the options. A section that was made with others is not
+// read back.
 void write_section(const ReportSection& section, const std::string& made_with, const std::filesystem::path& file);
 std::optional<ReportSection> read_section(const std::filesystem::path& file, const std::string& made_with);
 

@@ -1,5 +1,5 @@
-// The sections of the report page, one function each, and what they share. Each plays or reads back the states that it
-// compares solvers on.
+// Declares the sections of the report page, one function each, and what they share. Each section simulates, or reads
+// back, the states on which it compares solvers.
 #pragma once
 
 #include "app/bench/bench.h"
@@ -49,13 +49,14 @@ constexpr int most_vertices = 4000;  // of subjects that are solved to the end i
 // All bodies of all scenes that ship, by scene.
 std::vector<SubjectChoice> all_subjects();
 
-// Plays or reads back a subject's states before these frames, in the report's folder.
+// Returns the states of a subject before these frames: simulates them, or reads them back from the report's folder.
 std::vector<BenchState> states_of(Subject& subject, const std::vector<int>& frames, const BenchSetting& setting);
 
-// Says on standard error what is measured next.
+// Prints on standard error what is measured next.
 void say_doing(const BenchSetting& setting, const std::string& what);
 
-// The same scene with a mesh of the paper in the body's place; nothing where the paper's meshes are not at hand.
+// Returns the same choice with a mesh of the paper in the body's place, or nothing where the paper's meshes are not
+// available.
 std::optional<SubjectChoice> with_paper_mesh(const BenchSetting& setting, const SubjectChoice& choice,
                                              const std::string& mesh);
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int sweep_frame = 60;
 
-// Adds one point of a sweep: the times of our method and of Newton's to an error.
+// Adds one point of a sweep: the times that our method and Newton's take to reach an error.
 void add_point(ReportTable& table, ReportPlot& plot, const std::string& sweep, double value,
                const SubjectChoice& choice, const BenchSetting& setting) {
   Subject subject(choice);

@@ -24,7 +24,7 @@ Body body_named(std::vector<Body> bodies, const SubjectChoice& choice) {
   throw InputError(choice.scene, fmt::format("there is no body '{}'", choice.body));
 }
 
-// Names a state by all that it depends on: program, scene as resolved, body and frame.
+// Forms the name of a state from all that it depends on: the program, the resolved scene, the body and the frame.
 std::string state_name(const Subject& subject, int frame) {
   std::uint64_t hash = program_identity();
   hash = hash_bytes(subject.resolved.data(), subject.resolved.size(), hash);
@@ -33,7 +33,7 @@ std::string state_name(const Subject& subject, int frame) {
                      frame);
 }
 
-// A state's name says all that it depends on, so its file needs no further identity.
+// The name of a state covers all that it depends on, so its file needs no further identity.
 constexpr const char* snapshot_identity = "{}";
 constexpr const char* snapshot_file = "snapshot";
 

@@ -9,7 +9,7 @@
 namespace supple {
 namespace {
 
-// A row of the paper's table I, and the scene that stands for it here.
+// Describes a row of the paper's table I and the scene that represents it here.
 struct Row {
   std::string model, material, mesh;  // mesh: the paper's file; empty where there is none, and where ours is the same
   SubjectChoice choice;

@@ -19,7 +19,8 @@ namespace {
 
 constexpr std::size_t most_pictures = 240;  // on one sheet
 
-// The last words of each path, as many as tell the paths apart: "mu", or "soft.mu" and "stiff.mu".
+// Returns the last words of each path, as many as are needed to distinguish the paths: "mu", or "soft.mu" and
+// "stiff.mu".
 std::vector<std::string> short_names(const SweepDef& sweep) {
   std::vector<std::string> names;
   for (const PathList& axis : sweep.axes) {
@@ -47,7 +48,7 @@ std::filesystem::path last_picture(const std::filesystem::path& folder) {
   return last;
 }
 
-// The number of columns. In a grid of two or more paths, a row holds the values of the last one, if they fit.
+// Returns the number of columns. In a grid of two or more paths, a row holds the values of the last path, if they fit.
 int sheet_columns(const SweepDef& sweep, std::size_t pictures) {
   const std::size_t last = sweep.axes.back().values.size();
   if (sweep.mode == SweepMode::grid && sweep.axes.size() > 1 && last > 1 && last <= 8) return int(last);
@@ -79,7 +80,7 @@ bool write_sheet(const SweepRequest& request, const std::string& title, const st
   return true;
 }
 
-// The different words that the points have for one thing, as one text.
+// Joins the different texts that the points have in one field.
 std::string distinct(const std::vector<PointResult>& results, std::string PointResult::*thing) {
   std::set<std::string> words;
   for (const PointResult& result : results) words.insert(result.*thing);
@@ -114,7 +115,7 @@ ReportPage page_of(const SweepRequest& request, const std::string& title, const 
   return page;
 }
 
-// Says which points are not done, and how to run them.
+// Prints which points are not done and how to run them.
 void say_missing(const std::vector<PointResult>& results) {
   constexpr std::size_t most_lines = 20;
   std::size_t missing = 0;

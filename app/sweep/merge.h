@@ -5,9 +5,9 @@
 
 namespace supple {
 
-// Writes sweep.csv (what the points gave, which is the same on every run), times.csv (what the clock said),
-// contact-sheet.png where points have pictures, and index.html; tells what is not done and how to repeat it. Returns
-// the exit status: 1 unless every point is done. Throws RunError (the disk).
+// Writes sweep.csv (the results of the points, which are the same on every run), times.csv (the measured times),
+// contact-sheet.png where points have pictures, and index.html. Prints which points are not done and how to repeat
+// them. Returns the exit status: 1 unless every point is done. Throws RunError when a file cannot be written.
 int merge_points(const SweepRequest& request);
 
 }  // namespace supple

@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Reads a JSON object; null where the file is not there or not whole.
+// Reads a JSON object; null where the file is missing or incomplete.
 Json read_json(const std::filesystem::path& path) {
   std::ifstream file(path);
   if (!file) return nullptr;
@@ -27,7 +27,8 @@ Json read_json(const std::filesystem::path& path) {
   return json.is_object() ? json : Json(nullptr);
 }
 
-// The program and the scene that a record was made with; empty hash where the point's scene cannot be read.
+// Returns the program and the scene that a record is made with; the scene's hash is empty where the point's scene
+// cannot be read.
 Json made_with(const SweepRequest& request, std::size_t point) {
   std::string scene;
   try {
@@ -77,13 +78,13 @@ FilmPlan film_of(const SweepRequest& request, std::size_t point) {
   return film;
 }
 
-// Why a run failed, from the "failed: ..." of its run.json; empty where it did not.
+// Returns why a run failed, from the "failed: ..." of its run.json; empty where it did not fail.
 std::string failure_in(const Json& run) {
   const std::string ended = run.is_object() ? run.value("ended", "") : "";
   return ended.starts_with("failed: ") ? ended.substr(8) : "";
 }
 
-// In what a record's sweep differs from this one; "" where it is the same.
+// Describes how the sweep of a record differs from this one; empty where it is the same.
 std::string other_sweep(const SweepRequest& request, const Json& record) {
   const Json sweep = record.is_object() ? record.value("sweep", Json()) : Json();
   if (!sweep.is_object()) return "";
@@ -102,7 +103,7 @@ void check_folder(const SweepRequest& request) {
   std::error_code error;
   if (!std::filesystem::exists(request.out, error)) return;
   if (!std::filesystem::is_directory(request.out, error)) throw InputError(option, "exists and is not a folder");
-  // Asked in this order, since other points may start at this moment, and they make points/ first.
+  // The folder is examined in this order because other points may start at this moment, and they create points/ first.
   const bool empty = std::filesystem::is_empty(request.out, error);
   const bool of_a_sweep = std::filesystem::is_directory(request.out / "points", error) &&
                           !std::filesystem::exists(request.out / "run.json", error);

@@ -1,6 +1,6 @@
-// A sweep as it was asked for, and its points: where each runs, and what is known of those that ran. points/0007/ holds
-// the run of point 7. Its point.json says of which sweep it is, with what it was made, how it ended, and how long it
-// took.
+// Describes a sweep as it was asked for and its points: where each one runs, and what is known of those that have run.
+// points/0007/ holds the run of point 7. Its point.json records to which sweep it belongs, with what it was made, how
+// it ended, and how long it took.
 #pragma once
 
 #include <filesystem>
@@ -31,7 +31,7 @@ struct SweepRequest {
 
 enum class PointEnd { done, failed, interrupted, outdated, unfinished, not_run };
 
-// A point and all that is known of it.
+// Holds all that is known of a point.
 struct PointOutcome {
   PointEnd end = PointEnd::not_run;
   std::string exit_status;  // empty while unknown
@@ -41,23 +41,23 @@ struct PointOutcome {
 
 std::string end_text(PointEnd end);
 
-// Throws InputError when --out is no folder, when it holds files that no sweep left there, and when it holds points of
-// another sweep: one of another scene, of other paths, or of more points. Other values or another text of the scene
-// only make its points outdated.
+// Throws InputError when --out is not a folder, when it holds files that do not come from a sweep, and when it holds
+// points of another sweep: one of another scene, of other paths, or of more points. A changed value or a changed text
+// of the scene only makes the points outdated.
 void check_folder(const SweepRequest& request);
 
-// Runs one point in this process and records how it ended; returns the exit status. command: as the program was called.
-// Throws what the run throws, after recording it.
+// Runs one point in this process and records how it ended; returns the exit status. command: the command line with
+// which the program was called. Throws what the run throws, after recording it.
 int run_point(const SweepRequest& request, std::size_t point, const std::vector<std::string>& command);
 
-// Records that a point failed whose process ended without doing so.
+// Records the failure of a point whose process ended without recording it.
 void record_failure(const SweepRequest& request, std::size_t point, int exit_status, const std::string& message);
 
-// Tells how a point ended, from what its folder holds. It counts as done if its run.json says so, and program and scene
-// are the same.
+// Returns how a point ended, judged by the content of its folder. It counts as done if its run.json says so and if
+// program and scene are the same.
 PointOutcome outcome_of(const SweepRequest& request, std::size_t point);
 
-// Whether a done point also has the pictures and errors that are asked for.
+// Tells whether a done point also has the pictures and errors that are asked for.
 bool has_what_is_asked(const SweepRequest& request, std::size_t point);
 
 }  // namespace supple

@@ -21,7 +21,7 @@
 namespace supple {
 namespace {
 
-// The command that runs one point, as somebody would type it.
+// Returns the command that runs one point, as a user would type it.
 std::vector<std::string> command_of(const SweepRequest& request, std::size_t point) {
   std::vector<std::string> words = {std::filesystem::read_symlink("/proc/self/exe").string(),
                                     "sweep",
@@ -43,7 +43,7 @@ std::vector<std::string> command_of(const SweepRequest& request, std::size_t poi
   return words;
 }
 
-// Hands out points to threads that wait for a process each.
+// Hands out points to threads, each of which waits for one process at a time.
 class PointQueue {
  public:
   PointQueue(const SweepRequest& request, std::vector<std::size_t> points)

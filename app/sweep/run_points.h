@@ -5,8 +5,8 @@
 
 namespace supple {
 
-// Runs what is not done (again: everything), `jobs` at a time (0: as many as there are cores for), then merges.
-// Returns the exit status: 1 when a point failed, 130 when interrupted.
+// Runs the points that are not done (with `again`, all of them), `jobs` at a time (0: as many as there are cores for),
+// and then merges. Returns the exit status: 1 when a point failed, 130 when interrupted.
 int run_points(const SweepRequest& request, int jobs, bool again);
 
 }  // namespace supple

@@ -14,7 +14,7 @@
 namespace supple {
 namespace {
 
-// The rows of one body in one point, in the order of the frames.
+// Holds the rows of one body in one point, in the order of the frames.
 using BodyRows = std::vector<const BodyRow*>;
 
 struct Measure {
@@ -80,10 +80,10 @@ std::vector<std::string> body_names(const std::vector<PointResult>& results) {
   return names;
 }
 
-// A number with all its digits; "" where there is none.
+// Writes a number with all its digits; empty where there is none.
 std::string exact_text(const std::optional<double>& value) { return value ? fmt::format("{}", *value) : ""; }
 
-// Adds a column. A name that a path of the sweep has already gets one more word.
+// Adds a column. A name that a path of the sweep already has gets one more word.
 void add_column(ReportTable& table, std::string name, const std::vector<std::string>& cells) {
   while (std::ranges::find(table.columns, name) != table.columns.end()) name += " (result)";
   table.columns.push_back(std::move(name));
@@ -173,7 +173,7 @@ ReportTable sweep_table(const SweepDef& sweep, const std::vector<PointResult>& r
   add_column(table, "exit_status", cells_of(results, [](const PointResult& r) { return r.outcome.exit_status; }));
   add_column(table, "message", cells_of(results, [](const PointResult& r) { return r.outcome.message; }));
   add_column(table, "frames_done", cells_of(results, [](const PointResult& r) { return fmt::format("{}", r.frames); }));
-  // "0x" keeps programs from taking a hash of digits for a number.
+  // The prefix "0x" keeps other programs from reading a hash that has only digits as a number.
   add_column(table, "state_hash", cells_of(results, [](const PointResult& r) {
                return r.frames == 0 ? "" : "0x" + hash_text_form(r.state_hash);
              }));

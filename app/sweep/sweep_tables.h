@@ -1,4 +1,4 @@
-// The points of a sweep as tables: what they gave, and what the clock said.
+// Makes tables of the points of a sweep: their results and their times.
 #pragma once
 
 #include "app/sweep/point.h"
@@ -7,7 +7,7 @@
 
 namespace supple {
 
-// The results of a point in short: it may have many rows.
+// Summarises the results of a point, which may have many rows.
 struct PointResult {
   PointOutcome outcome;
   std::size_t frames = 0;        // that are whole; 0 where there are none of this scene and program
@@ -23,11 +23,11 @@ struct PointResult {
 
 std::vector<PointResult> read_results(const SweepRequest& request);
 
-// A table with a row a point: its values, how it ended, and numbers with all digits, which do not depend on the machine
-// and on the clock.
+// Makes a table with one row for each point: its values, how it ended, and results with all digits, which do not depend
+// on the machine or on the clock.
 ReportTable sweep_table(const SweepDef& sweep, const std::vector<PointResult>& results);
 
-// A table with a row a point: its times, in milliseconds and seconds.
+// Makes a table with one row for each point: its times, in milliseconds and seconds.
 ReportTable times_table(const std::vector<PointResult>& results);
 
 }  // namespace supple

@@ -1,5 +1,5 @@
-// The words that spell the values of an enum in files, on the command line and in reports. Each enum has one table,
-// beside its declaration, and readers, writers, help and documentation all use it.
+// Holds the words that spell the values of an enum in files, on the command line and in reports. Each enum has one
+// table, beside its declaration, and readers, writers, help and documentation all use it.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ concept Named = requires {
   Names<E>::table.size();
 };
 
-// Whether the table lists the values 0, 1, 2, ... in this order, so that a value is its own index.
+// Tells whether the table lists the values 0, 1, 2, ... in this order, so that a value is its own index.
 template <Named E>
 constexpr bool in_order_of_values() {
   for (std::size_t i = 0; i < Names<E>::table.size(); ++i) {
@@ -45,7 +45,7 @@ constexpr std::string_view name_of(E value) {
   return Names<E>::table[static_cast<std::size_t>(value)].text;
 }
 
-// Nothing when no value has this name.
+// Returns nothing when no value has this name.
 template <Named E>
 constexpr std::optional<E> value_named(std::string_view text) {
   for (const Name<E>& name : Names<E>::table) {

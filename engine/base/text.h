@@ -1,4 +1,4 @@
-// Small functions about words: the known word that is nearest to a mistyped one, and times and sizes as people read
+// Offers small functions on words: the known word that is nearest to a mistyped one, and times and sizes as people read
 // them.
 #pragma once
 
@@ -26,7 +26,7 @@ std::string duration_text(double seconds);
 std::string bytes_text(std::uintmax_t bytes);
 
 // Puts the text on one line, with control characters spelt out ("\n", "\x1b"). It serves titles, names and messages
-// that quote a file: a terminal must not execute what stands in it.
+// that quote a file: a terminal must not execute control characters from a file.
 std::string printable(std::string_view text);
 
 // Writes the word so that a shell reads it back, quoted where it has to be.

@@ -1,5 +1,5 @@
 // Defines the vocabulary that every folder shares: arrays of points and of indices. Nothing here knows what a point is
-// for. Every unit reads this header, so nothing in it computes with Eigen: each unit would compile that anew.
+// for. Every unit reads this header, so nothing in it computes with Eigen: each unit would have to compile that again.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,7 +18,7 @@ using Triangles =
     Eigen::Matrix<std::int32_t, Eigen::Dynamic, 3, Eigen::RowMajor>;  // vertex indices, anticlockwise from outside
 using Tetrahedra = Eigen::Matrix<std::int32_t, Eigen::Dynamic, 4, Eigen::RowMajor>;  // det[x1-x0, x2-x0, x3-x0] > 0
 
-// An axis-aligned box; it is empty while any lower bound exceeds its upper one.
+// Describes an axis-aligned box; it is empty while any lower bound exceeds its upper one.
 struct Bounds {
   Vec3 lower = Vec3(1e300, 1e300, 1e300);
   Vec3 upper = Vec3(-1e300, -1e300, -1e300);

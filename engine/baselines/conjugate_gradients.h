@@ -1,5 +1,5 @@
-// Preconditioned conjugate gradients from zero (Saad 2003, "Iterative methods for sparse linear systems", algorithm
-// 9.1).
+// Implements preconditioned conjugate gradients from zero (Saad 2003, "Iterative methods for sparse linear systems",
+// algorithm 9.1).
 #pragma once
 
 #include <Eigen/Core>
@@ -10,9 +10,10 @@ struct CgScratch {
   Eigen::VectorXd residual, precond, search, product;
 };
 
-// Brings x near H^-1 b by at most `iterations`, fewer once |r| <= tolerance |b|. Where p^T H p <= 0 is met, stops with
-// the x so far, or with the preconditioned b when that is nothing yet (Gast et al. 2015, "Optimization integrator for
-// large time steps", section 4). multiply(v, result), precondition(r, z) on Eigen vectors.
+// Brings x close to H^-1 b in at most `iterations` iterations, fewer once |r| <= tolerance |b|. When it meets p^T H p
+// <= 0, it stops with the present x, or with the preconditioned b when there is no x yet (Gast et al. 2015,
+// "Optimization integrator for large time steps", section 4). multiply(v, result) and precondition(r, z) work on Eigen
+// vectors.
 template <class Multiply, class Precondition>
 int conjugate_gradients(const Eigen::VectorXd& b, Eigen::VectorXd& x, int iterations, double tolerance,
                         const Multiply& multiply, const Precondition& precondition, CgScratch& s) {

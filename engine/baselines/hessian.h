@@ -1,5 +1,6 @@
-// The Hessian of g over the free vertices, 3n x 3n, of which Newton's method and several initial Hessians are made; and
-// A = M/h^2 + L as a matrix, for those that solve it otherwise. Patterns and places are found once a model.
+// Assembles the Hessian of g over the free vertices, 3n x 3n, which Newton's method and several initial Hessians use;
+// and A = M/h^2 + L as a matrix, for methods that solve it in another way. Patterns and places are found once for each
+// model.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -11,7 +12,7 @@ namespace supple {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-// Element matrices: the packed lower triangle of each lane (element_kernels.h), chunk after chunk.
+// Holds the element matrices, chunk after chunk: for each lane the packed lower triangle (element_kernels.h).
 struct ElementMatrices {
   AlignedVector<double> numbers;
   std::vector<std::size_t> first;  // by chunk
@@ -24,16 +25,17 @@ class HessianMatrix {
  public:
   explicit HessianMatrix(const Model& model);
 
-  // Lower triangle, entries 3 i + c.
+  // Returns the lower triangle, entries 3 i + c.
   const SparseMatrix& matrix() const { return matrix_; }
 
-  // Sums up: w M/h^2, handles' springs and damping always, element matrices as given, and the contacts in force at x,
-  // friction with the stiffness of its secant.
-  // `stick_length`: friction is whole above this slip [m].
+  // Sums up w M/h^2, the springs of handles and damping in every case, the element matrices as given, and the contacts
+  // in force at x, with friction by the stiffness of its secant. `stick_length`: above this slip, friction has its full
+  // strength [m].
   void assemble(const Model& model, const ElementMatrices& elements, const std::vector<Contact>& contacts,
                 double stick_length, const Positions& x);
 
-  // d^2 g at workspace.current with the contacts found there; with `project` each element's is projected first.
+  // Assembles d^2 g at workspace.current with the contacts found there; with `project` each element's Hessian is
+  // projected first.
   void assemble(const Model& model, Workspace& workspace, bool project);
 
   // result = H v, both of 3 n_free numbers.
@@ -57,8 +59,8 @@ class HessianMatrix {
   ElementMatrices scratch_;
 };
 
-// Factors a sum of projected matrices, which is positive definite but for round-off; where that shows, a shift of its
-// size mends it. Throws RunError when none does.
+// Factors a sum of projected matrices, which is positive definite up to round-off. Where round-off makes it indefinite,
+// a shift of that size corrects it. Throws RunError when no such shift is enough.
 void factorize_projected(HessianMatrix& hessian, ChangingFactor& factor);
 
 // Returns A over the free vertices, both triangles [N/m].

@@ -1,4 +1,5 @@
-// Initial Hessians of L-BFGS that the paper compares M/h^2 + L with (Liu et al. 2017, figures 8, 16 and 17).
+// Defines the initial Hessians of L-BFGS with which the paper compares M/h^2 + L (Liu et al. 2017, figures 8, 16 and
+// 17).
 #pragma once
 
 #include <Eigen/IterativeLinearSolvers>
@@ -10,7 +11,8 @@
 
 namespace supple {
 
-// (t.t / s.t) I of the last pair (equation 13 is the scale of the inverse), and M/h^2 before there is one.
+// Applies the inverse of (t.t / s.t) I of the last pair (equation 13 is the scale of the inverse), and of M/h^2 before
+// there is a pair.
 class IdentityInverse final : public InitialInverse {
  public:
   void begin(const Model&, const StepInputs&, Workspace&) override { scale_ = 0; }
@@ -21,7 +23,7 @@ class IdentityInverse final : public InitialInverse {
   double scale_ = 0;  // [m/N]; 0: no pair yet
 };
 
-// M/h^2 + the Hessian of the rest pose, factored once.
+// Applies the inverse of M/h^2 + the Hessian of the rest pose, which is factored once.
 class RestInverse : public InitialInverse {
  public:
   explicit RestInverse(const Model& model);
@@ -31,8 +33,8 @@ class RestInverse : public InitialInverse {
   ChangingFactor factor_;
 };
 
-// The same turned at each vertex by the rotation of the elements around it, as it is when a step starts (Mueller,
-// Dorsey, McMillan, Jagnow, Cutler 2002, "Stable real-time deformations"): z = R H^-1 R^T r.
+// Applies the same inverse, rotated at each vertex by the rotation of the elements around it at the start of a step
+// (Mueller, Dorsey, McMillan, Jagnow, Cutler 2002, "Stable real-time deformations"): z = R H^-1 R^T r.
 class WarpedInverse final : public RestInverse {
  public:
   using RestInverse::RestInverse;
@@ -43,7 +45,7 @@ class WarpedInverse final : public RestInverse {
   std::vector<Mat3> rotation_;  // by free vertex
 };
 
-// The projected Hessian at the first iterate of each step, by Cholesky.
+// Applies the inverse of the projected Hessian at the first iterate of each step, by Cholesky.
 class FrameInverse final : public InitialInverse {
  public:
   explicit FrameInverse(const Model& model);
@@ -55,7 +57,8 @@ class FrameInverse final : public InitialInverse {
   ChangingFactor factor_;
 };
 
-// The same by conjugate gradients with an incomplete Cholesky factor of the rest pose's Hessian or of M/h^2 + L.
+// Applies the same inverse by conjugate gradients with an incomplete Cholesky factor of the rest pose's Hessian or of
+// M/h^2 + L.
 class FrameCgInverse final : public InitialInverse {
  public:
   FrameCgInverse(const Model& model, Preconditioner preconditioner, int iterations);
@@ -72,7 +75,7 @@ class FrameCgInverse final : public InitialInverse {
   Eigen::VectorXd right_, solution_;
 };
 
-// M/h^2 + L by conjugate gradients with a Jacobi preconditioner.
+// Applies the inverse of M/h^2 + L by conjugate gradients with a Jacobi preconditioner.
 class SystemCgInverse final : public InitialInverse {
  public:
   SystemCgInverse(const Model& model, int iterations);
@@ -86,9 +89,9 @@ class SystemCgInverse final : public InitialInverse {
   Eigen::VectorXd right_, solution_;
 };
 
-// Sum R_e K_e R_e^T of linear corotated elements, renewed every other step, and turned in between at each vertex by how
-// much the elements around it have turned since (Hecht, Lee, Shewchuk, O'Brien 2012, "Updated sparse Cholesky factors
-// for corotational elastodynamics", with all of the mesh updated).
+// Applies the inverse of Sum R_e K_e R_e^T of linear corotated elements, which is renewed every other step. In between
+// it is rotated at each vertex by the rotation of the elements around it since then (Hecht, Lee, Shewchuk, O'Brien
+// 2012, "Updated sparse Cholesky factors for corotational elastodynamics", with all of the mesh updated).
 class HechtInverse final : public InitialInverse {
  public:
   explicit HechtInverse(const Model& model);
@@ -103,8 +106,9 @@ class HechtInverse final : public InitialInverse {
   long steps_ = 0;
 };
 
-// M/h^2 + L with a spring of 2 k_c at each touching vertex, factored anew when the set changes (the second way of
-// Bouaziz et al. 2014 that section 4.3 speaks of). apply() throws RunError where that matrix is not positive definite.
+// Applies the inverse of M/h^2 + L with a spring of 2 k_c at each touching vertex. It is factored again when the set of
+// touching vertices changes (the second way of Bouaziz et al. 2014, which section 4.3 of the paper discusses). apply()
+// throws RunError where that matrix is not positive definite.
 class ContactMatrixInverse final : public InitialInverse {
  public:
   explicit ContactMatrixInverse(const Model& model);

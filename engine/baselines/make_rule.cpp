@@ -28,8 +28,8 @@ std::unique_ptr<InitialInverse> initial_inverse(const Method& method, const Mode
   return nullptr;
 }
 
-// L-BFGS together with the initial Hessian that it starts from. Without pairs (settings_of) the direction is that
-// Hessian's alone.
+// Combines L-BFGS with the initial Hessian from which it starts. Without pairs (settings_of) the direction follows from
+// that Hessian alone.
 class LbfgsFrom final : public SearchRule {
  public:
   explicit LbfgsFrom(std::unique_ptr<InitialInverse> inverse) : inverse_(std::move(inverse)), rule_(*inverse_) {}
@@ -49,8 +49,9 @@ class LbfgsFrom final : public SearchRule {
   LbfgsRule rule_;
 };
 
-// Chebyshev semi-iterative acceleration (Wang 2015, "A Chebyshev semi-iterative approach for accelerating projective
-// and position-based dynamics"; Liu et al. 2017, algorithm 3). After an ascent it starts anew.
+// Implements Chebyshev semi-iterative acceleration (Wang 2015, "A Chebyshev semi-iterative approach for accelerating
+// projective and position-based dynamics"; Liu et al. 2017, algorithm 3). After an ascent the acceleration starts
+// again.
 class ChebyshevRule final : public SearchRule {
  public:
   void begin(const Model&, const StepInputs&, Workspace&) override { iteration_ = 0; }

@@ -1,4 +1,5 @@
-// The solvers that the paper compares with, built from the parts of a Method: each is a rule for search directions.
+// Builds the solvers with which the paper compares its method from the parts of a Method. Each of them is a rule for
+// search directions.
 #pragma once
 
 #include <memory>
@@ -10,14 +11,14 @@
 namespace supple {
 
 // Prepares all that does not change from step to step (patterns, rest pose, factors). Throws InputError when the parts
-// do not go together (problem_of).
+// cannot be combined (problem_of).
 std::unique_ptr<SearchRule> make_rule(const Method& method, const Model& model);
 
-// Settings that belong to a method whatever a scene says: only L-BFGS has a history, and Hecht's method has no line
-// search.
+// Returns the settings with those values that the method fixes whatever a scene says: only L-BFGS has a history, and
+// Hecht's method has no line search.
 SolverSettings settings_of(const Method& method, SolverSettings settings);
 
-// The paper's method and all that the paper compares it with.
+// Returns the paper's method and all methods with which the paper compares it.
 std::vector<Method> compared_methods();
 
 }  // namespace supple

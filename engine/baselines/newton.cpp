@@ -21,7 +21,8 @@ double NewtonRule::direction(const Model& model, const StepInputs&, Workspace& w
   if (definite_ == Definite::projected) {
     factorize_projected(hessian_, factor_);
   } else {
-    // Nocedal and Wright 2006, algorithm 3.3; the next iteration tries half of what this one needed.
+    // The loop follows Nocedal and Wright 2006, algorithm 3.3; the next iteration first tries half of the shift that
+    // this one needed.
     const double least = 1e-3 * hessian_.matrix().diagonal().cwiseAbs().mean();
     double shift = shift_ / 2 < least ? 0 : shift_ / 2, added = 0;
     for (int tries = 0;; ++tries) {
@@ -47,7 +48,7 @@ double NewtonCgRule::direction(const Model& model, const StepInputs&, Workspace&
   const Eigen::Index count = 3 * model.free;
   right_ = -Eigen::Map<const Eigen::VectorXd>(w.current.gradient.data(), count);
   diagonal_ = hessian_.matrix().diagonal();
-  // An unprojected diagonal may be negative; its size is what scales.
+  // An unprojected diagonal may have negative entries; only their magnitudes serve as scale.
   diagonal_ = diagonal_.cwiseAbs().cwiseMax(1e-12 * diagonal_.cwiseAbs().maxCoeff());
   conjugate_gradients(
       right_, solution_, iterations_, tolerance_,

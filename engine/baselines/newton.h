@@ -1,4 +1,4 @@
-// Newton's method and its relatives, which evaluate the Hessian anew in each iteration.
+// Implements Newton's method and its relatives, which evaluate the Hessian again in each iteration.
 #pragma once
 
 #include "baselines/conjugate_gradients.h"
@@ -12,7 +12,7 @@ enum class Definite {
   shifted,    // a multiple of the identity added until Cholesky succeeds (Martin et al. 2011)
 };
 
-// By supernodal Cholesky; the pattern is analysed once.
+// Solves by supernodal Cholesky; the pattern is analysed once.
 class NewtonRule final : public SearchRule {
  public:
   NewtonRule(const Model& model, Definite definite);
@@ -26,7 +26,8 @@ class NewtonRule final : public SearchRule {
   double shift_ = 0;
 };
 
-// Solves by conjugate gradients with a Jacobi preconditioner; without projection they stop at indefiniteness.
+// Solves by conjugate gradients with a Jacobi preconditioner. Without projection they stop where they meet
+// indefiniteness.
 class NewtonCgRule final : public SearchRule {
  public:
   NewtonCgRule(const Model& model, bool project, int iterations, double tolerance);

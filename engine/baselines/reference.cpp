@@ -11,8 +11,8 @@ constexpr int newton_iterations = 100;
 constexpr int first_iterations = 300;  // of L-BFGS before it: cheap, and near a minimum in contact often all it takes
 constexpr int check_iterations = 300;  // of L-BFGS after it
 constexpr int slow_iterations = 5000;  // of L-BFGS where Newton's line search gives up (a crease of the contact set)
-// A direction's slope bounds what it can still gain to within a small factor; this is far below the digits that a
-// report shows.
+// The slope of a direction bounds what it can still gain, to within a small factor. This share is far below the digits
+// that a report shows.
 constexpr double digits = 1e-12;
 
 StepInputs thorough(const StepInputs& inputs, int iterations, int history) {
@@ -49,7 +49,7 @@ double contact_energy_at(const Model& model, const StepInputs& inputs, const Pos
 double gained(const Model& model, const StepInputs& inputs, const State& before, const Positions& x, Workspace& w) {
   w.prepare(model, inputs.solver);
   begin_step(model, inputs, before, w);
-  // Summed as a difference; y with its handles at their targets, whatever the solver started from.
+  // The gain is summed as a difference. The handles of y are at their targets, whatever the solver started from.
   const double contacts_at_start = contact_energy_at(model, inputs, w.current.x, w);
   evaluate(model, w, w.current, Wanted::value);
   w.trial.x.topRows(model.free) = x.topRows(model.free);

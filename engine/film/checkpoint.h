@@ -1,4 +1,4 @@
-// A film after some of its frames: all that it takes to continue as if it had never stopped.
+// Holds a film after some of its frames: all that is needed to continue as if it had never stopped.
 #pragma once
 
 #include <filesystem>
@@ -14,10 +14,11 @@ struct Checkpoint {
   std::vector<State> bodies;
 };
 
-// As a file's content. identity: JSON of all that must be the same for the film to be resumed.
+// Returns the content of a checkpoint's file. identity: JSON of all that must be the same for the film to be resumed.
 std::string checkpoint_bytes(const Checkpoint& checkpoint, const std::string& identity);
 
-// Throws InputError: there is no such file, it is damaged, or it has another identity, with the differences named.
+// Throws InputError when there is no such file, when it is damaged, or when it has another identity; the message then
+// lists the differences.
 Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string& identity);
 
 }  // namespace supple

@@ -20,7 +20,7 @@ struct Size {
   int width = 0, height = 0;
 };
 
-// Every pixel of the result is the average of those that it covers.
+// Shrinks an image: every pixel of the result is the average of the pixels that it covers.
 PngImage shrunk(const PngImage& image, Size size) {
   PngImage small{size.width, size.height, std::vector<std::uint8_t>(std::size_t(size.width) * size.height * 3)};
   const double sx = double(image.width) / size.width, sy = double(image.height) / size.height;
@@ -90,7 +90,7 @@ CaptionBitmap bitmap_of(const Sheet& sheet, const std::string& words, int pixels
   return sheet.font.empty() || words.empty() ? CaptionBitmap{} : draw_caption(sheet.font, words, pixels);
 }
 
-// The words as far as they fit, with "…" in the place of the rest.
+// Draws as many of the words as fit, and "…" in the place of the rest.
 CaptionBitmap fitted(const Sheet& sheet, const std::string& words, int pixels, int width) {
   CaptionBitmap bitmap = bitmap_of(sheet, words, pixels);
   for (std::string rest = words; bitmap.width > width && !rest.empty();) {
@@ -114,7 +114,7 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-// The lines of all captions: one line each where that fits for all, otherwise a line for each word.
+// Returns the lines of all captions: one line each where that fits for all, otherwise a line for each word.
 std::vector<std::vector<std::string>> caption_lines(const Sheet& sheet, int width) {
   std::vector<std::vector<std::string>> lines;
   bool one_line = true;
@@ -127,7 +127,7 @@ std::vector<std::vector<std::string>> caption_lines(const Sheet& sheet, int widt
   return lines;
 }
 
-// The size that all pictures are fitted into: the first one's shape, no wider than the sheet has room for.
+// Returns the size that all pictures are fitted into: the first picture's shape, no wider than the sheet has room for.
 Size picture_size(const Sheet& sheet, const std::vector<std::optional<PngImage>>& images) {
   const int room = std::clamp(widest_sheet / sheet.columns, narrowest_picture, widest_picture);
   for (const auto& image : images) {

@@ -1,4 +1,4 @@
-// Many small pictures on one sheet, with words below each.
+// Composes many small pictures on one sheet, with a caption below each.
 #pragma once
 
 #include <filesystem>
@@ -23,7 +23,8 @@ struct Sheet {
   std::string font;  // a file; empty: no words
 };
 
-// Pictures keep their shape and are made smaller, never larger. Throws InputError where a picture cannot be read.
+// Composes the sheet. Pictures keep their shape and are made smaller, never larger. Throws InputError where a picture
+// cannot be read.
 PngImage compose(const Sheet& sheet);
 
 }  // namespace supple

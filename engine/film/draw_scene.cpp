@@ -17,7 +17,7 @@ Vec3 collider_color(const ColliderDef& def) {
   return def.color.value_or(painted ? def.shape.color : Vec3(0.56, 0.64, 0.71));
 }
 
-// The part of a drawn mesh that follows from its skin, for bodies and colliders alike.
+// Makes the part of a drawn mesh that follows from its skin, for bodies and colliders alike.
 DrawMesh mesh_of(const Skin& skin, const std::vector<PaintLayer>& layers) {
   DrawMesh mesh;
   mesh.triangles.assign(skin.rest.triangles.data(), skin.rest.triangles.data() + skin.rest.triangles.size());
@@ -98,7 +98,7 @@ Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const s
 
 namespace {
 
-// The edge of a pixel where a camera sees the body at rest from nearest [m].
+// Returns the edge of a pixel at the point of the body at rest that is nearest to the camera [m].
 double pixel_on(const Bounds& body, const Camera& camera, int height) {
   const double nearest = std::max((camera.eye - body.center()).norm() - 0.5 * body.diagonal(), 0.1 * body.diagonal());
   return 2 * std::tan(camera.fov_deg * std::numbers::pi / 360) * nearest / height;
@@ -112,8 +112,8 @@ double mean_edge(const TetMesh& mesh) {
 }
 
 void fit_to_pixels(DrawnBody& drawn, const TetMesh& mesh, double pixel) {
-  // The surface bends from element to element, so its triangles become no longer than two of them. With
-  // 0.75 pixels of error, dents were seen in enlarged pictures.
+  // The surface bends from element to element, so the triangles that are drawn may be no longer than two elements. With
+  // an error of 0.75 pixels, dents were visible in enlarged pictures.
   drawn.skin.rest.triangles = simplified(drawn.skin, 0.4 * pixel, 2 * mean_edge(mesh), drawn.layers);
   const std::vector<std::int32_t> kept = remove_unused_vertices(drawn.skin);
   Embedding& embedding = drawn.embedding;

@@ -8,22 +8,22 @@
 
 namespace supple {
 
-// The skin of each collider; empty where nothing of it is drawn.
+// Makes the skin of each collider; it is empty where nothing of the collider is drawn.
 std::vector<Skin> collider_skins(const std::vector<Obstacle>& obstacles, const std::vector<Body>& bodies);
 Bounds bounds_at_rest(const std::vector<Body>& bodies);
 
-// The mesh that is drawn of a collider; empty where nothing is.
+// Makes the mesh that is drawn for a collider; it is empty where nothing is drawn.
 DrawMesh collider_mesh(const Obstacle& obstacle, const Skin& skin);
 
-// The stage of a film: first bodies, then colliders.
+// Builds the stage of a film: first the bodies, then the colliders.
 Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const std::vector<DrawnBody>& drawn,
                  const std::vector<Obstacle>& obstacles, const std::vector<Skin>& skins, const std::string& font);
 
-// Adds the colliders' positions at a time to a list that has the bodies'.
+// Adds the positions of the colliders at a time to a list that already holds those of the bodies.
 void add_colliders(const std::vector<Obstacle>& obstacles, const std::vector<Skin>& skins, double time, DrawList& list);
 
-// Takes away triangles of skins that no camera could show in a picture of this height [pixels]. Skins that are a mesh's
-// own surface are left as they are.
+// Removes the triangles of skins that no camera could show in a picture of this height [pixels]. Skins that are a
+// mesh's own surface are left as they are.
 void fit_to_cameras(std::vector<DrawnBody>& drawn, const std::vector<Body>& bodies, const std::vector<Camera>& cameras,
                     int height);
 

@@ -38,7 +38,7 @@ void DrawnFilm::follow(const std::vector<TimedChange>& changes, const CollisionS
                        const std::vector<Body>& bodies) {
   for (std::size_t c = 0; c < set.obstacles.size(); ++c) {
     const std::string& name = set.obstacles[c].def.name;
-    // The square that is drawn for a half space depends on where it is.
+    // The square that is drawn for a half space depends on the position of the half space.
     const bool moved = is_half_space(set.obstacles[c]) &&
                        std::ranges::any_of(changes, [&name](const TimedChange& one) { return one.object == name; });
     if (!moved && !cost_for(name, changes).surface) continue;

@@ -1,4 +1,5 @@
-// The drawn part of a film: skins of bodies and colliders, made as the film starts, and the draw list of each frame.
+// Holds the drawn part of a film: the skins of bodies and colliders, which are made when the film starts, and the draw
+// list of each frame.
 #pragma once
 
 #include <string>
@@ -17,11 +18,11 @@ class DrawnFilm {
 
   const Stage& stage() const { return stage_; }
 
-  // Makes the skins of colliders again whose shape these changes of a replay have changed.
+  // Makes the skins of colliders again when these changes of a replay have changed their shapes.
   void follow(const std::vector<TimedChange>& changes, const CollisionSet& set, const std::vector<Body>& bodies);
 
-  // Makes a frame's list: positions, and all that has changed since the last list. motion: by body, the positions of
-  // its mesh as motion/ has them [m]. time: the frame's end [s].
+  // Makes the draw list of a frame: positions, and all that has changed since the last list. motion: for each body, the
+  // positions of its mesh as motion/ holds them [m]. time: the end of the frame [s].
   DrawList list(const SceneDef& scene, const std::vector<const Positions*>& motion, const CollisionSet& set,
                 double time, Threads& threads);
 

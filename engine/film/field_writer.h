@@ -1,5 +1,5 @@
-// A body's fields at chosen frames, for ParaView: fields/BODY-NNNNNN.vtu and the collection fields/BODY.pvd over them.
-// docs/exchange.md has the fields.
+// Writes a body's fields at chosen frames, for ParaView: fields/BODY-NNNNNN.vtu and the collection fields/BODY.pvd over
+// them. docs/exchange.md describes the fields.
 #pragma once
 
 #include "output/run_folder.h"
@@ -11,12 +11,12 @@ namespace supple {
 
 class FieldWriter {
  public:
-  // Makes the folder; throws RunError when it cannot. All that is passed must outlive the writer.
+  // Creates the folder; throws RunError when that fails. All that is passed must outlive the writer.
   FieldWriter(const Body& body, const Model& model, const RunFolder& folder, double fps);
 
-  // Writes a frame and brings the collection up to date, so that it can be opened while the film is made; in a film
-  // that was resumed it holds what was written before, too. workspace: of the step that led to the state; contact
-  // forces are written where there are colliders. Throws RunError.
+  // Writes a frame and updates the collection, so that it can be opened while the film is made. In a film that was
+  // resumed, the collection also contains what was written before. workspace: that of the step that led to the state.
+  // Contact forces are written where there are colliders. Throws RunError.
   void add(int frame, const State& state, const StepInputs& inputs, const Workspace& workspace);
 
  private:

@@ -92,7 +92,7 @@ bool remembers_steps(const SceneDef& scene) {
                      [](const BodyDef& body) { return remembers_steps(body.solver.method); });
 }
 
-// Whether a method is used that no checkpoint can resume.
+// Tells whether the script uses a method that no checkpoint can resume.
 bool remembers_steps(const Script& script) {
   for (int frame = 0; frame < script.scene().frames; ++frame) {
     const std::vector<const TimedChange*> at_work = script.at_work(frame);
@@ -102,7 +102,7 @@ bool remembers_steps(const Script& script) {
   return remembers_steps(script.scene());
 }
 
-// Checks that the folder holds all that a film needs which starts there.
+// Checks that the folder holds all that is needed by a film that starts there.
 void check_folder(const FilmPlan& plan, const LoadedFilm& film, const FilmStart& start) {
   const SceneDef& scene = film.script.scene();
   check_save_states(plan.save_states, scene, start.path, start.kept_frames());
@@ -138,14 +138,14 @@ FilmStart check_film(const FilmPlan& plan, const LoadedFilm& film) {
   check_folder(plan, film, start);
   check_records(plan, start);
   if (!plan.verify.empty()) start.verifier.emplace(plan.verify, start.record_head, plan.tolerance, start.kept_frames());
-  // A folder that is not there yet is locked only now, so that a film that is refused leaves no trace.
+  // A folder that does not exist yet is locked only now, so that a film that is refused leaves no trace.
   if (!plan.folder_is_locked && !start.lock) start.lock = std::make_unique<FolderLock>(start.path);
   return start;
 }
 
 namespace {
 
-// The frames after which the film in a folder was resumed before.
+// Returns the frames after which the film in a folder was resumed before.
 std::vector<int> resumed_before(const std::filesystem::path& run) {
   const auto info = parsed_json<nlohmann::ordered_json>(read_run(run).info_json);
   return info.contains("resumed_at") ? info["resumed_at"].get<std::vector<int>>() : std::vector<int>();
@@ -167,7 +167,7 @@ RunFolder open_folder(FilmStart& start, LoadedFilm& film) {
 
 namespace {
 
-// Makes the frames; what goes wrong is in the result. Returns false when the film could not even be begun.
+// Makes the frames and records errors in the result. Returns false when the film could not even be begun.
 bool make_frames(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const RunFolder& folder,
                  const FilmSolvers& solvers, VideoEncoder* video, FilmResult& result) {
   const Stopwatch setup;
@@ -206,12 +206,12 @@ void begin_video(const SceneDef& scene, const RunFolder& folder, std::optional<V
   video.emplace(folder.video(), scene.output.width, scene.output.height, scene.fps);
 }
 
-// Ends the video, so that it has the frames that are whole, neither fewer nor more.
+// Ends the video, so that it has exactly the frames that are whole.
 void finish_video(const FilmPlan& plan, const SceneDef& scene, const RunFolder& folder,
                   std::optional<VideoEncoder>& video, FilmResult& result) {
   const Zone zone("video");
   const auto frames = static_cast<int>(result.rows.size());
-  // The disk may have taken a frame, but not its row.
+  // A frame may have reached the disk although its row did not.
   if (video->frames() > frames && !plan.film_only) {
     begin_video(scene, folder, video);
     video->add_files(folder.frames(), frames);

@@ -1,5 +1,6 @@
-// A film from its plan to its folder, without a command line: load it, check it, open its folder, make it. Each part is
-// a function, so that a program can say what it likes between them. Not here: the loop over frames (frame_loop.h).
+// Takes a film from its plan to its folder, without a command line: load it, check it, open its folder, make it. Each
+// of these parts is a function, so that a program can print what it likes between them. Not here: the loop over frames
+// (frame_loop.h).
 #pragma once
 
 #include <filesystem>
@@ -22,7 +23,7 @@ namespace supple {
 
 struct FilmSolvers;  // film_solvers.h
 
-// A scene or replay, read and assembled.
+// Holds a scene or replay that has been read and assembled.
 struct LoadedFilm {
   Script script;
   std::vector<Body> bodies;
@@ -31,7 +32,7 @@ struct LoadedFilm {
   RunInfo info;                  // for run.json; filled in as the film goes along
 };
 
-// Reads the scene and its meshes. command: as the program was called. Throws InputError.
+// Reads the scene and its meshes. command: the command line with which the program was called. Throws InputError.
 LoadedFilm load_film(const FilmPlan& plan, const std::vector<std::string>& command);
 
 // Tries every change of the script, and builds the models, and with pictures what is drawn of them. Throws InputError.
@@ -39,7 +40,7 @@ void build_models(const FilmPlan& plan, LoadedFilm& film);
 // Makes what is drawn of the bodies. build_models calls this, beside its other work.
 void make_skins(const FilmPlan& plan, LoadedFilm& film);
 
-// How a film starts: where, and after which frames of an earlier run.
+// Describes how a film starts: where, and after which frames of an earlier run.
 struct FilmStart {
   std::filesystem::path path;        // of the run's folder
   std::unique_ptr<FolderLock> lock;  // on it; null where the caller holds it
@@ -52,11 +53,11 @@ struct FilmStart {
   int kept_frames() const { return checkpoint ? checkpoint->frames : 0; }
 };
 
-// Refuses what cannot be made, before anything in the folder is touched, and finds where the film starts. Throws
+// Refuses what cannot be made, before anything in the folder is changed, and finds where the film starts. Throws
 // InputError.
 FilmStart check_film(const FilmPlan& plan, const LoadedFilm& film);
 
-// Makes the folder the run's own, and writes run.json into it. Throws InputError and RunError.
+// Takes the folder for this run and writes run.json into it. Throws InputError and RunError.
 RunFolder open_folder(FilmStart& start, LoadedFilm& film);
 
 enum class FilmEnd { done, interrupted, failed };
@@ -76,7 +77,7 @@ struct FilmResult {
   double wall_ms = 0;  // of the loop
 };
 
-// Makes the frames and the video. Whatever happens, the frames before it are whole, and `rows` tells of them.
+// Makes the frames and the video. Whatever happens, the frames up to that point are whole, and `rows` describes them.
 FilmResult make_film(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const RunFolder& folder,
                      const FilmSolvers& solvers);
 
@@ -84,7 +85,7 @@ FilmResult make_film(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
 std::string verdict_on(const FilmResult& result);
 
 // Writes what is known of the film at its end into run.json and profile.json, and the trace where there is one. Returns
-// what the disk refused; empty: nothing.
+// a message when a file could not be written, and nothing otherwise.
 std::string write_records(const FilmResult& result, LoadedFilm& film, const RunFolder& folder,
                           const std::vector<ThreadTrace>* trace);
 

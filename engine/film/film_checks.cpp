@@ -46,8 +46,8 @@ void check_save_states(const std::vector<int>& frames, const SceneDef& scene, co
 
 namespace {
 
-// All that two runs must have in common for one to be taken for the beginning of the other, where there is no
-// checkpoint that says more.
+// Returns all that two runs must have in common for one to count as the beginning of the other, where no checkpoint
+// tells more.
 std::string film_of_run(const Json& run) {
   Json film = {{"program", run.value("program", Json())}, {"scene", run.value("scene", Json())}};
   if (film["scene"].is_object()) film["scene"].erase("frames");
@@ -57,15 +57,16 @@ std::string film_of_run(const Json& run) {
   return exact_json_text(film);
 }
 
-// Whether a run has only just begun to make the folder its own. Then all else in it is of an earlier run.
+// Tells whether a run has only just begun to use the folder. Everything else in the folder then comes from an earlier
+// run.
 bool has_just_begun(const std::filesystem::path& run) {
   std::ifstream stream(run / "run.json");
   const Json json = stream ? json_if_valid<Json>(stream) : Json();
   return json.is_object() && !json.contains("ended");
 }
 
-// A film without a checkpoint would be made anew. That is refused where the folder holds more than the beginning of
-// this same film.
+// A film without a checkpoint would be made again from the start. That is refused where the folder holds more than the
+// beginning of this same film.
 void check_nothing_is_lost(const std::filesystem::path& run, const RunInfo& info) {
   const std::filesystem::path file = run / "run.json";
   std::ifstream stream(file);
@@ -135,14 +136,14 @@ void check_pictures(const std::filesystem::path& frames, int count) {
 
 namespace {
 
-// The path without links, without "..", and without a slash at the end.
+// Returns the path without links, without "..", and without a slash at the end.
 std::filesystem::path full_path(const std::filesystem::path& path) {
   std::error_code error;
   return std::filesystem::weakly_canonical((std::filesystem::absolute(path) / "").lexically_normal().parent_path(),
                                            error);
 }
 
-// Whether a run keeps, or may keep, a file of its own there.
+// Tells whether a run keeps, or may keep, a file of its own at this path.
 bool is_of_run(const std::filesystem::path& file, const std::filesystem::path& run) {
   const std::filesystem::path inside = full_path(file).lexically_relative(full_path(run));
   if (inside.empty()) return false;
@@ -154,7 +155,7 @@ bool is_of_run(const std::filesystem::path& file, const std::filesystem::path& r
   return false;
 }
 
-// Throws InputError where the file cannot be opened for writing; leaves none that was not there.
+// Throws InputError when the file cannot be opened for writing. A file that did not exist before is removed again.
 void try_to_write(const std::filesystem::path& path) {
   std::error_code error;
   const bool was_there = std::filesystem::exists(std::filesystem::symlink_status(path, error));

@@ -12,8 +12,9 @@
 namespace supple {
 namespace {
 
-// The files that were read beside the scene and the replay, also those of shapes that colliders take on later, if only
-// in a longer film. Files go by their names without folders, so that a film can be resumed after it was moved.
+// Lists the files that were read in addition to the scene and the replay, including those of shapes that colliders take
+// on later, even if only in a longer film. Files are listed by their names without folders, so that a film can be
+// resumed after it was moved.
 nlohmann::ordered_json files_of(const Script& script, const std::vector<Body>& bodies) {
   std::vector<SourceFile> files;
   const auto add = [&files](const std::vector<SourceFile>& more) {
@@ -40,7 +41,7 @@ nlohmann::ordered_json files_of(const Script& script, const std::vector<Body>& b
   return list;
 }
 
-// The pictures that a film leaves as files, which are none where it leaves nothing but itself.
+// Describes the pictures that a film leaves as files; there are none when it leaves only the video.
 nlohmann::ordered_json images_of(const FilmPlan& plan) {
   if (plan.film_only) return "film only";
   return plan.pictures != FilmPictures::none;

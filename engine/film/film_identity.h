@@ -1,4 +1,5 @@
-// A film is recognised by the identity that a checkpoint belongs to, and by the head of a record of its states.
+// Defines how a film is recognised: by the identity to which a checkpoint belongs, and by the head of a record of its
+// states.
 #pragma once
 
 #include "film/film_plan.h"
@@ -9,14 +10,14 @@
 
 namespace supple {
 
-// XXH64 of the points, elements and springs of a body.
+// Returns the XXH64 of the points, elements and springs of a body.
 std::string mesh_hash(const Body& body);
 
-// All that must be the same for two runs to give the same films and fields, except for their length: as JSON.
+// Returns, as JSON, all that must be the same for two runs to give the same films and fields, except for their length.
 std::string identity_of(const RunInfo& info, const Script& script, const std::vector<Body>& bodies,
                         const FilmPlan& plan);
 
-// The head of a record of this film's states.
+// Returns the head of a record of this film's states.
 RecordHead record_head(const RunInfo& info, const std::vector<Body>& bodies);
 
 }  // namespace supple

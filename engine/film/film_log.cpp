@@ -42,7 +42,7 @@ void FilmLog::add(const Checkpoint& checkpoint) {
   waiting_.emplace_back(checkpoint.frames, checkpoint_bytes(checkpoint, identity_));
 }
 
-// The next row is whole, and stands in the notes before it counts as that.
+// Counts the next row as whole, after it has been written to the notes.
 void FilmLog::note_row() {
   if (notes_) {
     const std::string line = row_line(rows_[whole_]) + '\n';

@@ -1,5 +1,5 @@
-// The rows of a film's frames, and its checkpoints, which reach the disk only after all that belongs to the frames
-// before them. So a film can be resumed from a checkpoint that is there, whenever it was killed.
+// Keeps the rows of a film's frames, and its checkpoints. Both reach the disk only after all that belongs to the frames
+// before them, so a film can be resumed from any checkpoint on the disk, whenever the run was killed.
 #pragma once
 
 #include <deque>
@@ -12,8 +12,8 @@
 
 namespace supple {
 
-// Reads the rows of a run's first frames from the file in which it noted them, and counts their bytes there. Throws
-// InputError where there are fewer.
+// Holds the rows of a run's first frames, read from the file in which the run noted them, and the number of their bytes
+// there. noted_rows() throws InputError where there are fewer rows.
 struct NotedRows {
   std::vector<FrameRow> rows;
   std::int64_t bytes = 0;
@@ -30,18 +30,19 @@ class FilmLog {
   bool keeps_checkpoints() const { return every_ > 0; }
   bool wants_checkpoint(int frames) const { return every_ > 0 && frames % every_ == 0; }
 
-  // Adds a frame whose steps are done. A frame that is not drawn is whole once those before it are.
+  // Adds a frame whose steps are done. A frame that is not drawn is whole once the frames before it are.
   void add(FrameRow row) { rows_.push_back(std::move(row)); }
-  // Adds a checkpoint, which waits in memory until the frames before it are whole. One of as many frames that waits
-  // already is kept instead.
+  // Adds a checkpoint, which waits in memory until the frames before it are whole. If the last one that waits has as
+  // many frames or more, it is kept instead.
   void add(const Checkpoint& checkpoint);
 
-  // Takes note of what has reached the disk; null: there are no pictures. Throws RunError when the disk refuses.
+  // Takes note of what has reached the disk. pictures: null when there are none. Throws RunError when a file cannot be
+  // written.
   void settle(Pictures* pictures);
 
-  // The number of frames that are whole, whatever happens from now on.
+  // Returns the number of frames that are whole, whatever happens from now on.
   int whole() const { return whole_; }
-  // Forgets the others, at the end of a film whose pictures failed.
+  // Drops the rows of all other frames, at the end of a film whose pictures failed.
   void drop_others() { rows_.resize(whole_); }
 
  private:

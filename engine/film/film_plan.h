@@ -1,4 +1,4 @@
-// The plan of a film, before anything is read or made: the one struct that the command line, a sweep's points
+// Defines the plan of a film, before anything is read or made: the one struct that the command line, a sweep's points
 // and other programs fill in.
 #pragma once
 

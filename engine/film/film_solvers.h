@@ -1,4 +1,5 @@
-// The solvers that a film uses, which come from outside: this library does not know the one that has them.
+// Holds the solvers that a film uses. They are passed in, because this library does not depend on the one that contains
+// them.
 #pragma once
 
 #include <functional>
@@ -22,7 +23,7 @@ class ErrorMeter {
 
 struct FilmSolvers {
   Solvers steps;
-  // A meter holds for the model's values as they are.
+  // A meter is valid as long as the model's values do not change.
   std::function<std::unique_ptr<ErrorMeter>(const Model&, Threads&)> error_meter;
 };
 

@@ -37,12 +37,12 @@ std::string failure_text(int frame, const std::string& body, const StepFailure& 
                      failure.phase, failure.what, failure.vertex + 1);
 }
 
-// In the numbering of the input file.
+// Returns the surface in the numbering of the input file.
 Triangles surface_of(const Body& body) {
   return body.def.cloth ? body.cloth.surface.triangles : boundary_faces(body.description.mesh.tets);
 }
 
-// The surface that may touch, in the model's numbering.
+// Returns the surface that may touch colliders, in the model's numbering.
 Triangles touching_surface(const Body& body, const Model& model) {
   Triangles surface = surface_of(body);
   for (Eigen::Index i = 0; i < surface.size(); ++i) surface.data()[i] = model.internal_of[surface.data()[i]];

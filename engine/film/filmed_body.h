@@ -1,4 +1,4 @@
-// A body of a film: the driver that makes its steps (scene/driven_body.h), and what the film records of it.
+// Describes a body of a film: the driver that makes its steps (scene/driven_body.h), and what the film records of it.
 #pragma once
 
 #include "film/field_writer.h"
@@ -12,8 +12,8 @@ namespace supple {
 
 class FilmedBody {
  public:
-  // All that is passed by reference must outlive this object. kept_frames: of an earlier run's motion, which stays and
-  // is continued.
+  // All that is passed by reference must outlive this object. kept_frames: number of frames of an earlier run's motion,
+  // which stay and are continued.
   FilmedBody(const SceneDef& scene, Body& body, Model& model, const CollisionSet& set, const RunFolder& folder,
              const FilmSolvers& solvers, Threads& threads, int kept_frames = 0);
 
@@ -29,10 +29,10 @@ class FilmedBody {
 
   // Appends the frame to motion/.
   void save_motion();
-  // Returns the frame's positions as motion/ has them, in the order of the input file [m].
+  // Returns the frame's positions as motion/ holds them, in the order of the input file [m].
   const Positions& saved_motion() const { return saved_motion_; }
 
-  // Writes the problem of a frame's first step, which has not been made yet, into the folder of states. Changes no
+  // Writes the problem of a frame's first step, which has not been made yet, into the folder of states. It changes no
   // result.
   void save_problem(int frame);
 

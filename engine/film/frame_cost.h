@@ -1,4 +1,4 @@
-// Finds what a frame of a body costs on this machine: its first frames are simulated, and nothing is recorded.
+// Measures what a frame of a body costs on this machine: its first frames are simulated, and nothing is recorded.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ struct FrameCost {
   std::string failure;           // why a step failed; empty: none did
 };
 
-// Makes the first `frames` frames of a body. The model is left with the values that it has after them (DrivenBody).
+// Makes the first `frames` frames of a body. The model keeps the values that it has after them (DrivenBody).
 FrameCost cost_of_frames(const SceneDef& scene, Body& body, Model& model, const CollisionSet& set,
                          const Solvers& solvers, Threads& threads, int frames);
 

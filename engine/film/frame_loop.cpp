@@ -31,7 +31,7 @@ FilmEnd FrameLoop::run(Progress& progress, std::string& message) {
   return FilmEnd::done;
 }
 
-// Applies what a replay changes in this frame.
+// Applies the changes of a replay in this frame.
 void FrameLoop::apply_replay(int frame, FrameRow& row) {
   end_last_changes();
   const std::vector<const TimedChange*> at_work = script_.at_work(frame);
@@ -45,7 +45,7 @@ void FrameLoop::apply_replay(int frame, FrameRow& row) {
 }
 
 // Makes one frame's steps of all bodies: FilmedBody::advance prepares and makes each of them by its DrivenBody, which
-// calls step() (sim/solver/step.h). Returns why it failed; empty: it did not.
+// calls step() (sim/solver/step.h). Returns why it failed, or nothing when it did not.
 std::string FrameLoop::step_bodies(int frame, FrameRow& row) {
   const bool save_states = std::ranges::find(plan_.save_states, frame) != plan_.save_states.end();
   std::vector<std::uint64_t> hashes;
@@ -61,7 +61,8 @@ std::string FrameLoop::step_bodies(int frame, FrameRow& row) {
   for (const auto& body : filmed_) {
     if (recorder_) recorder_->add(body->model(), body->state());
   }
-  // One body's hash is the frame's; of several bodies it is XXH64 of their hashes in the order of the scene.
+  // The hash of a single body is the frame's; for several bodies it is the XXH64 of their hashes in the order of the
+  // scene.
   row.state_hash =
       hashes.size() == 1 ? hashes.front() : hash_bytes(hashes.data(), sizeof(hashes.front()) * hashes.size());
   return "";
@@ -123,7 +124,7 @@ FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
   if (!plan.record.empty()) recorder_.emplace(plan.record, start.record_head, first_);
 }
 
-// Goes on to where an earlier run's checkpoint was taken: first the scene as it was then, and then the bodies.
+// Restores the state at which an earlier run took its checkpoint: first the scene at that time, then the bodies.
 void FrameLoop::resume(const Checkpoint& checkpoint) {
   const bool changed = std::ranges::any_of(
       script_.changes(), [&](const TimedChange& one) { return one.at < checkpoint.frames / scene_.fps; });
@@ -135,8 +136,8 @@ void FrameLoop::resume(const Checkpoint& checkpoint) {
     filmed_[b]->resume(checkpoint.bodies[b], log_.rows().back().bodies.at(b));
 }
 
-// In the frame of a change, places go in even parts from the values in `earlier` to the new ones. That frame is over,
-// so only the new ones count.
+// In the frame of a change, positions move in even parts from the values in `earlier` to the new ones. That frame is
+// over, so only the new ones count.
 void FrameLoop::end_last_changes() {
   set_.earlier.clear();
   for (Body& body : bodies_) body.earlier.clear();
@@ -183,7 +184,7 @@ void FrameLoop::finish(FilmResult& result) {
     result.message = pictures_->error();
   }
   const int frames = static_cast<int>(log_.rows().size());
-  // After a failure the bodies may be in the middle of a frame: the checkpoint before that frame is kept.
+  // After a failure the bodies may be in the middle of a frame, so the checkpoint before that frame is kept.
   if (result.end == FilmEnd::failed && before_.frames > first_) log_.add(before_);  // one at first_ is there already
   const bool at_end = result.end != FilmEnd::failed && log_.keeps_checkpoints() && !log_.wants_checkpoint(frames);
   if (at_end) add_checkpoint(frames);

@@ -1,5 +1,5 @@
-// The loop that makes a film: it makes the steps of a frame and hands what is to be drawn to Pictures, whose threads
-// draw and compress meanwhile. Nothing that they do can change a result.
+// Defines the loop that makes a film: it makes the steps of a frame and hands what is to be drawn to Pictures, whose
+// threads draw and compress meanwhile. Nothing that they do can change a result.
 #pragma once
 
 #include <memory>
@@ -17,22 +17,22 @@
 
 namespace supple {
 
-// A film in progress.
+// Represents a film in progress.
 class FrameLoop {
  public:
-  // All that is passed must outlive this object. video: null where there shall be none.
+  // All that is passed must outlive this object. video: null when no video is made.
   FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const RunFolder& folder,
             const FilmSolvers& solvers, FilmLog& log, VideoEncoder* video);
 
-  // Makes the frames that are left. Returns how it ended; when a step failed, `message` says why. Why pictures failed,
-  // finish() says.
+  // Makes the frames that remain. Returns how the film ended; when a step failed, `message` says why. When pictures
+  // failed, finish() reports why.
   FilmEnd run(Progress& progress, std::string& message);
 
-  // Waits for the pictures, and leaves a checkpoint after the last frame.
+  // Waits for the pictures and writes a checkpoint after the last frame.
   void finish(FilmResult& result);
 
  private:
-  // Parts of a frame, in their order.
+  // These functions are the parts of a frame, in their order.
   void apply_replay(int frame, FrameRow& row);
   std::string step_bodies(int frame, FrameRow& row);
   void save_outputs(int frame, const FrameRow& row);

@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::size_t frames_in_flight = 3;  // between two stages
 
-// Frames are independent, so a second thread halves the time where compressing is the slow stage; elsewhere it sleeps.
+// Frames are independent, so a second thread halves the time where compression is the slowest stage; elsewhere it
+// sleeps.
 constexpr int compressing_threads = 2;
 
 }  // namespace
@@ -52,7 +53,7 @@ std::string Pictures::error() {
   return error_;
 }
 
-// Runs a stage. One that fails closes the queues, and its error waits to be collected.
+// Runs a stage. A stage that fails closes the queues, and its error is kept for error().
 template <class Work>
 void Pictures::guarded(const Work& work) {
   try {
@@ -107,7 +108,8 @@ void Pictures::compress_all(int number) {
   while (auto task = drawn_.pop()) (*task)();  // an error is the future's, and so its writer's
 }
 
-// A film that fails does not harm the files. Without files the frame would be lost, so the pictures fail.
+// Adds a frame to the film. When the encoder fails, the files stay valid. Without files the frame would be lost, so the
+// pictures fail.
 void Pictures::add_to_film(const Image& image) {
   if (targets_.film == nullptr || targets_.film->add(image.rgb) || targets_.files) return;
   throw RunError("the film's encoder takes no more frames, and there are no files of them");

@@ -1,6 +1,6 @@
-// Draws frames, compresses them and hands them to the film's encoder: stages with threads of their own that are
-// connected by bounded queues, so that a slow stage slows the film and loses nothing. Frames leave in the order in
-// which they were put.
+// Draws frames, compresses them and hands them to the film's encoder. These stages have threads of their own and are
+// connected by bounded queues, so a slow stage slows the film and loses nothing. Frames leave in the order in which
+// they were put.
 #pragma once
 
 #include <filesystem>
@@ -17,7 +17,7 @@
 
 namespace supple {
 
-// Where frames go. All that it points to must outlive the pictures.
+// Describes where frames go. All that it points to must outlive the pictures.
 struct PictureTargets {
   std::filesystem::path frames;  // the folder of the files
   bool files = true;             // frames become PNG files
@@ -33,11 +33,11 @@ class Pictures {
   // Queues a frame for drawing. Returns false when a stage has failed.
   bool put(int frame, DrawList list) { return lists_.push({frame, std::move(list)}); }
 
-  // Waits until every frame that was put is where it belongs.
+  // Waits until every frame that was put has reached its destination.
   void finish();
 
-  // The frames that are on the disk, or without files in the film, since this was called last, in their order, and
-  // their times.
+  // Returns the frames that have been written since the last call, in their order, with their times. Without files, a
+  // frame counts as written once it is in the film.
   struct Written {
     int frame;
     double render_ms;
@@ -45,9 +45,9 @@ class Pictures {
   };
   std::vector<Written> take_written();
 
-  // Why a stage gave up; empty while none has.
+  // Returns why a stage failed; empty while none has.
   std::string error();
-  // Valid after finish().
+  // These values are valid after finish().
   std::string backend, renderer, version;
 
  private:

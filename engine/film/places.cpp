@@ -41,7 +41,7 @@ std::string caption_font() {
 
 std::filesystem::path scene_file(const std::string& name) {
   std::error_code error;
-  // Folders are often named after what was filmed into them.
+  // A folder is not taken for the scene, because folders are often named after the scene that was filmed into them.
   if (std::filesystem::exists(name, error) && !std::filesystem::is_directory(name, error)) return name;
   for (const char* kind : {"scenes", "replays"}) {
     const std::filesystem::path shipped = assets_folder() / kind / (name + ".toml");

@@ -1,4 +1,4 @@
-// Tells people how far a film has come.
+// Shows how far a film has come.
 #pragma once
 
 #include <fmt/core.h>
@@ -11,10 +11,10 @@
 
 namespace supple {
 
-// The progress line on a terminal; a plain line now and then elsewhere.
+// Shows a line of progress on a terminal, and prints a plain line from time to time elsewhere.
 class Progress {
  public:
-  // start: frames that are there already.
+  // start: number of frames that exist already.
   Progress(int frames, int start, bool quiet)
       : frames_(frames), start_(start), quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
 

@@ -27,8 +27,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The values of a scene that change what is seen and nothing else, as generic_path() names them. A name also stands for
-// what lies below it.
+// Lists the values of a scene that change what is seen and nothing else, by the names that generic_path() gives them. A
+// name also covers all values below it.
 constexpr std::array seen = {
     "title",        "camera",       "look",           "output.width",        "output.height",     "output.samples",
     "body[].color", "body[].label", "body[].pattern", "body[].pattern_size", "body[].skin_cells", "collider[].color"};
@@ -44,7 +44,7 @@ std::string member_text(const Json& object, const char* key) {
   return object.contains(key) ? json_text(object[key]) : std::string();
 }
 
-// Returns the film's plan as the run had it, with the drawing's settings after the run's.
+// Returns the plan of the run's film, with the drawing's settings after those of the run.
 FilmPlan plan_of_run(const DrawPlan& plan, const Json& info) {
   const std::string source = (plan.run / "run.json").string();
   const bool whole = info.contains("scene_file") && info["scene_file"].is_string() && info.contains("settings") &&
@@ -63,7 +63,7 @@ FilmPlan plan_of_run(const DrawPlan& plan, const Json& info) {
   return film;
 }
 
-// Leaves the changes of a replay that change what is simulated.
+// Keeps only those changes of a replay that change what is simulated.
 std::string simulated_part(const std::string& replay) {
   Json json = json_if_valid<Json>(replay);
   if (!json.is_object()) return replay;
@@ -79,7 +79,7 @@ std::string simulated_part(const std::string& replay) {
   return json_text(json);
 }
 
-// Refuses a scene that would have moved otherwise than the run did.
+// Refuses a scene that would have moved in another way than the run did.
 void check_same_motion(const DrawPlan& plan, const Json& info, const LoadedFilm& film) {
   std::vector<Problem> problems;
   for (const JsonDifference& difference : differing_values(json_text(info["scene"]), film.info.scene_json)) {
@@ -127,7 +127,7 @@ std::vector<int> frames_of(const DrawPlan& plan, const std::vector<PointCacheRea
   return frames;
 }
 
-// Gives draw lists of chosen frames, in ascending order.
+// Makes draw lists of chosen frames, in ascending order.
 class Drawing {
  public:
   explicit Drawing(LoadedDrawing& drawing)
@@ -152,7 +152,7 @@ class Drawing {
   }
 
  private:
-  // Brings the scene to the end of the frame.
+  // Advances the scene to the end of the frame.
   void follow_script(int frame) {
     const Script& script = drawing_.film.script;
     std::vector<TimedChange> changes;

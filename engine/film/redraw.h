@@ -1,8 +1,7 @@
-// Draws a film again from the motion that a run has saved: from another camera, in another look or size, or some of its
-// frames. Nothing is simulated. With the run's own settings the pictures have the same bytes as the run's.
-//
-// A drawing is a folder with draw.json, frames/ and video.mp4. Its frames are independent of each other, so several
-// processes can draw parts of it into one folder.
+// Draws a film again from the motion that a run has saved: with another camera, look or size, or only some of its
+// frames. Nothing is simulated. With the run's own settings the pictures have the same bytes as the run's. A drawing is
+// a folder with draw.json, frames/ and video.mp4. Its frames are independent of each other, so several processes can
+// draw parts of it into one folder.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +15,7 @@
 
 namespace supple {
 
-// What to draw.
+// Describes what to draw.
 struct DrawPlan {
   std::filesystem::path run;            // the folder of the run
   std::filesystem::path scene;          // its scene's file, where that is no longer where the run found it; else empty
@@ -28,7 +27,7 @@ struct DrawPlan {
   bool quiet = false;  // no progress while meshing
 };
 
-// A run that is ready to be drawn.
+// Holds a run that is ready to be drawn.
 struct LoadedDrawing {
   LoadedFilm film;  // without models
   std::vector<PointCacheReader> motion;
@@ -37,15 +36,16 @@ struct LoadedDrawing {
   std::string identity;     // JSON: all that the pictures depend on
 };
 
-// Reads the run, its scene and its meshes. Throws InputError where the folder is not a run's with all its motion, where
-// the scene differs from the run's in more than what is seen, and where a mesh is not the run's.
+// Reads the run, its scene and its meshes. Throws InputError when the folder does not hold a run with all its motion,
+// when the scene differs from the run's in more than what is seen, and when a mesh is not the run's.
 LoadedDrawing load_drawing(const DrawPlan& plan);
 
-// Makes the folder of a drawing, or takes over one that an earlier drawing left, whose pictures and film are removed
-// unless `keep`: then they must be of the same drawing. Throws InputError when the folder holds anything else.
+// Creates the folder of a drawing, or takes over one that an earlier drawing left. The earlier pictures and film are
+// removed unless `keep` is set; with `keep`, they must belong to the same drawing. Throws InputError when the folder
+// holds anything else.
 void open_drawing(const std::filesystem::path& folder, const LoadedDrawing& drawing, bool keep);
 
-// The numbers of some pictures: `first` to `last`, without the latter.
+// Selects pictures by their numbers, from `first` up to but not including `last`.
 struct PictureRange {
   int first, last;
 };

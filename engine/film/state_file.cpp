@@ -50,8 +50,8 @@ Json regions_json(const StepProblem& problem) {
   return regions;
 }
 
-// Returns those keys of [solver] that a StepProblem has. The method, and what belongs to chebyshev alone, are not among
-// them; integrator and damping are written one level up.
+// Writes those keys of [solver] that a StepProblem contains. The method and the settings of Chebyshev's method alone
+// are not among them; integrator and damping are written one level up.
 Json solver_json(const StepProblem& problem) {
   const SolverSettings& s = problem.solver;
   const ContactSettings& c = s.contact;
@@ -134,7 +134,7 @@ void write_springs(const std::filesystem::path& folder, const std::vector<Spring
   write_table(folder / "spring_values.npy", values);
 }
 
-// A value of state.json.
+// Reads a value of state.json.
 template <class T>
 T value_of(const nlohmann::json& json, const std::string& file, const char* key) {
   const auto found = json.find(key);
@@ -193,7 +193,7 @@ void write_state(const std::filesystem::path& folder, const StepLabel& label, co
   write_list(folder / "handle_stiffness.npy", stiffness);
   write_table(folder / "targets.npy", problem.targets);
   if (problem.middle_targets.rows() > 0) write_table(folder / "middle_targets.npy", problem.middle_targets);
-  // Names need not be UTF-8; JSON must be.
+  // Names need not be UTF-8, but JSON must be.
   write_whole_file(folder / "state.json", json_text(state_json(label, problem), 1) + "\n");
 }
 

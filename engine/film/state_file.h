@@ -1,4 +1,5 @@
-// Folders that hold one step's problem: state.json and NumPy arrays. docs/states.md describes the format.
+// Writes and reads folders that hold one step's problem: state.json and NumPy arrays. docs/states.md describes the
+// format.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +17,8 @@ struct StepLabel {
   int step = 0;  // counted from the start of the film; as many a frame as the scene has substeps
 };
 
-// Makes the folder. state.json comes last: a folder that has it is whole. Throws RunError when the disk refuses.
+// Creates the folder. state.json is written last, so a folder that has it is complete. Throws RunError when a file
+// cannot be written.
 void write_state(const std::filesystem::path& folder, const StepLabel& label, const StepProblem& problem);
 
 struct StoredState {
@@ -27,10 +29,11 @@ struct StoredState {
   Positions q, v;   // in the order of the input file [m], [m/s]
 };
 
-// Throws InputError naming the file: missing or damaged, of another version, or not what its state_hash says.
+// Throws InputError with the name of the file when it is missing or damaged, when it has another version, or when the
+// state does not match its state_hash.
 StoredState read_state(const std::filesystem::path& folder);
 
-// In the model's order. Throws InputError when the model has another number of vertices.
+// Returns the state in the model's order. Throws InputError when the model has another number of vertices.
 State state_for(const Model& model, const StoredState& stored);
 
 }  // namespace supple

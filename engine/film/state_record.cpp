@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* format_name = "supple record 1";
 constexpr std::string_view first_bytes = "{\"format\":\"supple record ";  // of all versions
 
-// One vertex's record. Vertices stand in the order of the input file.
+// Holds the record of one vertex. Vertices are stored in the order of the input file.
 struct VertexRecord {
   std::array<float, 3> position;  // [m]
   std::uint32_t hash;             // of position and velocity
@@ -60,7 +60,7 @@ std::string line_of(const RecordHead& head) {
   return exact_json_text(json) + '\n';
 }
 
-// Returns the place in the file where the frames after the first ones begin.
+// Returns the offset in the file at which the frames after the first `frames` begin.
 std::size_t bytes_behind(const RecordHead& head, int frames) {
   return line_of(head).size() + bytes_of_frame(head) * static_cast<std::size_t>(frames);
 }

@@ -1,5 +1,5 @@
-// Records of a film's states, frame by frame, to be compared with those of another run: for --record and --verify.
-// docs/replays.md has the format.
+// Writes records of a film's states, frame by frame, and compares another run's states with them, for --record and
+// --verify. docs/replays.md describes the format.
 #pragma once
 
 #include <cstdio>
@@ -15,7 +15,7 @@
 
 namespace supple {
 
-// The head of a record: what it was made of.
+// Describes what a record was made from. It is stored at the head of the record.
 struct RecordHead {
   std::string program, kernels;  // identities: the same bits are promised only where both are the same
   std::string film;              // JSON of the scene and the replay
@@ -26,16 +26,17 @@ struct RecordHead {
   std::vector<Body> bodies;
 };
 
-// Whether a record may be written to this path: there is no file yet, an empty one, or a record of any version.
+// Tells whether a record may be written to this path: no file exists there yet, or it is empty, or it is a record of
+// any version.
 bool may_be_recorded_over(const std::filesystem::path& path);
 
-// Throws InputError where the file is not a record that begins with the first frames of the film.
+// Throws InputError when the file is not a record that begins with the first frames of the film.
 void check_kept_record(const std::filesystem::path& path, const RecordHead& head, int kept_frames);
 
 class StateRecorder {
  public:
-  // Starts a file, or continues one after its first frames. Throws RunError when it cannot be written, InputError as
-  // check_kept_record does.
+  // Starts a file, or continues one after its first frames. Throws RunError when it cannot be written, and InputError
+  // as check_kept_record does.
   StateRecorder(const std::filesystem::path& path, const RecordHead& head, int kept_frames);
   void add(const Model& model, const State& state);  // body by body, frame by frame
 
@@ -51,19 +52,21 @@ class StateRecorder {
 
 class StateVerifier {
  public:
-  // tolerance: how far a vertex may be from the record, over the body's size; nothing: the same bits, and then the
-  // record must be of this program. Throws InputError: not a record, damaged, or of other bodies or another program.
+  // tolerance: how far a vertex may be from the record, relative to the body's size; without a value, the bits must be
+  // the same, and the record must come from this program. Throws InputError when the file is not a record, is damaged,
+  // or is of other bodies or of another program.
   StateVerifier(const std::filesystem::path& path, const RecordHead& now, std::optional<double> tolerance,
                 int skipped_frames);
 
-  // A remark for before the run: that the scene is not the recorded one, and in what it differs. Empty where it is.
+  // Returns a note to be printed before the run: that the scene is not the recorded one, and how it differs. Empty
+  // where it is the same.
   const std::string& remark() const { return remark_; }
 
-  // Body by body, frame by frame. Returns in what it differs; nothing where it does not, and after the end of the
-  // record.
+  // Takes the states body by body, frame by frame. Returns a description of the difference; empty where there is none,
+  // and after the end of the record.
   std::string compare(int frame, const Model& model, const State& state);
 
-  // Once the film has so many frames.
+  // These functions are valid once the film has that many frames.
   bool compared_any(int frames) const;
   std::string verdict(int frames) const;
 

@@ -59,8 +59,8 @@ void check_numbers(const TriMesh& raw, const std::string& name) {
   }
 }
 
-// Makes vertices at one position a single one, numbers them in the order in which the triangles name them, and drops
-// those that no triangle names.
+// Merges vertices at the same position, numbers them in the order in which the triangles name them, and drops those
+// that no triangle names.
 TriMesh merged(const TriMesh& raw) {
   std::vector<std::int32_t> order(at(raw.points.rows()));
   std::iota(order.begin(), order.end(), 0);
@@ -179,8 +179,8 @@ struct Component {
   Bounds box;
 };
 
-// Says which triangles are turned over so that all of a component face alike, in the way of the larger part of its area
-// in the file.
+// Tells which triangles are flipped so that all triangles of a component have one orientation: that of the larger part
+// of its area in the file.
 struct Flood {
   std::vector<Component> components;
   std::vector<char> turned;
@@ -339,8 +339,8 @@ bool encloses(const TriMesh& mesh, const Component& outer, const Component& inne
   });
 }
 
-// Turns every component outward, except for cavities: a component within another one keeps facing against it if it does
-// so in the file.
+// Orients every component outward, except for cavities: a component inside another one keeps the opposite orientation
+// if it has that in the file.
 void decide_senses(const TriMesh& mesh, std::vector<Component>& components) {
   std::vector<std::size_t> order(components.size());
   std::iota(order.begin(), order.end(), 0);

@@ -15,7 +15,7 @@ struct ClothMesh {
   TriMesh surface;
   std::vector<VertexPair> edges;      // along the threads of a grid; all edges of a triangle mesh
   std::vector<VertexPair> diagonals;  // one for each cell of a grid, in alternating directions
-  // Pairs that resist bending: every other vertex of a grid's rows and columns; in a triangle mesh, the far corners of
+  // These pairs resist bending: every other vertex of a grid's rows and columns; in a triangle mesh, the far corners of
   // two triangles that share an edge.
   std::vector<VertexPair> bends;
 };

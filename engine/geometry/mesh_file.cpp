@@ -102,7 +102,7 @@ void check_duplicates(const TetMesh& mesh, const Lines& lines, const std::string
   }
 }
 
-// Turns all elements over when all are negative; a mixture of orientations is refused.
+// Flips all elements when all of them are negative; a mixture of orientations is refused.
 void orient(MeshFile& file, const Lines& lines, const std::string& name) {
   TetMesh& mesh = file.mesh;
   const double edge = bounds_of(mesh.rest).diagonal();

@@ -12,7 +12,7 @@ namespace supple {
 
 struct MeshFile {
   TetMesh mesh;
-  // Remarks on what was changed or is odd, such as a turned orientation or vertices that no element uses.
+  // Holds remarks on what was changed or is unusual, such as a flipped orientation or vertices that no element uses.
   std::vector<std::string> notes;
 };
 

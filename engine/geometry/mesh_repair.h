@@ -1,4 +1,5 @@
-// Removes what a cut lattice sometimes contains: loose crumbs, and places where the surface touches itself.
+// Removes two defects that a cut lattice sometimes has: small loose pieces, and places where the surface touches
+// itself.
 #pragma once
 
 #include "geometry/mesh.h"

@@ -1,5 +1,5 @@
-// Motions that move nothing, for the defaults of structs. They are functions of a unit of their own, because Eigen's
-// expressions would be compiled anew in every unit that reads such a struct.
+// Returns motions that move nothing, for the defaults of structs. They are functions in a unit of their own, because
+// every unit that reads such a struct would otherwise compile Eigen's expressions again.
 #pragma once
 
 #include <Eigen/Geometry>

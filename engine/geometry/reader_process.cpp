@@ -22,11 +22,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Owns a running child and the pipe from its standard output; both end with the object.
+// Owns a running child and the pipe from its standard output; both end when the object is destroyed.
 class Child {
  public:
-  // The child is started by posix_spawn, because a fork would copy only half of a process with threads and a GL
-  // context.
+  // The child is started by posix_spawn, because a fork would copy a process with threads and a GL context only in
+  // part.
   Child(const std::filesystem::path& program, const std::filesystem::path& file) {
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0) refuse_start(program, file, errno);

@@ -122,8 +122,8 @@ struct Shape {
   // ellipsoids.
   double certainty() const;
 
-  // A way shorter than twice this length cannot lead through the solid, except across its edges; 0 where the length is
-  // not known.
+  // Returns a length such that a straight path shorter than twice this length cannot lead through the solid, except
+  // across its edges; 0 where no such length is known.
   double half_thickness() const;
 
   // Returns the tag of the last tagged part that holds the point; outside all parts, the tag of the nearest one.

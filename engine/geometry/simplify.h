@@ -1,4 +1,4 @@
-// Makes a drawn surface coarser where a picture would not show the difference. This is the only place that knows
+// Makes a drawn surface coarser where a picture would not show the difference. No other part of the program uses
 // meshoptimizer.
 #pragma once
 

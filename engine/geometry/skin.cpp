@@ -8,7 +8,7 @@
 namespace supple {
 namespace {
 
-// Holds samples of the field on a dense grid over a box, with one cell of air around it.
+// Holds samples of the field on a dense grid over a box, with one layer of empty cells around it.
 struct SampleGrid {
   Vec3 origin;
   double cell;

@@ -42,12 +42,12 @@ Skin skin_of_surface(const Positions& points, const Triangles& triangles, double
 // Expresses points as fixed combinations of mesh vertices.
 struct Embedding {
   Tetrahedra corners;  // the mesh vertices of each point, n x 4
-  // Barycentric weights; they sum to 1, and some are negative outside the element.
+  // These are barycentric weights; they sum to 1, and some are negative outside the element.
   Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor> weights;
 };
 
-// Embeds each point in the element that holds it; a point that lies in none, in the element that it lies least outside
-// of.
+// Embeds each point in the element that contains it. A point outside all elements is embedded in the element from which
+// it is least far outside.
 Embedding embed(const Positions& points, const TetMesh& mesh);
 
 // Where an embedded point lies at the mesh's current positions.

@@ -1,5 +1,5 @@
-// Identifies a file that a scene is made of by what was read from it: neither comments in the file nor its place change
-// the identity.
+// Identifies a file of a scene by what was read from it: neither comments in the file nor its location change the
+// identity.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ struct SourceFile {
   std::uint64_t hash = 0;  // XXH64 of the content that was read
 };
 
-// The mesh must be as it was read: not yet turned, scaled, renamed or renumbered.
+// The mesh must be as it was read: not yet rotated, scaled, renamed or renumbered.
 SourceFile source_of(const std::filesystem::path& path, const TetMesh& mesh);
 SourceFile source_of(const std::filesystem::path& path, const TriMesh& mesh);
 

@@ -34,7 +34,7 @@ void check_file(const std::filesystem::path& path) {
   if (!wrong.empty()) throw InputError(name, wrong);
 }
 
-// Takes values off the front of the reader's bytes.
+// Reads values one by one from the front of the reader's bytes.
 class Stream {
  public:
   Stream(std::string_view bytes, std::string name) : rest_(bytes), name_(std::move(name)) {}

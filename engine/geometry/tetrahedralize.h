@@ -1,7 +1,7 @@
-// Makes tetrahedra from a shape by isosurface stuffing (Labelle and Shewchuk 2007): lattice points too near to the
+// Makes tetrahedra from a shape by isosurface stuffing (Labelle and Shewchuk 2007): lattice points too close to the
 // surface are moved onto it, and then a body-centred cubic lattice is cut at the surface, so that the dihedral angles
-// stay between about 10.7 and 165 degrees whatever the surface is like. The result is deterministic. The method is not
-// meant for sharp edges, which come out rounded at the lattice's scale (box_mesh makes boxes).
+// stay between about 10.7 and 165 degrees for every surface. The result is deterministic. The method is not meant for
+// sharp edges, which come out rounded at the lattice's scale (box_mesh makes boxes).
 #pragma once
 
 #include <functional>

@@ -1,7 +1,8 @@
-// The solid inside a closed triangle surface answers closest points and signed distances, for collisions and as a
-// shape. Files, and the checks that make a surface closed, are in surface_file.h; small holes are tolerated. The sign
-// is that of the generalised winding number (Jacobson, Kavan, Sorkine-Hornung, Robust inside-outside segmentation using
-// generalized winding numbers, 2013): a point is inside where it exceeds 1/2, so that overlapping parts form a union.
+// Represents the solid inside a closed triangle surface and finds closest points and signed distances, for collisions
+// and as a shape. Files, and the checks that make a surface closed, are in surface_file.h; small holes are tolerated.
+// The sign is that of the generalised winding number (Jacobson, Kavan, Sorkine-Hornung, Robust inside-outside
+// segmentation using generalized winding numbers, 2013): a point is inside where it exceeds 1/2, so that overlapping
+// parts form a union.
 #pragma once
 
 #include <array>
@@ -17,7 +18,7 @@ namespace supple {
 // The object is constant after construction; queries may run on any number of threads and give the same bits on each.
 class TriangleSolid {
  public:
-  // The triangles must have an area, face outward, and have coordinates within +-1e50 (closed_surface sees to that).
+  // The triangles must have an area, face outward, and have coordinates within +-1e50 (closed_surface ensures this).
   explicit TriangleSolid(TriMesh surface);
 
   // Accepts any finite point. The distance is exact up to round-off of the surface's coordinates.

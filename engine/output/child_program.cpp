@@ -31,17 +31,17 @@ bool stopped_before_output(int output, pid_t child, const std::function<bool()>&
 
 constexpr int cannot_start = 127;
 
-// The signal that a child gets when the thread that started it ends; 0: none.
+// Names the signal that a child gets when the thread that started it ends; 0: none.
 struct Bond {
   int signal = 0;
   pid_t parent = 0;
 };
 
-// Runs in the child, which may have been forked off one of many threads, so it makes system calls alone.
+// Runs in the child. Because it may have been forked from one of many threads, it makes only system calls.
 [[noreturn]] void become_program(const std::vector<char*>& arguments, int input, int output, Bond bond,
                                  const sigset_t& signals) {
-  // The child stands in a process group of its own: we handle Ctrl-C on the terminal, and an encoder shall finish what
-  // it has.
+  // The child runs in a process group of its own: this process handles Ctrl-C on the terminal, and an encoder must be
+  // able to finish the frames that it has.
   ::setpgid(0, 0);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction action {};
@@ -60,7 +60,7 @@ struct Bond {
   ::_exit(cannot_start);
 }
 
-// Forks and starts the program. input: its standard input; -1: an empty one. Returns -1 where it cannot.
+// Forks and starts the program. input: its standard input; -1: an empty one. Returns -1 when it cannot fork.
 pid_t start_program(const std::vector<std::string>& words, int input, int output, int bond) {
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
@@ -75,7 +75,7 @@ pid_t start_program(const std::vector<std::string>& words, int input, int output
   return child;
 }
 
-// Appends what is there to read, and keeps the last of it. Returns false at the end.
+// Appends the bytes that can be read, and keeps the last 4 kB of the text. Returns false at the end.
 bool read_some(int file, std::string& text) {
   constexpr std::size_t kept = 4096;
   char buffer[4096];
@@ -100,7 +100,8 @@ std::optional<ProgramEnd> wait_for_end(pid_t child, std::string output) {
   return not_found ? std::nullopt : std::optional(std::move(end));
 }
 
-// While one of these objects lives, SIGPIPE is kept from the calling thread; one that came is dropped at the end.
+// While one of these objects lives, SIGPIPE is blocked in the calling thread; a signal that arrived meanwhile is
+// dropped at the end.
 class NoSigpipe {
  public:
   NoSigpipe() {
@@ -175,8 +176,8 @@ void FedProgram::close_input() {
   input_ = -1;
 }
 
-// Waits until the program takes bytes or has ended, and reads meanwhile what it tells, for which it may wait in turn.
-// Returns false when waiting fails.
+// Waits until the program takes bytes or has ended. Meanwhile it reads what the program writes, because the program may
+// be waiting for that in turn. Returns false when waiting fails.
 bool FedProgram::wait_for_room() {
   pollfd waited[] = {{input_, POLLOUT, 0}, {output_, POLLIN, 0}};
   if (::poll(waited, 2, -1) < 0) return errno == EINTR;

@@ -1,5 +1,5 @@
-// Runs other programs (ffmpeg, gnuplot, supple itself for a part of its work) without a shell, to their end or beside
-// this one.
+// Runs other programs (ffmpeg, gnuplot, supple itself for a part of its work) without a shell, either to their end or
+// at the same time as this one.
 #pragma once
 
 #include <sys/types.h>
@@ -20,28 +20,29 @@ struct ProgramEnd {
 };
 
 // Looks the program up in PATH and runs it with an empty standard input. Returns nothing when it is not installed.
-// stop: is asked several times a second; once it returns true, the program gets SIGINT and is still waited for. A
-// program that can be stopped does not outlive this process or thread: it gets SIGTERM when that ends, however it ends.
-// Several threads may call this.
+// stop: is called several times a second; once it returns true, the program gets SIGINT, and its end is still waited
+// for. A program that can be stopped does not outlive this process or thread: it gets SIGTERM when that ends in any
+// way. Several threads may call this function.
 std::optional<ProgramEnd> run_program(const std::vector<std::string>& words, const std::function<bool()>& stop = {});
 
-// A program that runs beside this one and reads from its standard input what it is given. Ctrl-C on the terminal does
-// not reach it. Only one thread may use it at a time.
+// Runs a program at the same time as this one and feeds its standard input. Ctrl-C on the terminal does not reach it.
+// Only one thread may use it at a time.
 class FedProgram {
  public:
-  // Looks the program up in PATH and starts it. It does not outlive the calling thread: it gets SIGKILL when that ends,
-  // however it ends.
+  // Looks the program up in PATH and starts it. The program does not outlive the calling thread: it gets SIGKILL when
+  // that thread ends in any way.
   explicit FedProgram(const std::vector<std::string>& words);
-  // Ends it with SIGKILL, unless its end has been waited for.
+  // Ends the program with SIGKILL, unless its end has already been waited for.
   ~FedProgram();
   FedProgram(const FedProgram&) = delete;
   FedProgram& operator=(const FedProgram&) = delete;
 
-  // Gives it bytes, and waits until it has taken them. Returns false once it takes no more, as after its death; no
-  // SIGPIPE comes of that.
+  // Gives the program bytes and waits until it has taken them. Returns false once it takes no more, for example after
+  // it has ended; that does not raise SIGPIPE.
   bool write(std::span<const std::uint8_t> bytes);
 
-  // Closes its input and waits for its end. Returns nothing when the program is not installed or cannot be started.
+  // Closes the program's input and waits for its end. Returns nothing when the program is not installed or cannot be
+  // started.
   std::optional<ProgramEnd> finish();
 
  private:

@@ -1,6 +1,6 @@
-// Keeps a folder to one process, because two runs that write into one folder destroy each other's results. The lock is
-// the system's, on the folder itself: it leaves no file behind, and ends with the process however that ends. It does
-// not protect against other machines that share the disk: each of them may know of its own locks only.
+// Reserves a folder for one process, because two runs that write into one folder destroy each other's results. The lock
+// is the system's, on the folder itself: it leaves no file behind and ends with the process, in whatever way that ends.
+// It does not protect against other machines that share the disk, because each of them may know only of its own locks.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Tells people in what two JSON documents differ: "body.soft.material.mu: 4e4 and 5e4".
+// Describes to people how two JSON documents differ: "body.soft.material.mu: 4e4 and 5e4".
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@ struct JsonDifference {
 // Texts that are not JSON differ as a whole.
 std::vector<JsonDifference> differing_values(const std::string& a, const std::string& b);
 
-// Gives the same as sentences, with long values shortened; at most `most` of them.
+// Gives the same differences as sentences, with long values shortened; at most `most` of them.
 std::vector<std::string> json_differences(const std::string& a, const std::string& b, std::size_t most = 10);
 
 }  // namespace supple

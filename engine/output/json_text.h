@@ -1,5 +1,5 @@
-// JSON as text, both ways. The library's parser and writer are compiled here alone: every unit that called them would
-// compile them anew, and they take seconds. Json is nlohmann::json or nlohmann::ordered_json.
+// Converts JSON to text and back. The library's parser and writer are compiled only here: every unit that called them
+// would have to compile them again, which takes seconds. Json is nlohmann::json or nlohmann::ordered_json.
 #pragma once
 
 #include <istream>
@@ -9,10 +9,10 @@
 
 namespace supple {
 
-// On one line, or with this indent. Strings need not be UTF-8; bytes that are not are replaced.
+// Writes the text on one line, or with this indent. Strings need not be UTF-8; invalid bytes are replaced.
 template <class Json>
 std::string json_text(const Json& json, int indent = -1);
-// The same for text that must not change unnoticed: throws nlohmann::json::type_error where a string is not UTF-8.
+// Does the same for text that must not change unnoticed: throws nlohmann::json::type_error when a string is not UTF-8.
 template <class Json>
 std::string exact_json_text(const Json& json, int indent = -1);
 

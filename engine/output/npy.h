@@ -24,7 +24,7 @@ struct NpyArray {
   std::vector<T> values;  // row by row; the writer defines their unit
 };
 
-// Writes the values of an array of this shape, row by row. Throws RunError when the disk refuses.
+// Writes the values of an array of this shape, row by row. Throws RunError when the file cannot be written.
 void write_npy(const std::filesystem::path& path, NpyShape shape, std::span<const double> values);
 void write_npy(const std::filesystem::path& path, NpyShape shape, std::span<const std::int32_t> values);
 

@@ -38,7 +38,7 @@ std::size_t begin_chunk(std::string_view name, std::vector<std::uint8_t>& bytes)
 constexpr int channels = 3;
 
 // Puts the number of its filter before each row: 0, which leaves the row as it is (PNG specification, section 9.2).
-// Other filters made files a quarter smaller and took longer than they saved the compressor.
+// Other filters made the files a quarter smaller, but took more time than they saved in compression.
 std::vector<std::uint8_t> unfiltered(int width, int height, std::span<const std::uint8_t> rgb) {
   const std::size_t row_bytes = std::size_t(width) * channels;
   std::vector<std::uint8_t> rows((row_bytes + 1) * height);

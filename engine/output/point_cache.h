@@ -13,8 +13,8 @@ namespace supple {
 // Tells whether the file has the first `frames` frames of so many points, whatever follows them.
 bool point_cache_has(const std::filesystem::path& path, int points, int frames);
 
-// Returns the positions as a cache gives them back, which holds them in single precision. A film draws these, so that
-// it can be drawn again from its motion to the same bytes.
+// Returns the positions as a cache gives them back: it holds them in single precision. A film draws these, so that it
+// can be drawn again from its motion with the same bytes.
 Positions as_cached(const Positions& points);
 
 class PointCacheWriter {

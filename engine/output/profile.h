@@ -1,5 +1,5 @@
-// Holds what a run took, frame by frame, for profile.json and for a table on the terminal. The rows are plain data; the
-// caller fills them in.
+// Holds the times and figures of a run, frame by frame, for profile.json and for a table on the terminal. The rows are
+// plain data; the caller fills them in.
 #pragma once
 
 #include <array>
@@ -81,8 +81,8 @@ std::vector<StageSummary> summarize(const std::vector<FrameRow>& rows);
 // elements that are inverted or without volume at the end, and depths inside colliders (penetration_warnings).
 std::vector<std::string> warnings_of(const std::vector<FrameRow>& rows);
 
-// Writes rows as text (profile_json.cpp): all rows of a run, or one row as a line of its own.
-// verdict: on the whole run (verdict.h); empty: none.
+// Writes rows as text (profile_json.cpp): all rows of a run, or one row as a line of its own. verdict: the verdict on
+// the whole run (verdict.h); empty: none.
 std::string profile_json(const std::vector<FrameRow>& rows, const std::string& verdict = "");
 std::string row_line(const FrameRow& row);
 

@@ -29,7 +29,7 @@ std::vector<std::string> body_names(const RunRecord& run) {
   return names;
 }
 
-// The point cache of a body, with at least this many frames.
+// Opens the point cache of a body, which must hold at least this many frames.
 PointCacheReader open_motion(const RunRecord& run, const std::string& body, int frames) {
   PointCacheReader reader(run.motion(body));
   if (reader.frames() < frames) {

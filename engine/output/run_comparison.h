@@ -1,5 +1,5 @@
-// Two runs held against each other: states, distances of the saved motion, step times, and what was run. Not here:
-// words about it (app/compare_verb.cpp).
+// Compares two runs: their states, the distances between their saved motions, step times, and what was run. Not here:
+// the text about it (app/compare_verb.cpp).
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace supple {
 
-// How far a body of one run is from the same body of the other.
+// Tells how far a body of one run is from the same body of the other.
 struct FrameDistance {
   double largest = 0;  // of its vertices [m]
   double rms = 0;      // root of the mean square over its vertices [m]
@@ -36,15 +36,15 @@ struct RunComparison {
   double step_ms_a = 0, step_ms_b = 0;         // median over all frames but the first [ms]
   std::vector<JsonDifference> differences;     // of run.json, but for how the run itself went
 
-  // The same bodies and frames, all with the same hash.
+  // Tells whether both runs have the same bodies and frames, all with the same hash.
   bool same_states() const;
-  // Whether a body's saved motion differs where the states do not: somebody has changed a file.
+  // Tells whether a body's saved motion differs where the states do not, which means that a file was changed.
   bool only_motion_differs(const BodyComparison& body) const;
   bool same_motion() const;
 };
 
-// Throws InputError naming the file: a run without a profile, a point cache that is damaged or holds fewer frames than
-// the profile.
+// Throws InputError with the name of the file when a run has no profile, or when a point cache is damaged or holds
+// fewer frames than the profile.
 RunComparison compare_runs(const RunRecord& a, const RunRecord& b);
 
 }  // namespace supple

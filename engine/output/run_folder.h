@@ -1,5 +1,5 @@
 // Manages the folder that a run leaves behind: run.json, frames/, video.mp4, motion/, profile.json and checkpoint/, and
-// states/ and fields/ if they are asked for.
+// states/ and fields/ if they were requested.
 #pragma once
 
 #include <cstdint>
@@ -34,9 +34,9 @@ struct RunInfo {
 // Writes the information as run.json holds it.
 std::string info_json(const RunInfo& info);
 
-// Names the picture of a frame in a folder of pictures.
+// Returns the file of a frame's picture in a folder of pictures.
 std::filesystem::path picture_file(const std::filesystem::path& frames, int index);
-// Removes the pictures of frames from `first` on, and those that are not whole yet. Other files stay.
+// Removes the pictures of frames from `first` on, and those that are incomplete. Other files stay.
 void remove_pictures(const std::filesystem::path& frames, int first);
 
 class RunFolder {

@@ -1,4 +1,4 @@
-// Reads back a folder that a run left: what run.json and profile.json say. run_folder.h writes them.
+// Reads back a folder that a run has left: the content of run.json and profile.json. run_folder.h writes them.
 #pragma once
 
 #include <filesystem>

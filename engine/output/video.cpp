@@ -20,14 +20,15 @@ std::filesystem::path part_of(const std::filesystem::path& video) {
   return video.parent_path() / (video.stem().string() + ".part" + video.extension().string());
 }
 
-// The number of the encoder's threads, which depends on the film alone, because another number gives other bytes. One
-// thread encodes 80 frames of 1280 x 720 a second, more than are drawn; more threads would only take cores from the
-// solver.
+// Returns the number of the encoder's threads. It depends on the size of the film alone, because another number gives
+// other bytes. One thread encodes 80 frames of 1280 x 720 per second, more than are drawn; more threads would only take
+// cores away from the solver.
 int encoder_threads(int width, int height) { return std::clamp(width * height / (1280 * 720), 1, 8); }
 
-// Medium, x264's default, at 17 took 38 ms of processor time for a frame of 1280 x 720 of `squirrel` (SSIM 26.6 dB, 333
-// kB for 60 frames); superfast at 18 takes 12.5 ms, no less alike (26.8 dB), but 642 kB, which is little beside the
-// frames' files. Veryfast at 14: 18.5 ms, 26.7 dB, 463 kB. Of these, 4 ms are the conversion and the start of ffmpeg.
+// Preset medium, x264's default, at quality 17 took 38 ms of processor time for a frame of 1280 x 720 of `squirrel`
+// (SSIM 26.6 dB, 333 kB for 60 frames). Superfast at 18 takes 12.5 ms and comes as close to the frames (26.8 dB), but
+// needs 642 kB, which is little compared with the files of the frames. Veryfast at 14 gave 18.5 ms, 26.7 dB and 463 kB.
+// In each of these times, 4 ms are the conversion and the start of ffmpeg.
 constexpr const char *preset = "superfast", *quality = "18";
 
 std::vector<std::string> ffmpeg_words(const std::filesystem::path& part, int width, int height, double fps) {

@@ -1,4 +1,5 @@
-// Makes a film with the ffmpeg program, which runs beside this one and gets each frame once it is drawn.
+// Makes a film with the ffmpeg program, which runs at the same time as this one and receives each frame once it is
+// drawn.
 #pragma once
 
 #include <cstdint>
@@ -21,22 +22,24 @@ struct VideoResult {
   double cpu_ms = 0;   // processor time of ffmpeg for all frames
 };
 
-// A film in progress: H.264 in BT.709 colours, and the file says so. Equal frames give equal bytes.
+// Encodes a film in H.264 with BT.709 colours, which the file declares. Equal frames give equal bytes.
 class VideoEncoder {
  public:
-  // The file is written under another name, which nothing is left of unless the film becomes whole. The encoder must be
-  // used and end in the thread that makes it, but for add(), which may be called by one other thread meanwhile.
+  // The file is written under a temporary name, and nothing of it remains unless the film becomes complete. The encoder
+  // must be used and destroyed in the thread that creates it, except for add(), which one other thread may call
+  // meanwhile.
   VideoEncoder(std::filesystem::path video, int width, int height, double fps);
   ~VideoEncoder();
 
-  // Adds a frame: 8-bit sRGB, rows from the top. Waits while ffmpeg is busy. Returns false once ffmpeg takes no more.
+  // Adds a frame: 8-bit sRGB, rows from the top. Waits while ffmpeg is busy. Returns false once ffmpeg takes no more
+  // frames.
   bool add(std::span<const std::uint8_t> rgb);
 
-  // Adds frames 000000.png and the following ones of a folder, until `count` frames are there in all. Where one cannot
-  // be read, there will be no film.
+  // Adds the frames of a folder (000000.png, 000001.png, ...) that have not been added yet, until `count` frames have
+  // been added in all. If one of them cannot be read, no film is made.
   void add_files(const std::filesystem::path& frames, int count);
 
-  // The number of frames that were added, whether or not ffmpeg took them.
+  // Returns the number of frames that were added, whether or not ffmpeg took them.
   int frames() const { return frames_; }
 
   // Ends the film, counts the frames in it, and gives the file its name. Frames can no longer be added.

@@ -1,6 +1,6 @@
-// Writes fields over meshes as ParaView reads them: VTK's XML files of unstructured grids (.vtu), and collections of
-// them over time (.pvd). Numbers are inline base64 of little-endian bytes, each array after its length as UInt64 ("VTK
-// file formats", section XML). What the fields mean is not known here.
+// Writes fields over meshes in the form that ParaView reads: VTK's XML files of unstructured grids (.vtu), and
+// collections of them over time (.pvd). Numbers are inline base64 of little-endian bytes, and the length of each array
+// comes before it as UInt64 ("VTK file formats", section XML). The meaning of the fields is not known here.
 #pragma once
 
 #include <cstdint>
@@ -31,10 +31,10 @@ struct VtuGrid {
   std::vector<VtuArray> point_data, cell_data;
 };
 
-// Writes the grid. The file is either whole or not there. Throws RunError when the disk refuses.
+// Writes the grid. The file is either complete or absent. Throws RunError when it cannot be written.
 void write_vtu(const std::filesystem::path& path, const VtuGrid& grid);
 
-// Says which file shows which time; the files lie beside the collection and are given by name.
+// Names the file that shows a time; the files lie in the same folder as the collection and are given by name.
 struct PvdEntry {
   double time_s;
   std::string file;

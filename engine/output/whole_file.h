@@ -1,4 +1,5 @@
-// Writes files so that those that exist are whole: under a temporary name in the same folder, and then renamed.
+// Writes files so that every file that exists is complete: it is written under a temporary name in the same folder, and
+// then renamed.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +9,7 @@
 
 namespace supple {
 
-// Throws RunError naming the file and the system's reason; no temporary file is left behind.
+// Throws RunError with the name of the file and the system's reason; no temporary file is left behind.
 void write_whole_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 void write_whole_file(const std::filesystem::path& path, std::string_view text);
 // The same, and waits for the disk: after a loss of power the file is the earlier or the new one, and whole.

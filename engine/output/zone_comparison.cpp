@@ -15,13 +15,13 @@ namespace supple {
 namespace {
 
 constexpr int most_regroupings = 2000;
-// A zone's change is taken to spread at least this much: clocks and caches are no steadier between two processes.
+// The change of a zone is assumed to vary at least this much: clocks and caches are no steadier between two processes.
 constexpr double least_spread = 0.002;
 
 using Times = std::vector<std::vector<double>>;  // by repeat, then by frame
 using Group = std::vector<int>;                  // places of repeats, in order
 
-// Holds a zone's repeats of both profiles; those of the profile before come first.
+// Holds the repeats of a zone in both profiles; those of the profile `before` come first.
 struct Pooled {
   ZoneChange change;
   Times ms;
@@ -86,16 +86,16 @@ Times pooled(const Times& before, const Times& after) {
   return all;
 }
 
-// Holds one zone's own time, without the zones within, summed over all places where it occurs: a change to that part of
-// the code shows in all of them.
+// Holds one zone's own time, without the zones within it, summed over all places where the zone occurs, because a
+// change to that part of the code affects all of them.
 struct Part {
   std::string thread, name;
   Times ms;
 };
 
-// Returns the zone to which a zone's time counts, or nothing when it is not tested. Waiting for workers counts to the
-// zone that requested their work, because they work in its place. How much each worker does is chance, and waiting for
-// another stage is no work.
+// Returns the zone to which a zone's time is counted, or nothing when it is not tested. Waiting for workers is counted
+// to the zone that requested their work, because they do its work. How much each worker does is random, and waiting for
+// another stage is not work.
 std::string part_of(const ZoneTimes& zone) {
   if (zone.thread == "worker") return "";
   if (zone.name() == "wait for workers") return ZoneTimes{"", zone.path.substr(0, zone.path.rfind('/'))}.name();
@@ -134,8 +134,8 @@ bool large_enough(const ZoneProfile& profile, const Part* part) {
   return least_time(part->ms, all) >= least_share * least_time(profile.zones.front().ms, all);
 }
 
-// Collects the frame, and the parts that occur in both profiles and are large enough in one of them. The names of those
-// that occur in one profile only go to the result.
+// Collects the frame and the parts that occur in both profiles and are large enough in one of them. The names of parts
+// that occur in only one profile go to the result.
 std::vector<Pooled> tested_zones(const ZoneProfile& before, const ZoneProfile& after, ZoneComparison& result) {
   const ZoneTimes &frame_before = before.zones.front(), &frame_after = after.zones.front();
   const std::vector<Part> parts_before = parts_of(before), parts_after = parts_of(after);
@@ -162,14 +162,14 @@ std::vector<double> log_ratios(const Times& ms, const std::vector<Group>& groups
   for (const Group& group : groups) {
     const double before = least_time(ms, group);
     const double after = least_time(ms, complement(group, static_cast<int>(ms.size())));
-    // The change of a zone that takes no time at all on one side is beyond measure, so a bound stands for it.
+    // The change of a zone that takes no time at all on one side cannot be measured, so a bound stands for it.
     ratios.push_back(before > 0 && after > 0 ? std::log(after / before) : before > 0 ? -50 : after > 0 ? 50 : 0);
   }
   return ratios;
 }
 
-// Computes a zone's change relative to that of the rest of the frame, less 1; where there is next to no rest, its own
-// change.
+// Computes a zone's change relative to that of the rest of the frame, less 1. Where almost nothing remains of the
+// frame, it is the zone's own change.
 double against_rest(const ZoneChange& zone, const ZoneChange& frame) {
   const bool within = zone.thread == frame.thread;
   const double before = frame.before_ms - (within ? zone.before_ms : 0);
@@ -179,7 +179,7 @@ double against_rest(const ZoneChange& zone, const ZoneChange& frame) {
   return (1 + zone.change) / (after / before) - 1;
 }
 
-// Fills in what the regroupings say of all zones; the first one is the frame.
+// Fills in, for all zones, what follows from the regroupings; the first zone is the frame.
 void test(std::vector<Pooled>& zones, const std::vector<Group>& groups) {
   std::vector<double> clearest(groups.size(), 0.0);  // the largest statistic of all zones, for each regrouping
   std::vector<double> own;                           // each zone's statistic as measured

@@ -1,6 +1,6 @@
-// Compares two profiles of one run, zone by zone, by the zones' names: what became slower or faster, and whether that
-// is beyond the noise. The test is a permutation test with the largest statistic of all zones (Westfall and Young 1993,
-// "Resampling-based multiple testing"); docs/profiling.md explains it in words.
+// Compares two profiles of one run, zone by zone, by the zones' names: which became slower or faster, and whether the
+// change exceeds the noise. The test is a permutation test with the largest statistic of all zones (Westfall and Young
+// 1993, "Resampling-based multiple testing"); docs/profiling.md explains it in words.
 #pragma once
 
 #include <string>
@@ -10,11 +10,13 @@
 
 namespace supple {
 
-// A zone that is named changed by at least this much. A smaller change says nothing: memory lies elsewhere in every
-// run, and other programs use the memory bus. It must also have changed this much against the rest of the frame: a
-// machine that is slower for minutes slows all zones, and those that wait for memory up to a tenth more than others.
+// A zone is named in the result only if it changed by at least this much. A smaller change means nothing, because
+// memory lies elsewhere in every run and other programs use the memory bus. The zone must also have changed this much
+// relative to the rest of the frame: a machine that is slower for minutes slows all zones, and those that wait for
+// memory up to a tenth more than others.
 constexpr double least_change = 0.1;
-// This share of the frame is the least that a tested zone takes, and the least by which a named zone changed it.
+// A zone is tested only if it takes at least this share of the frame, and named only if it changed the frame by at
+// least this share.
 constexpr double least_share = 0.01;
 constexpr double significance = 0.05;  // chance that any zone is named although the profiles are equal
 // With fewer repeats no result can be significant: 4 and 4 can be regrouped in 70 ways.
@@ -34,15 +36,15 @@ struct ZoneComparison {
   ZoneChange frame;                                  // the whole frame, with all that lies in it
   std::vector<ZoneChange> zones;                     // by name, without what lies in them; those that are large enough
   std::vector<std::string> only_before, only_after;  // zones of that size that the other profile lacks
-  // Whether the frame changed beyond the noise, and no zone more than the others: the cause is the build or the
-  // machine.
+  // This is true when the frame changed beyond the noise and no zone changed more than the others: the cause is then
+  // the build or the machine.
   bool as_a_whole = false;
   int regroupings = 0;
   bool same_bits = true;  // both end in the same state
 };
 
-// Lists what two profiles would have to have in common but have not, as sentences that name both; empty when they can
-// be compared.
+// Lists, as sentences that name both values, where two profiles differ in what they must have in common; empty when
+// they can be compared.
 std::vector<std::string> differences(const ProfiledRun& before, const ProfiledRun& after);
 
 // Expects profiles without differences() and with at least least_repeats_compared repeats each.

@@ -16,7 +16,7 @@ constexpr double least_shown = 0.001;  // share of the frame below which zones h
 
 using Times = std::vector<std::vector<double>>;
 
-// Returns the first frame that counts: the first of all is left out, unless it is the only one.
+// Returns the first frame that counts: the very first one is left out, unless it is the only one.
 std::size_t first_counted(const ZoneProfile& profile) { return profile.run.frames > 1 ? 1 : 0; }
 
 std::vector<double> counted(const ZoneProfile& profile, const Times& ms) {

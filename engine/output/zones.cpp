@@ -18,7 +18,7 @@ std::vector<const TraceEvent*> frames_of(const ThreadTrace& thread) {
   return frames;
 }
 
-// Returns the number of the frame that was being made at that time; -1 before the first and after the last.
+// Returns the number of the frame that was being made at that time, or -1 before the first and after the last frame.
 int frame_at(const std::vector<const TraceEvent*>& frames, std::int64_t ns) {
   const auto after = std::ranges::upper_bound(frames, ns, {}, [](const TraceEvent* f) { return f->begin_ns; });
   if (after == frames.begin() || ns > frames.back()->end_ns) return -1;

@@ -1,5 +1,5 @@
-// Tells where a film's time went, zone by zone and frame by frame, over repeats of the same run: from traces, as
-// zones.json, and as a table. docs/profiling.md explains it to users.
+// Holds where a film's time went, zone by zone and frame by frame, over repeats of the same run: collected from traces,
+// stored as zones.json, and shown as a table. docs/profiling.md explains it to users.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 namespace supple {
 
-// Describes what was run: what two profiles must have in common to be compared, and what may differ.
+// Describes what was run: the values that two profiles must have in common to be compared, and those that may differ.
 struct ProfiledRun {
   std::string scene;                                        // its name
   std::string scene_json;                                   // as resolved after --set
@@ -38,7 +38,7 @@ struct ZoneTimes {
   std::string name() const;  // the last part of the path
 };
 
-// Holds the times of what runs once, before the frames or after them.
+// Holds the times of work that is done once, before the frames or after them.
 struct SetupTimes {
   std::string name;
   std::vector<double> ms;  // by repeat
@@ -79,7 +79,8 @@ class ZoneCollector {
 // Adds the repeats of another profile of the same run to this profile's.
 void add_repeats(const ZoneProfile& more, ZoneProfile& profile);
 
-// Writes and reads zones.json. Reading throws InputError naming the file where it cannot be read or is not such a text.
+// Writes and reads zones.json. Reading throws InputError with the name of the file when it cannot be read or is not
+// such a text.
 std::string zones_json(const ZoneProfile& profile);
 ZoneProfile read_zones(const std::filesystem::path& path);
 

@@ -1,4 +1,4 @@
-// Draws words as grey bitmaps, with FreeType.
+// Draws text as grey bitmaps, with FreeType.
 #pragma once
 
 #include <cstdint>

@@ -27,7 +27,8 @@ void Captions::renew(std::size_t index, const DrawMesh& mesh) {
   labels_[index] = {};
   if (font_.empty() || mesh.label.empty()) return;
   const int pixels = std::max(9, static_cast<int>(std::lround(height_ / 32.0)));
-  // The caption stands on the ground: a body that hangs in the air moves to a place below its start.
+  // The caption is placed on the ground: for a body that hangs in the air, it is moved down to a place below the body's
+  // start.
   const CaptionBitmap bitmap = draw_caption(font_, mesh.label, pixels);
   Label label{0, bitmap.width, bitmap.height,
               Vec3(mesh.rest.center().x(), std::min(mesh.rest.lower.y(), 0.0), mesh.rest.upper.z())};
@@ -50,8 +51,8 @@ void Captions::draw(const Eigen::Matrix4f& view) const {
     if (label.texture == 0) continue;
     const Eigen::Vector4f clip = view * label.anchor.homogeneous().cast<float>();
     if (clip.w() <= 0) continue;
-    // Positions are whole pixels, so that the letters stay sharp. The caption stands below the body, or at the bottom
-    // edge when there is no room.
+    // Positions are whole pixels, so that the letters stay sharp. The caption is placed below the body, or at the
+    // bottom edge when there is no room.
     const double x = std::round((clip.x() / clip.w() * 0.5 + 0.5) * width_ - 0.5 * label.width);
     const double below = (clip.y() / clip.w() * 0.5 + 0.5) * height_ - 0.035 * height_;
     const double y = std::round(std::max(below - label.height, 0.01 * height_));

@@ -13,13 +13,14 @@ namespace supple {
 
 class Captions {
  public:
-  // font: a file; there are no captions when it is empty. height: of the picture in pixels, which the letters follow.
+  // font: a file; there are no captions when it is empty. height: that of the picture in pixels, to which the size of
+  // the letters is proportional.
   Captions(const GlTable& gl, const std::filesystem::path& shaders, std::string font, int width, int height);
   ~Captions();
   Captions(const Captions&) = delete;
   Captions& operator=(const Captions&) = delete;
 
-  // Makes the captions of a stage, or the one of a mesh that has changed.
+  // Makes the captions of a stage again, or only that of a mesh that has changed.
   void renew(const std::vector<DrawMesh>& meshes);
   void renew(std::size_t index, const DrawMesh& mesh);
 

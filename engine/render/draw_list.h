@@ -1,4 +1,4 @@
-// Says what there is to draw, as plain arrays, without GL and without physics. A Stage is given once, a DrawList for
+// Describes what is to be drawn, as plain arrays, without GL and without physics. A Stage is given once, a DrawList for
 // each frame.
 #pragma once
 
@@ -20,13 +20,13 @@ struct PaintColor {
 
 enum class Printed { grid, checks };
 
-// A surface whose vertices move while its other attributes stay.
+// Describes a surface whose vertices move while its other attributes stay.
 struct DrawMesh {
-  std::string label;                         // caption; none when empty
-  std::vector<std::uint32_t> triangles;      // vertex indices, three a triangle, anticlockwise from outside
+  std::string label;                            // caption; none when empty
+  std::vector<std::uint32_t> triangles;         // vertex indices, three a triangle, anticlockwise from outside
   std::vector<std::uint32_t> shadow_triangles;  // the same, those that cast its shadow; all of them when empty
-  std::vector<float> occlusion;              // by vertex, from 1 (open sky) to 0 (no sky)
-  std::vector<std::array<float, 8>> paint;   // by vertex: signed distance to each layer, negative where it covers
+  std::vector<float> occlusion;                 // by vertex, from 1 (open sky) to 0 (no sky)
+  std::vector<std::array<float, 8>> paint;      // by vertex: signed distance to each layer, negative where it covers
   std::vector<std::array<float, 2>> square;  // by vertex: place in a printed pattern, in squares; no pattern when empty
   Printed printed = Printed::grid;
   bool two_sided = false;          // for cloth, and for bodies that may be inside out

@@ -52,7 +52,10 @@ std::vector<EglDevice> find_devices(void* library) {
     const bool software = words.find("EGL_MESA_device_software") != std::string_view::npos;
     const bool has_file = words.find("EGL_EXT_device_drm") != std::string_view::npos;
     const char* file = has_file && !software ? text(devices[i], EGL_DRM_DEVICE_FILE_EXT) : nullptr;
-    found.push_back({devices[i], software, software ? "software" : file != nullptr ? file : "a card without a device file"});
+    found.push_back({devices[i], software,
+                     software          ? "software"
+                     : file != nullptr ? file
+                                       : "a card without a device file"});
   }
   return found;
 }
@@ -159,7 +162,8 @@ std::string GlContext::open_egl() {
   if (get_display != nullptr) {
     if (open_display(library, get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr))) return "";
     for (const EglDevice& device : find_devices(library)) {
-      if (device.software && open_display(library, get_display(EGL_PLATFORM_DEVICE_EXT, device.handle, nullptr))) return "";
+      if (device.software && open_display(library, get_display(EGL_PLATFORM_DEVICE_EXT, device.handle, nullptr)))
+        return "";
     }
   }
   dlclose(library);

@@ -1,6 +1,6 @@
-// Makes an OpenGL 3.3 core context without a window, through OSMesa, which draws in software, or through EGL, which also
-// reaches graphics cards (Mesa dropped OSMesa in 25.1). The libraries are opened at run time, so that a machine without
-// either still simulates.
+// Creates an OpenGL 3.3 core context without a window, through OSMesa, which draws in software, or through EGL, which
+// also reaches graphics cards (Mesa dropped OSMesa in 25.1). The libraries are opened at run time, so a machine without
+// either can still simulate.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,8 @@
 
 namespace supple {
 
-// Automatic: a graphics card where EGL finds one, else OSMesa, else EGL in software. egl: the same without OSMesa.
+// The value `automatic` chooses a graphics card where EGL finds one, otherwise OSMesa, otherwise EGL in software; `egl`
+// does the same without OSMesa.
 enum class GlChoice { automatic, osmesa, egl };
 template <>
 struct Names<GlChoice> {
@@ -19,13 +20,14 @@ struct Names<GlChoice> {
                                        Name{GlChoice::egl, "egl"}};
 };
 
-// What EGL finds on this machine: the device files of graphics cards, and "software" for rasterisers. Empty without EGL.
+// Lists what EGL finds on this machine: the device files of graphics cards, and "software" for rasterisers. Empty
+// without EGL.
 std::vector<std::string> egl_devices();
 
 class GlContext {
  public:
   // Makes the context current on the calling thread, which must be the one that draws with it and destroys it. Throws
-  // RunError saying what was tried, and which packages provide it.
+  // RunError with what was tried, and with the packages that provide it.
   explicit GlContext(GlChoice choice);
   ~GlContext();
   GlContext(const GlContext&) = delete;
@@ -36,11 +38,11 @@ class GlContext {
   const char* backend() const { return backend_; }
 
  private:
-  // Each of these returns an empty text, or why it did not work.
+  // Each of these functions returns an empty text, or the reason why it failed.
   std::string open_osmesa();
   std::string open_cards();
   std::string open_egl();
-  // Tries to make a context on a display of an EGL library that is open.
+  // Tries to create a context on a display of an EGL library that is open.
   bool open_display(void* library, void* display);
 
   const char* backend_ = "";

@@ -86,10 +86,10 @@ struct GlTable {
 #undef SUPPLE_GL_MEMBER
 };
 
-// Throws RunError naming the first function that the context does not have.
+// Throws RunError with the name of the first function that the context does not have.
 GlTable load_gl(const GlContext& context);
 
-// Throws RunError when GL has recorded an error, and says what was being done.
+// Throws RunError when GL has recorded an error; the message says what was being done.
 void check_gl(const GlTable& gl, const char* doing);
 
 }  // namespace supple

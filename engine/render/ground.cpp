@@ -91,7 +91,8 @@ void Ground::mark_shadows(const Eigen::Matrix4f& view, const StageLight& light, 
                           const std::vector<DrawMesh>& meshes, const std::vector<std::vector<float>>& positions) {
   const auto across_x = static_cast<float>(light.to_key.x() / light.to_key.y());
   const auto across_z = static_cast<float>(light.to_key.z() / light.to_key.y());
-  // The widest border is a disc before the light, which the ground stretches; it is at most this large in the picture.
+  // The widest border of a shadow is a disc in front of the light, which the ground stretches; this bounds its size in
+  // the picture.
   const double nearest = std::max((light.camera.eye - center_).norm() - radius_, 0.25 * radius_);
   const double margin = penumbra / light.to_key.y() / nearest / light.rays.up.norm();
   for (std::size_t m = 0; m < meshes.size(); ++m) {

@@ -1,6 +1,6 @@
-// Draws the seamless ground and the background behind it. What bodies leave alone is drawn once and copied into each
-// frame; each frame draws again only the part of the ground that shadows may reach. How much light arrives there is
-// found at half the picture's resolution, because it changes little from pixel to pixel.
+// Draws the seamless ground and the background behind it. The parts on which bodies have no effect are drawn once and
+// copied into each frame; each frame draws again only the part of the ground that shadows may reach. The light that
+// arrives there is computed at half the picture's resolution, because it changes little from pixel to pixel.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,12 +27,12 @@ struct StageLight {
   Rays rays;
 };
 
-// Gives the lights and rays to a program whose shader includes film.glsl and lighting.glsl.
+// Passes the lights and rays to a program whose shader includes film.glsl and lighting.glsl.
 void set_light(const Program& program, const StageLight& light);
 
 class Ground {
  public:
-  // bounds: of the stage; largest_body: a diagonal [m].
+  // bounds: those of the stage. largest_body: diagonal of the largest body [m].
   Ground(const GlTable& gl, const std::filesystem::path& shaders, int width, int height, const Bounds& bounds,
          double largest_body);
   ~Ground();

@@ -13,7 +13,7 @@ GroundOcclusion::GroundOcclusion(const Bounds& stage, double largest_body)
   origin_z_ = stage.center().z() - 0.5 * extent_;
 }
 
-// Notes that there is a surface at a point.
+// Records that there is a surface at a point.
 void GroundOcclusion::lower(float x, float y, float z) {
   if (y > reach_) return;
   const double cell = extent_ / cells, by_cell = cells / extent_;
@@ -23,7 +23,8 @@ void GroundOcclusion::lower(float x, float y, float z) {
   low = std::min(low, std::max(y, static_cast<float>(0.35 * cell)));
 }
 
-// The same for points of a triangle that lie less than a cell apart. Its corners are left out: they are noted already.
+// Does the same for points of a triangle that are less than a cell apart. The corners of a small triangle are enough,
+// and they have been recorded already.
 void GroundOcclusion::lower_over_triangle(const float* a, const float* b, const float* c) {
   const auto span = [](float p, float q, float r) { return std::max({p, q, r}) - std::min({p, q, r}); };
   const double cell = extent_ / cells;
@@ -32,7 +33,8 @@ void GroundOcclusion::lower_over_triangle(const float* a, const float* b, const 
   const int parts = std::min(static_cast<int>(std::ceil(widest / cell)), 2 * cells);
   for (int i = 0; i <= parts; ++i) {
     for (int k = 0; k <= parts - i; ++k) {
-      const float s = static_cast<float>(i) / static_cast<float>(parts), t = static_cast<float>(k) / static_cast<float>(parts);
+      const float s = static_cast<float>(i) / static_cast<float>(parts),
+                  t = static_cast<float>(k) / static_cast<float>(parts);
       lower(a[0] + s * (b[0] - a[0]) + t * (c[0] - a[0]), a[1] + s * (b[1] - a[1]) + t * (c[1] - a[1]),
             a[2] + s * (b[2] - a[2]) + t * (c[2] - a[2]));
     }

@@ -1,5 +1,5 @@
-// Computes how much of the sky the bodies hide from the ground below them: the contact shadow that makes a figure look
-// as if it stood there. Each frame, it is computed on a grid from the surface's vertices.
+// Computes how much of the sky the bodies hide from the ground below them: the contact shadow that makes a figure
+// appear to stand on the ground. It is computed in each frame, on a grid, from the surface's vertices.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@ namespace supple {
 
 class GroundOcclusion {
  public:
-  static constexpr int cells = 128;  // number of cells along each side
+  static constexpr int cells = 128;        // number of cells along each side
   static constexpr float unseen = 0.008f;  // a part of the sky so small that its lack is less than a level
 
   // Covers a square of the ground around the stage.

@@ -41,8 +41,8 @@ std::string gl_text(const GlTable& gl, GLenum what) {
   return text != nullptr ? text : "";
 }
 
-// A zone of a stage of drawing. OpenGL works behind the caller's back; while a trace is recorded, each stage waits for
-// it, so that the zone holds the stage's own time.
+// Marks a stage of drawing as a zone. OpenGL works asynchronously; while a trace is recorded, each stage waits for it,
+// so that the zone holds the stage's own time.
 class DrawZone {
  public:
   DrawZone(const GlTable& gl, const char* name) : gl_(gl), zone_(name) {}
@@ -108,7 +108,7 @@ void Renderer::make_targets() {
   }
   gl_.GenFramebuffers(1, &visible_framebuffer_);
   gl_.BindFramebuffer(GL_FRAMEBUFFER, visible_framebuffer_);
-  // A texture with one sample of several is another kind of texture, and some drivers give it four.
+  // A multisample texture with one sample is another kind of texture, and some drivers give it four samples.
   const auto target = [this](GLuint& texture, GLenum format, GLenum meaning, GLenum attachment) {
     gl_.GenTextures(1, &texture);
     gl_.BindTexture(sample_texture(), texture);
@@ -239,11 +239,10 @@ void Renderer::shade(const Eigen::Matrix4f& view, const StageLight& light, const
 
 Image Renderer::draw(const DrawList& list) {
   const double aspect = static_cast<double>(stage_.width) / stage_.height;
-  const Eigen::Matrix4f view =
-      view_matrix(list.camera, aspect, bounds_.center(), bounds_.diagonal() + largest_body_);
-  const StageLight light = {to_key_light(), list.camera, linear_of(stage_.background),
-                            linear_of(stage_.ground), stage_.exposure,
-                            rays_through(list.camera, stage_.width, stage_.height)};
+  const Eigen::Matrix4f view = view_matrix(list.camera, aspect, bounds_.center(), bounds_.diagonal() + largest_body_);
+  const StageLight light = {
+      to_key_light(),           list.camera,     linear_of(stage_.background),
+      linear_of(stage_.ground), stage_.exposure, rays_through(list.camera, stage_.width, stage_.height)};
   DrawZone zone(gl_, "upload");
   upload(list);
   zone.next("shadow map");

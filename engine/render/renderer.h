@@ -25,8 +25,8 @@ namespace supple {
 
 class Renderer {
  public:
-  // Throws RunError when there is no context, when the context is broken (a test picture shows it), and when shaders
-  // do not compile.
+  // Throws RunError when no context can be created, when the context is broken (a test picture shows it), and when
+  // shaders do not compile.
   Renderer(const Stage& stage, GlChoice choice, const std::filesystem::path& shaders);
   ~Renderer();
   Renderer(const Renderer&) = delete;

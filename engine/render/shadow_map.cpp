@@ -11,8 +11,8 @@
 namespace supple {
 namespace {
 
-// The light is a disc that is seen under this angle from the stage: at a distance d behind what casts it, a shadow's
-// border is 2 d tan(angle) wide.
+// The light is a disc that is seen under this angle from the stage: at a distance d behind the object that casts it,
+// the border of a shadow is 2 d tan(angle) wide.
 constexpr double tan_of_light = 0.14;
 
 constexpr int taps = 24;  // in the border of a shadow
@@ -36,8 +36,7 @@ ShadowMap::ShadowMap(const GlTable& gl, const std::filesystem::path& shaders, co
 
   gl_.GenTextures(1, &texture_);
   gl_.BindTexture(GL_TEXTURE_2D, texture_);
-  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, edge_, edge_, 0, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT,
-                 nullptr);
+  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, edge_, edge_, 0, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, nullptr);
   for (const auto& [key, value] : {std::pair{GL_TEXTURE_MIN_FILTER, GL_NEAREST},
                                    {GL_TEXTURE_MAG_FILTER, GL_NEAREST},
                                    {GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE},

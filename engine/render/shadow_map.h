@@ -1,5 +1,5 @@
-// The key light's shadow map: how far from the light the nearest surface is. The map is orthographic, covers the stage
-// with room for motion, and keeps its place for a whole film, so that shadows do not swim.
+// Draws the key light's shadow map: the distance from the light to the nearest surface. The map is orthographic, covers
+// the stage with room for motion, and keeps its place for a whole film, so that shadows do not shimmer.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,8 +12,8 @@ namespace supple {
 
 class ShadowMap {
  public:
-  // bounds: of the stage, with the ground below it; largest_body: a diagonal [m]; to_light: unit vector; width: of the
-  // picture in pixels, which the map's resolution follows.
+  // bounds: those of the stage, with the ground below it. largest_body: diagonal of the largest body [m]. to_light:
+  // unit vector. width: that of the picture in pixels, on which the map's resolution depends.
   ShadowMap(const GlTable& gl, const std::filesystem::path& shaders, const Bounds& bounds, double largest_body,
             const Vec3& to_light, int width);
   ~ShadowMap();
@@ -23,7 +23,7 @@ class ShadowMap {
   // Draws all meshes into the map.
   void draw(const SurfaceBuffers& surfaces, const std::vector<DrawMesh>& meshes) const;
 
-  // Gives the map and its numbers to a program whose shader includes shadow.glsl; the map takes this unit.
+  // Passes the map and its parameters to a program whose shader includes shadow.glsl; the map uses this unit.
   void bind(const Program& program, int unit) const;
 
   double widest_penumbra() const { return widest_; }  // radius in the world [m]

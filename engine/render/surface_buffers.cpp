@@ -11,8 +11,9 @@
 namespace supple {
 namespace {
 
-// A mesh's material in texels of four floats: linear colours with gloss, of which the first is the uncovered surface and
-// eight are its layers; the widths of the layers' borders, one in each of eight texels; the kind of print.
+// A mesh's material takes this many texels of four floats: linear colours with gloss, of which the first is the
+// uncovered surface and eight are its layers; the widths of the layers' borders, one in each of eight texels; the kind
+// of print.
 constexpr std::size_t material_texels = 18;
 
 void append_material(const DrawMesh& mesh, std::vector<float>& out) {
@@ -31,16 +32,18 @@ void append_material(const DrawMesh& mesh, std::vector<float>& out) {
   out[begin + 4 * 17] = mesh.square.empty() ? 0.0f : mesh.printed == Printed::grid ? 1.0f : 2.0f;
 }
 
-// What the shader must know of a triangle's colours: its mesh (16 bits), the topmost layer that covers all of it or zero
-// (4 bits), and which layers above that one have a border on it or close by (8 bits). Most triangles have none.
+// Packs what the shader must know of a triangle's colours: its mesh (16 bits), the topmost layer that covers all of it
+// or zero (4 bits), and which layers above that one have a border on it or close to it (8 bits). Most triangles have no
+// such border.
 std::uint32_t packed_look(const DrawMesh& mesh, std::size_t index, const std::uint32_t* corners) {
   std::uint32_t covering = 0, bordering = 0;
   for (std::size_t layer = 0; layer < std::min<std::size_t>(mesh.layers.size(), 8); ++layer) {
     const auto at = [&](int k) { return mesh.paint[corners[k]][layer]; };
     const auto [low, high] = std::minmax({at(0), at(1), at(2)});
-    // The shader widens a border to a pixel, which may be larger than the triangle: two hundredths of the body are more
-    // than a pixel of any picture in which one would look at borders.
-    const double reach = std::max({0.5 * mesh.layers[layer].soft, 0.6 * double(high - low), 0.02 * mesh.rest.diagonal()});
+    // The shader widens a border to a pixel, which may be larger than the triangle. Two hundredths of the body are more
+    // than a pixel in any picture that is large enough to show borders.
+    const double reach =
+        std::max({0.5 * mesh.layers[layer].soft, 0.6 * double(high - low), 0.02 * mesh.rest.diagonal()});
     if (low > reach) continue;
     if (high < -reach) {
       covering = static_cast<std::uint32_t>(layer + 1);
@@ -52,8 +55,8 @@ std::uint32_t packed_look(const DrawMesh& mesh, std::size_t index, const std::ui
   return static_cast<std::uint32_t>(index) | covering << 16 | bordering << 20;
 }
 
-// Numbers the patches of a mesh by vertex, from `first` on: triangles that share a vertex belong to one patch. A crease
-// has vertices of its own on both sides, so a patch is smooth.
+// Assigns a patch number to each vertex of a mesh, from `first` on: triangles that share a vertex belong to one patch.
+// A crease has separate vertices on its two sides, so a patch is smooth.
 void append_patches(const DrawMesh& mesh, unsigned first, std::vector<float>& out) {
   std::vector<std::uint32_t> parent(mesh.occlusion.size());
   std::iota(parent.begin(), parent.end(), 0u);
@@ -69,7 +72,9 @@ void append_patches(const DrawMesh& mesh, unsigned first, std::vector<float>& ou
 
 }  // namespace
 
-SurfaceBuffers::SurfaceBuffers(const GlTable& gl, const std::vector<DrawMesh>& meshes) : gl_(gl) { make_static(meshes); }
+SurfaceBuffers::SurfaceBuffers(const GlTable& gl, const std::vector<DrawMesh>& meshes) : gl_(gl) {
+  make_static(meshes);
+}
 
 SurfaceBuffers::~SurfaceBuffers() {
   for (const Lookup* lookup : {&places_, &normals_, &triangles_, &paint_, &squares_, &materials_}) {
@@ -143,7 +148,8 @@ void SurfaceBuffers::make_static(const std::vector<DrawMesh>& meshes) {
   gl_.VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 4 * sizeof(float), nullptr);
   gl_.GenBuffers(1, &patches_);
   gl_.BindBuffer(GL_ARRAY_BUFFER, patches_);
-  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(patches.size() * sizeof(float)), patches.data(), GL_STATIC_DRAW);
+  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(patches.size() * sizeof(float)), patches.data(),
+                 GL_STATIC_DRAW);
   gl_.EnableVertexAttribArray(1);
   gl_.VertexAttribPointer(1, 1, GL_FLOAT, GL_FALSE, 0, nullptr);
   gl_.GenBuffers(1, &indices_);
@@ -184,9 +190,12 @@ void SurfaceBuffers::draw_caster(std::size_t mesh) const {
 }
 
 int SurfaceBuffers::bind(const Program& program, int unit) const {
-  for (const auto& [name, lookup] :
-       {std::pair{"places", &places_}, {"normals", &normals_}, {"triangles", &triangles_}, {"paint", &paint_},
-        {"squares", &squares_}, {"materials", &materials_}}) {
+  for (const auto& [name, lookup] : {std::pair{"places", &places_},
+                                     {"normals", &normals_},
+                                     {"triangles", &triangles_},
+                                     {"paint", &paint_},
+                                     {"squares", &squares_},
+                                     {"materials", &materials_}}) {
     program.set_texture(name, unit++, GL_TEXTURE_BUFFER, lookup->texture);
   }
   return unit;

@@ -1,6 +1,6 @@
-// Holds all surfaces of a stage in OpenGL's memory, one behind the other: as vertices and indices for the passes that
-// rasterise triangles, and as buffer textures for the pass that shades, which knows only a triangle's number and looks
-// up the rest.
+// Holds all surfaces of a stage in OpenGL's memory, one after the other: as vertices and indices for the passes that
+// rasterise triangles, and as buffer textures for the pass that shades, which is given only the number of a triangle
+// and looks up the rest.
 #pragma once
 
 #include <vector>
@@ -18,8 +18,8 @@ class SurfaceBuffers {
   SurfaceBuffers(const SurfaceBuffers&) = delete;
   SurfaceBuffers& operator=(const SurfaceBuffers&) = delete;
 
-  // Uploads where the vertices are (x y z, by mesh) and the normals that follow. The meshes must be those that the
-  // buffers were made for.
+  // Uploads the positions of the vertices (x y z, by mesh) and the normals that follow from them. The meshes must be
+  // those for which the buffers were made.
   void upload(const std::vector<DrawMesh>& meshes, const std::vector<std::vector<float>>& positions);
 
   // Draws one mesh; its triangles count from first_triangle(mesh).
@@ -28,12 +28,12 @@ class SurfaceBuffers {
   // Draws the triangles that cast one mesh's shadow, which may be fewer.
   void draw_caster(std::size_t mesh) const;
 
-  // Has a program's samplers places, normals, triangles, paint, squares and materials read these buffers.
-  // Returns the first unit that is still free.
+  // Makes a program's samplers places, normals, triangles, paint, squares and materials read these buffers. Returns the
+  // first unit that is still free.
   int bind(const Program& program, int first_unit) const;
 
  private:
-  // A buffer that shaders read as a texture with one texel for each element.
+  // Describes a buffer that shaders read as a texture with one texel for each element.
   struct Lookup {
     GLuint buffer = 0, texture = 0;
   };

@@ -31,7 +31,7 @@ bool Tiles::find_tiles(const std::vector<float>& positions, const Eigen::Matrix4
     const float w = w_x * x + w_y * y + w_z * z + w_0;
     behind |= w > 1e-6f ? 0 : 1;
     const float scale = 1 / w;
-    // One tile beside the picture stands for all that lies there.
+    // One tile beyond each edge of the picture stands for all that lies there.
     const float column = ((x_x * x + x_y * y + x_z * z + x_0) * scale + 1) * across;
     const float row = ((y_x * x + y_y * y + y_z * z + y_0) * scale + 1) * up;
     column_of_[v] = static_cast<std::int32_t>(std::floor(std::clamp(column, -1.0f, columns)));

@@ -7,7 +7,7 @@
 
 namespace supple {
 
-// A picture cut into square tiles, each marked or not.
+// Divides a picture into square tiles, each of which is marked or not.
 class Tiles {
  public:
   static constexpr int edge = 16;  // pixels
@@ -24,13 +24,13 @@ class Tiles {
   // Unmarks the tiles that are marked in another set of the same picture.
   void unmark(const Tiles& others);
 
-  // Marks what lies within this many pixels of a marked tile too.
+  // Also marks the tiles that lie within this many pixels of a marked tile.
   void widen(double pixels);
 
   bool marked(int x, int y) const { return marked_[std::size_t(y) * columns_ + x] != 0; }
 
-  // Returns runs of marked tiles as triangles over the picture: six corners a run, x y each, in clip coordinates. The
-  // rows' y grows upwards, as in clip coordinates.
+  // Returns runs of marked tiles as triangles over the picture: six corners for each run, x y each, in clip
+  // coordinates. The y of the rows grows upwards, as in clip coordinates.
   const std::vector<float>& corners();
 
  private:

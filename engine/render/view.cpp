@@ -34,7 +34,7 @@ Eigen::Matrix4f look_at(const Vec3& eye, const Vec3& target) {
 
 namespace {
 
-// Distances from the eye between which things are seen [m].
+// Holds the distances from the eye between which things are visible [m].
 struct Depths {
   double near, far;
 };

@@ -14,7 +14,8 @@ Camera framing(const Bounds& box, const Vec3& direction, double fov_deg, double 
 // Maps world to eye coordinates: the eye looks at the target, and up is y.
 Eigen::Matrix4f look_at(const Vec3& eye, const Vec3& target);
 
-// Maps world to clip coordinates. center, reach: a ball that holds everything that can be seen [m].
+// Maps world to clip coordinates. center, reach: the centre and radius of a ball that holds everything that can be seen
+// [m].
 Eigen::Matrix4f view_matrix(const Camera& camera, double aspect, const Vec3& center, double reach);
 
 // Maps a value of the depth buffer, 0 to 1, to the distance along the viewing direction: factor / (offset - value). The
@@ -24,8 +25,8 @@ struct DepthScale {
 };
 DepthScale depth_scale(const Camera& camera, const Vec3& center, double reach);
 
-// The directions from the eye through the picture: corner + x right + y up for a place in pixels from the lower left.
-// They have length one along the viewing direction.
+// Holds the directions from the eye through the picture: corner + x right + y up for a place in pixels from the lower
+// left. They have length one along the viewing direction.
 struct Rays {
   Vec3 corner, right, up;
 };

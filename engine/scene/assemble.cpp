@@ -11,8 +11,8 @@
 namespace supple {
 namespace {
 
-// The map from the file's frame to the world: the body is turned about the origin, scaled, and put with the middle of
-// its bottom at `position`.
+// Returns the map from the file's frame to the world: the body is rotated about the origin, scaled, and moved so that
+// the middle of its bottom is at `position`.
 Eigen::Affine3d placement(const BodyDef& def, const Positions& points) {
   Eigen::Affine3d turned(rotation_from_degrees(def.turn_deg).toRotationMatrix());
   Bounds box, untouched;
@@ -31,8 +31,8 @@ void apply(const Eigen::Affine3d& place, Positions& points) {
 
 std::vector<std::int32_t> selected(const Selection& s, const TetMesh& mesh, const Positions& file_points,
                                    const std::vector<std::string>& regions) {
-  // Relative to the rest box before the body is turned, so that a selection means the same part however the body
-  // stands.
+  // Coordinates are relative to the rest box before the body is rotated, so that a selection means the same part in
+  // every orientation of the body.
   const Bounds box = bounds_of(file_points);
   const Vec3 extent = box.extent().cwiseMax(1e-300);
   std::vector<std::int32_t> result;
@@ -53,7 +53,7 @@ std::vector<std::int32_t> selected(const Selection& s, const TetMesh& mesh, cons
     const Vec3 relative = (point - box.lower).cwiseQuotient(extent);
     const Vec3 away = point - (box.lower + s.center.cwiseProduct(extent));
     bool in = false;
-    // A millionth of slack: a box that ends at 1 means to include what lies at 1.
+    // The box has a tolerance of a millionth, because a box that ends at 1 is meant to include what lies at 1.
     if (s.kind == Selection::Kind::box)
       in = (relative.array() >= s.lower.array() - 1e-6).all() && (relative.array() <= s.upper.array() + 1e-6).all();
     if (s.kind == Selection::Kind::sphere) in = away.norm() <= s.radius * box.extent().maxCoeff();
@@ -96,8 +96,8 @@ void set_substances(Body& body, std::vector<Problem>& problems) {
     if (known == body.regions.end()) {
       const std::vector<std::string> names(body.regions.begin() + 1, body.regions.end());
       const std::string nearest = nearest_word(region.name, names);
-      // A body made of another mesh than the scene was written for may lack the region (it has no teeth to be stiff):
-      // that is noted, not refused.
+      // A body that uses another mesh than the one for which the scene was written may lack the region (it may have no
+      // teeth that could be stiff). That is noted and not refused.
       if (!def.mesh.empty()) {
         body.notes.push_back(fmt::format("there is no region '{}'; its material is not used", region.name));
       } else {
@@ -113,7 +113,7 @@ void set_substances(Body& body, std::vector<Problem>& problems) {
   }
 }
 
-// Makes the springs, with their lengths in the world, and the mass of the cloth by vertex.
+// Makes the springs, with their rest lengths in the world, and the mass of the cloth at each vertex.
 void weave(Body& body) {
   const BodyDef& def = body.def;
   BodyDescription& description = body.description;
@@ -142,7 +142,7 @@ void add_handles(Body& body, const Loaded& loaded, std::vector<Problem>& problem
   for (const HandleDef& def : body.def.handles) {
     Handle handle{def.name, selected(def.select, loaded.mesh, loaded.mesh.rest, loaded.regions), def.stiffness,
                   !def.grabs || def.holds_at(0)};
-    // The first of two handles that overlap has the vertices.
+    // When two handles overlap, the first one gets the vertices.
     std::erase_if(handle.vertices, [&](std::int32_t v) { return taken[v] != 0; });
     for (const std::int32_t v : handle.vertices) taken[v] = 1;
     if (handle.vertices.empty()) {
@@ -168,7 +168,7 @@ void add_handles(Body& body, const Loaded& loaded, std::vector<Problem>& problem
   }
 }
 
-// Sets all that follows from the definition once the mesh is in its place, except for handles.
+// Sets all that follows from the definition once the mesh is in its place, except for the handles.
 void set_values(Body& body, const SceneDef& scene, std::vector<Problem>& problems) {
   const BodyDef& def = body.def;
   body.description.time_step = scene.time_step();
@@ -258,7 +258,7 @@ std::vector<Body> assemble(const SceneDef& scene, const Making& making) {
 
 namespace {
 
-// Returns the places that keys move handled vertices from while nothing is grabbed, and which handles hold at the
+// Returns the places from which keys move handled vertices while nothing is grabbed, and which handles hold at the
 // start.
 Anchors rest_anchors(const Model& model, const Body& body) {
   Anchors anchors;

@@ -37,24 +37,25 @@ struct Body {
   Eigen::Affine3d placement = no_placement();  // from the file's frame to the world: turned, scaled, moved
 };
 
-// Makes all bodies of a scene. Throws InputError with the problems of all bodies at once: unreadable meshes, empty
-// selections, regions that the mesh does not have.
+// Makes all bodies of a scene. Throws InputError with the problems of all bodies at once: meshes that cannot be read,
+// empty selections, regions that the mesh does not have.
 std::vector<Body> assemble(const SceneDef& scene, const Making& making = {});
 
-// Applies what may change while a body moves (live.h), as the scene's definition of it now says. Throws InputError.
+// Updates the values that may change while a body moves (live.h) to those of the scene's present definition. Throws
+// InputError.
 void update_body(Body& body, const SceneDef& scene, const BodyDef& def);
 
-// The state in which a body starts: handled vertices are at rest, and handles move them from there.
+// Returns the state in which a body starts: handled vertices are at rest, and handles move them from there.
 State start_state(const Model& model, const Body& body);
 
-// A handle grabs its vertices where they are: its keys move them from there.
+// Makes a handle grab its vertices at their present positions, from which its keys then move them.
 void grab(const Model& model, int handle, const Positions& x, Anchors& anchors);
 
-// Computes the targets of all handled vertices, by model.handled. change: how much of a change that is spread over the
-// frame is done, 0 to 1.
+// Computes the targets of all handled vertices, in the order of model.handled. change: the share of a change that is
+// done, 0 to 1, where the change is spread over the frame.
 void handle_targets(const Model& model, const Body& body, const Anchors& anchors, double time, double change,
                     Positions& targets);
-// The same for a body whose handles grab nothing and whose definition does not change.
+// Does the same for a body whose handles grab nothing and whose definition does not change.
 void handle_targets(const Model& model, const Body& body, double time, Positions& targets);
 
 }  // namespace supple

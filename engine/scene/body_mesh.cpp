@@ -65,7 +65,8 @@ Loaded loaded_shape(const SceneDef& scene, const BodyDef& def, const Making& mak
   return loaded;
 }
 
-// Turns the element references of a file into the tags 0, 1, ... Reference 0 is the body without a tag.
+// Converts the element references of a file to the tags 0, 1, ... Reference 0 denotes the part of the body without a
+// tag.
 void name_references(Loaded& loaded) {
   std::map<int, int> tag = {{0, 0}};
   loaded.regions = {""};

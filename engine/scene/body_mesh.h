@@ -1,4 +1,4 @@
-// The mesh that a body's definition names. It is read from a file, or made from a shape, a box or a grid.
+// Provides the mesh that a body's definition names. It is read from a file, or generated from a shape, a box or a grid.
 #pragma once
 
 #include <map>

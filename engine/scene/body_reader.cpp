@@ -184,7 +184,7 @@ void read_substances(const ConfigTable& table, BodyDef& body) {
   }
 }
 
-// Files are named after bodies, with up to 16 more bytes, and file systems allow 255.
+// Files are named after bodies, with up to 16 additional bytes, and file systems allow 255.
 void check_name(const ConfigTable& table, const std::string& name) {
   constexpr std::size_t longest = 200;
   const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };

@@ -1,4 +1,4 @@
-// Bodies of a scene file: what they are made of, where they start, and what holds them.
+// Reads the bodies of a scene file: what they are made of, where they start, and what holds them.
 #pragma once
 
 #include "scene/config.h"
@@ -8,10 +8,10 @@ namespace supple {
 
 Ease read_ease(const ConfigTable& table);
 
-// The list `keys`, in order of time; `turn` says what its rotations are about.
+// Reads the list `keys`, in the order of time. `turn`: the meaning of the key turn_deg, for the documentation.
 std::vector<MotionKey> read_keys(const ConfigTable& table, const char* turn);
 
-// `defaults`: of the body's solver, from the scene's table.
+// `defaults`: the defaults of the body's solver, from the scene's table.
 BodyDef read_body(const ConfigTable& table, const SolverDef& defaults);
 
 }  // namespace supple

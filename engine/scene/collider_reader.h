@@ -1,4 +1,4 @@
-// Colliders of a scene file.
+// Reads the colliders of a scene file.
 #pragma once
 
 #include "scene/config.h"

@@ -25,8 +25,8 @@ std::vector<std::string> words_of(const std::string& path) {
   throw InputError({Problem{place.source, place.line, place.column, std::move(message)}});
 }
 
-// Whether a path stands at a list of tables whose elements are entered by their names: bodies, colliders and a body's
-// handles.
+// Tells whether a path has reached a list of tables whose elements are addressed by their names: bodies, colliders and
+// a body's handles.
 bool is_named_list(const std::vector<std::string>& path, std::size_t depth) {
   return depth == 0 ? path[0] == "body" || path[0] == "collider" : path[0] == "body" && path[depth] == "handles";
 }
@@ -41,8 +41,8 @@ std::string one_of(const std::string& list) { return list == "handles" ? "handle
 
 using Places = std::map<const toml::node*, toml::source_region>;
 
-// Finds the table that the last word of a path stands in. Tables on the way are made; elements of lists are found by
-// their names.
+// Finds the table that contains the last word of a path. Missing tables along the path are created; elements of lists
+// are found by their names.
 toml::table& enter(toml::table& document, Places& places, const std::vector<std::string>& path, const Problem& place) {
   if (path.size() > most_words)
     fail(place, fmt::format("the path has {} words; {} are the most", path.size(), most_words));
@@ -128,8 +128,7 @@ void Config::set(const std::string& assignment, const std::vector<std::set<std::
   const std::vector<std::string> path = words_of(assignment.substr(0, equals));
   const std::string value = assignment.substr(equals + 1);
 
-  // A value that is not TOML is taken as the word that it is, so that no shell quotes are needed around names and
-  // paths.
+  // A value that is not TOML is taken as a plain word, so that names and paths need no shell quotes.
   toml::table parsed;
   try {
     parsed = parsed_toml("value = " + value, source);

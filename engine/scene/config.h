@@ -1,7 +1,7 @@
-// A parsed TOML file in which every value knows its file, line and column, and in which a key that nobody asked for is
-// an error. Problems are collected, not thrown one by one: a reader asks for all that it needs, then calls finish().
-// The readers' questions are also the documentation: each key is asked for with its unit and meaning. No other part of
-// the program knows the TOML parser, and only toml_document.h includes it.
+// Represents a parsed TOML file in which every value knows its file, line and column, and in which a key that no reader
+// asked for is an error. Problems are collected rather than thrown one by one: a reader asks for all that it needs,
+// then calls finish(). The readers' requests are also the documentation, because each key is requested with its unit
+// and meaning. No other part of the program uses the TOML parser, and only toml_document.h includes it.
 #pragma once
 
 #include <filesystem>
@@ -28,7 +28,7 @@ class table;
 
 namespace supple {
 
-// A key's name, unit and meaning, as docs/scene-format.md lists them.
+// Describes a key: its name, unit and meaning, as docs/scene-format.md lists them.
 struct Key {
   const char* name;
   const char* unit;
@@ -49,14 +49,14 @@ struct Range {
   std::string text() const;
 };
 
-// The words that a key may have.
+// Lists the words that a key may have.
 struct Words {
   std::vector<std::string> allowed;
-  // Words of earlier versions, each with what is written in its place now.
+  // These are the words of earlier versions, each with what replaces it now.
   std::vector<std::pair<std::string, std::string>> former = {};
 };
 
-// One row of the documentation: a key that some reader asked for.
+// Holds one row of the documentation: a key that some reader asked for.
 struct DocumentedKey {
   std::string path;  // a list is followed by []: body[].handles[].stiffness
   std::string type;
@@ -66,7 +66,7 @@ struct DocumentedKey {
   std::string meaning;
 };
 
-// One key of one table of a file, whether the file gives it or leaves it to the default.
+// Describes one key of one table of a file, whether the file gives it or leaves it at the default.
 struct KnownKey {
   std::string path;     // as --set takes it: body.soft.material.mu
   std::string generic;  // as in DocumentedKey
@@ -74,7 +74,7 @@ struct KnownKey {
   std::string value;  // what the file gives, or the default
 };
 
-// How a value gets from one number to another.
+// Selects how a value goes from one number to another.
 enum class RampRule {
   difference,  // (1 - s) from + s to
   ratio,       // from^(1-s) to^s
@@ -84,18 +84,19 @@ struct Names<RampRule> {
   static constexpr std::array table = {Name{RampRule::difference, "difference"}, Name{RampRule::ratio, "ratio"}};
 };
 
-// A value of any type, which knows where it stood in its file.
+// Holds a value of any type, together with its place in its file.
 class ConfigValue {
  public:
   std::string text() const;        // shortened so that it fits into a message
   std::string whole_text() const;  // all of it, as people read it: words without quotes
   bool is_list_or_number() const;
-  // Whether a ramp can lead from one to the other: both are numbers, or lists (of lists, ...) of numbers of one form.
+  // Tells whether a ramp can lead from one value to the other: both must be numbers, or lists (of lists, ...) of
+  // numbers with the same structure.
   bool joins(const ConfigValue& other) const;
   bool all_positive() const;
-  // Reads a default as KnownKey has it. Nothing when that is a description in words.
+  // Reads a default in the form that KnownKey has. Returns nothing when the default is a description in words.
   static std::optional<ConfigValue> parse(const std::string& text);
-  // Returns the value at a share `s` of the way, 0 to 1, number by number; whole: rounded.
+  // Returns the value at a fraction `s` of the way, 0 to 1, interpolated number by number. whole: numbers are rounded.
   static ConfigValue between(const ConfigValue& from, const ConfigValue& to, double s, RampRule by, bool whole);
 
  private:
@@ -106,14 +107,14 @@ class ConfigValue {
   std::shared_ptr<const Content> content_;
 };
 
-// One value of a list, which will be put elsewhere.
+// Holds one value of a list, which will be put into another place.
 struct ListedValue {
   ConfigValue value;
   std::string text;  // whole, as people read it: words without quotes
   Problem place;     // where it stands
 };
 
-// A path with a list of values: "a.b" = [...] or a.b = [...].
+// Holds a path with a list of values: "a.b" = [...] or a.b = [...].
 struct PathList {
   std::string path;
   std::vector<ListedValue> values;
@@ -126,25 +127,25 @@ struct KnownSurfaces;  // surfaces that a Config and its copies have read alread
 class Config {
  public:
   // Throws InputError when there is no such file, when it is larger than 1 MB or when it is not TOML. Relative paths in
-  // it are looked up beside the file first, then in `assets`.
+  // it are looked up first in the folder of the file, then in `assets`.
   static Config load(const std::filesystem::path& path, const std::filesystem::path& assets);
   static Config parse(std::string_view text, const std::string& name, const std::filesystem::path& assets);
   Config(Config&&) noexcept;
   Config& operator=(Config&&) noexcept;
   ~Config();
 
-  // Applies "path=value", as on the command line. Lists are entered by the name of their element:
+  // Applies "path=value", as on the command line. Elements of lists are addressed by their names:
   // body.soft.material.mu. Setting one key of an exclusive group removes the others. Throws InputError.
   void set(const std::string& assignment, const std::vector<std::set<std::string>>& exclusive);
 
   // Does the same with a value of another file. Messages about the path point to `place`.
   void put(const std::string& path, const ConfigValue& value, const Problem& place,
            const std::vector<std::set<std::string>>& exclusive);
-  // Nothing when no value has this path.
+  // Returns nothing when no value has this path.
   std::optional<ConfigValue> value_at(const std::string& path) const;
-  // Appends a table of another file to a list of tables that may not be there yet.
+  // Appends a table of another file to a list of tables, which is created when it does not exist.
   void append(const std::string& list_path, const ConfigValue& table, const Problem& place);
-  // Removes a key of the root table, if it is there.
+  // Removes a key of the root table if it exists.
   void remove(const char* key);
   // Copies the document, but neither the problems nor the record of the keys that readers asked for.
   Config copy() const;
@@ -157,11 +158,11 @@ class Config {
   void finish();
   // Returns the problems so far, unknown keys among them, and empties the list.
   std::vector<Problem> take_problems();
-  // The problems so far. Keys that no reader has asked for yet are not among them.
+  // Returns the problems so far. Keys that no reader has asked for yet are not among them.
   const std::vector<Problem>& complaints() const;
 
   const std::vector<DocumentedKey>& documented() const;
-  // Every key that a reader asked for, table by table.
+  // Returns every key that a reader asked for, table by table.
   const std::vector<KnownKey>& known() const;
   std::string as_json() const;  // the whole document after set()
   std::shared_ptr<KnownSurfaces>& surfaces();
@@ -175,65 +176,67 @@ class Config {
   std::unique_ptr<Content> content_;
 };
 
-// A view of one table of a Config, which must outlive it.
+// Gives access to one table of a Config, which must outlive it.
 class ConfigTable {
  public:
-  // Whether the table has the key. The key then counts as known to the reader.
+  // Tells whether the table has the key. From then on the key counts as known to the reader.
   bool has(const char* key) const;
-  // The keys in the order of the file, for tables whose keys are names that the user chose.
+  // Returns the keys in the order of the file, for tables whose keys are names that the user chose.
   std::vector<std::string> keys() const;
 
-  // Each of these returns the value. When the key is absent or wrong it returns the default, and records the problem. A
-  // key without a default is required.
+  // Each of these functions returns the value. When the key is absent or wrong, it returns the default and records the
+  // problem if there is one. A key without a default is required.
   double number(const Key& key, std::optional<double> fallback, const Range& range) const;
   int integer(const Key& key, std::optional<int> fallback, const Range& range) const;
   bool boolean(const Key& key, bool fallback) const;
   std::string text(const Key& key, std::optional<std::string> fallback) const;
   std::string choice(const Key& key, std::optional<std::string> fallback, const Words& words) const;
-  // A value of an enum by its name.
+  // Returns the value of an enum that the key names.
   template <Named E>
   E word(const Key& key, std::optional<E> fallback) const {
     std::optional<std::string> usual;
     if (fallback) usual = name_of(*fallback);
     return *value_named<E>(choice(key, std::move(usual), {all_names<E>()}));
   }
-  // Nothing when the key is absent or wrong. `fallback`: in words, for the documentation.
+  // Returns nothing when the key is absent or wrong. `fallback`: the default in words, for the documentation.
   template <Named E>
   std::optional<E> word_if_given(const Key& key, const char* fallback) const {
     return value_named<E>(choice_if_given(key, fallback, {all_names<E>()}));
   }
-  // A word, or a table with its own keys; nothing when the key is absent or wrong. `fallback`: as a file would have it.
+  // Returns a word, or a table with its own keys; nothing when the key is absent or wrong. `fallback`: the default as a
+  // file would give it.
   std::optional<std::variant<std::string, ConfigTable>> word_or_table(const Key& key, const std::string& fallback,
                                                                       const Words& words) const;
   Vec3 vector(const Key& key, std::optional<Vec3> fallback, const Range& range = Range::any()) const;
   std::optional<double> number_if_given(const Key& key, const Range& range) const;
   std::optional<Vec3> vector_if_given(const Key& key, const Range& range = Range::any()) const;
   std::vector<Vec3> vectors(const Key& key, std::size_t count) const;
-  // Two numbers, both in range.
+  // Returns two numbers, both in range.
   Eigen::Vector2d pair(const Key& key, const Range& range) const;
-  // A list of pairs of finite numbers; empty when the key is absent or wrong.
+  // Returns a list of pairs of finite numbers; it is empty when the key is absent or wrong.
   std::vector<std::pair<double, double>> pairs(const Key& key, std::size_t least, std::size_t most) const;
   bool is_text(const char* key) const;
-  // A path that exists, found beside the file that names it or among the assets; empty when absent or wrong.
+  // Returns an existing path, looked up in the folder of the file that names it or among the assets; empty when the key
+  // is absent or wrong.
   std::filesystem::path file(const Key& key) const;
 
-  // A value of any type, which the caller must judge.
+  // Returns a value of any type, which the caller must check.
   std::optional<ConfigValue> value(const Key& key, const char* fallback = "required") const;
 
-  // The whole table without one key. All its keys count as known to the reader.
+  // Returns the whole table without one key. All its keys count as known to the reader.
   ConfigValue all_but(const char* key) const;
 
   std::optional<ConfigTable> table(const Key& key, const char* fallback = "none") const;
   std::vector<ConfigTable> tables(const Key& key) const;
-  // All lists in this table, whose keys are paths, in the order of the file.
+  // Returns all lists in this table, whose keys are paths, in the order of the file.
   std::vector<PathList> path_lists() const;
-  // A number, or nothing when the key is absent or says `word`.
+  // Returns a number, or nothing when the key is absent or has the value `word`.
   std::optional<double> number_or_word(const Key& key, const char* word, const Range& range) const;
 
   // Records a problem at a key's value, or at this table.
   void complain(const char* key, const std::string& message) const;
   void complain(const std::string& message) const;
-  // The place of a key (or of this table), for messages that are written later.
+  // Returns the place of a key (or of this table), for messages that are written later.
   Problem place(const char* key, std::string message) const;
   Config& config() const { return *config_; }
 

@@ -1,4 +1,4 @@
-// ConfigTable: the typed questions of the readers.
+// Implements ConfigTable: the typed requests of the readers.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -12,14 +12,14 @@ namespace {
 
 std::string number_text(double value) { return fmt::format("{:g}", value); }
 
-// Says what a number must be.
+// Describes what a number must be.
 std::string number_in(const Range& range) {
   const std::string text = range.text();
   return text == "any number" ? "a number" : "a number, " + text;
 }
 
-// Explains a word that looks like a number: it stands in quotes, or it came by --set and is larger than a double can
-// be, so that TOML refused it.
+// Explains why a word looks like a number: it stands in quotes, or it came from --set and is larger than a double can
+// be, so that TOML did not accept it.
 const char* word_hint(const toml::node& node) {
   const auto word = node.value_exact<std::string>();
   if (!word || word->empty()) return "";
@@ -73,7 +73,7 @@ std::string joined(const std::string& path, const char* name) { return path.empt
 
 }  // namespace
 
-// `name` is that of a list's element, with its dot; `suffix` ends the generic path of a list.
+// `name`: the name of a list's element, with its dot. `suffix`: the end of the generic path of a list.
 ConfigTable ConfigTable::inner(const Key& key, const toml::table& table, const std::string& name,
                                const char* suffix) const {
   return ConfigTable(config_, &table, joined(path_, key.name) + name, joined(generic_, key.name) + suffix);
@@ -204,7 +204,7 @@ std::string ConfigTable::text(const Key& key, std::optional<std::string> fallbac
   return fallback.value_or("");
 }
 
-// Whether a value is one of the words. Records a problem when it is not.
+// Tells whether a value is one of the words, and records a problem when it is not.
 bool ConfigTable::is_one_of(const Words& words, const Key& key, const toml::node& node) const {
   const auto value = node.value_exact<std::string>();
   if (value && std::find(words.allowed.begin(), words.allowed.end(), *value) != words.allowed.end()) return true;
@@ -229,7 +229,7 @@ std::string ConfigTable::choice(const Key& key, std::optional<std::string> fallb
   return is_one_of(words, key, *node) ? *node->value_exact<std::string>() : instead;
 }
 
-// Empty when the key is absent or wrong.
+// Returns an empty text when the key is absent or wrong.
 std::string ConfigTable::choice_if_given(const Key& key, const char* fallback, const Words& words) const {
   const toml::node* node = find(key, "word", fallback, word_list(words.allowed));
   return node != nullptr && is_one_of(words, key, *node) ? *node->value_exact<std::string>() : "";

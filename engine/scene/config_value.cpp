@@ -1,5 +1,5 @@
-// ConfigValue: values of any type, how they are shown, and what lies between two of them; and what a ConfigTable hands
-// out as such values.
+// Implements ConfigValue: values of any type, how they are shown, and the interpolation between two of them; also the
+// functions of ConfigTable that return such values.
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -54,7 +54,7 @@ std::shared_ptr<const toml::node> clone(const toml::node& node) {
   return result;
 }
 
-// The whole value as people read it: words have no quotes.
+// Writes the whole value as people read it, with words without quotes.
 std::string people_form(const toml::node& node) {
   std::string text;
   if (const toml::array* list = node.as_array()) {
@@ -74,7 +74,7 @@ struct FoundList {
   const toml::node* node;
 };
 
-// Collects the values of a table whose keys are paths. Tables in it stand for paths with dots.
+// Collects the values of a table whose keys are paths. Tables in it represent paths with dots.
 void find_lists(const toml::table& table, const std::string& prefix, std::vector<FoundList>& found) {
   for (const auto& [key, node] : table) {
     const std::string path = prefix.empty() ? std::string(key.str()) : prefix + "." + std::string(key.str());

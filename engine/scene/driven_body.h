@@ -1,6 +1,6 @@
-// A body and all that drives it through a scene: the targets of its handles, the colliders' motions, the solver's
-// settings, and the handles that grab and let go. Films, stored states, benchmarks and estimates of cost all make
-// their steps here, so that they agree to the last bit. Not here: what is recorded of a body (film/filmed_body.h).
+// Represents a body and all that drives it through a scene: the targets of its handles, the colliders' motions, the
+// solver's settings, and the handles that grab and release. Films, stored states, benchmarks and estimates of cost all
+// make their steps here, so that they agree to the last bit. Not here: what is recorded of a body (film/filmed_body.h).
 #pragma once
 
 #include <functional>
@@ -15,18 +15,20 @@
 
 namespace supple {
 
-// The solvers that scenes can name. Most of them live in a library that scenes do not know, so they come from outside.
+// Holds the solvers that scenes can name. Most of them are in a library that scenes do not depend on, so they are
+// passed in.
 struct Solvers {
-  // A rule for the directions of one body's steps. It is made anew when the method or the model's values change.
+  // Makes a rule for the directions of one body's steps. It is called again when the method or the model's values
+  // change.
   std::function<std::unique_ptr<SearchRule>(const SolverDef&, const Model&)> rule;
-  // The settings that a step gets: the scene's, with what the method fixes whatever the scene says.
+  // Returns the settings of a step: the scene's, except for those that the method fixes.
   std::function<SolverSettings(const SolverDef&)> settings;
 };
 
 class DrivenBody {
  public:
-  // Puts the body where the scene has it start. `model` must have been built from the body; it and the description are
-  // changed when a handle grabs or lets go. All that is passed by reference must outlive this object.
+  // Puts the body into the scene's start state. `model` must have been built from the body; it and the description
+  // change when a handle grabs or releases. All that is passed by reference must outlive this object.
   DrivenBody(const SceneDef& scene, Body& body, Model& model, const CollisionSet& set, const Solvers& solvers,
              Threads* threads);
 
@@ -37,25 +39,26 @@ class DrivenBody {
   const CollisionSet& set() const { return set_; }
   Workspace& workspace() { return workspace_; }
 
-  // Tells that the scene and the body's definition have changed, and makes anew what the change asks for.
+  // Takes over a changed scene and body definition, and recomputes what the change requires.
   void apply(const ChangeCost& cost);
 
-  // Puts the body into one of its states, earlier or later. The model's values are renewed where handles hold otherwise
-  // than now; Model::id tells that they were.
+  // Puts the body into one of its states, earlier or later. The model's values are recomputed where handles hold in
+  // another way than at present; Model::id shows that they were.
   void restore(const State& state);
 
-  // Makes the inputs of a step, and grabs and lets go where a handle's time has come. Doing it twice changes nothing.
+  // Computes the inputs of a step, and lets handles grab and release when their time has come. A second call changes
+  // nothing.
   void prepare_step(int frame, int substep);
-  // Makes the step that was prepared. The state changes only if it succeeds.
+  // Makes the prepared step. The state changes only if the step succeeds.
   const StepReport& step();
 
-  // Makes all steps of a frame, and shows each report to `observe`. Returns the last one: it has failed, or all were
-  // made.
+  // Makes all steps of a frame and passes each report to `observe`. Returns the last report: either that step failed,
+  // or all steps were made.
   const StepReport& make_frame(int frame, const std::function<void(const StepReport&)>& observe);
 
  private:
   void switch_handles(double time);
-  // Has the description's handles hold as the state says. False where they did already.
+  // Makes the description's handles hold as the state says. Returns false when they did so already.
   bool hold_as_state_says();
   void renew_model();
 

@@ -20,7 +20,7 @@ Eigen::Isometry3d KeyedMotion::at(double time) const {
       double s = (time - before.time) / (after->time - before.time);
       if (ease == Ease::smooth) s = s * s * (3 - 2 * s);
       move = before.move + s * (after->move - before.move);
-      // Angles are joined, not rotations: a turn by 360 degrees is a full turn.
+      // Angles are interpolated, not rotations, so a turn by 360 degrees is a full turn.
       turn = rotation_from_degrees(before.turn_deg + s * (after->turn_deg - before.turn_deg));
     }
   }

@@ -1,4 +1,4 @@
-// Rigid motions that are given by keys.
+// Defines rigid motions that are given by keys.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -13,7 +13,7 @@ struct KeyedMotion {
   Ease ease = Ease::smooth;
   std::vector<MotionKey> keys;
 
-  // The rigid motion from rest at a time [s].
+  // Returns the rigid motion from rest at a time [s].
   Eigen::Isometry3d at(double time) const;
 };
 

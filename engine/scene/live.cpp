@@ -14,7 +14,7 @@ struct LivePattern {
 constexpr ChangeCost nothing{}, new_factor{true, false, false}, new_rule{false, true, false},
     new_surface{false, false, true};
 
-// The first pattern that covers a path decides. The solver of a body has the same keys as that of the scene.
+// The first pattern that covers a path decides. A body's solver has the same keys as the scene's.
 constexpr auto patterns = std::to_array<LivePattern>({
     {"gravity", nothing},
     {"substeps", new_factor},
@@ -56,7 +56,7 @@ constexpr auto patterns = std::to_array<LivePattern>({
     {"camera", nothing},
 });
 
-// Whether a path is the pattern itself or lies below it.
+// Tells whether a path is the pattern itself or lies below it.
 bool covers(std::string_view pattern, std::string_view path) {
   return path == pattern || (path.starts_with(pattern) && path[pattern.size()] == '.');
 }
@@ -71,7 +71,8 @@ std::optional<ChangeCost> cost_of_generic(std::string_view path) {
   return std::nullopt;
 }
 
-// Whether a path leads into an entry of a list whose entries have no names, and are called like the list.
+// Tells whether a path leads into an entry of a list whose entries have no names and are therefore called like the
+// list.
 bool names_no_entry(const std::string& path) {
   std::istringstream words(path);
   for (std::string before, word; std::getline(words, word, '.'); before = word) {

@@ -1,4 +1,4 @@
-// The values of a scene that may change while its film runs, and what must be made anew when they do.
+// Lists the values of a scene that may change while its film runs, and what must be recomputed when they do.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace supple {
 
-// Tells what must be made anew when a value changes. For most values that is nothing.
+// Tells what must be recomputed when a value changes. For most values that is nothing.
 struct ChangeCost {
   bool factor = false;   // A and its factor: the body's stiffness, mass or time step
   bool rule = false;     // what the method keeps from step to step
@@ -19,13 +19,15 @@ struct ChangeCost {
   const char* text() const;  // for people; empty when nothing is made anew
 };
 
-// The cost of a change of a path as --set takes it ("body.soft.material.mu"). Nothing when the value cannot change.
+// Returns the cost of a change of a path in the form that --set takes ("body.soft.material.mu"), or nothing when the
+// value cannot change.
 std::optional<ChangeCost> cost_of_change(const std::string& path);
 
 // Replaces the names of list elements: "body[].material.mu" for "body.soft.material.mu".
 std::string generic_path(const std::string& path);
 
-// The values of a scene that may change, in the order in which its readers asked for them.
+// Describes a value of a scene that may change. live_keys() lists them in the order in which the readers asked for
+// them.
 struct LiveKey {
   KnownKey key;
   ChangeCost cost;

@@ -16,7 +16,8 @@ const std::vector<std::string>& material_names() {
   return names;
 }
 
-// Reads Young's modulus and Poisson's ratio, which can replace a model's own parameters. Nothing when they are absent.
+// Reads Young's modulus and Poisson's ratio, which can replace a model's own parameters. Returns nothing when they are
+// absent.
 std::optional<Lame> read_lame(const ConfigTable& table) {
   const auto young = table.number_if_given(
       {"young", "Pa", "Young's modulus at small strains, with poisson in the place of the model's parameters"},
@@ -26,8 +27,8 @@ std::optional<Lame> read_lame(const ConfigTable& table) {
       table.complain("poisson", "poisson: only together with young, in the place of the model's parameters");
     return std::nullopt;
   }
-  // At 0.5 lambda is infinite, and above 0.495 no mesh of this program resolves it. Below 0 lambda is negative, and
-  // some energies have no lower bound.
+  // At a Poisson's ratio of 0.5 lambda is infinite, and above 0.495 no mesh of this program resolves it. Below 0 lambda
+  // is negative, and some energies have no lower bound.
   return Lame::from_young(
       *young, table.number({"poisson", "", "Poisson's ratio, with young"}, std::nullopt, Range::between(0, 0.495)));
 }
@@ -35,7 +36,7 @@ std::optional<Lame> read_lame(const ConfigTable& table) {
 SplineCurve read_curve(const ConfigTable& table, const Key& key) {
   std::vector<ControlPoint> points;
   for (const auto& [at, value] : table.pairs(key, 2, SplineCurve::most_points)) {
-    // Slopes lose their digits between points that are nearer than a millionth.
+    // Slopes lose their digits between points that are closer together than a millionth.
     if (!points.empty() && at < points.back().at + 1e-6) {
       table.complain(key.name, fmt::format("{}: control points must stand in ascending order ({:g} follows {:g})",
                                            key.name, at, points.back().at));
@@ -97,7 +98,7 @@ M read_parameters(const ConfigTable& table) {
   return read;
 }
 
-// Whether all required parameters are given. Otherwise a complaint about their values would make no sense.
+// Tells whether all required parameters are given. Otherwise a message about their values would make no sense.
 template <class M>
 bool all_given(const ConfigTable& table) {
   if (table.has("young")) return true;

@@ -5,14 +5,15 @@
 namespace supple {
 namespace {
 
-// The primitive of this kind that the collider is; null where it is another one, or more than one.
+// Returns the primitive of this kind of which the collider consists; null when it is another kind, or more than one
+// primitive.
 template <class Kind>
 const Kind* lone(const Obstacle& obstacle) {
   const std::vector<ShapePart>& parts = obstacle.def.shape.root.parts;
   return parts.size() == 1 && !parts.front().mirror_x ? std::get_if<Kind>(&parts.front().primitive) : nullptr;
 }
 
-// The plane of a half space in the collider's frame: its unit normal, and a point on it.
+// Returns the plane of a half space in the collider's frame: its unit normal, and a point on it.
 std::pair<Vec3, Vec3> plane_of(const Obstacle& obstacle, const HalfSpace& half) {
   const ShapePart& part = obstacle.def.shape.root.parts.front();
   const Eigen::Isometry3d to_parent = part.to_local.inverse();
@@ -111,7 +112,7 @@ Skin drawn_obstacle(const Obstacle& obstacle, const Bounds& around) {
   }
   constexpr double cells = 96;  // along the longest side
   const Skin skin = skin_of(shape, shape.bounds().extent().maxCoeff() / cells);
-  // Vertices at creases are there once for each side, so that a box has edges.
+  // Vertices at creases occur once for each side, so that a box has sharp edges.
   Skin creased = skin_of_surface(skin.rest.points, skin.rest.triangles, 0, vertex_of);
   for (std::size_t v = 0; v < vertex_of.size(); ++v) {
     creased.occlusion[v] = skin.occlusion[vertex_of[v]];

@@ -1,4 +1,4 @@
-// Colliders ready for the solver and for the film.
+// Defines colliders that are ready for the solver and for the film.
 #pragma once
 
 #include "geometry/pose.h"
@@ -13,11 +13,11 @@ struct Obstacle {
   KeyedMotion motion;
   Eigen::Isometry3d rest = no_motion();  // from its frame to the world before any key
 
-  // From its frame to the world at a time [s].
+  // Returns the map from the collider's frame to the world at a time [s].
   Eigen::Isometry3d pose(double time) const;
 };
 
-// All that bodies can run into.
+// Holds all that bodies can collide with.
 struct CollisionSet {
   std::vector<Obstacle> obstacles;
   std::vector<Obstacle> earlier;    // the same before a change that is spread over this frame; else empty
@@ -25,8 +25,8 @@ struct CollisionSet {
 };
 CollisionSet collision_set(const SceneDef& scene);
 
-// A part of the frame in progress: from one time to another [s], and how much of a change that is spread over the frame
-// is done at each, 0 to 1.
+// Describes a part of the frame in progress: from one time to another [s], and for each of them the share of a change
+// that is done, 0 to 1, where the change is spread over the frame.
 struct StepSpan {
   double from, to;
   double change_from = 1, change_to = 1;
@@ -35,14 +35,14 @@ struct StepSpan {
 // Computes the motions of all colliders over one step.
 void collider_motions(const CollisionSet& set, const StepSpan& span, std::vector<ColliderMotion>& motions);
 
-// Makes what is drawn of a collider, in its own frame. A half space is a square that reaches well beyond `around` (in
-// the world); empty when it is the ground that every film has.
+// Makes what is drawn of a collider, in its own frame. A half space becomes a square that reaches well beyond `around`
+// (in the world). The result is empty when it is the ground that every film has.
 Skin drawn_obstacle(const Obstacle& obstacle, const Bounds& around);
 
-// Whether a collider is a half space and nothing else.
+// Tells whether a collider is a half space and nothing else.
 bool is_half_space(const Obstacle& obstacle);
 
-// Whether a collider is the half space y < 0, at rest.
+// Tells whether a collider is the half space y < 0, at rest.
 bool is_ground(const Obstacle& obstacle);
 
 }  // namespace supple

@@ -1,5 +1,5 @@
-// Materials by everyday names, so that a first scene just works. Units are real, and the materials are soft enough for
-// thirty steps a second.
+// Provides materials under everyday names, so that a first scene works without parameters. Units are real, and the
+// materials are soft enough for thirty steps per second.
 #pragma once
 
 #include <array>
@@ -27,9 +27,9 @@ Material law_of(const Lame& lame) {
   return M::from(lame);
 }
 
-// Moduli of the order that tables of engineering materials give for table jelly, a soft silicone rubber, muscle at rest
-// and balsa (whose true fibre modulus is ten times higher, more than ten iterations a step resolve). Poisson's ratio
-// stays where linear tetrahedra do not lock.
+// The moduli have the order that tables of engineering materials give for table jelly, a soft silicone rubber, muscle
+// at rest and balsa (whose true fibre modulus is ten times higher, more than ten iterations per step resolve).
+// Poisson's ratio stays in the range where linear tetrahedra do not lock.
 inline constexpr std::array material_presets = {
     MaterialPreset{"jelly", "table jelly: wobbles under its own weight", 1e4, 0.4, 1050, 0, law_of<NeoHookean>},
     MaterialPreset{"rubber", "soft rubber: springy, keeps its shape", 1e6, 0.45, 1100, 0, law_of<NeoHookean>},

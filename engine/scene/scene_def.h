@@ -1,6 +1,6 @@
-// A scene as its file describes it: plain nested structs with defaults, SI units, angles in degrees where the name says
-// so. The defaults here are those of the file format. Nothing is built yet (assemble.h), and nothing here knows scene
-// files or TOML (scene_reader.h).
+// Defines a scene as its file describes it: plain nested structs with defaults, in SI units, with angles in degrees
+// where the name says so. The defaults here are those of the file format. Nothing is built yet (assemble.h), and
+// nothing here depends on scene files or TOML (scene_reader.h).
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,7 @@
 
 namespace supple {
 
-// Picks vertices of a body by a box, ball, half space or region. Coordinates are relative to the rest bounding box (0
+// Selects vertices of a body by a box, ball, half space or region. Coordinates are relative to the rest bounding box (0
 // to 1 along each axis).
 struct Selection {
   enum class Kind { region, box, sphere, plane } kind = Kind::box;
@@ -55,18 +55,18 @@ struct HandleDef {
   std::string name;
   Selection select;
   double stiffness = 0;  // of the spring from each vertex to its target, 0: hard [N/m]
-  // A handle that grabs holds its vertices from one time to another [s]. Its keys are relative to where the vertices
-  // are when it begins to hold them.
+  // A handle that grabs holds its vertices from one time to another [s]. Its keys are relative to the vertices'
+  // positions when it begins to hold them.
   bool grabs = false;
   double from = 0, until = std::numeric_limits<double>::infinity();
   Ease ease = Ease::smooth;
   std::vector<MotionKey> keys;
 
-  // Whether it holds its vertices in a step that starts at a time [s].
+  // Tells whether the handle holds its vertices in a step that starts at a time [s].
   bool holds_at(double time) const { return time >= from - 1e-9 && time < until - 1e-9; }
 };
 
-// The material of a body or of one of its regions.
+// Describes the material of a body or of one of its regions.
 struct SubstanceDef {
   Material material = Polynomial{1};
   Fibre fibre;                          // its direction in the frame of the mesh or shape
@@ -79,13 +79,13 @@ struct RegionDef {
   Problem place;
 };
 
-// A box cut into equal cells.
+// Describes a box that is cut into equal cells.
 struct BoxDef {
   Vec3 extent = Vec3(1, 1, 1);  // [m]
   Eigen::Vector3i cells = Eigen::Vector3i(1, 1, 1);
 };
 
-// A grid of springs, or the triangles of a mesh file.
+// Describes a cloth: a grid of springs, or the triangles of a mesh file.
 struct ClothDef {
   std::filesystem::path mesh;                      // empty: a grid
   Eigen::Vector2d extent = Eigen::Vector2d(1, 1);  // of the grid [m]
@@ -93,9 +93,9 @@ struct ClothDef {
   double stretch = 0, shear = 0, bend = 0;  // stiffness of a spring [N/m]
 };
 
-// How the steps of a body are solved: the table [solver]. `settings` go with every step's inputs and cost nothing to
-// change. The others are built into the model (fit, precision, integrator, damping: assemble.cpp) or choose the rule
-// for directions (method); live.cpp tells what a change of each costs.
+// Describes how the steps of a body are solved: the table [solver]. `settings` are part of every step's inputs and cost
+// nothing to change. The other members are built into the model (fit, precision, integrator, damping: assemble.cpp) or
+// select the rule for directions (method); live.cpp defines what a change of each costs.
 struct SolverDef {
   Method method = Method::quasi_newton;
   SolverSettings settings;
@@ -120,7 +120,7 @@ struct Names<StartInside> {
 struct BodyDef {
   std::string name;
   std::string label;
-  // One of these five gives the mesh. The regions of a mesh file are named by their reference numbers.
+  // One of these five members gives the mesh. The regions of a mesh file are named by their reference numbers.
   std::filesystem::path shape;
   std::filesystem::path surface;
   std::filesystem::path mesh;
@@ -148,7 +148,7 @@ struct BodyDef {
   double body_density() const { return density.value_or(substance.usual_density.value_or(cloth ? 0.2 : 1000)); }
 };
 
-// A rigid obstacle. Its shape is in its own frame.
+// Describes a rigid obstacle. Its shape is given in its own frame.
 struct ColliderDef {
   std::string name;
   Shape shape;

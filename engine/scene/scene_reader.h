@@ -14,7 +14,7 @@ SceneDef read_scene(Config& config);
 SceneDef load_scene(const std::filesystem::path& path, const std::filesystem::path& assets,
                     const std::vector<std::string>& settings, std::string* resolved_json = nullptr);
 
-// Groups of keys of which a table may have one: setting one removes the others of its group.
+// Returns groups of keys of which a table may have only one: setting one removes the others of its group.
 const std::vector<std::set<std::string>>& exclusive_keys();
 
 }  // namespace supple

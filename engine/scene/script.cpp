@@ -11,7 +11,7 @@
 namespace supple {
 namespace {
 
-// A time, given in seconds or as a frame.
+// Reads a time, given in seconds or as a frame.
 double read_time(const ConfigTable& table, double fps, const Key& seconds, const Key& frames, bool required) {
   const auto in_seconds = table.number_if_given(seconds, Range::at_least(0));
   std::optional<double> in_frames;
@@ -99,7 +99,7 @@ Script::~Script() = default;
 
 namespace {
 
-// Loads the scene that a replay names: one that ships, by its name, or a file beside the replay.
+// Loads the scene that a replay names: the name of one that ships, or a file in the replay's folder.
 Config load_replayed_scene(Config& replay, const std::filesystem::path& assets) {
   const ConfigTable root = replay.root();
   const Key key = {"scene", "", "a scene file, or the name of one that ships"};
@@ -212,7 +212,7 @@ SceneDef Script::scene_at(int frame) const {
 
 namespace {
 
-// Whether a change of `path` overwrites all that a change of `other` does.
+// Tells whether a change of `path` overwrites everything that a change of `other` sets.
 bool replaces(const std::string& path, const std::string& other) {
   return other.starts_with(path) && (other.size() == path.size() || other[path.size()] == '.');
 }

@@ -1,5 +1,5 @@
-// The input of a film, frame by frame: a scene, and timed changes of its values (a replay). The scene of a frame is a
-// function of the frame's number alone, so that a film can be resumed at any frame.
+// Represents the input of a film, frame by frame: a scene, and timed changes of its values (a replay). The scene of a
+// frame depends on the frame's number alone, so that a film can be resumed at any frame.
 #pragma once
 
 #include "scene/live.h"
@@ -7,7 +7,7 @@
 
 namespace supple {
 
-// A change of one value while the film runs.
+// Describes a change of one value while the film runs.
 struct TimedChange {
   std::string path;    // as --set takes it
   std::string object;  // the name of the body or collider that the value belongs to; empty: the whole scene
@@ -21,18 +21,18 @@ struct TimedChange {
   ConfigValue to;
   Problem place;
 
-  // The share of the change that is done at a time [s], 0 to 1. Nothing before it begins.
+  // Returns the share of the change that is done at a time [s], 0 to 1, or nothing before the change begins.
   std::optional<double> done_at(double time) const;
 };
 
-// Adds up what these changes force us to make again for one body or collider.
+// Combines what these changes require to be recomputed for one body or collider.
 ChangeCost cost_for(const std::string& name, const std::vector<TimedChange>& changes);
 
 class Script {
  public:
-  // Loads a scene file, or a replay, which is a file that names its `scene`. `settings` are those of --set, and apply
-  // to the scene as the film starts. `sweep_point` is a point of the scene's sweep. Throws InputError with all that is
-  // wrong at any time of the film.
+  // Loads a scene file, or a replay, which is a file that names its `scene`. `settings` are those of --set and apply to
+  // the scene at the start of the film. `sweep_point` is a point of the scene's sweep. Throws InputError with all that
+  // is wrong at any time of the film.
   static Script load(const std::filesystem::path& path, const std::filesystem::path& assets,
                      const std::vector<std::string>& settings, std::optional<std::size_t> sweep_point = {});
   Script(Script&&) noexcept;
@@ -42,12 +42,14 @@ class Script {
   const SceneDef& scene() const;  // as the film starts
   const std::vector<TimedChange>& changes() const;
 
-  // The changes that change a value between the start and the end of a frame.
+  // Returns the changes that alter a value between the start and the end of a frame.
   std::vector<const TimedChange*> at_work(int frame) const;
-  // The scene at the end of a frame. Without a change at work this is the scene as the frame starts.
+  // Returns the scene at the end of a frame. When no change is at work, this is also the scene at the start of the
+  // frame.
   SceneDef scene_at(int frame) const;
 
-  // Changes and handles that are legal, but that do nothing in this film or less than they say.
+  // Returns warnings about changes and handles that are legal but have no effect in this film, or less than they
+  // specify.
   std::vector<Problem> warnings() const;
 
   std::string scene_json() const;   // as the film starts

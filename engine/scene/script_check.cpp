@@ -18,7 +18,7 @@ std::vector<Problem> problems_of(Config document) {
   return document.take_problems();
 }
 
-// The problems of a list that are not in the other one.
+// Returns the problems of a list that are not in the other one.
 std::vector<Problem> beyond(const std::vector<Problem>& list, const std::vector<Problem>& other) {
   std::vector<Problem> rest;
   for (const Problem& problem : list) {
@@ -32,7 +32,7 @@ std::string place_text(const Problem& problem) {
   return problem.line > 0 ? fmt::format("{}:{}:{}", problem.source, problem.line, problem.column) : problem.source;
 }
 
-// The table that a path leads into; empty at the top.
+// Returns the table that a path leads into; empty at the top.
 std::string table_of(const std::string& path) {
   const std::size_t dot = path.rfind('.');
   return dot == std::string::npos ? "" : path.substr(0, dot);
@@ -42,8 +42,8 @@ Problem at(const TimedChange& change, std::string message) {
   return {change.place.source, change.place.line, change.place.column, std::move(message)};
 }
 
-// The problems that a change causes, as messages that point into the replay. A problem that shows at another place, in
-// a file that the change does not touch, is described at the change.
+// Returns the problems that a change causes, as messages that point into the replay. A problem that appears at another
+// place, in a file that the change does not touch, is reported at the change.
 std::vector<Problem> as_caused_by(const TimedChange& change, const std::vector<Problem>& made) {
   std::vector<Problem> own;
   std::string elsewhere;
@@ -93,14 +93,14 @@ bool Script::Parts::put(Config& document, const std::string& path, const ConfigV
   }
 }
 
-// Removes the changes whose paths lead nowhere.
+// Removes the changes whose paths lead to nothing.
 void Script::Parts::put_each() {
   Config document = scene_file.copy();
   std::erase_if(changes,
                 [&](const TimedChange& change) { return !put(document, change.path, change.to, change.place); });
 }
 
-// The value at a path, or its default.
+// Returns the value at a path, or its default.
 std::optional<ConfigValue> Script::Parts::value_at(const std::string& path, Config document) const {
   if (auto value = document.value_at(path)) return value;
   open_tables(document);

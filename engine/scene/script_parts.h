@@ -1,4 +1,5 @@
-// The parts that a Script owns. Only script.cpp, which reads it, and script_check.cpp, which checks it, include this.
+// Defines the parts that a Script owns. Only script.cpp, which reads it, and script_check.cpp, which checks it, include
+// this header.
 #pragma once
 
 #include <set>
@@ -7,9 +8,9 @@
 
 namespace supple {
 
-// Times are given in seconds and counted in frames; they are equal when they differ by less than this [s].
+// Times are given in seconds and counted in frames. They count as equal when they differ by less than this [s].
 constexpr double time_tolerance = 1e-9;
-// The time of the film's start, at which jumps at 0 are in force already [s].
+// This time stands for the start of the film, when jumps at 0 have already taken effect [s].
 constexpr double at_start = 2 * time_tolerance;
 
 struct Script::Parts {
@@ -19,14 +20,14 @@ struct Script::Parts {
   std::vector<TimedChange> changes;  // in the order of their beginnings
   std::vector<Problem> problems;     // of the replay, while it is read
 
-  // The scene at a time, with the first `count` changes. One of them can be left out.
+  // Returns the scene's document at a time, with the first `count` changes applied. One of them can be left out.
   Config document_at(double time, std::size_t count, std::optional<std::size_t> left_out = {}) const;
   bool at_work(const TimedChange& change, int frame) const;
   SceneDef read(Config& document) const;
   // Throws InputError when the scene cannot be read. Problems of the replay itself are added to `problems`.
   void read_replay(const std::filesystem::path& assets, const std::vector<std::string>& settings);
 
-  // Puts a value of the replay into a document. Returns false, and adds to `problems`, when its path leads nowhere.
+  // Puts a value of the replay into a document. When its path leads to nothing, returns false and adds to `problems`.
   bool put(Config& document, const std::string& path, const ConfigValue& value, const Problem& place);
 
   // Finds all problems of the changes, the values at which ramps begin, and the scene at the start. A change that has a
@@ -34,7 +35,7 @@ struct Script::Parts {
   void check_changes();
 
  private:
-  // Problems that have been reported, by their places and their texts: each is reported once.
+  // Holds the places and texts of the problems that have been reported, so that each is reported once.
   struct Reported {
     std::set<std::string> places, texts;
   };
@@ -48,7 +49,7 @@ struct Script::Parts {
   std::optional<ConfigValue> value_at(const std::string& path, Config document) const;
 };
 
-// Adds the tables that a scene may leave out, so that readers ask for their keys too.
+// Adds the tables that a scene may omit, so that readers also ask for their keys.
 void open_tables(Config& document);
 
 }  // namespace supple

@@ -7,7 +7,7 @@
 namespace supple {
 namespace {
 
-// Returns the one change at work that a body's model must follow; null where there are several.
+// Returns the only change at work that affects a body's model; null where there are none or several.
 const TimedChange* only_change(const std::vector<const TimedChange*>& at_work, const std::string& body) {
   const TimedChange* only = nullptr;
   for (const TimedChange* change : at_work) {

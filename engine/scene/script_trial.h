@@ -1,5 +1,5 @@
-// A script held against the bodies of its scene before a film is made: what its changes would break, and what is legal
-// and unwise.
+// Tests a script on the bodies of its scene before a film is made: which of its changes are impossible, and which are
+// legal but unwise.
 #pragma once
 
 #include "scene/assemble.h"
@@ -7,11 +7,11 @@
 
 namespace supple {
 
-// Makes every change of a script once, so that what cannot be is said before anything is written. Throws InputError
-// with all that the bodies refuse.
+// Makes every change of a script once, so that an impossible one is reported before anything is written. Throws
+// InputError with all that the bodies refuse.
 void try_changes(const Script& script, std::vector<Body> bodies);
 
-// Lists what is legal and unwise about a scene and its changes.
+// Lists what is legal but unwise in a scene and its changes.
 std::vector<Problem> all_warnings(const Script& script, const std::vector<Body>& bodies);
 
 }  // namespace supple

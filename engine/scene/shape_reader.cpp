@@ -37,7 +37,7 @@ double read_round(const ConfigTable& table, double largest) {
   return std::min(round, largest);
 }
 
-// A replay reads a scene's document again for every frame; the surfaces that it names are read once.
+// The surfaces that a scene names are read once, although a replay reads the scene's document again for every frame.
 std::shared_ptr<KnownSurfaces> known_surfaces(Config& config) {
   if (!config.surfaces()) config.surfaces() = std::make_shared<KnownSurfaces>();
   return config.surfaces();

@@ -1,4 +1,4 @@
-// Shapes as TOML tables: see docs/scene-format.md, "Shapes".
+// Reads shapes from TOML tables: see docs/scene-format.md, "Shapes".
 #pragma once
 
 #include "geometry/shape.h"

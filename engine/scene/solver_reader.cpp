@@ -5,7 +5,7 @@
 namespace supple {
 namespace {
 
-// Words that earlier versions of the format had for combinations of parts.
+// These are words of earlier versions of the format for combinations of parts.
 constexpr std::array former_method_names = {
     ShortName{"newton-shifted", Method::newton_shifted},
     ShortName{"newton-cg5", Method::newton_cg(5)},

@@ -1,4 +1,4 @@
-// The `solver` table of a scene file, of the scene or of a body.
+// Reads the `solver` table of a scene file, for the whole scene or for a body.
 #pragma once
 
 #include "scene/config.h"

@@ -1,4 +1,4 @@
-// The table `start` of a body in a scene file.
+// Reads the table `start` of a body in a scene file.
 #pragma once
 
 #include "scene/config.h"
@@ -6,7 +6,7 @@
 
 namespace supple {
 
-// At rest when the body has no such table.
+// Returns a start at rest when the body has no such table.
 StartDef read_start(const ConfigTable& body);
 
 }  // namespace supple

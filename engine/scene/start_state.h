@@ -1,6 +1,6 @@
-// The place where a body starts: at rest, or deformed on purpose, to see it recover. Not here: motion from outside
-// (handles), and how scene files say it (start_reader.h). A new start state is a struct with place(), an entry in
-// StartDef, and a reader.
+// Defines where a body starts: at rest, or deformed on purpose, to show how it recovers. Not here: motion from outside
+// (handles), and the form of start states in scene files (start_reader.h). A new start state is a struct with place(),
+// an entry in StartDef, and a reader.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,13 @@
 
 namespace supple {
 
-// The body at rest, in its place in the world: start states are relative to it.
+// Describes the body at rest, at its place in the world, to which start states are relative.
 struct RestFrame {
   Bounds box;
   Vec3 center = Vec3(0, 0, 0);  // of the box [m]
 };
 
-// Uniformly distributed random numbers that are the same on every machine and library.
+// Generates uniformly distributed random numbers that are the same on every machine and with every library.
 class UniformNumbers {
  public:
   explicit UniformNumbers(std::uint64_t seed) : engine_(seed) {}
@@ -44,19 +44,19 @@ struct Rotated {
   Vec3 place(const Vec3& rest, const RestFrame& frame, UniformNumbers&) const;
 };
 
-// Turned about the longest axis of the box, by this angle from one end to the other.
+// Twists the body about the longest axis of its box, by this angle from one end to the other.
 struct Twisted {
   double degrees;
   Vec3 place(const Vec3& rest, const RestFrame& frame, UniformNumbers&) const;
 };
 
-// Every vertex is put anywhere in a box around the centre.
+// Places every vertex at a random position in a box around the centre.
 struct Random {
   Vec3 extent;  // [m]
   Vec3 place(const Vec3& rest, const RestFrame& frame, UniformNumbers& numbers) const;
 };
 
-// Pressed onto a level plane, a line along x, or a point.
+// Flattens the body onto a level plane, a line along x, or a point.
 struct Flattened {
   Vec3 kept;  // 1 for the coordinates that stay
   Vec3 place(const Vec3& rest, const RestFrame& frame, UniformNumbers&) const;
@@ -64,8 +64,8 @@ struct Flattened {
 
 using StartDef = std::variant<AtRest, Stretched, Rotated, Twisted, Random, Flattened>;
 
-// Returns the places where all points of a body start. The random numbers follow from the scene's seed and the body's
-// name.
+// Returns the positions at which all points of a body start. The random numbers depend on the scene's seed and the
+// body's name.
 Positions start_positions(const StartDef& start, const Positions& rest, std::uint64_t seed, const std::string& body);
 
 }  // namespace supple

@@ -41,7 +41,7 @@ void set_point(Config& config, const SweepDef& sweep, std::size_t point) {
   }
 }
 
-// "mu=3, solver.iterations=5"
+// Returns a text such as "mu=3, solver.iterations=5".
 std::string point_text(const SweepDef& sweep, std::size_t point) {
   const std::vector<std::string> values = sweep.values(point);
   std::string text;
@@ -50,7 +50,7 @@ std::string point_text(const SweepDef& sweep, std::size_t point) {
   return text;
 }
 
-// The problems of the scene at one point.
+// Returns the problems of the scene at one point.
 std::vector<Problem> problems_of_point(const Config& base, const SweepDef& sweep, std::size_t point) {
   try {
     Config config = base.copy();

@@ -1,5 +1,5 @@
-// A sweep: one scene with other values in some places, point by point. The [sweep] table of a scene file lists the
-// values; here the points are counted, and their values are put into the scene. Nothing here simulates.
+// Defines a sweep: one scene with other values in some places, point by point. The [sweep] table of a scene file lists
+// the values; here the points are counted, and their values are put into the scene. Nothing here simulates.
 #pragma once
 
 #include "scene/config.h"
@@ -23,9 +23,9 @@ struct SweepDef {
   std::vector<PathList> axes;  // in the order of the file; of a grid the last one varies fastest
 
   std::size_t points() const;  // 0 without axes
-  // The index of the value of each axis at a point.
+  // Returns, for each axis, the index of its value at a point.
   std::vector<std::size_t> choice(std::size_t point) const;
-  // The value of each axis at a point, as people read it.
+  // Returns the value of each axis at a point, as people read it.
   std::vector<std::string> values(std::size_t point) const;
 };
 
@@ -33,14 +33,14 @@ struct SweepDef {
 SweepDef read_sweep(const ConfigTable& root);
 
 // Loads the sweep of a file after "path=value" settings, which must not set a value that the sweep varies. Throws
-// InputError, also when the scene itself cannot be read and when it has no sweep.
+// InputError, also when the scene itself cannot be read or has no sweep.
 SweepDef load_sweep(const std::filesystem::path& path, const std::filesystem::path& assets,
                     const std::vector<std::string>& settings);
 
 // Puts the values of a point into a scene's document, and removes its sweep. Throws InputError when a path is refused.
 void put_sweep_point(Config& config, std::size_t point);
 
-// The document of the scene at a point, as it is written to run.json.
+// Returns the document of the scene at a point, in the form that is written to run.json.
 std::string sweep_point_json(const std::filesystem::path& path, const std::filesystem::path& assets,
                              const std::vector<std::string>& settings, const SweepDef& sweep, std::size_t point);
 

@@ -1,5 +1,5 @@
-// The parts of the TOML parser that Config, ConfigTable and ConfigValue hold. Only the three files that implement them
-// include this.
+// Defines the parts of the TOML parser that Config, ConfigTable and ConfigValue hold. Only the three files that
+// implement them include this header.
 #pragma once
 
 // The parser takes its assertions for a part of handling malformed files, and without them promises the compiler that
@@ -34,7 +34,7 @@ struct Config::Content {
   std::vector<KnownKey> known;
   std::unordered_set<std::string> known_paths, documented_keys;  // what the two lists hold, to look it up
   std::shared_ptr<KnownSurfaces> surfaces;
-  // The places where copied nodes stood: the parser does not copy them.
+  // Holds the places of the originals of copied nodes, because the parser does not copy them.
   std::map<const toml::node*, toml::source_region> moved;
 
   const toml::source_region& source_of(const toml::node& node) const {
@@ -42,8 +42,8 @@ struct Config::Content {
     return at != moved.end() ? at->second : node.source();
   }
 
-  // The folder that relative paths in a value start from: that of the file that the value stands in, which may be a
-  // replay, or the working folder for values of --set.
+  // Returns the folder from which relative paths in a value start: the folder of the file that contains the value,
+  // which may be a replay, or the working folder for values of --set.
   std::filesystem::path folder_of(const toml::source_region& source) const {
     if (!source.path || *source.path == name) return folder;
     return source.path->starts_with(set_option) ? std::filesystem::path()
@@ -51,7 +51,7 @@ struct Config::Content {
   }
 
   ConfigValue value_of(const toml::node& node) const;
-  // Records the places of a value of which a copy now stands in the document.
+  // Records the places of a value after a copy of it has been put into the document.
   void settle(const toml::node& copy, const ConfigValue& value);
 
   Problem place(const toml::node* node, std::string message) const {
@@ -64,7 +64,7 @@ struct Config::Content {
   }
 };
 
-// The parts of a ConfigValue: a copy of a node, and where the original stood.
+// Holds the parts of a ConfigValue: a copy of a node, and the place of the original.
 struct ConfigValue::Content {
   std::shared_ptr<const toml::node> node;
   std::vector<toml::source_region> places;  // of the node and of those below it, in the order of walk()
@@ -86,10 +86,10 @@ void walk(const toml::node& node, const Visit& visit) {
 toml::table parsed_toml(std::string_view text, const std::string& name);
 inline constexpr std::size_t most_words = 32;
 
-// A value as messages show it.
+// Writes a value as messages show it.
 std::string shown(const toml::node& node);
 
-// The name of an element of a list of tables, or the list's name when it has none.
+// Returns the name of an element of a list of tables, or the list's name when it has none.
 std::string name_of(const toml::table& element, const std::string& list);
 
 }  // namespace supple

@@ -15,8 +15,8 @@ Problem at(const Problem& place, std::string message) {
   return {place.source, place.line, place.column, std::move(message)};
 }
 
-// Whether a body starts as a line or a point, and has a material whose forces cannot leave it: laws in F alone and
-// springs have no force across a body that is flat in two directions.
+// Tells whether a body starts as a line or a point and has a material whose forces cannot restore it: laws in F alone
+// and springs have no force across a body that is flat in two directions.
 bool stays_flat(const Body& body) {
   const auto* flat = std::get_if<Flattened>(&body.def.start);
   if (flat == nullptr || flat->kept.sum() > 1.5) return false;

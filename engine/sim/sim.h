@@ -1,4 +1,4 @@
-// The simulation for other programs: all that is needed to move a body, in the order in which it is called.
+// Offers the simulation to other programs: all that is needed to move a body, in the order in which it is called.
 //
 //   BodyDescription body;                    // mesh, materials by region, handles, time step: sim/model/model.h
 //   const Model model = build_model(body);   // no step changes it; several states may share it

@@ -96,7 +96,7 @@ TEST(Bench, SectionsSurviveTheirFiles) {
   EXPECT_FALSE(read_section(folder.path / "none.json", "this machine"));
 }
 
-// At the default ten iterations, with the default delay and radius.
+// Both methods run at the default ten iterations, with the default delay and radius.
 TEST(Bench, ChebyshevIsNearerToTheMinimumThanProjectiveDynamicsOnTheTwistingBar) {
   const TemporaryFolder folder;
   Subject subject({"twisting-bar", "bar", {"body.bar.box.cells=[14, 5, 5]"}});
@@ -111,7 +111,7 @@ TEST(Bench, ChebyshevIsNearerToTheMinimumThanProjectiveDynamicsOnTheTwistingBar)
   }
 }
 
-// Table II: our matrix does not see how a body is turned, the rest pose's does.
+// Table II shows that our matrix does not depend on the rotation of a body, and that the rest pose's does.
 TEST(Bench, Table2IsTheSameInBothPosesForOursAlone) {
   const TemporaryFolder folder;
   Threads threads(1);

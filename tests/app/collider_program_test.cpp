@@ -1,4 +1,4 @@
-// The program with colliders: what a run leaves of them, and surface files that are broken.
+// Tests the program with colliders: what a run leaves of them, and how it refuses broken surface files.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ std::vector<std::string> render(const std::string& scene, const std::vector<std:
   return arguments;
 }
 
-// A box that falls the last millimetres.
+// Describes a box that falls the last millimetres.
 const std::string box_scene = R"(frames = 5
 [[body]]
 name = "box"
@@ -178,7 +178,7 @@ std::string stl_of(std::uint32_t claimed, std::size_t triangles) {
   return bytes + std::string(50 * triangles, '\0');
 }
 
-// Broken surfaces by name; the last one is a folder.
+// Writes broken surfaces and returns their names; the last one is a folder.
 std::vector<std::string> write_broken_surfaces(const std::filesystem::path& folder) {
   const std::pair<const char*, std::string> files[] = {
       {"cut.ply",
@@ -201,7 +201,7 @@ std::vector<std::string> write_broken_surfaces(const std::filesystem::path& fold
   return names;
 }
 
-// Every file below a folder, with what is in it.
+// Returns every file below a folder, with its content.
 std::map<std::string, std::string> contents_of(const std::filesystem::path& folder) {
   std::map<std::string, std::string> contents;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))

@@ -1,4 +1,4 @@
-// `supple compare` and what it reads: point caches and the folders of runs.
+// Tests `supple compare` and what it reads: point caches and the folders of runs.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -32,7 +32,7 @@ void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-// Two points in three frames.
+// Returns two points, which move through three frames.
 Positions points_of(int frame) {
   Positions points(2, 3);
   points << 1, 2, 3, 4, 5, 6;
@@ -90,7 +90,7 @@ TEST(PointCache, ReadsWhatAKilledRunLeft) {
   EXPECT_EQ(PointCacheReader(path).frames(), 3);
 }
 
-// A run's folder by hand: bodies of two points, whose second one is moved by `moved` in frame 1.
+// Writes a run's folder by hand: its bodies have two points, of which the second is moved by `moved` in frame 1.
 struct HandMade {
   std::vector<std::string> bodies = {"soft"};
   int frames = 3;
@@ -188,7 +188,7 @@ TEST(Comparison, FindsMotionThatIsNotThatOfTheStates) {
   EXPECT_EQ(length.status, 1) << length.err;
   EXPECT_NE(length.out.find("motion/stiff.pc2 has 3 frames in A and 4 in B"), std::string::npos) << length.out;
 
-  // Where the states differ too, the motion is what they say.
+  // Where the states differ too, the motion agrees with the states, so no changed file is reported.
   const Result states = run(folder.path, {"compare", "long", "moved"});
   EXPECT_EQ(states.status, 1) << states.err;
   EXPECT_EQ(states.out.find("though the states"), std::string::npos) << states.out;

@@ -1,4 +1,4 @@
-// `supple draw`: a film again from a run's saved motion.
+// Tests `supple draw`, which draws a film again from a run's saved motion.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ using test::run;
 
 constexpr int frames = 12;
 
-// A run of a bar and a cloth above a ball, whose size, label and camera a replay changes.
+// Holds a run of a bar and a cloth above a ball, whose size, label and camera a replay changes.
 class DrawnRun : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -119,7 +119,7 @@ TEST_F(DrawnRun, ShowsAnotherCameraSizeAndChoiceOfFrames) {
   if (count_video_frames(path("run") / "video.mp4") > 0) {
     EXPECT_EQ(count_video_frames(path("other") / "video.mp4"), 3);
   }
-  // A drawing may be drawn over; what is left of a longer one goes.
+  // A drawing may be overwritten; the rest of a longer one is removed.
   ASSERT_EQ(draw("other", {"--last", "0"}).status, 0);
   EXPECT_EQ(pictures("other"), 1);
   EXPECT_EQ(picture("other", 0), picture("run", 0));

@@ -1,4 +1,4 @@
-// Tests what a run leaves for other programs: surfaces beside the point caches, and with --vtu fields.
+// Tests what a run leaves for other programs: surfaces in addition to the point caches, and fields with --vtu.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ using test::run;
 using test::VtuFile;
 using test::VtuNumbers;
 
-// A box that falls on the floor beside a cloth that a handle holds.
+// Describes a box that falls on the floor beside a cloth that a handle holds.
 constexpr const char* scene = R"(frames = 12
 [[body]]
 name = "box"

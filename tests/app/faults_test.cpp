@@ -1,5 +1,5 @@
-// Tests what goes wrong outside: the disk, ffmpeg, files that somebody damaged. There is a message and a status, and
-// nothing is lost.
+// Tests failures from outside: the disk, ffmpeg, and files that were damaged. Each gives a message and an exit status,
+// and nothing is lost.
 #include <sys/stat.h>
 
 #include <fmt/format.h>
@@ -38,7 +38,7 @@ height = 64
 samples = 1
 )";
   }
-  // The program by the shell, with what the shell does before.
+  // Runs the program through a shell, after the commands in `before`.
   Result in_shell(const std::string& before, const std::string& arguments) const {
     const std::string command = fmt::format("cd '{}' && {} '{}' {} > stdout.txt 2> stderr.txt", folder_.path.string(),
                                             before, SUPPLE_PROGRAM, arguments);
@@ -74,7 +74,7 @@ TEST_F(Faults, AKilledFfmpegIsToldAndTheFramesAreWhole) {
   expect_whole_frames(8);
 }
 
-// No file may become longer than the limit: what a full disk looks like to the solver's side of the program. (Mesa
+// No file may become longer than the limit, which looks like a full disk to the solver's side of the program. (Mesa
 // needs larger files than that in memory.)
 TEST_F(Faults, AFullDiskEndsTheRunWithWhatWasWritten) {
   const Result result = in_shell("trap '' XFSZ; ulimit -f 4; ", "render bar.toml --no-images");
@@ -157,7 +157,7 @@ TEST_F(Faults, ADamagedFrameIsFoundBeforeGoingOn) {
   EXPECT_EQ(test::profile_of(folder_.path / "out" / "bar")["frames"].size(), 8u);  // all else is as it was
 }
 
-// A terminal that is closed says SIGHUP; nohup has it ignored.
+// A terminal that is closed sends SIGHUP; nohup makes the program ignore it.
 TEST_F(Faults, AClosedTerminalEndsTheFilmAfterItsFrameUnlessNohupSaysOtherwise) {
   const std::filesystem::path out = folder_.path / "out" / "bar";
   const std::vector<std::string> film = {"render", "bar.toml", "--no-images", "--frames", "20000"};

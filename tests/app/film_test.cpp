@@ -1,4 +1,4 @@
-// Tests the film itself: how many frames it has, their colours, what becomes of it when ffmpeg dies or the run is
+// Tests the film itself: how many frames it has, their colours, what happens to it when ffmpeg is killed or the run is
 // ended, and a film without files of its frames.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -57,7 +57,7 @@ samples = 1
     const std::filesystem::directory_iterator files(folder_.path / out / "frames");
     return static_cast<int>(std::count_if(begin(files), end(files), [](const auto& f) { return looks_whole(f); }));
   }
-  // Puts a program in the place of ffmpeg. Returns what is to stand before the command line of a shell.
+  // Puts a program in the place of ffmpeg. Returns what must precede a shell's command line.
   std::string with_ffmpeg(const std::string& script) const {
     std::filesystem::create_directory(folder_.path / "bin");
     std::ofstream(folder_.path / "bin" / "ffmpeg") << "#!/bin/sh\n" << script << "\n";
@@ -92,7 +92,7 @@ TEST_F(FilmOfABar, HasItsFramesAndSaysInWhichColours) {
     EXPECT_NE(told.find(line), std::string::npos) << told;
 }
 
-// Flat patches, since chroma is stored at half the size and edges are smoothed.
+// The picture consists of flat patches, because chroma is stored at half the size and edges are smoothed.
 TEST_F(FilmOfABar, ShowsColoursAsTheyAreInTheFrames) {
   constexpr int side = 64;
   const std::vector<std::array<int, 3>> patches = {{230, 89, 13}, {255, 0, 0},     {0, 255, 0},     {0, 0, 255},
@@ -129,7 +129,7 @@ TEST_F(FilmOfABar, WithoutFilesIsTheSameFilm) {
   EXPECT_FALSE(std::filesystem::exists(folder_.path / "b" / "checkpoint" / "state"));
   EXPECT_EQ(test::profile_of(folder_.path / "b")["frames"].size(), 12u);
 
-  // A run that was killed is started anew.
+  // A run that was killed is started again from the first frame.
   EXPECT_EQ(film("c", {"--film-only", "--frames", "20000"}, folder_.path / "c" / "motion" / "bar.pc2", SIGKILL).status,
             -SIGKILL);
   const Result on = film("c", {"--film-only", "--resume"});
@@ -161,7 +161,7 @@ TEST_F(FilmOfABar, WithoutFilesNeedsFfmpegToTheEnd) {
 }
 
 TEST_F(FilmOfABar, AnEncoderThatDiesInTheMiddleCostsNoFrame) {
-  // Large pictures, so that the pipe holds but one of them.
+  // The pictures are so large that the pipe holds only one of them.
   const std::string program =
       fmt::format("'{}' render bar.toml --quiet --set output.width=640 --set output.height=480", SUPPLE_PROGRAM);
   const std::pair<const char*, const char*> ends[] = {
@@ -207,7 +207,7 @@ TEST_F(FilmOfABar, GoesOnFromTheFilesOfItsFrames) {
   ASSERT_EQ(film("cut", {"--resume", "--frames", "20"}).status, 0);  // no frame is made
   EXPECT_EQ(read_file(video("whole")), read_file(video("cut")));
 
-  // A file that begins and ends as it should and is damaged between costs the film and nothing else.
+  // A file that begins and ends as it should but is damaged in between costs the film and nothing else.
   const std::filesystem::path frame = folder_.path / "cut" / "frames" / "000003.png";
   std::string bytes = read_file(frame);
   bytes[bytes.size() / 2] ^= 1;

@@ -1,4 +1,4 @@
-// `supple info`: what it says of a mesh, a scene and the folder of a run.
+// Tests what `supple info` prints about a mesh, a scene and the folder of a run.
 #include <gtest/gtest.h>
 
 #include <fstream>

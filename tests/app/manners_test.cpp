@@ -1,4 +1,5 @@
-// Tests what the program is like to use: help with examples, completion, what it says of the machine, colour.
+// Tests how the program behaves towards its user: help with examples, completion, what it reports about the machine,
+// colour.
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
@@ -27,7 +28,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-// The program in a folder of its own.
+// Runs the program in a folder of its own.
 struct Program {
   test::TemporaryFolder folder;
 
@@ -38,7 +39,7 @@ struct Program {
     EXPECT_EQ(result.status, 0) << result.err;
     return result.out;
   }
-  // Verbs as the help lists them.
+  // Returns the verbs that the help lists.
   std::vector<std::string> verbs() const {
     const std::string text = help({});
     std::vector<std::string> names;
@@ -130,7 +131,7 @@ TEST(Completion, KnowsNamesAndChoicesByTheirPlace) {
   }
 }
 
-// A profile runs the whole film in every repeat.
+// A profile cannot be resumed, because it runs the whole film in every repeat.
 TEST(Help, OffersToResumeOnlyWhereAFilmCanBeResumed) {
   const Program program;
   for (const char* verb : {"render", "replay"})

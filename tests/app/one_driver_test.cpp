@@ -1,5 +1,5 @@
-// All that makes a body's steps makes the same ones: the film, the states that it leaves, the benchmarks' states, and
-// the frames that `supple info` tries out.
+// Tests that every part that makes a body's steps makes the same ones: the film, the states that it leaves, the
+// benchmarks' states, and the frames that `supple info` simulates.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -14,8 +14,8 @@
 namespace supple {
 namespace {
 
-// Implicit midpoint needs targets halfway, substeps need inputs of their own, one handle grabs in frame 3 and lets go
-// in frame 6, and the ball pushes from below.
+// In this scene, implicit midpoint needs targets halfway, substeps need inputs of their own, one handle grabs in frame
+// 3 and releases in frame 6, and the ball pushes from below.
 const std::string driven_scene = R"(frames = 9
 substeps = 2
 [solver]
@@ -92,7 +92,8 @@ TEST_F(OneDriver, FramesThatAreTriedOutAreThoseOfTheFilm) {
   }
 }
 
-// From the states before, while and after the handle holds, in an order that makes the model's values change each time.
+// The film is continued from the states before, while and after the handle holds, in an order that makes the model's
+// values change each time.
 TEST_F(OneDriver, ACopyOfAStateIsASnapshot) {
   Threads threads(1);
   Subject subject({scene_, "bar"});
@@ -108,7 +109,7 @@ TEST_F(OneDriver, ACopyOfAStateIsASnapshot) {
   }
 }
 
-// What a comparison of solvers measures on a state with a grabbing handle is the film's own step.
+// A comparison of solvers, on a state with a grabbing handle, must measure exactly the film's own step.
 TEST_F(OneDriver, ComparisonsMakeTheStepOfTheFilm) {
   Threads threads(1);
   Subject subject({scene_, "bar"});

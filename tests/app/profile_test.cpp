@@ -1,4 +1,4 @@
-// The profiler as a user meets it.
+// Tests the profiler as a user runs it.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -47,7 +47,7 @@ TEST(Profile, OfASceneLeavesZonesTraceAndPlot) {
   EXPECT_EQ(profile.repeats, 2);
   EXPECT_EQ(profile.run.frames, 5);
   EXPECT_FALSE(profile.run.pictures.empty());
-  // In the table they may be among the smaller ones, when the pictures are waited for.
+  // The table may list them among the smaller zones, when the pictures are waited for.
   for (const char* name : {"step", "evaluate"})
     EXPECT_TRUE(std::ranges::any_of(profile.zones, [name](const ZoneTimes& zone) { return zone.name() == name; }))
         << name;

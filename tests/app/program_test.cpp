@@ -1,4 +1,4 @@
-// The program as a user meets it: exit statuses, messages, and the folder that a run leaves.
+// Tests the program as a user runs it: exit statuses, messages, and the folder that a run leaves.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using test::profile_of;
 using test::Result;
 using test::run;
 
-// A head of 400 vertices, filmed small.
+// Describes a head of 400 vertices, filmed at a small size.
 void write_scene(const std::filesystem::path& path, const std::string& more = "") {
   std::ofstream(path) << "frames = 6\n"
                       << more << R"(

@@ -1,4 +1,4 @@
-// Films that change on the way, and films that were killed, as a user meets them: the same bits, always.
+// Tests films that change while they run, and films that were killed: every run must give the same bits.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ using test::read_file;
 using test::Result;
 using test::run;
 
-// A bar and a cloth that are changed in every way, filmed small.
+// Films a bar and a cloth, which are changed in every way, at a small size.
 class ReplayedFilm : public testing::Test {
  protected:
   void SetUp() override {
@@ -117,7 +117,7 @@ value = 1.6
     for (const std::filesystem::path& file : files) contents.push_back(read_file(file));
     return contents;
   }
-  // Everything that a film consists of, but for times.
+  // Compares everything that a film consists of, except for times.
   void expect_the_same_film(const std::string& a, const std::string& b) const {
     EXPECT_EQ(hashes(a), hashes(b));
     EXPECT_EQ(pictures(a), pictures(b));
@@ -152,7 +152,7 @@ TEST_F(ReplayedFilm, IsVerifiedVertexByVertex) {
   EXPECT_EQ(same.status, 0) << same.err;
   EXPECT_EQ(same.out, "  verified: frames 0 to 23 are the same to the last bit\n");
 
-  // The last bit of one number of the replay: 2e5 and the next double.
+  // The replay now differs in the last bit of one number: 2e5 and the next double.
   std::string text = read_file(folder_.path / "r.toml");
   text.replace(text.find("value = 2e5"), 11, "value = 200000.00000000003");
   std::ofstream(folder_.path / "r.toml") << text;
@@ -189,7 +189,8 @@ TEST_F(ReplayedFilm, GoesOnAfterBeingKilledAsIfNothingHadHappened) {
   for (int attempt = 0; attempt < 6; ++attempt) {
     std::filesystem::remove_all(folder_.path / "cut");
     std::vector<std::string> arguments = film({"--out", "cut", "--checkpoint-every", "1"});
-    // Four times behind a picture in the middle of the film, so that it is sure to be running; else at any time.
+    // Four times the run is killed after a picture in the middle of the film exists, so that it is certain to be
+    // running; otherwise it is killed at any time.
     const std::filesystem::path picture = folder_.path / "cut" / "frames" / fmt::format("{:06}.png", dice() % 16);
     Result result = attempt < 4 ? run(folder_.path, arguments, picture, SIGKILL)
                                 : test::run_and_kill(folder_.path, arguments, int(dice() % 900));
@@ -238,7 +239,7 @@ TEST_F(ReplayedFilm, RefusesTheCheckpointOfAnotherFilm) {
   EXPECT_NE(refused({"--no-images"}).find("is damaged"), std::string::npos);
 }
 
-// Two tetrahedra with a region each.
+// Returns two tetrahedra with a region each.
 std::string two_regions(int first, int second) {
   return fmt::format(
       "MeshVersionFormatted 2\nDimension 3\nVertices\n5\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 1 1 0\n"

@@ -1,4 +1,4 @@
-// States that a run leaves: what is in them, that a step from them has the run's bits, and what is refused.
+// Tests the states that a run leaves: their content, that a step from them has the run's bits, and what is refused.
 #include "film/state_file.h"
 
 #include <fmt/format.h>
@@ -91,7 +91,7 @@ TEST(States, AreWrittenWhereAskedAndChangeNothing) {
       const auto text = nlohmann::json::parse(test::read_file(stored.folder / "state.json"))["state_hash"];
       hashes.push_back(std::stoull(text.get<std::string>(), nullptr, 16));
     }
-    // What the profile has of the frame before: XXH64 of the bodies' hashes.
+    // The profile has XXH64 of the bodies' hashes in the row of the frame before.
     if (frame > 0) {
       EXPECT_EQ(hash_text_form(hash_bytes(hashes.data(), 16)), without[frame - 1]);
     }
@@ -130,7 +130,7 @@ TEST(States, SayWhatTheSceneSaid) {
       for (int j = 0; j < 4; ++j) EXPECT_NEAR(ball[pose][i][j].get<double>(), expected(i, j), 1e-12) << pose;
     }
   }
-  // The moving handle's target at the end of the first substep of the frame, smoothly eased.
+  // This is the moving handle's target at the end of the first substep of the frame, smoothly eased.
   const NpyArray<double> targets = read_npy_doubles(states / "bar-000003" / "targets.npy");
   const NpyArray<std::int32_t> handled = read_npy_ints(states / "bar-000003" / "handled.npy");
   const double s = 7.0 / 60 / 0.5;
@@ -173,7 +173,7 @@ TEST(States, GiveTheRunsBitsWhenTheStepIsMadeAgain) {
   }
 }
 
-// g by nothing but the files, at the next frame's state, is what the solver says it reached.
+// g, computed from the files alone at the next frame's state, must be the value that the solver reports.
 TEST(States, HoldTheObjectiveThatTheProfileReports) {
   const test::TemporaryFolder folder;
   for (const char* more : {"", "damping = 0.01\n", "integrator = \"implicit-midpoint\"\n"}) {
@@ -206,7 +206,7 @@ TEST(States, BeyondTheFilmAreRefused) {
   EXPECT_FALSE(std::filesystem::exists(folder.path / "out"));
 }
 
-// A bar's folder, written without a film.
+// Writes a bar's folder without a film.
 struct Written {
   test::TemporaryFolder folder;
   Model model;
@@ -223,7 +223,7 @@ struct Written {
     ASSERT_NE(text.find(from), std::string::npos) << from;
     write_whole_file(json(), text.replace(text.find(from), from.size(), to));
   }
-  // Without the folder's name.
+  // Returns the message without the folder's name.
   std::string complaint() const {
     try {
       (void)state_for(model, read_state(folder.path));
@@ -283,12 +283,12 @@ TEST(States, OfABodyOfAnotherSizeAreRefused) {
   }
 }
 
-// Every key and file that a state can have.
+// Adds every key and file that a state can have.
 void add_keys(const nlohmann::json& json, const std::string& path, std::set<std::string>& keys) {
   if (json.is_object()) {
     for (const auto& [key, value] : json.items()) {
       keys.insert(path + key);
-      // Parameters of materials are those of scene files.
+      // The parameters of materials are those of scene files.
       if (key != "material") add_keys(value, path + key + ".", keys);
     }
   } else if (json.is_array() && !json.empty() && json[0].is_object()) {

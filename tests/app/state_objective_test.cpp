@@ -1,4 +1,4 @@
-// The program's g and its gradient against those that a separate program would compute from the files of a state.
+// Compares the program's g and its gradient with those that a separate program would compute from the files of a state.
 #include <gtest/gtest.h>
 
 #include "film/state_file.h"
@@ -11,7 +11,7 @@ namespace {
 
 using test::StoredProblem;
 
-// Held at one end, and by springs at the other.
+// Returns a body that is held at one end, and by springs at the other.
 BodyDescription between_handles(const Material& material) {
   BodyDescription body = test::bar(material, test::Held::hard_end);
   Handle soft{"soft", {}, 300};
@@ -22,7 +22,7 @@ BodyDescription between_handles(const Material& material) {
   return body;
 }
 
-// Three materials, and fibres in one of them.
+// Returns a body of three materials, with fibres in one of them.
 BodyDescription patchwork() {
   const SplineCurve b({{0.2, 300}, {0.7, 350}, {1, 500}, {1.4, 900}}), c({{0.3, -9e3}, {0.8, -3e3}, {1, -2e3}});
   const SplineCurve a({{0.4, -6e3}, {0.9, 0}, {1, 1e3}, {1.2, 4e3}, {1.5, 5e3}});

@@ -1,4 +1,4 @@
-// Sweeps as a user runs them: all at once, point by point, broken off, with a point that fails.
+// Tests sweeps as a user runs them: all points at once, point by point, interrupted, and with a point that fails.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -152,7 +152,7 @@ TEST(SweepVerb, RunsOnlyWhatIsNotDone) {
   EXPECT_EQ(run(folder.path, {"sweep", "bar.toml", "--no-images", "--again"}).status, 0);
   EXPECT_NE(made("0001"), first);
 
-  // Another scene makes what is there outdated.
+  // Another scene makes the existing points outdated.
   std::ofstream(folder.path / "bar.toml") << "fps = 24\n" << bar_scene << four_points;
   const Result outdated = run(folder.path, {"sweep", "bar.toml", "--merge"});
   EXPECT_EQ(outdated.status, 1);

@@ -203,7 +203,7 @@ TEST(Hessian, SystemMatrixIsWhatTheModelHasFactored) {
   }
 }
 
-// A bar that is shaken and then stepped once by any method, each time from the same state.
+// Holds a bar that is shaken and then stepped once by any method, each time from the same state.
 struct ShakenBar {
   const Model model = build_model(test::bar(NeoHookean{2e4, 4e4}, Held::hard_end, Precision::double_precision, 2));
   StepInputs inputs = test::still_inputs(model);
@@ -251,7 +251,8 @@ TEST(Methods, AllReachTheMinimumOfOneStep) {
   }
 }
 
-// Each entry of the table of forms that compared_methods() does not have: a matrix by itself.
+// Tests every combination in the table of forms, also those that compared_methods() does not contain, such as a matrix
+// without acceleration.
 TEST(Methods, EveryCombinationOfPartsReachesTheMinimum) {
   const ShakenBar bar(5000);
   const double lowest = bar.by_ours().report.objective.back();

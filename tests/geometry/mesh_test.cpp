@@ -25,7 +25,7 @@ Shape shape_of(const Primitive& primitive) {
 Shape squirrel() { return load_shape(test::assets / "shapes" / "squirrel.toml", test::assets); }
 
 TEST(Shape, PrimitivesAreExactDistancesOutsideTheirSurface) {
-  // A walk along a distance field by the field's own value ends on the surface, and the field's slope is 1.
+  // Points that move along a distance field by the field's own value reach the surface, and the field's slope is 1.
   std::mt19937 random(2);
   std::uniform_real_distribution<double> uniform(-2, 2);
   const Primitive primitives[] = {Sphere{0.7},

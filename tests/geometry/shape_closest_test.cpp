@@ -78,7 +78,7 @@ const std::pair<const char*, Primitive> exact_primitives[] = {
     {"group of one", ball_in_group},
 };
 
-// Lists every primitive whose field is its distance, both as it is and scaled, turned and moved.
+// Lists every primitive whose field is its distance, both as it is and scaled, rotated and moved.
 std::vector<NamedShape> exact_shapes() {
   std::vector<NamedShape> shapes;
   for (const auto& [name, primitive] : exact_primitives) {
@@ -148,8 +148,8 @@ TEST(ShapeClosest, OfExactShapesIsOnTheZeroSetAtTheFieldsDistanceAlongTheNormal)
   }
 }
 
-// A point of the surface lies at the distance found; if that changes no faster than the query moves, no point is
-// nearer.
+// Some point of the surface lies at the distance found. If that distance changes no faster than the query moves, no
+// point is closer.
 TEST(ShapeClosest, DistancesOfExactShapesNeverChangeFasterThanTheirPointMoves) {
   for (const auto& [name, shape] : exact_shapes()) {
     std::mt19937 random(2);
@@ -163,7 +163,7 @@ TEST(ShapeClosest, DistancesOfExactShapesNeverChangeFasterThanTheirPointMoves) {
 }
 
 // The slope is taken a thousandth above the surface, or below it for a query inside. There the field has a slope even
-// near an edge, though one that turns by up to a thousand times the step.
+// near an edge, though this slope turns by up to a thousand times the step.
 TEST(ShapeClosest, NormalsOfExactShapesAreTheFieldsSlope) {
   constexpr double above = 1e-3, step = 1e-6;
   for (const auto& [name, shape] : exact_shapes()) {

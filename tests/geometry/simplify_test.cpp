@@ -18,7 +18,7 @@ Skin skin_of(const TriMesh& mesh) {
   return skin;
 }
 
-// The torus of the tests below, whose surface is known by formula [m].
+// The tests below use this torus, whose surface is known by formula [m].
 constexpr double radius = 0.5, tube = 0.2;
 
 double off_torus(const Vec3& p) { return std::abs(std::hypot(std::hypot(p.x(), p.z()) - radius, p.y()) - tube); }

@@ -1,5 +1,5 @@
-// Tests surfaces as they come: they are repaired, or refused with the triangle's name. Files that are broken in every
-// way must neither end this process nor be accepted.
+// Tests surfaces as they come from outside: they are repaired, or refused with the name of the triangle. Files that are
+// broken in any way must neither end this process nor be accepted.
 #include "geometry/surface_file.h"
 
 #include <fmt/format.h>
@@ -26,7 +26,7 @@ namespace {
 
 using Notes = std::vector<std::string>;
 
-// Returns what is wrong, without the file's name, or nothing when all is well.
+// Returns what is wrong, without the file's name, or nothing when the surface is accepted.
 template <class Call>
 std::string refusal(const Call& call) {
   try {
@@ -127,7 +127,7 @@ TEST(ClosedSurface, KeepsCavitiesAndUnitesWhatIsTurnedAlike) {
   EXPECT_NEAR(volume(shell), 1 - 0.125, 1e-12);
   EXPECT_NEAR(volume(core), 1 - 0.125 + 0.008, 1e-12);
   EXPECT_TRUE(notes.empty());
-  // These are the same files with all triangles turned the other way round.
+  // These are the same files with all triangles flipped.
   EXPECT_NEAR(volume(test::inside_out(shell)), 1 - 0.125, 1e-12);
   EXPECT_NEAR(volume(test::inside_out(core)), 1 - 0.125 + 0.008, 1e-12);
   EXPECT_EQ(notes.size(), 2u);
@@ -135,7 +135,7 @@ TEST(ClosedSurface, KeepsCavitiesAndUnitesWhatIsTurnedAlike) {
   TriMesh first_turned = shell;
   std::swap(first_turned.triangles(0, 1), first_turned.triangles(0, 2));
   EXPECT_NEAR(volume(first_turned), 1 - 0.125, 1e-12);
-  // A component in the box of a ring, yet outside the ring, is no cavity.
+  // A component inside the box of a ring but outside the ring is not a cavity.
   const TriMesh ring = test::torus_surface(1, 0.4, 20, 10), ball_in_ring = test::inside_out(scaled(0.1));
   EXPECT_NEAR(volume(test::together(ring, ball_in_ring)), volume(ring) + 0.001, 1e-12);
   // A solid inside another, a solid beside another, and one that only overlaps it all face outward.

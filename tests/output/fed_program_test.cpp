@@ -1,4 +1,4 @@
-// Tests the program that runs beside us and reads what it is given.
+// Tests the program that runs at the same time as this one and reads what it is given.
 #include <gtest/gtest.h>
 
 #include <sys/wait.h>
@@ -67,7 +67,7 @@ TEST(FedProgram, ThatIsNotInstalledIsToldFromOneThatFails) {
   EXPECT_TRUE(failing.finish());
 }
 
-// The file would come into being if the program lived on.
+// The file would be written if the program continued to run.
 TEST(FedProgram, EndsWithItsObjectAndWithTheThreadThatStartedIt) {
   const test::TemporaryFolder folder;
   const auto waiting = [&folder](const char* file) {

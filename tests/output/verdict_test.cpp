@@ -1,4 +1,4 @@
-// Tests the line that names the dearest stage of a frame.
+// Tests the line that names the most expensive stage of a frame.
 #include "output/verdict.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Tests the comparison of profiles that are made up with the noise of a shared machine.
+// Tests the comparison of profiles that are generated with the noise of a shared machine.
 #include "output/zone_comparison.h"
 
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@ struct Machine {
   std::mt19937_64 random;
   double uniform(double low, double high) { return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53; }
 
-  // Turns a clean time into what a shared machine measures: a few per cent slower for as long as a repeat lasts, with a
-  // little jitter always, and interrupted now and then.
+  // Turns an exact time into what a shared machine measures: a few per cent slower for as long as a repeat lasts,
+  // always with a little jitter, and with an interruption now and then.
   double measured(double ms, double slow_spell) {
     double noisy = ms * slow_spell * (1 - 0.015 * std::log(uniform(1e-9, 1)));
     if (uniform(0, 1) < 0.04) noisy += uniform(0, 0.5);

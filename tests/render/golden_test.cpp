@@ -1,5 +1,5 @@
-// Pictures against stored ones. A software rasteriser's rounding differs between machines and Mesa versions by a few
-// levels along edges; a missing shadow, a wrong colour or a body in the wrong place differs by far more over whole
+// Compares pictures with stored ones. A software rasteriser's rounding differs between machines and Mesa versions by a
+// few levels along edges; a missing shadow, a wrong colour or a body in the wrong place differs by far more over whole
 // regions. So small pictures are compared by their mean difference and by the share of pixels that are clearly off. A
 // failing test leaves its candidate in the build folder: look at it, and copy it to tests/golden/ when it is right.
 //
@@ -24,13 +24,13 @@ constexpr double pixels_allowed = 0.01;  // share of those that are clearly off
 
 const std::filesystem::path golden_folder = test::source_folder / "tests" / "golden";
 
-// The font of the stored captions: other fonts have other letters.
+// This is the font of the stored captions; other fonts have other letters.
 const std::string lato = "/usr/share/fonts/truetype/lato/Lato-Regular.ttf";
 
 using Settings = std::vector<std::string>;
 
-// Tells what to draw: a scene, changed by settings as --set takes them. Bodies stand where they start, which is the
-// same on all machines, or move for a few frames, in which rounding errors do not grow to what a picture shows.
+// Describes what to draw: a scene, changed by settings in the form that --set takes. Bodies stay where they start,
+// which is the same on all machines, or move for a few frames, in which rounding errors do not grow to a visible size.
 struct Shot {
   std::filesystem::path scene;
   Settings settings = {};
@@ -38,7 +38,7 @@ struct Shot {
   std::string font = {};  // a file; without it there are no captions
 };
 
-// Takes away something that a shot shows: by settings, or on the stage where no setting does it.
+// Describes how something that a shot shows is removed: by settings, or on the stage where no setting does it.
 struct Removal {
   Settings settings = {};
   std::function<void(Stage&)> on_stage = {};
@@ -52,7 +52,7 @@ struct Picture {
   DrawList list;
 };
 
-// The only place that knows how a film makes its pictures.
+// Makes a picture in the same way as a film. No other function of these tests depends on how a film does that.
 Picture picture_of(const Shot& shot, const Settings& more = {}) {
   Settings settings = {"output.width=320", "output.height=180"};
   settings.insert(settings.end(), shot.settings.begin(), shot.settings.end());
@@ -120,7 +120,7 @@ void expect_golden(const std::string& name, const Image& image) {
   if (difference.allowed()) std::filesystem::remove(candidate);
 }
 
-// The shot is as it was stored, and each removal would have been noticed.
+// Checks that the shot is as it was stored, and that each removal would have been noticed.
 void expect_golden(const std::string& name, const Shot& shot, const std::vector<Removal>& removals) {
   const Picture picture = picture_of(shot);
   const Image image = draw(picture);
@@ -182,7 +182,7 @@ TEST(Golden, ARegionIsHeldAndPainted) {
                 {{.on_stage = remove_paint}, {{"body.bar.handles.middle.select={ box = [[0, 0, 0], [0.1, 1, 1]] }"}}});
 }
 
-// The left ball starts flat and the right one tall, which is what each one's material resists.
+// The left ball starts flat and the right one tall; these are the deformations that their materials resist.
 TEST(Golden, BallsOfSplineMaterialsComeBack) {
   expect_golden("spline",
                 {shipped("spline-spheres"),
@@ -199,7 +199,7 @@ TEST(Golden, ABodyIsDrawnByTheSurfaceOfItsFile) {
       {{{"body.steps.box={ extent = [1.4, 0.9, 2.1], cells = [6, 4, 9] }"}}, {{"body.steps.start.twist_deg=0"}}});
 }
 
-// Colours that no mesh had as the film began.
+// The renewed meshes have colours that no mesh had when the film began.
 TEST(Renderer, AMeshThatIsRenewedWithPaintLooksAsIfItHadBeenThereFromTheStart) {
   const Picture painted = picture_of({written_for_tests("regions")});
   Stage bare = painted.stage;

@@ -1,5 +1,5 @@
-// Tests colliders of scene files: every key, what is refused and in which words, where colliders are at a time, and
-// what is drawn of them; also bodies made of surface files.
+// Tests colliders of scene files: every key, what is refused and with which messages, where colliders are at a time,
+// and what is drawn of them; also bodies made of surface files.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -164,7 +164,7 @@ shape = { box = { extent = [1, 1, 1] } }
   }
 }
 
-// Returns where the collider's point (1, 0, 0) is.
+// Returns the position of the collider's point (1, 0, 0).
 Vec3 tip(const Obstacle& obstacle, double time) { return obstacle.pose(time) * Vec3(1, 0, 0); }
 
 TEST(Obstacle, StandsAtItsPositionTurnedAboutItsOrigin) {

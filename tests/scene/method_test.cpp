@@ -12,7 +12,7 @@
 namespace supple {
 namespace {
 
-// A scene of one body with these lines in [solver].
+// Returns a scene of one body with these lines in [solver].
 Config scene_with(const std::string& lines) {
   return Config::parse("[solver]\n" + lines + "\n[[body]]\nbox = { extent = [1, 1, 1] }\nmaterial = \"jelly\"\n",
                        "scene.toml", test::assets);

@@ -1,4 +1,5 @@
-// Tests scene files: what is refused and in which words, and that the documentation lists what the readers ask for.
+// Tests scene files: what is refused and with which messages, and that the documentation lists what the readers ask
+// for.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -140,7 +141,7 @@ TEST(SceneFile, SettingsReachEveryValueByItsPath) {
             "--set fps=1e400: fps = '1e400': must be a number, 1 to 100000 (beyond what a number holds)");
 }
 
-// Returns why bodies cannot be made of a scene that reads well; empty when they can.
+// Returns why bodies cannot be made from a scene that reads well; empty when they can.
 std::string assembly_refused(const std::string& text) {
   const SceneDef scene = test::scene_of(text);
   try {
@@ -209,8 +210,8 @@ select = { box = [[0, 0.4, 0], [1, 1, 1]] }
             "scene.toml:9:10: with handle 'high' every vertex of body 'body' is held: nothing is left to move");
 }
 
-// Makes a scene and a shape that ask for every key there is; each model is given once by its own parameters and once by
-// Young's modulus.
+// Makes a scene and a shape that use every key; each model is given once by its own parameters and once by Young's
+// modulus.
 std::vector<DocumentedKey> all_keys() {
   std::vector<DocumentedKey> keys;
   std::vector<std::string> materials = {"{ model = \"neo-hookean\", young = 1, poisson = 0 }",

@@ -1,4 +1,4 @@
-// Tests replays: what the scene of a frame is, and what is refused.
+// Tests replays: the scene of each frame, and what is refused.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -319,7 +319,7 @@ TEST_F(Replay, WarnsOfRampsThatAnotherChangeBreaksOff) {
   EXPECT_EQ(warned(ramp + "[[change]]\nt = 1.5\npath = 'body.bar.material.mu'\nvalue = 3e4\n"
                           "[[change]]\nt = 1\npath = 'body.bar.material.lambda'\nvalue = 3e4\n"),
             "");
-  // The warning is about this: the value jumps at the change, and the ramp does not return.
+  // The warning describes this case: the value jumps at the change, and the ramp does not return.
   const Script broken = script(ramp + "[[change]]\nt = 1\npath = 'body.bar.material.mu'\nvalue = 3e4\n");
   EXPECT_LT(mu_of(broken.scene_at(29)), 2e4);
   EXPECT_EQ(mu_of(broken.scene_at(30)), 3e4);

@@ -1,5 +1,5 @@
-// Tests materials, fibres, cloth, boxes and start states of scene files: what is read, and what is refused in which
-// words.
+// Tests materials, fibres, cloth, boxes and start states of scene files: what is read, what is refused, and with which
+// messages.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>

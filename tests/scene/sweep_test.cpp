@@ -1,4 +1,4 @@
-// Tests sweeps as scene files describe them: which points there are, and what is refused where.
+// Tests sweeps as scene files describe them: their points, and where problems are reported.
 #include "scene/sweep.h"
 
 #include <gtest/gtest.h>

@@ -76,8 +76,8 @@ TEST(ChangingFactor, KnowsWhichMatricesArePositiveDefinite) {
   const Sparse sound = shifted(0.1);
   ChangingFactor factor = factor_of(sound);
   const Eigen::VectorXd x = solve(factor, b);
-  // So far below zero that a few eigenvalues, many and all of them are negative (three are 0 without a shift: moving
-  // all vertices alike costs nothing); and just not one.
+  // The shifts go so far below zero that a few, many, and all of the eigenvalues are negative, and finally just not
+  // one. (Without a shift three of them are 0, because moving all vertices alike costs nothing.)
   for (const Eigen::Index negative : {3, 4, 7, 100, 374, 375}) {
     const double next = negative < eigenvalues.size() ? eigenvalues[negative] : 2 * eigenvalues[negative - 1];
     const Sparse indefinite = shifted(-(eigenvalues[negative - 1] + next) / 2);

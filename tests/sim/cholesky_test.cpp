@@ -41,7 +41,7 @@ double residual(const Sparse& matrix, const CholeskyFactor& factor) {
   return (matrix.selfadjointView<Eigen::Lower>() * x - b).norm() / b.norm();
 }
 
-// Captures all bits of a factor by what it does to the columns of the identity.
+// Captures all bits of a factor by its effect on the columns of the identity.
 Eigen::MatrixXd inverse(const CholeskyFactor& factor) {
   const int size = factor.size();
   Eigen::MatrixXd out(size, size);
@@ -142,7 +142,7 @@ TEST(CholeskyFactor, AgreesWithADenseFactorOnGrids) {
     const CholeskyFactor factor(matrix, Precision::double_precision);
     EXPECT_LT((inverse(factor) - exact).norm() / exact.norm(), 1e-13);
   }
-  // The order pays: less is stored than in the grid's own order.
+  // The order is worthwhile: less is stored than in the grid's own order.
   const auto stored = [](bool ordered) {
     return CholeskyFactor(grid_matrix(14, ordered, 0.01), Precision::double_precision).stored_numbers();
   };

@@ -58,8 +58,8 @@ TEST(Contact, GradientIsTheDerivativeOfTheEnergyWithPlanesAsTheyStand) {
   EXPECT_LT(best, 1e-6 * std::abs(at.slope));
 }
 
-// The planes are found anew at each point, so that what the reference minimises is what the planes' gradient belongs
-// to.
+// The planes are found again at each point, so that the energy of the reference is the one whose gradient the planes
+// give.
 TEST(Contact, PlanesGiveTheDerivativeOfTheEnergyFoundAnew) {
   Shape blend = shape_of(Sphere{0.2});
   blend.root.parts.push_back({Capsule{Vec3(0, 0, 0), Vec3(0.3, 0, 0), 0.1}});
@@ -91,7 +91,7 @@ TEST(Contact, PlanesGiveTheDerivativeOfTheEnergyFoundAnew) {
   }
 }
 
-// Puts a scene before its first direction: at the first iterate, with its contacts and their stiff directions.
+// Prepares a scene for its first direction: at the first iterate, with its contacts and their stiff directions.
 void prepare_direction(ContactScene& scene) {
   scene.w.prepare(scene.model, scene.inputs.solver);
   begin_step(scene.model, scene.inputs, scene.state, scene.w);
@@ -102,7 +102,7 @@ void prepare_direction(ContactScene& scene) {
 
 Eigen::VectorXd stacked(const Positions& r) { return Eigen::Map<const Eigen::VectorXd>(r.data(), r.size()); }
 
-// A by its whole inverse, column by column: what corrections of directions are measured against.
+// Computes A from its whole inverse, column by column, as the reference for corrections of directions.
 Eigen::MatrixXd dense_system(ContactScene& scene) {
   const int n = scene.model.free;
   Eigen::MatrixXd inverse(3 * n, 3 * n);
@@ -140,7 +140,7 @@ TEST(Contact, LowRankDirectionsSolveTheSystemWithContacts) {
   }
 }
 
-// A bar above the ground, of which a direction downwards would lead some vertices through.
+// The body is a bar above the ground, and a direction downwards would lead some vertices through the ground.
 TEST(Contact, DirectionsBendAsTheQuadraticModelWithThePlanesAheadDoes) {
   for (const double height : {0.05, 0.046}) {  // nothing touches yet, or some vertices do
     ContactScene scene(bar(Corotated{1e4, 3e4}, Held::hard_end), {{"ground", ground, 0, 0}}, Vec3(0, height, 0));
@@ -177,7 +177,7 @@ TEST(Contact, DirectionsBendAsTheQuadraticModelWithThePlanesAheadDoes) {
   }
 }
 
-// A patch with more coupled directions than the small system may have.
+// The contact patch has more coupled directions than the small system may have.
 TEST(Contact, DirectionsOfALargePatchAreSymmetricAndPositiveAndHoldTheVertices) {
   ContactScene scene(cube(16), {{"ball", shape_of(Sphere{2}), 0, 0.5}}, Vec3(0, 2.095, 0));
   scene.state.v.rowwise() = Eigen::RowVector3d(0.3, -0.5, 0);
@@ -266,7 +266,7 @@ TEST(Contact, NothingGoesThroughAtAnySpeedUpToItsSizeAStep) {
   }
 }
 
-// The collider comes to the body, and it is thin and fast.
+// The collider moves towards the body, and it is thin and fast.
 TEST(Contact, APlateThatMovesFastIsNotLetThrough) {
   ContactScene scene(cube(3), {{"plate", shape_of(Box{Vec3(1, 0.002, 1), 0})}});
   scene.inputs.gravity.setZero();
@@ -318,7 +318,7 @@ TEST(Contact, OverlapsArePushedOutNoFasterThanAllowed) {
       }
       ASSERT_TRUE(scene.state.x.allFinite());
       EXPECT_LT(scene.deepest(0), 0.01 * scene.model.size) << name << ", sunk by " << sunk;
-      // A body that is pushed also swings; a few times the limit is not an explosion.
+      // A body that is pushed also swings, so a few times the limit does not count as an explosion.
       EXPECT_LT(fastest, 4 * scene.inputs.solver.contact.push_out * scene.model.size) << name << ", sunk by " << sunk;
     }
   }

@@ -1,5 +1,5 @@
-// Tests every element kind with every material: forces against differences of energies, and against what rigid motion,
-// Newton's third law and the conservation of angular momentum demand. The table of the worst errors is kept in
+// Tests every element kind with every material: forces against differences of energies, and against the requirements of
+// rigid motion, Newton's third law and the conservation of angular momentum. The table of the worst errors is kept in
 // docs/derivatives.md.
 #include <gtest/gtest.h>
 
@@ -96,7 +96,7 @@ std::vector<Subject> subjects() {
   return list;
 }
 
-// Returns the best of several steps: a large step sees curvature, a small one round-off.
+// Returns the best of several steps: a large step suffers from curvature, a small one from round-off.
 double difference_error(const Subject& subject, const Corners& x, std::mt19937& random) {
   std::normal_distribution<double> normal;
   Corners direction(x.rows(), 3), force;

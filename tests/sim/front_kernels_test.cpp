@@ -11,7 +11,7 @@
 namespace supple {
 namespace {
 
-// A dense front, and where its numbers stand in the kernels' storage.
+// Holds a dense front in the kernels' storage, and finds its numbers there.
 struct StoredFront {
   FrontShape shape;
   AlignedVector<double> columns, update;
@@ -33,7 +33,8 @@ struct StoredFront {
   }
 };
 
-// Plain elimination: column after column, each number loses its products in the order of the pivots.
+// Eliminates without optimisation: column after column, the products are subtracted from each number in the order of
+// the pivots.
 void eliminate_plainly(Eigen::MatrixXd& front, int pivots, bool fused) {
   const auto size = static_cast<int>(front.rows());
   for (int j = 0; j < size; ++j) {
@@ -46,8 +47,8 @@ void eliminate_plainly(Eigen::MatrixXd& front, int pivots, bool fused) {
   }
 }
 
-// Tests every instruction set with all sizes around its registers and beyond the strips that are taken together: the
-// bits are those of plain elimination, whose pivots' columns agree with a dense factor.
+// Tests every instruction set with all sizes around its registers and beyond the strips that are processed together:
+// the bits are those of plain elimination, whose pivots' columns agree with a dense factor.
 TEST(Kernels, EliminateDenseFronts) {
   std::vector<std::pair<int, int>> shapes = {{128, 1}, {129, 40}, {150, 90}, {270, 0}, {264, 24}};  // pivots, rows
   for (int size = 1; size < 42; ++size) {
@@ -75,7 +76,7 @@ TEST(Kernels, EliminateDenseFronts) {
         }
         return different;
       };
-      // Whether products are fused is a matter of the instruction set; all or none are.
+      // The instruction set decides whether products are fused; either all are, or none.
       EXPECT_EQ(std::min(different_from(fused), different_from(rounded)), 0)
           << variant_name(v) << ": " << pivots << " pivots, " << rows << " rows";
       StoredFront indefinite(full, pivots);
@@ -86,7 +87,7 @@ TEST(Kernels, EliminateDenseFronts) {
   }
 }
 
-// Both halves of a solve with one front, against the dense columns of L.
+// Compares both halves of a solve with one front with the dense columns of L.
 TEST(Kernels, SolveWithDenseFronts) {
   for (int v = 0; v < runnable_variants(); ++v) {
     for (const auto& [pivots, rows] :
@@ -95,7 +96,7 @@ TEST(Kernels, SolveWithDenseFronts) {
       Eigen::MatrixXd lower = Eigen::MatrixXd::Random(size, size);
       lower.diagonal().array() += 3;
       StoredFront front(lower, pivots);
-      // The front's rows are every other unknown after its pivots.
+      // The rows of the front are every second unknown after its pivots.
       std::vector<std::int32_t> places;
       for (int i = 0; i < rows; ++i) places.push_back(pivots + 2 * i + 1);
       Eigen::VectorXd x = Eigen::VectorXd::Random(size + rows), expected = x;

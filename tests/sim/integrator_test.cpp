@@ -1,5 +1,5 @@
 // Tests implicit midpoint, stiffness-proportional damping, springs and fibres: their objectives and gradients must
-// agree, and they must show the physics that they are chosen for.
+// agree, and they must show the physics for which they are chosen.
 #include <gtest/gtest.h>
 
 #include "sim/model/measures.h"
@@ -182,7 +182,7 @@ BodyDescription weight_on_a_spring() {
 TEST(Springs, AndFibresAreWholeInTheSystemMatrix) {
   // Both are linear along their own direction, so one plain quasi-Newton iteration must end at the minimum; a softer or
   // stiffer matrix would fall short or overshoot. The fibres run along y in a box that its weight pulls along y; the
-  // base material is so soft that it does not count.
+  // base material is so soft that it has no influence.
   BodyDescription fibre = bar(AsRigidAsPossible{1e-6}, Held::nothing);
   fibre.fibres = {Fibre{1e4, {0, 1, 0}}};
   fibre.handles = {Handle{"top", {}, 0}};

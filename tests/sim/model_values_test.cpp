@@ -1,4 +1,4 @@
-// Tests that a model whose numbers change while it lives equals the model that would be built anew.
+// Tests that a model whose numbers were changed equals a model that is built with the new numbers.
 #include <gtest/gtest.h>
 
 #include "sim/model/model_values.h"

@@ -1,4 +1,4 @@
-// Tests the stress of every isotropic material against formulas written down a second time: a', b' and c' of the
+// Tests the stress of every isotropic material against formulas that are written a second time: a', b' and c' of the
 // Valanis-Landel form as docs/method.md tabulates them, and principal stretches in closed form. It also tests k of
 // equation 11.
 #include <gtest/gtest.h>
@@ -251,7 +251,8 @@ TEST(Stress, CurvesAreWrittenForThePlot) {
       out << ',' << std::visit([s](const auto& m) { return m.axial_stress(s); }, material);
     out << '\n';
   }
-  // Spline A resists compression more than Neo-Hookean does, and B tension; on the other side neither differs from it.
+  // Spline A resists compression more than Neo-Hookean does, and spline B resists tension more; on the other side
+  // neither differs from it.
   const auto f = [&](int i, double s) {
     return std::visit([s](const auto& m) { return m.axial_stress(s); }, shown[i]);
   };

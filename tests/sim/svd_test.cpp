@@ -1,4 +1,5 @@
-// Tests the SIMD singular value decomposition against what its header promises, on ten million matrices of every kind.
+// Tests the SIMD singular value decomposition against the guarantees of its header, on ten million matrices of every
+// kind.
 #include "sim/elements/svd.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Tests the example of docs/adding-a-material.md: the page shows it as it is compiled here, and it is right.
+// Tests the example of docs/adding-a-material.md: the page shows it as it is compiled here, and it is correct.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>

@@ -28,7 +28,7 @@ struct Candidate {
   std::vector<double> error = {};  // by state; NaN: the step failed
 };
 
-// The first is Projective Dynamics, the second the paper's method.
+// The first candidate is Projective Dynamics, the second the paper's method.
 std::vector<Candidate> candidates() {
   std::vector<Candidate> list = {{"projective-dynamics", Method::projective_dynamics},
                                  {"quasi-newton", Method::quasi_newton}};
@@ -45,7 +45,7 @@ struct StudiedState {
   int frame;
 };
 
-// Adds the errors of all candidates on one state; nothing where the body is at rest.
+// Adds the errors of all candidates on one state, or nothing where the body is at rest.
 bool add_state(Subject& subject, const BenchState& state, std::vector<Candidate>& list,
                std::vector<std::unique_ptr<SearchRule>>& rules, Reference& reference, Workspace& workspace) {
   StepInputs inputs = subject.inputs(state);

@@ -27,7 +27,7 @@ constexpr int all_iterations = 30;
 constexpr int timed_rounds = 3;
 constexpr int most_for_newton = 9000;  // vertices; minima of larger bodies are found by L-BFGS alone
 
-// The low-rank correction whose directions are not bent around planes that are near.
+// Applies the low-rank correction without bending directions around planes that are near.
 class StraightInverse final : public InitialInverse {
  public:
   void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override {
@@ -44,11 +44,11 @@ struct Variant {
   bool bends = true;
   bool same_energy = true;  // as the defaults: errors in equal time can be compared
   std::unique_ptr<Workspace> workspace = std::make_unique<Workspace>();
-  // Of one state: by iteration, the first iterate first.
+  // These values belong to one state: by iteration, the first iterate first.
   std::vector<double> gained = {}, least_ms = {};
   std::vector<double> usual_ms = {};  // of the usual number of iterations, by round
   Positions end = {};
-  // Of all states.
+  // These values belong to all states.
   std::vector<double> trials = {}, ms = {}, median_ms = {}, error = {}, error_in_time = {}, time_to_error = {},
                       depth = {};
   int failed = 0;
@@ -89,7 +89,7 @@ std::vector<Variant> variants(const SolverSettings& usual) {
   return list;
 }
 
-// All that a step from one state needs.
+// Holds all that a step from one state needs.
 struct Start {
   const Model& model;
   const StepInputs& inputs;
@@ -97,7 +97,7 @@ struct Start {
   const Triangles& surface;
 };
 
-// Makes one step. The first round gives the results, and lets the variant learn what it keeps from step to step.
+// Makes one step. The first round gives the results, and lets the variant build what it keeps from step to step.
 void run(const Start& s, Variant& variant, int round, Workspace& scratch) {
   StepInputs inputs = s.inputs;
   inputs.solver = variant.solver;
@@ -124,14 +124,14 @@ void run(const Start& s, Variant& variant, int round, Workspace& scratch) {
     left -= report.history[k].decrease;
     variant.gained[k] = left;
   }
-  // Trials and overlap are those of the usual number of iterations.
+  // The trials and the overlap are those of the usual number of iterations.
   inputs.solver.iterations = usual_iterations;
   after = s.before;
   variant.trials.push_back(step(s.model, inputs, after, *variant.workspace, rule).line_search);
   variant.depth.push_back(penetration(*inputs.colliders, inputs.collider_motions, after.x, s.surface) / s.model.size);
 }
 
-// Returns g(y) - g* of a state, found from the best end of these variants.
+// Returns g(y) - g* of a state, found from the best final point of these variants.
 double whole_gain(const Start& s, const std::vector<Variant*>& list, Reference& lowest, Workspace& scratch) {
   const Variant& best = **std::max_element(
       list.begin(), list.end(), [](const Variant* a, const Variant* b) { return a->gained.back() < b->gained.back(); });
@@ -147,7 +147,7 @@ double whole_gain(const Start& s, const std::vector<Variant*>& list, Reference& 
   return reached + scratch.report.decrease;
 }
 
-// Adds what a variant did from one state, beside the defaults.
+// Adds the results of a variant from one state, relative to the defaults.
 void add_results(Variant& variant, const Variant& usual, double whole) {
   const auto error = [&](const Variant& v, std::size_t k) { return (whole - v.gained[k]) / whole; };
   variant.error.push_back(error(variant, variant.usual_end()));

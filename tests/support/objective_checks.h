@@ -1,4 +1,4 @@
-// Checks the objective of a step: against its own differences, and at the step's end against its beginning.
+// Checks the objective of a step: against its own differences, and at the end of the step against its beginning.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 namespace supple::test {
 
 // Checks at a random deformed state that the gradient is the derivative of the value, and that a difference from a
-// reference is the difference of the values. name: for messages.
+// reference is the difference of the values. name: the name that messages give.
 void expect_derivative_of_objective(const BodyDescription& body, const std::string& name);
 
 struct AgainstStaying {

@@ -1,4 +1,4 @@
-// Sparse matrices with known properties, for tests of factors. They are stored as lower triangles.
+// Provides sparse matrices with known properties, for tests of factors. They are stored as lower triangles.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -14,11 +14,11 @@ Sparse random_matrix(int size, double links, unsigned seed);
 // order.
 Sparse grid_matrix(int n, bool ordered, double mass);
 
-// Makes a matrix of 3 x 3 blocks on a grid in an order of little fill, blocks on the diagonal stored whole, as
+// Makes a matrix of 3 x 3 blocks on a grid in an order with little fill, with whole blocks on the diagonal, as
 // HessianMatrix stores them; `shift` is added to the diagonal of a positive semi-definite sum.
 Sparse block_matrix(int n, double shift, unsigned seed);
 
-// The whole symmetric matrix.
+// Returns the whole symmetric matrix.
 Eigen::MatrixXd dense(const Sparse& matrix);
 
 }  // namespace supple::test

@@ -1,5 +1,5 @@
-// Writes g of docs/method.md down a second time, from nothing but the files of a state's folder: plain loops, Eigen's
-// SVD, and the Valanis-Landel functions as the literature tabulates them. It uses no code of the program.
+// Computes g of docs/method.md a second time, from the files of a state's folder alone: with plain loops, Eigen's SVD,
+// and the Valanis-Landel functions as the literature tabulates them. It uses no code of the program.
 #pragma once
 
 #include <Eigen/Dense>
@@ -28,7 +28,7 @@ class StoredProblem {
     int inverted = 0;      // number of elements that are inverted at x
     int crushed = 0;       // number of elements with det F below 0.1, inverted or not
   };
-  // Evaluates g at x, after held vertices are put at their targets.
+  // Evaluates g at x, after held vertices have been moved to their targets.
   Value at(Points x) const;
 
  private:

@@ -13,8 +13,8 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& what) { throw std::runtime_error(what); }
 
-// Reads by recursive descent the parts of XML that such files have: no comments, and no references but the five named
-// ones.
+// Reads by recursive descent the parts of XML that such files have: there are no comments, and no references except the
+// five named ones.
 class XmlReader {
  public:
   explicit XmlReader(std::string text) : text_(std::move(text)) {}

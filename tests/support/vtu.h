@@ -1,5 +1,5 @@
-// Reads .vtu files by code of its own, as strict as the writer is plain: well-formed XML of the elements that
-// unstructured grids have, and arrays of as many numbers as the file says.
+// Reads .vtu files with code of its own, which is strict although the writer is simple: well-formed XML of the elements
+// that unstructured grids have, and arrays of as many numbers as the file says.
 #pragma once
 
 #include <filesystem>

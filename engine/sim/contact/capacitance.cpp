@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t most_axes = 8;  // of a list, before all directions count as coupled with it
 constexpr double right_angle = 1e-7;  // cosine below which directions are uncoupled in single precision
 
-// Tells whether two lists of directions are the same, or nearly.
+// Tells whether two lists of directions are equal or nearly equal.
 bool alike(const std::vector<StiffDirection>& a, const std::vector<StiffDirection>& b) {
   const auto close = [](const StiffDirection& s, const StiffDirection& t) {
     return s.vertex == t.vertex && s.axis.dot(t.axis) >= 0.999 &&
@@ -67,7 +67,7 @@ bool Capacitance::set(const System& system, const std::vector<StiffDirection>& w
   return append(system, wanted);
 }
 
-// A list that has grown at its end keeps its factor; where lists became one, all are factored anew.
+// A list that has grown at its end keeps its factor; where lists were merged, all are factored again.
 bool Capacitance::append(const System& system, const std::vector<StiffDirection>& more) {
   const std::size_t lists_before = lists_.size();
   std::vector<Eigen::Index> sizes;
@@ -94,7 +94,7 @@ bool Capacitance::append(const System& system, const std::vector<StiffDirection>
   return true;
 }
 
-// Directions of one vertex that come one after the other share an entry.
+// Consecutive directions of one vertex share an entry.
 void Capacitance::fill_row(const System& system, const CoupledDirections& list, Eigen::Index row, float* values) {
   const StiffDirection& own = directions_[list.members[row]];
   std::int32_t other = -1;

@@ -12,41 +12,42 @@
 
 namespace supple {
 
-// A direction in which a vertex meets a stiffness that A does not hold.
+// Describes a direction in which a vertex has a stiffness that A does not contain.
 struct StiffDirection {
   std::int32_t vertex;
   Vec3 axis;         // of unit length
   double stiffness;  // k [N/m]
 };
 
-// Directions by number that are solved for together.
+// Lists, by number, the directions that are solved for together.
 struct CoupledDirections {
   std::vector<Vec3> axes;  // all that occur; where they are many, all other directions count as coupled
   std::vector<Eigen::Index> members;
 };
 
-// Puts a direction among those that it is coupled with; lists that it joins become one. Returns the place of the list.
+// Adds a direction to the list of those with which it is coupled; lists that it connects are merged. Returns the index
+// of the list.
 std::size_t couple(const StiffDirection& direction, Eigen::Index number, std::vector<CoupledDirections>& lists);
 
 class Capacitance {
  public:
   const std::vector<StiffDirection>& directions() const { return directions_; }
 
-  // Leaves a system without directions, which is also what remains of one that is not positive definite.
+  // Leaves a system without directions. The same remains of a system that is not positive definite.
   void clear();
 
-  // Makes a step independent of those before, except for entries that would be found again.
+  // Makes a step independent of earlier ones, except for entries that would be computed again with the same result.
   void begin_step(const System& system);
 
-  // Makes the system of these directions; does nothing when it is that of nearly the same already: a correction need
-  // not be exact. Returns false when it is not positive definite.
+  // Builds the system of these directions; does nothing when the present system is nearly the same, because a
+  // correction need not be exact. Returns false when the system is not positive definite.
   bool set(const System& system, const std::vector<StiffDirection>& wanted);
   bool append(const System& system, const std::vector<StiffDirection>& more);
 
-  // Solves in place; by direction.
+  // Solves in place; the numbers are ordered by direction.
   void solve(Eigen::VectorXf& answer) const;
 
-  // Numbers of A^-1 and its factor that are kept from step to step.
+  // Returns how many numbers of A^-1 and of its factor are kept from step to step.
   std::int64_t kept_numbers() const { return entries_.stored_numbers(); }
 
  private:

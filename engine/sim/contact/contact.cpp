@@ -6,8 +6,8 @@
 namespace supple {
 namespace {
 
-// The potential of smoothed friction and its slope: u - s/3 above the sliding length s, and below it a cubic that joins
-// with its first two derivatives (Li et al. 2020, "Incremental potential contact", section 5.2, up to a constant).
+// Computes the potential of smoothed friction: u - s/3 above the sliding length s, and below it a cubic that joins with
+// its first two derivatives (Li et al. 2020, "Incremental potential contact", section 5.2, up to a constant).
 double friction_potential(double u, double s) { return u >= s ? u - s / 3 : u * u / s * (1 - u / (3 * s)); }
 double friction_slope_over_u(double u, double s) { return u >= s ? 1 / u : (2 - u / s) / s; }
 

@@ -1,12 +1,12 @@
-// Contact of one body's vertices with rigid colliders (Liu et al. 2017, section 4.3): it adds energies to g and nothing
-// to A. Each touching vertex has the energy k_c min(0, n . x - offset)^2 of a plane that was found when the iteration
-// began. Not here: how contacts are found (find_contacts.h), how directions take them into account
+// Defines contact of one body's vertices with rigid colliders (Liu et al. 2017, section 4.3): it adds energies to g and
+// nothing to A. Each touching vertex has the energy k_c min(0, n . x - offset)^2 of a plane that was found when the
+// iteration began. Not here: how contacts are found (find_contacts.h), how directions take them into account
 // (contact_direction.h), contact of bodies with each other.
 //
-// The planes are one-sided: a vertex that leaves is let go at once, in the middle of a line search too, and the energy
-// is a continuous function. A vertex that starts a step below the surface is pushed out no faster than push_out: its
-// plane lies that much lower. So the energy itself contains the rule that releases a vertex by its relative velocity,
-// n . ((x - q)/h - v_c) above a small hysteresis: above push_out there is no force.
+// The planes are one-sided: a vertex that leaves is released at once, even in the middle of a line search, and the
+// energy is a continuous function. A vertex that starts a step below the surface is pushed out no faster than push_out:
+// its plane lies that much lower. The energy itself therefore contains the rule that releases a vertex by its relative
+// velocity, n . ((x - q)/h - v_c) above a small hysteresis: above push_out there is no force.
 #pragma once
 
 #include <vector>
@@ -22,18 +22,18 @@ struct Contact {
   double offset;     // the plane n . x = offset [m]
   double stiffness;  // k_c [N/m]
   double depth;      // below the plane where it was found; 0: near, not touching [m]
-  // Friction, lagged: it opposes x - origin along the plane.
+  // Friction is lagged; it opposes x - origin along the plane.
   double friction = 0;         // coefficient times normal force [N]
   Vec3 origin = Vec3::Zero();  // where the vertex would be had it moved with the collider [m]
 };
 
-// Returns the part of friction in the energy [J].
+// Returns the share of friction in the energy [J].
 double friction_energy(const std::vector<Contact>& contacts, double stick_length, const Positions& point);
 
 // Returns the stiffness of friction along the plane at x [N/m].
 double friction_stiffness(const Contact& contact, const Positions& x, double stick_length);
 
-// Returns the part of the normal forces in the energy [J].
+// Returns the share of the normal forces in the energy [J].
 double contact_energy(const std::vector<Contact>& contacts, const Positions& point);
 
 // Adds `sign` times the normal forces at a point to `force` [N].
@@ -43,14 +43,14 @@ void add_normal_forces(const std::vector<Contact>& contacts, const Positions& po
 void add_forces(const std::vector<Contact>& contacts, double stick_length, const Positions& point,
                 std::vector<Vec3>& by_collider);
 
-// The share of contacts in an objective.
+// Holds the share of contacts in an objective.
 struct ContactChange {
   double value = 0;  // [J]
   double slope = 0;  // along the direction [J]
 };
 
 // Returns the energy of the contacts at a point, friction included, or its difference from the energy at a reference
-// point (null: none). Where a gradient is given (null: none), adds `sign` times that of the contacts to it.
+// point (null: none). Where a gradient is given (null: none), adds `sign` times the gradient of the contacts to it.
 ContactChange add_contacts(const std::vector<Contact>& contacts, double stick_length, const Positions& point,
                            const Positions* reference, const Positions& direction, Positions* gradient,
                            double sign = 1);

@@ -16,7 +16,8 @@ void find_stiff_directions(const Model& model, const std::vector<Contact>& conta
   for (const Contact& contact : contacts) {
     if (contact.friction <= 0) continue;  // it is lagged: a vertex may have left and still be rubbed
     const double along = friction_stiffness(contact, x, stick_length);
-    // Even where the elements around it are stiffer, together they hold a body that would slide as a whole.
+    // Inertia is the limit even where the elements around the vertex are stiffer, because together they hold a body
+    // that would slide as a whole.
     if (along < model.scheme.inertia * model.mass[contact.vertex] / (model.time_step * model.time_step)) continue;
     const Vec3 n = contact.normal;
     const Vec3 side = n.cross(std::abs(n.y()) < 0.7 ? Vec3::UnitY() : Vec3::UnitX()).normalized();
@@ -25,8 +26,9 @@ void find_stiff_directions(const Model& model, const std::vector<Contact>& conta
   }
 }
 
-// A factorisation takes about as many operations as the directions to the third power: that of 250 takes a fraction of
-// a millisecond, and more are allowed where the body is so large that it takes about half as long as a solve with A.
+// The number of operations of a factorisation grows with the third power of the number of directions. One of 250 takes
+// a fraction of a millisecond, and more directions are allowed where the body is so large that their factorisation
+// takes about half as long as a solve with A.
 std::size_t most_coupled_directions(const Model& model) {
   const double numbers = static_cast<double>(model.factor.stored_numbers());
   return std::max<std::size_t>(250, static_cast<std::size_t>(std::cbrt(45 * numbers)));
@@ -38,9 +40,9 @@ const System& system_of(const Model& model, const ContactCorrection& c) {
   return c.matrix != nullptr ? *c.matrix : model;
 }
 
-// An order of vertices of which every beginning is spread evenly over their numbers (van der Corput's sequence), and so
-// over the body, whose order of elimination keeps neighbours together. It does not change from step to step, so that
-// few vertices are ever chosen.
+// Orders vertices so that every beginning of the order is spread evenly over their numbers (van der Corput's sequence),
+// and therefore over the body, in whose order of elimination neighbours stay together. The order does not change from
+// step to step, so that only few vertices are ever chosen.
 std::uint32_t rank_of(std::int32_t vertex) {
   auto bits = static_cast<std::uint32_t>(vertex);
   std::uint32_t reversed = 0;
@@ -48,7 +50,7 @@ std::uint32_t rank_of(std::int32_t vertex) {
   return reversed;
 }
 
-// Returns how many of the wanted directions the system may have, so that it has no more coupled ones than it should.
+// Returns how many of the wanted directions the system may have, so that it does not exceed its limit of coupled ones.
 std::size_t affordable(const Model& model, const std::vector<StiffDirection>& wanted) {
   const std::size_t most = most_coupled_directions(model);
   std::vector<CoupledDirections> lists;
@@ -58,8 +60,8 @@ std::size_t affordable(const Model& model, const std::vector<StiffDirection>& wa
   return largest <= most ? wanted.size() : wanted.size() * most / largest;
 }
 
-// Splits the wanted directions: those of the vertices of lowest rank go into the system, as many as it may have, and
-// stand there for their neighbours, too.
+// Splits the wanted directions: those of the vertices of lowest rank enter the system, as many as it may have, and also
+// represent their neighbours there.
 void split(ContactCorrection& c, std::size_t most) {
   c.together = c.wanted;
   c.rest.clear();
@@ -84,18 +86,18 @@ FactorPart part_of(const System& system, const std::vector<StiffDirection>& dire
   return paths_to_root(system.factor, vertices);
 }
 
-// The share of a motion that is left to a vertex in a direction of the rest.
+// Returns the share of a motion that remains to a vertex in a direction of the rest.
 double share(const System& system, const StiffDirection& s) {
   return std::sqrt(system.diagonal[s.vertex] / (system.diagonal[s.vertex] + s.stiffness));
 }
 
-// Scales the motion of the rest: T. A vertex with several directions that are not at right angles goes through them in
-// turn, and back in the opposite order.
+// Scales the motion of the rest by T. When a vertex has several directions that are not at right angles, they are
+// applied one after the other, and in the opposite order on the way back.
 void scale_rest(const System& system, const StiffDirection& s, Positions& r) {
   r.row(s.vertex) -= (1 - share(system, s)) * r.row(s.vertex).dot(s.axis) * s.axis.transpose();
 }
 
-// H = P A^-1 P + N diag(1 / (a + k)) N^T.
+// Computes z = H r with H = P A^-1 P + N diag(1 / (a + k)) N^T.
 void apply_diagonal(const Model& model, ContactCorrection& c, SolveScratch& scratch, Positions& r, Positions& z) {
   c.answer.resize(static_cast<Eigen::Index>(c.wanted.size()));
   for (std::size_t i = 0; i < c.wanted.size(); ++i) {
@@ -112,7 +114,7 @@ void apply_diagonal(const Model& model, ContactCorrection& c, SolveScratch& scra
   }
 }
 
-// Adds the forces -N answer to a solve under way and to its right-hand side.
+// Adds the forces -N answer to a solve in progress and to its right-hand side.
 void add_answer(ContactCorrection& c, const FactorPart& part, Positions& r) {
   c.solve.clear_addition(part);
   for (Eigen::Index i = 0; i < c.answer.size(); ++i) {
@@ -129,7 +131,7 @@ void finish(const Model& model, ContactCorrection& c, const Positions& r, Positi
   if (model.free_floating) restore_translation(model, r, z);
 }
 
-// z = (A + K')^-1 r; r gets the forces at the contacts.
+// Computes z = (A + K')^-1 r; r gets the forces at the contacts.
 void apply_low_rank(const Model& model, ContactCorrection& c, Positions& r, Positions& z) {
   c.solve.begin(system_of(model, c).factor, r.data());
   c.solve.look(c.part);
@@ -167,12 +169,13 @@ void apply_inverse(const Model& model, const ContactSettings& settings, ContactC
 
 namespace {
 
-// Returns how far above its plane a direction leads a vertex from x.
+// Returns how far above its plane a vertex is after moving from x along a direction.
 double gap_after(const Contact& contact, const Positions& x, const Positions& direction) {
   return contact.normal.dot(x.row(contact.vertex) + direction.row(contact.vertex)) - contact.offset;
 }
 
-// Minimises the quadratic model with the energies of these planes, too: the direction ends where they hold it.
+// Minimises the quadratic model with the energies of these planes included: the direction then ends where the planes
+// hold it.
 void bend(const Model& model, const std::vector<StiffDirection>& ahead, const std::vector<float>& gaps,
           ContactCorrection& c, Positions& direction) {
   const auto before = static_cast<Eigen::Index>(c.system.directions().size());

@@ -1,13 +1,14 @@
-// How search directions take contacts into account. Their stiffness is many times that of A = M/h^2 + L, which does not
-// contain it and is never factored anew for it. With K = sum k n n^T over the stiff directions n (a touching vertex'
+// Corrects search directions for contacts. The stiffness of contacts is many times that of A = M/h^2 + L; A does not
+// contain it and is never factored again for it. With K = sum k n n^T over the stiff directions n (a touching vertex'
 // normal; also its tangents while it sticks), two corrections need no factorisation of A + K:
-//   diagonal  H = P A^-1 P + N diag(1 / (a + k)) N^T,  P = I - N N^T, a the diagonal of A: each stiff direction answers
-//             for itself. This costs next to nothing.
+//   diagonal  H = P A^-1 P + N diag(1 / (a + k)) N^T,  P = I - N N^T, a the diagonal of A: each stiff direction is
+//             treated by itself. This costs almost nothing.
 //   low_rank  H = (A + K)^-1 = A^-1 - A^-1 N (K^-1 + N^T A^-1 N)^-1 N^T A^-1 (Woodbury). This costs one solve and parts
-//             of it (linear/parted_solve.h), and a small dense system (capacitance.h). Where there are more stiff
-//             directions than that may have, those of some vertices are in it and stand for their neighbours, too: K'.
-//             The rest, R, are scaled each by itself: H = T (A + K')^-1 T, T = I - R diag(1 - sqrt(a / (a + k))) R^T.
-// All are symmetric and positive definite.
+//             of it (linear/parted_solve.h), and a small dense system (capacitance.h). When there are more stiff
+//             directions than that system may have, it contains those of some vertices, which also represent their
+//             neighbours: K'. Each of the others, R, is scaled by itself: H = T (A + K')^-1 T,
+//             T = I - R diag(1 - sqrt(a / (a + k))) R^T.
+// All of these H are symmetric and positive definite.
 #pragma once
 
 #include <vector>
@@ -20,7 +21,7 @@
 
 namespace supple {
 
-// Scratch of the corrections, empty until a contact is made.
+// Holds the scratch memory of the corrections; it is empty until a contact occurs.
 struct ContactCorrection {
   const System* matrix = nullptr;              // A here: the matrix in force, of the step; null: the model's own
   std::vector<StiffDirection> wanted;          // those of the contacts in force: normals, then tangents
@@ -35,24 +36,25 @@ struct ContactCorrection {
   Positions unbent;                     // the direction before foresee_contacts [m]
 };
 
-// The most directions that feel each other which a body's system may have.
+// Returns the largest number of mutually coupled directions that a body's system may have.
 std::size_t most_coupled_directions(const Model& model);
 
-// Lists the stiff directions at x of the contacts found there in correction.wanted.
+// Lists in correction.wanted the stiff directions of the contacts found at x.
 void find_stiff_directions(const Model& model, const std::vector<Contact>& contacts, const Positions& x,
                            double stick_length, ContactCorrection& correction);
 
-// Makes a step independent of those before.
+// Makes a step independent of earlier ones.
 void begin_corrections(const Model& model, ContactCorrection& correction);
 
 // Computes z = H r for these directions. Overwrites r.
 void apply_inverse(const Model& model, const ContactSettings& settings, ContactCorrection& correction,
                    SolveScratch& scratch, Positions& r, Positions& z);
 
-// Bends a direction where it would lead from x through planes of `contacts` that are near and not yet touched: the
-// quadratic model with their energies, which the full step would meet, is minimised anew; vertices that would still go
-// through stop at their planes. Without this most full steps are rejected once a contact patch grows. Returns whether
-// it was bent; it may then lead uphill, and the direction before is in correction.unbent.
+// Bends a direction that would lead from x through planes of `contacts` that are near and not yet touched. The
+// quadratic model is minimised again with the energies of these planes, which the full step would meet; vertices that
+// would still go through stop at their planes. Without this, most full steps are rejected once a contact patch grows.
+// Returns whether the direction was bent. A bent direction may lead uphill; the one before is kept in
+// correction.unbent.
 bool foresee_contacts(const Model& model, const ContactSettings& settings, const std::vector<Contact>& contacts,
                       const Positions& x, ContactCorrection& correction, Positions& direction);
 

@@ -19,9 +19,9 @@ constexpr double furthest_way_out = 100;  // that is looked for, over the body's
 
 int groups_of(const Model& model) { return (model.free + group_size - 1) / group_size; }
 
-// A vertex that moved `way` since the step began, and would have moved `freely` if nothing held it, gets a plane within
-// this distance of a surface: an iteration may still move it that much further. What rests hardly moves, but the next
-// iteration may move it as far as gravity would.
+// A vertex that has moved by `way` since the step began, and would have moved by `freely` if nothing held it, gets a
+// plane within this distance of a surface, because an iteration may still move it that much further. A vertex at rest
+// hardly moves, but the next iteration may move it as far as gravity would.
 double reach_of(double way, double freely) { return 0.25 * std::max(way, freely); }
 
 // The way that a vertex may make out of an overlap in one step [m].
@@ -29,7 +29,7 @@ double push_out_of(const Model& model, const StepInputs& inputs) {
   return inputs.solver.contact.push_out * model.size * model.time_step;
 }
 
-// Everything that the examination of one vertex needs.
+// Holds everything that is needed to examine one vertex.
 struct Search {
   const Model& model;
   const StepInputs& inputs;
@@ -109,10 +109,10 @@ void leave(const ColliderView& view, const Way& way, const Vec3& way_out, double
   contact.depth = std::max(0.0, contact.offset - contact.normal.dot(way.x));
 }
 
-// Returns the normal force from which friction follows (Li et al. 2020, section 5.3, lag it too): the force of the
-// vertex when the step began, or, where it arrives or comes out of a deep overlap, no more than what stops it alone.
-// The overlap of an iterate would give a force that is many times too large. It only reduces friction, smoothly, on a
-// vertex that is leaving: with a jump at the surface, vertices would come and go without end.
+// Returns the normal force from which friction follows (Li et al. 2020, section 5.3, lag it too). It is the force on
+// the vertex when the step began or, where the vertex arrives or comes out of a deep overlap, at most the force that
+// stops it alone. The overlap of an iterate would give a force that is many times too large; it only reduces friction,
+// smoothly, on a vertex that is leaving. With a jump at the surface, vertices would touch and leave without end.
 double lagged_force(const Contact& contact, double depth_before, double depth_unhindered, double mass_over_h2) {
   const double pressing = 2 * contact.stiffness * contact.depth;
   if (depth_before > 0) return 2 * std::min(contact.stiffness * depth_before, pressing);
@@ -210,7 +210,7 @@ void begin_contacts(const Model& model, const StepInputs& inputs, const Position
       std::int32_t near = -1;
       const ColliderMotion& motion = inputs.collider_motions[c];
       const ColliderView view((*inputs.colliders)[c], motion, work.traits[c]);
-      // A point at `radius` from the centre moves as the centre does, and turns about it.
+      // A point at `radius` from the centre moves with the centre and rotates about it.
       const double turn = Eigen::AngleAxisd(motion.end.linear() * motion.start.linear().transpose()).angle();
       double& moves = work.collider_move[c * groups + group];
       moves = (view.carried(center) - center).norm() + turn * radius;
@@ -246,7 +246,7 @@ void find_contacts(const Model& model, const StepInputs& inputs, const Positions
       if (!surface) return;
       contact.normal = view.end().linear() * surface->normal;
       if (leaving && contact.normal.dot(way_out) < 0.5) return;  // the others, which leave, pull it through
-      // This much depth need not be undone in this step.
+      // This much of the depth need not be corrected in this step.
       const double allowed = field < -push_out ? std::max(0.0, -view.closest(way.a, near).distance - push_out) : 0;
       contact.offset = contact.normal.dot(view.end() * surface->point) - allowed;
       contact.depth = std::max(0.0, contact.offset - contact.normal.dot(x.row(v)));

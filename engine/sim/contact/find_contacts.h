@@ -1,5 +1,5 @@
-// Finds where a body's vertices meet rigid colliders on their way through a step, and the planes that hold them: once
-// for each iterate, with an exact look at those vertices alone that may have come near. Not here: the energies of these
+// Finds where a body's vertices meet rigid colliders on their path through a step, and the planes that hold them: once
+// for each iterate, with an exact test of only those vertices that may have come near. Not here: the energies of these
 // planes (contact.h).
 #pragma once
 
@@ -13,7 +13,8 @@
 
 namespace supple {
 
-// The memory of the search for contacts within a step, and its scratch; empty while there are no colliders.
+// Holds the memory of the search for contacts within a step, and its scratch memory; empty while there are no
+// colliders.
 struct ContactWork {
   std::vector<std::vector<Contact>> by_chunk;
   std::vector<double> clearance;          // signed distance at the start, colliders x free; NaN: not asked yet [m]
@@ -31,11 +32,11 @@ struct ContactWork {
   ContactCounts counts;
 };
 
-// Prepares a step from q: what can touch at all. y must outlive the step.
+// Prepares a step from q: finds what can touch at all. y must outlive the step.
 void begin_contacts(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& y,
                     ContactWork& work);
 
-// Finds the contacts of the vertices at x, on their way from q: by collider and vertex.
+// Finds the contacts of the vertices at x, on their path from q, ordered by collider and vertex.
 void find_contacts(const Model& model, const StepInputs& inputs, const Positions& x, Threads* threads,
                    ContactWork& work, std::vector<Contact>& found);
 

@@ -1,6 +1,6 @@
-// Numbers that carry their partial derivatives with respect to three variables (forward automatic differentiation:
-// Griewank and Walther 2008, "Evaluating derivatives", chapter 3). A material's formula, written once for any number
-// type, gives its second derivatives through them, exact to round-off.
+// Defines numbers that carry their partial derivatives with respect to three variables (forward automatic
+// differentiation: Griewank and Walther 2008, "Evaluating derivatives", chapter 3). A material's formula, written once
+// for any number type, gives its second derivatives through them, exact to round-off.
 #pragma once
 
 #include "sim/materials/small_matrix.h"

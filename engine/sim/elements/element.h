@@ -1,4 +1,4 @@
-// This is the closed set of element kinds. A new one is a header in elements/ (corners, fields, energy with its
+// Defines the closed set of element kinds. A new kind needs a header in elements/ (corners, fields, energy with its
 // derivative), an entry here, its case in dispatch() of element_kernels.cpp, its records and rows of L in
 // element_records.cpp, and its weight in measures.cpp.
 #pragma once

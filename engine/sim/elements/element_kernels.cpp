@@ -1,4 +1,4 @@
-// Compiled once for each instruction set; SUPPLE_VARIANT names it.
+// This file is compiled once for each instruction set; SUPPLE_VARIANT names it.
 #include "sim/elements/element_kernels.h"
 
 #include "base/lanes.h"
@@ -90,7 +90,7 @@ double elements(const ElementChunk& chunk, const double* x, const double* previo
   });
 }
 
-// Calls visit(corners, fields, first) for the elements of each register; `first` is the place of its first lane among
+// Calls visit(corners, fields, first) for the elements of each register; `first` is the index of its first lane among
 // those of the chunk.
 template <class Formula, class Visit>
 void for_each_register(const ElementChunk& chunk, const double* x, const Visit& visit) {

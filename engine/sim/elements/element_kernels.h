@@ -1,5 +1,5 @@
-// The loops over elements, as a table of functions that is compiled once for each instruction set (base/variants.h).
-// All take plain arrays. Not here: what the loops are for (solver/objective.h, model/measures.h).
+// Declares the loops over elements, as a table of functions that is compiled once for each instruction set
+// (base/variants.h). All take plain arrays. Not here: the uses of the loops (solver/objective.h, model/measures.h).
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,12 @@
 
 namespace supple {
 
-// Elements are stored in blocks of this many, whatever the width of the registers: field by field, one element a lane.
+// Elements are stored in blocks of this many for every width of the registers: field by field, one element in each
+// lane.
 constexpr int block_width = 8;
 
-// A run of blocks of one kind and material with its own short list of vertices: small enough that its positions and
-// forces stay in the first-level cache, and the unit of work of a thread.
+// Describes a run of blocks of one kind and material with its own short list of vertices. It is small enough that its
+// positions and forces stay in the first-level cache, and it is the unit of work of a thread.
 struct ElementChunk {
   ElementKind kind;
   const Material* material;  // of tetrahedra
@@ -32,9 +33,9 @@ struct ElementKernels {
   double (*elements)(const ElementChunk& chunk, const double* x, const double* previous, double* energy, double* force,
                      double* local);
 
-  // Writes the second derivatives of each element's energy, or the nearest positive semi-definite ones: by lane, the
-  // packed lower triangle over the coordinates of all corners but the first (stiffness_numbers of them), whose rows
-  // follow from translations [N/m].
+  // Writes the second derivatives of each element's energy, or the nearest positive semi-definite ones: for each lane
+  // the packed lower triangle over the coordinates of all corners but the first (stiffness_numbers of them); the first
+  // corner's rows follow from translations [N/m].
   void (*stiffness)(const ElementChunk& chunk, const double* x, bool project, double* out);
 
   // Writes a third of the trace of each 3 x 3 block of the projected second derivatives: by lane, the packed lower
@@ -42,8 +43,8 @@ struct ElementKernels {
   // axis is not less than `axial` of what a stretch along it alone meets. [N/m]
   void (*scalar_stiffness)(const ElementChunk& chunk, const double* x, double axial, double* out);
 
-  // Writes by lane the largest stretch, and the volume over that at rest, which is negative where an element is
-  // inverted.
+  // Writes for each lane the largest stretch, and the volume over the rest volume, which is negative where an element
+  // is inverted.
   void (*stretches)(const ElementChunk& chunk, const double* x, double* largest, double* volume);
 };
 

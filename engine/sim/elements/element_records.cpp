@@ -51,8 +51,8 @@ SystemTerm unit_term(const ElementRecord& element) {
   return term;
 }
 
-// The Hessian of a stretched fibre along itself is kappa V (G^T d)(G^T d)^T. docs/results.md says what it gains
-// in A.
+// The Hessian of a stretched fibre along itself is kappa V (G^T d)(G^T d)^T. docs/results.md tells how much this term
+// in A gains.
 SystemTerm fibre_term(const ElementRecord& element, const Fibre& fibre) {
   std::array<std::array<double, 3>, most_corners> gradient;
   shape_gradients(element, gradient);

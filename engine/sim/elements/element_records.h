@@ -1,5 +1,5 @@
-// The records of a body's elements before they are packed into SIMD blocks: the model's builder sorts them, packs them
-// and adds them up into L.
+// Defines the records of a body's elements before they are packed into SIMD blocks: the model's builder sorts them,
+// packs them and adds them up into L.
 #pragma once
 
 #include <array>
@@ -28,7 +28,8 @@ struct ElementRecord {
 // Lists the tetrahedra first, then the springs; corners have the mesh's numbering.
 std::vector<ElementRecord> element_records(const TetMesh& mesh, const std::vector<Spring>& springs);
 
-// The share of an element in L = sum_e G_e^T (weight) G_e: rows of G_e^T, one a corner, and their weight [N/m].
+// Holds the share of an element in L = sum_e G_e^T (weight) G_e: the rows of G_e^T, one for each corner, and their
+// weight [N/m].
 struct SystemTerm {
   std::array<std::array<double, 3>, most_corners> row{};
   double weight;

@@ -1,5 +1,5 @@
-// Springs between two vertices, of which mass-spring cloth is made: k/2 (|x_i - x_j| - r)^2 (Liu, Bargteil, O'Brien,
-// Kavan 2013, "Fast simulation of mass-spring systems").
+// Defines springs between two vertices, of which mass-spring cloth is made: k/2 (|x_i - x_j| - r)^2 (Liu, Bargteil,
+// O'Brien, Kavan 2013, "Fast simulation of mass-spring systems").
 #pragma once
 
 #include "sim/materials/small_matrix.h"
@@ -24,7 +24,7 @@ struct SpringElement {
     return V(0.5) * stiffness * excess * excess;
   }
 
-  // The stretch is the current over the rest length (1 where the rest length is 0); a spring cannot turn inside out.
+  // The stretch is the current length over the rest length (1 where the rest length is 0); a spring cannot be inverted.
   template <class V>
   void stretch(const V (&x)[2][3], const V (&field)[fields], V& largest, V& volume) const {
     using std::sqrt;
@@ -35,8 +35,8 @@ struct SpringElement {
     volume = V(1.0);
   }
 
-  // d^2 E / dx^2 of corner 1 (3 x 3, packed), or the nearest positive semi-definite matrix:
-  // k ((1 - r/l)(1 - n n^T) + n n^T). [N/m]
+  // Writes d^2 E / dx^2 of corner 1 (3 x 3, packed), or the nearest positive semi-definite matrix: k ((1 - r/l)(1 - n
+  // n^T) + n n^T). [N/m]
   template <class V>
   void stiffness(const V (&x)[2][3], const V (&field)[fields], bool project, V (&out)[6]) const {
     using std::max;

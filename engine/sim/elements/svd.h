@@ -1,9 +1,9 @@
-// The singular value decomposition F = U diag(s) V^T of 3 x 3 matrices, one a SIMD lane, with det U = det V = 1: the
-// largest value first, and the smallest carries the sign of det F (Liu et al. 2017, section 3). Materials that are
-// written in principal stretches need it. It is one-sided Jacobi (Hestenes 1958; Demmel and Veselic 1992, "Jacobi's
-// method is more accurate than QR"): the columns of F V are turned pairwise until they are orthogonal, so that nothing
-// is squared and small values keep their digits beside large ones. For every finite F: |U S V^T - F| <= 32 eps |F|, U
-// and V orthogonal to 16 eps (tested on ten million matrices).
+// Computes the singular value decomposition F = U diag(s) V^T of 3 x 3 matrices, one in each SIMD lane, with det U =
+// det V = 1: the largest value comes first, and the smallest carries the sign of det F (Liu et al. 2017, section 3).
+// Materials that are written in principal stretches need it. The method is one-sided Jacobi (Hestenes 1958; Demmel and
+// Veselic 1992, "Jacobi's method is more accurate than QR"): the columns of F V are rotated pairwise until they are
+// orthogonal, so that nothing is squared and small values keep their digits beside large ones. For every finite F: |U S
+// V^T - F| <= 32 eps |F|, U and V orthogonal to 16 eps (tested on ten million matrices).
 #pragma once
 
 #include "sim/materials/small_matrix.h"
@@ -23,14 +23,15 @@ V dot(const V (&a)[3], const V (&b)[3]) {
   return madd(a[0], b[0], madd(a[1], b[1], a[2] * b[2]));
 }
 
-// The columns of F V and of V while they are turned.
+// Holds the columns of F V and of V while they are rotated.
 template <class V>
 struct Columns {
   V b[3][3];
   V v[3][3];
 };
 
-// Turns columns p and q so that those of F V become orthogonal; returns true when some lane was not so already.
+// Rotates columns p and q so that those of F V become orthogonal; returns true when in some lane they were not
+// orthogonal yet.
 template <class V>
 bool turn(Columns<V>& columns, int p, int q) {
   using std::sqrt;
@@ -39,7 +40,8 @@ bool turn(Columns<V>& columns, int p, int q) {
   constexpr double orthogonal = 0x1p-50;  // cosine; a dot product's own round-off is half of it
   const auto turning = product * product > V(orthogonal * orthogonal) * squared_p * squared_q;
   if (!some(turning)) return false;
-  // The smaller root t of t^2 + 2 zeta t - 1 = 0, zeta = (q.q - p.p) / (2 p.q), written so that it does not cancel.
+  // This is the smaller root t of t^2 + 2 zeta t - 1 = 0, zeta = (q.q - p.p) / (2 p.q), written so that nothing
+  // cancels.
   const V difference = squared_q - squared_p, twice = product + product;
   const V root = sqrt(madd(difference, difference, twice * twice));
   const V below = difference + choose(difference < V(0.0), V(0.0) - root, root);
@@ -94,7 +96,7 @@ Svd3<V> svd(const Matrix3<V>& f) {
   using std::max;
   using std::sqrt;
   using namespace svd_detail;
-  // Entries so far from 1 that fourth powers would leave the range of doubles are scaled first.
+  // Matrices whose entries are so far from 1 that fourth powers would leave the range of doubles are scaled first.
   V largest = abs(f.m[0]);
   for (int i = 1; i < 9; ++i) largest = max(largest, abs(f.m[i]));
   V scale(1.0);
@@ -119,7 +121,7 @@ Svd3<V> svd(const Matrix3<V>& f) {
   order(columns, length2, 0, 2);
   order(columns, length2, 1, 2);
 
-  // Directions of zero columns are free; below 1e-280 a squared length has lost digits.
+  // The directions of zero columns are free; below 1e-280 a squared length has lost digits.
   V u[3][3], other[3];
   const auto first = length2[0] > V(0.0);
   const V inverse0 = V(1.0) / sqrt(choose(first, length2[0], V(1.0)));

@@ -1,5 +1,5 @@
-// Linear tetrahedra of any material, with fibres on top where a scene has them. Not here: which material an element has
-// (element_kernels.cpp dispatches once a chunk).
+// Defines linear tetrahedra of any material, with additional fibres where a scene has them. Not here: which material an
+// element has (element_kernels.cpp dispatches once for each chunk).
 #pragma once
 
 #include "sim/elements/polar_rotation.h"
@@ -7,8 +7,8 @@
 
 namespace supple {
 
-// Fibres along one direction of the rest shape, added to any material: kappa/2 (|F d| - 1)^2 (Liu et al. 2017, section
-// 4.4). [J/m^3]
+// Describes fibres along one direction of the rest shape, added to any material: kappa/2 (|F d| - 1)^2 (Liu et al.
+// 2017, section 4.4). [J/m^3]
 struct Fibre {
   double kappa = 0;                 // [Pa]; 0: none
   double direction[3] = {0, 1, 0};  // unit vector of the rest shape
@@ -148,7 +148,7 @@ struct TetrahedronFormula : Tetrahedron {
     volume = determinant(f, cofactor(f));
   }
 
-  // Defined in tetrahedron_stiffness.h.
+  // This function is defined in tetrahedron_stiffness.h.
   template <class V>
   void stiffness(const V (&x)[4][3], const V (&field)[fields], bool project, V (&out)[45]) const;
 

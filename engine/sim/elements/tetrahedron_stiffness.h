@@ -1,8 +1,8 @@
-// The second derivatives of a tetrahedron's energy serve Newton's method. In the basis of the singular vectors of F the
-// Hessian of an isotropic density falls apart into a 3 x 3 matrix over the stretches and, for each pair of axes, a flip
-// and a twist (Smith, de Goes, Kim 2019, "Analytic eigensystems for isotropic distortion energies", section 4), so the
-// nearest positive semi-definite matrix (Teran et al. 2005) costs three clamped numbers and a 3 x 3 eigenproblem.
-// Derivatives of the material with respect to stretches come from its own formula (dual.h).
+// Computes the second derivatives of a tetrahedron's energy, for Newton's method. In the basis of the singular vectors
+// of F the Hessian of an isotropic density separates into a 3 x 3 matrix over the stretches and, for each pair of axes,
+// a flip and a twist (Smith, de Goes, Kim 2019, "Analytic eigensystems for isotropic distortion energies", section 4),
+// so the nearest positive semi-definite matrix (Teran et al. 2005) costs two clamped numbers for each pair of axes and
+// a 3 x 3 eigenproblem. Derivatives of the material with respect to stretches come from its own formula (dual.h).
 #pragma once
 
 #include "sim/elements/dual.h"
@@ -10,11 +10,11 @@
 
 namespace supple {
 
-// The place of an entry in the packed lower triangle of a symmetric matrix.
+// Returns the index of an entry in the packed lower triangle of a symmetric matrix.
 constexpr int packed_index(int row, int column) { return row * (row + 1) / 2 + column; }
 constexpr int packed_size(int rows) { return rows * (rows + 1) / 2; }
 
-// First and second derivatives of a density with respect to the stretches.
+// Holds the first and second derivatives of a density with respect to the stretches.
 template <class V>
 struct StretchDerivatives {
   V slope[3];      // [Pa]
@@ -53,7 +53,7 @@ StretchDerivatives<V> stretch_derivatives(const M& material, const V (&s)[3]) {
 
 namespace stiffness_detail {
 
-// The nearest positive semi-definite matrix, (H + |H|) / 2 with |H| = V |S| V^T from H = U S V^T.
+// Replaces h by the nearest positive semi-definite matrix, (H + |H|) / 2 with |H| = V |S| V^T from H = U S V^T.
 template <class V>
 void clamp_eigenvalues(V (&h)[3][3]) {
   using std::abs;
@@ -80,7 +80,7 @@ void add_outer(const V& factor, const V (&b)[n], V* out) {
   }
 }
 
-// F = U diag(s) V^T of an element, and its rest gradients along the right singular vectors.
+// Holds F = U diag(s) V^T of an element, and its rest gradients along the right singular vectors.
 template <class V>
 struct SingularBasis {
   Svd3<V> parts;
@@ -93,7 +93,7 @@ struct SingularBasis {
             madd(field[3 * k], parts.v(0, p), madd(field[3 * k + 1], parts.v(1, p), field[3 * k + 2] * parts.v(2, p)));
     }
   }
-  // dF = u_p v_q^T as a gradient over corners 1 to 3.
+  // Writes dF = u_p v_q^T as a gradient over corners 1 to 3.
   void mode(int p, int q, V (&b)[9]) const {
     for (int k = 0; k < 3; ++k) {
       for (int i = 0; i < 3; ++i) b[3 * k + i] = parts.u(i, p) * w(k, q);
@@ -148,7 +148,7 @@ void add_flips_and_twists(const StretchDerivatives<V>& at, const SingularBasis<V
   }
 }
 
-// second: of the density with respect to the stretches, projected already where that is wanted [Pa].
+// second: second derivatives of the density with respect to the stretches, already projected where that is wanted [Pa].
 template <class V>
 void add_stretches(const V (&second)[3][3], const SingularBasis<V>& basis, const V& volume, V* out) {
   V stretch[3][9];
@@ -191,9 +191,9 @@ void add_fibre_stiffness(const Fibre& fibre, const Matrix3<V>& f, const V (&fiel
 
 }  // namespace stiffness_detail
 
-// d^2 E / dx^2 of corners 1 to 3 (9 x 9, packed; corner 0 follows from translations), or the nearest positive
-// semi-definite matrix; fibres are projected on their own. Where two stretches cancel (s_i + s_j = 0) a formula in
-// stretches has a kink; the twist is then held at what 1e-8 beside it has. [N/m]
+// Writes d^2 E / dx^2 of corners 1 to 3 (9 x 9, packed; corner 0 follows from translations), or the nearest positive
+// semi-definite matrix; fibres are projected separately. Where two stretches cancel (s_i + s_j = 0) a formula in
+// stretches has a kink; the twist is then held at its value at a distance of 1e-8. [N/m]
 template <bool with_fibre, class M, class V>
 void tetrahedron_stiffness(const M& material, const Fibre* fibre, const V (&x)[4][3],
                            const V (&field)[Tetrahedron::fields], bool project, V (&out)[packed_size(9)]) {

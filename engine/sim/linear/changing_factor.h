@@ -1,5 +1,5 @@
-// A sparse Cholesky factor that is made anew for each matrix of one pattern, in double precision and for one right-hand
-// side at a time: for Newton's method and others whose matrix changes. By fronts of our own (multifrontal.h), like
+// Computes a sparse Cholesky factor again for each matrix of one pattern, in double precision and for one right-hand
+// side at a time: for Newton's method and others whose matrix changes. It uses fronts of our own (multifrontal.h), like
 // CholeskyFactor, which serves three right-hand sides at once and many solves.
 #pragma once
 
@@ -16,7 +16,8 @@ namespace supple {
 
 class ChangingFactor {
  public:
-  // Lower triangle; what stands above the diagonal is ignored. Unknowns come in an order of little fill already.
+  // Takes the lower triangle; entries above the diagonal are ignored. The unknowns must already be in an order with
+  // little fill.
   void analyze(const Eigen::SparseMatrix<double>& matrix);
 
   // Factors a matrix with the pattern that was analysed. Returns false when it is not positive definite; the factor
@@ -26,7 +27,7 @@ class ChangingFactor {
   // x = A^-1 b; both have as many numbers as the matrix has rows, and may be the same.
   void solve(const double* b, double* x);
 
-  // Numbers of the factor's columns, with the zeros that merging and padding store.
+  // Counts the numbers of the factor's columns, including the zeros that merging and padding store.
   std::int64_t stored_numbers() const { return static_cast<std::int64_t>(columns_.size()); }
 
  private:

@@ -1,6 +1,6 @@
 #include "sim/linear/cholesky.h"
 
-// Leaves out the declarations of CHOLMOD's modules under the GPL: nothing here can call them.
+// This macro leaves out the declarations of CHOLMOD's modules under the GPL, so that nothing here can call them.
 #define NGPL
 #include <cholmod.h>
 #include <fmt/core.h>
@@ -16,7 +16,8 @@
 namespace supple {
 namespace {
 
-// CHOLMOD's settings and workspace: it orders by METIS alone, and analyses as much of the factor as that takes.
+// Holds CHOLMOD's settings and workspace: it orders by METIS alone, and analyses only as much of the factor as that
+// requires.
 struct Cholmod {
   cholmod_common common;
   Cholmod() {
@@ -37,7 +38,7 @@ struct Cholmod {
   }
 };
 
-// The pattern of an Eigen matrix's lower triangle, where it lies.
+// Returns the pattern of an Eigen matrix's lower triangle without copying it.
 cholmod_sparse pattern_of(Eigen::SparseMatrix<double>& matrix) {
   cholmod_sparse view{};
   view.nrow = view.ncol = static_cast<std::size_t>(matrix.rows());
@@ -67,8 +68,8 @@ std::vector<std::int32_t> fill_reducing_order(int count,
 
   Cholmod cholmod;
   cholmod_sparse view = pattern_of(pattern);
-  // METIS takes SIGTERM for an error of its own and gives up; CHOLMOD then goes on with another order, whose last bits
-  // differ, and the signal is lost.
+  // METIS takes SIGTERM for an error of its own and gives up. CHOLMOD then continues with another order, which changes
+  // the last bits of results, and the signal is lost.
   const BlockedSignals meanwhile;
   const auto factor = cholmod.hold(cholmod_analyze(&view, &cholmod.common));
   if (!factor || factor->ordering != CHOLMOD_METIS)
@@ -141,7 +142,7 @@ bool CholeskyFactor::renew(const Eigen::SparseMatrix<double>& matrix, Room& room
   return true;
 }
 
-// Columns of a front become rows of its panels, the diagonal inverted; above it 0.
+// Stores columns of a front as rows of its panels, with the diagonal inverted and 0 above it.
 template <class T>
 void CholeskyFactor::store_panels(int s, const double* columns, AlignedVector<T>& out) const {
   const Supernode& node = elimination_.nodes[s];

@@ -1,7 +1,8 @@
-// Sparse Cholesky of a symmetric positive definite matrix that is solved many times: ordered by CHOLMOD, numbers by
-// fronts of our own (multifrontal.h; the bits depend on the matrix and the instruction set, on no BLAS and no number of
-// threads), solves by our own panels for three right-hand sides at once. The only place that knows CHOLMOD. Not
-// thread-safe against itself: build on one thread. For a matrix that changes with each solve: changing_factor.h.
+// Factors a sparse symmetric positive definite matrix that is solved many times: CHOLMOD orders it, fronts of our own
+// compute the numbers (multifrontal.h; the bits depend on the matrix and the instruction set, on no BLAS and no number
+// of threads), and panels of our own solve for three right-hand sides at once. No other part of the program uses
+// CHOLMOD. An object is not thread-safe: build it on one thread. For a matrix that changes with each solve:
+// changing_factor.h.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,7 @@
 
 namespace supple {
 
-// An order of elimination with little fill (nested dissection): order[k] is the k-th unknown to be eliminated.
+// Returns an order of elimination with little fill (nested dissection): order[k] is the k-th unknown to be eliminated.
 // edges: pairs of different unknowns below `count` that share a matrix entry, each at least once.
 std::vector<std::int32_t> fill_reducing_order(int count,
                                               const std::vector<std::pair<std::int32_t, std::int32_t>>& edges);
@@ -31,8 +32,8 @@ struct Names<Precision> {
                                        Name{Precision::double_precision, "double"}};
 };
 
-// A power of two that brings the largest of some numbers near 1, so that single precision neither overflows nor falls
-// into denormals.
+// Returns a power of two that brings the largest of some numbers near 1, so that single precision neither overflows nor
+// falls into denormals.
 double solve_scale(const double* numbers, int count);
 
 class Multifrontal;
@@ -42,9 +43,9 @@ class CholeskyFactor {
   CholeskyFactor() = default;
   CholeskyFactor(const Eigen::SparseMatrix<double>& matrix, Precision precision) { factorize(matrix, precision); }
 
-  // Factors a lower triangle (compressed, nothing stored above the diagonal) in the order given. A matrix with the
-  // pattern of the last one, in its precision, costs the numbers alone. Throws RunError when it is not positive
-  // definite, naming the column; the factor then solves nothing.
+  // Factors a lower triangle (compressed, nothing stored above the diagonal) in the order given. For a matrix with the
+  // pattern and the precision of the last one, only the numbers are computed again. Throws RunError with the number of
+  // the column when the matrix is not positive definite; the factor then solves nothing.
   void factorize(const Eigen::SparseMatrix<double>& matrix, Precision precision);
 
   // Room for factoring anew, which then allocates nothing. It belongs to one factor, which must stay where it is.
@@ -69,11 +70,12 @@ class CholeskyFactor {
   // x = A^-1 b for b and x with `size` rows, interleaved. scratch: 4 * size doubles.
   void solve(const double* b, double* x, double* scratch) const;
 
-  // The panels that solves go by (linear_kernels.h), for those who solve in parts (parted_solve.h).
+  // Returns the panels by which systems are solved (linear_kernels.h), for code that solves in parts (parted_solve.h).
   PanelsView view() const;
   Precision precision() const { return precision_; }
   std::int32_t panel_of(int unknown) const { return panel_of_[unknown]; }
-  // The panel of the first row below a panel, the next one on the way to the root of the elimination tree; -1: none.
+  // Returns the panel of the first row below a panel, which is the next one on the path to the root of the elimination
+  // tree; -1: none.
   std::int32_t parent_of(int panel) const {
     return first_row_[panel] < first_row_[panel + 1] ? panel_of_[rows_[first_row_[panel]]] : -1;
   }

@@ -1,9 +1,9 @@
 // Finds what Gaussian elimination touches in a symmetric matrix, by pattern alone: groups of adjacent columns that
-// share one pattern of rows (supernodes), and an order in which their dense fronts can be stacked. Depends on nothing
-// but the pattern, so it is found once for all matrices that have it.
+// share one pattern of rows (supernodes), and an order in which their dense fronts can be stacked. The result depends
+// on nothing but the pattern, so it is found once for all matrices that have it.
 //
-// Duff, Reid 1983, "The multifrontal solution of indefinite sparse symmetric linear equations"; Liu 1992, "The
-// multifrontal method for sparse matrix solution: theory and practice".
+// The method follows Duff, Reid 1983, "The multifrontal solution of indefinite sparse symmetric linear equations"; Liu
+// 1992, "The multifrontal method for sparse matrix solution: theory and practice".
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,8 @@
 
 namespace supple {
 
-// Columns first to last of the factor, dense; `rows` below them, ascending, are all that their elimination changes.
+// Describes the columns from first to last of the factor, which are dense; `rows` below them, ascending, are all that
+// their elimination changes.
 struct Supernode {
   int first, last;
   std::int64_t first_row;  // into Elimination::rows

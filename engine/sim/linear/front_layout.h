@@ -1,10 +1,11 @@
-// How the numbers of a front lie in memory. The columns that are eliminated, all rows of them: strips of up to eight
-// columns, a strip in blocks of eight rows, from the block of its diagonal down, each block by columns. So a strip is
-// one run of memory, for elimination as for solves. Row blocks of the eliminated columns come first (the last one is
-// padded with zeros), then those of the rows below, padded as well. What elimination leaves of the other columns, the
-// update matrix: lower triangle, by columns of padded_rows(rows) numbers.
+// Defines how the numbers of a front are stored. The eliminated columns, with all their rows, are divided into strips
+// of up to eight columns. A strip is stored in blocks of eight rows, from the block of its diagonal down, and each
+// block by columns, so a strip is one run of memory, for elimination and for solves. Row blocks of the eliminated
+// columns come first (the last one is padded with zeros), then those of the rows below, which are padded as well. The
+// update matrix is what elimination leaves of the other columns; its lower triangle is stored by columns of
+// padded_rows(rows) numbers.
 //
-// Functions have internal linkage: files that are compiled for several instruction sets include this.
+// The functions have internal linkage, because files that are compiled for several instruction sets include them.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +14,7 @@ namespace supple {
 
 constexpr int block_rows = 8;  // and the most columns of a strip
 
-// Leading dimension of an update matrix of so many rows: whole cache lines.
+// Returns the leading dimension of an update matrix with so many rows: whole cache lines.
 static constexpr std::int64_t padded_rows(std::int64_t rows) {
   return (rows + block_rows - 1) / block_rows * block_rows;
 }
@@ -32,22 +33,22 @@ static constexpr int strip_width(FrontShape front, int strip) {
   return left < block_rows ? left : block_rows;
 }
 
-// Returns the place of a strip's diagonal block among the numbers of the eliminated columns.
+// Returns the offset of a strip's diagonal block among the numbers of the eliminated columns.
 static constexpr std::int64_t strip_begin(FrontShape front, int strip) {
   const std::int64_t blocks = std::int64_t(strip) * row_blocks_of(front) - std::int64_t(strip) * (strip - 1) / 2;
   return block_rows * block_rows * blocks;
 }
 
-// Numbers of the eliminated columns.
+// Counts the numbers of the eliminated columns.
 static constexpr std::int64_t column_numbers(FrontShape front) {
   const int last = strips_of(front) - 1;
   return strip_begin(front, last) + std::int64_t(block_rows) * strip_width(front, last) * (row_blocks_of(front) - last);
 }
 
-// Numbers of the update matrix.
+// Counts the numbers of the update matrix.
 static constexpr std::int64_t update_numbers(FrontShape front) { return padded_rows(front.rows) * front.rows; }
 
-// Returns the place of a front's row among the padded ones: the rows of the eliminated columns come first.
+// Returns the index of a front's row among the padded ones: the rows of the eliminated columns come first.
 static constexpr int padded_place(FrontShape front, int row) {
   return row < front.pivots ? row : strips_of(front) * block_rows + row - front.pivots;
 }

@@ -1,7 +1,7 @@
-// Entries of A^-1 = L^-T L^-1 among a few unknowns: products of columns of L^-1, each of which is nonzero only on its
-// unknown's way to the root of the elimination tree (Davis 2006, "Direct methods for sparse linear systems", section
-// 3.2). Two ways are one from where they meet, so that a product takes what two columns have in common at their ends.
-// What is found depends on the factor alone, not on what was asked for before.
+// Computes entries of A^-1 = L^-T L^-1 among a few unknowns: products of columns of L^-1, each of which is nonzero only
+// on its unknown's path to the root of the elimination tree (Davis 2006, "Direct methods for sparse linear systems",
+// section 3.2). Two paths are the same from where they meet, so that a product needs only the common ends of two
+// columns. The result depends on the factor alone, not on what was asked for before.
 #pragma once
 
 #include <vector>
@@ -13,13 +13,13 @@ namespace supple {
 
 class InverseEntries {
  public:
-  // Makes sure that the columns of these unknowns are known. The factor must be the same until clear().
+  // Ensures that the columns of these unknowns are known. The factor must stay the same until clear().
   void learn(const CholeskyFactor& factor, const std::vector<std::int32_t>& unknowns);
 
-  // The entry of A^-1 of two unknowns whose columns are known.
+  // Returns the entry of A^-1 for two unknowns whose columns are known.
   float entry(const CholeskyFactor& factor, std::int32_t a, std::int32_t b);
 
-  // Numbers that are kept.
+  // Returns how many numbers are kept.
   std::int64_t stored_numbers() const { return stored_ + static_cast<std::int64_t>(products_.size()); }
   void clear() { *this = {}; }
 

@@ -1,4 +1,4 @@
-// Compiled once for each instruction set; SUPPLE_VARIANT names it.
+// This file is compiled once for each instruction set; SUPPLE_VARIANT names it.
 #include "sim/linear/linear_kernels.h"
 
 #include <utility>
@@ -13,13 +13,14 @@
 namespace supple {
 namespace {
 
-// Elimination works on tiles of row blocks by columns, whose numbers stay in registers while the earlier columns pass
-// by.
+// Elimination works on tiles of row blocks by columns, whose numbers stay in registers while the earlier columns are
+// applied.
 constexpr int block_registers = block_rows / lanes;
 constexpr int tile_blocks = lanes == 8 ? 3 : 1;
 constexpr int tile_columns = lanes == 8 ? 8 : lanes == 4 ? 4 : 2;
 
-// Strips whose columns are taken from all later ones together: what they hold of a large front fits into the cache.
+// The columns of this many strips are subtracted from all later ones together: their part of a large front fits into
+// the cache.
 constexpr int strips_together = 16;
 
 struct Tile {
@@ -27,8 +28,8 @@ struct Tile {
   long block_stride, column_stride;
 };
 
-// Takes the strips from first_strip to end_strip from a tile of row blocks from `row_block` down, whose columns' own
-// rows stand in block `column_block` from `offset` on.
+// Subtracts the strips from first_strip to end_strip from a tile: row blocks from `row_block` down, and columns whose
+// own rows are in block `column_block` from `offset` on.
 template <int blocks, int width>
 void take_strips(FrontShape front, const double* columns, int first_strip, int end_strip, int row_block,
                  int column_block, int offset, const Tile& tile) {
@@ -69,8 +70,8 @@ constexpr TakeStrips take_strips_of(int columns, std::integer_sequence<int, widt
   return by_width[columns - 1];
 }
 
-// A front while its pivots are eliminated. Column blocks are counted like row blocks: first the strips, then the update
-// matrix's columns by eights.
+// Describes a front while its pivots are eliminated. Column blocks are counted like row blocks: first the strips, then
+// the columns of the update matrix in groups of eight.
 struct DenseFront {
   FrontShape front;
   double *columns, *update;
@@ -92,7 +93,7 @@ struct DenseFront {
             block_rows, update_stride};
   }
 
-  // Works on `count` row blocks, at most tile_blocks.
+  // Processes `count` row blocks, at most tile_blocks.
   void take(int first_strip, int end_strip, int row_block, int count, int column_block) const {
     using Widths = std::make_integer_sequence<int, tile_columns>;
     const int width = columns_in(column_block);
@@ -108,7 +109,8 @@ struct DenseFront {
   }
 };
 
-// The triangle on a strip's diagonal; `inverse` are the reciprocals of what stands on it.
+// Factors the triangle on a strip's diagonal; `inverse` gets the reciprocals of its diagonal. Returns the first pivot
+// that is not positive, or -1.
 int factor_triangle(double* triangle, int width, double* inverse) {
   for (int j = 0; j < width; ++j) {
     double* column = triangle + j * block_rows;
@@ -126,7 +128,7 @@ int factor_triangle(double* triangle, int width, double* inverse) {
   return -1;
 }
 
-// The row blocks below the triangle, which know of all before the strip, become rows of L.
+// Turns the row blocks below the triangle, from which everything before the strip has been subtracted, into rows of L.
 template <int width>
 void finish_strip(const double* triangle, const double* inverse, double* block, int blocks) {
   for (int part = 0; part < blocks * block_registers; ++part) {
@@ -174,7 +176,7 @@ int eliminate(FrontShape front, double* columns, double* update) {
   return -1;
 }
 
-// Takes a strip times its part of x from the rows below its triangle.
+// Subtracts a strip times its part of x from the rows below its triangle.
 template <int width>
 void strip_down(const double* triangle, int blocks, double* x) {
   double own[width];
@@ -243,7 +245,7 @@ void solve_up(FrontShape front, const double* columns, const std::int32_t* rows,
   for (int i = 0; i < front.pivots; ++i) own[i] = scratch[i];
 }
 
-// Four right-hand sides side by side: x, y, z and a spare that keeps loads whole.
+// Holds four right-hand sides side by side: x, y, z and an unused one that completes the register.
 template <class T>
 struct Four {
   typedef T Register __attribute__((vector_size(4 * sizeof(T))));

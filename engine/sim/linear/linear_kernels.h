@@ -1,5 +1,5 @@
-// The loops of linear algebra, as a table of functions that is compiled once for each instruction set
-// (base/variants.h). All take plain arrays. Not here: what the loops are for (cholesky.h, solver/lbfgs.h).
+// Declares the loops of linear algebra, as a table of functions that is compiled once for each instruction set
+// (base/variants.h). All take plain arrays. Not here: the uses of the loops (cholesky.h, solver/lbfgs.h).
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@ namespace supple {
 
 constexpr int panel_width = 8;
 
-// A Cholesky factor cut into panels of adjacent columns with one row pattern. Row-major: each row of a panel holds its
-// `width` values.
+// Describes a Cholesky factor that is cut into panels of adjacent columns with one row pattern. It is row-major: each
+// row of a panel holds its `width` values.
 struct PanelsView {
   int panels;
   const std::int32_t* first_column;  // by panel
@@ -23,14 +23,14 @@ struct PanelsView {
 };
 
 struct LinearKernels {
-  // Eliminates the pivots of a dense symmetric front that lies in memory as front_layout.h says, padding and all above
-  // the diagonal set to 0. The columns become columns of L, the update matrix what elimination leaves of the others;
-  // above the diagonal anything may stand afterwards. Each number loses its products one by one in the order of the
-  // pivots. Returns the first pivot that is not positive, or -1.
+  // Eliminates the pivots of a dense symmetric front that is stored as front_layout.h describes, with the padding and
+  // everything above the diagonal set to 0. The columns become columns of L, and the update matrix becomes what
+  // elimination leaves of the others; above the diagonal the result is undefined. The products are subtracted from each
+  // number one by one in the order of the pivots. Returns the first pivot that is not positive, or -1.
   int (*eliminate)(FrontShape front, double* columns, double* update);
 
-  // The part of one front in L x = b, in place, and in L^T x = b. `own`: x at the front's first pivot; rows: by row
-  // below the pivots, into x. scratch: as many numbers as the front has padded rows.
+  // These functions solve the part of one front in L x = b, in place, and in L^T x = b. `own`: x at the front's first
+  // pivot; rows: for each row below the pivots, its index in x. scratch: as many numbers as the front has padded rows.
   void (*solve_down)(FrontShape front, const double* columns, const std::int32_t* rows, double* own, double* x,
                      double* scratch);
   void (*solve_up)(FrontShape front, const double* columns, const std::int32_t* rows, double* own, double* x,
@@ -38,7 +38,7 @@ struct LinearKernels {
 
   // Solves L x = b (down) or L^T x = b (up) in place for four interleaved right-hand sides (n x 4), by panels of up to
   // panel_width columns: those of an ascending list, or all of them (null). Numbers that belong to other panels are
-  // read by down alone as targets, and are not used by up if the list holds all panels that its own depend on.
+  // read only by down, as targets, and are not used by up if the list contains all panels on which its own depend.
   void (*down_float)(const PanelsView& panels, const std::int32_t* list, int count, float* x);
   void (*up_float)(const PanelsView& panels, const std::int32_t* list, int count, float* x);
   void (*down_double)(const PanelsView& panels, const std::int32_t* list, int count, double* x);

@@ -7,12 +7,12 @@
 namespace supple {
 namespace {
 
-// Returns the place of a padded row in the column that begins a strip, counted from where row 0 would be.
+// Returns the offset of a padded row in the column that begins a strip, counted from where row 0 would be.
 std::int32_t place_in_strip(std::int32_t row, int width) {
   return (row & ~(block_rows - 1)) * width + (row & (block_rows - 1));
 }
 
-// Returns the place where the padded row 0 of a column would be.
+// Returns the address where the padded row 0 of a column would be.
 double* column_of(FrontShape front, double* columns, int column) {
   const int strip = column / block_rows;
   return columns + strip_begin(front, strip) + column % block_rows * block_rows -

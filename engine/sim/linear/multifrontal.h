@@ -1,6 +1,6 @@
-// The numbers of an elimination, front after front: a front takes its columns of the matrix and the update matrices of
-// its children, its own columns are eliminated, and its update matrix waits on a stack for its parent. Sums have one
-// order, which the matrix's pattern alone decides.
+// Computes the numbers of an elimination, front after front: a front takes its columns of the matrix and the update
+// matrices of its children, its own columns are eliminated, and its update matrix stays on a stack until its parent
+// needs it. Sums have one order, which depends on the matrix's pattern alone.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -12,14 +12,14 @@ namespace supple {
 
 class Multifrontal {
  public:
-  // The elimination must outlive this.
+  // The elimination must outlive this object.
   explicit Multifrontal(const Elimination& elimination);
 
-  // To be called before the first front of each matrix.
+  // This function must be called before the first front of each matrix.
   void begin();
 
-  // Writes a node's columns of the factor (front_layout.h); nodes come in the elimination's order. Of the matrix the
-  // lower triangle is read. Returns the first unknown whose pivot is not positive, or -1.
+  // Writes a node's columns of the factor (front_layout.h); nodes must come in the elimination's order. Only the lower
+  // triangle of the matrix is read. Returns the first unknown whose pivot is not positive, or -1.
   int eliminate(const Eigen::SparseMatrix<double>& matrix, int node, double* columns);
 
  private:
@@ -31,8 +31,9 @@ class Multifrontal {
   std::vector<std::int32_t> target_;    // padded row of the parent's front by row of a child
   std::vector<std::int32_t> in_strip_;  // place in a strip of that front by row of a child
   std::vector<std::int32_t> waiting_;   // nodes whose update matrices wait
-  // Update matrices of even and of odd levels: a node's children are all on the other stack than its own, so that it
-  // can be summed up where it waits, and each stack is taken from the top alone.
+  // The two stacks hold the update matrices of even and of odd levels. The children of a node are all on the other
+  // stack than its own matrix, so that this can be summed up in its final place, and each stack is read only from its
+  // top.
   AlignedVector<double> stack_[2];
   std::int64_t stacked_[2] = {0, 0};
 };

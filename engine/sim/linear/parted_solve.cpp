@@ -20,7 +20,7 @@ FactorPart paths_to_root(const CholeskyFactor& factor, const std::vector<std::in
 
 namespace {
 
-// The two buffers of a solve, and the kernels of its precision.
+// Holds the two buffers of a solve, and the kernels of its precision.
 template <class T>
 struct Buffers {
   PanelsView view;

@@ -1,8 +1,8 @@
-// A solve A x = b in parts, for right-hand sides that get something more at a few unknowns, which depends on x at a few
-// unknowns. What those have to do with in the factor are the panels on their ways to the root of the elimination tree
-// alone (Gilbert 1994, "Predicting structure in sparse matrix computations"; Davis 2006, "Direct methods for sparse
-// linear systems", section 3.2). So looking and adding cost as much as this part of the factor, and the whole solve is
-// made once.
+// Solves A x = b in parts, for right-hand sides to which an amount is added at a few unknowns that depends on x at a
+// few unknowns. These unknowns involve only the panels on their paths to the root of the elimination tree (Gilbert
+// 1994, "Predicting structure in sparse matrix computations"; Davis 2006, "Direct methods for sparse linear systems",
+// section 3.2). Reading x there and adding to b therefore cost as much as this part of the factor, and the whole solve
+// is made once.
 #pragma once
 
 #include <vector>
@@ -12,24 +12,25 @@
 
 namespace supple {
 
-// Panels of a factor from which all ways to the root stay inside, ascending.
+// Lists panels of a factor, ascending, among which all paths from them to the root stay.
 using FactorPart = std::vector<std::int32_t>;
 
-// Returns the panels on the ways from these unknowns to the root.
+// Returns the panels on the paths from these unknowns to the root.
 FactorPart paths_to_root(const CholeskyFactor& factor, const std::vector<std::int32_t>& unknowns);
 
-// Three right-hand sides at once, as CholeskyFactor::solve. Parts are of the factor that the solve began with.
+// Solves for three right-hand sides at once, as CholeskyFactor::solve does. Parts must belong to the factor with which
+// the solve began.
 class PartedSolve {
  public:
-  // Starts from b (n x 3), or from 0. magnitude: about as large as what will be added.
+  // Starts from b (n x 3), or from 0. magnitude: the approximate size of what will be added.
   void begin(const CholeskyFactor& factor, const double* b);
   void begin_from_zero(const CholeskyFactor& factor, double magnitude);
 
-  // Finds x as of now at the unknowns of a part.
+  // Computes the present x at the unknowns of a part.
   void look(const FactorPart& part);
   Vec3 seen(int unknown) const;
 
-  // Adds to b: clear_addition(part), add() for unknowns of that part, then pass_on(part).
+  // An addition to b takes three calls: clear_addition(part), add() for unknowns of that part, then pass_on(part).
   void clear_addition(const FactorPart& part);
   void add(int unknown, const Vec3& value);
   void pass_on(const FactorPart& part);

@@ -1,5 +1,6 @@
-// As-rigid-as-possible energy, the material of Projective Dynamics: Psi = mu |F - R|^2 = mu |S - 1|^2. With window 0
-// and full steps the method of this program is then exactly the local/global iteration (Liu et al. 2017, section 3).
+// Defines the as-rigid-as-possible energy, the material of Projective Dynamics: Psi = mu |F - R|^2 = mu |S - 1|^2. With
+// window 0 and full steps the method of this program is then exactly the local/global iteration (Liu et al. 2017,
+// section 3).
 #pragma once
 
 #include <array>

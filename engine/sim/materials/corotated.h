@@ -1,4 +1,4 @@
-// Corotated linear elasticity: Psi = mu |F - R|^2 + lambda/2 tr^2(R^T F - 1).
+// Defines corotated linear elasticity: Psi = mu |F - R|^2 + lambda/2 tr^2(R^T F - 1).
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// Fixed corotated elasticity (Stomakhin et al. 2012, "Energetically consistent invertible elasticity"): Psi = mu |F -
-// R|^2 + lambda/2 (J - 1)^2. It is like corotated near rest, with a volume term that resists inversion.
+// Defines fixed corotated elasticity (Stomakhin et al. 2012, "Energetically consistent invertible elasticity"): Psi =
+// mu |F - R|^2 + lambda/2 (J - 1)^2. It is like corotated near rest, with a volume term that resists inversion.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ struct FixedCorotated {
   }
   static FixedCorotated from(const Lame& lame) { return {lame.mu, lame.lambda}; }
 
-  // det S = J, and d det S / dS = cof S.
+  // The formulas used are det S = J and d det S / dS = cof S.
   template <class V>
   V density(const Symmetric3<V>& s, Symmetric3<V>& slope) const {
     const V one(1.0), two_mu(2 * mu);

@@ -1,6 +1,6 @@
-// The closed set of materials. To add one, write a header in this folder (name, needs, parameters(), density(),
-// axial_stress(): parameters.h) and enter it here: kernels, scene files and the stiffness fit then know it.
-// docs/adding-a-material.md goes through it, and lists what tests and pages need.
+// Defines the closed set of materials. To add one, write a header in this folder (name, needs, parameters(), density(),
+// axial_stress(): parameters.h) and enter it here: kernels, scene files and the stiffness fit then use it.
+// docs/adding-a-material.md describes the steps, and lists what tests and pages need.
 #pragma once
 
 #include <variant>
@@ -26,18 +26,18 @@ std::string_view name_of(const Material& material);
 // Tells whether some deformation has less energy than rest.
 bool energy_may_be_negative(const Material& material);
 
-// The stretch interval of equation 11.
+// Holds the stretch interval of equation 11.
 struct StretchInterval {
   double start = 0.5;
   double end = 1.5;
 };
 
-// k of equation 11: the slope of the line through rest that fits the axial stress f best over the interval, by
+// Returns k of equation 11: the slope of the line through rest that fits the axial stress f best over the interval, by
 // Gauss-Legendre quadrature [Pa]. It can be zero or negative for materials that soften.
 double fitted_stiffness(const Material& material, const StretchInterval& interval = {});
 
-// The k that M/h^2 + L is built with: the fit (or what the material demands instead), but not below the floor. A spline
-// that a user draws can soften so much that the fit is negative, and the matrix would not be positive definite.
+// Holds the k with which M/h^2 + L is built: the fit (or what the material requires instead), but at least the floor. A
+// spline that a user draws can soften so much that the fit is negative, and the matrix would not be positive definite.
 struct SystemStiffness {
   double k = 0;          // [Pa]
   bool floored = false;  // the fit was below a thousandth of the steepest secant of f

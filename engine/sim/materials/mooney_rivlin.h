@@ -1,5 +1,5 @@
-// Compressible Mooney-Rivlin material: Psi = mu_1/2 (I_C - 3) + mu_2/2 (II_C - 3) - (mu_1 + 2 mu_2) log J + lambda/2
-// log^2 J with C = F^T F, I_C = tr C and II_C = (tr^2 C - tr C^2)/2 = |cof F|^2; continued below J = 0.1
+// Defines the compressible Mooney-Rivlin material: Psi = mu_1/2 (I_C - 3) + mu_2/2 (II_C - 3) - (mu_1 + 2 mu_2) log J +
+// lambda/2 log^2 J with C = F^T F, I_C = tr C and II_C = (tr^2 C - tr C^2)/2 = |cof F|^2; continued below J = 0.1
 // (log_volume.h).
 #pragma once
 

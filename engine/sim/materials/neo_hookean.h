@@ -1,5 +1,5 @@
-// Compressible Neo-Hookean material (Liu et al. 2017, equation 14): Psi = mu/2 (tr F^T F - 3) - mu log J + lambda/2
-// log^2 J, continued below J = 0.1 (log_volume.h).
+// Defines the compressible Neo-Hookean material (Liu et al. 2017, equation 14): Psi = mu/2 (tr F^T F - 3) - mu log J +
+// lambda/2 log^2 J, continued below J = 0.1 (log_volume.h).
 #pragma once
 
 #include <array>
@@ -32,7 +32,8 @@ struct NeoHookean {
     return madd(V(mu), NearRest<V>(symmetric_product(f, f), j - V(1.0)).stretching, volume);
   }
 
-  // Equation 10 with a = mu/2 (s^2 - 1), b = 0 and the c of LogVolume; J = s, because the other stretches are 1.
+  // This is equation 10 with a = mu/2 (s^2 - 1), b = 0 and the c of LogVolume; J = s, because the other stretches are
+  // 1.
   double axial_stress(double s) const {
     double slope = 0;
     LogVolume{mu, lambda}.beyond_linear(s, slope);

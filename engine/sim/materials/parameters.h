@@ -1,9 +1,9 @@
 // Every material has a name, needs, parameters(), density() and axial_stress(s). The last is f = a' + 2 b' + c' of
 // equation 10: the stress along the axis of a sample at F = diag(s, 1, 1), whose sides are held.
 //
-// Every material tells the following of itself, so that scene files, stiffness fits and kernels pick a new one up
-// without being told. Tests and pages are told in the places that docs/adding-a-material.md lists. Optional members of
-// a material, each used where it exists:
+// Every material declares the following about itself, so that scene files, stiffness fits and kernels use a new one
+// without further changes. For tests and pages, docs/adding-a-material.md lists the places that must name it. The
+// optional members of a material, each of which is used where it exists, are:
 //   static M from(const Lame&)          from Young's modulus and Poisson's ratio
 //   const char* problem() const         what is wrong with parameters that are each in range, or null
 //   std::vector<double> seams() const   stretches where the axial stress changes its formula
@@ -27,7 +27,7 @@ enum class Needs {
   singular_values,  // s of F = U diag(s) V^T: density(s, dPsi/ds), and P = U diag(dPsi/ds) V^T
 };
 
-// One number of a material as a scene file gives it.
+// Describes one number of a material as a scene file gives it.
 template <class M>
 struct Parameter {
   const char* name;
@@ -38,10 +38,10 @@ struct Parameter {
   std::optional<double> fallback = std::nullopt;  // when the file does not give it; otherwise 0 where that is allowed
 };
 
-// Lame's parameters of small strains.
+// Holds Lame's parameters of small strains.
 struct Lame {
   double mu, lambda;  // [Pa]
-  // From Young's modulus [Pa] and Poisson's ratio (below 0.5).
+  // Computes them from Young's modulus [Pa] and Poisson's ratio (below 0.5).
   static Lame from_young(double young, double poisson) {
     return {young / (2 * (1 + poisson)), young * poisson / ((1 + poisson) * (1 - 2 * poisson))};
   }

@@ -1,5 +1,5 @@
-// The paper's polynomial material: Psi = mu sum (s_i - 1)^4 = mu tr (S - 1)^4. It resists small strains
-// hardly and large ones firmly, so it jiggles and keeps its shape (Liu et al. 2017, section 4.1 and figure 2).
+// Defines the paper's polynomial material: Psi = mu sum (s_i - 1)^4 = mu tr (S - 1)^4. It resists small strains weakly
+// and large ones strongly, so it jiggles and keeps its shape (Liu et al. 2017, section 4.1 and figure 2).
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ struct Polynomial {
     return std::array{Parameter<Polynomial>{"mu", "Pa", "stiffness", &Polynomial::mu, false}};
   }
 
-  // tr D^4 = |D^2|^2 for the symmetric D = S - 1, and d tr D^4 / dS = 4 D^3: no eigenvalues are needed.
+  // With tr D^4 = |D^2|^2 for the symmetric D = S - 1, and d tr D^4 / dS = 4 D^3, no eigenvalues are needed.
   template <class V>
   V density(const Symmetric3<V>& s, Symmetric3<V>& slope) const {
     const V one(1.0), four_mu(4 * mu);

@@ -10,7 +10,7 @@
 
 namespace supple {
 
-// Returns a b + c: fused for registers where the machine can, and plain for the oracle.
+// Returns a b + c: fused for registers where the machine can do that, and plain for the oracle.
 inline double madd(double a, double b, double c) { return a * b + c; }
 template <class V>
 V madd(const V& a, const V& b, const V& c) {
@@ -24,7 +24,7 @@ requires(!std::is_arithmetic_v<Condition>) V choose(const Condition& condition, 
   return select(condition, yes, no);
 }
 
-// Whether the condition holds in any lane.
+// Tells whether the condition holds in any lane.
 inline bool some(bool condition) { return condition; }
 template <class Condition>
 requires(!std::is_arithmetic_v<Condition>) bool some(const Condition& condition) { return any(condition); }
@@ -88,7 +88,8 @@ V determinant(const Matrix3<V>& a, const Matrix3<V>& cofactors) {
   return madd(a(0, 0), cofactors(0, 0), madd(a(0, 1), cofactors(0, 1), a(0, 2) * cofactors(0, 2)));
 }
 
-// Returns a^T b where that is known to be symmetric (the stretch of a polar decomposition), the average of both halves.
+// Returns a^T b where that is known to be symmetric (the stretch of a polar decomposition), as the average of its two
+// halves.
 template <class V>
 Symmetric3<V> symmetric_product(const Matrix3<V>& a, const Matrix3<V>& b) {
   const auto entry = [&](int i, int j) { return madd(a(0, i), b(0, j), madd(a(1, i), b(1, j), a(2, i) * b(2, j))); };
@@ -101,7 +102,7 @@ Symmetric3<V> symmetric_product(const Matrix3<V>& a, const Matrix3<V>& b) {
           half * (entry(0, 1) + entry(1, 0))};
 }
 
-// Returns a b for symmetric matrices that commute (powers of one matrix), which is symmetric again.
+// Returns a b for symmetric matrices that commute (powers of one matrix), whose product is also symmetric.
 template <class V>
 Symmetric3<V> commuting_product(const Symmetric3<V>& a, const Symmetric3<V>& b) {
   return {madd(a.xx, b.xx, madd(a.xy, b.xy, a.xz * b.xz)), madd(a.xy, b.xy, madd(a.yy, b.yy, a.yz * b.yz)),

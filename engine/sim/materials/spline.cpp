@@ -6,7 +6,7 @@ namespace supple {
 namespace {
 
 // Finds the second derivatives of the natural spline through the points (Press et al. 2007, "Numerical recipes",
-// section 3.3): the tridiagonal system by elimination and back substitution.
+// section 3.3): the tridiagonal system is solved by elimination and back substitution.
 std::vector<double> second_derivatives(const std::vector<ControlPoint>& p) {
   const std::size_t n = p.size();
   std::vector<double> second(n, 0.0), right(n, 0.0), ratio(n, 0.0);
@@ -30,7 +30,7 @@ double of_curve(const SplineCurve& curve, double x) {
 constexpr double sampled_stretches[] = {0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1.0, 1.1, 1.3, 1.6, 2.0, 2.5};
 constexpr double sampled_volumes[] = {0.1, 0.14, 0.2, 0.28, 0.4, 0.6, 0.8, 1.0, 1.25, 1.6, 2.0, 2.5};
 
-// Samples Neo-Hookean with `extra` added to a'.
+// Samples Neo-Hookean curves with `extra` added to a'.
 template <class Extra>
 Spline sampled(const Lame& lame, const Extra& extra) {
   std::vector<ControlPoint> a, c;

@@ -1,7 +1,7 @@
-// Materials designed by curves (Xu, Sin, Zhu, Barbic 2015, "Nonlinear material design using principal stretches"): a',
-// b' and c' of the Valanis-Landel form are cubic splines through control points. A curve that is not given is zero and
-// costs nothing. The presets A and B are those of the paper's figure 6: Neo-Hookean with more resistance to
-// compression, or to tension.
+// Defines materials designed by curves (Xu, Sin, Zhu, Barbic 2015, "Nonlinear material design using principal
+// stretches"): a', b' and c' of the Valanis-Landel form are cubic splines through control points. A curve that is not
+// given is zero and costs nothing. The presets A and B are those of the paper's figure 6: Neo-Hookean with more
+// resistance to compression, or to tension.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@ struct ControlPoint {
   double value;  // derivative of the energy there [Pa]
 };
 
-// A natural cubic spline: twice continuously differentiable, straight beyond its first and last point. It stands for
-// the derivative of an energy that is zero at 1.
+// Represents a natural cubic spline: twice continuously differentiable, and straight beyond its first and last point.
+// It is the derivative of an energy that is zero at 1.
 class SplineCurve {
  public:
   static constexpr int most_points = 24;
@@ -93,7 +93,7 @@ struct Spline {
         Curve<Spline>{"b", "control points [product, b'] of the curve over products of two stretches", &Spline::b},
         Curve<Spline>{"c", "control points [J, c'] of the curve over the volume ratio", &Spline::c}};
   }
-  // The presets, sampled at control points.
+  // These are the presets, sampled at control points.
   static Spline preset_a(const Lame& lame);
   static Spline preset_b(const Lame& lame);
   const char* problem() const;
@@ -101,7 +101,7 @@ struct Spline {
 
   template <class V>
   V density(const V (&s)[3], V (&slope)[3]) const {
-    // Dispatched outside of lanes: a curve that is absent is not evaluated.
+    // Absent curves are dispatched outside of the lanes, so that they are not evaluated.
     const NoTerm none;
     if (b.empty() && c.empty()) return valanis_landel(a, none, none, s, slope);
     if (b.empty()) return valanis_landel(a, none, c, s, slope);

@@ -1,5 +1,6 @@
-// St. Venant-Kirchhoff material: Psi = mu |E|^2 + lambda/2 tr^2 E, E = (F^T F - 1)/2. It softens under compression and
-// does not resist inversion: below a stretch of 1/sqrt(3) it gives way. It is here because papers compare with it.
+// Defines the St. Venant-Kirchhoff material: Psi = mu |E|^2 + lambda/2 tr^2 E, E = (F^T F - 1)/2. It softens under
+// compression and does not resist inversion: below a stretch of 1/sqrt(3) its resistance decreases. It is included
+// because papers compare with it.
 #pragma once
 
 #include <array>

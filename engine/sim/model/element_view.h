@@ -5,7 +5,7 @@
 
 namespace supple {
 
-// Its corners have the model's numbering.
+// Describes one element, whose corners have the model's numbering.
 struct ElementView : ElementRecord {
   int lane;  // over all blocks
 };

@@ -1,4 +1,4 @@
-// The inputs of one step of one body: gravity, targets of handles, colliders and how they move, and the
+// Defines the inputs of one step of one body: gravity, targets of handles, colliders and their motions, and the
 // settings of the solver, which may change from step to step.
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace supple {
 
-// A rigid obstacle, described in its own frame.
+// Describes a rigid obstacle, in its own frame.
 struct Collider {
   std::string name;
   Shape shape;
@@ -21,7 +21,7 @@ struct Collider {
   double friction = 0;   // coefficient of Coulomb's law
 };
 
-// A collider's pose, from its frame to the world, when a step starts and when it ends.
+// Holds the poses of a collider, from its frame to the world, at the start and at the end of a step.
 struct ColliderMotion {
   Eigen::Isometry3d start = no_motion();
   Eigen::Isometry3d end = no_motion();
@@ -29,8 +29,8 @@ struct ColliderMotion {
   bool moves() const { return start.matrix() != end.matrix(); }
 };
 
-// The treatment of L-BFGS' pairs when the contacts change: the planes of the iteration that made a pair are not those
-// in force later.
+// Selects how L-BFGS' pairs are treated when the contacts change: the planes of the iteration that made a pair are not
+// those in force later.
 enum class ContactHistory {
   frozen,   // both gradients with the planes of the iteration that made the pair
   current,  // the rest of t, and 2 k_c n n^T s for each contact that is in force now
@@ -42,7 +42,7 @@ struct Names<ContactHistory> {
                                        Name{ContactHistory::dropped, "dropped"}};
 };
 
-// How search directions see contacts, which A does not hold.
+// Selects how search directions take contacts, which A does not contain, into account.
 enum class ContactDirection {
   ignored,   // as the paper
   diagonal,  // normal motion of touching vertices by its own stiffness
@@ -81,13 +81,14 @@ struct Names<LineSearch> {
                                        Name{LineSearch::none, "none"}};
 };
 
-// Chebyshev's semi-iterative acceleration (Wang 2015). docs/bench.md says how the defaults were found.
+// Holds the settings of Chebyshev's semi-iterative acceleration (Wang 2015). docs/bench.md tells how the defaults were
+// found.
 struct ChebyshevSettings {
   int delay = 1;         // S: the first iterations that are not accelerated
   double radius = 0.85;  // rho: the spectral radius that is assumed of the plain iteration
 };
 
-// The settings of [solver] that step() reads from its inputs; the others are in the Model or in the SearchRule.
+// Holds the settings of [solver] that step() reads from its inputs; the others are in the Model or in the SearchRule.
 struct SolverSettings {
   int iterations = 10;
   int history = 5;  // window m of L-BFGS; 0 is plain quasi-Newton
@@ -100,7 +101,7 @@ struct SolverSettings {
   ChebyshevSettings chebyshev;
 };
 
-// All that comes from outside for one step of one body.
+// Holds all that comes from outside for one step of one body.
 struct StepInputs {
   Vec3 gravity = Vec3(0, -9.81, 0);  // [m/s^2]
   Positions targets;                 // at the end of the step, by Model::handled [m]

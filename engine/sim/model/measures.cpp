@@ -13,8 +13,8 @@
 namespace supple {
 namespace {
 
-// Returns the value above which the values of a given total weight lie. Takes pairs of value and weight, and sorts only
-// the largest ones.
+// Returns the value above which the values with a given total weight lie. Takes pairs of value and weight, and sorts
+// only the largest ones.
 double weighted_top(std::vector<std::pair<double, double>>& pairs, double weight_above) {
   for (std::size_t count = pairs.size() / 256 + 64;; count *= 2) {
     const auto end = pairs.begin() + static_cast<std::ptrdiff_t>(std::min(count, pairs.size()));

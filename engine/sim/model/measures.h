@@ -1,5 +1,5 @@
-// Numbers for reports that describe a pose: stretch, inverted elements, jiggle, penetration. They are measured outside
-// the step, so their time is not in the step's.
+// Computes numbers for reports that describe a pose: stretch, inverted elements, jiggle, penetration. They are measured
+// outside the step, so their time does not count as the step's.
 #pragma once
 
 #include <Eigen/Geometry>

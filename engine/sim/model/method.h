@@ -1,6 +1,6 @@
-// How search directions are found, by its parts: the matrix that a direction starts from, how systems with it are
-// solved, and what an iteration learns from earlier ones. The paper's method and all that it is compared with are
-// combinations of these parts. Not here: how they work (solver/lbfgs.h; baselines/make_rule.h).
+// Defines how search directions are found, by its parts: the matrix from which a direction starts, how systems with it
+// are solved, and what an iteration learns from earlier ones. The paper's method and all methods with which it is
+// compared are combinations of these parts. Not here: their implementation (solver/lbfgs.h; baselines/make_rule.h).
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace supple {
 
-// The approximation of the Hessian of g that a search direction starts from.
+// Selects the approximation of the Hessian of g from which a search direction starts.
 enum class StartMatrix {
   system,               // A = M/h^2 + L, constant: the paper's
   identity,             // (t.t / s.t) I of the last L-BFGS pair (equation 13)
@@ -42,7 +42,7 @@ struct Names<LinearSolver> {
   static constexpr std::array table = {Name{LinearSolver::direct, "direct"}, Name{LinearSolver::cg, "cg"}};
 };
 
-// Preconditioners of conjugate gradients.
+// Lists the preconditioners of conjugate gradients.
 enum class Preconditioner {
   none,    // direct solves have none
   jacobi,  // the matrix's own diagonal
@@ -55,7 +55,7 @@ struct Names<Preconditioner> {
                                        Name{Preconditioner::rest, "rest"}, Name{Preconditioner::system, "system"}};
 };
 
-// The way in which an iteration learns from earlier ones of the same step.
+// Selects how an iteration learns from earlier ones of the same step.
 enum class Acceleration {
   none,
   lbfgs,      // SolverSettings::history pairs
@@ -67,7 +67,7 @@ struct Names<Acceleration> {
                                        Name{Acceleration::chebyshev, "chebyshev"}};
 };
 
-// The remedy for a Hessian that is not positive definite.
+// Selects the remedy for a Hessian that is not positive definite.
 enum class Safeguard {
   none,        // the matrix is positive definite by itself
   projection,  // each element's Hessian is replaced by the nearest semi-definite one (Teran et al. 2005)
@@ -91,17 +91,17 @@ struct Method {
 
   bool operator==(const Method&) const = default;
 
-  // The usual ones, which have short names.
+  // These are the usual methods, which have short names.
   static const Method quasi_newton, projective_dynamics, chebyshev, newton, gast, hecht;
 
-  // The paper's with A solved by conjugate gradients.
+  // Returns the paper's method with A solved by conjugate gradients.
   static constexpr Method quasi_newton_cg(int iterations);
-  // Newton's method by conjugate gradients.
+  // Returns Newton's method with systems solved by conjugate gradients.
   static constexpr Method newton_cg(int iterations);
   static const Method newton_shifted;
-  // L-BFGS from another matrix, solved directly.
+  // Returns L-BFGS that starts from another matrix, solved directly.
   static constexpr Method lbfgs_from(StartMatrix matrix);
-  // L-BFGS from the frame's Hessian, solved by conjugate gradients.
+  // Returns L-BFGS that starts from the Hessian at the first iterate of each step, solved by conjugate gradients.
   static constexpr Method frame_cg(int iterations, Preconditioner preconditioner);
 };
 
@@ -143,7 +143,7 @@ constexpr Method Method::frame_cg(int iterations, Preconditioner preconditioner)
           .preconditioner = preconditioner};
 }
 
-// The methods that scene files name by one word.
+// Names a method that scene files can select by one word.
 struct ShortName {
   std::string_view name;
   Method method;
@@ -157,7 +157,7 @@ inline constexpr std::array short_names = {
     ShortName{"hecht", Method::hecht},
 };
 
-// Up to three values of one part; the first is the default.
+// Holds up to three values of one part; the first is the default.
 template <class E>
 class PartChoice {
  public:
@@ -179,7 +179,7 @@ class PartChoice {
   std::size_t count_ = 0;
 };
 
-// The parts that go with a matrix and a linear solver. A pair that is not listed does not exist.
+// Lists the parts that can be combined with a matrix and a linear solver. A pair that is not listed does not exist.
 struct MethodForm {
   StartMatrix matrix;
   LinearSolver linear;
@@ -209,7 +209,7 @@ inline constexpr auto method_forms = [] {
   });
 }();
 
-// Nothing when the matrix cannot be solved with in this way.
+// Returns null when systems with the matrix cannot be solved in this way.
 constexpr const MethodForm* form_of(StartMatrix matrix, LinearSolver linear) {
   for (const MethodForm& form : method_forms) {
     if (form.matrix == matrix && form.linear == linear) return &form;
@@ -217,20 +217,21 @@ constexpr const MethodForm* form_of(StartMatrix matrix, LinearSolver linear) {
   return nullptr;
 }
 
-// Why parts do not go together.
+// Tells why parts cannot be combined.
 struct MethodProblem {
   const char* part;     // as scene files call it
   std::string message;  // the part, its value and what is allowed in its place
 };
 std::optional<MethodProblem> problem_of(const Method& method);
 
-// For reports: the short name, or the parts that tell it apart, as in "frame-hessian, 5 cg (rest)".
+// Returns the name for reports: the short name, or the parts that distinguish the method, as in "frame-hessian, 5 cg
+// (rest)".
 std::string name_of(const Method& method);
 
-// As a scene file has it: "newton" in quotes, or a table with the parts that are not the default.
+// Returns the method as a scene file spells it: "newton" in quotes, or a table with the parts that are not the default.
 std::string spelling_of(const Method& method);
 
-// Whether a step depends on earlier ones by more than the state.
+// Tells whether a step depends on earlier ones through more than the state.
 constexpr bool remembers_steps(const Method& method) { return method.matrix == StartMatrix::hecht; }
 
 }  // namespace supple

@@ -1,8 +1,8 @@
-// A body as the solver sees it: elements in SIMD blocks, masses, handles and the factor of A = M/h^2 + L (Liu
-// et al. 2017, section 3.3). No step changes it; between steps, ModelValues may set its numbers anew (replays, handles
-// that let go). Not here: where the body is (State), what drives it (StepInputs). Vertices are
-// renumbered: free ones first, in the factor's order of elimination (so that solves permute nothing), then those that
-// hard handles hold. Elements are sorted by material and by their first vertex.
+// Describes a body as the solver needs it: elements in SIMD blocks, masses, handles and the factor of A = M/h^2 + L
+// (Liu et al. 2017, section 3.3). No step changes it; between steps, ModelValues may set its numbers again (for
+// replays, and handles that release). Not here: where the body is (State), what drives it (StepInputs). Vertices are
+// renumbered: free ones come first, in the factor's order of elimination (so that solves permute nothing), then those
+// that hard handles hold. Elements are sorted by material and by their first vertex.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@
 
 namespace supple {
 
-// Some vertices that follow a motion given from outside.
+// Describes some vertices that follow a motion given from outside.
 struct Handle {
   std::string name;
   std::vector<std::int32_t> vertices;  // of the mesh, in its own numbering; one vertex belongs to one handle
@@ -31,9 +31,9 @@ struct Names<Integrator> {
                                        Name{Integrator::implicit_midpoint, "implicit-midpoint"}};
 };
 
-// The objective that a step minimises: w/(2 h^2) |x - y|^2_M + e E(theta x + (1 - theta) q), with y = q + h v + f h^2
-// M^-1 f_ext. Backward Euler is equation 3; implicit midpoint evaluates forces halfway (Hairer, Lubich, Wanner 2006,
-// "Geometric numerical integration", section II.1).
+// Holds the coefficients of the objective that a step minimises: w/(2 h^2) |x - y|^2_M + e E(theta x + (1 - theta) q),
+// with y = q + h v + f h^2 M^-1 f_ext. Backward Euler is equation 3; implicit midpoint evaluates forces halfway
+// (Hairer, Lubich, Wanner 2006, "Geometric numerical integration", section II.1).
 struct TimeScheme {
   double inertia, energy, theta, force;  // w, e, theta, f
 };
@@ -41,7 +41,7 @@ constexpr TimeScheme scheme_of(Integrator integrator) {
   return integrator == Integrator::backward_euler ? TimeScheme{1, 1, 1, 1} : TimeScheme{2, 2, 0.5, 0.5};
 }
 
-// The description that a model is built from.
+// Describes a body, so that a model can be built from it.
 struct BodyDescription {
   std::string name;
   TetMesh mesh;                     // in its place in the world at rest
@@ -81,7 +81,7 @@ struct Model : System {
   std::vector<Fibre> fibres;               // by region; empty: none
   std::vector<SystemStiffness> stiffness;  // k by region
 
-  // Elements, in blocks of block_width; layouts as in ElementChunk.
+  // Elements are stored in blocks of block_width; the layouts are those of ElementChunk.
   int elements = 0;
   int blocks = 0;
   std::vector<std::int32_t> element_of_lane;  // input's element of the chunk's kind by lane; -1 for padding
@@ -96,11 +96,12 @@ struct Model : System {
     std::size_t first_corner, first_field;
   };
   std::vector<ChunkRange> chunks;
-  // The number of vertices of the chunk that has most. Each chunk copies the positions of its vertices to a place of
-  // its own before it is evaluated, and these places are this large, so that threads that work on chunks share none.
+  // This is the number of vertices of the chunk that has the most. Each chunk copies the positions of its vertices into
+  // a space of its own before it is evaluated, and each space has this size, so that no two threads that work on chunks
+  // share one.
   int largest_chunk = 0;
 
-  // The places of each free vertex in the chunks' lists are slots[slot_begin[v] .. slot_begin[v+1]).
+  // The indices of each free vertex in the chunks' lists are slots[slot_begin[v] .. slot_begin[v+1]).
   std::vector<std::int32_t> slot_begin;
   std::vector<std::int32_t> slots;
 
@@ -112,7 +113,7 @@ struct Model : System {
   std::vector<double> handle_stiffness;  // of the spring at each free vertex, 0: none [N/m]; empty when all are hard
   bool free_floating = false;            // nothing holds it: A has the translations as known eigenvectors
 
-  // (beta/h) L over all vertices, by row; empty without damping. [N/m]
+  // Holds (beta/h) L over all vertices, by row; empty without damping. [N/m]
   struct SparseRows {
     std::vector<std::int32_t> begin;  // n + 1
     std::vector<std::int32_t> column;
@@ -123,7 +124,8 @@ struct Model : System {
   ElementChunk chunk(int index) const;
 };
 
-// Throws RunError (with the body's name) when A cannot be factored, InputError when the description contradicts itself.
+// Throws RunError (with the body's name) when A cannot be factored, and InputError when the description contradicts
+// itself.
 Model build_model(const BodyDescription& description);
 
 }  // namespace supple

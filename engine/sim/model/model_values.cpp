@@ -9,7 +9,8 @@
 namespace supple {
 namespace {
 
-// Corners in the model's numbering, in the order in which they are packed: by kind and region, then by first vertex.
+// Converts corners to the model's numbering and sorts elements into the order in which they are packed: by kind and
+// region, then by first vertex.
 void sort_elements(const Model& model, std::vector<ElementRecord>& elements) {
   for (ElementRecord& element : elements) {
     for (int k = 0; k < corners_of(element.kind); ++k) element.corner[k] = model.internal_of[element.corner[k]];
@@ -22,7 +23,7 @@ void sort_elements(const Model& model, std::vector<ElementRecord>& elements) {
             [&](const ElementRecord& a, const ElementRecord& b) { return key(a) < key(b); });
 }
 
-// The pattern of L over all vertices, both triangles, diagonal included.
+// Returns the pattern of L over all vertices, both triangles, diagonal included.
 Eigen::SparseMatrix<double> pattern_of(const Model& model, const std::vector<ElementRecord>& elements) {
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(elements.size() * 16 + model.vertices);
@@ -125,7 +126,7 @@ ModelValues::ModelValues(const Model& model, const BodyDescription& body)
   }
 }
 
-// L = sum_e V_e k_e G_e^T G_e (equation 8 of the paper with its k).
+// Sums up L = sum_e V_e k_e G_e^T G_e (equation 8 of the paper with its k).
 void ModelValues::add_up_elastic(const Model& model) {
   double* values = elastic_.valuePtr();
   std::fill(values, values + elastic_.nonZeros(), 0.0);
@@ -142,8 +143,8 @@ void ModelValues::add_up_elastic(const Model& model) {
   }
 }
 
-// A over the free vertices, its lower triangle; what couples them to held vertices goes to model.couplings, and what
-// damping needs to model.damping.
+// Returns A over the free vertices, its lower triangle; what couples them to held vertices goes to model.couplings, and
+// what damping needs goes to model.damping.
 Eigen::SparseMatrix<double> ModelValues::system_matrix(Model& model, double damping) const {
   const double h = model.time_step, drag = damping / h;
   const double stiffness = model.scheme.energy * model.scheme.theta * model.scheme.theta + drag;

@@ -1,5 +1,6 @@
-// The numbers of a model that its structure does not fix: materials, masses, stiffnesses, time step, and what follows
-// from them, A and its factor. Made when a model is built, and again when a parameter changes while the body moves.
+// Computes the numbers of a model that its structure does not fix: materials, masses, stiffnesses, time step, and what
+// follows from them, A and its factor. They are computed when a model is built, and again when a parameter changes
+// while the body moves.
 #pragma once
 
 #include "sim/model/model.h"
@@ -8,15 +9,15 @@ namespace supple {
 
 class ModelValues {
  public:
-  // Takes a model whose vertices are numbered. Sorts the elements by kind and region, then by first vertex, corners in
-  // the model's numbering.
+  // Takes a model whose vertices are numbered. Sorts the elements by kind and region, then by first vertex, with
+  // corners in the model's numbering.
   ModelValues(const Model& model, const BodyDescription& body);
 
   const std::vector<ElementRecord>& elements() const { return elements_; }
 
-  // Sets all that follows from the description as it is now; numbering and packing stay. The mesh, ends of springs, and
-  // handles' vertices and hardness must be those of the description that the model was built from. Throws RunError when
-  // A cannot be factored; the model then must not be stepped.
+  // Sets all that follows from the present description; numbering and packing stay. The mesh, the ends of springs, and
+  // the vertices and hardness of handles must be those of the description from which the model was built. Throws
+  // RunError when A cannot be factored; the model must then not be used for steps.
   void set(Model& model, const BodyDescription& body);
 
  private:

@@ -1,4 +1,4 @@
-// The report that a step gives of itself: times by phase, iterations, how far it came, why it ended.
+// Defines the report of a step: times by phase, iterations, the decrease reached, and why it ended.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace supple {
 
-// How many contacts there are, and how restless they are.
+// Counts contacts and their changes.
 struct ContactCounts {
   int touching = 0;  // pairs of vertex and collider, at the end
   int changes = 0;   // pairs that came or went, over all iterations
@@ -30,7 +30,7 @@ struct StepFailure {
   std::string what;  // "the position is not finite"
 };
 
-// One iteration in detail. alpha = 0 marks a new start from where the body was.
+// Describes one iteration in detail. alpha = 0 marks a new start from where the body was.
 struct IterationRecord {
   double elapsed_ms = 0;     // since the step was entered
   double decrease = 0;       // of g [J]

@@ -1,5 +1,5 @@
-// Holds where a body is and how fast it moves: all that a step changes. Not here: what drives it (inputs.h), what a
-// step tells of itself (report.h).
+// Holds the position and velocity of a body: all that a step changes. Not here: what drives it (inputs.h), what a step
+// reports (report.h).
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace supple {
 
 struct Model;
 
-// The places that handles move their vertices from: at rest, or where they grabbed them.
+// Holds the places from which handles move their vertices: at rest, or where the handles grabbed them.
 struct Anchors {
   Positions points;           // by Model::handled [m]
   std::vector<Vec3> centers;  // what keys turn about, by handle [m]
@@ -29,14 +29,14 @@ struct State {
   Positions matrix;  // where the matrix of directions was made (solver/matrix_rule.h), n x 3; empty: A is in force [m]
 };
 
-// Returns the state of a model that rests where it was built.
+// Returns the state of a model that is at rest where it was built.
 State rest_state(const Model& model);
 
 // Returns the XXH64 of all positions, then all velocities, as little-endian doubles in the order of the input file.
 std::uint64_t state_hash(const Model& model, const State& state);
 
-// Vertices are renumbered in a Model (model.h); the input file's order is that of BodyDescription::mesh. Returns the
-// rows sorted from the model's order into the input file's.
+// Returns the rows reordered from the model's order to the input file's. Vertices are renumbered in a Model (model.h);
+// the input file's order is that of BodyDescription::mesh.
 Positions in_input_order(const Model& model, const Positions& rows);
 
 }  // namespace supple

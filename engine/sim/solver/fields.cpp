@@ -19,7 +19,7 @@ double von_mises(const Mat3& f, const Mat3& piola) {
   return std::sqrt(1.5) * deviator.norm();
 }
 
-// One material's elements, one by one.
+// Adds one material's elements, one by one.
 template <class M>
 void add_tetrahedra(const Model& model, const Model::ChunkRange& range, const M& material, const Fibre* fibre,
                     const Positions& x, ElementFields& fields) {
@@ -89,7 +89,7 @@ std::vector<std::array<double, 2>> triangle_stretches(const Positions& rest, con
   };
   std::vector<std::array<double, 2>> stretches(triangles.rows());
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-    // Squared stretches are the eigenvalues of (E^T E)(R^T R)^-1, with the edges E now and R at rest.
+    // The squared stretches are the eigenvalues of (E^T E)(R^T R)^-1, with the present edges E and the edges R at rest.
     const Edges r = edges(rest, t), e = edges(x, t);
     const Eigen::Matrix2d ratio = (e.transpose() * e) * (r.transpose() * r).inverse();
     const double half = 0.5 * ratio.trace();

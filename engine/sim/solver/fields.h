@@ -1,5 +1,6 @@
-// Fields over a body at a pose, for other programs to show: stretches, stress, energy density, contact forces. They are
-// evaluated by the materials' own formulas, outside the step. Not here: numbers for a whole body (measures.h).
+// Computes fields over a body at a pose, which other programs can show: stretches, stress, energy density, contact
+// forces. They are evaluated by the materials' own formulas, outside the step. Not here: numbers for a whole body
+// (measures.h).
 #pragma once
 
 #include <array>
@@ -11,23 +12,24 @@
 namespace supple {
 
 struct ElementFields {
-  // By tetrahedron of the input; empty without any.
+  // These fields have one entry for each tetrahedron of the input; they are empty when there are none.
   Positions stretch;              // signed singular values of F, the largest first, m x 3
   std::vector<double> von_mises;  // of Cauchy's stress P F^T / det F, fibres included; NaN where det F = 0 [Pa]
   std::vector<double> energy;     // density, over rest volume, fibres included [J/m^3]
-  // By vertex of the input, half of each spring's at each end; empty without springs.
+  // This field has one entry for each vertex of the input, with half of each spring's energy at each end; empty without
+  // springs.
   std::vector<double> spring_energy;  // [J]
 };
 
-// x: in the model's order.
+// x: positions in the model's order.
 ElementFields element_fields(const Model& model, const Positions& x);
 
 // Returns the force of the colliders on each vertex at the end of the workspace's last step, friction included, by
-// vertex of the input, n x 3 [N]. x: where that step ended, in the model's order.
+// vertex of the input, n x 3 [N]. x: the positions where that step ended, in the model's order.
 Positions contact_forces(const Model& model, const Workspace& workspace, const Positions& x);
 
-// The two stretches of each triangle in its plane, the larger one first. rest, x: n x 3 in the order of the triangles'
-// indices; a triangle without area at rest has NaN.
+// Returns the two stretches of each triangle in its plane, the larger one first. rest, x: n x 3 in the order of the
+// triangles' indices; a triangle without area at rest gets NaN.
 std::vector<std::array<double, 2>> triangle_stretches(const Positions& rest, const Positions& x,
                                                       const Triangles& triangles);
 

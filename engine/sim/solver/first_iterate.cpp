@@ -34,7 +34,7 @@ void inertial_prediction(const Model& model, const StepInputs& inputs, const Sta
 
 namespace {
 
-// Held vertices stand at their targets in both iterates; soft handles pull towards theirs.
+// Held vertices are at their targets in both iterates; soft handles pull towards theirs.
 void set_targets(const Model& model, const StepInputs& inputs, Workspace& w) {
   const bool midway = model.scheme.theta < 1;
   SUPPLE_CHECK(inputs.targets.rows(), ==, Eigen::Index(model.handled.size()));
@@ -85,7 +85,7 @@ void evaluate_start(const Model& model, const StepInputs& inputs, Workspace& w) 
 
 namespace {
 
-// Forgets a first iterate that was tried: the step does not start from it.
+// Drops a first iterate that was tried, because the step does not start from it.
 void forget_start(Workspace& w) {
   w.report.objective.clear();
   forget_counts(w.contact);
@@ -143,12 +143,13 @@ void turn_with_handles(const Model& model, const StepInputs& inputs, const State
   }
 }
 
-// Sets a first iterate that fits the handles. The paper starts from y; with rows eliminated, y leaves the elements
-// beside a handle torn by all that the handle did not do freely (its keyed motion, and the fall that it did not take),
-// often by more than their size. So the handles' departure from y is spread into the body by the quadratic model that
-// also gives the directions, A_ff d_f = -A_fh d_h: one solve. docs/results.md ("Error of the polynomial head") says
-// what starting from y cost in earlier films. This costs one evaluation more, because y stays the first iterate where
-// it is the better one. Returns g(y), the handles at their targets, when the first iterate is another one.
+// Sets a first iterate that fits the handles. The paper starts from y. With rows eliminated, y tears the elements
+// beside a handle apart by all that the handle did not do freely (its keyed motion, and the fall that it did not take),
+// often by more than their size. The handles' departure from y is therefore spread into the body by the quadratic model
+// that also gives the directions, A_ff d_f = -A_fh d_h: one solve. docs/results.md ("Error of the polynomial head")
+// tells what starting from y cost in earlier films. This costs one additional evaluation, because y stays the first
+// iterate where it is the better one. Returns g(y), with the handles at their targets, when the first iterate is
+// another one.
 std::optional<double> spread_handles(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
   if (w.system->couplings.empty()) return std::nullopt;
   Positions& right = w.scratch;
@@ -196,8 +197,8 @@ bool stop_at_impact(const Model& model, const StepInputs& inputs, const State& s
   return true;
 }
 
-// A body that rests on something, or slides along it, starts better without the fall that y has in it, which would
-// leave all that it rests on g h^2 deep in its colliders: from q + h v. Costs an evaluation, and only where something
+// Starts from q + h v where that is better. y contains the fall of the step, which leaves a body that rests on
+// something, or slides along it, g h^2 deep in its colliders. This costs an evaluation, and only where something
 // touches. Friction is treated as in descend_from_staying().
 void start_where_better(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
   if (!has_colliders(inputs) || w.contact.counts.touching == 0) return;

@@ -7,18 +7,18 @@
 
 namespace supple {
 
-// y = q + h v + f h^2 M^-1 f_ext of every vertex, in the model's order [m].
+// Computes y = q + h v + f h^2 M^-1 f_ext of every vertex, in the model's order [m].
 void inertial_prediction(const Model& model, const StepInputs& inputs, const State& state, Positions& y);
 
-// The first part of step(): y, and the targets of handles in y's place, into the workspace. Also leaves the current
-// iterate's x = y.
+// Makes the first part of step(): writes y, and the targets of handles in place of their y, into the workspace. Also
+// leaves the current iterate's x = y.
 void begin_step(const Model& model, const StepInputs& inputs, const State& state, Workspace& workspace);
 
-// Chooses workspace.current and evaluates it. Returns g(y) - g(x), handles at their targets, where that is known, or 0:
-// equation 12 counts from y [J].
+// Chooses workspace.current and evaluates it. Returns g(y) - g(x), with handles at their targets, where that is known,
+// and 0 elsewhere: equation 12 counts from y [J].
 double set_first_iterate(const Model& model, const StepInputs& inputs, const State& state, Workspace& workspace);
 
-// Evaluates workspace.current with the contacts found there, as the report's next objective.
+// Evaluates workspace.current with the contacts found there, and appends the value to the report's objectives.
 void evaluate_start(const Model& model, const StepInputs& inputs, Workspace& workspace);
 
 // Finds the contacts of an iterate; does nothing without colliders.
@@ -27,7 +27,7 @@ void find_contacts_of(const Model& model, const StepInputs& inputs, Workspace& w
 // Moves the free vertices by a rigid motion.
 void carry(const Model& model, const Eigen::Isometry3d& motion, Positions& x);
 
-// workspace.trial.x = x + alpha d for the free vertices; handled ones stay at their targets.
+// Sets workspace.trial.x = x + alpha d for the free vertices; handled ones stay at their targets.
 void set_trial(const Model& model, Workspace& workspace, double alpha);
 
 }  // namespace supple

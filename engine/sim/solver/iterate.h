@@ -1,4 +1,4 @@
-// A point that the solver looks at, with all that is known of it.
+// Describes a point at which the solver evaluates the objective, with all that is known of it.
 #pragma once
 
 #include <vector>

@@ -39,8 +39,8 @@ void add_all(const Model& model, Workspace& workspace, const Pointers& a, const 
   });
 }
 
-// The share of normal forces in all pairs, t_i += K s_i, when that is kept apart (ContactHistory::current). Friction is
-// not in it: its stiffness falls as it slides, which the pairs tell.
+// Holds the share of normal forces in all pairs, t_i += K s_i, when it is kept separately (ContactHistory::current).
+// Friction is not included: its stiffness falls while it slides, which the pairs contain.
 class ContactPairs {
  public:
   ContactPairs(const Model& model, const ContactSettings& settings, Workspace& w, const Pointers& s, int count)
@@ -103,13 +103,13 @@ double search_direction(const Model& model, const StepInputs& inputs, Workspace&
     t[i] = workspace.gradient_pairs[history.place(i)].data();
   }
   const ContactPairs contacts(model, inputs.solver.contact, workspace, s, count);
-  // Returns s_i . t_j of the i-th and j-th newest pairs
+  // Returns s_i . t_j of the i-th and j-th newest pairs.
   const auto product = [&](int i, int j) {
     return workspace.products[history.place(i) * history.window + history.place(j)] + contacts.product(i, j);
   };
 
-  // The recursion's inner products change as r and z do; with the products of the pairs among themselves at hand, one
-  // pass over the vectors gives them all, and one more applies the result.
+  // The inner products of the recursion change as r and z do. Given the products of the pairs among themselves, one
+  // pass over the vectors computes all of them, and one more pass applies the result.
   Positions& r = workspace.direction;
   r = workspace.current.gradient;
   Numbers alpha{}, against{}, factor{};
@@ -160,7 +160,7 @@ void remember_pair(const Model& model, const ContactSettings& contact, Workspace
   s = to.x.topRows(model.free) - from.x.topRows(model.free);
   t = to.gradient - from.gradient;
   if (contact.history == ContactHistory::current && !from.contacts.empty()) {
-    // Both gradients have the planes that the search went by.
+    // Both gradients are taken with the planes that the search used.
     add_normal_forces(from.contacts, to.x, 1, t);
     add_normal_forces(from.contacts, from.x, -1, t);
   }
@@ -173,7 +173,7 @@ void remember_pair(const Model& model, const ContactSettings& contact, Workspace
   // Curvature along s that is negative or lost in round-off would spoil the matrix: Nocedal and Wright 2006,
   // section 7.2, skip such pairs.
   if (!(of_t[0] > 1e-10 * std::sqrt(of_s * of_t[1]))) {
-    // The place that was overwritten held the oldest pair of a full window.
+    // The slot that was overwritten held the oldest pair of a full window.
     if (history.count == history.window) --history.count;
     return;
   }

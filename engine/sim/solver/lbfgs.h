@@ -1,18 +1,18 @@
-// Search directions of algorithm 2: the two-loop recursion of L-BFGS with A = M/h^2 + L as the initial Hessian (Liu et
-// al. 2017, section 4.2).
+// Computes the search directions of algorithm 2: the two-loop recursion of L-BFGS with A = M/h^2 + L as the initial
+// Hessian (Liu et al. 2017, section 4.2).
 #pragma once
 
 #include "sim/solver/search_rule.h"
 
 namespace supple {
 
-// The pairs (s, t) kept so far are in the workspace's ring; this tells where. It is made anew for each step.
+// Tells where the pairs (s, t) kept so far are in the workspace's ring. It is reset for each step.
 struct PairHistory {
   int window = 0;
   int count = 0;
   int newest = -1;
 
-  // The i-th newest pair's place in the ring.
+  // Returns the slot of the i-th newest pair in the ring.
   int place(int i) const { return (newest - i + 2 * window) % window; }
   void clear() { count = 0; }
   // Returns false when there was nothing to forget.
@@ -23,11 +23,11 @@ struct PairHistory {
   }
 };
 
-// The inverse of the initial Hessian, A0^-1.
+// Applies the inverse of the initial Hessian, A0^-1.
 class InitialInverse {
  public:
   virtual ~InitialInverse() = default;
-  // These are called when those of SearchRule are.
+  // These functions are called when those of SearchRule are.
   virtual void begin(const Model&, const StepInputs&, Workspace&) {}
   virtual void accepted(const Model&, const StepInputs&, Workspace&) {}
   // Computes z = A0^-1 r for the free vertices; overwrites r.
@@ -35,7 +35,7 @@ class InitialInverse {
                      Positions& z) = 0;
   // As SearchRule::looks_beyond.
   virtual bool looks_beyond() const { return false; }
-  // Called after the recursion: may bend workspace.direction and returns true then.
+  // This function is called after the recursion. It may bend workspace.direction and then returns true.
   virtual bool bend(const Model&, const StepInputs&, Workspace&) { return false; }
 };
 
@@ -43,11 +43,12 @@ class InitialInverse {
 double search_direction(const Model& model, const StepInputs& inputs, Workspace& workspace, const PairHistory& history,
                         InitialInverse& initial);
 
-// Keeps s and t, the differences of positions and gradients of trial and current iterate (without the normal forces of
-// contacts, when their stiffness is added anew each time), as the newest pair when tr(s^T t) is safely positive.
+// Stores s and t, the differences of positions and gradients between trial and current iterate (without the normal
+// forces of contacts when their stiffness is added again each time), as the newest pair when tr(s^T t) is safely
+// positive.
 void remember_pair(const Model& model, const ContactSettings& contact, Workspace& workspace, PairHistory& history);
 
-// L-BFGS from any initial Hessian, which must outlive it. The settings say the window.
+// Implements L-BFGS from any initial Hessian, which must outlive this object. The settings contain the window.
 class LbfgsRule : public SearchRule {
  public:
   explicit LbfgsRule(InitialInverse& initial) : initial_(initial) {}

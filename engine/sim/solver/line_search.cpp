@@ -15,16 +15,16 @@ constexpr double round_off = std::numeric_limits<double>::epsilon();
 constexpr double curvature_share =
     0.9;  // gamma_2 of the strong Wolfe conditions (Nocedal and Wright 2006, section 3.1)
 
-// Applies Armijo's test; where the decrease drowns in round-off, its equivalent by slopes, which does not subtract
-// large numbers (Hager and Zhang 2005, "A new conjugate gradient method with guaranteed descent and an efficient line
+// Applies a form of Armijo's test by slopes, for decreases that are lost in round-off: it does not subtract large
+// numbers (Hager and Zhang 2005, "A new conjugate gradient method with guaranteed descent and an efficient line
 // search", equation 4.1).
 bool decreases_by_slope(const Change& change, double slope, double armijo, double noise) {
   return change.value <= noise && change.slope <= (2 * armijo - 1) * slope;
 }
 
-// Finds the contacts at the trial point, which the planes of the search accepted. They are kept unless they make it
-// worse than where the search began, which it could not see. Friction, whose normal forces are lagged, does not
-// count here.
+// Finds the contacts at the trial point, which was accepted with the planes of the search. They are kept unless they
+// make the point worse than where the search began; the search could not know of them. Friction, whose normal forces
+// are lagged, does not count here.
 bool contacts_accept(const Model& model, const StepInputs& inputs, Workspace& w, double change, double noise) {
   if (!has_colliders(inputs)) return true;
   find_contacts_of(model, inputs, w, w.trial);
@@ -42,8 +42,8 @@ Search backtrack(const Model& model, const StepInputs& inputs, Workspace& w, dou
   for (int halving = 0; halving <= most_halvings; ++halving, alpha /= 2) {
     set_trial(model, w, alpha);
     const bool by_slope = -alpha * slope < noise / solver.armijo;
-    // The first trial nearly always succeeds: its gradient is the next iterate's. After a rejection the energy alone
-    // decides.
+    // The first trial nearly always succeeds, and its gradient becomes that of the next iterate. After a rejection only
+    // the energy decides.
     const bool with_gradient = halving == 0 || by_slope;
     change = evaluate_trial(model, w, with_gradient ? Wanted::gradient : Wanted::value);
     ++w.report.line_search;
@@ -58,22 +58,22 @@ Search backtrack(const Model& model, const StepInputs& inputs, Workspace& w, dou
       continue;
     }
     if (!with_gradient) change = evaluate_trial(model, w, Wanted::gradient);
-    // A shorter step helps against contacts that the planes did not foresee, not where the energy itself jumps (a
-    // vertex that goes round an edge).
+    // A shorter step helps against contacts that the planes did not foresee, but not where the energy itself jumps (a
+    // vertex that passes an edge).
     if (!contacts_accept(model, inputs, w, change.value, noise) && ++refused < most_refusals) continue;
     return Search::found;
   }
   return Search::failed;
 }
 
-// A trial point of a search by slopes.
+// Holds a trial point of a search by slopes.
 struct Trial {
   double alpha, value, slope;
 };
 
-// The strong Wolfe conditions by bracketing and zooming (Nocedal and Wright 2006, algorithms 3.5 and 3.6; the minimiser
-// of the cubic through both ends, kept off them). Every trial costs a gradient. A point whose contacts are refused, as
-// in backtrack(), is one that is too far away.
+// Satisfies the strong Wolfe conditions by bracketing and zooming (Nocedal and Wright 2006, algorithms 3.5 and 3.6,
+// with the minimiser of the cubic through both ends, kept away from them). Every trial costs a gradient. A point whose
+// contacts are refused, as in backtrack(), counts as too far away.
 class WolfeSearch {
  public:
   WolfeSearch(const Model& model, const StepInputs& inputs, Workspace& w, double slope, Change& change,

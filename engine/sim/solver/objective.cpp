@@ -10,7 +10,7 @@ namespace supple {
 
 namespace {
 
-// w/2 (|p - c|^2 - |r - c|^2) = w/2 (p - r) . (p + r - 2 c), which keeps its digits when p is near r.
+// Returns w/2 (|p - c|^2 - |r - c|^2) = w/2 (p - r) . (p + r - 2 c), which keeps its digits when p is near r.
 double quadratic_change(double weight, const double* point, const double* reference, const double* center) {
   double sum = 0;
   for (int c = 0; c < 3; ++c) sum += (point[c] - reference[c]) * (point[c] + reference[c] - 2 * center[c]);
@@ -23,7 +23,7 @@ double quadratic_value(double weight, const double* point, const double* center)
   return 0.5 * weight * sum;
 }
 
-// One vertex' share of w M/h^2, handles' springs and damping.
+// Computes one vertex' share of w M/h^2, handles' springs and damping.
 struct VertexTerms {
   const Model& model;
   const Workspace& w;
@@ -32,7 +32,7 @@ struct VertexTerms {
   double inertia;           // w / h^2 [1/s^2]
   bool springs, damped;
 
-  // Row v of beta/h L (p - q).
+  // Computes row v of beta/h L (p - q).
   void drag(int v, const double* p, double (&sum)[3]) const {
     for (double& s : sum) s = 0;
     for (std::int32_t k = model.damping.begin[v]; k < model.damping.begin[v + 1]; ++k) {
@@ -79,7 +79,8 @@ struct VertexTerms {
     return quadratic_change(weight, p, r, t);
   }
 
-  // 1/2 (p-q)^T D (p-q), or 1/2 (p-r)^T D (p-q + r-q) for the difference: held vertices, where p = r, drop out of it.
+  // Computes 1/2 (p-q)^T D (p-q), or for the difference 1/2 (p-r)^T D (p-q + r-q), to which held vertices, where p = r,
+  // add nothing.
   double add_drag(int v, double (&gradient)[3]) const {
     const std::size_t at = 3 * std::size_t(v);
     double of_point[3], of_reference[3], value = 0;
@@ -94,8 +95,8 @@ struct VertexTerms {
   }
 };
 
-// Energies and forces of all elements at `place`; returns e times the sum of energies, or of their differences from
-// those of a reference (null: none).
+// Computes energies and forces of all elements at `place`; returns e times the sum of energies, or of their differences
+// from those of a reference (null: none).
 double evaluate_elements(const Model& model, Workspace& workspace, const Positions& place,
                          AlignedVector<double>& energy, Wanted wanted, const AlignedVector<double>* reference) {
   const ElementKernels& kernel = element_kernels();
@@ -126,7 +127,7 @@ void add_vertices(const Model& model, Workspace& workspace, const VertexTerms& t
       double sum[3];
       value += terms.add(v, sum);
       if (gradient == nullptr) continue;
-      // Elastic forces as they are: e theta = 1 for both integrators.
+      // Elastic forces are added without a factor, because e theta = 1 for both integrators.
       for (std::int32_t s = model.slot_begin[v]; s < model.slot_begin[v + 1]; ++s) {
         const double* f = workspace.force.data() + 3 * std::size_t(model.slots[s]);
         for (int k = 0; k < 3; ++k) sum[k] += f[k];
@@ -147,7 +148,7 @@ void add_vertices(const Model& model, Workspace& workspace, const VertexTerms& t
   }
 }
 
-// g at an iterate with the contacts of `planes`, or its difference from g at a reference (null: none).
+// Computes g at an iterate with the contacts of `planes`, or its difference from g at a reference (null: none).
 Change evaluate_against(const Model& model, Workspace& workspace, Iterate& at, const std::vector<Contact>& planes,
                         const Iterate* reference, Wanted wanted) {
   const Stretch stretch(workspace.clock, Phase::evaluate, "evaluate");

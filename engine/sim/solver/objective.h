@@ -1,5 +1,6 @@
-// g(x) of equation 3, or of another integrator or with damping, at iterates: values, value differences without
-// cancellation, gradients, in a fixed order of summation. Not here: where to look next (lbfgs.h, step.h).
+// Evaluates g(x) of equation 3, or of another integrator or with damping, at iterates: values, value differences
+// without cancellation, and gradients, in a fixed order of summation. Not here: where to evaluate next (lbfgs.h,
+// step.h).
 #pragma once
 
 #include "sim/solver/workspace.h"
@@ -9,12 +10,12 @@ namespace supple {
 static_assert(scheme_of(Integrator::backward_euler).energy * scheme_of(Integrator::backward_euler).theta == 1 &&
               scheme_of(Integrator::implicit_midpoint).energy * scheme_of(Integrator::implicit_midpoint).theta == 1);
 
-// Whether g depends on where the step starts other than through y.
+// Tells whether g depends on the start of the step in another way than through y.
 bool needs_start(const Model& model);
 
 enum class Wanted { value, gradient };
 
-// How the trial iterate differs from the current one.
+// Tells how the trial iterate differs from the current one.
 struct Change {
   double value;  // g(trial) - g(current) [J]
   double slope;  // tr(grad(trial)^T direction), where the gradient was wanted [J]
@@ -23,14 +24,14 @@ struct Change {
 // Evaluates g at iterate.x with iterate.contacts: its g and energies, and its gradient where that is wanted.
 void evaluate(const Model& model, Workspace& workspace, Iterate& iterate, Wanted wanted);
 
-// Evaluates g at workspace.trial.x with the contacts of workspace.current, as its difference from there, summed element
-// by element and vertex by vertex; also trial.g, energies, and the gradient where that is wanted.
+// Evaluates g at workspace.trial.x with the contacts of workspace.current, as its difference from the current iterate,
+// summed element by element and vertex by vertex; also trial.g, energies, and the gradient where that is wanted.
 Change evaluate_trial(const Model& model, Workspace& workspace, Wanted wanted);
 
-// The round-off of differences of g at a point with this objective and largest coordinate [J].
+// Returns the round-off of differences of g at a point with this objective and largest coordinate [J].
 double noise_of(const Model& model, double objective, double extent);
 
-// E(x) of all elements [J]. Overwrites the energies of the trial iterate.
+// Returns E(x) of all elements [J]. Overwrites the energies of the trial iterate.
 double elastic_energy(const Model& model, Workspace& workspace, const Positions& x);
 
 // The same, and leaves the forces of the elements in the workspace, by slot.

@@ -1,5 +1,6 @@
-// A rule says in which direction an iteration looks for the next iterate. step() has the quasi-Newton rule; other
-// solvers put theirs into the same loop, and share first iterate, line search, contacts and report with it.
+// Defines rules: a rule chooses the direction in which an iteration looks for the next iterate. step() has the
+// quasi-Newton rule; other solvers put theirs into the same loop, and share first iterate, line search, contacts and
+// report with it.
 #pragma once
 
 #include "sim/model/inputs.h"
@@ -11,24 +12,24 @@ class SearchRule {
  public:
   virtual ~SearchRule() = default;
 
-  // Called once a step, when workspace.current is the first iterate with its gradient and energies.
+  // This is called once in each step, when workspace.current is the first iterate with its gradient and energies.
   virtual void begin(const Model&, const StepInputs&, Workspace&) {}
 
   // Sets workspace.direction at workspace.current; returns tr(grad^T d).
   virtual double direction(const Model& model, const StepInputs& inputs, Workspace& workspace) = 0;
 
-  // The trial iterate was accepted and is about to become the current one. The gradients of both still have the
-  // contacts of the current one, by which the search went.
+  // This is called when the trial iterate was accepted and is about to become the current one. The gradients of both
+  // still contain the contacts of the current one, which the search used.
   virtual void accepted(const Model&, const StepInputs&, Workspace&) {}
 
-  // The contacts of the new iterate are not those of the last.
+  // This is called when the contacts of the new iterate are not those of the last.
   virtual void contacts_changed(const StepInputs&) {}
 
   // Whether a direction costs so little that one more is worth what it tells of the last iterate.
   virtual bool looks_beyond() const { return false; }
 
-  // Forgets what earlier iterations taught, when the direction was of no use. Returns false when there was nothing to
-  // forget.
+  // Forgets what was learned in earlier iterations, when the direction was of no use. Returns false when there was
+  // nothing to forget.
   virtual bool forget() { return false; }
 };
 

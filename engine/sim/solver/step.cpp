@@ -30,7 +30,7 @@ double estimate_remaining(const StepReport& report, std::size_t first) {
   return last * ratio / (1 - ratio);
 }
 
-// Returns the share that is left of all that there was to gain.
+// Returns the share that remains of the whole possible gain.
 double as_error(double remaining, double gained) {
   return remaining > 0 ? remaining / (std::max(gained, 0.0) + remaining) : 0;
 }
@@ -57,8 +57,8 @@ int first_bad_vertex(const Model& model, const Positions& x) {
   return model.input_of[worst];
 }
 
-// Tells whether an objective is that of a body that flies apart: many times what it takes to move all of it by its own
-// size in one step.
+// Tells whether an objective is that of a body that flies apart: many times the energy that moves all of the body by
+// its own size in one step.
 bool absurd(const Model& model, double objective, double start) {
   const double speed = model.size / model.time_step;
   return !std::isfinite(objective) || objective > 1e6 * (0.5 * model.total_mass * speed * speed + std::abs(start));
@@ -89,8 +89,8 @@ Descent next_direction(const Model& model, const StepInputs& inputs, Workspace& 
   }
 }
 
-// Looks along the direction for the next iterate, and leaves it in the trial iterate. A search that fails is repeated
-// once along the direction of a rule that has forgotten what it learned.
+// Searches along the direction for the next iterate, and leaves it in the trial iterate. A search that fails is
+// repeated once along the direction of a rule that has forgotten what it learned.
 Search find_next(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, double slope,
                  Change& change, IterationRecord& record) {
   const Stretch stretch(w.clock, Phase::evaluate, "line search");
@@ -107,8 +107,8 @@ Search find_next(const Model& model, const StepInputs& inputs, Workspace& w, Sea
   return plain.done ? Search::exhausted : search_line(model, inputs, w, plain.slope, change, record);
 }
 
-// Replaces the contacts that the search went by with those found at the trial point. Corrects the trial's gradient;
-// returns by how much its objective changes [J].
+// Replaces the contacts that the search used with those found at the trial point. Corrects the trial's gradient;
+// returns the change of its objective [J].
 double take_contacts(Workspace& w) {
   const double stick = w.contact.stick_length;
   Iterate& to = w.trial;
@@ -249,10 +249,10 @@ void set_staying(const Model& model, const StepInputs& inputs, const State& stat
   for (int v = 0; v < model.free; ++v) x.row(v) += moved;
 }
 
-// The answer must not be worse than staying: g(x) <= g(q) bounds the energy of backward Euler (docs/method.md), not
-// that of midpoint, where a body that stays has its velocity reversed. Where the iterations ended higher (elements
-// turned inside out by a violent step), descends from there instead. This costs an evaluation only when the inertia of
-// staying cannot settle it, or when the elastic energy may be negative. Friction only takes energy, so its potential is
+// The result must not be worse than staying: g(x) <= g(q) bounds the energy of backward Euler (docs/method.md), not
+// that of midpoint, where the velocity of a body that stays is reversed. Where the iterations ended higher (because a
+// violent step inverted elements), descends from there instead. This costs an evaluation only when the inertia of
+// staying cannot decide it, or when the elastic energy may be negative. Friction only takes energy, so its potential is
 // left out on both sides.
 void descend_from_staying(const Model& model, const StepInputs& inputs, const State& state, Workspace& w,
                           SearchRule& rule) {
@@ -281,8 +281,8 @@ void descend_from_staying(const Model& model, const StepInputs& inputs, const St
   report.iterations += iterations;
 }
 
-// Backward Euler: v = (x - q)/h. Midpoint: the new velocity whose mean with the old one is (x - q)/h; vertices that are
-// held take (x - q)/h itself.
+// Sets the new velocity. For backward Euler it is v = (x - q)/h. For midpoint it is the velocity whose mean with the
+// old one is (x - q)/h; vertices that are held get (x - q)/h itself.
 void set_velocity(const Model& model, const Positions& x, State& state) {
   const double h = model.time_step;
   if (model.integrator == Integrator::backward_euler) {

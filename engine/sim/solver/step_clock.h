@@ -1,5 +1,5 @@
-// Tells where the time of a step goes. One mechanism fills both the report's phases and the trace's zones: each moment
-// of a step belongs to exactly one phase, so the phases add up to the step without anything being subtracted.
+// Measures where the time of a step goes. One mechanism fills both the report's phases and the trace's zones: each
+// moment of a step belongs to exactly one phase, so the phases add up to the step without anything being subtracted.
 #pragma once
 
 #include <array>
@@ -13,20 +13,20 @@ enum class Phase { other, evaluate, solve, lbfgs, collide, matrix };
 
 class StepClock {
  public:
-  // A step begins: in the phase `other`.
+  // Begins a step, in the phase `other`.
   void start() {
     spent_ = {};
     phase_ = Phase::other;
     begin_ = since_ = Clock::now();
   }
 
-  // Milliseconds since the start.
+  // Returns the milliseconds since the start.
   double elapsed_ms() const { return milliseconds(Clock::now() - begin_); }
 
-  // Milliseconds that a phase has had so far, what it has since the last change of phase left out.
+  // Returns the milliseconds of a phase so far, without those since the last change of phase.
   double spent_ms(Phase phase) const { return milliseconds(spent_[static_cast<std::size_t>(phase)]); }
 
-  // Counts what follows for `phase`. Returns the phase before.
+  // Counts the following time for `phase`. Returns the phase before.
   Phase change(Phase phase) {
     const Clock::time_point now = Clock::now();
     spent_[static_cast<std::size_t>(phase_)] += now - since_;
@@ -45,8 +45,8 @@ class StepClock {
   std::array<Clock::duration, 6> spent_{};
 };
 
-// A stretch of a step: a zone of the trace whose time belongs to a phase, except for what stretches inside it take for
-// theirs. When it ends, the phase around it goes on.
+// Marks a stretch of a step: a zone of the trace whose time belongs to a phase, except for the time of stretches inside
+// it. When it ends, the phase around it continues.
 class Stretch {
  public:
   Stretch(StepClock& clock, Phase phase, const char* zone) : clock_(clock), outer_(clock.change(phase)), zone_(zone) {}
@@ -54,7 +54,7 @@ class Stretch {
   Stretch(const Stretch&) = delete;
   Stretch& operator=(const Stretch&) = delete;
 
-  // Ends this stretch, and begins another one in its place.
+  // Ends this stretch and begins another one in its place.
   void next(Phase phase, const char* zone) {
     clock_.change(phase);
     zone_.next(zone);

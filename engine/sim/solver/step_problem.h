@@ -1,6 +1,6 @@
-// One step's problem by itself: all that g of equation 3 depends on before anything is touched, in the order of the
-// input file instead of the model's. It serves comparisons of solvers on stored states, and other programs. Not here:
-// files (film/state_file.h).
+// Describes one step's problem by itself: all on which g of equation 3 depends, before anything touches a collider, in
+// the order of the input file instead of the model's. It serves comparisons of solvers on stored states, and other
+// programs. Not here: files (film/state_file.h).
 #pragma once
 
 #include "sim/model/inputs.h"
@@ -36,7 +36,8 @@ struct StepProblem {
   std::vector<Obstacle> colliders;
 };
 
-// Returns the problem of the step that starts at `state` with these inputs. body: what the model was built from.
+// Returns the problem of the step that starts at `state` with these inputs. body: the description from which the model
+// was built.
 StepProblem problem_of(const BodyDescription& body, const Model& model, const StepInputs& inputs, const State& state);
 
 }  // namespace supple

@@ -1,4 +1,5 @@
-// The memory that step() works in, made once and reused. Nothing left in it from earlier steps changes a result.
+// Holds the memory in which step() works, allocated once and reused. Nothing that remains in it from earlier steps
+// changes a result.
 #pragma once
 
 #include "base/threads.h"
@@ -11,20 +12,20 @@
 
 namespace supple {
 
-// One for each body, or for each thread that steps: prepare() fits it to another model.
+// Each body, or each thread that makes steps, needs one; prepare() adapts it to another model.
 struct Workspace {
-  // Makes room for a model and a window; does nothing when there is enough.
+  // Allocates memory for a model and a window; does nothing when there is enough.
   void prepare(const Model& model, const SolverSettings& solver);
 
   Threads* threads = nullptr;  // may be null: one thread
 
-  // The step's problem.
+  // The following members hold the step's problem.
   Positions y;                                 // inertial prediction, n x 3 [m]
   const Positions* start_positions = nullptr;  // q, where the step starts: the caller's, n x 3 [m]
   Positions start_copy;                        // a copy of them, n x 3 [m]; empty unless the model's forces depend on q
   Positions target;  // of soft handles, by free vertex, n_free x 3 [m]; empty when there are none
 
-  // The point where the solver is, and the one at which it looks.
+  // These are the point at which the solver is, and the one that it tries.
   Iterate current, trial;
   Positions direction;  // from the current iterate, n_free x 3 [m]
 
@@ -34,14 +35,14 @@ struct Workspace {
   Positions matrix_place;  // q + h v, where the step in hand makes the tangent matrix if it does, n x 3 [m]
   bool renewed = false;    // it did
 
-  // L-BFGS' pairs, a ring.
+  // The pairs of L-BFGS are stored in a ring.
   std::vector<Positions> step_pairs, gradient_pairs;  // s [m] and t [N]
   std::vector<double> products;                       // s_i . t_j, window x window [J]
 
   ContactWork contact;
   ContactCorrection correction;
 
-  // Room within one call; holds nothing between calls.
+  // The following members are memory within one call and hold nothing between calls.
   Positions middle;             // where forces are evaluated, n x 3 [m]; empty unless that is not the iterate
   Positions scratch;            // n_free x 3
   AlignedVector<double> force;  // by slot, x 3 [N]
