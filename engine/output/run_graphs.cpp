@@ -106,10 +106,14 @@ Axis axis_of(const FrameGraph& graph) {
   }
   if (largest == 0) return {0, 1, {0, 1}, false};
   if (graph.logarithmic) return log_axis(smallest, largest);
-  const double raw = largest / 4, power = std::pow(10, std::floor(std::log10(raw)));
+  // Values that differ little among themselves, as stretches near 1 do, get an axis that does not begin at 0.
+  const double bottom = smallest > 0.6 * largest ? smallest : 0;
+  const double raw = std::max(largest - bottom, 1e-3 * largest) / 4, power = std::pow(10, std::floor(std::log10(raw)));
   const double step = power * (raw <= power ? 1 : raw <= 2 * power ? 2 : raw <= 5 * power ? 5 : 10);
-  Axis axis{0, step * std::ceil(largest / step), {}, false};
-  for (int t = 0; t * step <= axis.upper * (1 + 1e-9); ++t) axis.ticks.push_back(t * step);
+  Axis axis{step * std::floor(bottom / step), step * std::ceil(largest / step), {}, false};
+  if (axis.upper <= axis.lower) axis.upper = axis.lower + step;
+  const auto steps = static_cast<int>(std::lround((axis.upper - axis.lower) / step));
+  for (int t = 0; t <= steps; ++t) axis.ticks.push_back(axis.lower + t * step);
   return axis;
 }
 

@@ -69,6 +69,20 @@ TEST(RunPage, NeedsNoOtherFileAndTakesNoNameForMarkup) {
   EXPECT_EQ(page.substr(slowest, 18), "<tr data-frame=\"3\"");
 }
 
+TEST(RunPage, ShowsHowValuesDifferThatAreAllNearOne) {
+  const test::TemporaryFolder folder;
+  RunRecord run = small_run(folder.path, 6);
+  for (FrameRow& row : run.rows) {
+    row.bodies[0].stretch = 1 + 0.01 * row.frame;
+    row.bodies[1].stretch = 1;
+  }
+  const std::string page = run_page(run);
+  const std::string graph = page.substr(page.find("Largest stretch"));
+  const std::string ticks = graph.substr(0, graph.find("<svg"));
+  EXPECT_NE(ticks.find(">1.04<"), std::string::npos) << ticks;
+  EXPECT_EQ(ticks.find(">0<"), std::string::npos) << ticks;
+}
+
 TEST(RunPage, TellsWhatWasRunBeforeThereAreFrames) {
   const test::TemporaryFolder folder;
   const std::string page = run_page(small_run(folder.path, 0));
