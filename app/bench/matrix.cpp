@@ -40,14 +40,14 @@ Renewals count_renewals(Subject& subject, Threads& threads) {
 
 namespace {
 
-// What one matrix did on a body's states.
+// Collects what one matrix achieved on a body's states.
 struct Score {
   double log_error = 0, trials = 0, iterations = 0;
   double log_ms[std::size(tolerances)] = {};  // without renewals
   bool missed[std::size(tolerances)] = {};    // some state was not solved to it
 };
 
-// How far the estimates are from the errors, as factors.
+// Compares the estimates with the errors, as factors.
 struct Estimates {
   std::vector<double> ratios = {};
 };

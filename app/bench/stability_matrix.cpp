@@ -158,8 +158,8 @@ std::vector<HardCase> hard_cases() {
 
 StabilityOutcome run_case(const HardCase& hard, const NamedMaterial& material, Threads& threads) {
   std::string text = hard.scene;
-  const std::string placeholder = "MATERIAL";
-  text.replace(text.find(placeholder), placeholder.size(), hard.only.empty() ? material.table : hard.only);
+  const std::string word = "MATERIAL";  // stands in every case's scene for the material's table
+  text.replace(text.find(word), word.size(), hard.only.empty() ? material.table : hard.only);
   const SceneDef scene = scene_of(text);
   Body body = std::move(assemble(scene).front());
   Model model = build_model(body.description);

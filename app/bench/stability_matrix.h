@@ -10,7 +10,7 @@
 
 namespace supple {
 
-// What a case must end as.
+// Names the state in which a case must end.
 enum class StableEnd {
   recovered,  // at rest: nothing inverted or without volume, no stretch left
   whole,      // nothing inverted or without volume

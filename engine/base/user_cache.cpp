@@ -29,7 +29,7 @@ void add_number(std::string& bytes, std::uint64_t number) {
   bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
 }
 
-// What stands before the content.
+// Returns the bytes of an entry that precede its content.
 std::string head_of(std::string_view name, std::size_t length) {
   std::string bytes(signature);
   add_number(bytes, name.size());

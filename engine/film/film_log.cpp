@@ -58,7 +58,7 @@ void FilmLog::settle(Pictures* pictures) {
   const Zone zone("run's log");
   if (!broken_) note_rows(pictures);
   for (; !waiting_.empty() && waiting_.front().first <= whole_; waiting_.pop_front()) {
-    // What the checkpoint rests on reaches the disk before it does: frames, motion, rows, and the record.
+    // Frames, motion, rows and the record reach the disk before the checkpoint that rests on them.
     const auto now = std::filesystem::file_time_type::clock::now();
     sync_tree(folder_.path(), synced_);
     if (!record_.empty()) sync_to_disk(record_);

@@ -50,7 +50,7 @@ struct Embedding {
 // it is least far outside.
 Embedding embed(const Positions& points, const TetMesh& mesh);
 
-// Where an embedded point lies at the mesh's current positions.
+// Returns the place of an embedded point at the mesh's current positions.
 Vec3 embedded_point(const Embedding& embedding, Eigen::Index point, const Positions& mesh_positions);
 
 }  // namespace supple

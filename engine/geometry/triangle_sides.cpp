@@ -184,9 +184,10 @@ bool TriangleSolid::find_neighbours() {
   return true;
 }
 
-// Where every edge has one neighbour and all parts of the surface have empty space before them, a point's side follows
-// from the normals around its closest point alone: Baerentzen and Aanaes, Signed distance computation using the angle
-// weighted pseudonormal, 2005. Overlapping parts, of which some lie inside others, need the winding number.
+// Prepares to find a point's side. If every edge has one neighbour and all parts of the surface face empty space, the
+// side follows from the normals around its closest point alone: Baerentzen and Aanaes, Signed distance computation
+// using the angle weighted pseudonormal, 2005. Overlapping parts, of which some lie inside others, need the winding
+// number.
 void TriangleSolid::prepare_sides() {
   if (!lids_.empty() || !find_neighbours()) return;
   vertex_normals_.setZero(surface_.points.rows(), 3);

@@ -1,4 +1,4 @@
-// What a run's rows say that went wrong physically.
+// Finds in a run's rows what went wrong physically.
 #include <fmt/core.h>
 
 #include <algorithm>

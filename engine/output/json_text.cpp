@@ -20,7 +20,7 @@ namespace {
 // scene, which is below.
 constexpr int most_levels = 2000;
 
-// Whether lists and objects of the text lie deeper in each other than that. Text that is not JSON may be judged
+// Tells whether lists and objects of the text lie deeper in each other than that. Text that is not JSON may be judged
 // wrongly.
 bool is_too_deep(std::string_view text) {
   int levels = 0;

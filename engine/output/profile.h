@@ -28,7 +28,7 @@ struct ContactRow {
   std::vector<ColliderRow> colliders = {};
 };
 
-// What a body has and what it was given since the film began (sim/solver/energies.h) [J].
+// Holds what a body has and what it was given since the film began (sim/solver/energies.h) [J].
 struct BalanceRow {
   double total = 0, put_in = 0, from_nothing = 0, exchanged = 0;
 };

@@ -1,4 +1,4 @@
-// What is drawn of bodies, made apart from them, so that a run without images does not pay for it.
+// Makes the drawn surfaces of bodies. They are made apart from the bodies, so that a run without images does not pay.
 #pragma once
 
 #include "geometry/skin.h"

@@ -105,7 +105,7 @@ struct SolverDef {
   double damping = 0;  // beta [s]
 };
 
-// What is done about a body that starts inside a collider.
+// Chooses what is done about a body that starts inside a collider.
 enum class StartInside {
   move,   // it is moved out when a small move is enough, or else pushed out
   push,   // it is pushed out while the film runs

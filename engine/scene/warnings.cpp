@@ -98,7 +98,7 @@ void warn_of_substance(const Body& body, std::vector<Problem>& list) {
   }
 }
 
-// Whether a collider may stop what falls down a shaft of this width and depth, at any time.
+// Tells whether a collider may stop what falls down a shaft of this width and depth, at any time.
 bool may_stop_a_fall(const Obstacle& obstacle, const Bounds& shaft) {
   if (is_half_space(obstacle)) return true;
   std::vector<double> times = {0};

@@ -41,7 +41,7 @@ samples = 1
   }
 
   Result run_with(const std::string& call, int at, const std::vector<std::string>& arguments) {
-    // What the program says goes to files beside the run's folder, and those calls are the shell's matter.
+    // The program's output goes to files beside the run's folder; calls on those are left alone.
     const std::filesystem::path folder = std::filesystem::canonical(folder_.path);
     ::setenv("FAILING_FOLDER", (call == "read" ? folder : folder / "out").c_str(), 1);
     ::setenv("FAILING_CALL", call.c_str(), 1);

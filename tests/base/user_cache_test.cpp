@@ -1,4 +1,4 @@
-// What is kept in the user's cache, and that a broken cache harms nobody.
+// Tests what is kept in the user's cache, and that a broken cache harms nobody.
 #include "base/user_cache.h"
 
 #include <gtest/gtest.h>
@@ -127,10 +127,10 @@ TEST(UserCache, LiesWhereTheUserWantsIt) {
     const Variable first("XDG_CACHE_HOME", caches), second("HOME", home);
     return UserCache::of_user().folder();
   };
-  EXPECT_EQ(folder("/caches", "/home/me"), "/caches/supple");
-  EXPECT_EQ(folder(nullptr, "/home/me"), "/home/me/.cache/supple");
-  EXPECT_EQ(folder("relative", "/home/me"), "/home/me/.cache/supple");
-  EXPECT_EQ(folder("", "/home/me"), "/home/me/.cache/supple");
+  EXPECT_EQ(folder("/caches", "/users/me"), "/caches/supple");
+  EXPECT_EQ(folder(nullptr, "/users/me"), "/users/me/.cache/supple");
+  EXPECT_EQ(folder("relative", "/users/me"), "/users/me/.cache/supple");
+  EXPECT_EQ(folder("", "/users/me"), "/users/me/.cache/supple");
   EXPECT_EQ(folder(nullptr, nullptr), "");
   EXPECT_EQ(folder(nullptr, ""), "");
 }

@@ -33,7 +33,7 @@ struct Plan {
   bool pulls_plug = false;
   std::atomic<long> calls{0};
 
-  // What a disk would have: the size of each file when it was synced last, and the names in synced folders.
+  // A disk would keep the size that each file had when it was synced last, and the names in synced folders.
   std::mutex guard;
   std::map<std::string, off_t> synced;
   std::set<std::string> names;

@@ -163,7 +163,7 @@ TEST(Overlaps, TouchingIsNone) {
   }
 }
 
-// What check says of a body above the ground that every film shows.
+// Tests what check says of a body above the ground that every film shows.
 TEST(DrawnGround, ABodyThatFallsThroughItIsNamed) {
   const auto said = [](const std::string& more) {
     const SceneDef scene = test::scene_of(

@@ -44,7 +44,7 @@ TEST(MovingCollider, TheSameImpactLooksTheSameFromBothFramesOfReference) {
   }
 }
 
-// What the collider's frame of reference is relative to makes no difference to a step, up to round-off.
+// A step gives the same in the frame of reference in which the collider rests, up to round-off.
 TEST(MovingCollider, AStepOfAnImpactIsThatOfTheOtherFrameOfReference) {
   const Vec3 velocity(9, -2, 1);
   const auto stepped = [&](bool box_flies) {

@@ -9,7 +9,7 @@
 
 namespace supple::test {
 
-// What a film showed of its body. Energies are relative to a frame of reference, elastic and kinetic together.
+// Collects what a film showed of its body. Energies are relative to a frame of reference, elastic and kinetic together.
 struct FilmMeasures {
   double energy = 0, end_energy = 0;    // the largest of all frames, and that of the last one [J]
   double stretch = 1, end_stretch = 1;  // the same of the largest stretch

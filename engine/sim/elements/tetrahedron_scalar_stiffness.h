@@ -11,7 +11,7 @@
 namespace supple {
 namespace stiffness_detail {
 
-// Whether a symmetric matrix has a negative leading minor in some lane (Sylvester's criterion).
+// Tells whether a symmetric matrix has a negative leading minor in some lane (Sylvester's criterion).
 template <class V>
 bool some_indefinite(const V (&h)[3][3]) {
   const V zero(0.0);

@@ -133,7 +133,7 @@ void TangentSystem::Parts::add_vertices(const Model& of) {
   }
 }
 
-// What the elements of sampled chunks have in the matrix, the share of A included, corner 0 left out.
+// Sums the entries of the sampled chunks' elements in the matrix, the share of A included, without corner 0.
 void TangentSystem::Parts::sum_sampled(const Model& of) {
   sampled = 0;
   for (std::size_t c = 0; c < of.chunks.size(); c += sampled_chunks) {

@@ -16,7 +16,7 @@ struct Energies {
 // Springs and contact are not counted. Evaluates all elements; the workspace must be prepared for the model.
 Energies energies(const Model& model, const State& state, const Vec3& gravity, Workspace& workspace);
 
-// What a body has, and what it was given, since its film began [J].
+// Holds what a body has, and what it was given, since its film began [J].
 struct EnergyBalance {
   double total = 0;
   double put_in = 0;        // by handles, by contact, and by values that changed; negative where more was taken

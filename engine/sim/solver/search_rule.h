@@ -25,7 +25,7 @@ class SearchRule {
   // This is called when the contacts of the new iterate are not those of the last.
   virtual void contacts_changed(const StepInputs&) {}
 
-  // Whether a direction costs so little that one more is worth what it tells of the last iterate.
+  // Tells whether a direction costs so little that one more is worth what it tells of the last iterate.
   virtual bool looks_beyond() const { return false; }
 
   // Forgets what was learned in earlier iterations, when the direction was of no use. Returns false when there was

@@ -35,8 +35,8 @@ double as_error(double remaining, double gained) {
   return remaining > 0 ? remaining / (std::max(gained, 0.0) + remaining) : 0;
 }
 
-// What is left to gain, over half of |tr(grad^T d)| at the end: that would be all of it if the matrix of d, corrected
-// by L-BFGS, were the Hessian. docs/method.md ("Error and its estimate") says how it was found.
+// The estimate of what is left to gain is this factor times |tr(grad^T d)|/2 at the end. The factor would be 1 if the
+// matrix of d, corrected by L-BFGS, were the Hessian. docs/method.md ("Error and its estimate") says how it was found.
 constexpr double share_of_decrement = 2;
 
 bool is_near_enough(const StepReport& report, const SolverSettings& solver) {
@@ -139,7 +139,7 @@ void accept(const Model& model, const StepInputs& inputs, Workspace& w, SearchRu
   w.report.history.push_back(record);
 }
 
-// Whether the step, left as it is, would gain energy from nothing. That is looked at where the iterations had a hard
+// Tells whether the step, left as it is, would gain energy from nothing. That is looked at where the iterations had a hard
 // time alone, because it costs an evaluation.
 bool gains_energy(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
   constexpr double much = 0.01;  // of the energies that were exchanged
