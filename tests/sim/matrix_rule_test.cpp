@@ -21,14 +21,6 @@ StepInputs inputs_with(const Model& model, SystemMatrix matrix) {
   return inputs;
 }
 
-// A bar that swings, some steps into its motion.
-State swinging(const Model& model, const StepInputs& inputs, int steps) {
-  State state = rest_state(model);
-  Workspace w;
-  for (int i = 0; i < steps; ++i) step(model, inputs, state, w);
-  return state;
-}
-
 TEST(MatrixRule, TheConstantMatrixIsThePapersToTheLastBit) {
   // A solve with the model's factor and nothing else.
   struct PlainInverse final : InitialInverse {
@@ -58,7 +50,7 @@ TEST(MatrixRule, TheTangentComesNearerInTheSameIterations) {
   const std::pair<Material, double> cases[] = {{Polynomial{1e5}, 0.1}, {NeoHookean{2e4, 1e4}, 0.5}};
   for (const auto& [material, most] : cases) {
     const Model model = build_model(bar(material, Held::hard_end, Precision::single_precision, 3));
-    const State before = swinging(model, inputs_with(model, SystemMatrix::tangent), 6);
+    const State before = test::moving_state(model, inputs_with(model, SystemMatrix::tangent), 6);
     double error[2];
     Reference reference(model);
     Workspace w, scratch;
@@ -149,7 +141,7 @@ TEST(MatrixRule, NewValuesOfAModelMakeTheMatrixAnew) {
 
 TEST(MatrixRule, TheConstantMatrixForgetsAndTheTangentBeginsAnew) {
   const Model model = build_model(bar(NeoHookean{1e4, 4e4}, Held::hard_end, Precision::single_precision, 2));
-  State state = swinging(model, inputs_with(model, SystemMatrix::tangent), 3);
+  State state = test::moving_state(model, inputs_with(model, SystemMatrix::tangent), 3);
   EXPECT_EQ(state.matrix.rows(), model.vertices);
   Workspace w;
   step(model, inputs_with(model, SystemMatrix::constant), state, w);

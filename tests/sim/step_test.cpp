@@ -182,20 +182,12 @@ TEST(Step, GravityAloneIsFreeFall) {
   EXPECT_LT((state.x.col(1).array() - model.rest.col(1).array() - fall).abs().maxCoeff(), 1e-10);
 }
 
-// Returns the state of a swinging bar some frames into its motion.
-State swinging(const Model& model, const StepInputs& inputs, int frames) {
-  State state = rest_state(model);
-  Workspace w;
-  for (int frame = 0; frame < frames; ++frame) step(model, inputs, state, w);
-  return state;
-}
-
 TEST(Step, ConvergesToAnErrorOf1e12WithoutStalling) {
   for (const Material& material : test::all_materials()) {
     for (const Precision precision : {Precision::single_precision, Precision::double_precision}) {
       const Model model = build_model(bar(material, Held::hard_end, precision, 2));
       StepInputs inputs = still_inputs(model);
-      const State before = swinging(model, inputs, 5);
+      const State before = test::moving_state(model, inputs, 5);
       inputs.solver.iterations = 2000;
       State state = before;
       Workspace w, reference;
@@ -312,7 +304,7 @@ TEST(Step, ErrorEstimateFollowsTheMeasuredError) {
   // The estimate is not a bound, but it must be of the error's size, so that it can be used to stop.
   const Model model = build_model(bar(NeoHookean{2e4, 8e4}, Held::hard_end, Precision::single_precision, 3));
   StepInputs inputs = still_inputs(model);
-  State state = swinging(model, inputs, 10);
+  State state = test::moving_state(model, inputs, 10);
   double log_ratio = 0;
   int count = 0;
   for (int frame = 0; frame < 20; ++frame) {

@@ -86,6 +86,13 @@ StepInputs still_inputs(const Model& model) {
   return inputs;
 }
 
+State moving_state(const Model& model, const StepInputs& inputs, int steps) {
+  State state = rest_state(model);
+  Workspace workspace;
+  for (int i = 0; i < steps; ++i) step(model, inputs, state, workspace);
+  return state;
+}
+
 Positions shaken(const Positions& rest, double amount, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-amount, amount);

@@ -35,6 +35,9 @@ BodyDescription spring_net(int cells);
 // Makes inputs for a body whose handles stay where they rest.
 StepInputs still_inputs(const Model& model);
 
+// Returns the state of a body from rest some steps into its motion.
+State moving_state(const Model& model, const StepInputs& inputs, int steps);
+
 // Returns rest positions with every coordinate moved by up to `amount`.
 Positions shaken(const Positions& rest, double amount, unsigned seed);
 

@@ -139,8 +139,8 @@ void accept(const Model& model, const StepInputs& inputs, Workspace& w, SearchRu
   w.report.history.push_back(record);
 }
 
-// Tells whether the step, left as it is, would gain energy from nothing. That is looked at where the iterations had a hard
-// time alone, because it costs an evaluation.
+// Tells whether the step, left as it is, would gain energy from nothing. This costs an evaluation, so only steps whose
+// iterations had a hard time are examined.
 bool gains_energy(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
   constexpr double much = 0.01;  // of the energies that were exchanged
   const StepReport& report = w.report;
