@@ -40,6 +40,7 @@ std::vector<MethodTimes> all_methods() {
           {{"Projective Dynamics", Method::projective_dynamics, 300}},
           {{"Chebyshev", Method::chebyshev, 300}},
           {{"Newton", Method::newton, 15}},
+          {{"Newton, on demand", Method::newton_on_demand, 20}},
           {{"Newton, shifted", Method::newton_shifted, 20}},
           {{"Newton, 5 CG", Method::newton_cg(5), 60}},
           {{"Newton, 15 CG", Method::newton_cg(15), 40}},
@@ -269,6 +270,7 @@ ReportSection bench_minima(const BenchSetting& setting) {
   const std::vector<SolverEntry> entries = {
       {"ours", Method::quasi_newton, 5000, 20},
       {"Newton", Method::newton, 150},
+      {"Newton, on demand", Method::newton_on_demand, 400},
       {"Newton, shifted", Method::newton_shifted, 400},
       {"Newton, 15 CG", Method::newton_cg(15), 2000},
       {"Gast et al.", Method::gast, 400},

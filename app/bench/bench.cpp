@@ -69,6 +69,7 @@ const std::vector<Benchmark>& benchmarks() {
       {"ablation", "from the published settings to ours", 0.3, bench_ablation},
       {"contact", "contact three ways", 0.5, bench_contact},
       {"matrix", "a matrix that follows the body", 4, bench_matrix},
+      {"scaling", "milliseconds and bytes against vertices", 3, bench_scaling},
   };
   return list;
 }

@@ -36,6 +36,8 @@ ReportSection bench_ablation(const BenchSetting& setting);
 ReportSection bench_contact(const BenchSetting& setting);
 // matrix.cpp
 ReportSection bench_matrix(const BenchSetting& setting);
+// scaling.cpp
+ReportSection bench_scaling(const BenchSetting& setting);
 
 // The renewals of a film that is played with ten iterations a step and the tangent matrix.
 struct Renewals {

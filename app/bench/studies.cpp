@@ -188,7 +188,7 @@ ReportSection bench_hanging(const BenchSetting& setting) {
         play(subject, Method::quasi_newton, iterations, frames, *setting.threads, SystemMatrix::tangent));
   for (const Method& method : compared_methods()) {
     if (method.matrix == StartMatrix::contact) continue;
-    const bool newton = method == Method::newton || method == Method::newton_shifted;
+    const bool newton = method.matrix == StartMatrix::hessian && method.linear == LinearSolver::direct;
     for (const int iterations : newton ? std::vector<int>{1, 2} : std::vector<int>{5, 10, 20}) {
       add(name_of(method), iterations, play(subject, method, iterations, frames, *setting.threads));
     }

@@ -57,7 +57,7 @@ class ChebyshevRule final : public SearchRule {
   void begin(const Model&, const StepInputs&, Workspace&) override { iteration_ = 0; }
 
   double direction(const Model& model, const StepInputs& inputs, Workspace& w) override {
-    const Stretch stretch(w.clock, Phase::solve, "solve");
+    const TimedPhase timed(w.clock, Phase::solve, "solve");
     w.scratch = w.current.gradient;
     find_stiff_directions(model, w.current.contacts, w.current.x, w.contact.stick_length, w.correction);
     apply_inverse(model, inputs.solver.contact, w.correction, w.solve_scratch, w.scratch, w.direction);
@@ -92,10 +92,9 @@ class ChebyshevRule final : public SearchRule {
 };
 
 std::unique_ptr<SearchRule> newton_rule(const Method& method, const Model& model) {
+  if (method.linear == LinearSolver::direct) return std::make_unique<NewtonRule>(model, method.safeguard);
   const bool project = method.safeguard == Safeguard::projection;
-  if (method.linear == LinearSolver::cg)
-    return std::make_unique<NewtonCgRule>(model, project, method.inner_iterations, method.inner_tolerance);
-  return std::make_unique<NewtonRule>(model, project ? Definite::projected : Definite::shifted);
+  return std::make_unique<NewtonCgRule>(model, project, method.inner_iterations, method.inner_tolerance);
 }
 
 }  // namespace
@@ -118,6 +117,7 @@ std::vector<Method> compared_methods() {
   std::vector<Method> methods;
   for (const ShortName& entry : short_names) methods.push_back(entry.method);
   methods.push_back(Method::newton_shifted);
+  methods.push_back(Method::newton_on_demand);
   for (const StartMatrix matrix : {StartMatrix::identity, StartMatrix::rest_hessian, StartMatrix::warped_rest_hessian,
                                    StartMatrix::frame_hessian, StartMatrix::contact})
     methods.push_back(Method::lbfgs_from(matrix));

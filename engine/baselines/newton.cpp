@@ -11,39 +11,52 @@ double slope_of(const Workspace& w) { return (w.current.gradient.array() * w.dir
 
 }  // namespace
 
-NewtonRule::NewtonRule(const Model& model, Definite definite) : definite_(definite), hessian_(model) {
+NewtonRule::NewtonRule(const Model& model, Safeguard safeguard) : safeguard_(safeguard), hessian_(model) {
   factor_.analyze(hessian_.matrix());
 }
 
 double NewtonRule::direction(const Model& model, const StepInputs&, Workspace& w) {
-  const Stretch stretch(w.clock, Phase::solve, "Newton");
-  hessian_.assemble(model, w, definite_ == Definite::projected);
-  if (definite_ == Definite::projected) {
-    factorize_projected(hessian_, factor_);
-  } else {
-    // The loop follows Nocedal and Wright 2006, algorithm 3.3; the next iteration first tries half of the shift that
-    // this one needed.
-    const double least = 1e-3 * hessian_.matrix().diagonal().cwiseAbs().mean();
-    double shift = shift_ / 2 < least ? 0 : shift_ / 2, added = 0;
-    for (int tries = 0;; ++tries) {
-      if (tries == most_tries) throw RunError("Newton's method: no shift makes the Hessian positive definite");
-      hessian_.shift(shift - added);
-      added = shift;
-      if (factor_.factorize(hessian_.matrix())) break;
-      shift = std::max(2 * shift, least);
-    }
-    shift_ = shift;
+  const TimedPhase timed(w.clock, Phase::solve, "Newton");
+  hessian_.assemble(model, w, safeguard_ == Safeguard::projection);
+  switch (safeguard_) {
+    case Safeguard::projection: factorize_projected(hessian_, factor_); break;
+    case Safeguard::on_demand: factorize_on_demand(model, w); break;
+    default: factorize_shifted(); break;
   }
   factor_.solve(w.current.gradient.data(), w.direction.data());
   w.direction = -w.direction;
   return slope_of(w);
 }
 
+// Factors the Hessian as it is, or with projected elements where that fails (Longva et al. 2023, "Pitfalls of
+// projection: a study of Newton-type solvers for incremental potentials", Project-on-Demand Newton). Each iteration
+// decides for itself.
+void NewtonRule::factorize_on_demand(const Model& model, Workspace& w) {
+  if (factor_.factorize(hessian_.matrix())) return;
+  hessian_.assemble(model, w, true);
+  factorize_projected(hessian_, factor_);
+}
+
+// Follows Nocedal and Wright 2006, algorithm 3.3; the next iteration first tries half of the shift that this one
+// needed.
+void NewtonRule::factorize_shifted() {
+  const double least = 1e-3 * hessian_.matrix().diagonal().cwiseAbs().mean();
+  double shift = shift_ / 2 < least ? 0 : shift_ / 2, added = 0;
+  for (int tries = 0;; ++tries) {
+    if (tries == most_tries) throw RunError("Newton's method: no shift makes the Hessian positive definite");
+    hessian_.shift(shift - added);
+    added = shift;
+    if (factor_.factorize(hessian_.matrix())) break;
+    shift = std::max(2 * shift, least);
+  }
+  shift_ = shift;
+}
+
 NewtonCgRule::NewtonCgRule(const Model& model, bool project, int iterations, double tolerance)
     : project_(project), iterations_(iterations), tolerance_(tolerance), hessian_(model) {}
 
 double NewtonCgRule::direction(const Model& model, const StepInputs&, Workspace& w) {
-  const Stretch stretch(w.clock, Phase::solve, "Newton");
+  const TimedPhase timed(w.clock, Phase::solve, "Newton");
   hessian_.assemble(model, w, project_);
   const Eigen::Index count = 3 * model.free;
   right_ = -Eigen::Map<const Eigen::VectorXd>(w.current.gradient.data(), count);

@@ -3,24 +3,24 @@
 
 #include "baselines/conjugate_gradients.h"
 #include "baselines/hessian.h"
+#include "sim/model/method.h"
 #include "sim/solver/search_rule.h"
 
 namespace supple {
 
-enum class Definite {
-  projected,  // each element's Hessian to the nearest positive semi-definite one (Teran et al. 2005)
-  shifted,    // a multiple of the identity added until Cholesky succeeds (Martin et al. 2011)
-};
-
-// Solves by supernodal Cholesky; the pattern is analysed once.
+// Solves by multifrontal Cholesky; the pattern is analysed once.
 class NewtonRule final : public SearchRule {
  public:
-  NewtonRule(const Model& model, Definite definite);
+  // safeguard: projection, on_demand or shift.
+  NewtonRule(const Model& model, Safeguard safeguard);
   void begin(const Model&, const StepInputs&, Workspace&) override { shift_ = 0; }
   double direction(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
 
  private:
-  Definite definite_;
+  void factorize_on_demand(const Model& model, Workspace& workspace);
+  void factorize_shifted();
+
+  Safeguard safeguard_;
   HessianMatrix hessian_;
   ChangingFactor factor_;
   double shift_ = 0;

@@ -28,7 +28,7 @@ StepInputs thorough(const StepInputs& inputs, int iterations, int history) {
 }  // namespace
 
 struct Reference::Parts {
-  explicit Parts(const Model& model) : newton(model, Definite::projected), hessian(model) {
+  explicit Parts(const Model& model) : newton(model, Safeguard::projection), hessian(model) {
     factor.analyze(hessian.matrix());
   }
   NewtonRule newton;

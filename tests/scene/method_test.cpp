@@ -105,7 +105,7 @@ TEST(Method, PartsThatDoNotGoTogetherAreRefusedWithWhatDoes) {
             "be l-bfgs or none");
   EXPECT_EQ(refusal("method = { matrix = \"hessian\", safeguard = \"curvature\" }"),
             "scene.toml:2:44: safeguard = 'curvature': with matrix = 'hessian' and linear = 'direct' it must be "
-            "projection or shift");
+            "projection, on-demand or shift");
   EXPECT_EQ(refusal("method = { matrix = \"system\", inner_iterations = 5 }"),
             "scene.toml:2:50: inner_iterations: only with linear = \"cg\"");
   EXPECT_EQ(refusal("method = { matrix = \"system\", linear = \"cg\", inner_tolerance = 0.1 }"),

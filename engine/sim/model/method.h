@@ -71,13 +71,15 @@ struct Names<Acceleration> {
 enum class Safeguard {
   none,        // the matrix is positive definite by itself
   projection,  // each element's Hessian is replaced by the nearest semi-definite one (Teran et al. 2005)
+  on_demand,   // projection, only in iterations whose Hessian is not definite as it is (Longva et al. 2023)
   shift,       // a multiple of the identity is added until Cholesky succeeds (Martin et al. 2011)
   curvature,   // conjugate gradients stop where they meet negative curvature (Gast et al. 2015)
 };
 template <>
 struct Names<Safeguard> {
   static constexpr std::array table = {Name{Safeguard::none, "none"}, Name{Safeguard::projection, "projection"},
-                                       Name{Safeguard::shift, "shift"}, Name{Safeguard::curvature, "curvature"}};
+                                       Name{Safeguard::on_demand, "on-demand"}, Name{Safeguard::shift, "shift"},
+                                       Name{Safeguard::curvature, "curvature"}};
 };
 
 struct Method {
@@ -98,7 +100,7 @@ struct Method {
   static constexpr Method quasi_newton_cg(int iterations);
   // Returns Newton's method with systems solved by conjugate gradients.
   static constexpr Method newton_cg(int iterations);
-  static const Method newton_shifted;
+  static const Method newton_shifted, newton_on_demand;
   // Returns L-BFGS that starts from another matrix, solved directly.
   static constexpr Method lbfgs_from(StartMatrix matrix);
   // Returns L-BFGS that starts from the Hessian at the first iterate of each step, solved by conjugate gradients.
@@ -112,6 +114,8 @@ inline constexpr Method Method::newton = {
     .matrix = StartMatrix::hessian, .acceleration = Acceleration::none, .safeguard = Safeguard::projection};
 inline constexpr Method Method::newton_shifted = {
     .matrix = StartMatrix::hessian, .acceleration = Acceleration::none, .safeguard = Safeguard::shift};
+inline constexpr Method Method::newton_on_demand = {
+    .matrix = StartMatrix::hessian, .acceleration = Acceleration::none, .safeguard = Safeguard::on_demand};
 inline constexpr Method Method::gast = {.matrix = StartMatrix::hessian,
                                         .linear = LinearSolver::cg,
                                         .inner_iterations = 100,  // indefiniteness or the tolerance usually come first
@@ -202,7 +206,7 @@ inline constexpr auto method_forms = [] {
       {warped_rest_hessian, direct, {without}, {lbfgs, none}, {definite}},
       {frame_hessian, direct, {without}, {lbfgs, none}, {definite}},
       {frame_hessian, cg, {Preconditioner::system, Preconditioner::rest}, {lbfgs, none}, {definite}},
-      {hessian, direct, {without}, {none}, {Safeguard::projection, Safeguard::shift}},
+      {hessian, direct, {without}, {none}, {Safeguard::projection, Safeguard::on_demand, Safeguard::shift}},
       {hessian, cg, {jacobi}, {none}, {Safeguard::projection, Safeguard::curvature}},
       {hecht, direct, {without}, {none}, {definite}},
       {contact, direct, {without}, {lbfgs, none}, {definite}},
