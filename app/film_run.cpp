@@ -148,6 +148,9 @@ void add_film_options(Verb& verb, FilmCommand& command) {
   verb.option("--tolerance", plan.tolerance, "compare positions up to this, over the body's size, instead of all bits")
       .needs(verify)
       .between(0.0, 1.0);
+  verb.option("--repeat", plan.repeat,
+              "folder of an earlier run of a scene with solver.budget_ms: end each step after as many iterations as "
+              "there, for the same bits");
   verb.flag(
       "--no-cache", [&plan] { plan.cache = false; },
       "make meshes and skins again; keep none in the user's cache folder");

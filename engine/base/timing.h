@@ -1,5 +1,5 @@
 // Measures wall-clock durations in milliseconds. They are never a source of decisions: nothing that changes a result
-// may depend on a clock.
+// may depend on a clock, except for a budget of time that a scene asks for (sim/solver/step.cpp).
 #pragma once
 
 #include <chrono>

@@ -102,6 +102,12 @@ bool remembers_steps(const Script& script) {
   return remembers_steps(script.scene());
 }
 
+std::vector<std::string> names_of(const std::vector<Body>& bodies) {
+  std::vector<std::string> names;
+  for (const Body& body : bodies) names.push_back(body.def.name);
+  return names;
+}
+
 // Checks that the folder holds all that is needed by a film that starts there.
 void check_folder(const FilmPlan& plan, const LoadedFilm& film, const FilmStart& start) {
   const SceneDef& scene = film.script.scene();
@@ -138,6 +144,7 @@ FilmStart check_film(const FilmPlan& plan, const LoadedFilm& film) {
   check_folder(plan, film, start);
   check_records(plan, start);
   if (!plan.verify.empty()) start.verifier.emplace(plan.verify, start.record_head, plan.tolerance, start.kept_frames());
+  if (!plan.repeat.empty()) start.repeated = repeated_cuts(plan.repeat, names_of(film.bodies), scene.frames);
   // A folder that does not exist yet is locked only now, so that a film that is refused leaves no trace.
   if (!plan.folder_is_locked && !start.lock) start.lock = std::make_unique<FolderLock>(start.path);
   return start;

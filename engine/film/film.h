@@ -12,6 +12,7 @@
 #include "base/trace.h"
 #include "film/checkpoint.h"
 #include "film/film_plan.h"
+#include "film/repeated_cuts.h"
 #include "film/state_record.h"
 #include "output/folder_lock.h"
 #include "output/profile.h"
@@ -49,6 +50,7 @@ struct FilmStart {
   std::optional<Checkpoint> checkpoint;
   RecordHead record_head;
   std::optional<StateVerifier> verifier;
+  std::vector<CutsByFrame> repeated;  // cuts by body of --repeat; empty without it
 
   int kept_frames() const { return checkpoint ? checkpoint->frames : 0; }
 };

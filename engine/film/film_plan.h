@@ -44,6 +44,8 @@ struct FilmPlan {
   std::string verify;               // file of such states to compare with; empty: none
   std::optional<double> tolerance;  // of that comparison, over a body's size; nothing: the same bits
 
+  std::string repeat;  // folder of a run whose steps end after as many iterations; empty: where their budgets say
+
   bool cache = true;   // meshes and skins are kept under the user's cache folder (base/user_cache.h)
   bool quiet = false;  // no progress and no remarks
 };

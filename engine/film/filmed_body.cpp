@@ -32,9 +32,17 @@ void add_up(BodyRow& row, const StepReport& report) {
   row.contact->cycles += report.contacts.cycles;
 }
 
+bool has_budget(const StepInputs& inputs) { return inputs.solver.budget_ms > 0 || inputs.repeated_cuts.has_value(); }
+
+// Returns no cuts for a step that had no budget in the earlier run.
+BudgetCuts cuts_at(const CutsByFrame& cuts, int frame, int substep) {
+  const std::vector<BudgetCuts>& of_frame = cuts.at(std::size_t(frame));
+  return substep < std::ssize(of_frame) ? of_frame[std::size_t(substep)] : BudgetCuts{};
+}
+
 std::string failure_text(int frame, const std::string& body, const StepFailure& failure) {
   return fmt::format("frame {}: body '{}' failed while in '{}': {} (vertex {} is furthest out)", frame, body,
-                     failure.phase, failure.what, failure.vertex + 1);
+                     failure.during, failure.what, failure.vertex + 1);
 }
 
 // Returns the surface in the numbering of the input file.
@@ -81,10 +89,12 @@ std::string FilmedBody::advance(int frame, bool measure_error, BodyRow& row) {
   if (!driver_.set().colliders.empty()) row.contact.emplace();
   for (int substep = 0; substep < scene_.substeps; ++substep) {
     driver_.prepare_step(frame, substep);
+    if (repeated_ != nullptr) driver_.repeat(cuts_at(*repeated_, frame, substep));
     const bool measured = measure_error && substep + 1 == scene_.substeps;
     const State before = measured ? state() : State{};
     const StepReport& report = make_step();
     add_up(row, report);
+    if (has_budget(driver_.inputs())) row.budget_cuts.push_back(report.cuts.after);
     if (report.failed) return failure_text(frame, row.name, report.failure);
     if (!measured) continue;
     row.error_measured = true;

@@ -3,6 +3,7 @@
 
 #include "film/field_writer.h"
 #include "film/film_solvers.h"
+#include "film/repeated_cuts.h"
 #include "output/point_cache.h"
 #include "output/profile.h"
 #include "output/run_folder.h"
@@ -23,6 +24,9 @@ class FilmedBody {
 
   // Puts the body into a state of an earlier run, after the frame that a row tells of.
   void resume(const State& state, const BodyRow& row);
+
+  // Lets the steps end where an earlier run's budgets ended them. cuts: must outlive this object.
+  void repeat(const CutsByFrame& cuts) { repeated_ = &cuts; }
 
   // Makes one frame's steps. Returns a message when the solver failed.
   std::string advance(int frame, bool measure_error, BodyRow& row);
@@ -50,6 +54,7 @@ class FilmedBody {
   const FilmSolvers& solvers_;
   Threads& threads_;
   DrivenBody driver_;
+  const CutsByFrame* repeated_ = nullptr;  // null: the clock ends the steps that have a budget
   EnergyBudget budget_;
   Positions start_of_step_;                  // q [m]
   Triangles surface_;                        // the part that may touch, in the model's order; empty without colliders

@@ -118,6 +118,7 @@ FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     filmed_.push_back(
         std::make_unique<FilmedBody>(scene_, bodies_[b], film.models[b], set_, folder, solvers, threads_, first_));
+    if (!start.repeated.empty()) filmed_.back()->repeat(start.repeated[b]);
   }
   if (!set_.obstacles.empty()) poses_.emplace(folder.colliders(), first_ * int(set_.obstacles.size()));
   if (start.checkpoint) resume(*start.checkpoint);

@@ -48,6 +48,8 @@ struct BodyRow {
   std::optional<double> jiggle;                 // jiggle of the body over its size; only for bodies with a handle
   std::optional<ContactRow> contact;
   std::string stop_reason;
+  std::vector<std::array<int, 2>>
+      budget_cuts;  // BudgetCuts (sim/model/budget_cuts.h) by substep; empty without a budget
 };
 
 struct FrameRow {

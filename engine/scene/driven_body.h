@@ -49,6 +49,8 @@ class DrivenBody {
   // Computes the inputs of a step, and lets handles grab and release when their time has come. A second call changes
   // nothing.
   void prepare_step(int frame, int substep);
+  // Sets where the prepared step is to end, as an earlier run's budget of time ended it; nothing: where the clock says.
+  void repeat(const std::optional<BudgetCuts>& cuts) { inputs_.repeated_cuts = cuts; }
   // Makes the prepared step. The state changes only if the step succeeds.
   const StepReport& step();
 

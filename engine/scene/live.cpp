@@ -33,6 +33,7 @@ constexpr auto patterns = std::to_array<LivePattern>({
     {"solver.line_search", nothing},
     {"solver.armijo", nothing},
     {"solver.target_error", nothing},
+    {"solver.budget_ms", nothing},
     {"solver.contact", nothing},
     {"body[].material", new_factor},
     {"body[].fibre", new_factor},

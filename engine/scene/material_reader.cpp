@@ -74,6 +74,22 @@ Spline read_spline(const ConfigTable& table) {
   return spline;
 }
 
+Range range_of(Sign sign) {
+  switch (sign) {
+    case Sign::positive: return Range::positive();
+    case Sign::not_negative: return Range::at_least(0);
+    case Sign::any: break;
+  }
+  return Range::any();
+}
+
+// Returns the value of a parameter that the file does not give; nothing where it must be given.
+template <class M>
+std::optional<double> fallback_of(const Parameter<M>& parameter) {
+  if (parameter.fallback || parameter.sign == Sign::positive) return parameter.fallback;
+  return 0;
+}
+
 template <class M>
 M read_parameters(const ConfigTable& table) {
   M read;
@@ -89,11 +105,7 @@ M read_parameters(const ConfigTable& table) {
     table.complain("young", fmt::format("model '{}' has no Young's modulus and Poisson's ratio of its own", M::name));
   }
   for (const auto& p : M::parameters()) {
-    const std::optional<double> fallback = p.fallback      ? p.fallback
-                                           : p.may_be_zero ? std::optional<double>(0.0)
-                                                           : std::nullopt;
-    read.*p.value =
-        table.number({p.name, p.unit, p.meaning}, fallback, p.may_be_zero ? Range::at_least(0) : Range::positive());
+    read.*p.value = table.number({p.name, p.unit, p.meaning}, fallback_of(p), range_of(p.sign));
   }
   return read;
 }
@@ -103,7 +115,7 @@ template <class M>
 bool all_given(const ConfigTable& table) {
   if (table.has("young")) return true;
   for (const auto& p : M::parameters()) {
-    if (!p.fallback && !p.may_be_zero && !table.has(p.name)) return false;
+    if (!fallback_of(p) && !table.has(p.name)) return false;
   }
   return true;
 }

@@ -115,6 +115,10 @@ SolverSettings read_settings(const ConfigTable& table, SolverSettings s) {
   s.target_error =
       table.number({"target_error", "", "stop once the solver's own error estimate is below; 0 does all iterations"},
                    s.target_error, Range::between(0, 1));
+  s.budget_ms = table.number({"budget_ms", "ms",
+                              "no iteration of a step begins that would probably end later, except for the first; runs "
+                              "then differ, unless --repeat takes their numbers from an earlier run; 0: no bound"},
+                             s.budget_ms, Range::at_least(0));
   s.rounds = table.integer({"rounds", "",
                             "a step whose answer gains energy from nothing goes on, for so many times `iterations` in "
                             "all; 1 never does"},

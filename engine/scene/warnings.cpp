@@ -21,7 +21,7 @@ bool stays_flat(const Body& body) {
   const auto* flat = std::get_if<Flattened>(&body.def.start);
   if (flat == nullptr || flat->kept.sum() > 1.5) return false;
   return body.def.cloth ||
-         std::visit([](const auto& m) { return m.needs == Needs::gradient; }, body.def.substance.material);
+         std::visit([](const auto& m) { return m.needs == Needs::deformation_gradient; }, body.def.substance.material);
 }
 
 // Warns of a solid that its own weight stretches or squashes by more than its size: rho g L / k, where it hangs or

@@ -201,6 +201,24 @@ TEST(Step, ConvergesToAnErrorOf1e12WithoutStalling) {
   }
 }
 
+TEST(Step, EndsWhereABudgetEndedAnEarlierOne) {
+  const Model model = build_model(bar(NeoHookean{1e5, 4e5}, Held::hard_end, Precision::single_precision, 3));
+  StepInputs inputs = still_inputs(model);
+  const State before = test::moving_state(model, inputs, 5);
+  const auto stepped = [&](int iterations, const std::optional<BudgetCuts>& cuts) {
+    inputs.solver.iterations = iterations;
+    inputs.repeated_cuts = cuts;
+    State state = before;
+    Workspace w;
+    const StepReport& report = step(model, inputs, state, w);
+    EXPECT_EQ(report.cuts, cuts.value_or(BudgetCuts{}));
+    EXPECT_EQ(report.stop_reason, cuts ? StopReason::budget : StopReason::iterations);
+    return state;
+  };
+  for (const int iterations : {1, 4, 9})
+    EXPECT_EQ(stepped(40, BudgetCuts{{iterations, -1}}).x, stepped(iterations, std::nullopt).x) << iterations;
+}
+
 TEST(Step, DoesNotRejectTrialsForTheRoundOffOfPositions) {
   // The body is a stiff bar two metres from the origin, swung until it hangs still: its positions are rounded to 4e-16
   // m, which strains its small elements visibly in g.
@@ -296,7 +314,7 @@ TEST(Step, WithoutLineSearchReportsTheVertexWhenTheBodyFliesApart) {
   ASSERT_TRUE(report.failed);
   EXPECT_GE(report.failure.vertex, 0);
   EXPECT_LT(report.failure.vertex, model.vertices);
-  EXPECT_FALSE(report.failure.phase.empty());
+  EXPECT_FALSE(report.failure.during.empty());
   EXPECT_TRUE(state.x == before.x && state.v == before.v) << "a failed step must leave the state alone";
 }
 

@@ -28,7 +28,7 @@ int main() {
     std::printf("%d %.4f\n", frame, state.x.col(1).minCoeff());
     const StepReport& report = step(model, inputs, state, workspace);
     if (!report.failed) continue;
-    std::fprintf(stderr, "frame %d: %s: %s\n", frame, report.failure.phase.c_str(), report.failure.what.c_str());
+    std::fprintf(stderr, "frame %d: %s: %s\n", frame, report.failure.during.c_str(), report.failure.what.c_str());
     return 1;
   }
 }

@@ -81,7 +81,7 @@ V largest_stretch(const Matrix3<V>& f) {
 // Finds the energy density and the first Piola-Kirchhoff stress of a material at F by the decomposition that it needs.
 template <class M, class V>
 V density_of(const M& material, const Matrix3<V>& f, Matrix3<V>& stress) {
-  if constexpr (M::needs == Needs::gradient) {
+  if constexpr (M::needs == Needs::deformation_gradient) {
     return material.density(f, stress);
   } else if constexpr (M::needs == Needs::stretch) {
     const Matrix3<V> r = polar_rotation(f);

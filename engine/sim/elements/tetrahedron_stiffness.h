@@ -26,7 +26,7 @@ StretchDerivatives<V> stretch_derivatives(const M& material, const V (&s)[3]) {
   using D = Dual<V>;
   const D x[3] = {D::variable(s[0], 0), D::variable(s[1], 1), D::variable(s[2], 2)};
   D slope[3];
-  if constexpr (M::needs == Needs::gradient) {
+  if constexpr (M::needs == Needs::deformation_gradient) {
     Matrix3<D> f, stress;
     for (int i = 0; i < 3; ++i) f(i, i) = x[i];
     material.density(f, stress);
@@ -118,7 +118,7 @@ FlipAndTwist<V> flip_and_twist(const StretchDerivatives<V>& at, const V (&s)[3],
   FlipAndTwist<V> pair;
   pair.flip = choose(equal, straight - cross, (at.slope[p] - at.slope[q]) / choose(equal, one, difference));
   const auto opposite = abs(sum) < small;
-  if constexpr (M::needs == Needs::gradient) {  // smooth in F
+  if constexpr (M::needs == Needs::deformation_gradient) {  // smooth in F
     pair.twist = choose(opposite, straight + cross, (at.slope[p] + at.slope[q]) / choose(opposite, one, sum));
   } else {
     const V least = choose(sum < zero, V(-1e-8), V(1e-8));

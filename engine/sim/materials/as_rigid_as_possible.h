@@ -16,7 +16,7 @@ struct AsRigidAsPossible {
   double mu = 0;
 
   static constexpr auto parameters() {
-    return std::array{Parameter<AsRigidAsPossible>{"mu", "Pa", "stiffness", &AsRigidAsPossible::mu, false}};
+    return std::array{Parameter<AsRigidAsPossible>{"mu", "Pa", "stiffness", &AsRigidAsPossible::mu, Sign::positive}};
   }
 
   // Returns the energy per rest volume [J/m^3]; `slope` becomes dPsi/dS.

@@ -15,8 +15,9 @@ struct Corotated {
   double lambda = 0;
 
   static constexpr auto parameters() {
-    return std::array{Parameter<Corotated>{"mu", "Pa", "shear modulus", &Corotated::mu, false},
-                      Parameter<Corotated>{"lambda", "Pa", "first Lame parameter", &Corotated::lambda, true}};
+    return std::array{
+        Parameter<Corotated>{"mu", "Pa", "shear modulus", &Corotated::mu, Sign::positive},
+        Parameter<Corotated>{"lambda", "Pa", "first Lame parameter", &Corotated::lambda, Sign::not_negative}};
   }
   static Corotated from(const Lame& lame) { return {lame.mu, lame.lambda}; }
 

@@ -16,8 +16,9 @@ struct FixedCorotated {
   double lambda = 0;
 
   static constexpr auto parameters() {
-    return std::array{Parameter<FixedCorotated>{"mu", "Pa", "shear modulus", &FixedCorotated::mu, false},
-                      Parameter<FixedCorotated>{"lambda", "Pa", "first Lame parameter", &FixedCorotated::lambda, true}};
+    return std::array{
+        Parameter<FixedCorotated>{"mu", "Pa", "shear modulus", &FixedCorotated::mu, Sign::positive},
+        Parameter<FixedCorotated>{"lambda", "Pa", "first Lame parameter", &FixedCorotated::lambda, Sign::not_negative}};
   }
   static FixedCorotated from(const Lame& lame) { return {lame.mu, lame.lambda}; }
 

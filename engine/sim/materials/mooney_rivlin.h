@@ -13,16 +13,17 @@ namespace supple {
 
 struct MooneyRivlin {
   static constexpr std::string_view name = "mooney-rivlin";
-  static constexpr Needs needs = Needs::gradient;
+  static constexpr Needs needs = Needs::deformation_gradient;
   double mu_1 = 0;
   double mu_2 = 0;
   double lambda = 0;
 
   static constexpr auto parameters() {
-    return std::array{Parameter<MooneyRivlin>{"mu_1", "Pa", "of squared stretches", &MooneyRivlin::mu_1, false},
-                      Parameter<MooneyRivlin>{"mu_2", "Pa", "of squared areas", &MooneyRivlin::mu_2, true},
-                      Parameter<MooneyRivlin>{"lambda", "Pa", "of the squared logarithm of the volume ratio",
-                                              &MooneyRivlin::lambda, true}};
+    return std::array{
+        Parameter<MooneyRivlin>{"mu_1", "Pa", "of squared stretches", &MooneyRivlin::mu_1, Sign::positive},
+        Parameter<MooneyRivlin>{"mu_2", "Pa", "of squared areas", &MooneyRivlin::mu_2, Sign::not_negative},
+        Parameter<MooneyRivlin>{"lambda", "Pa", "of the squared logarithm of the volume ratio", &MooneyRivlin::lambda,
+                                Sign::not_negative}};
   }
   // At small strains the shear modulus is mu_1 + mu_2 and Lame's lambda is lambda + 2 mu_2; a fifth of the shear
   // modulus goes to mu_2, as is usual for rubber.

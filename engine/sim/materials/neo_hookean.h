@@ -12,13 +12,14 @@ namespace supple {
 
 struct NeoHookean {
   static constexpr std::string_view name = "neo-hookean";
-  static constexpr Needs needs = Needs::gradient;
+  static constexpr Needs needs = Needs::deformation_gradient;
   double mu = 0;
   double lambda = 0;
 
   static constexpr auto parameters() {
-    return std::array{Parameter<NeoHookean>{"mu", "Pa", "shear modulus", &NeoHookean::mu, false},
-                      Parameter<NeoHookean>{"lambda", "Pa", "first Lame parameter", &NeoHookean::lambda, true}};
+    return std::array{
+        Parameter<NeoHookean>{"mu", "Pa", "shear modulus", &NeoHookean::mu, Sign::positive},
+        Parameter<NeoHookean>{"lambda", "Pa", "first Lame parameter", &NeoHookean::lambda, Sign::not_negative}};
   }
   static NeoHookean from(const Lame& lame) { return {lame.mu, lame.lambda}; }
 

@@ -22,10 +22,13 @@ namespace supple {
 // template over its number type: SIMD registers, doubles, and Dual of either (elements/dual.h), which has only the
 // operations that docs/adding-a-material.md lists.
 enum class Needs {
-  gradient,         // F alone: density(F, P)
-  stretch,          // S of the polar decomposition F = R S: density(S, dPsi/dS), and P = R dPsi/dS
-  singular_values,  // s of F = U diag(s) V^T: density(s, dPsi/ds), and P = U diag(dPsi/ds) V^T
+  deformation_gradient,  // F alone: density(F, P)
+  stretch,               // S of the polar decomposition F = R S: density(S, dPsi/dS), and P = R dPsi/dS
+  singular_values,       // s of F = U diag(s) V^T: density(s, dPsi/ds), and P = U diag(dPsi/ds) V^T
 };
+
+// Tells which values a parameter may have. One that may be 0 is 0 where the file does not give it.
+enum class Sign { positive, not_negative, any };
 
 // Describes one number of a material as a scene file gives it.
 template <class M>
@@ -34,8 +37,8 @@ struct Parameter {
   const char* unit;
   const char* meaning;
   double M::*value;
-  bool may_be_zero;
-  std::optional<double> fallback = std::nullopt;  // when the file does not give it; otherwise 0 where that is allowed
+  Sign sign;
+  std::optional<double> fallback = std::nullopt;  // when the file does not give it
 };
 
 // Holds Lame's parameters of small strains.

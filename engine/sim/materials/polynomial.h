@@ -15,7 +15,7 @@ struct Polynomial {
   double mu = 0;
 
   static constexpr auto parameters() {
-    return std::array{Parameter<Polynomial>{"mu", "Pa", "stiffness", &Polynomial::mu, false}};
+    return std::array{Parameter<Polynomial>{"mu", "Pa", "stiffness", &Polynomial::mu, Sign::positive}};
   }
 
   // With tr D^4 = |D^2|^2 for the symmetric D = S - 1, and d tr D^4 / dS = 4 D^3, no eigenvalues are needed.

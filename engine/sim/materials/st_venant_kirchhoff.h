@@ -12,14 +12,14 @@ namespace supple {
 
 struct StVenantKirchhoff {
   static constexpr std::string_view name = "st-venant-kirchhoff";
-  static constexpr Needs needs = Needs::gradient;
+  static constexpr Needs needs = Needs::deformation_gradient;
   double mu = 0;
   double lambda = 0;
 
   static constexpr auto parameters() {
-    return std::array{
-        Parameter<StVenantKirchhoff>{"mu", "Pa", "shear modulus", &StVenantKirchhoff::mu, false},
-        Parameter<StVenantKirchhoff>{"lambda", "Pa", "first Lame parameter", &StVenantKirchhoff::lambda, true}};
+    return std::array{Parameter<StVenantKirchhoff>{"mu", "Pa", "shear modulus", &StVenantKirchhoff::mu, Sign::positive},
+                      Parameter<StVenantKirchhoff>{"lambda", "Pa", "first Lame parameter", &StVenantKirchhoff::lambda,
+                                                   Sign::not_negative}};
   }
   static StVenantKirchhoff from(const Lame& lame) { return {lame.mu, lame.lambda}; }
 

@@ -13,15 +13,15 @@ namespace supple {
 
 struct StableNeoHookean {
   static constexpr std::string_view name = "stable-neo-hookean";
-  static constexpr Needs needs = Needs::gradient;
+  static constexpr Needs needs = Needs::deformation_gradient;
   double mu = 0;
   double lambda = 0;
 
   static constexpr auto parameters() {
     return std::array{
-        Parameter<StableNeoHookean>{"mu", "Pa", "4/3 of the shear modulus", &StableNeoHookean::mu, false},
+        Parameter<StableNeoHookean>{"mu", "Pa", "4/3 of the shear modulus", &StableNeoHookean::mu, Sign::positive},
         Parameter<StableNeoHookean>{"lambda", "Pa", "of the volume ratio: Lame's lambda plus 5/8 mu; above mu/8",
-                                    &StableNeoHookean::lambda, false}};
+                                    &StableNeoHookean::lambda, Sign::positive}};
   }
   // Equation 16 of the same paper, which makes small strains those of Hooke's law.
   static StableNeoHookean from(const Lame& lame) { return {4.0 / 3 * lame.mu, lame.lambda + 5.0 / 6 * lame.mu}; }

@@ -21,12 +21,12 @@ struct StrainLimiting {
 
   static constexpr auto parameters() {
     using S = StrainLimiting;
-    return std::array{Parameter<S>{"mu_1", "Pa", "stiffness of the first constraint", &S::mu_1, false},
-                      Parameter<S>{"low_1", "", "stretch below which it acts", &S::low_1, true},
-                      Parameter<S>{"high_1", "", "stretch above which it acts", &S::high_1, false},
-                      Parameter<S>{"mu_2", "Pa", "stiffness of the second constraint", &S::mu_2, true},
-                      Parameter<S>{"low_2", "", "stretch below which it acts", &S::low_2, true, 1.0},
-                      Parameter<S>{"high_2", "", "stretch above which it acts", &S::high_2, false, 1.0}};
+    return std::array{Parameter<S>{"mu_1", "Pa", "stiffness of the first constraint", &S::mu_1, Sign::positive},
+                      Parameter<S>{"low_1", "", "stretch below which it acts", &S::low_1, Sign::not_negative},
+                      Parameter<S>{"high_1", "", "stretch above which it acts", &S::high_1, Sign::positive},
+                      Parameter<S>{"mu_2", "Pa", "stiffness of the second constraint", &S::mu_2, Sign::not_negative},
+                      Parameter<S>{"low_2", "", "stretch below which it acts", &S::low_2, Sign::not_negative, 1.0},
+                      Parameter<S>{"high_2", "", "stretch above which it acts", &S::high_2, Sign::positive, 1.0}};
   }
   const char* problem() const {
     return low_1 > 1 || low_2 > 1 || high_1 < 1 || high_2 < 1 ? "limits must enclose 1: low at most 1, high at least 1"

@@ -2,6 +2,7 @@
 // settings of the solver, which may change from step to step.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "base/names.h"
 #include "geometry/pose.h"
 #include "geometry/shape.h"
+#include "sim/model/budget_cuts.h"
 
 namespace supple {
 
@@ -96,6 +98,7 @@ struct SolverSettings {
   LineSearch line_search = LineSearch::armijo;
   double armijo = 0.3;      // gamma
   double target_error = 0;  // stop when the error estimate falls below; 0: do all iterations
+  double budget_ms = 0;     // of one step: no iteration begins that would probably end later; 0: no bound
   int rounds = 5;           // of `iterations`, at most, where the answer so far gains energy from nothing
   ContactSettings contact;
   ChebyshevSettings chebyshev;
@@ -109,6 +112,7 @@ struct StepInputs {
   SolverSettings solver;
   const std::vector<Collider>* colliders = nullptr;   // null or empty: nothing to touch, and nothing is paid for it
   std::vector<ColliderMotion> collider_motions = {};  // of each over the step
+  std::optional<BudgetCuts> repeated_cuts = {};       // of an earlier run, in place of the clock, for the same bits
 };
 
 inline bool has_colliders(const StepInputs& inputs) {

@@ -6,6 +6,7 @@
 
 #include "base/names.h"
 #include "base/types.h"
+#include "sim/model/budget_cuts.h"
 
 namespace supple {
 
@@ -16,18 +17,19 @@ struct ContactCounts {
   int cycles = 0;    // iterations that came back to the set of the one before last
 };
 
-enum class StopReason { iterations, round_off, target_error, line_search_failed };
+enum class StopReason { iterations, round_off, target_error, line_search_failed, budget };
 template <>
 struct Names<StopReason> {
   static constexpr std::array table = {
       Name{StopReason::iterations, "iterations"}, Name{StopReason::round_off, "round-off"},
-      Name{StopReason::target_error, "target error"}, Name{StopReason::line_search_failed, "line search failed"}};
+      Name{StopReason::target_error, "target error"}, Name{StopReason::line_search_failed, "line search failed"},
+      Name{StopReason::budget, "budget"}};
 };
 
 struct StepFailure {
-  std::string phase;
-  int vertex = -1;   // of the input file
-  std::string what;  // "the position is not finite"
+  std::string during;  // part of the step, such as "line search"
+  int vertex = -1;     // furthest out, as numbered in the input file
+  std::string what;    // such as "a number is no longer finite"
 };
 
 // Describes one iteration in detail. alpha = 0 marks a new start from where the body was.
@@ -60,6 +62,7 @@ struct StepReport {
   double slope = 0;                      // tr(grad^T d) of the last direction [J]
   double decrement = 0;                  // half of that at the end, downhill: what a quadratic g would still lose [J]
   StopReason stop_reason = StopReason::iterations;
+  BudgetCuts cuts;  // where a budget of time ended the iterations
   ContactCounts contacts;
   Vec3 contact_force = Vec3(0, 0, 0);  // of all colliders on the body, at the end of the step [N]
   std::vector<Vec3> collider_forces;   // of each of them; empty where there are none [N]

@@ -15,7 +15,7 @@ constexpr double deepest_start = 0.004;  // the overlap that a first iterate may
 
 void find_contacts_of(const Model& model, const StepInputs& inputs, Workspace& w, Iterate& iterate) {
   if (!has_colliders(inputs)) return;
-  const Stretch stretch(w.clock, Phase::collide, "find contacts");
+  const TimedPhase timed(w.clock, Phase::collide, "find contacts");
   find_contacts(model, inputs, iterate.x, w.threads, w.contact, iterate.contacts);
 }
 
@@ -64,7 +64,7 @@ void begin_step(const Model& model, const StepInputs& inputs, const State& state
   w.current.contacts.clear();
   w.trial.contacts.clear();
   if (has_colliders(inputs)) {
-    const Stretch stretch(w.clock, Phase::collide, "begin contacts");
+    const TimedPhase timed(w.clock, Phase::collide, "begin contacts");
     begin_contacts(model, inputs, state.x, w.y, w.contact);
     begin_corrections(model, w.correction);
   }
@@ -73,7 +73,7 @@ void begin_step(const Model& model, const StepInputs& inputs, const State& state
 }
 
 void evaluate_start(const Model& model, const StepInputs& inputs, Workspace& w) {
-  const Stretch stretch(w.clock, Phase::evaluate, "evaluate start");
+  const TimedPhase timed(w.clock, Phase::evaluate, "evaluate start");
   if (has_colliders(inputs)) {
     w.trial.contacts.swap(w.current.contacts);
     find_contacts_of(model, inputs, w, w.current);
@@ -118,13 +118,13 @@ void turn_with_handles(const Model& model, const StepInputs& inputs, const State
   constexpr double least_turn = 0.3;  // [rad]; below, what straight ways do to the elements is soon undone
   const HandleMotion motion = motion_of_handles(model, state, w);
   if (motion.turn.angle() < least_turn) return;
-  Stretch stretch(w.clock, Phase::solve, "solve");
+  TimedPhase timed(w.clock, Phase::solve, "solve");
   Positions& shares = w.scratch;
   shares.setZero();
   for (const Model::Coupling& entry : model.couplings) shares(entry.free, 0) -= entry.value;
   model.factor.solve(shares.data(), w.direction.data(), w.solve_scratch.data());
   shares = w.direction;
-  stretch.next(Phase::evaluate, "turn with handles");
+  timed.next(Phase::evaluate, "turn with handles");
   for (const bool wholly : {false, true}) {
     for (int v = 0; v < model.free; ++v) {
       const double share = wholly ? 1 : shares(v, 0);
@@ -158,9 +158,9 @@ std::optional<double> spread_handles(const Model& model, const StepInputs& input
     right.row(entry.free) -= entry.value * (w.current.x.row(entry.held) - w.y.row(entry.held));
   }
   if (right.isZero(0)) return std::nullopt;
-  Stretch stretch(w.clock, Phase::solve, "solve");
+  TimedPhase timed(w.clock, Phase::solve, "solve");
   w.system->factor.solve(right.data(), w.direction.data(), w.solve_scratch.data());
-  stretch.next(Phase::evaluate, "spread handles");
+  timed.next(Phase::evaluate, "spread handles");
   find_contacts_of(model, inputs, w, w.current);
   evaluate(model, w, w.current, Wanted::value);
   const double at_y = w.current.g;
@@ -181,7 +181,7 @@ std::optional<double> spread_handles(const Model& model, const StepInputs& input
 // Returns whether it was stopped.
 bool stop_at_impact(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
   if (!has_colliders(inputs)) return false;
-  const Stretch stretch(w.clock, Phase::collide, "stop at impact");
+  const TimedPhase timed(w.clock, Phase::collide, "stop at impact");
   Positions& x = w.current.x;
   const Impact impact = first_impact(model, inputs, x, deepest_start * model.size, w.contact);
   if (impact.collider < 0) return false;
@@ -202,7 +202,7 @@ bool stop_at_impact(const Model& model, const StepInputs& inputs, const State& s
 // touches. Friction is treated as in descend_from_staying().
 void start_where_better(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
   if (!has_colliders(inputs) || w.contact.counts.touching == 0) return;
-  const Stretch stretch(w.clock, Phase::evaluate, "start where better");
+  const TimedPhase timed(w.clock, Phase::evaluate, "start where better");
   const double stick = w.contact.stick_length;
   const double given = w.current.g - friction_energy(w.current.contacts, stick, w.current.x);
   w.trial.x.topRows(model.free) = (state.x + model.time_step * state.v).topRows(model.free);

@@ -95,7 +95,7 @@ class ContactPairs {
 
 double search_direction(const Model& model, const StepInputs& inputs, Workspace& workspace, const PairHistory& history,
                         InitialInverse& initial) {
-  Stretch stretch(workspace.clock, Phase::lbfgs, "L-BFGS");
+  TimedPhase timed(workspace.clock, Phase::lbfgs, "L-BFGS");
   const int count = history.count;
   Pointers s{}, t{};
   for (int i = 0; i < count; ++i) {
@@ -123,12 +123,12 @@ double search_direction(const Model& model, const StepInputs& inputs, Workspace&
   add_all(model, workspace, t, factor.data(), count, r.data());
   contacts.add(factor.data(), r);
 
-  stretch.next(Phase::solve, "solve");
+  timed.next(Phase::solve, "solve");
   Positions& z = workspace.scratch;
   initial.apply(model, inputs, workspace, r, z);
   r = z;
 
-  stretch.next(Phase::lbfgs, "L-BFGS");
+  timed.next(Phase::lbfgs, "L-BFGS");
   dot_all(model, workspace, t, count, r.data(), against.data());
   for (int i = 0; i < count; ++i) against[i] += contacts.dot(i, r);
   for (int i = count - 1; i >= 0; --i) {
@@ -138,9 +138,9 @@ double search_direction(const Model& model, const StepInputs& inputs, Workspace&
   }
   add_all(model, workspace, s, factor.data(), count, r.data());
   r = -r;
-  stretch.next(Phase::solve, "solve");
+  timed.next(Phase::solve, "solve");
   const bool bent = initial.bend(model, inputs, workspace);
-  stretch.next(Phase::lbfgs, "L-BFGS");
+  timed.next(Phase::lbfgs, "L-BFGS");
   double slope = 0;
   Pointers gradient{workspace.current.gradient.data()};
   dot_all(model, workspace, gradient, 1, r.data(), &slope);

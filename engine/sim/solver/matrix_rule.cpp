@@ -29,7 +29,7 @@ void choose_matrix(const Model& model, const StepInputs& inputs, const State& st
   // Implicit midpoint damps nothing: what ten iterations leave unsolved comes back, and velocities of a body that is
   // torn say little of where it is heading. Free bars of tests/sim/step_test.cpp flew apart with the tangent.
   if (inputs.solver.matrix == SystemMatrix::constant || model.integrator != Integrator::backward_euler) return;
-  const Stretch stretch(w.clock, Phase::matrix, "matrix");
+  const TimedPhase timed(w.clock, Phase::matrix, "matrix");
   if (!make_matrix(model, state, w)) return;
   w.system = w.correction.matrix = &w.tangent.system();
   if (has_colliders(inputs)) begin_corrections(model, w.correction);

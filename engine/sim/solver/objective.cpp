@@ -151,7 +151,7 @@ void add_vertices(const Model& model, Workspace& workspace, const VertexTerms& t
 // Computes g at an iterate with the contacts of `planes`, or its difference from g at a reference (null: none).
 Change evaluate_against(const Model& model, Workspace& workspace, Iterate& at, const std::vector<Contact>& planes,
                         const Iterate* reference, Wanted wanted) {
-  const Stretch stretch(workspace.clock, Phase::evaluate, "evaluate");
+  const TimedPhase timed(workspace.clock, Phase::evaluate, "evaluate");
   const double theta = model.scheme.theta;
   if (theta < 1) workspace.middle = theta * at.x + (1 - theta) * workspace.start_copy;
   Change change{evaluate_elements(model, workspace, theta < 1 ? workspace.middle : at.x, at.energy, wanted,

@@ -66,7 +66,7 @@ bool absurd(const Model& model, double objective, double start) {
 
 void fail(const Model& model, Workspace& w, const char* phase, double objective) {
   w.report.failed = true;
-  w.report.failure.phase = phase;
+  w.report.failure.during = phase;
   w.report.failure.vertex = first_bad_vertex(model, w.current.x);
   w.report.failure.what =
       std::isfinite(objective) ? "the objective has grown beyond all bounds" : "a number is no longer finite";
@@ -80,7 +80,7 @@ struct Descent {
 // Asks the rule for a direction that leads downhill. If it does not, asks again after the rule has forgotten what it
 // learned.
 Descent next_direction(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule) {
-  const Stretch stretch(w.clock, Phase::other, "direction");
+  const TimedPhase timed(w.clock, Phase::other, "direction");
   for (;;) {
     const double slope = w.report.slope = rule.direction(model, inputs, w);
     if (below_resolution(model, w)) return {true, slope};
@@ -93,7 +93,7 @@ Descent next_direction(const Model& model, const StepInputs& inputs, Workspace& 
 // repeated once along the direction of a rule that has forgotten what it learned.
 Search find_next(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, double slope,
                  Change& change, IterationRecord& record) {
-  const Stretch stretch(w.clock, Phase::evaluate, "line search");
+  const TimedPhase timed(w.clock, Phase::evaluate, "line search");
   if (inputs.solver.line_search == LineSearch::none) {
     set_trial(model, w, 1);
     change = evaluate_trial(model, w, Wanted::gradient);
@@ -122,7 +122,7 @@ double take_contacts(Workspace& w) {
 // Makes the trial iterate the current one.
 void accept(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, Change change,
             IterationRecord& record) {
-  const Stretch stretch(w.clock, Phase::lbfgs, "accept");
+  const TimedPhase timed(w.clock, Phase::lbfgs, "accept");
   rule.accepted(model, inputs, w);
   if (has_colliders(inputs)) {
     const int changes = w.contact.counts.changes;
@@ -145,14 +145,46 @@ bool gains_energy(const Model& model, const StepInputs& inputs, const State& sta
   constexpr double much = 0.01;  // of the energies that were exchanged
   const StepReport& report = w.report;
   if (report.line_search <= 2 * report.iterations) return false;
-  const Stretch stretch(w.clock, Phase::evaluate, "check energy");
+  const TimedPhase timed(w.clock, Phase::evaluate, "check energy");
   return share_from_nothing(model, inputs, state, w) > much;
 }
 
+// Ends the iterations of a step's search where a budget of time asks for it, and notes their number in the report, so
+// that a later run can end there without a clock.
+class TimeBudget {
+ public:
+  enum Which { from_first_iterate, from_staying };
+  TimeBudget(const StepInputs& inputs, Workspace& w, Which search)
+      : limit_ms_(inputs.solver.budget_ms), clock_(w.clock), cut_(w.report.cuts.after[search]) {
+    if (inputs.repeated_cuts) repeated_ = inputs.repeated_cuts->after[search];
+    if (limit_ms_ > 0) last_ms_ = clock_.elapsed_ms();
+  }
+
+  // Tells whether no further iteration fits, after `iterations` of them. One that takes as long as the longest so far
+  // is expected; the first one is always made.
+  bool is_spent(int iterations) {
+    const bool spent = repeated_ ? iterations == *repeated_ : limit_ms_ > 0 && iterations > 0 && would_end_late();
+    if (spent) cut_ = iterations;
+    return spent;
+  }
+
+ private:
+  bool would_end_late() {
+    const double now = clock_.elapsed_ms();
+    longest_ms_ = std::max(longest_ms_, now - std::exchange(last_ms_, now));
+    return now + longest_ms_ > limit_ms_;
+  }
+
+  double limit_ms_, last_ms_ = 0, longest_ms_ = 0;
+  const StepClock& clock_;
+  int& cut_;
+  std::optional<int> repeated_;  // -1 where the earlier run's search was not ended
+};
+
 // Runs the iterations of algorithm 1 from the current iterate, which has been evaluated. With the state that a step
-// began with, goes on for some rounds where the answer gains energy from nothing.
+// began with, goes on for some rounds where the answer gains energy from nothing. budget: null where time has no bound.
 void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, double enough,
-                    const State* state = nullptr) {
+                    TimeBudget* budget = nullptr, const State* state = nullptr) {
   const SolverSettings& solver = inputs.solver;
   StepReport& report = w.report;
   const std::size_t first = report.objective.size() - 1;
@@ -165,8 +197,10 @@ void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
   report.decrement = 0;
   report.iterations = 0;
   for (int most = solver.iterations;;) {
-    bool spent = report.iterations >= most;
-    if (spent && state != nullptr && most < solver.rounds * solver.iterations &&
+    const bool late = budget != nullptr && budget->is_spent(report.iterations);
+    bool spent = late || report.iterations >= most;
+    if (late) report.stop_reason = StopReason::budget;
+    if (spent && !late && state != nullptr && most < solver.rounds * solver.iterations &&
         gains_energy(model, inputs, *state, w)) {
       most += solver.iterations;
       spent = false;
@@ -256,7 +290,7 @@ void set_staying(const Model& model, const StepInputs& inputs, const State& stat
 // left out on both sides.
 void descend_from_staying(const Model& model, const StepInputs& inputs, const State& state, Workspace& w,
                           SearchRule& rule) {
-  const Stretch stretch(w.clock, Phase::evaluate, "check staying");
+  const TimedPhase timed(w.clock, Phase::evaluate, "check staying");
   StepReport& report = w.report;
   const double stick = w.contact.stick_length;
   const double friction_reached = friction_energy(w.current.contacts, stick, w.current.x);
@@ -277,7 +311,9 @@ void descend_from_staying(const Model& model, const StepInputs& inputs, const St
   report.decrease += gained;
   report.history.push_back({w.clock.elapsed_ms(), gained, 0, {}});
   const int iterations = report.iterations;
-  minimize(model, inputs, w, rule);
+  evaluate_start(model, inputs, w);
+  TimeBudget budget(inputs, w, TimeBudget::from_staying);
+  run_iterations(model, inputs, w, rule, 0, &budget);
   report.iterations += iterations;
 }
 
@@ -338,7 +374,8 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   const double above_start = set_first_iterate(model, inputs, state, w);
   report.start_ms = w.clock.elapsed_ms();
   zone.next("iterate");
-  run_iterations(model, inputs, w, rule, 0, &state);
+  TimeBudget budget(inputs, w, TimeBudget::from_first_iterate);
+  run_iterations(model, inputs, w, rule, 0, &budget, &state);
   zone.next("end step");
   if (!report.failed && inputs.solver.line_search != LineSearch::none)
     descend_from_staying(model, inputs, state, w, rule);

@@ -45,16 +45,17 @@ class StepClock {
   std::array<Clock::duration, 6> spent_{};
 };
 
-// Marks a stretch of a step: a zone of the trace whose time belongs to a phase, except for the time of stretches inside
+// Counts the time of a scope for a phase, except for that of such scopes inside it, and makes a zone of the trace of
 // it. When it ends, the phase around it continues.
-class Stretch {
+class TimedPhase {
  public:
-  Stretch(StepClock& clock, Phase phase, const char* zone) : clock_(clock), outer_(clock.change(phase)), zone_(zone) {}
-  ~Stretch() { clock_.change(outer_); }
-  Stretch(const Stretch&) = delete;
-  Stretch& operator=(const Stretch&) = delete;
+  TimedPhase(StepClock& clock, Phase phase, const char* zone)
+      : clock_(clock), outer_(clock.change(phase)), zone_(zone) {}
+  ~TimedPhase() { clock_.change(outer_); }
+  TimedPhase(const TimedPhase&) = delete;
+  TimedPhase& operator=(const TimedPhase&) = delete;
 
-  // Ends this stretch and begins another one in its place.
+  // Ends this phase and begins another one in its place.
   void next(Phase phase, const char* zone) {
     clock_.change(phase);
     zone_.next(zone);

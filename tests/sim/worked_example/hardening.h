@@ -15,8 +15,8 @@ struct Hardening {
   double nu = 0;
 
   static constexpr auto parameters() {
-    return std::array{Parameter<Hardening>{"mu", "Pa", "stiffness near rest", &Hardening::mu, false},
-                      Parameter<Hardening>{"nu", "Pa", "stiffness far from it", &Hardening::nu, true}};
+    return std::array{Parameter<Hardening>{"mu", "Pa", "stiffness near rest", &Hardening::mu, Sign::positive},
+                      Parameter<Hardening>{"nu", "Pa", "stiffness far from it", &Hardening::nu, Sign::not_negative}};
   }
 
   template <class V>

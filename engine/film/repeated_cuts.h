@@ -1,0 +1,21 @@
+// Reads where budgets of time ended the steps of an earlier run, so that a film can end them there again and get the
+// same bits.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sim/model/inputs.h"
+
+namespace supple {
+
+// Holds the cuts of one body by frame and substep.
+using CutsByFrame = std::vector<std::vector<BudgetCuts>>;
+
+// Reads a run's profile. bodies: the names of the film's bodies; frames: its length. Returns the cuts by body. Throws
+// InputError where the run has fewer frames, lacks a body, or had no budget.
+std::vector<CutsByFrame> repeated_cuts(const std::filesystem::path& run, const std::vector<std::string>& bodies,
+                                       int frames);
+
+}  // namespace supple
