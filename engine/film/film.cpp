@@ -260,7 +260,7 @@ std::string write_records(const FilmResult& result, LoadedFilm& film, const RunF
   info.video = result.video_written ? "video.mp4" : result.video_message;
   try {
     folder.write_info(info);
-    folder.write_profile(profile_json(result.rows, verdict_on(result)));
+    folder.write_profile(result.rows, verdict_on(result));
     if (trace != nullptr) write_whole_file(folder.trace(), chrome_trace(*trace));
   } catch (const RunError& error) {
     return error.what();

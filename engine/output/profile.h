@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "output/whole_file.h"
+
 namespace supple {
 
 // Describes the contact with one collider at the end of a frame.
@@ -83,8 +85,9 @@ std::vector<StageSummary> summarize(const std::vector<FrameRow>& rows);
 // elements that are inverted or without volume at the end, and depths inside colliders (penetration_warnings).
 std::vector<std::string> warnings_of(const std::vector<FrameRow>& rows);
 
-// Writes rows as text (profile_json.cpp): all rows of a run, or one row as a line of its own. verdict: the verdict on
-// the whole run (verdict.h); empty: none.
+// Writes rows as text (profile_json.cpp): all rows of a run, in pieces or at once, or one row as a line of its own.
+// verdict: the verdict on the whole run (verdict.h); empty: none.
+void write_profile(const std::vector<FrameRow>& rows, const std::string& verdict, const TakesText& take);
 std::string profile_json(const std::vector<FrameRow>& rows, const std::string& verdict = "");
 std::string row_line(const FrameRow& row);
 

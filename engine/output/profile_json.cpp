@@ -154,6 +154,35 @@ auto as_input_errors(const std::string& source, const Read& read) {
   }
 }
 
+// Puts spaces before each line.
+std::string indented(const std::string& text, int spaces) {
+  const std::string indent(std::size_t(spaces), ' ');
+  std::string result = indent;
+  for (const char c : text) {
+    result += c;
+    if (c == '\n') result += indent;
+  }
+  return result;
+}
+
+Json summary_json(const std::vector<FrameRow>& rows, const std::string& verdict) {
+  Json first, rest;
+  for (const StageSummary& stage : summarize(rows)) {
+    first[stage.stage + "_ms"] = rounded_ms(stage.first);
+    rest[stage.stage + "_ms"] = json_of(stage.rest);
+  }
+  Json summary = {{"frames", rows.size()}, {"first_frame", first}, {"without_first_frame", rest}};
+  for (const UnsolvedStep& step : unsolved_steps(rows)) {
+    summary["unsolved"].push_back({{"frame", step.frame},
+                                   {"body", step.body},
+                                   {"error_estimate", step.error_estimate},
+                                   {"trials_per_iteration", step.trials}});
+  }
+  if (!verdict.empty()) summary["verdict"] = verdict;
+  summary["warnings"] = warnings_of(rows);
+  return summary;
+}
+
 }  // namespace
 
 std::string row_line(const FrameRow& row) { return exact_json_text(json_of(row)); }
@@ -172,26 +201,23 @@ std::vector<FrameRow> read_profile(const std::filesystem::path& path) {
   });
 }
 
+void write_profile(const std::vector<FrameRow>& rows, const std::string& verdict, const TakesText& take) {
+  // A document of all rows would need many times the memory of the rows, so each frame is written by itself.
+  take("{\n \"frames\": [");
+  const char* before = "\n";
+  for (const FrameRow& row : rows) {
+    take(before);
+    take(indented(exact_json_text(json_of(row), 1), 2));
+    before = ",\n";
+  }
+  take(rows.empty() ? "],\n" : "\n ],\n");
+  take(" \"summary\": " + indented(exact_json_text(summary_json(rows, verdict), 1), 1).substr(1) + "\n}\n");
+}
+
 std::string profile_json(const std::vector<FrameRow>& rows, const std::string& verdict) {
-  Json frames = Json::array();
-  for (const FrameRow& row : rows) frames.push_back(json_of(row));
-  Json first, rest;
-  for (const StageSummary& stage : summarize(rows)) {
-    first[stage.stage + "_ms"] = rounded_ms(stage.first);
-    rest[stage.stage + "_ms"] = json_of(stage.rest);
-  }
-  Json document;
-  document["frames"] = std::move(frames);
-  document["summary"] = {{"frames", rows.size()}, {"first_frame", first}, {"without_first_frame", rest}};
-  for (const UnsolvedStep& step : unsolved_steps(rows)) {
-    document["summary"]["unsolved"].push_back({{"frame", step.frame},
-                                               {"body", step.body},
-                                               {"error_estimate", step.error_estimate},
-                                               {"trials_per_iteration", step.trials}});
-  }
-  if (!verdict.empty()) document["summary"]["verdict"] = verdict;
-  document["summary"]["warnings"] = warnings_of(rows);
-  return exact_json_text(document, 1) + "\n";
+  std::string text;
+  write_profile(rows, verdict, [&text](std::string_view piece) { text += piece; });
+  return text;
 }
 
 }  // namespace supple

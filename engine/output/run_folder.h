@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "output/profile.h"
+
 namespace supple {
 
 struct RunInfo {
@@ -63,7 +65,7 @@ class RunFolder {
   static std::filesystem::path checkpoint_of(const std::filesystem::path& run) { return run / "checkpoint" / "state"; }
 
   void write_info(const RunInfo& info) const;
-  void write_profile(const std::string& json) const;
+  void write_profile(const std::vector<FrameRow>& rows, const std::string& verdict) const;
 
  private:
   std::filesystem::path path_;

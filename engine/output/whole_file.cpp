@@ -7,6 +7,8 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "output/durable.h"
@@ -15,36 +17,53 @@ namespace supple {
 
 namespace {
 
-enum class Durability { usual, synced };
-
-void write(const std::filesystem::path& path, std::span<const std::uint8_t> bytes, Durability durability) {
-  const std::string temporary = path.string() + ".part";
-  const auto fail = [&](const char* doing) {
-    const std::string reason = std::strerror(errno);
-    ::unlink(temporary.c_str());
-    throw RunError(fmt::format("{}: cannot {}: {}", path.string(), doing, reason));
-  };
-  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (file < 0) fail("be created");
-  for (std::size_t done = 0; done < bytes.size();) {
-    const ssize_t count = ::write(file, bytes.data() + done, bytes.size() - done);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) {
-      const int reason = errno;
-      ::close(file);
-      errno = reason;
-      fail("be written");
-    }
-    done += std::size_t(count);
+// Represents a file that is written under a temporary name, which is removed unless the file is finished.
+class PartFile {
+ public:
+  explicit PartFile(const std::filesystem::path& path) : path_(path), temporary_(path.string() + ".part") {
+    file_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (file_ < 0) fail("be created");
   }
-  const bool synced = durability == Durability::usual || ::fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP;
-  const int reason = errno;
-  if (::close(file) != 0) fail("be written");
-  errno = reason;
-  if (!synced) fail("be brought to the disk");
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) fail("be renamed into place");
-  if (durability == Durability::synced)
-    sync_to_disk(path.has_parent_path() ? path.parent_path() : std::filesystem::path("."));
+  ~PartFile() {
+    if (file_ >= 0) ::close(file_);
+    if (!finished_) ::unlink(temporary_.c_str());
+  }
+  PartFile(const PartFile&) = delete;
+  PartFile& operator=(const PartFile&) = delete;
+
+  void add(std::span<const std::uint8_t> bytes) {
+    for (std::size_t done = 0; done < bytes.size();) {
+      const ssize_t count = ::write(file_, bytes.data() + done, bytes.size() - done);
+      if (count < 0 && errno == EINTR) continue;
+      if (count < 0) fail("be written");
+      done += std::size_t(count);
+    }
+  }
+
+  void sync() {
+    if (::fsync(file_) != 0 && errno != EINVAL && errno != ENOTSUP) fail("be brought to the disk");
+  }
+
+  // Gives the file its name.
+  void finish() {
+    if (::close(std::exchange(file_, -1)) != 0) fail("be written");
+    if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail("be renamed into place");
+    finished_ = true;
+  }
+
+ private:
+  [[noreturn]] void fail(const char* doing) const {
+    throw RunError(fmt::format("{}: cannot {}: {}", path_.string(), doing, std::strerror(errno)));
+  }
+
+  std::filesystem::path path_;
+  std::string temporary_;
+  int file_ = -1;
+  bool finished_ = false;
+};
+
+void sync_folder_of(const std::filesystem::path& path) {
+  sync_to_disk(path.has_parent_path() ? path.parent_path() : std::filesystem::path("."));
 }
 
 std::span<const std::uint8_t> bytes_of(std::string_view text) {
@@ -54,15 +73,25 @@ std::span<const std::uint8_t> bytes_of(std::string_view text) {
 }  // namespace
 
 void write_whole_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
-  write(path, bytes, Durability::usual);
+  PartFile file(path);
+  file.add(bytes);
+  file.finish();
 }
 
 void write_whole_file(const std::filesystem::path& path, std::string_view text) {
-  write(path, bytes_of(text), Durability::usual);
+  write_whole_file(path, bytes_of(text));
 }
 
 void write_durable_file(const std::filesystem::path& path, std::string_view text) {
-  write(path, bytes_of(text), Durability::synced);
+  write_durable_file(path, [text](const TakesText& take) { take(text); });
+}
+
+void write_durable_file(const std::filesystem::path& path, const std::function<void(const TakesText&)>& make) {
+  PartFile file(path);
+  make([&file](std::string_view piece) { file.add(bytes_of(piece)); });
+  file.sync();
+  file.finish();
+  sync_folder_of(path);
 }
 
 }  // namespace supple

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string_view>
 
@@ -14,5 +15,9 @@ void write_whole_file(const std::filesystem::path& path, std::span<const std::ui
 void write_whole_file(const std::filesystem::path& path, std::string_view text);
 // The same, and waits for the disk: after a loss of power the file is the earlier or the new one, and whole.
 void write_durable_file(const std::filesystem::path& path, std::string_view text);
+// The same for a text that comes in pieces and is never in memory as a whole: `make` passes each to the function that
+// it gets.
+using TakesText = std::function<void(std::string_view piece)>;
+void write_durable_file(const std::filesystem::path& path, const std::function<void(const TakesText&)>& make);
 
 }  // namespace supple

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
+#include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "output/png_file.h"
@@ -118,6 +120,7 @@ TEST(Profile, RowsComeBackFromTheirText) {
   body.energy = {1, 2, 3.5};
   body.contact = {0.5, 4, 3, 2, 1e-3, {{"ground", 1e-3, 12.5}, {"press", 0, 0}}};
   body.stop_reason = "round-off";
+  body.budget_cuts = {{4, -1}, {2, 1}};
   row.bodies = {body, BodyRow{}};
   const std::string line = row_line(row);
   EXPECT_EQ(line.find('\n'), std::string::npos);
@@ -126,6 +129,7 @@ TEST(Profile, RowsComeBackFromTheirText) {
   EXPECT_EQ(back.state_hash, row.state_hash);
   EXPECT_EQ(back.bodies[0].objective_end, body.objective_end);  // all seventeen digits
   EXPECT_TRUE(back.bodies[0].error_measured && !back.bodies[0].error);
+  EXPECT_EQ(back.bodies[0].budget_cuts, body.budget_cuts);
   EXPECT_FALSE(back.draw_ms || back.bodies[1].contact || back.bodies[1].jiggle);
 
   const test::TemporaryFolder folder;
@@ -134,6 +138,22 @@ TEST(Profile, RowsComeBackFromTheirText) {
   EXPECT_THROW(row_of_line("{}", "a line"), InputError);
   EXPECT_THROW(row_of_line(line.substr(0, line.size() / 2), "a line"), InputError);
   EXPECT_THROW(read_profile(folder.path / "none.json"), InputError);
+}
+
+// A film's profile is written when all of its frames are in memory, and must not need much more there.
+TEST(Profile, IsWrittenFrameByFrame) {
+  FrameRow row;
+  row.bodies.resize(3);
+  for (const std::size_t frames : {0, 1, 1000}) {
+    std::size_t largest = 0;
+    std::string text;
+    write_profile(std::vector<FrameRow>(frames, row), "all is well", [&](std::string_view piece) {
+      largest = std::max(largest, piece.size());
+      text += piece;
+    });
+    EXPECT_LT(largest, 4000u) << frames;
+    EXPECT_EQ(nlohmann::ordered_json::parse(text).dump(1) + "\n", text) << "as if it were written at once";
+  }
 }
 
 TEST(Profile, TellsWhatEachColliderDidAndWarnsOfDepthsAboveAHundredth) {
