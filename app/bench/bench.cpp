@@ -70,6 +70,7 @@ const std::vector<Benchmark>& benchmarks() {
       {"contact", "contact three ways", 0.5, bench_contact},
       {"matrix", "a matrix that follows the body", 4, bench_matrix},
       {"scaling", "milliseconds and bytes against vertices", 3, bench_scaling},
+      {"roofline", "bytes and operations by stage", 0.5, bench_roofline},
   };
   return list;
 }

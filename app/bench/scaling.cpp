@@ -146,7 +146,7 @@ ReportSection bench_scaling(const BenchSetting& setting) {
     exponents.rows.push_back({quantity.name, number_text(exponent_of(sizes, quantity.value))});
   section.tables.push_back(std::move(exponents));
 
-  ReportPlot plot{"scaling", "A step of ten iterations against the number of vertices"};
+  ReportPlot plot{"scaling-step", "A step of ten iterations against the number of vertices"};
   plot.x_label = "vertices";
   plot.y_label = "time [ms]";
   plot.log_x = true;

@@ -38,6 +38,8 @@ ReportSection bench_contact(const BenchSetting& setting);
 ReportSection bench_matrix(const BenchSetting& setting);
 // scaling.cpp
 ReportSection bench_scaling(const BenchSetting& setting);
+// roofline.cpp
+ReportSection bench_roofline(const BenchSetting& setting);
 
 // The renewals of a film that is played with ten iterations a step and the tangent matrix.
 struct Renewals {
