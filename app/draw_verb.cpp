@@ -22,6 +22,7 @@ namespace {
 struct DrawCommand {
   DrawPlan plan;
   std::string run, scene, out, still;
+  std::string field, range, reference;  // short forms of settings
   std::optional<std::size_t> frame, index;
   std::optional<double> rate;
   int of = 1, jobs = 1;
@@ -159,7 +160,22 @@ int draw_one(const DrawCommand& command, LoadedDrawing& drawing) {
   return 0;
 }
 
+// Writes what has an option of its own as settings. They stand before the others, which may therefore differ.
+void add_short_forms(DrawCommand& command) {
+  std::vector<std::string> settings;
+  const auto quoted = [](const std::string& text) { return "\"" + text + "\""; };
+  if (!command.field.empty()) settings.push_back("field.quantity=" + quoted(command.field));
+  // A field that is asked for here, with no range, has that of the whole film.
+  const std::string range = command.range.empty() && !command.field.empty() ? "film" : command.range;
+  const bool numbers = range.find(',') != std::string::npos;
+  if (!range.empty()) settings.push_back("field.range=" + (numbers ? "[" + range + "]" : quoted(range)));
+  if (!command.reference.empty()) settings.push_back("field.reference=" + quoted(command.reference));
+  std::vector<std::string>& all = command.plan.settings;
+  all.insert(all.begin(), settings.begin(), settings.end());
+}
+
 int draw(DrawCommand command) {
+  add_short_forms(command);
   command.plan.run = command.run;
   command.plan.scene = command.scene;
   command.plan.rate = command.rate.value_or(0);
@@ -184,6 +200,10 @@ void add_options(Verb& verb, DrawCommand& command) {
   verb.option("--set", plan.settings,
               "path=value over the run's, of what is seen: camera, look, output, colours; may be repeated")
       .repeatable();
+  verb.option("--field", command.field, "show this in colours: " + word_list(all_names<FieldQuantity>()))
+      .one_of(all_names<FieldQuantity>());
+  verb.option("--range", command.range, "LOW,HIGH of the colours, or usual, or film: that of the whole film [film]");
+  verb.option("--reference", command.reference, "the run to which --field distance measures");
   verb.option("--scene", command.scene, "the run's scene file, where it has moved or a copy has another camera");
   verb.option("--first", plan.first, "first frame of the run").between(0, 1000000).shows_default();
   verb.option("--last", plan.last, "last frame [the run's]").between(0, 1000000);

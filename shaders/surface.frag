@@ -20,6 +20,13 @@ uniform usamplerBuffer triangles; // three vertices; mesh (16 bits), covering la
 uniform samplerBuffer paint;      // by vertex and layer: distances, eight for each vertex
 uniform samplerBuffer squares;    // by vertex: place in the printed pattern
 uniform samplerBuffer materials;  // by mesh, eighteen texels
+#ifdef FIELD
+uniform samplerBuffer values;     // by vertex: the field, 0 at the low end of its range and 1 at the high one; negative: none
+uniform samplerBuffer colors;     // of the field, from low to high, in the colours of the screen
+#endif
+#ifdef WIRES
+uniform float wire_width;         // in pixels
+#endif
 uniform vec3 depth_scale;         // see DepthScale; the third is a pixel's edge at distance one
 uniform vec2 sample_places[SAMPLES];
 out vec4 pixel;
@@ -110,10 +117,9 @@ float print(Seen seen) {
 }
 #endif
 
-vec3 light_from(Seen seen) {
+vec3 light_from(Seen seen, vec4 material) {
   vec3 n = seen.normal;
   vec3 v = normalize(eye - seen.world);
-  vec4 material = material_of(seen);
   vec3 albedo = material.rgb;
 #ifdef PRINTED
   albedo *= print(seen);
@@ -144,6 +150,53 @@ vec3 light_from(Seen seen) {
   // Wet surfaces also reflect the sky.
   light += sky_color * gloss * gloss * (0.04 + 0.5 * edge * away * away) * open * smoothstep(-0.2, 0.6, reflect(-v, n).y);
   return light;
+}
+
+#ifdef FIELD
+bool shows_field(Seen seen) { return texelFetch(materials, seen.material + 17).y > 0.5; }
+
+// Returns the colour of the field's value as the legend has it; grey where there is no value.
+vec3 field_color(Seen seen) {
+  float a = texelFetch(values, seen.corners.x).r, b = texelFetch(values, seen.corners.y).r, c = texelFetch(values, seen.corners.z).r;
+  float low = min(a, min(b, c)), high = max(a, max(b, c));
+  float value = clamp(dot(seen.weights, vec3(a, b, c)), low, high);
+  float place = clamp(value, 0.0, 1.0) * float(textureSize(colors) - 1);
+  int below = min(int(place), textureSize(colors) - 2);
+  vec3 color = mix(texelFetch(colors, below).rgb, texelFetch(colors, below + 1).rgb, place - float(below));
+  return low < 0.0 ? vec3(0.6) : color;
+}
+#endif
+
+#ifdef WIRES
+// Returns how much of a pixel the nearest edge of the triangle covers. The edges of a triangle that is only a few pixels
+// high fade, because they would cover all of it.
+float wire(Seen seen) {
+  vec3 height = 1.0 / max(sqrt(seen.right * seen.right + seen.up * seen.up), vec3(1e-6));  // in pixels
+  vec3 away = abs(seen.weights) * height;
+  float nearest = min(away.x, min(away.y, away.z)), least = min(height.x, min(height.y, height.z));
+  float cover = clamp(0.5 * wire_width + 0.5 - nearest, 0.0, 1.0);
+  return cover * clamp((least - 1.5 * wire_width) / (4.0 * wire_width), 0.0, 1.0);
+}
+#endif
+
+// Returns the colour of the screen at a point of a surface. A field is shown in the colours of its legend, and the light
+// of a grey body darkens them, so that the shape is seen and the hue stays; a little white keeps dark ends from being flat.
+vec3 shown(Seen seen) {
+  vec4 material = material_of(seen);
+#ifdef FIELD
+  bool mapped = shows_field(seen);
+  material = mapped ? vec4(vec3(0.55), 0.0) : material;
+#endif
+  vec3 color = film(light_from(seen, material)).rgb;
+#ifdef FIELD
+  float brightness = dot(color, vec3(0.299, 0.587, 0.114));  // luma of BT.601
+  float shade = clamp(brightness / 0.78, 0.0, 1.0);
+  color = mapped ? field_color(seen) * mix(0.4, 1.0, shade * shade) + 0.09 * shade * shade : color;
+#endif
+#ifdef WIRES
+  color *= 1.0 - 0.65 * texelFetch(materials, seen.material + 17).z * wire(seen);
+#endif
+  return color;
 }
 
 float distance_of(ivec2 at, int i) { return depth_scale.x / (depth_scale.y - texelFetch(depths, at, i).r); }
@@ -185,7 +238,7 @@ void main() {
   do {
     vec2 place = looked == 0 ? first_place / weight.x : second_place / max(weight.y, 1.0);
     uint one = looked == 0 ? first : second == 0u ? first : second;
-    sum += (looked == 0 ? weight.x : weight.y) * film(light_from(look(one, vec2(at) + place))).rgb;
+    sum += (looked == 0 ? weight.x : weight.y) * shown(look(one, vec2(at) + place));
     ++looked;
   } while (looked < looks);
   pixel = vec4(sum, weight.x + weight.y) / float(SAMPLES);

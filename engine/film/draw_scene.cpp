@@ -89,6 +89,7 @@ Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const s
     mesh.shadow_triangles.assign(drawn[b].casters.data(), drawn[b].casters.data() + drawn[b].casters.size());
     mesh.two_sided = drawn[b].two_sided;
     mesh.color = drawn[b].color;
+    mesh.wires = scene.look.wireframe;
     mesh.rest = bounds_of(bodies[b].description.mesh.rest);
     stage.meshes.push_back(std::move(mesh));
   }

@@ -32,6 +32,20 @@ DrawnFilm::DrawnFilm(const Script& script, const std::vector<Body>& bodies, std:
   const Stage fine = make_stage(scene, bodies, drawn_, set.obstacles, collider_skins_, font);
   fit_to_cameras(drawn_, bodies, cameras_of(script, fine), scene.output.height);
   stage_ = make_stage(scene, bodies, drawn_, set.obstacles, collider_skins_, font);
+  if (scene.field.quantity == FieldQuantity::none) return;
+  field_.emplace(scene, bodies);
+  stage_.field = field_->look();
+  for (std::size_t b = 0; b < bodies.size(); ++b) stage_.meshes[b].mapped = field_->shown_on(b);
+}
+
+void DrawnFilm::include_in_field(const FramePose& pose, const CollisionSet& set, Threads& threads) {
+  if (field_) field_->include(field_->values(pose, set, &threads));
+}
+
+void DrawnFilm::settle_field() {
+  if (!field_) return;
+  field_->settle();
+  stage_.field = field_->look();
 }
 
 void DrawnFilm::follow(const std::vector<TimedChange>& changes, const CollisionSet& set,
@@ -47,16 +61,21 @@ void DrawnFilm::follow(const std::vector<TimedChange>& changes, const CollisionS
   }
 }
 
-DrawList DrawnFilm::list(const SceneDef& scene, const std::vector<const Positions*>& motion, const CollisionSet& set,
-                         double time, Threads& threads) {
+DrawList DrawnFilm::list(const SceneDef& scene, const FramePose& pose, const CollisionSet& set, Threads& threads) {
   DrawList result;
-  for (std::size_t b = 0; b < motion.size(); ++b)
-    result.positions.push_back(skin_positions(drawn_[b], *motion[b], &threads));
-  add_colliders(set.obstacles, collider_skins_, time, result);
-  result.camera = camera_at(scene, stage_, time, result.positions);
+  const std::size_t bodies = pose.motion.size();
+  for (std::size_t b = 0; b < bodies; ++b)
+    result.positions.push_back(skin_positions(drawn_[b], *pose.motion[b], &threads));
+  if (field_) {
+    const std::vector<std::vector<double>> values = field_->values(pose, set, &threads);
+    for (std::size_t b = 0; b < bodies; ++b)
+      result.field.push_back(values[b].empty() ? std::vector<float>() : field_->on_skin(drawn_[b], values[b]));
+  }
+  add_colliders(set.obstacles, collider_skins_, pose.time, result);
+  result.camera = camera_at(scene, stage_, pose.time, result.positions);
   for (const std::size_t c : std::exchange(renewed_, {}))
-    result.renewed.emplace_back(motion.size() + c, collider_mesh(set.obstacles[c], collider_skins_[c]));
-  for (std::size_t b = 0; b < motion.size(); ++b) {
+    result.renewed.emplace_back(bodies + c, collider_mesh(set.obstacles[c], collider_skins_[c]));
+  for (std::size_t b = 0; b < bodies; ++b) {
     if (stage_.meshes[b].label == scene.bodies[b].label) continue;
     stage_.meshes[b].label = scene.bodies[b].label;
     result.captions.emplace_back(b, scene.bodies[b].label);

@@ -2,10 +2,12 @@
 // list of each frame.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "film/draw_scene.h"
+#include "film/surface_field.h"
 #include "scene/script.h"
 
 namespace supple {
@@ -21,14 +23,21 @@ class DrawnFilm {
   // Makes the skins of colliders again when these changes of a replay have changed their shapes.
   void follow(const std::vector<TimedChange>& changes, const CollisionSet& set, const std::vector<Body>& bodies);
 
-  // Makes the draw list of a frame: positions, and all that has changed since the last list. motion: for each body, the
-  // positions of its mesh as motion/ holds them [m]. time: the end of the frame [s].
-  DrawList list(const SceneDef& scene, const std::vector<const Positions*>& motion, const CollisionSet& set,
-                double time, Threads& threads);
+  // Makes the draw list of a frame: positions, and all that has changed since the last list. The pose holds the
+  // positions as motion/ holds them.
+  DrawList list(const SceneDef& scene, const FramePose& pose, const CollisionSet& set, Threads& threads);
+
+  // Tells whether a pose must have the positions of the frame before.
+  bool needs_before() const { return field_ && field_->needs_before(); }
+  // Widens the range of the field to a frame of the film. The colours are those of the whole film once all frames have
+  // been included and settle_field() has been called, which must happen before the stage is used.
+  void include_in_field(const FramePose& pose, const CollisionSet& set, Threads& threads);
+  void settle_field();
 
  private:
   std::vector<DrawnBody> drawn_;
   std::vector<Skin> collider_skins_;
+  std::optional<SurfaceField> field_;  // where the scene shows one
   Stage stage_;
   std::vector<std::size_t> renewed_;  // colliders, since the last list
 };

@@ -82,7 +82,9 @@ void build_models(const FilmPlan& plan, LoadedFilm& film) {
 void make_skins(const FilmPlan& plan, LoadedFilm& film) {
   const Zone zone("make skins");
   MakingLine tells(plan.quiet);
-  film.drawn = drawn_bodies(film.bodies, making_with(plan.cache, tells));
+  const bool as_elements = film.script.scene().look.wireframe;
+  film.drawn = drawn_bodies(film.bodies, making_with(plan.cache, tells),
+                            as_elements ? BodySurface::elements : BodySurface::skin);
 }
 
 namespace {
@@ -135,6 +137,11 @@ FilmStart check_film(const FilmPlan& plan, const LoadedFilm& film) {
   start.identity = identity_of(film.info, film.script, film.bodies, plan);
   start.checkpoint_every = remembers_steps(film.script) || plan.film_only ? 0 : plan.checkpoint_every;
   start.record_head = record_head(film.info, film.bodies);
+  const bool asks_for_whole_film =
+      scene.field.quantity != FieldQuantity::none && scene.field.range_by == FieldRange::film;
+  if (asks_for_whole_film && plan.pictures != FilmPictures::none)
+    throw InputError("field.range", "\"film\" is known only once the film has been made: give two numbers here, or draw "
+                                    "the run again with it (supple draw RUN --set field.range=film)");
   if (plan.film_only && !run_program({"ffmpeg", "-version"}))
     throw InputError("--film-only", "needs ffmpeg, which is not installed (Debian: ffmpeg)");
   std::error_code ignored;

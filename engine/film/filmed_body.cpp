@@ -162,6 +162,11 @@ void FilmedBody::save_motion() {
   saved_motion_ = written.rowwise() + origin_.transpose();
 }
 
+Positions FilmedBody::present_motion() const {
+  const Positions points = in_input_order(model(), state().x).rowwise() - origin_.transpose();
+  return as_cached(points).rowwise() + origin_.transpose();
+}
+
 void FilmedBody::save_problem(int frame) {
   const Zone zone("save state", driver_.body().def.name);
   driver_.prepare_step(frame, 0);

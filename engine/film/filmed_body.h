@@ -35,6 +35,8 @@ class FilmedBody {
   void save_motion();
   // Returns the frame's positions as motion/ holds them, in the order of the input file [m].
   const Positions& saved_motion() const { return saved_motion_; }
+  // Returns the present positions as motion/ would hold them.
+  Positions present_motion() const;
 
   // Writes the problem of a frame's first step, which has not been made yet, into the folder of states. It changes no
   // result.

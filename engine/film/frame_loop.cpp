@@ -87,15 +87,28 @@ void FrameLoop::save_outputs(int frame, const FrameRow& row) {
 // Hands the frame to the pictures. Returns false when they have failed.
 bool FrameLoop::show(int frame, FrameRow& row) {
   const bool drawn = plan_.pictures == FilmPictures::all || frame + 1 == scene_.frames;
-  if (!pictures_ || !drawn) return true;
+  if (!pictures_) return true;
+  if (!drawn) {
+    keep_motion();
+    return true;
+  }
   Zone zone("draw list");
   const Stopwatch watch;
-  std::vector<const Positions*> motion;
-  for (const auto& body : filmed_) motion.push_back(&body->saved_motion());
-  DrawList list = drawn_->list(scene_, motion, set_, row.time_s, threads_);
+  FramePose pose{frame, row.time_s, {}, {}};
+  for (const auto& body : filmed_) pose.motion.push_back(&body->saved_motion());
+  for (const Positions& body : before_motion_) pose.before.push_back(&body);
+  DrawList list = drawn_->list(scene_, pose, set_, threads_);
+  keep_motion();
   row.draw_ms = watch.elapsed_ms();
   zone.next("wait for render");
   return pictures_->put(frame, std::move(list));
+}
+
+// Keeps the frame's positions for the next one, where the pictures need them.
+void FrameLoop::keep_motion() {
+  if (!drawn_->needs_before()) return;
+  before_motion_.clear();
+  for (const auto& body : filmed_) before_motion_.push_back(body->saved_motion());
 }
 
 FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const RunFolder& folder,
@@ -122,6 +135,9 @@ FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
   }
   if (!set_.obstacles.empty()) poses_.emplace(folder.colliders(), first_ * int(set_.obstacles.size()));
   if (start.checkpoint) resume(*start.checkpoint);
+  if (drawn_ && drawn_->needs_before()) {
+    for (const auto& body : filmed_) before_motion_.push_back(body->present_motion());
+  }
   if (!plan.record.empty()) recorder_.emplace(plan.record, start.record_head, first_);
 }
 

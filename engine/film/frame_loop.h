@@ -37,6 +37,7 @@ class FrameLoop {
   std::string step_bodies(int frame, FrameRow& row);
   void save_outputs(int frame, const FrameRow& row);
   bool show(int frame, FrameRow& row);
+  void keep_motion();
 
   void resume(const Checkpoint& checkpoint);
   void end_last_changes();
@@ -59,6 +60,7 @@ class FrameLoop {
   StateVerifier* verifier_;         // of --verify; null without it
   Checkpoint before_;               // taken before the frame in progress; empty when the film keeps none
   std::optional<DrawnFilm> drawn_;  // only with pictures
+  std::vector<Positions> before_motion_;  // of the bodies at the end of the last frame, where the pictures need it [m]
   std::vector<std::unique_ptr<FilmedBody>> filmed_;
   std::optional<PoseTableWriter> poses_;  // only with colliders
   std::optional<StateRecorder> recorder_;

@@ -30,7 +30,7 @@ using Json = nlohmann::ordered_json;
 // Lists the values of a scene that change what is seen and nothing else, by the names that generic_path() gives them. A
 // name also covers all values below it.
 constexpr std::array seen = {
-    "title",        "camera",       "look",           "output.width",        "output.height",     "output.samples",
+    "title",        "camera",       "look",           "field",             "output.width",        "output.height",     "output.samples",
     "body[].color", "body[].label", "body[].pattern", "body[].pattern_size", "body[].skin_cells", "collider[].color"};
 
 bool is_seen(const std::string& path) {
@@ -113,9 +113,13 @@ std::vector<PointCacheReader> motion_of(const RunRecord& run, const LoadedFilm& 
   return motion;
 }
 
-std::vector<int> frames_of(const DrawPlan& plan, const std::vector<PointCacheReader>& motion) {
+int frames_with_motion(const std::vector<PointCacheReader>& motion) {
   int count = motion.front().frames();
   for (const PointCacheReader& body : motion) count = std::min(count, body.frames());
+  return count;
+}
+
+std::vector<int> frames_of(const DrawPlan& plan, int count) {
   if (count == 0) throw InputError(plan.run.string(), "has no frame yet");
   const int last = plan.last < 0 ? count - 1 : plan.last;
   if (last >= count)
@@ -135,23 +139,65 @@ class Drawing {
         scene_(drawing.film.script.scene()),
         set_(collision_set(scene_)),
         drawn_(drawing.film.script, drawing.film.bodies, drawing.film.drawn, set_, caption_font()),
-        threads_(drawing.film.info.threads) {}
+        threads_(drawing.film.info.threads) {
+    if (scene_.field.quantity != FieldQuantity::none && scene_.field.range_by == FieldRange::film) span_film();
+  }
 
   const Stage& stage() const { return drawn_.stage(); }
 
   DrawList list(int frame) {
     follow_script(frame);
-    std::vector<Positions> motion;
-    std::vector<const Positions*> places;
-    for (std::size_t b = 0; b < drawing_.motion.size(); ++b) {
-      const Vec3 origin = motion_origin(drawing_.film.bodies[b].description.mesh.rest);
-      motion.push_back(drawing_.motion[b].frame(frame).rowwise() + origin.transpose());
-    }
-    for (const Positions& body : motion) places.push_back(&body);
-    return drawn_.list(scene_, places, set_, (frame + 1) / scene_.fps, threads_);
+    load(frame);
+    return drawn_.list(scene_, pose(frame), set_, threads_);
   }
 
  private:
+  // Finds the range of the field over all frames of the run, so that each picture has the same colours, whichever frames
+  // are drawn and in how many parts.
+  void span_film() {
+    for (int frame = 0; frame < drawing_.frame_count && !interrupted(); ++frame) {
+      follow_script(frame);
+      load(frame);
+      drawn_.include_in_field(pose(frame), set_, threads_);
+    }
+    drawn_.settle_field();
+    rewind();
+  }
+
+  // Goes back to the start of the film.
+  void rewind() {
+    followed_ = 0;
+    scene_ = drawing_.film.script.scene();
+    set_ = collision_set(scene_);
+    drawn_.follow(drawing_.film.script.changes(), set_, drawing_.film.bodies);
+    for (std::size_t b = 0; b < scene_.bodies.size(); ++b)
+      update_body(drawing_.film.bodies[b], scene_, scene_.bodies[b]);
+  }
+
+  Positions motion_at(std::size_t body, int frame) {
+    const Positions& rest = drawing_.film.bodies[body].description.mesh.rest;
+    const Vec3 origin = motion_origin(rest);
+    if (frame >= 0) return drawing_.motion[body].frame(frame).rowwise() + origin.transpose();
+    const Positions first = first_positions(drawing_.film.bodies[body]).rowwise() - origin.transpose();
+    return as_cached(first).rowwise() + origin.transpose();
+  }
+
+  void load(int frame) {
+    motion_.clear();
+    before_.clear();
+    for (std::size_t b = 0; b < drawing_.motion.size(); ++b) {
+      motion_.push_back(motion_at(b, frame));
+      if (drawn_.needs_before()) before_.push_back(motion_at(b, frame - 1));
+    }
+  }
+
+  FramePose pose(int frame) const {
+    FramePose pose{frame, (frame + 1) / scene_.fps, {}, {}};
+    for (const Positions& body : motion_) pose.motion.push_back(&body);
+    for (const Positions& body : before_) pose.before.push_back(&body);
+    return pose;
+  }
+
   // Advances the scene to the end of the frame.
   void follow_script(int frame) {
     const Script& script = drawing_.film.script;
@@ -162,6 +208,9 @@ class Drawing {
     if (changes.empty()) return;
     scene_ = script.scene_at(frame);
     set_ = collision_set(scene_);
+    // The stress of a field follows from the materials at that time.
+    for (std::size_t b = 0; b < scene_.bodies.size() && scene_.field.quantity != FieldQuantity::none; ++b)
+      update_body(drawing_.film.bodies[b], scene_, scene_.bodies[b]);
     drawn_.follow(changes, set_, drawing_.film.bodies);
   }
 
@@ -170,6 +219,7 @@ class Drawing {
   CollisionSet set_;
   DrawnFilm drawn_;
   Threads threads_;
+  std::vector<Positions> motion_, before_;  // of the frame that was loaded, and of the one before it [m]
   int followed_ = 0;  // frames whose changes are in scene_
 };
 
@@ -179,11 +229,12 @@ LoadedDrawing load_drawing(const DrawPlan& plan) {
   const RunRecord run = read_run(plan.run);
   const Json info = parsed_json<Json>(run.info_json);
   const FilmPlan film = plan_of_run(plan, info);
-  LoadedDrawing drawing{load_film(film, {}), {}, {}, 0, {}};
+  LoadedDrawing drawing{load_film(film, {}), {}, 0, {}, 0, {}};
   check_same_motion(plan, info, drawing.film);
   make_skins(film, drawing.film);
   drawing.motion = motion_of(run, drawing.film);
-  drawing.frames = frames_of(plan, drawing.motion);
+  drawing.frame_count = frames_with_motion(drawing.motion);
+  drawing.frames = frames_of(plan, drawing.frame_count);
   drawing.rate = plan.rate > 0 ? plan.rate : drawing.film.script.scene().fps / plan.every;
   Json identity = {
       {"program", program_version()},

@@ -31,6 +31,7 @@ struct DrawPlan {
 struct LoadedDrawing {
   LoadedFilm film;  // without models
   std::vector<PointCacheReader> motion;
+  int frame_count = 0;      // of the run
   std::vector<int> frames;  // of the run, one for each picture
   double rate = 0;          // frames a second of the film
   std::string identity;     // JSON: all that the pictures depend on

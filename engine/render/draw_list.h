@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,16 @@ struct PaintColor {
 
 enum class Printed { grid, checks };
 
+// Describes the colours of a field that surfaces show, and its legend.
+struct FieldLook {
+  std::vector<Vec3> colors;                            // from the low end of the range to the high one [sRGB]
+  std::string title;                                   // of the legend, with the unit; no legend when empty
+  std::vector<std::pair<double, std::string>> ticks;  // place from 0 (low) to 1 (high), and the value there
+};
+
+// This value of a field at a vertex says that there is none.
+constexpr float no_field = -1;
+
 // Describes a surface whose vertices move while its other attributes stay.
 struct DrawMesh {
   std::string label;                            // caption; none when empty
@@ -34,6 +45,8 @@ struct DrawMesh {
   double gloss = 0.25;             // gloss of the uncovered surface
   std::vector<PaintColor> layers;  // at most 8
   Bounds rest;                     // bounds at the start: captions stand below them, cameras frame them [m]
+  bool mapped = false;             // whether it shows the field; its own colours are then not seen
+  bool wires = false;              // whether the edges of its triangles are drawn
   bool framed = true;              // whether lights, shadows and cameras cover it; false for planes without end
 };
 
@@ -45,6 +58,7 @@ struct Stage {
   Vec3 background = Vec3::Ones();  // sRGB
   double exposure = 1;
   std::string font;  // font file; no captions when empty
+  std::optional<FieldLook> field;  // that meshes show
 };
 
 struct Camera {
@@ -55,6 +69,7 @@ struct Camera {
 struct DrawList {
   Camera camera;
   std::vector<std::vector<float>> positions;                  // by mesh: x y z by vertex [m]
+  std::vector<std::vector<float>> field;  // by mesh: by vertex, from 0 (low) to 1 (high) or no_field; empty if not mapped
   std::vector<std::pair<std::size_t, DrawMesh>> renewed;      // meshes that replace the stage's from now on
   std::vector<std::pair<std::size_t, std::string>> captions;  // captions of meshes from now on
 };

@@ -80,6 +80,7 @@ Renderer::Renderer(const Stage& stage, GlChoice choice, const std::filesystem::p
   captions_ = std::make_unique<Captions>(gl_, shaders, stage_.font, stage_.width, stage_.height);
   tile_buffer_ = std::make_unique<TileBuffer>(gl_);
   make_shading_program();
+  prepare_field();
   check_test_picture();
   surfaces_ = std::make_unique<SurfaceBuffers>(gl_, stage_.meshes);
   captions_->renew(stage_.meshes);
@@ -91,6 +92,8 @@ Renderer::~Renderer() {
   gl_.DeleteFramebuffers(1, &picture_framebuffer_);
   gl_.DeleteTextures(1, &visible_);
   gl_.DeleteTextures(1, &depth_);
+  gl_.DeleteTextures(1, &color_texture_);
+  gl_.DeleteBuffers(1, &color_buffer_);
   gl_.DeleteRenderbuffers(1, &picture_color_);
 }
 
@@ -142,6 +145,8 @@ void Renderer::make_shading_program() {
     definitions.emplace_back("PAINTED");
   if (std::ranges::any_of(stage_.meshes, [](const DrawMesh& mesh) { return !mesh.square.empty(); }))
     definitions.emplace_back("PRINTED");
+  if (stage_.field) definitions.emplace_back("FIELD");
+  if (std::ranges::any_of(stage_.meshes, &DrawMesh::wires)) definitions.emplace_back("WIRES");
   if (shading_program_ && definitions == definitions_) return;
   definitions_ = definitions;
   shading_program_ = std::make_unique<Program>(gl_, shaders_, "tiles", "surface", definitions);
@@ -151,6 +156,24 @@ void Renderer::make_shading_program() {
     gl_.GetMultisamplefv(GL_SAMPLE_POSITION, static_cast<GLuint>(s), &places[2 * std::size_t(s)]);
   shading_program_->use();
   shading_program_->set_pairs("sample_places", places);
+}
+
+// Makes the legend, and gives the colours of the field to the shader.
+void Renderer::prepare_field() {
+  if (!stage_.field) return;
+  legend_ = legend_of(*stage_.field, stage_.font, stage_.height);
+  std::vector<float> colors;
+  for (const Vec3& color : stage_.field->colors) {
+    for (int k = 0; k < 3; ++k) colors.push_back(static_cast<float>(color[k]));
+    colors.push_back(1);
+  }
+  gl_.GenBuffers(1, &color_buffer_);
+  gl_.BindBuffer(GL_TEXTURE_BUFFER, color_buffer_);
+  gl_.BufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(colors.size() * sizeof(float)), colors.data(),
+                 GL_STATIC_DRAW);
+  gl_.GenTextures(1, &color_texture_);
+  gl_.BindTexture(GL_TEXTURE_BUFFER, color_texture_);
+  gl_.TexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, color_buffer_);
 }
 
 // Some software rasterisers accept a multisampled framebuffer and leave it blank, without an error; a triangle drawn
@@ -191,7 +214,7 @@ void Renderer::upload(const DrawList& list) {
     stage_.meshes[m].label = caption;
     captions_->renew(m, stage_.meshes[m]);
   }
-  surfaces_->upload(stage_.meshes, list.positions);
+  surfaces_->upload(stage_.meshes, list);
 }
 
 // Writes the number of the nearest triangle into each sample, counted from one; zero is left where there is none.
@@ -231,6 +254,8 @@ void Renderer::shade(const Eigen::Matrix4f& view, const StageLight& light, const
   program.set_texture("depths", unit++, sample_texture(), depth_);
   const DepthScale scale = depth_scale(list.camera, bounds_.center(), bounds_.diagonal() + largest_body_);
   program.set("depth_scale", Vec3(scale.factor, scale.offset, light.rays.up.norm()));
+  if (stage_.field) program.set_texture("colors", unit++, GL_TEXTURE_BUFFER, color_texture_);
+  program.set("wire_width", std::max(1.0, stage_.height / 720.0));
   gl_.Enable(GL_BLEND);
   gl_.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);  // the samples are already weighted by their coverage
   tile_buffer_->draw(tiles_.corners());
@@ -256,7 +281,10 @@ Image Renderer::draw(const DrawList& list) {
   zone.next("captions");
   captions_->draw(view);
   zone.next("read back");
-  return read_picture();
+  Image image = read_picture();
+  const PixelRect legend = legend_place(legend_, stage_.width, stage_.height);
+  legend_.onto(image, legend.x, legend.y);
+  return image;
 }
 
 Image Renderer::read_picture() {

@@ -15,6 +15,7 @@
 #include "render/gl_context.h"
 #include "render/gl_table.h"
 #include "render/ground.h"
+#include "render/legend.h"
 #include "render/program.h"
 #include "render/shadow_map.h"
 #include "render/surface_buffers.h"
@@ -41,6 +42,7 @@ class Renderer {
  private:
   void make_targets();
   void make_shading_program();
+  void prepare_field();
   void check_test_picture();
   void upload(const DrawList& list);
   void draw_visibility(const Eigen::Matrix4f& view);
@@ -65,6 +67,8 @@ class Renderer {
   std::unique_ptr<Ground> ground_;
   std::unique_ptr<Captions> captions_;
   std::unique_ptr<TileBuffer> tile_buffer_;
+  GLuint color_buffer_ = 0, color_texture_ = 0;  // colours of the field; none without a field
+  Sticker legend_;
   Tiles tiles_;
   std::vector<std::uint8_t> pixels_;  // scratch: the picture as it is read back
 };

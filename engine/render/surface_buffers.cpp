@@ -13,7 +13,7 @@ namespace {
 
 // A mesh's material takes this many texels of four floats: linear colours with gloss, of which the first is the
 // uncovered surface and eight are its layers; the widths of the layers' borders, one in each of eight texels; the kind
-// of print.
+// of print, whether it shows the field, and whether its edges are drawn.
 constexpr std::size_t material_texels = 18;
 
 void append_material(const DrawMesh& mesh, std::vector<float>& out) {
@@ -30,6 +30,8 @@ void append_material(const DrawMesh& mesh, std::vector<float>& out) {
     out[begin + 4 * (layer + 9)] = static_cast<float>(mesh.layers[layer].soft);
   }
   out[begin + 4 * 17] = mesh.square.empty() ? 0.0f : mesh.printed == Printed::grid ? 1.0f : 2.0f;
+  out[begin + 4 * 17 + 1] = mesh.mapped ? 1.0f : 0.0f;
+  out[begin + 4 * 17 + 2] = mesh.wires ? 1.0f : 0.0f;
 }
 
 // Packs what the shader must know of a triangle's colours: its mesh (16 bits), the topmost layer that covers all of it
@@ -77,7 +79,7 @@ SurfaceBuffers::SurfaceBuffers(const GlTable& gl, const std::vector<DrawMesh>& m
 }
 
 SurfaceBuffers::~SurfaceBuffers() {
-  for (const Lookup* lookup : {&places_, &normals_, &triangles_, &paint_, &squares_, &materials_}) {
+  for (const Lookup* lookup : {&places_, &normals_, &triangles_, &paint_, &squares_, &materials_, &values_}) {
     gl_.DeleteTextures(1, &lookup->texture);
     gl_.DeleteBuffers(1, &lookup->buffer);
   }
@@ -139,6 +141,8 @@ void SurfaceBuffers::make_static(const std::vector<DrawMesh>& meshes) {
   make_lookup(triangles_, GL_RGBA32UI, triangles.size() * sizeof(std::uint32_t), triangles.data(), GL_STATIC_DRAW);
   make_lookup(paint_, GL_R32F, paint.size() * sizeof(float), paint.data(), GL_STATIC_DRAW);
   make_lookup(squares_, GL_RG32F, squares.size() * sizeof(float), squares.data(), GL_STATIC_DRAW);
+  if (std::ranges::any_of(meshes, &DrawMesh::mapped)) value_data_.assign(vertices, no_field);
+  make_lookup(values_, GL_R32F, value_data_.size() * sizeof(float), value_data_.data(), GL_STREAM_DRAW);
   make_lookup(materials_, GL_RGBA32F, materials.size() * sizeof(float), materials.data(), GL_STATIC_DRAW);
 
   gl_.GenVertexArrays(1, &array_);
@@ -159,7 +163,8 @@ void SurfaceBuffers::make_static(const std::vector<DrawMesh>& meshes) {
   gl_.BindVertexArray(0);
 }
 
-void SurfaceBuffers::upload(const std::vector<DrawMesh>& meshes, const std::vector<std::vector<float>>& positions) {
+void SurfaceBuffers::upload(const std::vector<DrawMesh>& meshes, const DrawList& list) {
+  const std::vector<std::vector<float>>& positions = list.positions;
   SUPPLE_CHECK(positions.size(), ==, ranges_.size());
   for (std::size_t m = 0; m < ranges_.size(); ++m) {
     SUPPLE_CHECK(positions[m].size(), ==, 3 * meshes[m].occlusion.size());
@@ -167,12 +172,24 @@ void SurfaceBuffers::upload(const std::vector<DrawMesh>& meshes, const std::vect
     for (std::size_t i = 0; i < positions[m].size(); i += 3, place += 4) std::copy_n(&positions[m][i], 3, place);
     compute_normals(positions[m], meshes[m].triangles, normal_data_.data() + 4 * std::size_t(ranges_[m].first_vertex));
   }
-  const auto put = [this](const Lookup& lookup, const auto& data) {
-    gl_.BindBuffer(GL_TEXTURE_BUFFER, lookup.buffer);
-    gl_.BufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(data.size() * sizeof(data[0])), data.data());
-  };
   put(places_, place_data_);
   put(normals_, normal_data_);
+  if (!value_data_.empty()) upload_field(meshes, list.field);
+}
+
+void SurfaceBuffers::upload_field(const std::vector<DrawMesh>& meshes, const std::vector<std::vector<float>>& field) {
+  std::ranges::fill(value_data_, no_field);
+  for (std::size_t m = 0; m < std::min(field.size(), ranges_.size()); ++m) {
+    if (field[m].empty()) continue;
+    SUPPLE_CHECK(field[m].size(), ==, meshes[m].occlusion.size());
+    std::ranges::copy(field[m], value_data_.begin() + ranges_[m].first_vertex);
+  }
+  put(values_, value_data_);
+}
+
+void SurfaceBuffers::put(const Lookup& lookup, const std::vector<float>& data) const {
+  gl_.BindBuffer(GL_TEXTURE_BUFFER, lookup.buffer);
+  gl_.BufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(data.size() * sizeof(float)), data.data());
 }
 
 void SurfaceBuffers::draw(std::size_t mesh) const {
@@ -195,7 +212,8 @@ int SurfaceBuffers::bind(const Program& program, int unit) const {
                                      {"triangles", &triangles_},
                                      {"paint", &paint_},
                                      {"squares", &squares_},
-                                     {"materials", &materials_}}) {
+                                     {"materials", &materials_},
+                                     {"values", &values_}}) {
     program.set_texture(name, unit++, GL_TEXTURE_BUFFER, lookup->texture);
   }
   return unit;

@@ -18,9 +18,9 @@ class SurfaceBuffers {
   SurfaceBuffers(const SurfaceBuffers&) = delete;
   SurfaceBuffers& operator=(const SurfaceBuffers&) = delete;
 
-  // Uploads the positions of the vertices (x y z, by mesh) and the normals that follow from them. The meshes must be
-  // those for which the buffers were made.
-  void upload(const std::vector<DrawMesh>& meshes, const std::vector<std::vector<float>>& positions);
+  // Uploads the positions of the vertices (x y z, by mesh) and the normals that follow from them, and the field where
+  // meshes show one. The meshes must be those for which the buffers were made.
+  void upload(const std::vector<DrawMesh>& meshes, const DrawList& list);
 
   // Draws one mesh; its triangles count from first_triangle(mesh).
   void draw(std::size_t mesh) const;
@@ -28,7 +28,7 @@ class SurfaceBuffers {
   // Draws the triangles that cast one mesh's shadow, which may be fewer.
   void draw_caster(std::size_t mesh) const;
 
-  // Makes a program's samplers places, normals, triangles, paint, squares and materials read these buffers. Returns the
+  // Makes a program's samplers places, normals, triangles, paint, squares, materials and values read these buffers. Returns the
   // first unit that is still free.
   int bind(const Program& program, int first_unit) const;
 
@@ -42,6 +42,8 @@ class SurfaceBuffers {
   };
 
   void make_lookup(Lookup& lookup, GLenum format, std::size_t bytes, const void* data, GLenum usage);
+  void upload_field(const std::vector<DrawMesh>& meshes, const std::vector<std::vector<float>>& field);
+  void put(const Lookup& lookup, const std::vector<float>& data) const;
   void make_static(const std::vector<DrawMesh>& meshes);
 
   const GlTable& gl_;
@@ -53,7 +55,8 @@ class SurfaceBuffers {
   Lookup paint_;      // by vertex and layer: distances, eight for each vertex
   Lookup squares_;    // by vertex: place in the printed pattern
   Lookup materials_;  // by mesh, see material_texels
-  std::vector<float> place_data_, normal_data_;
+  Lookup values_;     // by vertex: the field; empty when no mesh shows one
+  std::vector<float> place_data_, normal_data_, value_data_;
 };
 
 }  // namespace supple

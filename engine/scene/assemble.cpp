@@ -272,17 +272,26 @@ Anchors rest_anchors(const Model& model, const Body& body) {
 
 }  // namespace
 
+Positions first_positions(const Body& body) {
+  const Positions& rest = body.description.mesh.rest;
+  Positions start = start_positions(body.def.start, rest, body.seed, body.description.name);
+  start.rowwise() += body.start_move.transpose();
+  for (std::size_t h = 0; h < body.description.handles.size(); ++h) {
+    if (body.def.handles[h].grabs) continue;
+    for (const std::int32_t v : body.description.handles[h].vertices) start.row(v) = rest.row(v);
+  }
+  return start;
+}
+
 State start_state(const Model& model, const Body& body) {
   State state = rest_state(model);
-  const Positions start = start_positions(body.def.start, body.description.mesh.rest, body.seed, body.description.name);
+  const Positions start = first_positions(body);
   for (int v = 0; v < model.vertices; ++v) {
-    state.x.row(v) = start.row(model.input_of[v]) + body.start_move.transpose();
+    state.x.row(v) = start.row(model.input_of[v]);
     state.v.row(v) = body.def.velocity.transpose();
   }
   for (const auto& [vertex, handle] : model.handled) {
-    if (body.def.handles[handle].grabs) continue;
-    state.x.row(vertex) = model.rest.row(vertex);
-    state.v.row(vertex).setZero();
+    if (!body.def.handles[handle].grabs) state.v.row(vertex).setZero();
   }
   state.anchors = rest_anchors(model, body);
   return state;

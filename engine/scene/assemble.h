@@ -45,6 +45,8 @@ std::vector<Body> assemble(const SceneDef& scene, const Making& making = {});
 // InputError.
 void update_body(Body& body, const SceneDef& scene, const BodyDef& def);
 
+// Returns the positions in which a body starts, by vertex of its mesh [m].
+Positions first_positions(const Body& body);
 // Returns the state in which a body starts: handled vertices are at rest, and handles move them from there.
 State start_state(const Model& model, const Body& body);
 

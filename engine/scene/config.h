@@ -213,6 +213,9 @@ class ConfigTable {
   std::vector<Vec3> vectors(const Key& key, std::size_t count) const;
   // Returns two numbers, both in range.
   Eigen::Vector2d pair(const Key& key, const Range& range) const;
+  // Returns a word, or two numbers in range; the fallback, which is a word, when the key is absent or wrong.
+  std::variant<std::string, Eigen::Vector2d> word_or_pair(const Key& key, const std::string& fallback,
+                                                          const Words& words, const Range& range) const;
   // Returns a list of pairs of finite numbers; it is empty when the key is absent or wrong.
   std::vector<std::pair<double, double>> pairs(const Key& key, std::size_t least, std::size_t most) const;
   bool is_text(const char* key) const;

@@ -314,6 +314,18 @@ Eigen::Vector2d ConfigTable::pair(const Key& key, const Range& range) const {
   return instead;
 }
 
+std::variant<std::string, Eigen::Vector2d> ConfigTable::word_or_pair(const Key& key, const std::string& fallback,
+                                                                     const Words& words, const Range& range) const {
+  const std::string allowed = fmt::format("{}, or two numbers, each {}", word_list(words.allowed), range.text());
+  const toml::node* node = find(key, "word or two numbers", fmt::format("\"{}\"", fallback), allowed);
+  if (node == nullptr) return fallback;
+  if (node->is_string()) return is_one_of(words, key, *node) ? *node->value_exact<std::string>() : fallback;
+  const std::optional<Eigen::Vector2d> value = as_vector<2>(*node);
+  if (value && range.contains(value->x()) && range.contains(value->y())) return *value;
+  wrong(key, *node, allowed);
+  return fallback;
+}
+
 std::vector<std::pair<double, double>> ConfigTable::pairs(const Key& key, std::size_t least, std::size_t most) const {
   const std::string allowed = fmt::format("{} to {} lists of two numbers", least, most);
   const toml::node* node = find(key, "list of pairs", "none", allowed);

@@ -61,18 +61,18 @@ DrawnBody drawn_mesh(const Body& body) {
   drawn.skin = skin_of_surface(placed.rest * turn_of(body), surface, square_of(body), drawn.vertex_of);
   for (std::size_t v = 0; v < drawn.vertex_of.size(); ++v)
     drawn.skin.rest.points.row(v) = placed.rest.row(drawn.vertex_of[v]);
-  drawn.color = body.def.color.value_or(Shape{}.color);
+  drawn.color = body.def.color.value_or(body.def.shape.empty() ? Shape{}.color : body.shape.color);
   return drawn;
 }
 
 }  // namespace
 
-std::vector<DrawnBody> drawn_bodies(const std::vector<Body>& bodies, const Making& making) {
+std::vector<DrawnBody> drawn_bodies(const std::vector<Body>& bodies, const Making& making, BodySurface surface) {
   std::vector<DrawnBody> result;
   std::map<std::string, CarriedSkin> skins;  // by name
   for (const Body& body : bodies) {
     DrawnBody drawn;
-    if (body.def.surface.empty() && body.def.shape.empty()) {
+    if (surface == BodySurface::elements || (body.def.surface.empty() && body.def.shape.empty())) {
       drawn = drawn_mesh(body);
     } else {
       const SkinRequest request = request_for(body);

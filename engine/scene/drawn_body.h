@@ -17,7 +17,14 @@ struct DrawnBody {
   std::vector<PaintLayer> layers;  // colours only; their areas live in the skin
 };
 
+// Chooses the surface by which bodies are drawn.
+enum class BodySurface {
+  skin,      // that of its shape or surface file, where it has one
+  elements,  // the boundary of its elements
+};
+
 // Makes what is drawn of each body. Bodies that are drawn alike share the work, and skins are kept from run to run.
-std::vector<DrawnBody> drawn_bodies(const std::vector<Body>& bodies, const Making& making = {});
+std::vector<DrawnBody> drawn_bodies(const std::vector<Body>& bodies, const Making& making = {},
+                                    BodySurface surface = BodySurface::skin);
 
 }  // namespace supple

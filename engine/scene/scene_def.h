@@ -193,6 +193,47 @@ struct LookDef {
   Vec3 background = Vec3(0.851, 0.871, 0.902);  // sRGB
   double exposure = 1;
   bool show_labels = true;
+  bool wireframe = false;  // bodies are drawn as their elements, with the elements' edges
+};
+
+// Names the field that the surfaces of bodies show.
+enum class FieldQuantity { none, stretch, compression, volume, energy, stress, speed, depth, distance };
+template <>
+struct Names<FieldQuantity> {
+  static constexpr std::array table = {
+      Name{FieldQuantity::none, "none"},         Name{FieldQuantity::stretch, "stretch"},
+      Name{FieldQuantity::compression, "compression"}, Name{FieldQuantity::volume, "volume"},
+      Name{FieldQuantity::energy, "energy"},     Name{FieldQuantity::stress, "stress"},
+      Name{FieldQuantity::speed, "speed"},       Name{FieldQuantity::depth, "depth"},
+      Name{FieldQuantity::distance, "distance"}};
+};
+
+// Names how the range of a field is found where no numbers are given.
+enum class FieldRange {
+  usual,  // from the quantity and the bodies (film/surface_field.h)
+  film,   // from the whole film, which only a drawing from saved motion knows
+};
+template <>
+struct Names<FieldRange> {
+  static constexpr std::array table = {Name{FieldRange::usual, "usual"}, Name{FieldRange::film, "film"}};
+};
+
+// Names the colours of a field.
+enum class FieldColors { usual, viridis, blue_yellow, blue_orange };
+template <>
+struct Names<FieldColors> {
+  static constexpr std::array table = {
+      Name{FieldColors::usual, "usual"}, Name{FieldColors::viridis, "viridis"},
+      Name{FieldColors::blue_yellow, "blue-yellow"}, Name{FieldColors::blue_orange, "blue-orange"}};
+};
+
+struct FieldDef {
+  FieldQuantity quantity = FieldQuantity::none;
+  FieldRange range_by = FieldRange::usual;
+  std::optional<Eigen::Vector2d> range;  // low and high, in the quantity's unit
+  FieldColors colors = FieldColors::usual;
+  bool legend = true;
+  std::filesystem::path reference;  // folder of the run to which distances are measured
 };
 
 struct OutputDef {
@@ -214,6 +255,7 @@ struct SceneDef {
   std::vector<ColliderDef> colliders;
   CameraDef camera;
   LookDef look;
+  FieldDef field;
   OutputDef output;
   std::size_t sweep_points = 0;  // of the [sweep] table (sweep.h), which a scene that is run alone leaves aside
   std::filesystem::path assets;

@@ -6,6 +6,7 @@
 #include "scene/body_reader.h"
 #include "scene/camera_reader.h"
 #include "scene/collider_reader.h"
+#include "scene/look_reader.h"
 #include "scene/solver_reader.h"
 #include "scene/sweep.h"
 
@@ -59,15 +60,8 @@ SceneDef read_scene(Config& config) {
     if (!known)
       camera->complain("follow", fmt::format("follow: no body or collider is called '{}'", scene.camera.follow));
   }
-  if (const auto look = root.table({"look", "", "ground, background and light"})) {
-    scene.look.ground =
-        look->vector({"ground", "sRGB", "colour of the ground"}, scene.look.ground, Range::between(0, 1));
-    scene.look.background = look->vector({"background", "sRGB", "colour that the ground fades into"},
-                                         scene.look.background, Range::between(0, 1));
-    scene.look.exposure =
-        look->number({"exposure", "", "multiplies the light"}, scene.look.exposure, Range::above(0, 100));
-    scene.look.show_labels = look->boolean({"labels", "", "captions below the bodies"}, scene.look.show_labels);
-  }
+  scene.look = read_look(root, scene.look);
+  scene.field = read_field(root);
   if (const auto output = root.table({"output", "", "the pictures"})) {
     scene.output.width = output->integer({"width", "pixels", "even, for the film's encoder"}, scene.output.width,
                                          Range::between(16, 8192));

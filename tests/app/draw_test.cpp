@@ -133,6 +133,58 @@ TEST_F(DrawnRun, GivesOneFrameAsAPicture) {
   EXPECT_NE(late.err.find("the run's last frame is 11"), std::string::npos) << late.err;
 }
 
+TEST_F(DrawnRun, ShowsAFieldWithTheRangeOfTheWholeFilm) {
+  ASSERT_EQ(draw("stretch", {"--field", "stretch"}).status, 0);
+  ASSERT_EQ(draw("last", {"--field", "stretch", "--first", "11"}).status, 0);
+  EXPECT_EQ(picture("last", 0), picture("stretch", 11)) << "the range depends on which frames are drawn";
+  ASSERT_EQ(draw("parts-of-field", {"--field", "stretch", "--jobs", "2"}).status, 0);
+  EXPECT_EQ(picture("parts-of-field", 11), picture("stretch", 11));
+  ASSERT_EQ(draw("given", {"--field", "stretch", "--range", "0.5,4"}).status, 0);
+  EXPECT_NE(picture("given", 11), picture("stretch", 11));
+  EXPECT_NE(picture("stretch", 11), picture("run", 11));
+  const Result backwards = draw("none", {"--field", "stretch", "--range", "2,1"});
+  EXPECT_EQ(backwards.status, 2);
+  EXPECT_NE(backwards.err.find("the first number must be below the second"), std::string::npos) << backwards.err;
+}
+
+// The field of the scene itself is drawn in the run, and again with the same bytes: speed needs the frame before, which
+// of the first frame is the start.
+TEST_F(DrawnRun, HasTheBytesOfARunWithAField) {
+  for (const char* field : {"speed", "depth"}) {
+    const std::string name = std::string("run-") + field;
+    ASSERT_EQ(run(folder_->path, {"replay", "replay.toml", "--out", name, "--quiet", "--set",
+                                  std::string("field.quantity=") + field})
+                  .status,
+              0);
+    ASSERT_EQ(run(folder_->path, {"draw", name, "--quiet"}).status, 0);
+    for (const int frame : {0, 5, 11}) EXPECT_EQ(picture(name + "-drawn", frame), picture(name, frame)) << frame;
+    EXPECT_NE(picture(name, 5), picture("run", 5));
+  }
+}
+
+TEST_F(DrawnRun, ShowsTheDistanceToAnotherRun) {
+  ASSERT_EQ(run(folder_->path, {"replay", "replay.toml", "--out", "rough", "--quiet", "--no-images", "--set",
+                                "solver.iterations=1"})
+                .status,
+            0);
+  ASSERT_EQ(draw("far", {"--field", "distance", "--reference", "rough"}).status, 0);
+  ASSERT_EQ(draw("near", {"--field", "distance", "--reference", "run"}).status, 0);
+  EXPECT_NE(picture("far", 11), picture("near", 11));
+  const Result missing = draw("none", {"--field", "distance"});
+  EXPECT_EQ(missing.status, 2);
+  EXPECT_NE(missing.err.find("distance needs a reference"), std::string::npos) << missing.err;
+  const Result nowhere = draw("none", {"--field", "distance", "--reference", "nowhere"});
+  EXPECT_EQ(nowhere.status, 2);
+}
+
+TEST_F(DrawnRun, KnowsTheRangeOfTheFilmOnlyOnceItIsMade) {
+  const Result result = run(folder_->path, {"render", "two.toml", "--out", "none", "--quiet", "--set",
+                                            "field.quantity=stretch", "--set", "field.range=film"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("is known only once the film has been made"), std::string::npos) << result.err;
+  EXPECT_FALSE(std::filesystem::exists(path("none")));
+}
+
 TEST_F(DrawnRun, RefusesWhatWouldHaveMovedOtherwise) {
   const Result material = draw("none", {"--set", "body.bar.material.mu=1e4"});
   EXPECT_EQ(material.status, 2);

@@ -7,11 +7,13 @@
 // scene with that thing removed, and expects a difference beyond the tolerance.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <functional>
 
-#include "film/camera.h"
-#include "film/draw_scene.h"
+#include "film/drawn_film.h"
+#include "output/obj_file.h"
 #include "output/png_file.h"
+#include "output/point_cache.h"
 #include "render/renderer.h"
 #include "support/film.h"
 
@@ -58,21 +60,21 @@ Picture picture_of(const Shot& shot, const Settings& more = {}) {
   settings.insert(settings.end(), shot.settings.begin(), shot.settings.end());
   settings.insert(settings.end(), more.begin(), more.end());
   const test::Film film(shot.scene, settings);
-  std::vector<State> states;
-  std::vector<DrawnBody> drawn = drawn_bodies(film.bodies);
-  for (std::size_t b = 0; b < film.bodies.size(); ++b) states.push_back(start_state(film.models[b], film.bodies[b]));
-  film.play(1, shot.frames,
-            [&](std::size_t b, int, const State&, const StepInputs&, const State& after) { states[b] = after; });
-  const std::vector<Skin> colliders = collider_skins(film.set.obstacles, film.bodies);
-  Picture picture;
-  picture.stage = make_stage(film.scene, film.bodies, drawn, film.set.obstacles, colliders, shot.font);
-  picture.list.camera = camera_at(film.scene, picture.stage, shot.frames / film.scene.fps);
-  fit_to_cameras(drawn, film.bodies, {picture.list.camera}, film.scene.output.height);
-  picture.stage = make_stage(film.scene, film.bodies, drawn, film.set.obstacles, colliders, shot.font);
-  for (std::size_t b = 0; b < film.bodies.size(); ++b)
-    picture.list.positions.push_back(skin_positions(drawn[b], in_input_order(film.models[b], states[b].x)));
-  add_colliders(film.set.obstacles, colliders, shot.frames / film.scene.fps, picture.list);
-  return picture;
+  const Script script = Script::load(shot.scene, test::assets, settings);
+  const BodySurface surface = film.scene.look.wireframe ? BodySurface::elements : BodySurface::skin;
+  DrawnFilm drawn(script, film.bodies, drawn_bodies(film.bodies, {}, surface), film.set, shot.font);
+  std::vector<Positions> motion, before;
+  for (const Body& body : film.bodies) motion.push_back(first_positions(body));
+  before = motion;
+  film.play(1, shot.frames, [&](std::size_t b, int, const State& from, const StepInputs&, const State& to) {
+    before[b] = in_input_order(film.models[b], from.x);
+    motion[b] = in_input_order(film.models[b], to.x);
+  });
+  FramePose pose{shot.frames - 1, shot.frames / film.scene.fps, {}, {}};
+  for (const Positions& body : motion) pose.motion.push_back(&body);
+  for (const Positions& body : before) pose.before.push_back(&body);
+  Threads threads(1);
+  return {drawn.stage(), drawn.list(film.scene, pose, film.set, threads)};
 }
 
 Image draw(const Picture& picture, GlChoice gl = GlChoice::osmesa) {
@@ -197,6 +199,50 @@ TEST(Golden, ABodyIsDrawnByTheSurfaceOfItsFile) {
   expect_golden(
       "surface", {written_for_tests("surface")},
       {{{"body.steps.box={ extent = [1.4, 0.9, 2.1], cells = [6, 4, 9] }"}}, {{"body.steps.start.twist_deg=0"}}});
+}
+
+// The bar is stretched to 1.5 of its length in the middle of the range; the cloth beside it has no stress.
+TEST(Golden, AFieldIsShownInColoursWithItsLegend) {
+  const std::string font = std::filesystem::exists(lato) ? lato : "";
+  if (font.empty()) GTEST_SKIP() << lato << " is not installed";
+  const Shot stretch = {written_for_tests("field"), {"field.quantity=stretch"}, 0, font};
+  expect_golden("field-stretch", stretch,
+                {{{"field.quantity=none"}}, {{"field.legend=false"}}, {{"field.colors=blue-yellow"}}});
+  const auto with = [&stretch](std::vector<std::string> settings, int frames = 0) {
+    Shot shot = stretch;
+    shot.settings = std::move(settings);
+    shot.frames = frames;
+    return shot;
+  };
+  const Removal none = {{"field.quantity=none"}};
+  expect_golden("field-compression", with({"field.quantity=compression"}), {none});
+  expect_golden("field-volume", with({"field.quantity=volume"}), {none, {{"field.colors=viridis"}}});
+  expect_golden("field-energy", with({"field.quantity=energy", "field.range=[0, 1e4]"}), {none, {{"field.range=[0, 1e6]"}}});
+  expect_golden("field-stress", with({"field.quantity=stress", "field.range=[0, 4e4]"}), {none});
+  expect_golden("field-speed", with({"field.quantity=speed", "field.range=[0, 0.5]"}, 3), {none});
+  expect_golden("field-depth", with({"field.quantity=depth", "field.range=[0, 0.1]"}), {none});
+}
+
+// The reference is a run in which nothing has moved, so that the colours show how far each body was deformed.
+TEST(Golden, TheDistanceToAnotherRunIsShownInColours) {
+  const test::TemporaryFolder run;
+  std::filesystem::create_directories(run.path / "motion");
+  std::ofstream(run.path / "run.json") << "{}";
+  const test::Film film(written_for_tests("field"), {});
+  for (const Body& body : film.bodies) {
+    const Positions& rest = body.description.mesh.rest;
+    PointCacheWriter(run.path / "motion" / (body.def.name + ".pc2"), int(rest.rows()))
+        .add(rest.rowwise() - motion_origin(rest).transpose());
+  }
+  expect_golden("field-distance",
+                {written_for_tests("field"),
+                 {"field.quantity=distance", "field.range=[0, 0.3]", "field.reference=" + run.path.string()},
+                 1},
+                {{{"field.quantity=none", "field.reference="}}});
+}
+
+TEST(Golden, AWireframeShowsTheElementsOverAField) {
+  expect_golden("wireframe", {written_for_tests("field"), {"look.wireframe=true"}}, {{{"look.wireframe=false"}}});
 }
 
 // The renewed meshes have colours that no mesh had when the film began.

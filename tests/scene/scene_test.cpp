@@ -250,6 +250,7 @@ keys = [{{ t = 0 }}]
 [camera]
 keys = [{{ t = 0 }}]
 [look]
+[field]
 [output]
 [sweep.values]
 )",

@@ -9,7 +9,6 @@
 #include "sim/model/element_view.h"
 
 namespace supple {
-namespace {
 
 double von_mises(const Mat3& f, const Mat3& piola) {
   const double volume = f.determinant();
@@ -18,6 +17,8 @@ double von_mises(const Mat3& f, const Mat3& piola) {
   const Mat3 deviator = cauchy - cauchy.trace() / 3 * Mat3::Identity();
   return std::sqrt(1.5) * deviator.norm();
 }
+
+namespace {
 
 // Adds one material's elements, one by one.
 template <class M>

@@ -1,0 +1,62 @@
+#include "render/legend.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/caption.h"
+
+namespace supple {
+namespace {
+
+const Vec3 ink(0.16, 0.16, 0.17), paper(0.97, 0.97, 0.96);
+constexpr double plate_opacity = 0.82;  // text stays legible on any background, and what lies behind can be guessed
+
+// Holds the sizes of a legend's parts [pixels].
+struct Layout {
+  int em, line, pad, bar_width, bar_height, labels, width, height;
+};
+
+Layout layout_of(const FieldLook& field, const std::string& font, int picture_height) {
+  Layout layout{};
+  layout.em = std::max(9, static_cast<int>(std::lround(picture_height / 36.0)));
+  const CaptionBitmap title = draw_caption(font, field.title, layout.em);
+  layout.line = title.height;
+  layout.pad = std::max(4, layout.em / 2);
+  layout.bar_width = std::max(6, layout.em * 3 / 4);
+  layout.bar_height = static_cast<int>(0.4 * picture_height);
+  for (const auto& [place, value] : field.ticks)
+    layout.labels = std::max(layout.labels, draw_caption(font, value, layout.em).width);
+  layout.width = 2 * layout.pad + std::max(title.width, layout.bar_width + layout.pad + layout.labels);
+  layout.height = 2 * layout.pad + layout.line + layout.line / 2 + layout.bar_height + layout.line / 2;
+  return layout;
+}
+
+}  // namespace
+
+Sticker legend_of(const FieldLook& field, const std::string& font, int height) {
+  if (field.title.empty() || font.empty()) return {};
+  const Layout layout = layout_of(field, font, height);
+  Sticker legend(layout.width, layout.height);
+  legend.plate({0, 0, layout.width, layout.height}, 0.5 * layout.em, paper, plate_opacity);
+  legend.text(font, field.title, layout.em, layout.pad, layout.pad, ink);
+  const int top = layout.pad + layout.line + layout.line / 2, left = layout.pad;
+  for (int row = 0; row < layout.bar_height; ++row) {
+    const double place = 1 - (row + 0.5) / layout.bar_height;
+    const auto color = static_cast<std::size_t>(place * static_cast<double>(field.colors.size()));
+    legend.fill({left, top + row, layout.bar_width, 1}, field.colors[std::min(color, field.colors.size() - 1)]);
+  }
+  for (const auto& [place, value] : field.ticks) {
+    const int row = top + static_cast<int>(std::lround((1 - place) * (layout.bar_height - 1)));
+    const int mark = std::max(1, layout.em / 10);
+    legend.fill({left + layout.bar_width, row - mark / 2, std::max(2, layout.pad / 2), mark}, ink);
+    legend.text(font, value, layout.em, left + layout.bar_width + layout.pad, row - layout.line / 2, ink);
+  }
+  return legend;
+}
+
+PixelRect legend_place(const Sticker& legend, int width, int height) {
+  const int margin = height / 36;
+  return {width - margin - legend.width(), (height - legend.height()) / 2, legend.width(), legend.height()};
+}
+
+}  // namespace supple

@@ -1,0 +1,14 @@
+// Draws the legend of a field: a bar with the field's colours, its values beside it and its name above.
+#pragma once
+
+#include "render/sticker.h"
+
+namespace supple {
+
+// Makes the legend for a picture of this height [pixels]; it is empty when the field has no title or there is no font.
+Sticker legend_of(const FieldLook& field, const std::string& font, int height);
+
+// Returns where the legend stands in a picture: at the right edge, in the middle of the height.
+PixelRect legend_place(const Sticker& legend, int width, int height);
+
+}  // namespace supple

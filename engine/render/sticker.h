@@ -1,0 +1,48 @@
+// A small picture with coverage (text, plates, bars) that is laid over a finished picture, without OpenGL. Not here: what
+// is written and where (captions.h, legend.h).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "render/draw_list.h"
+
+namespace supple {
+
+// Describes a rectangle in pixels, counted from the upper left corner of a picture.
+struct PixelRect {
+  int x = 0, y = 0, width = 0, height = 0;
+  int right() const { return x + width; }
+  int bottom() const { return y + height; }
+  bool overlaps(const PixelRect& other) const {
+    return x < other.right() && other.x < right() && y < other.bottom() && other.y < bottom();
+  }
+};
+
+class Sticker {
+ public:
+  Sticker() = default;
+  Sticker(int width, int height);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  // Each of these functions lays something over what is there. color: sRGB; opacity: 0 to 1.
+  void fill(const PixelRect& area, const Vec3& color, double opacity = 1);
+  // Fills with rounded corners of this radius [pixels].
+  void plate(const PixelRect& area, double radius, const Vec3& color, double opacity);
+  // Writes text whose box has its upper left corner at (x, y). pixels: the height of the font's em.
+  void text(const std::string& font, const std::string& text, int pixels, int x, int y, const Vec3& color);
+
+  // Lays itself over a picture; what lies outside the picture is left out.
+  void onto(Image& image, int x, int y) const;
+
+ private:
+  void cover(int x, int y, const Vec3& color, double opacity);
+
+  int width_ = 0, height_ = 0;
+  std::vector<float> pixels_;  // rows from the top; sRGB times coverage, and coverage, each 0 to 1
+};
+
+}  // namespace supple

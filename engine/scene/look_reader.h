@@ -1,0 +1,12 @@
+// Reads what is seen beside the bodies and the camera: the tables [look] and [field] of a scene file.
+#pragma once
+
+#include "scene/config.h"
+#include "scene/scene_def.h"
+
+namespace supple {
+
+LookDef read_look(const ConfigTable& root, LookDef look);
+FieldDef read_field(const ConfigTable& root);
+
+}  // namespace supple

@@ -1,0 +1,165 @@
+// Tests the values and the ranges of fields on surfaces, at poses whose fields are known.
+#include "film/surface_field.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "support/film.h"
+#include "support/scene_text.h"
+
+namespace supple {
+namespace {
+
+// Holds a bar, a cloth and a ground, with one quantity.
+struct Fixture {
+  test::TemporaryFolder folder;
+  std::unique_ptr<test::Film> film;
+  std::vector<Positions> motion;
+
+  explicit Fixture(const std::string& quantity, const std::vector<std::string>& more = {}) {
+    const std::filesystem::path path = folder.path / "scene.toml";
+    std::ofstream(path) << R"([[body]]
+name = "bar"
+box = { extent = [1, 0.5, 0.5], cells = [4, 2, 2] }
+material = { model = "neo-hookean", mu = 1e4, lambda = 2e4 }
+position = [0, 1, 0]
+[[body]]
+name = "sheet"
+cloth = { extent = [1, 1], cells = [4, 4], stretch = 10, bend = 1 }
+[[collider]]
+name = "ground"
+shape = { half_space = { normal = [0, 1, 0] } }
+)";
+    std::vector<std::string> settings = {"field.quantity=" + quantity};
+    settings.insert(settings.end(), more.begin(), more.end());
+    film = std::make_unique<test::Film>(path, settings);
+    for (const Body& body : film->bodies) motion.push_back(body.description.mesh.rest);
+  }
+  FramePose pose(const std::vector<Positions>& before = {}) const {
+    FramePose pose{0, 0, {}, {}};
+    for (const Positions& body : motion) pose.motion.push_back(&body);
+    for (const Positions& body : before) pose.before.push_back(&body);
+    return pose;
+  }
+  std::vector<std::vector<double>> values(SurfaceField& field, const std::vector<Positions>& before = {}) const {
+    return field.values(pose(before), film->set, nullptr);
+  }
+};
+
+TEST(SurfaceField, IsTheStretchOfSolidsAndOfCloth) {
+  Fixture fixture("stretch");
+  SurfaceField field(fixture.film->scene, fixture.film->bodies);
+  fixture.motion[0].col(0) *= 1.5;
+  fixture.motion[1].col(0) *= 1.25;
+  const auto values = fixture.values(field);
+  ASSERT_EQ(values[0].size(), std::size_t(fixture.motion[0].rows()));
+  for (const double value : values[0]) EXPECT_NEAR(value, 1.5, 1e-12);
+  for (const double value : values[1]) EXPECT_NEAR(value, 1.25, 1e-9);
+}
+
+TEST(SurfaceField, IsTheVolumeAndTheAreaOverThoseAtRest) {
+  Fixture fixture("volume");
+  SurfaceField field(fixture.film->scene, fixture.film->bodies);
+  for (Positions& body : fixture.motion) body *= 0.9;
+  const auto values = fixture.values(field);
+  for (const double value : values[0]) EXPECT_NEAR(value, 0.9 * 0.9 * 0.9, 1e-12);
+  for (const double value : values[1]) EXPECT_NEAR(value, 0.9 * 0.9, 1e-9);
+}
+
+TEST(SurfaceField, IsTheSpeedSinceTheFrameBefore) {
+  Fixture fixture("speed", {"fps=20"});
+  SurfaceField field(fixture.film->scene, fixture.film->bodies);
+  ASSERT_TRUE(field.needs_before());
+  std::vector<Positions> before = fixture.motion;
+  for (Positions& body : fixture.motion) body.col(2).array() += 0.1;
+  for (const auto& body : fixture.values(field, before)) {
+    for (const double value : body) EXPECT_NEAR(value, 2, 1e-9);
+  }
+}
+
+TEST(SurfaceField, IsTheDepthBelowTheGround) {
+  Fixture fixture("depth");
+  SurfaceField field(fixture.film->scene, fixture.film->bodies);
+  fixture.motion[0].col(1).array() -= 1.2;
+  const auto values = fixture.values(field);
+  for (Eigen::Index v = 0; v < fixture.motion[0].rows(); ++v)
+    EXPECT_NEAR(values[0][v], std::max(0.0, -fixture.motion[0](v, 1)), 1e-12);
+}
+
+TEST(SurfaceField, LeavesOutBodiesThatDoNotHaveIt) {
+  Fixture fixture("stress");
+  const SurfaceField field(fixture.film->scene, fixture.film->bodies);
+  EXPECT_TRUE(field.shown_on(0));
+  EXPECT_FALSE(field.shown_on(1));
+  std::vector<Body> cloths = {fixture.film->bodies[1]};
+  EXPECT_THROW(SurfaceField(fixture.film->scene, cloths), InputError);
+}
+
+TEST(SurfaceField, HasTheRangeThatIsGivenOrThatOfTheWholeFilm) {
+  Fixture fixture("stretch", {"field.range=[0.5, 3]"});
+  SurfaceField given(fixture.film->scene, fixture.film->bodies);
+  EXPECT_EQ(given.range(), Eigen::Vector2d(0.5, 3));
+  Fixture automatic("stretch");
+  SurfaceField field(automatic.film->scene, automatic.film->bodies);
+  EXPECT_EQ(field.range(), Eigen::Vector2d(1, 2));
+  for (const double stretch : {1.2, 1.41, 1.1}) {
+    automatic.motion[0] = automatic.film->bodies[0].description.mesh.rest;
+    automatic.motion[0].col(0) *= stretch;
+    field.include(automatic.values(field));
+  }
+  field.settle();
+  EXPECT_NEAR(field.range().x(), 1, 1e-12);
+  EXPECT_NEAR(field.range().y(), 1.5, 1e-12);  // 0.41 is rounded up to 0.5
+}
+
+TEST(SurfaceField, GoesToTheSkinWithinItsRange) {
+  Fixture fixture("stretch", {"field.range=[1, 3]"});
+  const SurfaceField field(fixture.film->scene, fixture.film->bodies);
+  DrawnBody drawn;
+  drawn.vertex_of = {0, 2, 1, 0};
+  const double undefined = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(field.on_skin(drawn, {2, undefined, 9}), (std::vector<float>{0.5f, 1.0f, no_field, 0.5f}));
+  DrawnBody carried;  // by one element, from outside of it: the negative weight does not count
+  carried.embedding.corners.resize(1, 4);
+  carried.embedding.corners << 0, 1, 2, 3;
+  carried.embedding.weights.resize(1, 4);
+  carried.embedding.weights << 0.5, -0.5, 1.0, 0;
+  EXPECT_FLOAT_EQ(field.on_skin(carried, {1, 3, 2.5, 3}).front(), 0.5f);
+}
+
+TEST(SurfaceField, HasALegendThatReadsWell) {
+  EXPECT_EQ(rounded_up(0.041), 0.05);
+  EXPECT_EQ(rounded_up(2), 2);
+  EXPECT_NEAR(rounded_up(5.1), 10, 1e-12);
+  std::vector<std::string> texts;
+  for (const auto& [place, text] : ticks_between(0, 2, 1)) texts.push_back(text);
+  EXPECT_EQ(texts, (std::vector<std::string>{"0", "0.5", "1", "1.5", "2"}));
+  Fixture fixture("stress", {"field.range=[0, 20000]"});
+  const FieldLook look = SurfaceField(fixture.film->scene, fixture.film->bodies).look();
+  EXPECT_EQ(look.title, "von Mises stress [kPa]");
+  EXPECT_EQ(look.ticks.back().second, "20");
+  EXPECT_EQ(look.ticks.back().first, 1);
+  Fixture silent("stress", {"field.legend=false"});
+  EXPECT_EQ(SurfaceField(silent.film->scene, silent.film->bodies).look().title, "");
+}
+
+TEST(SurfaceField, RefusesARangeThatRunsBackwards) {
+  for (const auto& [text, expected] : std::vector<std::pair<std::string, std::string>>{
+           {"quantity = \"strech\"", "did you mean 'stretch'?"},
+           {"range = [2, 1]", "range: the first number must be below the second"},
+           {"range = [2, 1, 3]", "range = [2, 1, 3]: must be usual or film, or two numbers"},
+           {"quantity = \"distance\"", "distance needs a reference"},
+           {"reference = \"out/a\"", "reference: is used by quantity = \"distance\" alone"},
+           {"colors = \"jet\"", "colors = 'jet': must be usual, viridis, blue-yellow or blue-orange"}}) {
+    const std::vector<std::string> problems = test::problems_of(
+        "[[body]]\nbox = { extent = [1, 1, 1], cells = [1, 1, 1] }\nmaterial = { model = \"neo-hookean\", mu = 1e4, lambda = 1e4 }\n[field]\n" + text + "\n");
+    ASSERT_EQ(problems.size(), 1u) << text;
+    EXPECT_NE(problems[0].find(expected), std::string::npos) << problems[0];
+    EXPECT_TRUE(problems[0].starts_with("scene.toml:5:")) << problems[0];
+  }
+}
+
+}  // namespace
+}  // namespace supple
