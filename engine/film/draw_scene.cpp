@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "geometry/simplify.h"
+#include "geometry/skin_stretch.h"
 #include "render/view.h"
 
 namespace supple {
@@ -105,26 +106,12 @@ double pixel_on(const Bounds& body, const Camera& camera, int height) {
   return 2 * std::tan(camera.fov_deg * std::numbers::pi / 360) * nearest / height;
 }
 
-double mean_edge(const TetMesh& mesh) {
-  double sum = 0;
-  for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e)
-    sum += (mesh.rest.row(mesh.tets(e, 1)) - mesh.rest.row(mesh.tets(e, 0))).norm();
-  return sum / static_cast<double>(std::max<Eigen::Index>(1, mesh.tets.rows()));
-}
-
 void fit_to_pixels(DrawnBody& drawn, const TetMesh& mesh, double pixel) {
   // The surface bends from element to element, so the triangles that are drawn may be no longer than two elements. With
   // an error of 0.75 pixels, dents were visible in enlarged pictures.
   drawn.skin.rest.triangles = simplified(drawn.skin, 0.4 * pixel, 2 * mean_edge(mesh), drawn.layers);
   const std::vector<std::int32_t> kept = remove_unused_vertices(drawn.skin);
-  Embedding& embedding = drawn.embedding;
-  for (std::size_t v = 0; v < kept.size(); ++v) {
-    const auto to = static_cast<Eigen::Index>(v);
-    embedding.corners.row(to) = embedding.corners.row(kept[v]).eval();
-    embedding.weights.row(to) = embedding.weights.row(kept[v]).eval();
-  }
-  embedding.corners.conservativeResize(static_cast<Eigen::Index>(kept.size()), 4);
-  embedding.weights.conservativeResize(static_cast<Eigen::Index>(kept.size()), 4);
+  keep_points(drawn.embedding, kept);
   // A texel of the shadow map is about as large as a pixel, and a shadow shows neither normals nor paint.
   drawn.casters = simplified(drawn.skin, 0.8 * pixel, 2 * mean_edge(mesh), {});
 }
@@ -145,13 +132,14 @@ void fit_to_cameras(std::vector<DrawnBody>& drawn, const std::vector<Body>& bodi
 std::vector<float> skin_positions(const DrawnBody& drawn, const Positions& mesh, Threads* threads) {
   const bool carried = drawn.vertex_of.empty();
   const Embedding& embedding = drawn.embedding;
-  const Eigen::Index count = carried ? embedding.corners.rows() : Eigen::Index(drawn.vertex_of.size());
+  const Eigen::Index count = carried ? embedding.points() : Eigen::Index(drawn.vertex_of.size());
   std::vector<float> result(3 * std::size_t(count));
+  const std::vector<Mat3> frames = carried ? frames_at(embedding.frames, mesh, threads) : std::vector<Mat3>();
   constexpr Eigen::Index chunk = 4096;
   run_chunks(threads, static_cast<int>((count + chunk - 1) / chunk), 12 * count, [&](int number) {
     const Eigen::Index end = std::min(count, (number + 1) * chunk);
     for (Eigen::Index v = number * chunk; v < end; ++v) {
-      const Vec3 point = carried ? embedded_point(embedding, v, mesh) : Vec3(mesh.row(drawn.vertex_of[v]));
+      const Vec3 point = carried ? embedded_point(embedding, v, mesh, frames) : Vec3(mesh.row(drawn.vertex_of[v]));
       for (int k = 0; k < 3; ++k) result[3 * std::size_t(v) + std::size_t(k)] = static_cast<float>(point[k]);
     }
   });

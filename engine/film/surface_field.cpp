@@ -236,15 +236,7 @@ std::vector<float> SurfaceField::on_skin(const DrawnBody& drawn, const std::vect
   for (std::size_t v = 0; v < count; ++v) {
     double value = 0;
     if (carried) {
-      // A point outside its element has negative weights; without them no value lies beyond those of the corners.
-      double sum = 0;
-      const auto row = static_cast<Eigen::Index>(v);
-      for (int k = 0; k < 4; ++k) {
-        const double weight = std::max(0.0, drawn.embedding.weights(row, k));
-        value += weight * values[drawn.embedding.corners(row, k)];
-        sum += weight;
-      }
-      value /= sum;
+      value = embedded_value(drawn.embedding, static_cast<Eigen::Index>(v), values);
     } else {
       value = values[drawn.vertex_of[v]];
     }

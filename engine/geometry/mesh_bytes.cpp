@@ -83,8 +83,16 @@ std::string bytes_of(const CarriedSkin& carried) {
   add_list(bytes, carried.skin.occlusion);
   add_list(bytes, carried.skin.paint);
   add_list(bytes, carried.skin.square);
-  add_rows(bytes, carried.embedding.corners);
-  add_rows(bytes, carried.embedding.weights);
+  const Embedding& embedding = carried.embedding;
+  add_rows(bytes, embedding.corners);
+  add_rows(bytes, embedding.weights);
+  add_list(bytes, embedding.begin);
+  add_list(bytes, embedding.shares);
+  add_rows(bytes, embedding.offset);
+  add_list(bytes, embedding.frames.vertex);
+  add_list(bytes, embedding.frames.begin);
+  add_list(bytes, embedding.frames.corner);
+  add_rows(bytes, embedding.frames.gradient);
   return bytes;
 }
 
@@ -92,9 +100,13 @@ std::optional<CarriedSkin> carried_skin_from(std::string_view bytes) {
   Reader reader(bytes);
   CarriedSkin carried;
   Skin& skin = carried.skin;
+  Embedding& embedding = carried.embedding;
+  VertexFrames& frames = embedding.frames;
   const bool read = reader.rows(skin.rest.points) && reader.rows(skin.rest.triangles) && reader.list(skin.occlusion) &&
-                    reader.list(skin.paint) && reader.list(skin.square) && reader.rows(carried.embedding.corners) &&
-                    reader.rows(carried.embedding.weights);
+                    reader.list(skin.paint) && reader.list(skin.square) && reader.rows(embedding.corners) &&
+                    reader.rows(embedding.weights) && reader.list(embedding.begin) && reader.list(embedding.shares) &&
+                    reader.rows(embedding.offset) && reader.list(frames.vertex) && reader.list(frames.begin) &&
+                    reader.list(frames.corner) && reader.rows(frames.gradient);
   return read && reader.at_end() ? std::optional(std::move(carried)) : std::nullopt;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "geometry/embedding.h"
 #include "geometry/skin.h"
 
 namespace supple {

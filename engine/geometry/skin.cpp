@@ -1,7 +1,6 @@
 #include "geometry/skin.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -157,75 +156,6 @@ Skin skin_of(const Shape& shape, double cell) {
     }
   }
   return skin;
-}
-
-Embedding embed(const Positions& points, const TetMesh& mesh) {
-  // Each element is listed in every grid cell that its box touches.
-  const Bounds box = bounds_of(mesh.rest);
-  const double cell = std::max(1e-12, 1.5 * std::cbrt(box.extent().prod() / std::max<double>(1, mesh.tets.rows())));
-  const Eigen::Vector3i cells = (box.extent() / cell).array().floor().cast<int>() + 1;
-  const auto cell_of = [&](const Vec3& p) -> Eigen::Vector3i {
-    const Vec3 grid = (p - box.lower) / cell;
-    return grid.array().floor().max(0.0).min((cells.cast<double>().array() - 1)).cast<int>();
-  };
-  const auto slot = [&](int i, int j, int k) { return (std::size_t(k) * cells.y() + j) * cells.x() + i; };
-  std::vector<std::vector<std::int32_t>> inside(std::size_t(cells.x()) * cells.y() * cells.z());
-  std::vector<Mat3> to_weights(mesh.tets.rows());
-  for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
-    Bounds element;
-    for (int k = 0; k < 4; ++k) element.include(mesh.rest.row(mesh.tets(e, k)).transpose());
-    const Eigen::Vector3i low = cell_of(element.lower), high = cell_of(element.upper);
-    for (int k = low.z(); k <= high.z(); ++k) {
-      for (int j = low.y(); j <= high.y(); ++j) {
-        for (int i = low.x(); i <= high.x(); ++i) inside[slot(i, j, k)].push_back(static_cast<std::int32_t>(e));
-      }
-    }
-    Mat3 edges;
-    for (int k = 0; k < 3; ++k)
-      edges.col(k) = (mesh.rest.row(mesh.tets(e, k + 1)) - mesh.rest.row(mesh.tets(e, 0))).transpose();
-    to_weights[e] = edges.inverse();
-  }
-
-  Embedding result;
-  result.corners.resize(points.rows(), 4);
-  result.weights.resize(points.rows(), 4);
-  for (Eigen::Index v = 0; v < points.rows(); ++v) {
-    const Vec3 point = points.row(v);
-    const Eigen::Vector3i center = cell_of(point);
-    double best = -1e300;
-    // Searches rings of cells until one holds elements, and one ring more, because the nearest element may lie across a
-    // cell's border.
-    int rings_left = -1;
-    for (int ring = 0; rings_left != 0; ++ring) {
-      for (int k = std::max(0, center.z() - ring); k <= std::min(cells.z() - 1, center.z() + ring); ++k) {
-        for (int j = std::max(0, center.y() - ring); j <= std::min(cells.y() - 1, center.y() + ring); ++j) {
-          for (int i = std::max(0, center.x() - ring); i <= std::min(cells.x() - 1, center.x() + ring); ++i) {
-            const int away = std::max({std::abs(i - center.x()), std::abs(j - center.y()), std::abs(k - center.z())});
-            if (away != ring) continue;
-            for (const std::int32_t e : inside[slot(i, j, k)]) {
-              const Vec3 w = to_weights[e] * (point - mesh.rest.row(mesh.tets(e, 0)).transpose());
-              const double least = std::min({1 - w.sum(), w.x(), w.y(), w.z()});
-              if (least <= best) continue;
-              best = least;
-              result.corners.row(v) = mesh.tets.row(e);
-              result.weights.row(v) << 1 - w.sum(), w.x(), w.y(), w.z();
-            }
-          }
-        }
-      }
-      if (best >= 0) break;
-      if (rings_left < 0 && best > -1e299) rings_left = 2;
-      if (rings_left > 0) --rings_left;
-    }
-  }
-  return result;
-}
-
-Vec3 embedded_point(const Embedding& embedding, Eigen::Index point, const Positions& mesh_positions) {
-  Vec3 sum = Vec3::Zero();
-  for (int k = 0; k < 4; ++k)
-    sum += embedding.weights(point, k) * mesh_positions.row(embedding.corners(point, k)).transpose();
-  return sum;
 }
 
 }  // namespace supple

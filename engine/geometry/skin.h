@@ -39,18 +39,4 @@ Skin skin_of(const Shape& shape, double cell);
 Skin skin_of_surface(const Positions& points, const Triangles& triangles, double square,
                      std::vector<std::int32_t>& vertex_of);
 
-// Expresses points as fixed combinations of mesh vertices.
-struct Embedding {
-  Tetrahedra corners;  // the mesh vertices of each point, n x 4
-  // These are barycentric weights; they sum to 1, and some are negative outside the element.
-  Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor> weights;
-};
-
-// Embeds each point in the element that contains it. A point outside all elements is embedded in the element from which
-// it is least far outside.
-Embedding embed(const Positions& points, const TetMesh& mesh);
-
-// Returns the place of an embedded point at the mesh's current positions.
-Vec3 embedded_point(const Embedding& embedding, Eigen::Index point, const Positions& mesh_positions);
-
 }  // namespace supple

@@ -34,10 +34,11 @@ struct SkinRequest {
 
   CarriedSkin make() const {
     CarriedSkin carried;
+    const TetMesh mesh{body.unplaced, body.description.mesh.tets, {}};
     std::vector<std::int32_t> vertex_of;
     carried.skin = body.def.shape.empty() ? skin_of_surface(body.skin.points, body.skin.triangles, number, vertex_of)
                                           : skin_of(body.shape, number);
-    carried.embedding = embed(carried.skin.rest.points, {body.unplaced, body.description.mesh.tets, {}});
+    carried.embedding = embed(carried.skin.rest, mesh);
     return carried;
   }
 
@@ -85,6 +86,7 @@ std::vector<DrawnBody> drawn_bodies(const std::vector<Body>& bodies, const Makin
       }
       drawn.skin = known->second.skin;
       drawn.embedding = known->second.embedding;
+      scale_lengths(drawn.embedding, scale_of(body));
       for (Eigen::Index v = 0; v < drawn.skin.rest.points.rows(); ++v)
         drawn.skin.rest.points.row(v) = (body.placement * Vec3(drawn.skin.rest.points.row(v))).transpose();
       drawn.color = body.def.color.value_or(body.shape.color);

@@ -1,6 +1,7 @@
 // Makes the drawn surfaces of bodies. They are made apart from the bodies, so that a run without images does not pay.
 #pragma once
 
+#include "geometry/embedding.h"
 #include "geometry/skin.h"
 #include "scene/assemble.h"
 

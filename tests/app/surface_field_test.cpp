@@ -121,12 +121,16 @@ TEST(SurfaceField, GoesToTheSkinWithinItsRange) {
   drawn.vertex_of = {0, 2, 1, 0};
   const double undefined = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(field.on_skin(drawn, {2, undefined, 9}), (std::vector<float>{0.5f, 1.0f, no_field, 0.5f}));
-  DrawnBody carried;  // by one element, from outside of it: the negative weight does not count
-  carried.embedding.corners.resize(1, 4);
-  carried.embedding.corners << 0, 1, 2, 3;
-  carried.embedding.weights.resize(1, 4);
-  carried.embedding.weights << 0.5, -0.5, 1.0, 0;
-  EXPECT_FLOAT_EQ(field.on_skin(carried, {1, 3, 2.5, 3}).front(), 0.5f);
+  DrawnBody carried;  // a point in an element, and one outside that follows two vertices
+  Embedding& embedding = carried.embedding;
+  embedding.corners = Tetrahedra::Zero(2, 4);
+  embedding.corners.row(0) << 0, 1, 2, 3;
+  embedding.weights.setZero(2, 4);
+  embedding.weights.row(0) << 0.5, 0.25, 0.25, 0;
+  embedding.begin = {0, 0, 2};
+  embedding.shares = {{0, 0.5}, {1, 0.5}};
+  embedding.frames.vertex = {0, 2};
+  EXPECT_EQ(field.on_skin(carried, {1, 3, 2, 3}), (std::vector<float>{0.375f, 0.25f}));
 }
 
 TEST(SurfaceField, HasALegendThatReadsWell) {

@@ -1,0 +1,177 @@
+// Tests how a skin follows the elements below it: exactly where it can, and boundedly where elements fail.
+#include "geometry/embedding.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <random>
+
+#include "geometry/boundary_walk.h"
+#include "geometry/skin_stretch.h"
+#include "geometry/tetrahedralize.h"
+#include "support/surfaces.h"
+
+namespace supple {
+namespace {
+
+Shape shape_of(const Primitive& primitive) {
+  Shape shape;
+  ShapePart part;
+  part.primitive = primitive;
+  shape.root.parts.push_back(part);
+  return shape;
+}
+
+// Makes a body of a sphere with so few vertices that most of its skin lies outside.
+struct CoarseBall {
+  TriMesh skin = test::sphere_surface(1, 60, 40);
+  TetMesh mesh = tetrahedralize(shape_of(Sphere{1}), 100, "ball");
+};
+
+TEST(Embedding, FollowsARigidMotionExactlyAtAnyScale) {
+  const CoarseBall ball;
+  Embedding embedding = embed(ball.skin, ball.mesh);
+  const OutsideShare outside = outside_share(embedding);
+  EXPECT_GT(outside.share, 0.5);
+  EXPECT_GT(outside.furthest, 0.05);
+  const Mat3 turn = 2.5 * Eigen::AngleAxisd(2, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
+  const auto placed = [&turn](const Positions& at) {
+    return Positions((at * turn.transpose()).rowwise() + Eigen::RowVector3d(3, -1, 7));
+  };
+  scale_lengths(embedding, 2.5);
+  EXPECT_LT((embedded_points(embedding, placed(ball.mesh.rest)) - placed(ball.skin.points)).norm(), 1e-11);
+}
+
+TEST(Embedding, KeepsABarycentricPlaceInsideElements) {
+  const CoarseBall ball;
+  const TriMesh within{0.6 * ball.skin.points, ball.skin.triangles};
+  const Embedding embedding = embed(within, ball.mesh);
+  EXPECT_EQ(outside_share(embedding).share, 0);
+  EXPECT_EQ(embedding.frames.count(), 0);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> any(-1, 1);
+  Positions now = ball.mesh.rest;
+  for (double& value : now.reshaped()) value += any(random);
+  const Positions found = embedded_points(embedding, now);
+  for (Eigen::Index v = 0; v < found.rows(); ++v) {
+    EXPECT_GE(embedding.weights.row(v).minCoeff(), -1e-9);
+    Vec3 sum = Vec3::Zero();
+    for (int k = 0; k < 4; ++k) sum += embedding.weights(v, k) * now.row(embedding.corners(v, k)).transpose();
+    EXPECT_EQ(Vec3(found.row(v)), sum);
+  }
+}
+
+TEST(Embedding, StaysNearWhatCarriesItWhateverElementsDo) {
+  const CoarseBall ball;
+  const Embedding embedding = embed(ball.skin, ball.mesh);
+  const auto furthest_off = [&](const Positions& now) {
+    const Positions found = embedded_points(embedding, now);
+    EXPECT_TRUE(found.allFinite());
+    double most = 0;
+    for (Eigen::Index v = 0; v < found.rows(); ++v) {
+      const double nearest = (now.rowwise() - found.row(v)).rowwise().norm().minCoeff();
+      most = std::max(most, embedding.outside(v) ? nearest : 0);
+    }
+    return most;
+  };
+  // Collapsed to a point, no point is further off than 1.5 times its offset.
+  EXPECT_LE(furthest_off(Positions::Zero(ball.mesh.rest.rows(), 3)), 1.5 * outside_share(embedding).furthest + 1e-12);
+  Positions flat = ball.mesh.rest, mirrored = ball.mesh.rest;
+  flat.col(1).setZero();
+  mirrored.col(0) *= -1;
+  EXPECT_LT(furthest_off(flat), 1);
+  EXPECT_LT(furthest_off(mirrored), 1);
+}
+
+TEST(Embedding, JoinsPartsAlongTheSkinAndNotAcrossAGap) {
+  // Two blocks of elements, and two skins that reach through the gap into the other block's elements.
+  const TetMesh left = tetrahedralize(shape_of(Box{Vec3(0.5, 0.5, 0.5), 0}), 300, "box");
+  TetMesh both = left;
+  const Eigen::Index n = left.rest.rows();
+  both.rest.conservativeResize(2 * n, 3);
+  both.rest.bottomRows(n) = left.rest.rowwise() + Eigen::RowVector3d(1.01, 0, 0);
+  both.tets.conservativeResize(2 * left.tets.rows(), 4);
+  both.tets.bottomRows(left.tets.rows()) = left.tets.array() + std::int32_t(n);
+  TriMesh ball = test::sphere_surface(0.53, 60, 40);
+  // A sphere is pressed into a rounded cube, whose sides lie a little outside the elements.
+  for (Eigen::Index v = 0; v < ball.points.rows(); ++v) {
+    const Vec3 at = ball.points.row(v);
+    const Vec3 powers = at.array().square().square();
+    ball.points.row(v) *= 0.53 / std::pow(powers.array().square().sum(), 0.125);
+  }
+  const TriMesh skin = test::together(ball, test::moved(ball, Vec3(1.01, 0, 0)));
+  const Embedding embedding = embed(skin, both);
+  Positions now = both.rest;
+  now.bottomRows(n).rowwise() += Eigen::RowVector3d(0.3, 2, 0);
+  Positions expected = skin.points;
+  expected.bottomRows(ball.points.rows()).rowwise() += Eigen::RowVector3d(0.3, 2, 0);
+  EXPECT_LT((embedded_points(embedding, now) - expected).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(Embedding, KeepsTheNamedPointsAlone) {
+  const CoarseBall ball;
+  const Embedding whole = embed(ball.skin, ball.mesh);
+  Embedding part = whole;
+  std::vector<std::int32_t> kept;
+  for (std::int32_t v = 1; v < ball.skin.points.rows(); v += 3) kept.push_back(v);
+  keep_points(part, kept);
+  Positions now = ball.mesh.rest;
+  now.col(1) *= 0.8;
+  const Positions all = embedded_points(whole, now), some = embedded_points(part, now);
+  ASSERT_EQ(some.rows(), Eigen::Index(kept.size()));
+  for (std::size_t i = 0; i < kept.size(); ++i) EXPECT_EQ(some.row(Eigen::Index(i)), all.row(kept[i]));
+}
+
+TEST(VertexFrames, AreHeldWithinTheirLimitsAndNeverReflect) {
+  std::mt19937 random(2);
+  std::normal_distribution<double> any(0, 1);
+  for (int i = 0; i < 1000; ++i) {
+    Mat3 gradient;
+    for (double& value : gradient.reshaped()) value = any(random);
+    const Mat3 held = held_within_limits(gradient);
+    const Vec3 stretch = held.jacobiSvd().singularValues();
+    EXPECT_LE(stretch[0], 1.5 + 1e-12);
+    EXPECT_GE(stretch[2], 2.0 / 3 - 1e-12);
+    EXPECT_GT(held.determinant(), 0);
+  }
+  const Mat3 turn = Eigen::AngleAxisd(1, Vec3::UnitX()).toRotationMatrix();
+  const Mat3 moderate = turn * Vec3(1.2, 1, 0.8).asDiagonal();
+  EXPECT_EQ(held_within_limits(moderate), moderate);
+  EXPECT_LT(
+      (held_within_limits(turn * Vec3(3, 1, 0.1).asDiagonal()) - turn * Vec3(1.5, 1, 2.0 / 3).asDiagonal()).norm(),
+      1e-12);
+  EXPECT_TRUE(held_within_limits(Mat3::Zero()).allFinite());
+}
+
+TEST(BoundaryWalk, FindsTheClosestPointOfATriangle) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> any(-1, 1);
+  const auto point = [&] { return Vec3(any(random), any(random), any(random)); };
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 a = point(), b = point(), c = point(), p = 2 * point();
+    const Vec3 weights = closest_weights(a, b, c, p);
+    EXPECT_GE(weights.minCoeff(), 0);
+    EXPECT_NEAR(weights.sum(), 1, 1e-12);
+    const double found = (weights[0] * a + weights[1] * b + weights[2] * c - p).norm();
+    for (int s = 0; s <= 20; ++s) {
+      for (int t = 0; s + t <= 20; ++t)
+        EXPECT_LE(found, ((20 - s - t) / 20.0 * a + s / 20.0 * b + t / 20.0 * c - p).norm() + 1e-12);
+    }
+  }
+}
+
+TEST(SkinStretch, IsThatOfTheLongestEdgeAndOfTheElements) {
+  const CoarseBall ball;
+  Positions longer = ball.skin.points, mesh = ball.mesh.rest;
+  longer.col(1) *= 3;
+  mesh.col(1) *= 3;
+  const StretchedEdge most = most_stretched_edge(ball.skin, longer, 0);
+  EXPECT_NEAR(most.factor, 3, 0.01);
+  EXPECT_NEAR((longer.row(most.from) - longer.row(most.to)).norm(),
+              most.factor * (ball.skin.points.row(most.from) - ball.skin.points.row(most.to)).norm(), 1e-12);
+  EXPECT_NEAR(largest_element_stretch(ball.mesh, mesh), 3, 1e-9);
+  EXPECT_EQ(most_stretched_edge(ball.skin, longer, 10).from, -1);
+}
+
+}  // namespace
+}  // namespace supple
