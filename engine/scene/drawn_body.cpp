@@ -7,6 +7,8 @@
 #include <map>
 
 #include "geometry/mesh_bytes.h"
+#include "geometry/refine_surface.h"
+#include "geometry/skin_stretch.h"
 #include "scene/body_mesh.h"
 #include "scene/rotation.h"
 
@@ -35,11 +37,18 @@ struct SkinRequest {
   CarriedSkin make() const {
     CarriedSkin carried;
     const TetMesh mesh{body.unplaced, body.description.mesh.tets, {}};
-    std::vector<std::int32_t> vertex_of;
-    carried.skin = body.def.shape.empty() ? skin_of_surface(body.skin.points, body.skin.triangles, number, vertex_of)
-                                          : skin_of(body.shape, number);
+    carried.skin = body.def.shape.empty() ? of_surface(mesh) : skin_of(body.shape, number);
     carried.embedding = embed(carried.skin.rest, mesh);
     return carried;
+  }
+
+  // Triangles become so small that they can bend where the elements do, or stay as they are where they are small.
+  Skin of_surface(const TetMesh& mesh) const {
+    constexpr double edges = 1.5;             // of the elements, that a triangle's edge may be long
+    constexpr Eigen::Index most = 2'000'000;  // triangles
+    const TriMesh surface = refined(body.skin, edges * mean_edge(mesh), most).mesh;
+    std::vector<std::int32_t> vertex_of;
+    return skin_of_surface(surface.points, surface.triangles, number, vertex_of);
   }
 
   // Says all that the skin depends on.

@@ -2,12 +2,15 @@
 // elements below it.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <fstream>
+#include <numbers>
 
 #include "geometry/skin_stretch.h"
 #include "output/obj_file.h"
 #include "scene/drawn_body.h"
 #include "support/film.h"
+#include "support/surfaces.h"
 
 namespace supple {
 namespace {
@@ -72,6 +75,41 @@ blend = 0.03
   for (const char* vertices : {"1000", "4000"})
     expect_whole(
         fall(folder.path, fmt::format("shape = \"legs.toml\"\nvertices = {}\nturn_deg = [0, 0, 20]", vertices), 20));
+}
+
+// Makes a gear of flat faces, each a fan of long triangles around its centre, as CAD programs write them.
+TriMesh gear_surface(int teeth) {
+  const int rim = 4 * teeth;
+  TriMesh mesh;
+  mesh.points.resize(2 * rim + 2, 3);
+  mesh.triangles.resize(4 * rim, 3);
+  constexpr double place[] = {0, 0.3, 0.55, 0.85}, radius[] = {1, 1.25, 1.25, 1};
+  for (int i = 0; i < rim; ++i) {
+    const double a = 2 * std::numbers::pi * (i / 4 + place[i % 4]) / teeth, r = radius[i % 4];
+    mesh.points.row(i) << r * std::cos(a), -0.125, r * std::sin(a);
+    mesh.points.row(rim + i) << r * std::cos(a), 0.125, r * std::sin(a);
+    const int j = (i + 1) % rim;
+    mesh.triangles.row(4 * i) << i, j, 2 * rim;
+    mesh.triangles.row(4 * i + 1) << rim + j, rim + i, 2 * rim + 1;
+    mesh.triangles.row(4 * i + 2) << i, rim + i, rim + j;
+    mesh.triangles.row(4 * i + 3) << i, rim + j, j;
+  }
+  mesh.points.bottomRows(2) << 0, -0.125, 0, 0, 0.125, 0;
+  return mesh;
+}
+
+TEST(FallingSkin, OfAGearThatFallsFlatAndOfACubeOfTwelveTrianglesStaysWholeAndBends) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path / "gear.obj") << test::obj_text(gear_surface(16));
+  std::ofstream(folder.path / "cube.obj") << test::obj_text(test::box_surface(Vec3(0.5, 0.5, 0.5)));
+  const Fall gear = fall(folder.path, "surface = \"gear.obj\"\nvertices = 2000\nturn_deg = [3, 0, 0]", 20);
+  const Fall cube = fall(folder.path, "surface = \"cube.obj\"\nvertices = 1000\nturn_deg = [3, 0, 0]", 20);
+  for (const Fall& one : {gear, cube}) {
+    EXPECT_LE(one.ratio, 1.5);
+    EXPECT_GT(one.stretch, 1.1);
+  }
+  EXPECT_GT(gear.skin_vertices, 1000);
+  EXPECT_GT(cube.skin_vertices, 200);
 }
 
 }  // namespace

@@ -1,9 +1,12 @@
 // Provides closed triangle surfaces whose inside is known by formula.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <string>
 
 #include "geometry/mesh.h"
 
@@ -104,6 +107,14 @@ inline double six_volumes(const TriMesh& mesh) {
     sum += corners.determinant();
   }
   return sum;
+}
+
+// Returns the surface as an OBJ file says it.
+inline std::string obj_text(const TriMesh& mesh) {
+  std::string text;
+  for (const auto& p : mesh.points.rowwise()) text += fmt::format("v {} {} {}\n", p.x(), p.y(), p.z());
+  for (const auto& t : mesh.triangles.rowwise()) text += fmt::format("f {} {} {}\n", t.x() + 1, t.y() + 1, t.z() + 1);
+  return text;
 }
 
 }  // namespace supple::test
