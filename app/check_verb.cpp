@@ -6,6 +6,7 @@
 #include "film/places.h"
 #include "film/progress.h"
 #include "scene/script_trial.h"
+#include "scene/skin_report.h"
 #include "scene/sweep.h"
 #include "scene/warnings.h"
 
@@ -20,9 +21,11 @@ int check(const std::string& name, const std::vector<std::string>& settings, boo
                        load_sweep(scene_file(name), assets_folder(), settings));
   }
   std::vector<Body> bodies;
+  std::vector<DrawnBody> drawn;
   {
     MakingLine line(false);
     bodies = assemble(scene, making_with(cache, line));
+    drawn = drawn_bodies(bodies, making_with(cache, line));
   }
   try_changes(script, bodies);
   for (const Body& body : bodies) {
@@ -32,17 +35,23 @@ int check(const std::string& name, const std::vector<std::string>& settings, boo
     for (const std::string& note : collider.shape.notes)
       say(stdout, fmt::format("note: collider '{}': {}\n", collider.name, note));
   }
-  const std::vector<Problem> list = all_warnings(script, bodies);
+  std::vector<Problem> list = all_warnings(script, bodies);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (auto warning = skin_warning(bodies[b], drawn[b])) list.push_back(std::move(*warning));
+  }
   for (const Problem& warning : list) say(stdout, fmt::format("warning: {}\n", warning.text()));
   say(stdout,
       fmt::format("{}: no errors, {} warning{}; {} frames, {} {}\n", scene.name, list.size(),
                   list.size() == 1 ? "" : "s", scene.frames, bodies.size(), bodies.size() == 1 ? "body" : "bodies"));
-  for (const Body& body : bodies) {
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const Body& body = bodies[b];
     const TetMesh& mesh = body.description.mesh;
     say(stdout,
         fmt::format("  {}: {} vertices, {} {}, k h^2 / (rho L^2) = {:.3g} (stiff above 300)\n", body.def.name,
                     mesh.rest.rows(), body.def.cloth ? body.description.springs.size() : std::size_t(mesh.tets.rows()),
                     body.def.cloth ? "springs" : "elements", crossing_number(body)));
+    const std::string skin = skin_text(body, drawn[b]);
+    if (!skin.empty()) say(stdout, fmt::format("    skin: {}\n", skin));
   }
   if (script.is_replay())
     say(stdout, fmt::format("  replay: {} change{}, all possible\n", script.changes().size(),

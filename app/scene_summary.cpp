@@ -9,6 +9,7 @@
 #include "film/places.h"
 #include "output/profile.h"
 #include "scene/script.h"
+#include "scene/skin_report.h"
 
 namespace supple {
 namespace {
@@ -51,7 +52,8 @@ std::string handle_text(const Body& body, std::size_t index) {
                      center.x(), center.y(), center.z(), times);
 }
 
-std::string body_text(const SceneDef& scene, Body& body, const CollisionSet& set, Threads& threads) {
+std::string body_text(const SceneDef& scene, Body& body, const DrawnBody& drawn, const CollisionSet& set,
+                      Threads& threads) {
   const TetMesh& mesh = body.description.mesh;
   Model model = build_model(body.description);
   const Vec3 extent = bounds_of(mesh.rest).extent();
@@ -64,6 +66,8 @@ std::string body_text(const SceneDef& scene, Body& body, const CollisionSet& set
         fmt::format("  elements        dihedral angles {:.1f} to {:.1f} degrees, smallest volume {:.1e} of the mean\n",
                     q.smallest_dihedral, q.largest_dihedral, q.smallest_volume);
   }
+  const std::string skin = skin_text(body, drawn);
+  if (!skin.empty()) text += fmt::format("  skin            {}\n", skin);
   text += fmt::format("  mass that moves {:.4g} kg\n", model.total_mass);
   for (std::size_t h = 0; h < body.description.handles.size(); ++h) text += handle_text(body, h);
   text +=
@@ -121,7 +125,8 @@ std::string scene_summary(const std::filesystem::path& file, int thread_count) {
   for (const ColliderDef& collider : scene.colliders)
     text += fmt::format("collider        '{}', friction {:g}{}\n", collider.name, collider.friction,
                         collider.keys.empty() ? "" : ", moves");
-  for (Body& body : bodies) text += body_text(scene, body, set, threads);
+  const std::vector<DrawnBody> drawn = drawn_bodies(bodies);
+  for (std::size_t b = 0; b < bodies.size(); ++b) text += body_text(scene, bodies[b], drawn[b], set, threads);
   return text;
 }
 

@@ -146,4 +146,17 @@ std::vector<float> skin_positions(const DrawnBody& drawn, const Positions& mesh,
   return result;
 }
 
+std::optional<double> skin_excess(const DrawnBody& drawn, const std::vector<float>& skin, const TetMesh& mesh,
+                                  const Positions& now) {
+  if (!drawn.vertex_of.empty()) return std::nullopt;
+  constexpr double unremarkable = 1.5;
+  constexpr double shortest = 1e-4;  // edge that counts, over the body's size: the positions are floats
+  const Positions at = Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>>(
+                           skin.data(), Eigen::Index(skin.size() / 3), 3)
+                           .cast<double>();
+  const StretchedEdge most = most_stretched_edge(drawn.skin.rest, at, shortest * bounds_of(mesh.rest).diagonal());
+  if (most.factor <= unremarkable) return std::nullopt;
+  return most.factor / std::max(1.0, largest_element_stretch(mesh, now));
+}
+
 }  // namespace supple

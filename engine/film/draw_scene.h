@@ -1,6 +1,8 @@
 // Makes what the renderer draws from bodies, colliders and their states.
 #pragma once
 
+#include <optional>
+
 #include "base/threads.h"
 #include "render/draw_list.h"
 #include "scene/drawn_body.h"
@@ -26,6 +28,12 @@ void add_colliders(const std::vector<Obstacle>& obstacles, const std::vector<Ski
 // mesh's own surface are left as they are.
 void fit_to_cameras(std::vector<DrawnBody>& drawn, const std::vector<Body>& bodies, const std::vector<Camera>& cameras,
                     int height);
+
+// Returns how many times more the most stretched edge of a drawn skin is stretched than the elements that carry it;
+// nothing where no edge is stretched by half or the skin is the mesh's own boundary. skin: skin_positions of `now`, the
+// positions of the mesh [m].
+std::optional<double> skin_excess(const DrawnBody& drawn, const std::vector<float>& skin, const TetMesh& mesh,
+                                  const Positions& now);
 
 // Returns x y z by skin vertex. mesh: the positions of the body's mesh vertices, in the order of the input file [m].
 // threads: null where the calling thread does it all.

@@ -27,6 +27,13 @@ class DrawnFilm {
   // positions as motion/ holds them.
   DrawList list(const SceneDef& scene, const FramePose& pose, const CollisionSet& set, Threads& threads);
 
+  // Returns how far a body's skin is stretched beyond its elements in a list (draw_scene.h). now: the positions of its
+  // mesh [m].
+  std::optional<double> skin_excess_of(std::size_t body, const DrawList& list, const TetMesh& mesh,
+                                       const Positions& now) const {
+    return skin_excess(drawn_[body], list.positions[body], mesh, now);
+  }
+
   // Tells whether a pose must have the positions of the frame before.
   bool needs_before() const { return field_ && field_->needs_before(); }
   // Widens the range of the field to a frame of the film. The colours are those of the whole film once all frames have

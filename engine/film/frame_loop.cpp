@@ -99,6 +99,8 @@ bool FrameLoop::show(int frame, FrameRow& row) {
   for (const Positions& body : before_motion_) pose.before.push_back(&body);
   DrawList list = drawn_->list(scene_, pose, set_, threads_);
   keep_motion();
+  for (std::size_t b = 0; b < filmed_.size(); ++b)
+    row.bodies[b].skin_excess = drawn_->skin_excess_of(b, list, bodies_[b].description.mesh, *pose.motion[b]);
   row.draw_ms = watch.elapsed_ms();
   zone.next("wait for render");
   return pictures_->put(frame, std::move(list));

@@ -9,7 +9,8 @@
 namespace supple {
 namespace {
 
-constexpr double much_energy = 0.2;  // of what was exchanged
+constexpr double much_energy = 0.2;       // of what was exchanged
+constexpr double much_skin_excess = 1.5;  // as many times the stretch of the elements
 
 void warn_of_energy(const std::vector<FrameRow>& rows, std::size_t body, std::vector<std::string>& list) {
   const FrameRow *first = nullptr, *worst = nullptr;
@@ -28,6 +29,16 @@ void warn_of_energy(const std::vector<FrameRow>& rows, std::size_t body, std::ve
       100 * most.from_nothing / most.exchanged));
 }
 
+void warn_of_skin(const std::vector<FrameRow>& rows, std::size_t body, std::vector<std::string>& list) {
+  const auto excess = [body](const FrameRow& row) { return row.bodies.at(body).skin_excess.value_or(0); };
+  const FrameRow& worst = *std::ranges::max_element(rows, {}, excess);
+  if (excess(worst) <= much_skin_excess) return;
+  list.push_back(
+      fmt::format("the skin of body '{}' was stretched {:.1f} times as much as its elements in frame {}; more "
+                  "vertices bring the elements closer to the skin",
+                  worst.bodies[body].name, excess(worst), worst.frame));
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of(const std::vector<FrameRow>& rows) {
@@ -36,6 +47,7 @@ std::vector<std::string> warnings_of(const std::vector<FrameRow>& rows) {
   const FrameRow& last = rows.back();
   for (std::size_t body = 0; body < last.bodies.size(); ++body) {
     warn_of_energy(rows, body, list);
+    warn_of_skin(rows, body, list);
     const BodyRow& end = last.bodies[body];
     if (end.inverted.value_or(0) > 0)
       list.push_back(fmt::format("body '{}' has {} turned inside out in its last frame", end.name,

@@ -47,7 +47,10 @@ struct BodyRow {
   std::optional<std::array<double, 5>> energy;  // kinetic, elastic, gravitational, springs, contact [J]; when asked for
   std::optional<BalanceRow> balance;            // absent in profiles of earlier versions
   std::optional<int> inverted, collapsed;       // numbers of tetrahedra turned inside out, and without volume
-  std::optional<double> jiggle;                 // jiggle of the body over its size; only for bodies with a handle
+  // How much more the most stretched edge of the drawn skin is stretched than the elements; absent where no skin is
+  // carried and drawn, or none of its edges is stretched by half.
+  std::optional<double> skin_excess;
+  std::optional<double> jiggle;  // jiggle of the body over its size; only for bodies with a handle
   std::optional<ContactRow> contact;
   std::string stop_reason;
   std::vector<std::array<int, 2>>

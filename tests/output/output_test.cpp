@@ -116,6 +116,7 @@ TEST(Profile, RowsComeBackFromTheirText) {
   body.objective_end = 0.1 + 0.2;
   body.error_measured = true;
   body.jiggle = 1.0 / 3;
+  body.skin_excess = 1.75;
   body.inverted = 2;
   body.energy = {1, 2, 3.5};
   body.contact = {0.5, 4, 3, 2, 1e-3, {{"ground", 1e-3, 12.5}, {"press", 0, 0}}};
@@ -130,7 +131,8 @@ TEST(Profile, RowsComeBackFromTheirText) {
   EXPECT_EQ(back.bodies[0].objective_end, body.objective_end);  // all seventeen digits
   EXPECT_TRUE(back.bodies[0].error_measured && !back.bodies[0].error);
   EXPECT_EQ(back.bodies[0].budget_cuts, body.budget_cuts);
-  EXPECT_FALSE(back.draw_ms || back.bodies[1].contact || back.bodies[1].jiggle);
+  EXPECT_EQ(back.bodies[0].skin_excess, 1.75);
+  EXPECT_FALSE(back.draw_ms || back.bodies[1].contact || back.bodies[1].jiggle || back.bodies[1].skin_excess);
 
   const test::TemporaryFolder folder;
   write_whole_file(folder.path / "profile.json", profile_json({row, back}));
@@ -154,6 +156,23 @@ TEST(Profile, IsWrittenFrameByFrame) {
     EXPECT_LT(largest, 4000u) << frames;
     EXPECT_EQ(nlohmann::ordered_json::parse(text).dump(1) + "\n", text) << "as if it were written at once";
   }
+}
+
+TEST(Profile, WarnsOfASkinThatIsStretchedBeyondItsElements) {
+  std::vector<FrameRow> rows(3);
+  for (int frame = 0; frame < 3; ++frame) {
+    rows[frame].frame = frame;
+    rows[frame].bodies = {BodyRow{}};
+    rows[frame].bodies[0].name = "soft";
+  }
+  rows[0].bodies[0].skin_excess = 1.4;
+  EXPECT_TRUE(warnings_of(rows).empty());
+  rows[1].bodies[0].skin_excess = 2.5;
+  ASSERT_EQ(warnings_of(rows).size(), 1u);
+  EXPECT_EQ(
+      warnings_of(rows)[0],
+      "the skin of body 'soft' was stretched 2.5 times as much as its elements in frame 1; more vertices bring the "
+      "elements closer to the skin");
 }
 
 TEST(Profile, TellsWhatEachColliderDidAndWarnsOfDepthsAboveAHundredth) {

@@ -1,0 +1,18 @@
+// Says how well the elements of a body fill its drawn skin.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "scene/drawn_body.h"
+
+namespace supple {
+
+// Returns how many vertices a drawn skin has and how much of it lies outside all elements; empty where the mesh's own
+// boundary is drawn.
+std::string skin_text(const Body& body, const DrawnBody& drawn);
+
+// Warns of a skin that reaches far beyond its elements, and says what helps.
+std::optional<Problem> skin_warning(const Body& body, const DrawnBody& drawn);
+
+}  // namespace supple

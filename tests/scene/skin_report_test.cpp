@@ -1,0 +1,58 @@
+// Tests what is said of skins that their elements do not fill.
+#include "scene/skin_report.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "film/draw_scene.h"
+#include "scene/scene_reader.h"
+#include "support/bodies.h"
+
+namespace supple {
+namespace {
+
+std::vector<Body> bodies_of(const std::filesystem::path& folder, const std::string& keys) {
+  std::ofstream(folder / "s.toml") << "[[body]]\nname = \"it\"\nsize = 0.4\nmaterial = \"jelly\"\n" << keys;
+  return assemble(load_scene(folder / "s.toml", test::assets, {}));
+}
+
+TEST(SkinReport, SaysHowMuchLiesOutsideAndWarnsOfWhatTheElementsMiss) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path / "spike.toml") << "[[part]]\nsphere = { radius = 0.5 }\n[[part]]\n"
+                                               "capsule = { ends = [[0, 0, 0], [0, 1.0, 0]], radius = 0.04 }\n";
+  const std::vector<Body> spike = bodies_of(folder.path, "shape = \"spike.toml\"\nvertices = 300");
+  const DrawnBody drawn = drawn_bodies(spike).front();
+  EXPECT_NE(skin_text(spike[0], drawn).find("% outside the elements, by up to 0.2"), std::string::npos)
+      << skin_text(spike[0], drawn);
+  const std::optional<Problem> warning = skin_warning(spike[0], drawn);
+  ASSERT_TRUE(warning);
+  EXPECT_NE(warning->text().find("the skin of body 'it' reaches 0.2"), std::string::npos) << warning->text();
+  EXPECT_NE(warning->text().find("more vertices (now 300) fill it"), std::string::npos) << warning->text();
+
+  const std::vector<Body> ball = bodies_of(folder.path, "shape = \"shapes/sphere.toml\"\nvertices = 1000");
+  const DrawnBody round = drawn_bodies(ball).front();
+  EXPECT_FALSE(skin_warning(ball[0], round));
+  EXPECT_NE(skin_text(ball[0], round).find("vertices"), std::string::npos);
+
+  const std::vector<Body> box = bodies_of(folder.path, "box = { extent = [1, 1, 1], cells = [3, 3, 3] }");
+  EXPECT_EQ(skin_text(box[0], drawn_bodies(box).front()), "");
+}
+
+TEST(SkinReport, MeasuresHowMuchMoreASkinStretchesThanItsElements) {
+  const test::TemporaryFolder folder;
+  const std::vector<Body> ball = bodies_of(folder.path, "shape = \"shapes/sphere.toml\"\nvertices = 300");
+  const DrawnBody drawn = drawn_bodies(ball).front();
+  const TetMesh& mesh = ball[0].description.mesh;
+  std::vector<float> skin = skin_positions(drawn, mesh.rest);
+  EXPECT_FALSE(skin_excess(drawn, skin, mesh, mesh.rest));
+  const float lowest = skin[1];
+  skin[1] -= 0.4f;  // one vertex is torn out
+  EXPECT_GT(skin_excess(drawn, skin, mesh, mesh.rest).value_or(0), 10);
+  skin[1] = lowest;
+  const Positions twice = 2 * mesh.rest;
+  EXPECT_NEAR(skin_excess(drawn, skin_positions(drawn, twice), mesh, twice).value_or(0), 1, 0.3);
+}
+
+}  // namespace
+}  // namespace supple
