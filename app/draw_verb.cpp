@@ -12,6 +12,7 @@
 #include "base/timing.h"
 #include "film/progress.h"
 #include "film/redraw.h"
+#include "film/skin_files.h"
 #include "output/child_program.h"
 #include "output/png_file.h"
 
@@ -26,13 +27,13 @@ struct DrawCommand {
   std::optional<std::size_t> frame, index;
   std::optional<double> rate;
   int of = 1, jobs = 1;
-  bool merge = false, quiet = false;
+  bool merge = false, skins = false, quiet = false;
 
   std::filesystem::path folder() const {
     if (!out.empty()) return out;
     std::string path = std::filesystem::path(run).lexically_normal().string();
     if (path.ends_with('/')) path.pop_back();
-    return path + "-drawn";
+    return path + (skins ? "-skins" : "-drawn");
   }
 };
 
@@ -160,6 +161,27 @@ int draw_one(const DrawCommand& command, LoadedDrawing& drawing) {
   return 0;
 }
 
+// Writes the skins of the chosen frames for other programs.
+int write_skin_files(const DrawCommand& command, LoadedDrawing& drawing) {
+  if (command.frame || !command.still.empty() || command.index || command.merge || command.jobs > 1)
+    throw InputError("--skins", "writes all chosen frames (--first, --last, --every) at once, not one frame or parts");
+  const auto count = static_cast<int>(drawing.frames.size());
+  open_skins(command.folder(), drawing);
+  catch_interrupts();
+  Progress progress(count, 0, command.quiet);
+  const int done = write_skins(drawing, command.folder(), [&progress](int frames) { progress.show(frames); });
+  progress.end();
+  const std::string where = (command.folder() / "motion").string();
+  if (done < count) {
+    say(stderr, fmt::format("supple: interrupted\n  kept: {} of {} frames in {}\n", done, count, where));
+    return 130;
+  }
+  if (!command.quiet)
+    say(stdout,
+        fmt::format("  {} frames of {} in {}\n", count, count_text(int(drawing.film.bodies.size()), "skin"), where));
+  return 0;
+}
+
 // Writes what has an option of its own as settings. They stand before the others, which may therefore differ.
 void add_short_forms(DrawCommand& command) {
   std::vector<std::string> settings;
@@ -184,6 +206,7 @@ int draw(DrawCommand command) {
     throw InputError(fmt::format("--index {}", *command.index),
                      fmt::format("there are {} parts (--of): 0 to {}", command.of, command.of - 1));
   LoadedDrawing drawing = load_drawing(command.plan);
+  if (command.skins) return write_skin_files(command, drawing);
   if (command.frame || !command.still.empty()) return draw_one(command, drawing);
   open_drawing(command.folder(), drawing, command.index || command.merge);
   catch_interrupts();
@@ -196,7 +219,7 @@ int draw(DrawCommand command) {
 void add_options(Verb& verb, DrawCommand& command) {
   DrawPlan& plan = command.plan;
   verb.option("RUN", command.run, "folder that supple render left").required();
-  verb.option("--out", command.out, "folder for the drawing [RUN-drawn]");
+  verb.option("--out", command.out, "folder for the drawing [RUN-drawn], or for the skins [RUN-skins]");
   verb.option("--set", plan.settings,
               "path=value over the run's, of what is seen: camera, look, output, colours; may be repeated")
       .repeatable();
@@ -212,6 +235,7 @@ void add_options(Verb& verb, DrawCommand& command) {
   const Option frame = verb.option("--frame", command.frame, "draw this frame alone, into the file of --still")
                            .between(std::size_t(0), std::size_t(1000000));
   verb.option("--still", command.still, "file for one picture [frame-NNNNNN.png]").needs(frame);
+  verb.flag("--skins", command.skins, "write the skins and their motion for other programs, and no pictures");
   Options what = verb.at_most_one_of("Parts", "frames are independent, so that several processes can draw them");
   what.option("--jobs", command.jobs, "draw so many parts at a time, each in a process of its own").between(1, 1024);
   const Option index = what.option("--index", command.index, "draw this part alone, from 0; makes no film")
@@ -238,6 +262,7 @@ void add_draw(CommandLine& line) {
       "output.height=1080\n"
       "          supple draw out/squirrel --frame 120 --still poster.png\n"
       "          supple draw out/squirrel --index 3 --of 8    (one of eight machines; --merge makes the film)\n"
+      "          supple draw out/squirrel --skins    (OBJ and PC2 of what is seen, for Blender)\n"
       "Leaves frames/, video.mp4 and draw.json. With the run's own settings the pictures are the run's to the byte.");
   add_options(verb, *command);
   verb.runs([command] { return draw(*command); });

@@ -4,7 +4,7 @@
 #   blender -b -P load_run.py -- RUN_DIR --save run.blend      without a window
 #   blender -b -P load_run.py -- RUN_DIR --frame 20 --render picture.png
 #
-# RUN_DIR is what `supple render` left: motion/BODY.obj is the surface at rest and motion/BODY.pc2 where its vertices
+# RUN_DIR is what `supple render` left, or `supple draw --skins`: motion/BODY.obj is the surface at rest and motion/BODY.pc2 where its vertices
 # go, in the same order. Each body becomes an object with a Mesh Cache modifier that reads the cache from where it lies.
 # supple's y is up, Blender's z: the objects are turned by 90 degrees about x, their vertices are not touched. Frame 0
 # of the film is frame 0 of the scene. Colliders are not loaded; their poses are in motion/colliders.csv.
@@ -24,7 +24,7 @@ TO_BLENDER = Matrix.Rotation(math.pi / 2, 4, "X")
 def read_arguments():
     words = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
     parser = argparse.ArgumentParser(prog="load_run.py", description="Loads the motion of a run of supple.")
-    parser.add_argument("run", help="folder that supple render left")
+    parser.add_argument("run", help="folder that supple render or supple draw --skins left")
     parser.add_argument("--frame", type=int, default=0, help="frame to show")
     parser.add_argument("--render", metavar="FILE", help="render that frame with Cycles: a PNG without background")
     parser.add_argument("--save", metavar="FILE", help="save a .blend file")
@@ -117,7 +117,8 @@ def render_picture(file):
 
 def main():
     arguments = read_arguments()
-    with open(os.path.join(arguments.run, "run.json")) as file:
+    records = (os.path.join(arguments.run, name) for name in ("run.json", "skins.json"))
+    with open(next(filter(os.path.exists, records), "run.json")) as file:
         scene = json.load(file)["scene"]
     motion = os.path.join(arguments.run, "motion")
     names = sorted(name[:-4] for name in os.listdir(motion) if name.endswith(".pc2"))

@@ -175,9 +175,8 @@ class Drawing {
   }
 
   Positions motion_at(std::size_t body, int frame) {
-    const Positions& rest = drawing_.film.bodies[body].description.mesh.rest;
-    const Vec3 origin = motion_origin(rest);
-    if (frame >= 0) return drawing_.motion[body].frame(frame).rowwise() + origin.transpose();
+    if (frame >= 0) return saved_positions(drawing_, body, frame);
+    const Vec3 origin = motion_origin(drawing_.film.bodies[body].description.mesh.rest);
     const Positions first = first_positions(drawing_.film.bodies[body]).rowwise() - origin.transpose();
     return as_cached(first).rowwise() + origin.transpose();
   }
@@ -246,6 +245,11 @@ LoadedDrawing load_drawing(const DrawPlan& plan) {
   if (!drawing.film.info.replay_json.empty()) identity["replay"] = json_if_valid<Json>(drawing.film.info.replay_json);
   drawing.identity = json_text(identity, 1) + "\n";
   return drawing;
+}
+
+Positions saved_positions(LoadedDrawing& drawing, std::size_t body, int frame) {
+  const Vec3 origin = motion_origin(drawing.film.bodies[body].description.mesh.rest);
+  return drawing.motion[body].frame(frame).rowwise() + origin.transpose();
 }
 
 void open_drawing(const std::filesystem::path& folder, const LoadedDrawing& drawing, bool keep) {

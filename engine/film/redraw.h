@@ -41,6 +41,9 @@ struct LoadedDrawing {
 // when the scene differs from the run's in more than what is seen, and when a mesh is not the run's.
 LoadedDrawing load_drawing(const DrawPlan& plan);
 
+// Returns the positions of a body's mesh that the run saved of a frame [m].
+Positions saved_positions(LoadedDrawing& drawing, std::size_t body, int frame);
+
 // Creates the folder of a drawing, or takes over one that an earlier drawing left. The earlier pictures and film are
 // removed unless `keep` is set; with `keep`, they must belong to the same drawing. Throws InputError when the folder
 // holds anything else.

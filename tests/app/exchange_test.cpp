@@ -265,5 +265,60 @@ TEST(Fields, AreReadByMeshio) {
             "63 [('triangle', 96)] ['contact_force', 'displacement', 'spring_energy', 'velocity'] ['stretch']\n");
 }
 
+// Describes a ball whose skin is finer than its elements, beside a cloth.
+constexpr const char* skinned = R"(frames = 6
+[[body]]
+name = "ball"
+shape = "shapes/sphere.toml"
+vertices = 200
+skin_cells = 24
+size = 0.2
+material = "jelly"
+[[body]]
+name = "cloth"
+cloth = { extent = [0.4, 0.3], cells = [4, 3], stretch = 50, shear = 20, bend = 1 }
+position = [1, 1, 0]
+[[collider]]
+shape = { half_space = { normal = [0, 1, 0] } }
+)";
+
+TEST(Skins, AreWrittenWithTheirMotionForChosenFrames) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path film = filmed(folder, skinned, {});
+  const Result result =
+      run(folder.path, {"draw", film.string(), "--skins", "--every", "2", "--last", "4", "--out", "s"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("3 frames of 2 skins"), std::string::npos) << result.out;
+  PointCacheReader mesh(film / "motion" / "ball.pc2"), skin(folder.path / "s" / "motion" / "ball.pc2");
+  EXPECT_GT(skin.points(), 3 * mesh.points());
+  ASSERT_EQ(skin.frames(), 3);
+  for (int sample = 0; sample < 3; ++sample) {
+    const Positions surface = skin.frame(sample), elements = mesh.frame(2 * sample);
+    EXPECT_LT((surface.colwise().mean() - elements.colwise().mean()).norm(), 0.02);
+    EXPECT_NEAR(bounds_of(surface).lower.y(), bounds_of(elements).lower.y(), 0.02);
+  }
+  EXPECT_GT(skin.frame(0).col(1).mean() - skin.frame(2).col(1).mean(), 1e-3);  // it falls
+  // Of cloth, the skin is the mesh: each of its points is one of the mesh's.
+  PointCacheReader threads(film / "motion" / "cloth.pc2"), sheet(folder.path / "s" / "motion" / "cloth.pc2");
+  const Positions at = threads.frame(4), drawn = sheet.frame(2);
+  for (const auto& point : drawn.rowwise()) EXPECT_LT((at.rowwise() - point).rowwise().norm().minCoeff(), 1e-6);
+  EXPECT_EQ(test::read_file(folder.path / "s" / "motion" / "ball.obj").substr(0, 2), "v ");
+}
+
+TEST(Skins, LeaveOtherFoldersAlone) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path film = filmed(folder, skinned, {"--frames", "1"});
+  std::filesystem::create_directories(folder.path / "mine");
+  std::ofstream(folder.path / "mine" / "notes.txt") << "mine";
+  const Result refused = run(folder.path, {"draw", film.string(), "--skins", "--out", "mine"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("holds files that no skins left there"), std::string::npos) << refused.err;
+  const Result one = run(folder.path, {"draw", film.string(), "--skins", "--frame", "0"});
+  EXPECT_EQ(one.status, 2);
+  EXPECT_NE(one.err.find("--skins: writes all chosen frames"), std::string::npos) << one.err;
+  for (int again = 0; again < 2; ++again)
+    EXPECT_EQ(run(folder.path, {"draw", film.string(), "--skins", "--quiet", "--out", "s"}).status, 0);
+}
+
 }  // namespace
 }  // namespace supple

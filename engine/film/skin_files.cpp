@@ -1,0 +1,69 @@
+#include "film/skin_files.h"
+
+#include <fmt/core.h>
+
+#include <system_error>
+
+#include "base/error.h"
+#include "base/interrupts.h"
+#include "film/draw_scene.h"
+#include "output/obj_file.h"
+#include "output/whole_file.h"
+
+namespace supple {
+namespace {
+
+// Writes one body's skin at rest. Returns the place that its files are relative to [m].
+Vec3 write_rest(const std::filesystem::path& file, const Skin& skin) {
+  const Vec3 origin = motion_origin(skin.rest.points);
+  write_obj(file, skin.rest.points, skin.rest.triangles, origin);
+  return origin;
+}
+
+Positions skin_at(const DrawnBody& drawn, const Positions& mesh) {
+  if (drawn.vertex_of.empty()) return embedded_points(drawn.embedding, mesh);
+  Positions points(Eigen::Index(drawn.vertex_of.size()), 3);
+  for (Eigen::Index v = 0; v < points.rows(); ++v) points.row(v) = mesh.row(drawn.vertex_of[std::size_t(v)]);
+  return points;
+}
+
+}  // namespace
+
+void open_skins(const std::filesystem::path& folder, const LoadedDrawing& drawing) {
+  std::error_code error;
+  const std::string source = "--out " + folder.string();
+  const std::filesystem::path record = folder / "skins.json";
+  if (std::filesystem::exists(folder, error) && !std::filesystem::is_directory(folder, error))
+    throw InputError(source, "exists and is not a folder");
+  const bool known = std::filesystem::exists(record, error);
+  if (!known && std::filesystem::exists(folder, error) && !std::filesystem::is_empty(folder, error))
+    throw InputError(source, "holds files that no skins left there (no skins.json); choose another folder");
+  std::filesystem::remove_all(folder / "motion", error);
+  std::filesystem::create_directories(folder / "motion", error);
+  if (error) throw RunError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+  write_whole_file(record, drawing.identity);
+}
+
+int write_skins(LoadedDrawing& drawing, const std::filesystem::path& folder, const std::function<void(int)>& told) {
+  const std::vector<Body>& bodies = drawing.film.bodies;
+  std::vector<PointCacheWriter> caches;
+  std::vector<Vec3> origins;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const std::filesystem::path file = folder / "motion" / bodies[b].def.name;
+    const Skin& skin = drawing.film.drawn[b].skin;
+    origins.push_back(write_rest(file.string() + ".obj", skin));
+    caches.emplace_back(file.string() + ".pc2", static_cast<int>(skin.rest.points.rows()));
+  }
+  int done = 0;
+  for (const int frame : drawing.frames) {
+    if (interrupted()) break;
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      const Positions mesh = saved_positions(drawing, b, frame);
+      caches[b].add(skin_at(drawing.film.drawn[b], mesh).rowwise() - origins[b].transpose());
+    }
+    told(++done);
+  }
+  return done;
+}
+
+}  // namespace supple
