@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <set>
 
+#include "scene/body_pieces.h"
 #include "scene/body_reader.h"
 #include "scene/camera_reader.h"
 #include "scene/collider_reader.h"
+#include "scene/model_scene.h"
 #include "scene/solver_reader.h"
 #include "scene/sweep.h"
 
@@ -40,9 +42,10 @@ SceneDef read_scene(Config& config) {
   if (const auto solver = root.table({"solver", "", "for all bodies"})) defaults = read_solver(*solver, defaults);
   std::set<std::string> names;
   for (const ConfigTable& table : root.tables({"body", "", "what moves"})) {
-    scene.bodies.push_back(read_body(table, defaults));
-    if (!names.insert(scene.bodies.back().name).second)
-      table.complain("name", fmt::format("two bodies named '{}'", scene.bodies.back().name));
+    for (BodyDef& body : bodies_of(table, read_body(table, defaults))) {
+      if (!names.insert(body.name).second) table.complain("name", fmt::format("two bodies named '{}'", body.name));
+      scene.bodies.push_back(std::move(body));
+    }
   }
   std::set<std::string> colliders;
   for (const ConfigTable& table : root.tables({"collider", "", "rigid, and in the way"})) {
@@ -88,7 +91,7 @@ SceneDef read_scene(Config& config) {
 
 SceneDef load_scene(const std::filesystem::path& path, const std::filesystem::path& assets,
                     const std::vector<std::string>& settings, std::string* resolved_json) {
-  Config config = Config::load(path, assets);
+  Config config = load_document(path, assets);
   if (config.root().has("scene"))
     throw InputError(path.string(), "is a replay of a scene, not a scene: supple replay runs it");
   for (const std::string& setting : settings) config.set(setting, exclusive_keys());
