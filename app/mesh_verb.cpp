@@ -4,6 +4,7 @@
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
+#include "base/text.h"
 #include "base/timing.h"
 #include "film/places.h"
 #include "film/progress.h"
@@ -21,22 +22,23 @@ std::filesystem::path shape_file(const std::string& name) {
   return std::filesystem::exists(shipped, error) ? shipped : std::filesystem::path(name);
 }
 
-int make_mesh(const std::string& input, const std::string& output, int vertices) {
+int make_mesh(const std::string& input, const std::string& output, int vertices, const SurfaceOptions& options) {
   const Stopwatch watch;
+  check_writable(output);
   const std::filesystem::path path = shape_file(input);
   TetMesh mesh;
   MakingLine line(false);
   const auto heard = [&](int attempt, double share) {
     line.show(fmt::format("meshing {}: attempt {}, {:.0f} %", path.string(), attempt, 100 * share));
   };
-  if (path.extension() == ".mesh") {
+  if (is_mesh_file(path)) {
     MeshFile file = read_mesh(path);
     for (const std::string& note : file.notes) say(stdout, fmt::format("note: {}\n", note));
     mesh = std::move(file.mesh);
   } else if (path.extension() == ".toml") {
     mesh = tetrahedralize(load_shape(path, assets_folder()), vertices, path.string(), heard);
   } else {
-    const Shape shape = load_surface(path);
+    const Shape shape = load_surface(path, options);
     for (const std::string& note : shape.notes) say(stdout, fmt::format("note: {}\n", note));
     mesh = tetrahedralize(shape, vertices, path.string(), heard);
   }
@@ -53,17 +55,27 @@ void add_mesh(CommandLine& line) {
   struct MeshOptions {
     std::string input, output;
     int vertices = 4000;
+    SurfaceOptions surface;
+    std::optional<double> thickness;
   };
   auto options = std::make_shared<MeshOptions>();
-  Verb verb = line.verb("mesh", "Make tetrahedra of a shape or a closed surface, or check and rewrite a mesh.");
+  Verb verb = line.verb("mesh", "Make tetrahedra of a shape or a surface, or check and rewrite a mesh.");
   verb.footer("Example: supple mesh squirrel -o squirrel.mesh --vertices 8395");
   verb.option("SHAPE", options->input,
-              "shape file (.toml), the name of a shape that ships, a closed surface (OBJ, PLY, STL, glTF, OFF), "
-              "or a .mesh file")
+              "shape file (.toml), the name of a shape that ships, a surface (OBJ, PLY, STL, glTF, OFF), or a mesh (as -o)")
       .required();
-  verb.option("-o,--output", options->output, "MEDIT .mesh file to write").required();
+  verb.option("-o,--output", options->output, fmt::format("mesh to write: {}", mesh_formats)).required();
   verb.option("--vertices", options->vertices, "wanted (within 3 %)").between(50, 500000);
-  verb.runs([options] { return make_mesh(options->input, options->output, options->vertices); });
+  SurfaceOptions& surface = options->surface;
+  verb.option(
+          "--close", [&surface](const std::string& word) { surface.close = *value_named<Closing>(word); },
+          "what makes a solid of a surface that is not closed: " + word_list(all_names<Closing>()))
+      .one_of(all_names<Closing>());
+  verb.option("--thicken", options->thickness, "thickness of parts with a rim, in the file's units").between(0.0, 1e6);
+  verb.runs([options] {
+    options->surface.thickness = options->thickness.value_or(0);
+    return make_mesh(options->input, options->output, options->vertices, options->surface);
+  });
 }
 
 }  // namespace supple

@@ -12,6 +12,10 @@ namespace supple {
 // Describes a mesh: its counts, extent and quality.
 std::string mesh_summary(const TetMesh& mesh);
 
+// Describes a surface: what was done to make a solid of it, its pieces, how thin they are and how many vertices that
+// wants. Throws InputError.
+std::string surface_summary(const std::filesystem::path& file);
+
 // Describes a scene or replay and its bodies, and measures what a frame's steps cost on this machine: it simulates the
 // first frames with this many threads and writes nothing. Throws InputError as loading a scene does.
 std::string scene_summary(const std::filesystem::path& file, int threads);

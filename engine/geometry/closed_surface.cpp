@@ -1,5 +1,4 @@
-// Implements closed_surface of surface_file.h, one function for each step. Triangles keep the number that they had in
-// the file, for messages.
+// Implements closed_surface of surface_file.h, one function for each step.
 #include <fmt/core.h>
 
 #include <Eigen/Geometry>
@@ -11,6 +10,7 @@
 #include <tuple>
 
 #include "base/error.h"
+#include "geometry/numbered_surface.h"
 #include "geometry/surface_file.h"
 #include "geometry/triangle_solid.h"
 
@@ -18,216 +18,6 @@ namespace supple {
 namespace {
 
 constexpr double largest_hole_share = 0.02;
-
-struct Numbered {
-  TriMesh mesh;
-  std::vector<Eigen::Index> number;  // the number of each triangle in the file, from 1
-};
-
-std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
-
-Vec3 corner(const TriMesh& mesh, Eigen::Index t, int k) { return mesh.points.row(mesh.triangles(t, k)); }
-
-Vec3 area_vector(const TriMesh& mesh, Eigen::Index t) {
-  return 0.5 * (corner(mesh, t, 1) - corner(mesh, t, 0)).cross(corner(mesh, t, 2) - corner(mesh, t, 0));
-}
-
-std::string place(const Vec3& p) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x(), p.y(), p.z()); }
-
-// Gives "triangle 17 at (x, y, z)".
-std::string triangle(const Numbered& surface, Eigen::Index t) {
-  const Vec3 middle = (corner(surface.mesh, t, 0) + corner(surface.mesh, t, 1) + corner(surface.mesh, t, 2)) / 3;
-  return fmt::format("triangle {} at {}", surface.number[at(t)], place(middle));
-}
-
-void check_numbers(const TriMesh& raw, const std::string& name) {
-  if (raw.triangles.rows() == 0) throw InputError(name, "has no triangles");
-  for (Eigen::Index t = 0; t < raw.triangles.rows(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      const std::int32_t v = raw.triangles(t, k);
-      if (v < 0 || v >= raw.points.rows()) {
-        throw InputError(name, fmt::format("triangle {} names vertex {}, but there are {} (counted from 0)", t + 1, v,
-                                           raw.points.rows()));
-      }
-      const Vec3 p = raw.points.row(v);
-      if (!p.allFinite())
-        throw InputError(name, fmt::format("vertex {} of triangle {} is not finite: {}", k + 1, t + 1, place(p)));
-      // Beyond this limit, products of lengths leave the range of doubles.
-      if (p.cwiseAbs().maxCoeff() > 1e50)
-        throw InputError(name, fmt::format("vertex {} of triangle {} is beyond 1e50: {}", k + 1, t + 1, place(p)));
-    }
-  }
-}
-
-// Merges vertices at the same position, numbers them in the order in which the triangles name them, and drops those
-// that no triangle names.
-TriMesh merged(const TriMesh& raw) {
-  std::vector<std::int32_t> order(at(raw.points.rows()));
-  std::iota(order.begin(), order.end(), 0);
-  const auto position = [&](std::int32_t v) {
-    return std::tuple(raw.points(v, 0), raw.points(v, 1), raw.points(v, 2));
-  };
-  std::erase_if(order, [&](std::int32_t v) { return !raw.points.row(v).allFinite(); });  // no triangle names these
-  std::sort(order.begin(), order.end(),
-            [&](std::int32_t a, std::int32_t b) { return std::pair(position(a), a) < std::pair(position(b), b); });
-  std::vector<std::int32_t> same(at(raw.points.rows()), -1), compact(same), used;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool repeats = i > 0 && position(order[i]) == position(order[i - 1]);
-    same[at(order[i])] = repeats ? same[at(order[i - 1])] : order[i];
-  }
-  TriMesh mesh;
-  mesh.triangles = raw.triangles;
-  for (std::int32_t& v : mesh.triangles.reshaped()) v = same[at(v)];
-  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      std::int32_t& v = mesh.triangles(t, k);
-      std::int32_t& now = compact[at(v)];
-      if (now < 0) {
-        now = std::int32_t(used.size());
-        used.push_back(v);
-      }
-      v = now;
-    }
-  }
-  mesh.points = raw.points(used, Eigen::all);
-  return mesh;
-}
-
-Numbered subset(const Numbered& surface, const std::vector<Eigen::Index>& kept) {
-  Numbered part{{surface.mesh.points, surface.mesh.triangles(kept, Eigen::all)}, {}};
-  for (const Eigen::Index t : kept) part.number.push_back(surface.number[at(t)]);
-  return part;
-}
-
-Numbered without_flat_triangles(const Numbered& surface, std::vector<std::string>* notes) {
-  const TriMesh& mesh = surface.mesh;
-  std::vector<Eigen::Index> kept;
-  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
-    double longest = 0;
-    for (int k = 0; k < 3; ++k)
-      longest = std::max(longest, (corner(mesh, t, k) - corner(mesh, t, (k + 1) % 3)).squaredNorm());
-    if (area_vector(mesh, t).norm() > 1e-15 * longest) kept.push_back(t);  // a smaller area is round-off
-  }
-  const Eigen::Index dropped = mesh.triangles.rows() - std::ssize(kept);
-  if (dropped > 0) notes->push_back(fmt::format("{} triangles without area were left out", dropped));
-  return subset(surface, kept);
-}
-
-Numbered without_repeated_triangles(const Numbered& surface, std::vector<std::string>* notes) {
-  std::vector<std::pair<std::array<std::int32_t, 3>, Eigen::Index>> keys;
-  for (Eigen::Index t = 0; t < surface.mesh.triangles.rows(); ++t) {
-    std::array<std::int32_t, 3> key;
-    for (int k = 0; k < 3; ++k) key[at(k)] = surface.mesh.triangles(t, k);
-    std::sort(key.begin(), key.end());
-    keys.emplace_back(key, t);
-  }
-  std::sort(keys.begin(), keys.end());
-  std::vector<Eigen::Index> kept;
-  for (std::size_t i = 0; i < keys.size(); ++i)
-    if (i == 0 || keys[i].first != keys[i - 1].first) kept.push_back(keys[i].second);
-  std::sort(kept.begin(), kept.end());
-  const Eigen::Index dropped = surface.mesh.triangles.rows() - std::ssize(kept);
-  if (dropped > 0) notes->push_back(fmt::format("{} triangles that repeat others were left out", dropped));
-  return subset(surface, kept);
-}
-
-// Describes what a triangle has across its edge from corner k to k + 1.
-struct Neighbour {
-  Eigen::Index triangle = -1;  // -1 means that the edge is open
-  bool alike = false;          // whether the neighbour runs through the edge the other way round, as it should
-};
-using Neighbours = std::vector<std::array<Neighbour, 3>>;
-
-Neighbours neighbours(const Numbered& surface, const std::string& name) {
-  struct Side {
-    std::int32_t low, high;
-    Eigen::Index triangle;
-    int k;
-    bool upward;
-  };
-  const Triangles& triangles = surface.mesh.triangles;
-  std::vector<Side> sides;
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      const std::int32_t from = triangles(t, k), to = triangles(t, (k + 1) % 3);
-      sides.push_back({std::min(from, to), std::max(from, to), t, k, from < to});
-    }
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
-  });
-  Neighbours result(at(triangles.rows()));
-  for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
-    const Side &a = sides[i], &b = sides[i + 1];
-    if (a.low != b.low || a.high != b.high) continue;
-    if (i + 2 < sides.size() && sides[i + 2].low == a.low && sides[i + 2].high == a.high) {
-      throw InputError(name, fmt::format("three triangles or more share an edge, among them {}; an edge may have two",
-                                         triangle(surface, sides[i + 2].triangle)));
-    }
-    result[at(a.triangle)][at(a.k)] = {b.triangle, a.upward != b.upward};
-    result[at(b.triangle)][at(b.k)] = {a.triangle, a.upward != b.upward};
-  }
-  return result;
-}
-
-// Holds the triangles that are connected through edges, and what is known of them.
-struct Component {
-  std::vector<Eigen::Index> triangles;
-  double area = 0;    // [m^2]
-  double volume = 0;  // signed by the way in which most of its area faces in the file [m^3]
-  int sense = 1;      // -1 for a cavity
-  Bounds box;
-};
-
-// Tells which triangles are flipped so that all triangles of a component have one orientation: that of the larger part
-// of its area in the file.
-struct Flood {
-  std::vector<Component> components;
-  std::vector<char> turned;
-};
-
-void follow_the_majority(const TriMesh& mesh, Component& component, std::vector<char>& turned) {
-  double turned_area = 0;
-  for (const Eigen::Index t : component.triangles) {
-    const double own = area_vector(mesh, t).norm();
-    component.area += own;
-    if (turned[at(t)]) turned_area += own;
-    for (int k = 0; k < 3; ++k) component.box.include(corner(mesh, t, k));
-  }
-  if (turned_area > 0.5 * component.area)
-    for (const Eigen::Index t : component.triangles) turned[at(t)] ^= 1;
-}
-
-Flood flood(const Numbered& surface, const Neighbours& next, const std::string& name) {
-  Flood result;
-  result.turned.assign(next.size(), 0);
-  std::vector<char> reached(next.size(), 0);
-  for (Eigen::Index seed = 0; seed < std::ssize(next); ++seed) {
-    if (reached[at(seed)]) continue;
-    Component component;
-    component.triangles.push_back(seed);
-    reached[at(seed)] = 1;
-    for (std::size_t i = 0; i < component.triangles.size(); ++i) {
-      const Eigen::Index t = component.triangles[i];
-      for (const Neighbour& other : next[at(t)]) {
-        if (other.triangle < 0) continue;
-        const char wanted = other.alike ? result.turned[at(t)] : char(1 - result.turned[at(t)]);
-        if (!reached[at(other.triangle)]) {
-          reached[at(other.triangle)] = 1;
-          result.turned[at(other.triangle)] = wanted;
-          component.triangles.push_back(other.triangle);
-        } else if (result.turned[at(other.triangle)] != wanted) {
-          throw InputError(name, fmt::format("the surface is one-sided, like a Moebius strip: no inside at {}",
-                                             triangle(surface, other.triangle)));
-        }
-      }
-    }
-    std::sort(component.triangles.begin(), component.triangles.end());
-    follow_the_majority(surface.mesh, component, result.turned);
-    result.components.push_back(std::move(component));
-  }
-  return result;
-}
 
 struct Hole {
   Eigen::Index edges = 0;
@@ -243,7 +33,7 @@ std::vector<Hole> holes(const TriMesh& mesh, const Neighbours& next, const Compo
   std::vector<std::pair<Eigen::Index, int>> open;
   for (const Eigen::Index t : component.triangles)
     for (int k = 0; k < 3; ++k)
-      if (next[at(t)][at(k)].triangle < 0) open.emplace_back(t, k);
+      if (next.of[at(t)][at(k)].triangle < 0) open.emplace_back(t, k);
   std::vector<std::int32_t> vertices;
   for (const auto& [t, k] : open)
     for (const int end : {k, (k + 1) % 3}) vertices.push_back(mesh.triangles(t, end));
@@ -297,15 +87,13 @@ void check_holes(const Numbered& surface, const Neighbours& next, const std::vec
         *std::max_element(found.begin(), found.end(), [](const Hole& a, const Hole& b) { return a.area < b.area; });
     throw InputError(name, fmt::format("the surface is open: holes of {:.3g} % of its area, the largest at {}; up to "
                                        "{:.3g} % are allowed",
-                                       100 * share, triangle(surface, largest.triangle), 100 * largest_hole_share));
+                                       100 * share, triangle_text(surface, largest.triangle), 100 * largest_hole_share));
   }
   if (edges > 0) {
     notes->push_back(fmt::format("{} open edges around {} holes, of up to {:.2g} % of the area: taken as closed", edges,
                                  count, 100 * worst));
   }
 }
-
-void turn_over(Triangles& triangles, Eigen::Index t) { std::swap(triangles(t, 1), triangles(t, 2)); }
 
 void measure_volumes(const Numbered& surface, std::vector<Component>& components, const std::string& name) {
   for (Component& component : components) {
@@ -314,7 +102,7 @@ void measure_volumes(const Numbered& surface, std::vector<Component>& components
       component.volume += area_vector(surface.mesh, t).dot(corner(surface.mesh, t, 0) - center) / 3;
     if (!(std::abs(component.volume) > 1e-12 * component.area * component.box.diagonal()))
       throw InputError(
-          name, fmt::format("the surface encloses no volume at {}", triangle(surface, component.triangles.front())));
+          name, fmt::format("the surface encloses no volume at {}", triangle_text(surface, component.triangles.front())));
   }
 }
 
@@ -361,17 +149,17 @@ void decide_senses(const TriMesh& mesh, std::vector<Component>& components) {
 
 }  // namespace
 
-TriMesh closed_surface(TriMesh raw, const std::string& name, std::vector<std::string>* notes) {
-  std::vector<std::string> unwanted;
-  if (notes == nullptr) notes = &unwanted;
-  check_numbers(raw, name);
-  Numbered surface{merged(raw), std::vector<Eigen::Index>(at(raw.triangles.rows()))};
-  std::iota(surface.number.begin(), surface.number.end(), 1);
-  surface = without_repeated_triangles(without_flat_triangles(surface, notes), notes);
-  if (surface.mesh.triangles.rows() == 0) throw InputError(name, "has no triangle with an area");
-
-  const Neighbours next = neighbours(surface, name);
-  auto [components, turned] = flood(surface, next, name);
+TriMesh closed(Numbered surface, const std::string& name, std::vector<std::string>* notes) {
+  const Neighbours next = neighbours_of(surface);
+  if (next.crowded >= 0) {
+    throw InputError(name, fmt::format("three triangles or more share an edge, among them {}; an edge may have two",
+                                       triangle_text(surface, next.crowded)));
+  }
+  auto [components, turned, one_sided] = flood(surface, next);
+  if (one_sided >= 0) {
+    throw InputError(name, fmt::format("the surface is one-sided, like a Moebius strip: no inside at {}",
+                                       triangle_text(surface, one_sided)));
+  }
   check_holes(surface, next, components, name, notes);
   Triangles& triangles = surface.mesh.triangles;
   for (Eigen::Index t = 0; t < triangles.rows(); ++t)
@@ -389,6 +177,12 @@ TriMesh closed_surface(TriMesh raw, const std::string& name, std::vector<std::st
   if (count > 0)
     notes->push_back(fmt::format("{} of {} triangles were turned to face outward", count, triangles.rows()));
   return merged(surface.mesh);
+}
+
+TriMesh closed_surface(TriMesh raw, const std::string& name, std::vector<std::string>* notes) {
+  std::vector<std::string> unwanted;
+  if (notes == nullptr) notes = &unwanted;
+  return closed(cleaned(raw, name, notes), name, notes);
 }
 
 }  // namespace supple

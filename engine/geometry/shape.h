@@ -50,6 +50,7 @@ struct HalfSpace {  // the side that the unit normal points away from
 
 struct ClosedSurface {  // triangles from a file
   std::shared_ptr<const TriangleSolid> solid;
+  std::shared_ptr<const TriMesh> drawn = nullptr;  // what is seen of it; null: the solid's own triangles
 };
 
 struct ShapePart;

@@ -22,6 +22,11 @@ double ShapeProbe::distance(const Vec3& p, std::int32_t& near) const {
   return surface_->scale * solid_->closest(local(p), near).distance;
 }
 
+double ShapeProbe::distance_within(const Vec3& p, double most) const {
+  if (solid_ == nullptr) return shape_.distance(p);
+  return surface_->scale * solid_->distance_within(local(p), most / surface_->scale);
+}
+
 SurfacePoint ShapeProbe::closest(const Vec3& p, std::int32_t& near) const {
   if (solid_ == nullptr) return shape_.closest(p);
   const Mat3 turn = surface_->to_local.linear().transpose();

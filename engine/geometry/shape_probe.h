@@ -13,9 +13,18 @@ class ShapeProbe {
   // The shape must outlive the probe.
   explicit ShapeProbe(const Shape& shape);
 
+  double distance(const Vec3& p) const { return shape_.distance(p); }
+
   // `near` is the memory of one caller, what the query before left in it, and -1 before the first one.
   double distance(const Vec3& p, std::int32_t& near) const;
   SurfacePoint closest(const Vec3& p, std::int32_t& near) const;
+
+  // Returns shape.distance(p), for a caller who knows that it is not above `most` in size.
+  double distance_within(const Vec3& p, double most) const;
+
+  // Tells whether the distance changes no faster than the point moves, and its sign where it is 0 alone: from one value
+  // then follow the signs around.
+  bool is_exact() const { return solid_ != nullptr && solid_->is_closed(); }
 
   // Tells whether the shape can say where a straight way enters it.
   bool knows_entries() const { return solid_ != nullptr; }

@@ -21,4 +21,11 @@ SourceFile source_of(const std::filesystem::path& path, const TriMesh& mesh) {
   return {path, hash_of(mesh.triangles, hash_of(mesh.points, 0))};
 }
 
+SourceFile source_of(const std::filesystem::path& path, const SolidSurface& surface) {
+  SourceFile source = source_of(path, surface.boundary);
+  if (surface.drawn.triangles.rows() > 0)
+    source.hash = hash_of(surface.drawn.triangles, hash_of(surface.drawn.points, source.hash));
+  return source;
+}
+
 }  // namespace supple

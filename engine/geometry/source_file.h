@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "geometry/mesh.h"
+#include "geometry/solid_surface.h"
 
 namespace supple {
 
@@ -17,5 +18,7 @@ struct SourceFile {
 // The mesh must be as it was read: not yet rotated, scaled, renamed or renumbered.
 SourceFile source_of(const std::filesystem::path& path, const TetMesh& mesh);
 SourceFile source_of(const std::filesystem::path& path, const TriMesh& mesh);
+// A surface is known by its boundary, and by what is drawn of it where that is something else.
+SourceFile source_of(const std::filesystem::path& path, const SolidSurface& surface);
 
 }  // namespace supple

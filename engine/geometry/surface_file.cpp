@@ -84,9 +84,22 @@ std::filesystem::path surface_reader_program() {
   return SUPPLE_INSTALLED_READER;  // of a program elsewhere that uses the library
 }
 
-TriMesh read_closed_surface(const std::filesystem::path& path, std::vector<std::string>* notes) {
+namespace {
+
+TriMesh read_triangles(const std::filesystem::path& path) {
   check_file(path);
-  return closed_surface(decode(run_reader(surface_reader_program(), path), path.string()), path.string(), notes);
+  return decode(run_reader(surface_reader_program(), path), path.string());
+}
+
+}  // namespace
+
+TriMesh read_closed_surface(const std::filesystem::path& path, std::vector<std::string>* notes) {
+  return closed_surface(read_triangles(path), path.string(), notes);
+}
+
+SolidSurface read_solid_surface(const std::filesystem::path& path, const SurfaceOptions& options,
+                                std::vector<std::string>* notes) {
+  return solid_surface(set_up(read_triangles(path), options), options, path.string(), notes);
 }
 
 }  // namespace supple

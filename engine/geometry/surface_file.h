@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/mesh.h"
+#include "geometry/solid_surface.h"
 
 namespace supple {
 
@@ -16,6 +16,10 @@ namespace supple {
 // does not exist, has no triangles or is too large, when its reader crashed, took too long or refused it, and when the
 // surface is not closed.
 TriMesh read_closed_surface(const std::filesystem::path& path, std::vector<std::string>* notes);
+
+// The same for a surface that need not be closed: solid_surface makes a solid of it as the options say.
+SolidSurface read_solid_surface(const std::filesystem::path& path, const SurfaceOptions& options,
+                                std::vector<std::string>* notes);
 
 // Returns the same triangles as the boundary of a solid. Equal positions become one vertex; triangles without area or
 // listed twice are left out; all triangles face outward, and those of a cavity face into it. A component that lies

@@ -3,9 +3,13 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <thread>
 
 #include "base/error.h"
+#include "base/threads.h"
 #include "geometry/mesh_repair.h"
+#include "geometry/shape_probe.h"
 
 namespace supple {
 namespace {
@@ -23,8 +27,9 @@ constexpr int long_edges = 3;  // the first three are the long ones
 
 class IsosurfaceStuffing {
  public:
-  IsosurfaceStuffing(const Shape& shape, double spacing, const Vec3& shift, const std::function<void(double)>& heard)
-      : shape_(shape), spacing_(spacing), heard_(heard) {
+  IsosurfaceStuffing(const Shape& shape, double spacing, const Vec3& shift, const std::function<void(double)>& heard,
+                     Threads& threads)
+      : probe_(shape), spacing_(spacing), heard_(heard), threads_(threads) {
     const Bounds box = shape.bounds();
     origin_ = box.lower - (1.5 * Vec3::Ones() + shift) * spacing;
     for (int axis = 0; axis < 3; ++axis) {
@@ -76,16 +81,27 @@ class IsosurfaceStuffing {
   Vec3 lattice_position(const Site& s) const { return origin_ + 0.5 * spacing_ * Vec3(s[0], s[1], s[2]); }
   Vec3 position(const Site& s) const { return lattice_position(s) + moved_[id(s)]; }
 
-  // Tells that a layer of the lattice has been passed once more. Sampling and finding cuts take nearly all of the time.
-  void tell_layer() {
-    constexpr int passes = 2;
-    if (heard_) heard_(std::min(1.0, ++layers_done_ / double(passes * (2 * cells_[2] + 1))));
+  // Passes the rows of sites along x, layer by layer, each layer by one thread; a row may write to its own sites alone.
+  // Tells after some layers how far that is: sampling and finding cuts, which pass once each, take nearly all of the
+  // time.
+  template <class Visit>
+  void for_each_row(const Visit& visit) {
+    constexpr int layers_at_once = 8, passes = 2;
+    const int layers = 2 * cells_[2] + 1;
+    for (int first = 0; first < layers; first += layers_at_once) {
+      const int count = std::min(layers_at_once, layers - first);
+      threads_.run(count, [&](int n) {
+        const int k = first + n;
+        for (int j = k % 2; j <= 2 * cells_[1] - k % 2; j += 2) visit(j, k);
+      });
+      layers_done_ += count;
+      if (heard_) heard_(std::min(1.0, layers_done_ / double(passes * layers)));
+    }
   }
 
   template <class Visit>
   void for_each_site(const Visit& visit) {
     for (int k = 0; k <= 2 * cells_[2]; ++k) {
-      tell_layer();
       for (int j = k % 2; j <= 2 * cells_[1] - k % 2; j += 2) {
         for (int i = k % 2; i <= 2 * cells_[0] - k % 2; i += 2) visit(Site{i, j, k});
       }
@@ -94,7 +110,29 @@ class IsosurfaceStuffing {
 
   void sample() {
     for (Vec3& m : moved_) m.setZero();
-    for_each_site([&](const Site& s) { field_[id(s)] = shape_.distance(lattice_position(s)); });
+    for_each_row([&](int j, int k) { sample_row(j, k); });
+  }
+
+  // An exact distance says how far the surface is at most from the next site, and, where it is large, that all edges of
+  // the next sites lie on its side. The values of these sites are then of no use beyond their signs.
+  void sample_row(int j, int k) {
+    double known = 1e300;
+    int skip = 0, passed = 0;  // sites since the last value
+    for (int i = k % 2; i <= 2 * cells_[0] - k % 2; i += 2) {
+      const Site s{i, j, k};
+      ++passed;
+      if (skip > 0) {
+        --skip;
+        field_[id(s)] = known;
+        continue;
+      }
+      const double most = std::abs(known) + passed * spacing_;
+      known = probe_.is_exact() && most < 1e299 ? probe_.distance_within(lattice_position(s), most)
+                                                : probe_.distance(lattice_position(s));
+      field_[id(s)] = known;
+      passed = 0;
+      if (probe_.is_exact()) skip = std::clamp(int(std::abs(known) / spacing_ - 1.01), 0, 1 << 20);
+    }
   }
 
   // Finds the cut's parameter along a -> b by bisection, starting from the secant's guess; the field has opposite signs
@@ -104,8 +142,11 @@ class IsosurfaceStuffing {
     double low = 0, high = 1;
     const bool low_inside = field_[id(a)] < 0;
     double t = field_[id(a)] / (field_[id(a)] - field_[id(b)]);
+    // The surface is no further than the nearer end of the edge and the way there.
+    const double most = std::min(std::abs(field_[id(a)]), std::abs(field_[id(b)])) + (to - from).norm();
     for (int step = 0; step < 30; ++step) {
-      const double value = shape_.distance(from + t * (to - from));
+      const Vec3 place = from + t * (to - from);
+      const double value = probe_.is_exact() ? probe_.distance_within(place, most) : probe_.distance(place);
       if (std::abs(value) < 1e-9 * spacing_) break;
       ((value < 0) == low_inside ? low : high) = t;
       if (high - low < 1e-7) break;
@@ -115,14 +156,18 @@ class IsosurfaceStuffing {
   }
 
   void find_cuts() {
-    for_each_site([&](const Site& s) {
-      for (int e = 0; e < 7; ++e) {
-        const Site other = stepped(s, forward_edges[e], 1);
-        if (!inside_lattice(other)) continue;
-        if ((field_[id(s)] < 0) != (field_[id(other)] < 0))
-          cut_[id(s) * 7 + static_cast<std::size_t>(e)] = find_cut(s, other);
-      }
+    for_each_row([&](int j, int k) {
+      for (int i = k % 2; i <= 2 * cells_[0] - k % 2; i += 2) find_cuts_at(Site{i, j, k});
     });
+  }
+
+  void find_cuts_at(const Site& s) {
+    for (int e = 0; e < 7; ++e) {
+      const Site other = stepped(s, forward_edges[e], 1);
+      if (!inside_lattice(other)) continue;
+      if ((field_[id(s)] < 0) != (field_[id(other)] < 0))
+        cut_[id(s) * 7 + static_cast<std::size_t>(e)] = find_cut(s, other);
+    }
   }
 
   static Site stepped(const Site& s, const Site& edge, int sign) {
@@ -310,9 +355,10 @@ class IsosurfaceStuffing {
     }
   }
 
-  const Shape& shape_;
+  const ShapeProbe probe_;
   const double spacing_;
   const std::function<void(double)>& heard_;
+  Threads& threads_;
   int layers_done_ = 0;  // of both passes
   Vec3 origin_;
   std::array<int, 3> cells_{};
@@ -325,25 +371,28 @@ class IsosurfaceStuffing {
   std::vector<std::array<int, 4>> tets_;
 };
 
-// Estimates the share of the bounding box that the shape fills, from a coarse grid of samples.
-double sampled_volume(const Shape& shape, const Bounds& box) {
+// Estimates the volume that the shape fills in its bounding box, from a coarse grid of samples.
+double sampled_volume(const Shape& shape, const Bounds& box, Threads& threads) {
   constexpr int samples = 24;
-  int inside = 0;
-  for (int i = 0; i < samples; ++i) {
+  const ShapeProbe probe(shape);
+  std::array<int, samples> inside{};
+  threads.run(samples, [&](int i) {
     for (int j = 0; j < samples; ++j) {
       for (int k = 0; k < samples; ++k) {
         const Vec3 unit((i + 0.5) / samples, (j + 0.5) / samples, (k + 0.5) / samples);
-        inside += shape.distance(box.lower + unit.cwiseProduct(box.extent())) < 0 ? 1 : 0;
+        inside[static_cast<std::size_t>(i)] += probe.distance(box.lower + unit.cwiseProduct(box.extent())) < 0 ? 1 : 0;
       }
     }
-  }
-  return inside * box.extent().prod() / (samples * samples * samples);
+  });
+  const int count = std::accumulate(inside.begin(), inside.end(), 0);
+  return count * box.extent().prod() / (samples * samples * samples);
 }
 
-}  // namespace
+Threads all_cores() { return Threads(static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))); }
 
-TetMesh stuff_lattice(const Shape& shape, double spacing, const Vec3& shift, const std::function<void(double)>& heard) {
-  TetMesh mesh = one_manifold_piece(IsosurfaceStuffing(shape, spacing, shift, heard).run());
+TetMesh stuffed(const Shape& shape, double spacing, const Vec3& shift, const std::function<void(double)>& heard,
+                Threads& threads) {
+  TetMesh mesh = one_manifold_piece(IsosurfaceStuffing(shape, spacing, shift, heard, threads).run());
   mesh.regions.resize(static_cast<std::size_t>(mesh.tets.rows()));
   for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
     Vec3 centroid = Vec3::Zero();
@@ -353,13 +402,21 @@ TetMesh stuff_lattice(const Shape& shape, double spacing, const Vec3& shift, con
   return mesh;
 }
 
+}  // namespace
+
+TetMesh stuff_lattice(const Shape& shape, double spacing, const Vec3& shift, const std::function<void(double)>& heard) {
+  Threads threads = all_cores();
+  return stuffed(shape, spacing, shift, heard, threads);
+}
+
 TetMesh tetrahedralize(const Shape& shape, int vertices, const std::string& source, const MeshingProgress& heard) {
   const Bounds box = shape.bounds();
   if (box.empty()) throw InputError(source, "the shape is empty: add a part such as sphere = { radius = 0.1 }");
   if (box.extent().maxCoeff() > 1e6) {
     throw InputError(source, "the shape is unbounded: a half space can cut or intersect a body, but not be one");
   }
-  const double volume = sampled_volume(shape, box);
+  Threads threads = all_cores();
+  const double volume = sampled_volume(shape, box, threads);
   if (volume <= 0)
     throw InputError(source, "the shape has no inside: its parts cut each other away, or are too thin to mesh");
 
@@ -375,7 +432,7 @@ TetMesh tetrahedralize(const Shape& shape, int vertices, const std::string& sour
     const auto told = [&](double share) {
       if (heard) heard(attempt + 1, share);
     };
-    TetMesh mesh = stuff_lattice(shape, spacing, shift - Vec3(shift.array().floor()), told);
+    TetMesh mesh = stuffed(shape, spacing, shift - Vec3(shift.array().floor()), told, threads);
     const double count = std::max<double>(static_cast<double>(mesh.rest.rows()), 1.0);
     if (best.rest.rows() == 0 || miss(mesh) < miss(best)) best = std::move(mesh);
     if (miss(best) < 0.01 || (attempt >= 8 && miss(best) < 0.03)) break;

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <thread>
 #include <tuple>
 
+#include "base/threads.h"
 #include "geometry/triangle_solid.h"
 
 namespace supple {
@@ -190,11 +192,22 @@ bool TriangleSolid::find_neighbours() {
 // number.
 void TriangleSolid::prepare_sides() {
   if (!lids_.empty() || !find_neighbours()) return;
+  // Each chunk stops at its first triangle that faces the inside.
+  constexpr Eigen::Index chunk = 4096;
+  const auto chunks = std::size_t((surface_.triangles.rows() + chunk - 1) / chunk);
+  std::vector<char> faces_inside(chunks, 0);
+  Threads threads(chunks > 1 ? int(std::max(1u, std::thread::hardware_concurrency())) : 1);
+  threads.run(int(chunks), [&](int c) {
+    const Eigen::Index end = std::min((c + 1) * chunk, surface_.triangles.rows());
+    for (Eigen::Index t = c * chunk; t < end && !faces_inside[std::size_t(c)]; ++t) {
+      const Vec3 middle = (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3;
+      const double edge = (corner(t, 1) - corner(t, 0)).norm();
+      faces_inside[std::size_t(c)] = inside(middle + 1e-3 * edge * normals_.row(t).transpose());
+    }
+  });
+  if (std::find(faces_inside.begin(), faces_inside.end(), 1) != faces_inside.end()) return;
   vertex_normals_.setZero(surface_.points.rows(), 3);
   for (Eigen::Index t = 0; t < surface_.triangles.rows(); ++t) {
-    const Vec3 middle = (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3;
-    const double edge = (corner(t, 1) - corner(t, 0)).norm();
-    if (inside(middle + 1e-3 * edge * normals_.row(t).transpose())) return;
     for (int k = 0; k < 3; ++k) {
       const Vec3 l = corner(t, (k + 1) % 3) - corner(t, k), r = corner(t, (k + 2) % 3) - corner(t, k);
       vertex_normals_.row(surface_.triangles(t, k)) += std::atan2(l.cross(r).norm(), l.dot(r)) * normals_.row(t);

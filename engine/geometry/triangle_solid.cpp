@@ -7,10 +7,12 @@
 #include <numbers>
 #include <numeric>
 #include <span>
+#include <thread>
 #include <tuple>
 #include <utility>
 
 #include "base/error.h"
+#include "base/threads.h"
 
 namespace supple {
 namespace {
@@ -81,10 +83,58 @@ class TriangleSolid::Builder {
       centroids_.row(t) = ((solid.corner(t, 0) + solid.corner(t, 1) + solid.corner(t, 2)) / 3).transpose();
   }
 
-  void build() { add_node(order_); }
+  // The root's children are built one by one or all at once, and then stand in the order in which one thread makes them.
+  void build() {
+    int count = 0;
+    const Parts parts = parts_of(order_, count);
+    std::array<Arrays, width> made;
+    constexpr std::size_t worth_threads = 50000;  // triangles
+    const bool shared = order_.size() > worth_threads;
+    Threads threads(shared ? int(std::min(4u, std::max(1u, std::thread::hardware_concurrency()))) : 1);
+    threads.run(count, [&](int k) {
+      const Part own = parts[std::size_t(k)];
+      if (own.size() > std::size_t(width)) add_node(own, made[std::size_t(k)]);
+    });
+    Arrays all;
+    all.nodes.emplace_back();
+    all.dipoles.emplace_back();
+    Node root;
+    Dipoles dipoles;
+    for (int k = 0; k < width; ++k) {
+      const Part own = k < count ? parts[std::size_t(k)] : Part();
+      describe(own, k, root, dipoles);
+      root.child[std::size_t(k)] = own.empty()                         ? 0
+                                   : own.size() <= std::size_t(width) ? add_leaf(own, all)
+                                                                      : append(made[std::size_t(k)], all);
+    }
+    all.nodes[0] = root;
+    all.dipoles[0] = dipoles;
+    solid_.nodes_ = std::move(all.nodes);
+    solid_.dipoles_ = std::move(all.dipoles);
+    solid_.leaves_ = std::move(all.leaves);
+  }
 
  private:
   using Part = std::span<std::int32_t>;
+  using Parts = std::array<Part, width>;
+
+  struct Arrays {
+    std::vector<Node> nodes;
+    std::vector<Dipoles> dipoles;
+    std::vector<Leaf> leaves;
+  };
+
+  // Puts a subtree behind what there is. Returns the place of its root.
+  static std::int32_t append(const Arrays& subtree, Arrays& all) {
+    const auto first_node = std::int32_t(all.nodes.size()), first_leaf = std::int32_t(all.leaves.size());
+    all.nodes.insert(all.nodes.end(), subtree.nodes.begin(), subtree.nodes.end());
+    all.dipoles.insert(all.dipoles.end(), subtree.dipoles.begin(), subtree.dipoles.end());
+    all.leaves.insert(all.leaves.end(), subtree.leaves.begin(), subtree.leaves.end());
+    for (std::size_t n = std::size_t(first_node); n < all.nodes.size(); ++n)
+      for (std::int32_t& child : all.nodes[n].child)  // 0: there is none
+        child = child > 0 ? child + first_node : child < 0 ? ~(~child + first_leaf) : 0;
+    return first_node;
+  }
 
   Bounds box_of(Part part) const {
     Bounds box;
@@ -116,7 +166,7 @@ class TriangleSolid::Builder {
     return {part.first(middle), part.subspan(middle)};
   }
 
-  std::int32_t add_leaf(Part part) {
+  std::int32_t add_leaf(Part part, Arrays& arrays) const {
     Leaf leaf;
     leaf.count = int(part.size());
     for (int k = 0; k < width; ++k) {
@@ -136,34 +186,46 @@ class TriangleSolid::Builder {
       set(leaf.to_v, k, (c - a).cross(n) * inverse(n));
       set(leaf.to_w, k, n.cross(b - a) * inverse(n));
     }
-    solid_.leaves_.push_back(leaf);
-    return ~std::int32_t(solid_.leaves_.size() - 1);
+    arrays.leaves.push_back(leaf);
+    return ~std::int32_t(arrays.leaves.size() - 1);
   }
 
-  std::int32_t add_node(Part part) {
-    const std::size_t index = solid_.nodes_.size();
-    solid_.nodes_.emplace_back();
-    solid_.dipoles_.emplace_back();
-    std::array<Part, width> parts{part};
-    int count = 1;
+  Parts parts_of(Part part, int& count) const {
+    Parts parts{part};
+    count = 1;
     while (count < width) {  // the largest part is split again
       Part& largest = *std::max_element(parts.begin(), parts.begin() + count,
                                         [](const Part& l, const Part& r) { return l.size() < r.size(); });
       if (largest.size() <= std::size_t(width)) break;
       std::tie(largest, parts[std::size_t(count++)]) = split(largest);
     }
+    return parts;
+  }
+
+  void describe(Part own, int lane, Node& node, Dipoles& dipoles) const {
+    const Bounds box = box_of(own);
+    set(node.lower, lane, box.lower);
+    set(node.upper, lane, box.upper);
+    summarise(own, lane, dipoles);
+  }
+
+  std::int32_t add_node(Part part, Arrays& arrays) const {
+    const std::size_t index = arrays.nodes.size();
+    arrays.nodes.emplace_back();
+    arrays.dipoles.emplace_back();
+    int count = 0;
+    const Parts parts = parts_of(part, count);
     Node node;
     Dipoles dipoles;
     for (int k = 0; k < width; ++k) {
       const Part own = k < count ? parts[std::size_t(k)] : Part();
-      const Bounds box = box_of(own);
-      set(node.lower, k, box.lower);
-      set(node.upper, k, box.upper);
-      summarise(own, k, dipoles);
-      node.child[std::size_t(k)] = own.empty() ? 0 : own.size() <= std::size_t(width) ? add_leaf(own) : add_node(own);
+      describe(own, k, node, dipoles);
+      node.child[std::size_t(k)] = own.empty()                         ? 0
+                                   : own.size() <= std::size_t(width) ? add_leaf(own, arrays)
+                                                                      : add_node(own, arrays);
     }
-    solid_.nodes_[index] = node;
-    solid_.dipoles_[index] = dipoles;
+    arrays.nodes[index] = node;
+    arrays.dipoles[index] = dipoles;
     return std::int32_t(index);
   }
 
@@ -257,7 +319,8 @@ void TriangleSolid::nearest_in_leaf(const Vec3& p, std::int32_t index, Nearest& 
 }
 
 // Searches by branch and bound, the nearer child first. A leaf that is likely to be near saves most of the search.
-TriangleSolid::Nearest TriangleSolid::nearest(const Vec3& p, std::int32_t likely) const {
+// most: only triangles nearer than this are found.
+TriangleSolid::Nearest TriangleSolid::nearest(const Vec3& p, std::int32_t likely, double most) const {
   struct Entry {
     double squared;
     std::int32_t node;
@@ -265,7 +328,7 @@ TriangleSolid::Nearest TriangleSolid::nearest(const Vec3& p, std::int32_t likely
   std::array<Entry, stack_size> stack;
   int top = 0;
   stack[std::size_t(top++)] = {0, 0};
-  Nearest best{infinity, 0, 0, 0, 0};
+  Nearest best{most * most, most < infinity ? -1 : 0, 0, 0, 0};
   if (likely >= 0) nearest_in_leaf(p, likely, best);
   while (top > 0) {
     const Entry entry = stack[std::size_t(--top)];
@@ -296,16 +359,23 @@ SurfacePoint TriangleSolid::closest(const Vec3& p) const {
   // the query starts from a nearer point.
   const Vec3 from_center = p - bounds_.center();
   const double far = 1e12 * (bounds_.diagonal() + on_surface_), away = from_center.cwiseAbs().maxCoeff();
-  const Nearest found = nearest(away > far ? Vec3(bounds_.center() + from_center / away * far) : p, -1);
+  const Nearest found = nearest(away > far ? Vec3(bounds_.center() + from_center / away * far) : p, -1, infinity);
   return seen_from(p, found, inside(p) ? -1 : 1);
 }
 
 SurfacePoint TriangleSolid::closest(const Vec3& p, std::int32_t& near) const {
   const bool usual = sides_by_normals_ && (p - bounds_.center()).cwiseAbs().maxCoeff() <= 1e3 * bounds_.diagonal();
   if (!usual) return closest(p);
-  const Nearest found = nearest(p, near);
+  const Nearest found = nearest(p, near, infinity);
   near = found.leaf;
   return seen_from(p, found, side_of(p, found));
+}
+
+double TriangleSolid::distance_within(const Vec3& p, double most) const {
+  const Nearest found = nearest(p, -1, 1.001 * most + 1e3 * on_surface_);
+  if (found.leaf < 0) return closest(p).distance;
+  const double side = sides_by_normals_ ? side_of(p, found) : inside(p) ? -1 : 1;
+  return seen_from(p, found, side).distance;
 }
 
 Vec3 TriangleSolid::point_of(const Nearest& found) const {

@@ -28,6 +28,13 @@ class TriangleSolid {
   // the first one. The side is found from the surface's normals where that is safe, and otherwise as above.
   SurfacePoint closest(const Vec3& p, std::int32_t& near) const;
 
+  // Returns the signed distance, with the bits of closest(p), for a caller who knows that the surface is not further away
+  // than `most`, by more than round-off.
+  double distance_within(const Vec3& p, double most) const;
+
+  // Tells whether every edge is closed, so that the sign changes at the triangles alone.
+  bool is_closed() const { return lids_.empty(); }
+
   // Returns which share of the way from a, which lies outside, to b leads to where it first enters; nothing when it
   // does not.
   std::optional<double> entry(const Vec3& a, const Vec3& b) const;
@@ -76,7 +83,7 @@ class TriangleSolid {
     return {corner(triangle, 0), corner(triangle, 1), corner(triangle, 2)};
   }
   void nearest_in_leaf(const Vec3& p, std::int32_t leaf, Nearest& best) const;
-  Nearest nearest(const Vec3& p, std::int32_t likely) const;
+  Nearest nearest(const Vec3& p, std::int32_t likely, double most) const;
   std::int32_t triangle_of(const Nearest& found) const {
     return leaves_[std::size_t(found.leaf)].triangle[std::size_t(found.lane)];
   }

@@ -79,6 +79,14 @@ void check_distance(const Body& body, std::vector<Problem>& problems) {
                                      body.def.name, far, size)));
 }
 
+// A film of a body that is very large or very small is hardly what was meant: units were mixed up.
+void note_size(Body& body) {
+  const double size = bounds_of(body.description.mesh.rest).extent().maxCoeff();
+  if (size <= 20 && size >= 1e-3) return;
+  body.notes.push_back(fmt::format("body '{}' is {:.3g} m long; size = 0.5 makes it half a metre{}", body.def.name, size,
+                                   body.def.surface.empty() ? "" : ", and units = \"mm\" takes the file's numbers for that"));
+}
+
 void set_substances(Body& body, std::vector<Problem>& problems) {
   const BodyDef& def = body.def;
   BodyDescription& description = body.description;
@@ -228,9 +236,11 @@ std::vector<Body> assemble(const SceneDef& scene, const Making& making) {
       body.unplaced = loaded.mesh.rest;
       body.description.name = def.name;
       body.description.mesh = loaded.mesh;
-      body.placement = placement(def, loaded.mesh.rest);
+      // Pieces stay where they are in the whole, which is placed and scaled as one.
+      body.placement = placement(def, loaded.whole.rows() > 0 ? loaded.whole : loaded.mesh.rest);
       apply(body.placement, body.description.mesh.rest);
       check_distance(body, problems);
+      note_size(body);
       body.regions = loaded.regions;
       body.cloth = loaded.cloth;
       if (!def.cloth) body.volume = quality(body.description.mesh).volume;

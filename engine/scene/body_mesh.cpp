@@ -1,10 +1,16 @@
 #include "scene/body_mesh.h"
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/error.h"
 #include "base/hash.h"
 #include "geometry/mesh_bytes.h"
 #include "geometry/mesh_file.h"
-#include "geometry/surface_file.h"
+#include "geometry/surface_thickness.h"
 #include "geometry/tetrahedralize.h"
+#include "scene/body_pieces.h"
 #include "scene/shape_reader.h"
 
 namespace supple {
@@ -37,20 +43,85 @@ TetMesh tetrahedra(const Shape& shape, int vertices, const std::string& source, 
   });
 }
 
-// make_shape: called only where the mesh has not been kept.
-template <class MakeShape>
-TetMesh kept_tetrahedra(const Loaded& loaded, int vertices, const Making& making, const MakeShape& make_shape) {
-  return kept_or_made(making.cache, fmt::format("mesh of {} vertices from {}", vertices, content_name(loaded.files)),
-                      tet_mesh_from, [&] { return tetrahedra(make_shape(), vertices, loaded.source, making); });
+std::string kept_name(const Loaded& loaded, int vertices) {
+  return fmt::format("mesh of {} vertices from {}", vertices, content_name(loaded.files));
+}
+
+// Joins parts that touch without an overlap by what lies between them: their fields melt into each other there.
+std::optional<Shape> bridged(const TriMesh& boundary, double gap) {
+  constexpr std::size_t most_parts = 64;  // every part is asked for every distance
+  Shape shape;
+  for (TriMesh& mesh : closed_parts(boundary)) {
+    if (!(enclosed_volume(mesh) > 0)) return std::nullopt;
+    ShapePart part;
+    part.primitive = ClosedSurface{std::make_shared<TriangleSolid>(std::move(mesh))};
+    part.blend = shape.root.parts.empty() ? 0 : gap;
+    shape.root.parts.push_back(std::move(part));
+  }
+  if (shape.root.parts.size() < 2 || shape.root.parts.size() > most_parts) return std::nullopt;
+  return shape;
+}
+
+std::string count_text(double vertices) {
+  return vertices > 500000 ? "more than 500000" : fmt::format("about {:.0f}", std::ceil(vertices / 100) * 100);
+}
+
+// Tells what of a surface is thinner than an element, before tetrahedra are made of it.
+struct Thinness {
+  double spacing = 0;
+  double wanted = 0;  // vertices
+  std::string note;   // empty where nothing is
+};
+
+Thinness thinness_of(const TriMesh& boundary, int vertices) {
+  const double volume = enclosed_volume(boundary), area = area_of(boundary);
+  if (!(volume > 0)) return {};
+  Thinness result{spacing_for(volume, area, vertices), 0, ""};
+  // The tree for the rays of more triangles takes longer than a reader of the note would wait.
+  constexpr Eigen::Index most_triangles = 200000;
+  if (boundary.triangles.rows() > most_triangles) return result;
+  const std::vector<ThicknessSample> samples = sampled_thickness(boundary);
+  result.wanted = vertices_wanted(samples, volume, area);
+  const auto thin = std::count_if(samples.begin(), samples.end(),
+                                  [&](const ThicknessSample& s) { return s.thickness < 0.7 * result.spacing; });
+  const double share = double(thin) / std::max<double>(1, double(samples.size()));
+  if (share < 0.01) return result;
+  const Vec3& place = samples.front().place;
+  result.note = fmt::format(
+      "{:.1f} % of the surface belongs to parts thinner than an element of {} vertices ({:.2g}), the thinnest at ({:.3g}, "
+      "{:.3g}, {:.3g}), in the file's units: {} vertices resolve them",
+      100 * share, vertices, result.spacing, place.x(), place.y(), place.z(), count_text(result.wanted));
+  return result;
+}
+
+TetMesh surface_tetrahedra(const TriMesh& boundary, const BodyDef& def, const Loaded& loaded, const Thinness& thinness,
+                           const Making& making) {
+  try {
+    return tetrahedra(shape_of(boundary), def.vertices, loaded.source, making);
+  } catch (const InputError& error) {
+    const auto joined = bridged(boundary, 3 * thinness.spacing);
+    if (joined) return tetrahedra(*joined, def.vertices, loaded.source, making);
+    if (thinness.note.empty()) throw;
+    throw InputError(loaded.source, error.problems().front().message + "; " + thinness.note);
+  }
 }
 
 Loaded loaded_surface(const BodyDef& def, const Making& making) {
   Loaded loaded;
   loaded.source = def.surface.string();
-  loaded.skin = read_closed_surface(def.surface, &loaded.notes);
-  loaded.files = {source_of(def.surface, loaded.skin)};
+  BodySurface own;
+  if (!def.read_surface) own = read_body_surface(def);
+  const BodySurface& read = def.read_surface ? *def.read_surface : own;
+  const SolidSurface& solid = read.pieces.at(def.piece);
+  if (def.piece == 0) loaded.notes = read.notes;
+  loaded.skin = solid.skin();
+  loaded.files = {read.sources[def.piece]};
+  if (read.pieces.size() > 1) loaded.whole = read.whole;
   loaded.regions = Shape{}.regions;
-  loaded.mesh = kept_tetrahedra(loaded, def.vertices, making, [&] { return shape_of(loaded.skin); });
+  const Thinness thinness = thinness_of(solid.boundary, def.vertices);
+  if (!thinness.note.empty()) loaded.notes.push_back(thinness.note);
+  loaded.mesh = kept_or_made(making.cache, kept_name(loaded, def.vertices), tet_mesh_from,
+                             [&] { return surface_tetrahedra(solid.boundary, def, loaded, thinness, making); });
   return loaded;
 }
 
@@ -61,7 +132,8 @@ Loaded loaded_shape(const SceneDef& scene, const BodyDef& def, const Making& mak
   loaded.regions = loaded.shape.regions;
   loaded.notes = loaded.shape.notes;
   loaded.files = loaded.shape.files;
-  loaded.mesh = kept_tetrahedra(loaded, def.vertices, making, [&]() -> const Shape& { return loaded.shape; });
+  loaded.mesh = kept_or_made(making.cache, kept_name(loaded, def.vertices), tet_mesh_from,
+                             [&] { return tetrahedra(loaded.shape, def.vertices, loaded.source, making); });
   return loaded;
 }
 
@@ -87,7 +159,9 @@ std::string content_name(const std::vector<SourceFile>& files) {
 
 const Loaded& MeshCache::get(const SceneDef& scene, const BodyDef& def) {
   std::string key = !def.mesh.empty() ? def.mesh.string()
-                                      : fmt::format("{}{}#{}", def.shape.string(), def.surface.string(), def.vertices);
+                                      : fmt::format("{}{}#{}{}", def.shape.string(), def.surface.string(), def.vertices,
+                                                    def.surface_options.text());
+  if (!def.surface.empty()) key += fmt::format(" {} {}", name_of(def.pieces), def.piece);
   if (def.box || def.cloth) key = "body " + def.name;
   const auto known = loaded_.find(key);
   if (known != loaded_.end()) return known->second;

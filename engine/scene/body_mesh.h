@@ -16,7 +16,8 @@ struct Loaded {
   std::string source;
   std::vector<SourceFile> files;
   ClothMesh cloth;
-  TriMesh skin;  // of a body made from a surface, as it was read
+  TriMesh skin;     // of a body made from a surface, as it was read
+  Positions whole;  // of a body that is one of several pieces: the vertices of all of them; else empty
   Shape shape;   // of a body made from a shape
 };
 

@@ -7,6 +7,7 @@
 #include "scene/material_reader.h"
 #include "scene/solver_reader.h"
 #include "scene/start_reader.h"
+#include "scene/surface_reader.h"
 
 namespace supple {
 Ease read_ease(const ConfigTable& table) { return table.word<Ease>({"ease", "", "how keys are joined"}, Ease::smooth); }
@@ -207,8 +208,8 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
   check_name(table, body.name);
   body.label = table.text({"label", "", "caption in the film; the default is the name"}, body.name);
   body.shape = table.file({"shape", "", "a shape file, to be meshed here"});
-  body.surface = table.file({"surface", "", "a closed surface (OBJ, PLY, STL, glTF, OFF), to be meshed here"});
-  body.mesh = table.file({"mesh", "", "a tetrahedral mesh (MEDIT .mesh)"});
+  body.surface = table.file({"surface", "", "a triangle surface (OBJ, PLY, STL, glTF, OFF), to be meshed here"});
+  body.mesh = table.file({"mesh", "", "a tetrahedral mesh (MEDIT .mesh, Gmsh .msh, TetGen .ele, VTK .vtk or .vtu)"});
   body.box = read_box(table);
   body.cloth = read_cloth(table);
   if (table.has("shape") + table.has("surface") + table.has("mesh") + table.has("box") + table.has("cloth") != 1)
@@ -217,6 +218,15 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
                                 Range::between(50, 500000));
   body.size = table.number_if_given({"size", "m", "longest side; without it the file's units are metres"},
                                     Range::above(0, 1e6));
+  body.surface_options = read_surface_options(table);
+  body.pieces = table.word<Pieces>(
+      {"pieces", "",
+       "of a surface: join: those that overlap or touch are one body, others have their own; largest: one of these; "
+       "bodies: each has its own"},
+      body.pieces);
+  if (table.has("pieces") && !table.has("surface")) table.complain("pieces", "pieces: of a 'surface'; there is none here");
+  // A thickness is one of the finished body, so that the surface must have its size before it is thickened.
+  if (body.surface_options.thickness > 0 && body.size) body.surface_options.size = *body.size;
   body.position = table.vector({"position", "m", "of the middle of the bounding box's bottom"}, Vec3(0, 0, 0));
   body.turn_deg =
       table.vector({"turn_deg", "degrees", "rotation about x, then y, then z, before it is placed"}, Vec3(0, 0, 0));

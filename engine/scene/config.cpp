@@ -94,6 +94,20 @@ toml::node& put_node(toml::table& document, Places& places, const std::vector<st
   return *table.get(path.back());
 }
 
+// Bodies and colliders without a name are called like their list. The second one and those after it get a number, so
+// that paths can tell them apart.
+void number_unnamed(toml::table& document) {
+  for (const char* list : {"body", "collider"}) {
+    toml::array* elements = document.get_as<toml::array>(list);
+    int unnamed = 0;
+    for (std::size_t i = 0; elements != nullptr && i < elements->size(); ++i) {
+      toml::table* element = elements->get(i)->as_table();
+      if (element == nullptr || element->contains("name") || ++unnamed == 1) continue;
+      element->insert("name", fmt::format("{}_{}", list, unnamed));
+    }
+  }
+}
+
 }  // namespace
 
 std::string name_of(const toml::table& element, const std::string& list) {
@@ -106,8 +120,13 @@ Config& Config::operator=(Config&&) noexcept = default;
 Config::~Config() = default;
 
 Config Config::load(const std::filesystem::path& path, const std::filesystem::path& assets) {
-  Config config = parse(read_file(path, largest_file), path.string(), assets);
-  config.content_->folder = path.parent_path();
+  return parse_beside(read_file(path, largest_file), path, assets);
+}
+
+Config Config::parse_beside(std::string_view text, const std::filesystem::path& file,
+                            const std::filesystem::path& assets) {
+  Config config = parse(text, file.string(), assets);
+  config.content_->folder = file.parent_path();
   return config;
 }
 
@@ -117,6 +136,7 @@ Config Config::parse(std::string_view text, const std::string& name, const std::
   content->assets = assets;
   if (text.size() > largest_file) throw InputError(name, "is larger than 1.0 MB");
   content->document = parsed_toml(text, name);
+  number_unnamed(content->document);
   return Config(std::move(content));
 }
 

@@ -130,6 +130,9 @@ class Config {
   // it are looked up first in the folder of the file, then in `assets`.
   static Config load(const std::filesystem::path& path, const std::filesystem::path& assets);
   static Config parse(std::string_view text, const std::string& name, const std::filesystem::path& assets);
+  // Takes a text that stands for a file, in whose folder relative paths are looked up.
+  static Config parse_beside(std::string_view text, const std::filesystem::path& file,
+                             const std::filesystem::path& assets);
   Config(Config&&) noexcept;
   Config& operator=(Config&&) noexcept;
   ~Config();

@@ -106,9 +106,10 @@ Skin drawn_obstacle(const Obstacle& obstacle, const Bounds& around) {
   if (const auto* surface = lone<ClosedSurface>(obstacle)) {
     const ShapePart& part = shape.root.parts.front();
     const Eigen::Affine3d to_parent = Eigen::Affine3d(part.to_local.inverse()) * Eigen::Scaling(part.scale);
-    Positions points = surface->solid->surface().points;
+    const TriMesh& drawn = surface->drawn ? *surface->drawn : surface->solid->surface();
+    Positions points = drawn.points;
     for (Eigen::Index v = 0; v < points.rows(); ++v) points.row(v) = (to_parent * Vec3(points.row(v))).transpose();
-    return skin_of_surface(points, surface->solid->surface().triangles, 0, vertex_of);
+    return skin_of_surface(points, drawn.triangles, 0, vertex_of);
   }
   constexpr double cells = 96;  // along the longest side
   const Skin skin = skin_of(shape, shape.bounds().extent().maxCoeff() / cells);

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "base/names.h"
 #include "geometry/shape.h"
 #include "geometry/skin.h"
+#include "geometry/solid_surface.h"
 #include "scene/start_state.h"
 #include "sim/model/inputs.h"
 #include "sim/model/method.h"
@@ -117,12 +119,30 @@ struct Names<StartInside> {
                                        Name{StartInside::error, "error"}};
 };
 
+// Tells which pieces of a surface become bodies.
+enum class Pieces {
+  join,     // those that overlap or touch are one body, all others have their own
+  largest,  // the largest after joining
+  bodies,   // each has its own
+};
+template <>
+struct Names<Pieces> {
+  static constexpr std::array table = {Name{Pieces::join, "join"}, Name{Pieces::largest, "largest"},
+                                       Name{Pieces::bodies, "bodies"}};
+};
+
+struct BodySurface;  // body_pieces.h
+
 struct BodyDef {
   std::string name;
   std::string label;
   // One of these five members gives the mesh. The regions of a mesh file are named by their reference numbers.
   std::filesystem::path shape;
   std::filesystem::path surface;
+  SurfaceOptions surface_options;
+  Pieces pieces = Pieces::join;                    // of the surface
+  std::shared_ptr<const BodySurface> read_surface;  // what was read of it; null: nothing yet
+  std::size_t piece = 0;                           // of that surface, which is this body
   std::filesystem::path mesh;
   std::optional<BoxDef> box;
   std::optional<ClothDef> cloth;

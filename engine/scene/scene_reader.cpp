@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <set>
 
+#include "scene/body_pieces.h"
 #include "scene/body_reader.h"
 #include "scene/camera_reader.h"
 #include "scene/collider_reader.h"
 #include "scene/look_reader.h"
+#include "scene/model_scene.h"
 #include "scene/solver_reader.h"
 #include "scene/sweep.h"
 
@@ -41,10 +43,14 @@ SceneDef read_scene(Config& config) {
   if (const auto solver = root.table({"solver", "", "for all bodies"})) defaults = read_solver(*solver, defaults);
   std::set<std::string> names;
   for (const ConfigTable& table : root.tables({"body", "", "what moves"})) {
-    scene.bodies.push_back(read_body(table, defaults));
-    if (!names.insert(scene.bodies.back().name).second)
-      table.complain("name", fmt::format("two bodies named '{}'", scene.bodies.back().name));
+    for (BodyDef& body : bodies_of(table, read_body(table, defaults))) {
+      if (!names.insert(body.name).second) table.complain("name", fmt::format("two bodies named '{}'", body.name));
+      scene.bodies.push_back(std::move(body));
+    }
   }
+  // A body that is alone and has no name needs no caption.
+  const std::vector<ConfigTable> given = root.tables({"body", "", "what moves"});
+  if (given.size() == 1 && !given.front().has("name") && !given.front().has("label")) scene.bodies.front().label = "";
   std::set<std::string> colliders;
   for (const ConfigTable& table : root.tables({"collider", "", "rigid, and in the way"})) {
     scene.colliders.push_back(read_collider(table));
@@ -62,6 +68,7 @@ SceneDef read_scene(Config& config) {
   }
   scene.look = read_look(root, scene.look);
   scene.field = read_field(root);
+  scene.text = read_text(root);
   if (const auto output = root.table({"output", "", "the pictures"})) {
     scene.output.width = output->integer({"width", "pixels", "even, for the film's encoder"}, scene.output.width,
                                          Range::between(16, 8192));
@@ -82,7 +89,7 @@ SceneDef read_scene(Config& config) {
 
 SceneDef load_scene(const std::filesystem::path& path, const std::filesystem::path& assets,
                     const std::vector<std::string>& settings, std::string* resolved_json) {
-  Config config = Config::load(path, assets);
+  Config config = load_document(path, assets);
   if (config.root().has("scene"))
     throw InputError(path.string(), "is a replay of a scene, not a scene: supple replay runs it");
   for (const std::string& setting : settings) config.set(setting, exclusive_keys());

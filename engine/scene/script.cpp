@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "scene/model_scene.h"
 #include "scene/scene_reader.h"
 #include "scene/script_parts.h"
 #include "scene/sweep.h"
@@ -109,7 +110,7 @@ Config load_replayed_scene(Config& replay, const std::filesystem::path& assets) 
   if (!name.empty() && std::filesystem::is_regular_file(shipped, error)) return Config::load(shipped, assets);
   const std::filesystem::path file = root.file(key);
   if (file.empty()) throw InputError(replay.complaints());
-  return Config::load(file, assets);
+  return load_document(file, assets);
 }
 
 bool is_whole_number(const Config& scene, const std::string& path) {
@@ -169,7 +170,7 @@ void Script::Parts::read_replay(const std::filesystem::path& assets, const std::
 
 Script Script::load(const std::filesystem::path& path, const std::filesystem::path& assets,
                     const std::vector<std::string>& settings, std::optional<std::size_t> sweep_point) {
-  auto parts = std::make_unique<Parts>(Parts{std::nullopt, Config::load(path, assets), {}, {}, {}});
+  auto parts = std::make_unique<Parts>(Parts{std::nullopt, load_document(path, assets), {}, {}, {}});
   const ConfigTable root = parts->scene_file.root();
   if (root.has("scene") || root.has("change") || root.has("grab")) {
     parts->replay = parts->scene_file.copy();

@@ -5,18 +5,11 @@
 
 #include "base/hash.h"
 #include "geometry/surface_file.h"
+#include "scene/known_surfaces.h"
 #include "scene/rotation.h"
+#include "scene/surface_reader.h"
 
 namespace supple {
-
-struct KnownSurfaces {
-  struct Read {
-    ClosedSurface surface;
-    std::vector<std::string> notes;
-    SourceFile source;
-  };
-  std::map<std::filesystem::path, Read> by_file;
-};
 
 namespace {
 
@@ -37,25 +30,35 @@ double read_round(const ConfigTable& table, double largest) {
   return std::min(round, largest);
 }
 
-// The surfaces that a scene names are read once, although a replay reads the scene's document again for every frame.
-std::shared_ptr<KnownSurfaces> known_surfaces(Config& config) {
-  if (!config.surfaces()) config.surfaces() = std::make_shared<KnownSurfaces>();
-  return config.surfaces();
-}
-
-ClosedSurface known_surface(Config& config, const std::filesystem::path& file, Shape& shape) {
+ClosedSurface known_surface(Config& config, const std::filesystem::path& file, const SurfaceOptions& options,
+                            Shape& shape) {
   const auto known = known_surfaces(config);
-  auto at = known->by_file.find(file);
-  if (at == known->by_file.end()) {
+  const std::string name = file.string() + options.text();
+  auto at = known->of_parts.find(name);
+  if (at == known->of_parts.end()) {
     KnownSurfaces::Read read;
-    TriMesh triangles = read_closed_surface(file, &read.notes);
-    read.source = source_of(file, triangles);
-    read.surface.solid = std::make_shared<TriangleSolid>(std::move(triangles));
-    at = known->by_file.emplace(file, std::move(read)).first;
+    SolidSurface solid = read_solid_surface(file, options, &read.notes);
+    read.source = source_of(file, solid);
+    read.surface.solid = std::make_shared<TriangleSolid>(std::move(solid.boundary));
+    if (solid.drawn.triangles.rows() > 0) read.surface.drawn = std::make_shared<TriMesh>(std::move(solid.drawn));
+    at = known->of_parts.emplace(name, std::move(read)).first;
   }
   shape.notes.insert(shape.notes.end(), at->second.notes.begin(), at->second.notes.end());
   shape.files.push_back(at->second.source);
   return at->second.surface;
+}
+
+// A body has a size and a place of its own; a part has them in the shape's frame.
+SurfaceOptions read_part_surface(const ConfigTable& part) {
+  SurfaceOptions options = read_surface_options(part);
+  options.size =
+      part.number_if_given({"size", "m", "longest side of a surface; without it the file's units count"}, lengths).value_or(0);
+  options.center = part.boolean({"center", "", "puts the middle of the bottom of a surface's box at the part's origin"}, false);
+  for (const char* key : {"size", "center"}) {
+    if (part.has(key) && !part.has("surface"))
+      part.complain(key, fmt::format("{}: of a 'surface'; there is none here", key));
+  }
+  return options;
 }
 
 std::optional<Primitive> read_primitive(const ConfigTable& part, Shape& shape, int depth) {
@@ -99,11 +102,12 @@ std::optional<Primitive> read_primitive(const ConfigTable& part, Shape& shape, i
         normal.normalized(),
         t->number({"offset", "m", "distance of the plane from the origin along the normal"}, 0.0, Range::any())};
   }
+  const SurfaceOptions options = read_part_surface(part);
   if (part.has("surface")) {
-    const std::filesystem::path file = part.file({"surface", "", "a closed surface: OBJ, PLY, STL, glTF, OFF"});
+    const std::filesystem::path file = part.file({"surface", "", "a triangle surface: OBJ, PLY, STL, glTF, OFF"});
     if (!file.empty()) {
       try {
-        result = known_surface(part.config(), file, shape);
+        result = known_surface(part.config(), file, options, shape);
       } catch (const InputError& error) {
         for (const Problem& problem : error.problems()) part.config().complain(problem);
       }
@@ -209,11 +213,11 @@ Shape shape_of(TriMesh closed_surface) {
   return shape;
 }
 
-Shape load_surface(const std::filesystem::path& path) {
+Shape load_surface(const std::filesystem::path& path, const SurfaceOptions& options) {
   std::vector<std::string> notes;
-  TriMesh triangles = read_closed_surface(path, &notes);
-  const SourceFile source = source_of(path, triangles);
-  Shape shape = shape_of(std::move(triangles));
+  SolidSurface solid = read_solid_surface(path, options, &notes);
+  const SourceFile source = source_of(path, solid);
+  Shape shape = shape_of(std::move(solid.boundary));
   shape.notes = std::move(notes);
   shape.files.push_back(source);
   return shape;

@@ -4,6 +4,7 @@
 #include <set>
 #include <tuple>
 
+#include "scene/model_scene.h"
 #include "scene/scene_reader.h"
 
 namespace supple {
@@ -27,7 +28,7 @@ void check_paths(const SweepDef& sweep, Config& config) {
 
 Config config_of(const std::filesystem::path& path, const std::filesystem::path& assets,
                  const std::vector<std::string>& settings) {
-  Config config = Config::load(path, assets);
+  Config config = load_document(path, assets);
   for (const std::string& setting : settings) config.set(setting, exclusive_keys());
   return config;
 }

@@ -139,7 +139,7 @@ TEST(Info, TellsOfAMeshAndRefusesTheRest) {
   expect_lines(run(folder.path, {"info", "s.mesh"}).out,
                {"vertices        ", "dihedral angles ", "boundary        manifold"});
   EXPECT_EQ(run(folder.path, {"info", "none"}).err,
-            "none: neither a MEDIT .mesh file, a scene (.toml, or a name of supple list) nor a run's folder\n");
+            "none: neither a mesh, a surface, a scene (.toml, or a name of supple list) nor a run's folder\n");
   EXPECT_EQ(run(folder.path, {"info", "none.toml"}).status, 2);
   EXPECT_EQ(run(folder.path, {"info", "none.mesh"}).status, 2);
   std::filesystem::create_directory(folder.path / "empty");

@@ -1,0 +1,29 @@
+// Measures how thick a solid is, seen from places on its surface, and what that means for its tetrahedra.
+#pragma once
+
+#include <vector>
+
+#include "geometry/mesh.h"
+
+namespace supple {
+
+struct ThicknessSample {
+  double thickness;  // along the inward normal to where the surface is met again [m]
+  Vec3 place;        // on the surface [m]
+};
+
+// Samples the surface evenly by area; the thinnest place comes first. The surface must be closed and face outward.
+std::vector<ThicknessSample> sampled_thickness(const TriMesh& boundary);
+
+// Returns the spacing of the lattice that makes about this many vertices of a body, from its volume [m^3] and the area of
+// its surface [m^2], and the reverse. Two lattice points stand for each cell and one for each face of a cell on the
+// surface.
+double spacing_for(double volume, double area, double vertices);
+double vertices_for(double volume, double area, double spacing);
+
+// Returns how many vertices resolve all but the thinnest hundredth of the surface: there the solid is one cell thick.
+double vertices_wanted(const std::vector<ThicknessSample>& samples, double volume, double area);
+
+double area_of(const TriMesh& mesh);
+
+}  // namespace supple

@@ -1,0 +1,159 @@
+// Tests what scenes say of surfaces: how open ones are closed, which pieces become bodies, units and axes, and scenes
+// that are a model's file alone.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "scene/assemble.h"
+#include "scene/body_mesh.h"
+#include "scene/body_pieces.h"
+#include "scene/model_scene.h"
+#include "scene/scene_reader.h"
+#include "support/bodies.h"
+#include "support/scene_text.h"
+#include "support/surfaces.h"
+
+namespace supple {
+namespace {
+
+std::string obj_text(const TriMesh& mesh) {
+  std::string text;
+  for (const auto& p : mesh.points.rowwise()) text += fmt::format("v {} {} {}\n", p.x(), p.y(), p.z());
+  for (const auto& t : mesh.triangles.rowwise()) text += fmt::format("f {} {} {}\n", t.x() + 1, t.y() + 1, t.z() + 1);
+  return text;
+}
+
+class SurfaceScene : public ::testing::Test {
+ protected:
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_.path / name) << text; }
+  SceneDef scene_of(const std::string& keys) const {
+    write("s.toml", "[[body]]\nmaterial = \"jelly\"\nvertices = 600\n" + keys);
+    return load_scene(folder_.path / "s.toml", test::assets, {});
+  }
+  std::string refusal_of(const std::string& keys) const {
+    try {
+      scene_of(keys);
+      return "accepted";
+    } catch (const InputError& error) {
+      return error.problems().front().message;
+    }
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(SurfaceScene, PiecesApartAreBodiesThatKeepTheirPlaces) {
+  write("two.obj", obj_text(test::together(test::box_surface(Vec3(1, 1, 1)),
+                                           test::moved(test::box_surface(Vec3(0.5, 0.5, 0.5)), Vec3(3, 0, 0)))));
+  const SceneDef scene = scene_of("name = \"toy\"\nsurface = \"two.obj\"\nsize = 0.9\nposition = [0, 1, 0]\n");
+  ASSERT_EQ(scene.bodies.size(), 2u);
+  EXPECT_EQ(scene.bodies[0].name, "toy_1");
+  EXPECT_EQ(scene.bodies[1].name, "toy_2");
+  EXPECT_EQ(scene.bodies[0].vertices, 533);  // 8/9 of the volume
+  EXPECT_EQ(scene.bodies[1].vertices, 100);  // the fewest
+  const std::vector<Body> bodies = assemble(scene);
+  const Bounds large = bounds_of(bodies[0].description.mesh.rest), small = bounds_of(bodies[1].description.mesh.rest);
+  // The whole is 4.5 long, so that a size of 0.9 makes it a fifth.
+  EXPECT_NEAR(large.extent().x(), 0.4, 0.01);
+  EXPECT_NEAR(small.extent().x(), 0.2, 0.01);
+  EXPECT_NEAR(small.center().x() - large.center().x(), 0.6, 0.01);
+  EXPECT_NEAR(large.lower.y(), 1, 0.01);
+  EXPECT_NEAR(small.lower.y(), 1.1, 0.01);
+  ASSERT_EQ(bodies[0].notes.size(), 1u);
+  EXPECT_EQ(bodies[0].notes[0], "the surface has 2 pieces, all of which become bodies of their own (pieces = \"largest\" "
+                                "takes one)");
+  EXPECT_EQ(scene_of("surface = \"two.obj\"\npieces = \"largest\"\n").bodies.size(), 1u);
+}
+
+TEST_F(SurfaceScene, PiecesThatTouchBecomeOneBodyByWhatLiesBetween) {
+  // The gap is a four-hundredth of the length, and no element reaches across it by itself.
+  write("near.obj", obj_text(test::together(test::box_surface(Vec3(1, 1, 1)),
+                                            test::moved(test::box_surface(Vec3(1, 1, 1)), Vec3(2.01, 0, 0)))));
+  const SceneDef scene = scene_of("surface = \"near.obj\"\n");
+  ASSERT_EQ(scene.bodies.size(), 1u);
+  MeshCache meshes;
+  const TetMesh& mesh = meshes.get(scene, scene.bodies[0]).mesh;
+  EXPECT_EQ(manifoldness(mesh).pieces, 1);
+  EXPECT_NEAR(bounds_of(mesh.rest).extent().x(), 4.01, 0.05);
+  EXPECT_EQ(scene_of("surface = \"near.obj\"\npieces = \"bodies\"\n").bodies.size(), 2u);
+}
+
+TEST_F(SurfaceScene, SheetsGetTheirThicknessInMetres) {
+  write("sheet.obj", "v 0 0 0\nv 200 0 0\nv 200 0 100\nv 0 0 100\nf 1 3 2\nf 1 4 3\n");
+  EXPECT_NE(refusal_of("surface = \"sheet.obj\"\n").find("thicken = 0.01"), std::string::npos);
+  const SceneDef scene = scene_of("surface = \"sheet.obj\"\nsize = 2\nthicken = 0.2\n");
+  const std::vector<Body> bodies = assemble(scene);
+  EXPECT_NEAR(bodies.at(0).volume, 2 * 1 * 0.2, 0.02);
+}
+
+TEST_F(SurfaceScene, BadValuesAndKeysWithoutASurfaceAreRefused) {
+  write("box.obj", obj_text(test::box_surface(Vec3(1, 1, 1))));
+  const std::string box = "surface = \"box.obj\"\n";
+  EXPECT_EQ(refusal_of(box + "close = \"always\"\n"),
+            "close = 'always': must be auto, caps, winding or never");
+  EXPECT_EQ(refusal_of(box + "pieces = \"all\"\n"), "pieces = 'all': must be join, largest or bodies");
+  EXPECT_EQ(refusal_of(box + "thicken = -1\n"), "thicken = -1: must be above 0 to 1e+06");
+  EXPECT_EQ(refusal_of(box + "up = \"w\"\n"), "up = 'w': must be x, y or z");
+  EXPECT_EQ(refusal_of(box + "units = \"mile\"\n"), "units = 'mile': must be m, cm, mm, km, in or ft");
+  for (const char* key : {"close = \"auto\"", "pieces = \"join\"", "thicken = 0.1", "up = \"z\"", "units = \"mm\""}) {
+    const std::string name = std::string(key).substr(0, std::string(key).find(' '));
+    EXPECT_EQ(refusal_of(fmt::format("box = {{ extent = [1, 1, 1] }}\n{}\n", key)),
+              name + ": of a 'surface'; there is none here");
+  }
+}
+
+TEST_F(SurfaceScene, UnitsAndAxesAreThoseOfTheFile) {
+  write("long.obj", obj_text(test::box_surface(Vec3(100, 200, 400))));
+  const auto extent = [&](const std::string& keys) {
+    const SceneDef scene = scene_of("surface = \"long.obj\"\n" + keys);
+    return bounds_of(assemble(scene).at(0).description.mesh.rest).extent();
+  };
+  EXPECT_LT((extent("units = \"mm\"\n") - Vec3(0.2, 0.4, 0.8)).norm(), 0.02);
+  EXPECT_LT((extent("units = \"mm\"\nup = \"z\"\n") - Vec3(0.2, 0.8, 0.4)).norm(), 0.02);
+  const std::vector<Body> large = assemble(scene_of("surface = \"long.obj\"\n"));
+  ASSERT_EQ(large[0].notes.size(), 1u);
+  EXPECT_EQ(large[0].notes[0], "body 'body' is 800 m long; size = 0.5 makes it half a metre, and units = \"mm\" takes the "
+                               "file's numbers for that");
+}
+
+TEST_F(SurfaceScene, ASurfaceAsAColliderHasASizeAndAPlace) {
+  write("long.obj", obj_text(test::moved(test::box_surface(Vec3(100, 200, 400)), Vec3(7, 7, 7))));
+  write("s.toml",
+        "[[body]]\nbox = { extent = [1, 1, 1] }\nmaterial = \"jelly\"\nposition = [0, 5, 0]\n[[collider]]\n"
+        "shape = { surface = \"long.obj\", size = 2, center = true, up = \"z\" }\n[[collider]]\n"
+        "shape = { sphere = { radius = 1 } }\n");
+  const SceneDef scene = load_scene(folder_.path / "s.toml", test::assets, {});
+  const Bounds box = scene.colliders.at(0).shape.bounds();
+  EXPECT_LT((box.extent() - Vec3(0.5, 2, 1)).norm(), 1e-9);
+  EXPECT_NEAR(box.lower.y(), 0, 1e-9);
+  EXPECT_NEAR(box.center().x(), 0, 1e-9);
+  // Of two colliders without a name, the second has a number.
+  EXPECT_EQ(scene.colliders[0].name, "collider");
+  EXPECT_EQ(scene.colliders[1].name, "collider_2");
+}
+
+TEST_F(SurfaceScene, BodiesWithoutANameAreNumberedAndPathsTellThemApart) {
+  const std::string box = "[[body]]\nbox = { extent = [1, 1, 1] }\nmaterial = \"jelly\"\n";
+  write("s.toml", box + box + box);
+  const SceneDef scene = load_scene(folder_.path / "s.toml", test::assets, {"body.body_3.density=77"});
+  ASSERT_EQ(scene.bodies.size(), 3u);
+  EXPECT_EQ(scene.bodies[1].name, "body_2");
+  EXPECT_FALSE(scene.bodies[1].density);
+  EXPECT_EQ(scene.bodies[2].density, 77);
+}
+
+TEST_F(SurfaceScene, AModelsFileAloneIsASceneOfIt) {
+  const std::string name = "a \"box\".obj";
+  write(name, obj_text(test::box_surface(Vec3(1, 1, 1))));
+  EXPECT_TRUE(is_model(name));
+  EXPECT_FALSE(is_model("scene.toml"));
+  const SceneDef scene = load_scene(folder_.path / name, test::assets, {"body.model.vertices=300", "frames=3"});
+  EXPECT_EQ(scene.name, "a \"box\"");
+  EXPECT_EQ(scene.frames, 3);
+  ASSERT_EQ(scene.bodies.size(), 1u);
+  EXPECT_EQ(scene.bodies[0].vertices, 300);
+  EXPECT_NEAR(bounds_of(assemble(scene)[0].description.mesh.rest).extent().maxCoeff(), 0.5, 0.01);
+  EXPECT_THROW(load_scene(folder_.path / "none.obj", test::assets, {}), InputError);
+}
+
+}  // namespace
+}  // namespace supple
