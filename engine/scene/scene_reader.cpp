@@ -45,6 +45,9 @@ SceneDef read_scene(Config& config) {
     if (!names.insert(scene.bodies.back().name).second)
       table.complain("name", fmt::format("two bodies named '{}'", scene.bodies.back().name));
   }
+  // A body that is alone and has no name needs no caption.
+  const std::vector<ConfigTable> given = root.tables({"body", "", "what moves"});
+  if (given.size() == 1 && !given.front().has("name") && !given.front().has("label")) scene.bodies.front().label = "";
   std::set<std::string> colliders;
   for (const ConfigTable& table : root.tables({"collider", "", "rigid, and in the way"})) {
     scene.colliders.push_back(read_collider(table));
@@ -62,6 +65,7 @@ SceneDef read_scene(Config& config) {
   }
   scene.look = read_look(root, scene.look);
   scene.field = read_field(root);
+  scene.text = read_text(root);
   if (const auto output = root.table({"output", "", "the pictures"})) {
     scene.output.width = output->integer({"width", "pixels", "even, for the film's encoder"}, scene.output.width,
                                          Range::between(16, 8192));
