@@ -8,7 +8,8 @@
 
 namespace supple {
 
-ReferenceRun::ReferenceRun(const std::filesystem::path& folder, const std::vector<Body>& bodies) {
+ReferenceRun::ReferenceRun(const std::filesystem::path& folder, const std::vector<Body>& bodies)
+    : folder_(folder) {
   const RunRecord run = read_run(folder);
   for (const Body& body : bodies) {
     motion_.emplace_back(run.motion(body.def.name));
@@ -22,6 +23,9 @@ ReferenceRun::ReferenceRun(const std::filesystem::path& folder, const std::vecto
 }
 
 Positions ReferenceRun::at(std::size_t body, int frame) {
+  if (frame >= motion_[body].frames())
+    throw InputError(folder_.string(), fmt::format("has {} frames, and frame {} is needed for the comparison",
+                                                   motion_[body].frames(), frame));
   return motion_[body].frame(frame).rowwise() + origin_[body].transpose();
 }
 

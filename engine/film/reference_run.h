@@ -19,6 +19,7 @@ class ReferenceRun {
   Positions at(std::size_t body, int frame);
 
  private:
+  std::filesystem::path folder_;
   std::vector<PointCacheReader> motion_;  // by body
   std::vector<Vec3> origin_;              // of the files of motion [m]
 };

@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "render/caption.h"
+#include "render/legend.h"
 #include "render/view.h"
 
 namespace supple {
 namespace {
 
-const Vec3 ink(0.2, 0.2, 0.21);
 constexpr double note_size = 0.8;  // of a note's letters, over those of the caption
 
 bool same(const Camera& a, const Camera& b) { return a.eye == b.eye && a.target == b.target && a.fov_deg == b.fov_deg; }
@@ -54,6 +54,7 @@ Captions::Captions(const Stage& stage, std::vector<PixelRect> taken)
       note_template_(stage.note_template),
       width_(stage.width),
       height_(stage.height),
+      ink_(ink_on(stage)),
       taken_(std::move(taken)) {
   for (const DrawMesh& mesh : stage.meshes) {
     bodies_.push_back({mesh.label, mesh.rest, mesh.kept_clear});
@@ -138,7 +139,7 @@ const std::vector<Captions::Placed>& Captions::places(const Camera& camera) {
   for (const Placed& one : placed_) {
     Sticker sticker(one.place.width, one.place.height);
     const std::string& label = bodies_[one.mesh].label;
-    sticker.text_with_halo(font_, label, em_, (one.place.width - width_of(label, em_)) / 2, Sticker::halo(em_), ink);
+    sticker.text_with_halo(font_, label, em_, (one.place.width - width_of(label, em_)) / 2, Sticker::halo(em_), ink_);
     stickers_.push_back(std::move(sticker));
   }
   return placed_;
@@ -154,7 +155,7 @@ void Captions::draw(Image& image, const DrawList& list) {
     const std::string& text = list.notes[placed_[i].mesh];
     const int halo = Sticker::halo(note_em), width = width_of(text, note_em);
     Sticker note(width + 2 * halo, draw_caption(font_, "X", note_em).height + 2 * halo);
-    note.text_with_halo(font_, text, note_em, halo, halo, ink);
+    note.text_with_halo(font_, text, note_em, halo, halo, ink_);
     note.onto(image, place.x + (place.width - note.width()) / 2, place.bottom() - note.height() + halo);
   }
 }

@@ -45,6 +45,7 @@ class Captions {
 
   std::string font_, note_template_;
   int width_, height_;
+  Vec3 ink_;  // of the letters [sRGB]
   Bounds around_;
   std::vector<PixelRect> taken_;
   std::vector<Body> bodies_;  // by mesh of the stage

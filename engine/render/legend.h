@@ -13,6 +13,9 @@ Sticker legend_of(const FieldLook& field, const std::string& font, int height);
 PixelRect legend_place(const Sticker& legend, int width, int height);
 
 // Makes the line that stands in the upper left corner.
-Sticker headline_of(const std::string& text, const std::string& font, int height);
+Sticker headline_of(const std::string& text, const std::string& font, int height, const Vec3& color);
+
+// Returns the colour of letters on the stage's background: dark ones, or light ones where that is dark [sRGB].
+Vec3 ink_on(const Stage& stage);
 
 }  // namespace supple

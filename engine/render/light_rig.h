@@ -21,7 +21,7 @@ inline LightRig studio_light() {
 
 // A low sun from the left, with long shadows; the sky is darker and fills with blue.
 inline LightRig sunset_light() {
-  return {{-1.0, 0.55, 0.5}, {2.9, 1.75, 0.95}, {0.34, 0.38, 0.62}, {1.7, 0.95, 0.5}, {0.46, 0.43, 0.52}, 0.66, 0.34,
+  return {{-1.0, 0.8, 0.6}, {2.9, 1.75, 0.95}, {0.34, 0.38, 0.62}, {1.7, 0.95, 0.5}, {0.46, 0.43, 0.52}, 0.66, 0.34,
           {0.86, 0.62, 0.46}, {1.0, 0.62, 0.40}};
 }
 

@@ -34,7 +34,7 @@ void Marks::draw(const std::vector<std::array<float, 4>>& marks, const Eigen::Ma
   program_.set_texture("depths", 1, target, depths);
   program_.set("view_matrix", view);
   program_.set("depth_scale", Vec3(scale.x(), scale.y(), behind));
-  const double half_edge = std::max(2.5, height_ / 200.0);
+  const double half_edge = std::max(2.0, height_ / 280.0);
   program_.set("picture", Vec3(width_, height_, half_edge));
   program_.set("half_edge", half_edge);
   gl_.BindVertexArray(array_);

@@ -346,7 +346,7 @@ void Renderer::draw_overlays(const DrawList& list, Image& image) {
   const PixelRect legend = legend_place(legend_, stage_.width, stage_.height);
   legend_.onto(image, legend.x, legend.y);
   if (list.headline.empty() || stage_.font.empty()) return;
-  const Sticker headline = headline_of(list.headline, stage_.font, stage_.height);
+  const Sticker headline = headline_of(list.headline, stage_.font, stage_.height, ink_on(stage_));
   const int margin = std::max(4, stage_.height / 45);
   headline.onto(image, margin, margin);
 }

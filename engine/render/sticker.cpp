@@ -49,7 +49,7 @@ void Sticker::text(const std::string& font, const std::string& text, int pixels,
 void Sticker::text_with_halo(const std::string& font, const std::string& text, int pixels, int x, int y,
                              const Vec3& color) {
   const CaptionBitmap bitmap = draw_caption(font, text, pixels);
-  const Vec3 light(0.97, 0.97, 0.96);
+  const Vec3 around = color.mean() < 0.5 ? Vec3(0.97, 0.97, 0.96) : Vec3(0.06, 0.06, 0.07);
   const int reach = halo(pixels);
   const auto coverage = [&bitmap](int column, int row) {
     const bool inside = column >= 0 && row >= 0 && column < bitmap.width && row < bitmap.height;
@@ -64,7 +64,7 @@ void Sticker::text_with_halo(const std::string& font, const std::string& text, i
           nearest = std::max(nearest, fade * coverage(column + dx, row + dy));
         }
       }
-      cover(x + column, y + row, light, 0.8 * nearest);
+      cover(x + column, y + row, around, 0.8 * nearest);
     }
   }
   for (int row = 0; row < bitmap.height; ++row) {

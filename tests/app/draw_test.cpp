@@ -241,6 +241,17 @@ TEST_F(DrawnRun, HasTheWholeMotionInThePicture) {
   EXPECT_NE(early.err.find("is known only once the film has been made"), std::string::npos) << early.err;
 }
 
+// The scene has no table [output], so that the setting adds one.
+TEST_F(DrawnRun, MayHaveASizeOfWhichTheSceneSaysNothing) {
+  std::ofstream(path("bare.toml")) << "frames = 1\n[[body]]\nbox = { extent = [0.1, 0.1, 0.1], cells = [1, 1, 1] }\n"
+                                      "material = \"rubber\"\n";
+  ASSERT_EQ(run(folder_->path, {"render", "bare.toml", "--out", "bare", "--quiet", "--no-images"}).status, 0);
+  const Result result = run(folder_->path, {"draw", "bare", "--frame", "0", "--still", "bare.png", "--set",
+                                            "output.width=64", "--set", "output.height=48"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(read_png(path("bare.png")).width, 64);
+}
+
 TEST_F(DrawnRun, ShowsTheGhostOfAnotherRun) {
   ASSERT_EQ(run(folder_->path, {"replay", "replay.toml", "--out", "ghost-run", "--quiet", "--no-images", "--set",
                                 "solver.iterations=1"})
@@ -251,6 +262,12 @@ TEST_F(DrawnRun, ShowsTheGhostOfAnotherRun) {
   ASSERT_EQ(draw("own-ghost", {"--set", "look.ghost=run"}).status, 0);
   EXPECT_EQ(picture("own-ghost", 0), picture("run", 0)) << "a ghost in the same place is hidden";
   EXPECT_EQ(draw("none", {"--set", "look.ghost=nowhere"}).status, 2);
+  ASSERT_EQ(run(folder_->path, {"replay", "replay.toml", "--out", "short-run", "--quiet", "--no-images", "--frames", "8"})
+                .status,
+            0);
+  const Result short_of = draw("none", {"--set", "look.ghost=short-run"});
+  EXPECT_EQ(short_of.status, 2);
+  EXPECT_NE(short_of.err.find("has 8 frames, and frame 8 is needed"), std::string::npos) << short_of.err;
 }
 
 TEST_F(DrawnRun, RefusesWhatWouldHaveMovedOtherwise) {

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "film/camera.h"
 #include "film/draw_scene.h"
 #include "film/places.h"
