@@ -4,17 +4,22 @@
 #include <memory>
 #include <thread>
 
+#include "app/split_draw.h"
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
 #include "base/interrupts.h"
 #include "base/text.h"
 #include "base/timing.h"
+#include "film/contact_sheet.h"
+#include "film/places.h"
 #include "film/progress.h"
 #include "film/redraw.h"
 #include "film/skin_files.h"
 #include "output/child_program.h"
 #include "output/png_file.h"
+#include "output/run_folder.h"
+#include "output/whole_file.h"
 
 namespace supple {
 namespace {
@@ -22,12 +27,15 @@ namespace {
 // Describes a drawing as the command line asks for it.
 struct DrawCommand {
   DrawPlan plan;
+  std::vector<std::string> runs;
   std::string run, scene, out, still;
   std::string field, range, reference;  // short forms of settings
   std::optional<std::size_t> frame, index;
   std::optional<double> rate;
   int of = 1, jobs = 1;
-  bool merge = false, skins = false, quiet = false;
+  bool merge = false, skins = false, sheet = false, quiet = false;
+  FilmCoding coding;
+  Layout layout = Layout::row;
 
   std::filesystem::path folder() const {
     if (!out.empty()) return out;
@@ -45,23 +53,50 @@ int say_end(const DrawResult& result, const std::filesystem::path& folder) {
   return interrupted ? 130 : 1;
 }
 
+// Writes sheet.png, on which up to a dozen of the pictures stand, with their times.
+void write_sheet(const DrawCommand& command, const LoadedDrawing& drawing) {
+  constexpr int most = 12, columns = 4;
+  const auto count = static_cast<int>(drawing.frames.size());
+  const SceneDef& scene = drawing.film.script.scene();
+  Sheet sheet{scene.title, {}, std::min(columns, count), caption_font()};
+  const int shown = std::min(most, count);
+  for (int i = 0; i < shown; ++i) {
+    const int picture = shown == 1 ? 0 : i * (count - 1) / (shown - 1);
+    const std::string time = fmt::format("{:.2f} s", (drawing.frames[picture] + 1) / scene.fps);
+    sheet.pictures.push_back({picture_file(command.folder() / "frames", picture), {}, {time}, {}});
+  }
+  const PngImage image = compose(sheet);
+  const std::filesystem::path file = command.folder() / "sheet.png";
+  write_png(file, image.width, image.height, image.rgb);
+  if (!command.quiet) say(stdout, fmt::format("  sheet    {}\n", file.string()));
+}
+
 // Ends the film and prints the result. Returns the exit status.
-int finish_film(const DrawCommand& command, VideoEncoder& video, int pictures, double seconds) {
-  const VideoResult end = video.finish();
+int finish_film(const DrawCommand& command, const LoadedDrawing& drawing, std::optional<VideoEncoder>& video,
+                int pictures, double seconds) {
+  if (command.sheet) write_sheet(command, drawing);
+  if (!video) {
+    if (!command.quiet) say(stdout, fmt::format("  {} pictures in {}\n", pictures, duration_text(seconds)));
+    return 0;
+  }
+  const VideoResult end = video->finish();
   if (end.outcome == VideoOutcome::failed)
     throw RunError(
         fmt::format("no film: {}; the pictures are whole{}", end.reason, end.told.empty() ? "" : ". " + end.told));
   if (command.quiet) return 0;
   say(stdout, fmt::format("  {} pictures in {}\n", pictures, duration_text(seconds)));
   const bool written = end.outcome == VideoOutcome::written;
-  say(stdout, written ? fmt::format("  film     {}\n", (command.folder() / "video.mp4").string())
+  say(stdout, written ? fmt::format("  film     {}\n", (command.folder() / film_file(command.coding.format)).string())
                       : fmt::format("  no film: {}\n", end.reason));
   return 0;
 }
 
-VideoEncoder encoder_for(const DrawCommand& command, const LoadedDrawing& drawing) {
+// Starts the film, unless the pictures are all that is asked for.
+void begin_film(const DrawCommand& command, const LoadedDrawing& drawing, std::optional<VideoEncoder>& video) {
   const SceneDef& scene = drawing.film.script.scene();
-  return {command.folder() / "video.mp4", scene.output.width, scene.output.height, drawing.rate};
+  const std::string file = film_file(command.coding.format);
+  if (!file.empty())
+    video.emplace(command.folder() / file, scene.output.width, scene.output.height, drawing.rate, command.coding);
 }
 
 // Makes the film from pictures that other processes have drawn.
@@ -73,9 +108,10 @@ int merge_parts(const DrawCommand& command, const LoadedDrawing& drawing) {
     throw RunError(fmt::format("{}: {} of {} pictures are not drawn yet, the first of them {:06}",
                                command.folder().string(), missing.size(), count, missing.front()));
   }
-  VideoEncoder video = encoder_for(command, drawing);
-  video.add_files(command.folder() / "frames", count);
-  return finish_film(command, video, count, watch.elapsed_ms() / 1000);
+  std::optional<VideoEncoder> video;
+  begin_film(command, drawing, video);
+  if (video) video->add_files(command.folder() / "frames", count);
+  return finish_film(command, drawing, video, count, watch.elapsed_ms() / 1000);
 }
 
 int draw_range(const DrawCommand& command, LoadedDrawing& drawing, PictureRange range, VideoEncoder* video) {
@@ -91,9 +127,10 @@ int draw_range(const DrawCommand& command, LoadedDrawing& drawing, PictureRange 
 int draw_whole(const DrawCommand& command, LoadedDrawing& drawing) {
   const Stopwatch watch;
   const auto count = static_cast<int>(drawing.frames.size());
-  VideoEncoder video = encoder_for(command, drawing);
-  const int status = draw_range(command, drawing, {0, count}, &video);
-  return status == 0 ? finish_film(command, video, count, watch.elapsed_ms() / 1000) : status;
+  std::optional<VideoEncoder> video;
+  begin_film(command, drawing, video);
+  const int status = draw_range(command, drawing, {0, count}, video ? &*video : nullptr);
+  return status == 0 ? finish_film(command, drawing, video, count, watch.elapsed_ms() / 1000) : status;
 }
 
 // Returns the command that draws one part, as a user would type it.
@@ -143,9 +180,10 @@ int draw_in_parts(const DrawCommand& command, const LoadedDrawing& drawing) {
       throw RunError("a part " + how_it_ended(*end) + (end->output.empty() ? "" : ": " + end->output));
   }
   const auto count = static_cast<int>(drawing.frames.size());
-  VideoEncoder video = encoder_for(command, drawing);
-  video.add_files(command.folder() / "frames", count);
-  return finish_film(command, video, count, watch.elapsed_ms() / 1000);
+  std::optional<VideoEncoder> video;
+  begin_film(command, drawing, video);
+  if (video) video->add_files(command.folder() / "frames", count);
+  return finish_film(command, drawing, video, count, watch.elapsed_ms() / 1000);
 }
 
 // Writes one frame as a picture.
@@ -156,7 +194,8 @@ int draw_one(const DrawCommand& command, LoadedDrawing& drawing) {
     throw InputError(fmt::format("--frame {}", frame), fmt::format("the run's last frame is {}", frames - 1));
   const std::string file = command.still.empty() ? fmt::format("frame-{:06}.png", frame) : command.still;
   const Image image = draw_still(command.plan, drawing, frame);
-  write_png(file, image.width, image.height, image.rgb);
+  write_whole_file(file, image.alpha.empty() ? png_bytes(image.width, image.height, image.rgb)
+                                             : png_bytes(image.width, image.height, image.rgb, image.alpha));
   if (!command.quiet) say(stdout, fmt::format("  {}\n", file));
   return 0;
 }
@@ -196,12 +235,24 @@ void add_short_forms(DrawCommand& command) {
   all.insert(all.begin(), settings.begin(), settings.end());
 }
 
+// Draws several runs side by side.
+int draw_several(const DrawCommand& command) {
+  if (command.frame || command.index || command.merge || command.jobs > 1 || command.sheet)
+    throw InputError("draw", "several runs are drawn into one film as a whole: leave out --frame, --still, --jobs, "
+                             "--index, --merge and --sheet");
+  std::filesystem::path folder = command.out;
+  if (folder.empty()) folder = std::filesystem::path(command.folder().string() + "-side-by-side");
+  return draw_split({command.plan, command.runs, folder, command.layout, command.coding, command.quiet});
+}
+
 int draw(DrawCommand command) {
   add_short_forms(command);
+  command.run = command.runs.front();
   command.plan.run = command.run;
   command.plan.scene = command.scene;
   command.plan.rate = command.rate.value_or(0);
   command.plan.quiet = command.quiet;
+  if (command.runs.size() > 1) return draw_several(command);
   if (command.index && *command.index >= static_cast<std::size_t>(command.of))
     throw InputError(fmt::format("--index {}", *command.index),
                      fmt::format("there are {} parts (--of): 0 to {}", command.of, command.of - 1));
@@ -218,7 +269,11 @@ int draw(DrawCommand command) {
 
 void add_options(Verb& verb, DrawCommand& command) {
   DrawPlan& plan = command.plan;
-  verb.option("RUN", command.run, "folder that supple render left").required();
+  verb.option("RUN", command.runs, "folder that supple render left; several are drawn side by side").required();
+  verb.option(
+          "--layout", [&command](const std::string& word) { command.layout = *value_named<Layout>(word); },
+          "of several runs [row]: " + word_list(all_names<Layout>()))
+      .one_of(all_names<Layout>());
   verb.option("--out", command.out, "folder for the drawing [RUN-drawn], or for the skins [RUN-skins]");
   verb.option("--set", plan.settings,
               "path=value over the run's, of what is seen: camera, look, output, colours; may be repeated")
@@ -231,6 +286,15 @@ void add_options(Verb& verb, DrawCommand& command) {
   verb.option("--first", plan.first, "first frame of the run").between(0, 1000000).shows_default();
   verb.option("--last", plan.last, "last frame [the run's]").between(0, 1000000);
   verb.option("--every", plan.every, "draw every Nth frame").between(1, 100000).shows_default();
+  verb.option(
+          "--format", [&command](const std::string& word) { command.coding.format = *value_named<FilmFormat>(word); },
+          "of the film [mp4]: " + word_list(all_names<FilmFormat>()) + "; png makes pictures alone")
+      .one_of(all_names<FilmFormat>());
+  verb.option(
+          "--quality", [&command](const std::string& word) { command.coding.quality = *value_named<FilmQuality>(word); },
+          "of the film [good]: " + word_list(all_names<FilmQuality>()))
+      .one_of(all_names<FilmQuality>());
+  verb.flag("--sheet", command.sheet, "also sheet.png, on which a dozen of the pictures stand");
   verb.option("--rate", command.rate, "frames a second of the film [as fast as it happened]").between(0.01, 1000.0);
   const Option frame = verb.option("--frame", command.frame, "draw this frame alone, into the file of --still")
                            .between(std::size_t(0), std::size_t(1000000));

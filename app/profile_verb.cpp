@@ -26,6 +26,7 @@ struct ProfileCommand {
   FilmCommand film;
   int repeats = 10;
   std::vector<std::string> compared;  // two files, or none
+  bool anyway = false;                // they may be of different settings
 };
 
 ProfiledRun run_of(const FilmRecord& record) {
@@ -150,8 +151,15 @@ int compare(const ProfileCommand& request) {
   const std::string before_name = zones_file(request.compared[0]), after_name = zones_file(request.compared[1]);
   const ZoneProfile before = read_zones(before_name), after = read_zones(after_name);
   std::vector<Problem> problems;
-  for (const std::string& difference : differences(before.run, after.run))
-    problems.push_back({before_name + ", " + after_name, 0, 0, "cannot be compared: " + difference});
+  // Zones are compared frame by frame, so that both must have the same frames, whatever else differs.
+  const bool forgiven = request.anyway && before.run.frames == after.run.frames;
+  for (const std::string& difference : differences(before.run, after.run)) {
+    if (forgiven) {
+      say(stderr, fmt::format("note: compared all the same: {}\n", difference));
+    } else {
+      problems.push_back({before_name + ", " + after_name, 0, 0, "cannot be compared: " + difference});
+    }
+  }
   for (const auto& [name, profile] : {std::pair(before_name, &before), {after_name, &after}}) {
     if (profile->repeats < least_repeats_compared) {
       problems.push_back({name, 0, 0,
@@ -183,7 +191,7 @@ int run(const ProfileCommand& request, const std::vector<std::string>& command) 
 // A comparison runs nothing, so the options of a run mean nothing with it.
 void check_compare_options(const Verb& verb) {
   for (const std::string& name : verb.given()) {
-    if (name != "--compare" && name != "--json" && name != "--quiet")
+    if (name != "--compare" && name != "--anyway" && name != "--json" && name != "--quiet")
       throw InputError("profile --compare", name + " has no meaning with it");
   }
 }
@@ -203,6 +211,7 @@ void add_profile(CommandLine& line) {
   verb.option("--repeats", request->repeats, "how often the scene is run").between(1, 1000).shows_default();
   verb.option("--compare", request->compared, "two zones.json: what became slower or faster from A to B")
       .two_values("A B");
+  verb.flag("--anyway", request->anyway, "compare profiles of different settings, and say how they differ");
   add_film_options(verb, request->film);
   verb.runs([request, verb, words = line.words()] {
     if (!request->compared.empty()) check_compare_options(verb);

@@ -4,6 +4,7 @@
 #include "film.glsl"
 #include "lighting.glsl"
 uniform vec3 stage;  // centre x, z; radius
+uniform float key_share, sky_share;  // of the light on the open ground
 out vec4 pixel;
 #ifdef SHADED
 uniform sampler2D arriving;  // key light and open sky, at half the resolution
@@ -23,8 +24,8 @@ void main() {
 #endif
   // The ground under full light gets its own colour: light is scaled so that key and sky add up to the background's
   // white.
-  float key = 0.62 * mix(0.12, 1.0, lit);
-  vec3 light = ground_color * (key * mix(0.55, 1.0, open) + 0.38 * open * vec3(0.97, 1.0, 1.04)) * 1.06;
+  float key = key_share * mix(0.12, 1.0, lit);
+  vec3 light = ground_color * (key * mix(0.55, 1.0, open) + sky_share * open * vec3(0.97, 1.0, 1.04)) * 1.06;
   float away = sky ? 4.0 : length(world.xz - stage.xy) / stage.z;
   pixel = vec4(film(2.0 * mix(light, background, smoothstep(0.9, 3.2, away))).rgb + dither(), 1.0);
 }

@@ -57,9 +57,13 @@ bool will_fall(const SceneDef& scene, const BodyDef& body) { return body.handles
 
 Bounds framed_box(const SceneDef& scene, const Stage& stage) {
   Bounds box;
+  if (stage.motion) {
+    box.include(stage.motion->lower);
+    box.include(stage.motion->upper);
+  }
   for (std::size_t m = 0; m < stage.meshes.size(); ++m) {
     const DrawMesh& mesh = stage.meshes[m];
-    if (!mesh.framed) continue;
+    if (!mesh.framed || (stage.motion && m < scene.bodies.size())) continue;
     box.include(mesh.rest.lower);
     box.include(mesh.rest.upper);
     const bool falls = m < scene.bodies.size() && will_fall(scene, scene.bodies[m]) && mesh.rest.lower.y() > 0;

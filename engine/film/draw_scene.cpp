@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "film/picture_words.h"
 #include "geometry/simplify.h"
 #include "geometry/skin_stretch.h"
 #include "render/view.h"
@@ -72,24 +73,44 @@ DrawMesh collider_mesh(const Obstacle& obstacle, const Skin& skin) {
   return mesh;
 }
 
+StageColors colors_of(const LookDef& look) { return {look.ground, look.background, look.exposure}; }
+
+namespace {
+
+LightRig rig_of(LightKind kind) {
+  switch (kind) {
+    case LightKind::sunset: return sunset_light();
+    case LightKind::overcast: return overcast_light();
+    case LightKind::dark: return dark_light();
+    case LightKind::studio: break;
+  }
+  return studio_light();
+}
+
+}  // namespace
+
 Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const std::vector<DrawnBody>& drawn,
                  const std::vector<Obstacle>& obstacles, const std::vector<Skin>& skins, const std::string& font) {
   Stage stage;
   stage.width = scene.output.width;
   stage.height = scene.output.height;
   stage.samples = scene.output.samples;
-  stage.ground = scene.look.ground;
-  stage.background = scene.look.background;
-  stage.exposure = scene.look.exposure;
-  if (scene.look.show_labels) stage.font = font;
+  stage.colors = colors_of(scene.look);
+  stage.light = rig_of(scene.look.light);
+  stage.font = font;
+  stage.note_template = longest_note(scene);
+  if (scene.look.backdrop == BackdropKind::plain) stage.backdrop = Backdrop::plain;
+  if (scene.look.backdrop == BackdropKind::transparent) stage.backdrop = Backdrop::transparent;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const Skin& skin = drawn[b].skin;
     DrawMesh mesh = mesh_of(skin, drawn[b].layers);
-    mesh.label = bodies[b].def.label;
+    if (scene.look.show_labels) mesh.label = bodies[b].def.label;
+    mesh.kept_clear = true;
     mesh.printed = bodies[b].def.pattern == Pattern::checks ? Printed::checks : Printed::grid;
     mesh.shadow_triangles.assign(drawn[b].casters.data(), drawn[b].casters.data() + drawn[b].casters.size());
     mesh.two_sided = drawn[b].two_sided;
     mesh.color = drawn[b].color;
+    mesh.gloss = bodies[b].def.gloss.value_or(mesh.gloss);
     mesh.wires = scene.look.wireframe;
     mesh.rest = bounds_of(bodies[b].description.mesh.rest);
     stage.meshes.push_back(std::move(mesh));

@@ -17,6 +17,9 @@ Bounds bounds_at_rest(const std::vector<Body>& bodies);
 // Makes the mesh that is drawn for a collider; it is empty where nothing is drawn.
 DrawMesh collider_mesh(const Obstacle& obstacle, const Skin& skin);
 
+// Returns the colours of the stage that a look asks for.
+StageColors colors_of(const LookDef& look);
+
 // Builds the stage of a film: first the bodies, then the colliders.
 Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const std::vector<DrawnBody>& drawn,
                  const std::vector<Obstacle>& obstacles, const std::vector<Skin>& skins, const std::string& font);

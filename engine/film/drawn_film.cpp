@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "film/camera.h"
+#include "film/marked_vertices.h"
+#include "film/picture_words.h"
 
 namespace supple {
 
@@ -25,17 +27,35 @@ std::vector<Camera> cameras_of(const Script& script, const Stage& stage) {
 
 DrawnFilm::DrawnFilm(const Script& script, const std::vector<Body>& bodies, std::vector<DrawnBody> drawn,
                      const CollisionSet& set, const std::string& font)
-    : drawn_(std::move(drawn)) {
+    : bodies_(bodies), drawn_(std::move(drawn)) {
   const SceneDef& scene = script.scene();
   collider_skins_ = collider_skins(set.obstacles, bodies);
   // Cameras frame the bodies' boxes, which do not depend on the skins.
   const Stage fine = make_stage(scene, bodies, drawn_, set.obstacles, collider_skins_, font);
   fit_to_cameras(drawn_, bodies, cameras_of(script, fine), scene.output.height);
   stage_ = make_stage(scene, bodies, drawn_, set.obstacles, collider_skins_, font);
+  if (!scene.look.ghost.empty()) add_ghosts(scene, bodies);
   if (scene.field.quantity == FieldQuantity::none) return;
   field_.emplace(scene, bodies);
   stage_.field = field_->look();
   for (std::size_t b = 0; b < bodies.size(); ++b) stage_.meshes[b].mapped = field_->shown_on(b);
+}
+
+// Adds a half transparent copy of each body, which moves as another run's body does.
+void DrawnFilm::add_ghosts(const SceneDef& scene, const std::vector<Body>& bodies) {
+  ghosts_.emplace(scene.look.ghost, bodies);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    DrawMesh ghost = stage_.meshes[b];
+    ghost.label.clear();
+    ghost.layers.clear();
+    ghost.square.clear();
+    ghost.color = Vec3(0.604, 0.604, 0.604);  // the grey of references in all plots
+    ghost.gloss = 0;
+    ghost.wires = false;
+    ghost.kept_clear = false;
+    ghost.ghost = true;
+    stage_.meshes.push_back(std::move(ghost));
+  }
 }
 
 void DrawnFilm::include_in_field(const FramePose& pose, const CollisionSet& set, Threads& threads) {
@@ -61,6 +81,20 @@ void DrawnFilm::follow(const std::vector<TimedChange>& changes, const CollisionS
   }
 }
 
+// Adds what a replay has changed of the colours since the last list.
+void DrawnFilm::follow_colors(const SceneDef& scene, DrawList& list) {
+  if (stage_.colors != colors_of(scene.look)) list.colors = stage_.colors = colors_of(scene.look);
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    DrawMesh& mesh = stage_.meshes[b];
+    const Vec3 color = scene.bodies[b].color.value_or(drawn_[b].color);
+    const double gloss = scene.bodies[b].gloss.value_or(DrawMesh{}.gloss);
+    if (mesh.color == color && mesh.gloss == gloss) continue;
+    mesh.color = color;
+    mesh.gloss = gloss;
+    list.renewed.emplace_back(b, mesh);
+  }
+}
+
 DrawList DrawnFilm::list(const SceneDef& scene, const FramePose& pose, const CollisionSet& set, Threads& threads) {
   DrawList result;
   const std::size_t bodies = pose.motion.size();
@@ -72,11 +106,21 @@ DrawList DrawnFilm::list(const SceneDef& scene, const FramePose& pose, const Col
       result.field.push_back(values[b].empty() ? std::vector<float>() : field_->on_skin(drawn_[b], values[b]));
   }
   add_colliders(set.obstacles, collider_skins_, pose.time, result);
+  for (std::size_t b = 0; b < bodies && ghosts_; ++b)
+    result.positions.push_back(skin_positions(drawn_[b], ghosts_->at(b, pose.frame), &threads));
   result.camera = camera_at(scene, stage_, pose.time, result.positions);
+  for (std::size_t b = 0; b < bodies && scene.look.marks; ++b)
+    append_marks(bodies_[b], *pose.motion[b], set, pose.time, &threads, result.marks);
+  result.headline = headline_text(scene, pose.time);
+  for (std::size_t b = 0; b < bodies && scene.text.notes(); ++b) {
+    const BodyRow* row = pose.row != nullptr && b < pose.row->bodies.size() ? &pose.row->bodies[b] : nullptr;
+    result.notes.push_back(note_text(scene.text, scene.bodies[b], row));
+  }
+  follow_colors(scene, result);
   for (const std::size_t c : std::exchange(renewed_, {}))
     result.renewed.emplace_back(bodies + c, collider_mesh(set.obstacles[c], collider_skins_[c]));
   for (std::size_t b = 0; b < bodies; ++b) {
-    if (stage_.meshes[b].label == scene.bodies[b].label) continue;
+    if (!scene.look.show_labels || stage_.meshes[b].label == scene.bodies[b].label) continue;
     stage_.meshes[b].label = scene.bodies[b].label;
     result.captions.emplace_back(b, scene.bodies[b].label);
   }

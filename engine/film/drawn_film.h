@@ -14,7 +14,8 @@ namespace supple {
 
 class DrawnFilm {
  public:
-  // The script tells all cameras of the film, to which the skins' resolution is fitted. drawn: of each body.
+  // The script tells all cameras of the film, to which the skins' resolution is fitted. The bodies must outlive the
+  // film. drawn: of each body.
   DrawnFilm(const Script& script, const std::vector<Body>& bodies, std::vector<DrawnBody> drawn,
             const CollisionSet& set, const std::string& font);
 
@@ -40,10 +41,17 @@ class DrawnFilm {
   // been included and settle_field() has been called, which must happen before the stage is used.
   void include_in_field(const FramePose& pose, const CollisionSet& set, Threads& threads);
   void settle_field();
+  // Makes cameras frame this box over the whole film [m]. Must be called before the stage is used.
+  void frame_motion(const Bounds& motion) { stage_.motion = motion; }
 
  private:
+  void add_ghosts(const SceneDef& scene, const std::vector<Body>& bodies);
+  void follow_colors(const SceneDef& scene, DrawList& list);
+
+  const std::vector<Body>& bodies_;
   std::vector<DrawnBody> drawn_;
   std::vector<Skin> collider_skins_;
+  std::optional<ReferenceRun> ghosts_;  // whose bodies are the stage's last meshes
   std::optional<SurfaceField> field_;  // where the scene shows one
   Stage stage_;
   std::vector<std::size_t> renewed_;  // colliders, since the last list

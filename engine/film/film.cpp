@@ -142,6 +142,9 @@ FilmStart check_film(const FilmPlan& plan, const LoadedFilm& film) {
   if (asks_for_whole_film && plan.pictures != FilmPictures::none)
     throw InputError("field.range", "\"film\" is known only once the film has been made: give two numbers here, or draw "
                                     "the run again with it (supple draw RUN --set field.range=film)");
+  if (scene.camera.frames == Framed::film && plan.pictures != FilmPictures::none)
+    throw InputError("camera.frames", "\"film\" is known only once the film has been made: draw the run again with it "
+                                      "(supple draw RUN --set camera.frames=film)");
   if (plan.film_only && !run_program({"ffmpeg", "-version"}))
     throw InputError("--film-only", "needs ffmpeg, which is not installed (Debian: ffmpeg)");
   std::error_code ignored;

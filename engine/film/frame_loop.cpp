@@ -97,6 +97,7 @@ bool FrameLoop::show(int frame, FrameRow& row) {
   FramePose pose{frame, row.time_s, {}, {}};
   for (const auto& body : filmed_) pose.motion.push_back(&body->saved_motion());
   for (const Positions& body : before_motion_) pose.before.push_back(&body);
+  pose.row = &row;
   DrawList list = drawn_->list(scene_, pose, set_, threads_);
   keep_motion();
   for (std::size_t b = 0; b < filmed_.size(); ++b)

@@ -24,7 +24,7 @@ constexpr int compressing_threads = 2;
 }  // namespace
 
 Pictures::Pictures(const Stage& stage, GlChoice gl, const std::filesystem::path& shaders, const PictureTargets& targets)
-    : targets_(targets), lists_(frames_in_flight), drawn_(frames_in_flight), pictures_(frames_in_flight) {
+    : targets_(targets), background_(backdrop_of(stage)), lists_(frames_in_flight), drawn_(frames_in_flight), pictures_(frames_in_flight) {
   const BlockedSignals meanwhile;  // the thread that makes the frames takes signals
   drawing_ = std::thread([this, stage, gl, shaders] { guarded([&] { draw_all(stage, gl, shaders); }); });
   for (int number = 1; targets_.files && number <= compressing_threads; ++number)
@@ -93,7 +93,9 @@ bool Pictures::pass_on(Picture picture) {
     if (files) {
       const Zone zone("compress", {}, picture.frame);
       const Stopwatch watch;
-      picture.png = png_bytes(picture.image.width, picture.image.height, picture.image.rgb);
+      const Image& image = picture.image;
+      picture.png = image.alpha.empty() ? png_bytes(image.width, image.height, image.rgb)
+                                        : png_bytes(image.width, image.height, image.rgb, image.alpha);
       picture.compress_ms = watch.elapsed_ms();
     }
     return std::move(picture);
@@ -111,7 +113,9 @@ void Pictures::compress_all(int number) {
 // Adds a frame to the film. When the encoder fails, the files stay valid. Without files the frame would be lost, so the
 // pictures fail.
 void Pictures::add_to_film(const Image& image) {
-  if (targets_.film == nullptr || targets_.film->add(image.rgb) || targets_.files) return;
+  if (targets_.film == nullptr) return;
+  // A film has no coverage: what is not covered has the colour of the background.
+  if (targets_.film->add(image.alpha.empty() ? image.rgb : over(image, background_)) || targets_.files) return;
   throw RunError("the film's encoder takes no more frames, and there are no files of them");
 }
 

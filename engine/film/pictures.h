@@ -68,6 +68,7 @@ class Pictures {
   void add_to_film(const Image& image);
 
   const PictureTargets targets_;
+  const Vec3 background_;  // sRGB
   BoundedQueue<std::pair<int, DrawList>> lists_;
   BoundedQueue<std::packaged_task<Picture()>> drawn_;  // to be compressed
   BoundedQueue<std::future<Picture>> pictures_;        // the same, in the order in which they are written

@@ -30,8 +30,8 @@ using Json = nlohmann::ordered_json;
 // Lists the values of a scene that change what is seen and nothing else, by the names that generic_path() gives them. A
 // name also covers all values below it.
 constexpr std::array seen = {
-    "title",        "camera",       "look",           "field",             "output.width",        "output.height",     "output.samples",
-    "body[].color", "body[].label", "body[].pattern", "body[].pattern_size", "body[].skin_cells", "collider[].color"};
+    "title", "camera", "look", "field", "text", "output.width", "output.height", "output.samples",
+    "body[].color", "body[].gloss", "body[].label", "body[].pattern", "body[].pattern_size", "body[].skin_cells", "collider[].color"};
 
 bool is_seen(const std::string& path) {
   const std::string generic = generic_path(path);
@@ -84,6 +84,10 @@ void check_same_motion(const DrawPlan& plan, const Json& info, const LoadedFilm&
   std::vector<Problem> problems;
   for (const JsonDifference& difference : differing_values(json_text(info["scene"]), film.info.scene_json)) {
     if (is_seen(difference.path)) continue;
+    // One of the two may have no table [output]; of its keys, energy alone is not of what is seen.
+    const bool seen_output =
+        difference.path == "output" && (difference.a + difference.b).find("energy") == std::string::npos;
+    if (seen_output) continue;
     problems.push_back({film.info.scene_file, 0, 0,
                         fmt::format("{} is {} here and was {} in the run: only what is seen may differ (camera, look, "
                                     "output's width, height and samples, colours, labels, patterns)",
@@ -140,7 +144,9 @@ class Drawing {
         set_(collision_set(scene_)),
         drawn_(drawing.film.script, drawing.film.bodies, drawing.film.drawn, set_, caption_font()),
         threads_(drawing.film.info.threads) {
-    if (scene_.field.quantity != FieldQuantity::none && scene_.field.range_by == FieldRange::film) span_film();
+    const bool field = scene_.field.quantity != FieldQuantity::none && scene_.field.range_by == FieldRange::film;
+    const bool camera = scene_.camera.frames == Framed::film;
+    if (field || camera) span_film(field, camera);
   }
 
   const Stage& stage() const { return drawn_.stage(); }
@@ -152,15 +158,21 @@ class Drawing {
   }
 
  private:
-  // Finds the range of the field over all frames of the run, so that each picture has the same colours, whichever frames
-  // are drawn and in how many parts.
-  void span_film() {
+  // Finds the range of the field and the box of the motion over all frames of the run, so that each picture has the same
+  // colours and the same camera, whichever frames are drawn and in how many parts.
+  void span_film(bool field, bool camera) {
+    Bounds box;
     for (int frame = 0; frame < drawing_.frame_count && !interrupted(); ++frame) {
       follow_script(frame);
       load(frame);
-      drawn_.include_in_field(pose(frame), set_, threads_);
+      if (field) drawn_.include_in_field(pose(frame), set_, threads_);
+      for (const Positions& body : motion_) {
+        box.include(bounds_of(body).lower);
+        box.include(bounds_of(body).upper);
+      }
     }
-    drawn_.settle_field();
+    if (field) drawn_.settle_field();
+    if (camera) drawn_.frame_motion(box);
     rewind();
   }
 
@@ -194,6 +206,7 @@ class Drawing {
     FramePose pose{frame, (frame + 1) / scene_.fps, {}, {}};
     for (const Positions& body : motion_) pose.motion.push_back(&body);
     for (const Positions& body : before_) pose.before.push_back(&body);
+    if (frame < static_cast<int>(drawing_.rows.size())) pose.row = &drawing_.rows[frame];
     return pose;
   }
 
@@ -228,10 +241,11 @@ LoadedDrawing load_drawing(const DrawPlan& plan) {
   const RunRecord run = read_run(plan.run);
   const Json info = parsed_json<Json>(run.info_json);
   const FilmPlan film = plan_of_run(plan, info);
-  LoadedDrawing drawing{load_film(film, {}), {}, 0, {}, 0, {}};
+  LoadedDrawing drawing{load_film(film, {}), {}, {}, 0, {}, 0, {}};
   check_same_motion(plan, info, drawing.film);
   make_skins(film, drawing.film);
   drawing.motion = motion_of(run, drawing.film);
+  drawing.rows = run.rows;
   drawing.frame_count = frames_with_motion(drawing.motion);
   drawing.frames = frames_of(plan, drawing.frame_count);
   drawing.rate = plan.rate > 0 ? plan.rate : drawing.film.script.scene().fps / plan.every;
@@ -273,7 +287,11 @@ void open_drawing(const std::filesystem::path& folder, const LoadedDrawing& draw
   std::filesystem::create_directories(folder / "frames", error);
   if (error) throw RunError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
   if (known) {
-    for (const char* film : {"video.mp4", "video.part.mp4"}) std::filesystem::remove(folder / film, error);
+    for (const char* ending : {"mp4", "webm", "gif"}) {
+      for (const char* film : {"video.", "video.part."})
+        std::filesystem::remove(folder / (std::string(film) + ending), error);
+    }
+    std::filesystem::remove(folder / "sheet.png", error);
     remove_pictures(folder / "frames", 0);
   }
   write_whole_file(record, drawing.identity);

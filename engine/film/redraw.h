@@ -12,6 +12,7 @@
 #include "film/film.h"
 #include "film/pictures.h"
 #include "output/point_cache.h"
+#include "output/profile.h"
 
 namespace supple {
 
@@ -31,7 +32,8 @@ struct DrawPlan {
 struct LoadedDrawing {
   LoadedFilm film;  // without models
   std::vector<PointCacheReader> motion;
-  int frame_count = 0;      // of the run
+  std::vector<FrameRow> rows;  // of the run's profile; empty while it goes on
+  int frame_count = 0;         // of the run
   std::vector<int> frames;  // of the run, one for each picture
   double rate = 0;          // frames a second of the film
   std::string identity;     // JSON: all that the pictures depend on

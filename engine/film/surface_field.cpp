@@ -6,9 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "geometry/shape_probe.h"
-#include "output/obj_file.h"
-#include "output/run_record.h"
+#include "film/marked_vertices.h"
 #include "render/color_map.h"
 #include "sim/solver/fields.h"
 
@@ -109,40 +107,11 @@ std::vector<double> on_cloth(FieldQuantity quantity, const Body& body, const Pos
   return sum;
 }
 
-// Returns how deep each vertex lies in the layer around a collider, the deepest of all of them [m].
-std::vector<double> depths(const Positions& x, const CollisionSet& set, double time, Threads* threads) {
-  std::vector<double> deepest(x.rows(), 0.0);
-  constexpr Eigen::Index chunk = 512;
-  for (std::size_t c = 0; c < set.obstacles.size(); ++c) {
-    const Collider& collider = set.colliders[c];
-    const Eigen::Isometry3d to_local = set.obstacles[c].pose(time).inverse();
-    const ShapeProbe probe(collider.shape);
-    run_chunks(threads, static_cast<int>((x.rows() + chunk - 1) / chunk), 200 * x.rows(), [&](int number) {
-      std::int32_t near = -1;
-      for (Eigen::Index v = number * chunk; v < std::min(x.rows(), (number + 1) * chunk); ++v) {
-        const Vec3 p = to_local * Vec3(x.row(v));
-        if (probe.distance(p, near) > collider.thickness) continue;
-        deepest[v] = std::max(deepest[v], collider.thickness - probe.closest(p, near).distance);
-      }
-    });
-  }
-  return deepest;
-}
-
 // Returns the lengths of the rows, times a factor.
 std::vector<double> lengths(const Positions& rows, double factor) {
   std::vector<double> result(rows.rows());
   for (Eigen::Index v = 0; v < rows.rows(); ++v) result[v] = factor * rows.row(v).norm();
   return result;
-}
-
-PointCacheReader reference_motion(const FieldDef& def, const RunRecord& run, const Body& body) {
-  PointCacheReader motion(run.motion(body.def.name));
-  const auto vertices = static_cast<int>(body.description.mesh.rest.rows());
-  if (motion.points() == vertices) return motion;
-  throw InputError(def.reference.string(), fmt::format("body '{}' has {} vertices there and {} here, so that their "
-                                                       "distance is not defined",
-                                                       body.def.name, motion.points(), vertices));
 }
 
 }  // namespace
@@ -166,16 +135,14 @@ std::vector<std::pair<double, std::string>> ticks_between(double low, double hig
 }
 
 SurfaceField::SurfaceField(const SceneDef& scene, const std::vector<Body>& bodies)
-    : def_(scene.field), fps_(scene.fps), bodies_(bodies), elements_(bodies.size()), reference_(bodies.size()) {
-  std::optional<RunRecord> run;
-  if (def_.quantity == FieldQuantity::distance) run = read_run(def_.reference);
+    : def_(scene.field), fps_(scene.fps), bodies_(bodies), elements_(bodies.size()) {
+  if (def_.quantity == FieldQuantity::distance) reference_.emplace(def_.reference, bodies);
   double reach = 0;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     shown_.push_back(body_has(def_.quantity, bodies[b]));
     if (!shown_.back()) continue;
     reach = std::max(reach, usual_reach(def_.quantity, bodies[b], scene));
     if (element_quantity(def_.quantity) && !bodies[b].def.cloth) elements_[b].emplace(bodies[b].description);
-    if (run) reference_[b].emplace(reference_motion(def_, *run, bodies[b]));
   }
   if (reach == 0)
     throw InputError("field.quantity", fmt::format("no body of the scene has '{}': cloths have no stress and no energy "
@@ -194,11 +161,9 @@ std::vector<double> SurfaceField::of_body(std::size_t body, const FramePose& pos
     return by_vertex;
   }
   if (element_quantity(def_.quantity)) return on_cloth(def_.quantity, bodies_[body], x);
-  if (def_.quantity == FieldQuantity::depth) return depths(x, set, pose.time, threads);
+  if (def_.quantity == FieldQuantity::depth) return depths_in(x, set, pose.time, 0, threads);
   if (def_.quantity == FieldQuantity::speed) return lengths(x - *pose.before[body], fps_);
-  const Vec3 origin = motion_origin(bodies_[body].description.mesh.rest);
-  const Positions there = reference_[body]->frame(pose.frame).rowwise() + origin.transpose();
-  return lengths(x - there, 1);
+  return lengths(x - reference_->at(body, pose.frame), 1);
 }
 
 std::vector<std::vector<double>> SurfaceField::values(const FramePose& pose, const CollisionSet& set,

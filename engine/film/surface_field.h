@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "base/threads.h"
-#include "output/point_cache.h"
+#include "film/reference_run.h"
+#include "output/profile.h"
 #include "render/draw_list.h"
 #include "scene/drawn_body.h"
 #include "scene/obstacle.h"
@@ -23,6 +24,7 @@ struct FramePose {
   // These lists have one entry for each body, by vertex of its mesh [m]. `before` is empty where the field does not need
   // it.
   std::vector<const Positions*> motion, before;
+  const FrameRow* row = nullptr;  // of the frame in the run's profile; null where it is not known
 };
 
 class SurfaceField {
@@ -58,8 +60,8 @@ class SurfaceField {
   double fps_;
   const std::vector<Body>& bodies_;
   std::vector<bool> shown_;
-  std::vector<std::optional<PoseElements>> elements_;     // of solids, for quantities of elements
-  std::vector<std::optional<PointCacheReader>> reference_;  // motion of each body in the reference run
+  std::vector<std::optional<PoseElements>> elements_;  // of solids, for quantities of elements
+  std::optional<ReferenceRun> reference_;              // to which distances are measured
   Eigen::Vector2d range_ = Eigen::Vector2d(0, 1);
   double furthest_ = 0;  // from the value at rest, over the frames that were included
 };

@@ -35,11 +35,9 @@ std::size_t begin_chunk(std::string_view name, std::vector<std::uint8_t>& bytes)
   return begin;
 }
 
-constexpr int channels = 3;
-
 // Puts the number of its filter before each row: 0, which leaves the row as it is (PNG specification, section 9.2).
 // Other filters made the files a quarter smaller, but took more time than they saved in compression.
-std::vector<std::uint8_t> unfiltered(int width, int height, std::span<const std::uint8_t> rgb) {
+std::vector<std::uint8_t> unfiltered(int width, int height, int channels, std::span<const std::uint8_t> rgb) {
   const std::size_t row_bytes = std::size_t(width) * channels;
   std::vector<std::uint8_t> rows((row_bytes + 1) * height);
   for (int y = 0; y < height; ++y)
@@ -64,24 +62,43 @@ constexpr std::string_view signature = "\x89PNG\r\n\x1a\n", end_of_file("\0\0\0\
 
 }  // namespace
 
-std::vector<std::uint8_t> png_bytes(int width, int height, std::span<const std::uint8_t> rgb) {
-  SUPPLE_CHECK(rgb.size(), ==, std::size_t(width) * height * channels);
+namespace {
+
+std::vector<std::uint8_t> png_of(int width, int height, int channels, std::uint8_t color_type,
+                                 std::span<const std::uint8_t> samples) {
+  SUPPLE_CHECK(samples.size(), ==, std::size_t(width) * height * channels);
   std::vector<std::uint8_t> bytes(signature.begin(), signature.end());
   std::size_t chunk = begin_chunk("IHDR", bytes);
   append_number(width, bytes);
   append_number(height, bytes);
-  for (const std::uint8_t byte :
-       {8, PNG_COLOR_TYPE_RGB, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT, PNG_INTERLACE_NONE})
+  for (const std::uint8_t byte : {std::uint8_t(8), color_type, std::uint8_t(PNG_COMPRESSION_TYPE_DEFAULT),
+                                  std::uint8_t(PNG_FILTER_TYPE_DEFAULT), std::uint8_t(PNG_INTERLACE_NONE)})
     bytes.push_back(byte);
   end_chunk(chunk, bytes);
   chunk = begin_chunk("sRGB", bytes);
   bytes.push_back(PNG_sRGB_INTENT_PERCEPTUAL);
   end_chunk(chunk, bytes);
   chunk = begin_chunk("IDAT", bytes);
-  append_compressed(unfiltered(width, height, rgb), bytes);
+  append_compressed(unfiltered(width, height, channels, samples), bytes);
   end_chunk(chunk, bytes);
   bytes.insert(bytes.end(), end_of_file.begin(), end_of_file.end());
   return bytes;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> png_bytes(int width, int height, std::span<const std::uint8_t> rgb) {
+  return png_of(width, height, 3, PNG_COLOR_TYPE_RGB, rgb);
+}
+
+std::vector<std::uint8_t> png_bytes(int width, int height, std::span<const std::uint8_t> rgb,
+                                    std::span<const std::uint8_t> alpha) {
+  SUPPLE_CHECK(rgb.size(), ==, 3 * alpha.size());
+  std::vector<std::uint8_t> rgba;
+  rgba.reserve(4 * alpha.size());
+  for (std::size_t i = 0; i < alpha.size(); ++i)
+    rgba.insert(rgba.end(), {rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2], alpha[i]});
+  return png_of(width, height, 4, PNG_COLOR_TYPE_RGB_ALPHA, rgba);
 }
 
 void write_png(const std::filesystem::path& path, int width, int height, std::span<const std::uint8_t> rgb) {

@@ -13,6 +13,10 @@ namespace supple {
 // Returns the content of a file with 8-bit RGB, rows from the top. Equal images give equal bytes.
 std::vector<std::uint8_t> png_bytes(int width, int height, std::span<const std::uint8_t> rgb);
 
+// Does the same with 8-bit coverage for each pixel, whose colours are not multiplied by it.
+std::vector<std::uint8_t> png_bytes(int width, int height, std::span<const std::uint8_t> rgb,
+                                    std::span<const std::uint8_t> alpha);
+
 // Writes 8-bit RGB, rows from the top. The file is written under a temporary name and then renamed, so a file that
 // exists is complete. Throws RunError when it cannot be written.
 void write_png(const std::filesystem::path& path, int width, int height, std::span<const std::uint8_t> rgb);

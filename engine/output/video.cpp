@@ -29,19 +29,52 @@ int encoder_threads(int width, int height) { return std::clamp(width * height / 
 // (SSIM 26.6 dB, 333 kB for 60 frames). Superfast at 18 takes 12.5 ms and comes as close to the frames (26.8 dB), but
 // needs 642 kB, which is little compared with the files of the frames. Veryfast at 14 gave 18.5 ms, 26.7 dB and 463 kB.
 // In each of these times, 4 ms are the conversion and the start of ffmpeg.
-constexpr const char *preset = "superfast", *quality = "18";
+constexpr const char* preset = "superfast";
 
-std::vector<std::string> ffmpeg_words(const std::filesystem::path& part, int width, int height, double fps) {
+// Returns the encoder's words for a film in the film's own colours. The numbers of a quality are constant rate factors,
+// which mean another loss for each codec.
+std::string codec_words(const FilmCoding& coding, int threads) {
+  const auto of_quality = [&coding](int draft, int good, int best) {
+    return coding.quality == FilmQuality::draft ? draft : coding.quality == FilmQuality::good ? good : best;
+  };
+  switch (coding.format) {
+    case FilmFormat::mp4_h265:
+      return fmt::format("-c:v libx265 -preset fast -crf {} -x265-params log-level=error:pools={}:frame-threads=1 "
+                         "-tag:v hvc1 -movflags +faststart",
+                         of_quality(30, 22, 15), threads);
+    case FilmFormat::webm:
+      return fmt::format("-c:v libvpx-vp9 -deadline good -cpu-used 4 -b:v 0 -crf {} -threads {}", of_quality(42, 31, 20),
+                         threads);
+    case FilmFormat::webm_av1:
+      return fmt::format("-c:v libsvtav1 -preset 8 -crf {} -svtav1-params lp={}", of_quality(45, 32, 20), threads);
+    default: break;
+  }
+  return fmt::format("-c:v libx264 -preset {} -crf {} -threads {} -movflags +faststart",
+                     coding.quality == FilmQuality::best ? "medium" : preset, of_quality(28, 18, 12), threads);
+}
+
+// Returns the words for a GIF. The palette follows from all frames, with more weight on what moves; an ordered dither
+// keeps still parts still from frame to frame, which also makes the file small.
+std::string gif_words(const FilmCoding& coding) {
+  const int colors = coding.quality == FilmQuality::draft ? 64 : 256;
+  return fmt::format("-filter_complex split[a][b];[a]palettegen=max_colors={}:stats_mode=diff[p];[b][p]paletteuse="
+                     "dither=bayer:bayer_scale={}:diff_mode=rectangle -loop 0",
+                     colors, coding.quality == FilmQuality::best ? 3 : 5);
+}
+
+std::vector<std::string> ffmpeg_words(const std::filesystem::path& part, int width, int height, double fps,
+                                      const FilmCoding& coding) {
+  const bool gif = coding.format == FilmFormat::gif;
   const std::string words =
       // Frames come in the film's own colours (film_colors.h): ffmpeg took 4 ms for the same conversion.
       fmt::format(
-          "ffmpeg -nostdin -y -loglevel error -f rawvideo -pixel_format yuv420p -video_size {}x{} -framerate {} "
+          "ffmpeg -nostdin -y -loglevel error -f rawvideo -pixel_format {} -video_size {}x{} -framerate {} "
           "-i pipe:0 ",
-          width, height, fps) +
+          gif ? "rgb24" : "yuv420p", width, height, fps) +
       // The transfer function is that of the frames, sRGB.
-      "-pix_fmt yuv420p -color_range tv -colorspace bt709 -color_primaries bt709 -color_trc iec61966-2-1 " +
-      fmt::format("-c:v libx264 -preset {} -crf {} -threads {} -movflags +faststart", preset, quality,
-                  encoder_threads(width, height));
+      (gif ? gif_words(coding)
+           : "-pix_fmt yuv420p -color_range tv -colorspace bt709 -color_primaries bt709 -color_trc iec61966-2-1 " +
+                 codec_words(coding, encoder_threads(width, height)));
   std::vector<std::string> list;
   std::istringstream stream(words);
   for (std::string word; stream >> word;) list.push_back(word);
@@ -51,11 +84,23 @@ std::vector<std::string> ffmpeg_words(const std::filesystem::path& part, int wid
 
 }  // namespace
 
-VideoEncoder::VideoEncoder(std::filesystem::path video, int width, int height, double fps)
-    : video_(std::move(video)), part_(part_of(video_)), width_(width), height_(height) {
+std::string film_file(FilmFormat format) {
+  switch (format) {
+    case FilmFormat::mp4:
+    case FilmFormat::mp4_h265: return "video.mp4";
+    case FilmFormat::webm:
+    case FilmFormat::webm_av1: return "video.webm";
+    case FilmFormat::gif: return "video.gif";
+    case FilmFormat::png: break;
+  }
+  return "";
+}
+
+VideoEncoder::VideoEncoder(std::filesystem::path video, int width, int height, double fps, const FilmCoding& coding)
+    : video_(std::move(video)), part_(part_of(video_)), width_(width), height_(height), coding_(coding) {
   std::error_code ignored;
   std::filesystem::remove(part_, ignored);  // of a run that was killed
-  ffmpeg_.emplace(ffmpeg_words(part_, width, height, fps));
+  ffmpeg_.emplace(ffmpeg_words(part_, width, height, fps, coding_));
 }
 
 VideoEncoder::~VideoEncoder() {
@@ -68,8 +113,12 @@ VideoEncoder::~VideoEncoder() {
 bool VideoEncoder::add(std::span<const std::uint8_t> rgb) {
   ++frames_;
   if (!taken_) return false;
-  film_planes(width_, height_, rgb, planes_);
-  taken_ = ffmpeg_->write(planes_);
+  if (coding_.format == FilmFormat::gif) {
+    taken_ = ffmpeg_->write(rgb);
+  } else {
+    film_planes(width_, height_, rgb, planes_);
+    taken_ = ffmpeg_->write(planes_);
+  }
   return taken_;
 }
 

@@ -9,9 +9,39 @@
 #include <string>
 #include <vector>
 
+#include "base/names.h"
 #include "output/child_program.h"
 
 namespace supple {
+
+enum class FilmFormat {
+  mp4,       // H.264, which every player has
+  mp4_h265,  // smaller, slower to make
+  webm,      // VP9, for pages
+  webm_av1,  // smaller, slower to make
+  gif,       // loops; 256 colours that are chosen from the whole film, so that it is held in memory meanwhile
+  png,       // no film: the frames are files, with their coverage where the background is transparent
+};
+template <>
+struct Names<FilmFormat> {
+  static constexpr std::array table = {Name{FilmFormat::mp4, "mp4"},   Name{FilmFormat::mp4_h265, "mp4-h265"},
+                                       Name{FilmFormat::webm, "webm"}, Name{FilmFormat::webm_av1, "webm-av1"},
+                                       Name{FilmFormat::gif, "gif"},   Name{FilmFormat::png, "png"}};
+};
+enum class FilmQuality { draft, good, best };
+template <>
+struct Names<FilmQuality> {
+  static constexpr std::array table = {Name{FilmQuality::draft, "draft"}, Name{FilmQuality::good, "good"},
+                                       Name{FilmQuality::best, "best"}};
+};
+
+// Describes how a film is encoded.
+struct FilmCoding {
+  FilmFormat format = FilmFormat::mp4;
+  FilmQuality quality = FilmQuality::good;
+};
+// Returns the name of the film's file in its folder, "video.mp4"; empty where there is no film.
+std::string film_file(FilmFormat format);
 
 enum class VideoOutcome { written, no_ffmpeg, failed };
 
@@ -22,13 +52,13 @@ struct VideoResult {
   double cpu_ms = 0;   // processor time of ffmpeg for all frames
 };
 
-// Encodes a film in H.264 with BT.709 colours, which the file declares. Equal frames give equal bytes.
+// Encodes a film, with BT.709 colours, which the file declares (a GIF has sRGB). Equal frames give equal bytes.
 class VideoEncoder {
  public:
   // The file is written under a temporary name, and nothing of it remains unless the film becomes complete. The encoder
   // must be used and destroyed in the thread that creates it, except for add(), which one other thread may call
   // meanwhile.
-  VideoEncoder(std::filesystem::path video, int width, int height, double fps);
+  VideoEncoder(std::filesystem::path video, int width, int height, double fps, const FilmCoding& coding = {});
   ~VideoEncoder();
 
   // Adds a frame: 8-bit sRGB, rows from the top. Waits while ffmpeg is busy. Returns false once ffmpeg takes no more
@@ -50,6 +80,7 @@ class VideoEncoder {
 
   std::filesystem::path video_, part_;
   int width_, height_;
+  FilmCoding coding_;
   std::vector<std::uint8_t> planes_;  // scratch
   int frames_ = 0;
   bool taken_ = true;   // all frames so far

@@ -4,64 +4,160 @@
 #include <cmath>
 
 #include "render/caption.h"
+#include "render/legend.h"
+#include "render/view.h"
 
 namespace supple {
+namespace {
 
-Captions::Captions(const GlTable& gl, const std::filesystem::path& shaders, std::string font, int width, int height)
-    : gl_(gl), program_(gl, shaders, "caption", "caption"), font_(std::move(font)), width_(width), height_(height) {
-  gl_.GenVertexArrays(1, &array_);
-}
+constexpr double note_size = 0.8;  // of a note's letters, over those of the caption
 
-Captions::~Captions() {
-  for (const Label& label : labels_) gl_.DeleteTextures(1, &label.texture);
-  gl_.DeleteVertexArrays(1, &array_);
-}
+bool same(const Camera& a, const Camera& b) { return a.eye == b.eye && a.target == b.target && a.fov_deg == b.fov_deg; }
 
-void Captions::renew(const std::vector<DrawMesh>& meshes) {
-  labels_.resize(meshes.size());
-  for (std::size_t m = 0; m < meshes.size(); ++m) renew(m, meshes[m]);
-}
+// Maps points of the world to pixels, counted from the upper left corner.
+class Projection {
+ public:
+  Projection(const Camera& camera, const Bounds& around, int width, int height)
+      : view_(view_matrix(camera, static_cast<double>(width) / height, around.center(), around.diagonal() + 1)),
+        width_(width),
+        height_(height) {}
 
-void Captions::renew(std::size_t index, const DrawMesh& mesh) {
-  gl_.DeleteTextures(1, &labels_[index].texture);  // deleting texture 0 is no error
-  labels_[index] = {};
-  if (font_.empty() || mesh.label.empty()) return;
-  const int pixels = std::max(9, static_cast<int>(std::lround(height_ / 32.0)));
-  // The caption is placed on the ground: for a body that hangs in the air, it is moved down to a place below the body's
-  // start.
-  const CaptionBitmap bitmap = draw_caption(font_, mesh.label, pixels);
-  Label label{0, bitmap.width, bitmap.height,
-              Vec3(mesh.rest.center().x(), std::min(mesh.rest.lower.y(), 0.0), mesh.rest.upper.z())};
-  gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  gl_.GenTextures(1, &label.texture);
-  gl_.BindTexture(GL_TEXTURE_2D, label.texture);
-  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, bitmap.width, bitmap.height, 0, GL_RED, GL_UNSIGNED_BYTE,
-                 bitmap.coverage.data());
-  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-  labels_[index] = label;
-}
-
-void Captions::draw(const Eigen::Matrix4f& view) const {
-  gl_.Enable(GL_BLEND);
-  gl_.BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  program_.use();
-  gl_.BindVertexArray(array_);
-  for (const Label& label : labels_) {
-    if (label.texture == 0) continue;
-    const Eigen::Vector4f clip = view * label.anchor.homogeneous().cast<float>();
-    if (clip.w() <= 0) continue;
-    // Positions are whole pixels, so that the letters stay sharp. The caption is placed below the body, or at the
-    // bottom edge when there is no room.
-    const double x = std::round((clip.x() / clip.w() * 0.5 + 0.5) * width_ - 0.5 * label.width);
-    const double below = (clip.y() / clip.w() * 0.5 + 0.5) * height_ - 0.035 * height_;
-    const double y = std::round(std::max(below - label.height, 0.01 * height_));
-    program_.set("area", Eigen::Vector4d(2 * x / width_ - 1, 2 * y / height_ - 1, 2.0 * label.width / width_,
-                                         2.0 * label.height / height_));
-    program_.set_texture("caption", 0, GL_TEXTURE_2D, label.texture);
-    gl_.DrawArrays(GL_TRIANGLES, 0, 6);
+  // Returns nothing for points behind the eye.
+  std::optional<Eigen::Vector2d> operator()(const Vec3& point) const {
+    const Eigen::Vector4f clip = view_ * point.homogeneous().cast<float>();
+    if (clip.w() <= 0) return std::nullopt;
+    return Eigen::Vector2d((clip.x() / clip.w() * 0.5 + 0.5) * width_, (0.5 - clip.y() / clip.w() * 0.5) * height_);
   }
-  gl_.Disable(GL_BLEND);
+
+  // Returns the outline of a box; empty when part of it lies behind the eye.
+  Outline outline(const Bounds& box) const {
+    std::vector<Eigen::Vector2d> corners;
+    for (int corner = 0; corner < 8; ++corner) {
+      Vec3 point;
+      for (int k = 0; k < 3; ++k) point[k] = (corner >> k & 1) != 0 ? box.upper[k] : box.lower[k];
+      const std::optional<Eigen::Vector2d> pixel = (*this)(point);
+      if (!pixel) return {};
+      corners.push_back(*pixel);
+    }
+    return hull_of(corners);
+  }
+
+ private:
+  Eigen::Matrix4f view_;
+  int width_, height_;
+};
+
+}  // namespace
+
+Captions::Captions(const Stage& stage, std::vector<PixelRect> taken)
+    : font_(stage.font),
+      note_template_(stage.note_template),
+      width_(stage.width),
+      height_(stage.height),
+      ink_(ink_on(stage)),
+      taken_(std::move(taken)) {
+  for (const DrawMesh& mesh : stage.meshes) {
+    bodies_.push_back({mesh.label, mesh.rest, mesh.kept_clear});
+    if (!mesh.framed) continue;
+    around_.include(mesh.rest.lower);
+    around_.include(mesh.rest.upper);
+  }
+}
+
+void Captions::renew(std::size_t mesh, const std::string& label) {
+  bodies_[mesh].label = label;
+  camera_.reset();
+}
+
+int Captions::width_of(const std::string& text, int em) const {
+  return text.empty() ? 0 : draw_caption(font_, text, em).width;
+}
+
+// Tries to place all captions in letters of one size. Returns whether each has a place.
+bool Captions::try_size(const Camera& camera, int em, bool over_bodies) {
+  const Projection project(camera, around_, width_, height_);
+  const int line = draw_caption(font_, "X", em).height, halo = Sticker::halo(em);
+  const int note_em = std::max(8, static_cast<int>(std::lround(note_size * em)));
+  const int note_width = width_of(note_template_, note_em);
+  const int height = line + 2 * halo + (note_template_.empty() ? 0 : draw_caption(font_, "X", note_em).height);
+  std::vector<WantedCaption> wanted;
+  std::vector<Outline> bodies;
+  placed_.clear();
+  em_ = em;
+  for (std::size_t m = 0; m < bodies_.size(); ++m) {
+    const Body& body = bodies_[m];
+    Outline outline = body.kept_clear ? project.outline(body.rest) : Outline();
+    // The caption stands on the ground: for a body that hangs in the air, below the place where it starts.
+    const auto foot = project({body.rest.center().x(), std::min(body.rest.lower.y(), 0.0), body.rest.upper.z()});
+    if (!body.label.empty() && foot) {
+      double lowest = foot->y();
+      for (const Eigen::Vector2d& corner : outline) lowest = std::max(lowest, corner.y());
+      const int width = std::max(width_of(body.label, em), note_width) + 2 * halo;
+      lowest = std::min(lowest + 0.012 * height_, over_bodies ? height_ - 2.0 * height : 1e9);
+      wanted.push_back({{foot->x(), lowest}, width, height});
+      placed_.push_back({m, {}});
+    }
+    if (!outline.empty()) bodies.push_back(std::move(outline));
+  }
+  const auto places = caption_places(wanted, over_bodies ? std::vector<Outline>() : bodies, taken_, width_, height_);
+  if (!places) return false;
+  over_body_.clear();
+  for (std::size_t i = 0; i < placed_.size(); ++i) {
+    placed_[i].place = (*places)[i];
+    over_body_.push_back(
+        std::ranges::any_of(bodies, [&](const Outline& body) { return overlaps(placed_[i].place, body); }));
+  }
+  return true;
+}
+
+// Places as many captions as have room, in the order of the scene.
+void Captions::drop_unplaced(const Camera& camera, int em) {
+  const std::vector<Body> all = bodies_;
+  for (Body& body : bodies_) body.label.clear();
+  for (std::size_t m = 0; m < bodies_.size(); ++m) {
+    bodies_[m].label = all[m].label;
+    if (!try_size(camera, em, true)) bodies_[m].label.clear();
+  }
+  try_size(camera, em, true);
+  bodies_ = all;
+}
+
+const std::vector<Captions::Placed>& Captions::places(const Camera& camera) {
+  if (camera_ && same(*camera_, camera)) return placed_;
+  camera_ = camera;
+  placed_.clear();
+  stickers_.clear();
+  if (font_.empty()) return placed_;
+  const int largest = std::max(9, static_cast<int>(std::lround(height_ / 32.0)));
+  const int smallest = std::max(8, static_cast<int>(std::lround(height_ / 60.0)));
+  bool done = false;
+  for (const bool over_bodies : {false, true}) {
+    for (int em = largest; em >= smallest && !done; em -= std::max(1, largest / 12))
+      done = try_size(camera, em, over_bodies);
+  }
+  if (!done) drop_unplaced(camera, smallest);
+  for (const Placed& one : placed_) {
+    Sticker sticker(one.place.width, one.place.height);
+    const std::string& label = bodies_[one.mesh].label;
+    sticker.text_with_halo(font_, label, em_, (one.place.width - width_of(label, em_)) / 2, Sticker::halo(em_), ink_);
+    stickers_.push_back(std::move(sticker));
+  }
+  return placed_;
+}
+
+void Captions::draw(Image& image, const DrawList& list) {
+  places(list.camera);
+  const int note_em = std::max(8, static_cast<int>(std::lround(note_size * em_)));
+  for (std::size_t i = 0; i < placed_.size(); ++i) {
+    const PixelRect& place = placed_[i].place;
+    stickers_[i].onto(image, place.x, place.y);
+    if (placed_[i].mesh >= list.notes.size() || list.notes[placed_[i].mesh].empty()) continue;
+    const std::string& text = list.notes[placed_[i].mesh];
+    const int halo = Sticker::halo(note_em), width = width_of(text, note_em);
+    Sticker note(width + 2 * halo, draw_caption(font_, "X", note_em).height + 2 * halo);
+    note.text_with_halo(font_, text, note_em, halo, halo, ink_);
+    note.onto(image, place.x + (place.width - note.width()) / 2, place.bottom() - note.height() + halo);
+  }
 }
 
 }  // namespace supple

@@ -1,45 +1,59 @@
-// Draws the captions of bodies onto the finished picture.
+// Lays the captions of bodies over the finished picture: each below its body, and none over another or over a body that
+// stands where it stood at the start. Where there is little room, all captions become smaller together.
 #pragma once
 
-#include <Eigen/Core>
-#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "render/caption_layout.h"
 #include "render/draw_list.h"
-#include "render/program.h"
 
 namespace supple {
 
 class Captions {
  public:
-  // font: a file; there are no captions when it is empty. height: that of the picture in pixels, to which the size of
-  // the letters is proportional.
-  Captions(const GlTable& gl, const std::filesystem::path& shaders, std::string font, int width, int height);
-  ~Captions();
-  Captions(const Captions&) = delete;
-  Captions& operator=(const Captions&) = delete;
+  // There are no captions when the stage has no font. taken: places of other things that are laid over the picture.
+  explicit Captions(const Stage& stage, std::vector<PixelRect> taken = {});
 
-  // Makes the captions of a stage again, or only that of a mesh that has changed.
-  void renew(const std::vector<DrawMesh>& meshes);
-  void renew(std::size_t index, const DrawMesh& mesh);
+  // Replaces the caption of a mesh.
+  void renew(std::size_t mesh, const std::string& label);
 
-  // Draws into the framebuffer that is bound. view: maps the world to clip coordinates.
-  void draw(const Eigen::Matrix4f& view) const;
+  // Holds the place of a mesh's caption in the picture of a camera.
+  struct Placed {
+    std::size_t mesh;
+    PixelRect place;
+  };
+  // Returns the places of all captions that are drawn. A caption for which even small letters find no place that is free
+  // of other captions is left out.
+  const std::vector<Placed>& places(const Camera& camera);
+
+  // Tells whether a caption stands in front of a body where there is no other room; `placed` counts in places().
+  bool over_a_body(std::size_t placed) const { return over_body_[placed]; }
+
+  // Draws the captions and, below each, the list's note on its mesh.
+  void draw(Image& image, const DrawList& list);
 
  private:
-  struct Label {
-    GLuint texture = 0;
-    int width = 0, height = 0;
-    Vec3 anchor = Vec3::Zero();
+  struct Body {
+    std::string label;
+    Bounds rest;
+    bool kept_clear = false;
   };
+  bool try_size(const Camera& camera, int em, bool over_bodies);
+  void drop_unplaced(const Camera& camera, int em);
+  int width_of(const std::string& text, int em) const;
 
-  const GlTable& gl_;
-  Program program_;
-  std::string font_;
+  std::string font_, note_template_;
   int width_, height_;
-  GLuint array_ = 0;
-  std::vector<Label> labels_;  // one for each mesh
+  Vec3 ink_;  // of the letters [sRGB]
+  Bounds around_;
+  std::vector<PixelRect> taken_;
+  std::vector<Body> bodies_;  // by mesh of the stage
+  std::vector<Placed> placed_;
+  std::vector<bool> over_body_;    // as placed_
+  std::vector<Sticker> stickers_;  // of the labels, as placed_
+  int em_ = 0;                     // that was chosen [pixels]
+  std::optional<Camera> camera_;   // for which they were placed
 };
 
 }  // namespace supple

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "render/light_rig.h"
 
 namespace supple {
 
@@ -47,18 +48,36 @@ struct DrawMesh {
   Bounds rest;                     // bounds at the start: captions stand below them, cameras frame them [m]
   bool mapped = false;             // whether it shows the field; its own colours are then not seen
   bool wires = false;              // whether the edges of its triangles are drawn
+  bool ghost = false;              // whether it is half transparent, and casts no shadow
+  bool kept_clear = false;         // whether captions stay away from it
   bool framed = true;              // whether lights, shadows and cameras cover it; false for planes without end
 };
 
+// Chooses what is seen behind the bodies.
+enum class Backdrop {
+  ground,       // a ground with shadows, which fades into the background
+  plain,        // the colour of the background alone
+  transparent,  // nothing: pictures have coverage
+};
+
+// Holds what a replay may change of a stage: its colours [sRGB] and the exposure.
+struct StageColors {
+  Vec3 ground = Vec3::Ones(), background = Vec3::Ones();
+  double exposure = 1;
+  bool operator==(const StageColors&) const = default;
+};
+
 struct Stage {
+  Backdrop backdrop = Backdrop::ground;
   std::vector<DrawMesh> meshes;
+  std::optional<Bounds> motion;    // of all bodies over the film, which cameras frame in place of their boxes at rest [m]
   int width = 1280, height = 720;  // pixels
   int samples = 4;                 // samples a pixel, for antialiasing
-  Vec3 ground = Vec3::Ones();      // sRGB
-  Vec3 background = Vec3::Ones();  // sRGB
-  double exposure = 1;
+  StageColors colors;
+  LightRig light = studio_light();
   std::string font;  // font file; no captions when empty
   std::optional<FieldLook> field;  // that meshes show
+  std::string note_template;       // a note as long as any below a caption; there are none when empty
 };
 
 struct Camera {
@@ -72,11 +91,22 @@ struct DrawList {
   std::vector<std::vector<float>> field;  // by mesh: by vertex, from 0 (low) to 1 (high) or no_field; empty if not mapped
   std::vector<std::pair<std::size_t, DrawMesh>> renewed;      // meshes that replace the stage's from now on
   std::vector<std::pair<std::size_t, std::string>> captions;  // captions of meshes from now on
+  std::vector<std::string> notes;                             // by mesh: what stands below its caption in this frame
+  std::vector<std::array<float, 4>> marks;                    // x y z [m], and 0 for a handle or 1 for a contact
+  std::optional<StageColors> colors;                          // that replace the stage's from now on
+  std::string headline;                                       // at the top of the picture, in this frame
 };
 
 struct Image {
   int width = 0, height = 0;
-  std::vector<std::uint8_t> rgb;  // rows from the top
+  std::vector<std::uint8_t> rgb;    // rows from the top
+  std::vector<std::uint8_t> alpha = {};  // coverage by pixel, by which the colours are not multiplied; empty: all is covered
 };
+
+// Returns the colour of the background as pictures show it [sRGB].
+Vec3 backdrop_of(const Stage& stage);
+
+// Returns the colours of a picture over a background [sRGB].
+std::vector<std::uint8_t> over(const Image& image, const Vec3& background);
 
 }  // namespace supple

@@ -59,6 +59,7 @@
   F(PFNGLREADBUFFERPROC, ReadBuffer)                                         \
   F(PFNGLREADPIXELSPROC, ReadPixels)                                         \
   F(PFNGLRENDERBUFFERSTORAGEMULTISAMPLEPROC, RenderbufferStorageMultisample) \
+  F(PFNGLSAMPLEMASKIPROC, SampleMaski)                                       \
   F(PFNGLSHADERSOURCEPROC, ShaderSource)                                     \
   F(PFNGLTEXBUFFERPROC, TexBuffer)                                           \
   F(PFNGLTEXIMAGE2DPROC, TexImage2D)                                         \

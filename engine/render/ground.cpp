@@ -14,6 +14,12 @@ void set_light(const Program& program, const StageLight& light) {
   program.set("background", light.background);
   program.set("ground_color", light.ground);
   program.set("exposure", light.exposure);
+  program.set("key_color", light.rig.key);
+  program.set("fill_color", light.rig.fill);
+  program.set("rim_color", light.rig.rim);
+  program.set("sky_color", light.rig.sky);
+  program.set("key_share", light.rig.key_share);
+  program.set("sky_share", light.rig.sky_share);
   program.set("ray_corner", light.rays.corner);
   program.set("ray_right", light.rays.right);
   program.set("ray_up", light.rays.up);
@@ -84,6 +90,7 @@ void Ground::draw_bare(const Eigen::Matrix4f& view, const StageLight& light) {
   set_stage(bare_, light);
   tile_buffer_.draw({-1, -1, 3, -1, -1, 3});  // a triangle that holds the picture
   bare_view_ = view;
+  bare_colors_ = {light.ground, light.background, light.exposure};
 }
 
 // Marks where the shadows of all triangles fall on the ground.
@@ -133,7 +140,8 @@ void Ground::mark_occlusion(const Eigen::Matrix4f& view, const std::vector<float
 
 void Ground::draw(GLuint picture, const Eigen::Matrix4f& view, const StageLight& light, const ShadowMap& shadows,
                   const std::vector<DrawMesh>& meshes, const std::vector<std::vector<float>>& positions) {
-  if (!bare_view_ || *bare_view_ != view) draw_bare(view, light);
+  const StageColors colors = {light.ground, light.background, light.exposure};
+  if (!bare_view_ || *bare_view_ != view || bare_colors_ != colors) draw_bare(view, light);
   gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
   gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, picture);
   gl_.BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);

@@ -10,6 +10,7 @@
 
 #include "render/draw_list.h"
 #include "render/ground_occlusion.h"
+#include "render/light_rig.h"
 #include "render/program.h"
 #include "render/shadow_map.h"
 #include "render/tile_buffer.h"
@@ -20,6 +21,7 @@ namespace supple {
 
 // Holds what every shader that lights a surface needs: the light, the camera and the colours of the stage.
 struct StageLight {
+  LightRig rig;
   Vec3 to_key;  // unit vector towards the key light
   Camera camera;
   Vec3 background, ground;  // linear
@@ -64,6 +66,7 @@ class Ground {
   GLuint light_framebuffer_ = 0, light_ = 0;  // key light and open sky, at half the resolution
   GLuint occlusion_texture_ = 0;
   std::optional<Eigen::Matrix4f> bare_view_;  // that the bare ground was drawn with
+  StageColors bare_colors_;                   // the same, linear
   std::vector<float> cast_;                   // scratch: a mesh's shadow on the ground
 };
 

@@ -46,6 +46,7 @@ const std::vector<float>& GroundOcclusion::compute(const std::vector<DrawMesh>& 
   const double cell = extent_ / cells;
   std::fill(lowest_.begin(), lowest_.end(), 1e9f);
   for (std::size_t m = 0; m < positions.size(); ++m) {
+    if (meshes[m].ghost) continue;
     const std::vector<float>& points = positions[m];
     for (std::size_t i = 0; i + 2 < points.size(); i += 3) lower(points[i], points[i + 1], points[i + 2]);
     const std::vector<std::uint32_t>& triangles = meshes[m].triangles;

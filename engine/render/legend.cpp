@@ -59,4 +59,16 @@ PixelRect legend_place(const Sticker& legend, int width, int height) {
   return {width - margin - legend.width(), (height - legend.height()) / 2, legend.width(), legend.height()};
 }
 
+Vec3 ink_on(const Stage& stage) {
+  return backdrop_of(stage).mean() < 0.4 ? Vec3(0.93, 0.93, 0.92) : Vec3(0.2, 0.2, 0.21);
+}
+
+Sticker headline_of(const std::string& text, const std::string& font, int height, const Vec3& color) {
+  const int em = std::max(9, static_cast<int>(std::lround(height / 32.0))), halo = Sticker::halo(em);
+  const CaptionBitmap bitmap = draw_caption(font, text, em);
+  Sticker line(bitmap.width + 2 * halo, bitmap.height + 2 * halo);
+  line.text_with_halo(font, text, em, halo, halo, color);
+  return line;
+}
+
 }  // namespace supple

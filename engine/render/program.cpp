@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <cstdlib>
 #include <sstream>
 
 #include "base/error.h"
@@ -10,26 +11,50 @@
 namespace supple {
 namespace {
 
-std::string read_source(const std::filesystem::path& path, const std::vector<std::string>& definitions) {
+// Reads a file and those that it includes, whose paths are appended to `files`. Compilers know a file by its number in
+// that list, and name it in their messages (GLSL 3.30, section 3.3, "#line").
+std::string read_source(const std::filesystem::path& path, const std::vector<std::string>& definitions,
+                        std::vector<std::filesystem::path>& files) {
+  const std::size_t number = files.size();
+  files.push_back(path);
   std::istringstream file(read_file(path));
-  std::string source;
+  std::string source = number == 0 ? "" : fmt::format("#line 1 {}\n", number);
+  int read = 0;
   for (std::string line; std::getline(file, line);) {
+    ++read;
     constexpr std::string_view include = "#include \"";
-    if (line.starts_with(include)) {
+    const bool included = line.starts_with(include);
+    if (included) {
       const std::string name = line.substr(include.size(), line.rfind('"') - include.size());
-      source += read_source(path.parent_path() / name, {});
+      source += read_source(path.parent_path() / name, {}, files);
     } else {
       source += line + '\n';
     }
-    if (!line.starts_with("#version")) continue;
-    for (const std::string& definition : definitions) source += "#define " + definition + '\n';
+    if (line.starts_with("#version")) {
+      for (const std::string& definition : definitions) source += "#define " + definition + '\n';
+    }
+    if (included || line.starts_with("#version")) source += fmt::format("#line {} {}\n", read + 1, number);
   }
   return source;
 }
 
+// Puts the names of files in the place of their numbers, which Mesa writes as "1:27(3): error: ...".
+std::string with_names(const std::string& log, const std::vector<std::filesystem::path>& files) {
+  std::istringstream lines(log);
+  std::string named;
+  for (std::string line; std::getline(lines, line);) {
+    char* end = nullptr;
+    const unsigned long number = std::strtoul(line.c_str(), &end, 10);
+    const bool placed = end != line.c_str() && *end == ':' && number < files.size();
+    named += (placed ? files[number].string() + end : line) + '\n';
+  }
+  return named;
+}
+
 GLuint compile(const GlTable& gl, GLenum kind, const std::filesystem::path& path,
                const std::vector<std::string>& definitions) {
-  const std::string source = read_source(path, definitions);
+  std::vector<std::filesystem::path> files;
+  const std::string source = read_source(path, definitions, files);
   const char* text = source.c_str();
   const GLuint shader = gl.CreateShader(kind);
   gl.ShaderSource(shader, 1, &text, nullptr);
@@ -39,7 +64,7 @@ GLuint compile(const GlTable& gl, GLenum kind, const std::filesystem::path& path
   if (!compiled) {
     char log[2048] = "";
     gl.GetShaderInfoLog(shader, sizeof log, nullptr, log);
-    throw RunError(fmt::format("{}: {}", path.string(), log));
+    throw RunError(fmt::format("the shader {} does not compile:\n{}", path.string(), with_names(log, files)));
   }
   return shader;
 }

@@ -33,9 +33,6 @@ double largest_of(const Stage& stage) {
   return largest;
 }
 
-// The key light comes from the upper left in front.
-Vec3 to_key_light() { return Vec3(-0.55, 1.0, 0.75).normalized(); }
-
 std::string gl_text(const GlTable& gl, GLenum what) {
   const auto* text = reinterpret_cast<const char*>(gl.GetString(what));
   return text != nullptr ? text : "";
@@ -63,6 +60,12 @@ class DrawZone {
 
 }  // namespace
 
+// As shaders/ground.frag has it far from all bodies.
+Vec3 backdrop_of(const Stage& stage) {
+  const Vec3 linear = linear_of(stage.colors.background).cwiseProduct(stage.light.background_tint);
+  return film_of(2 * linear, stage.colors.exposure);
+}
+
 Renderer::Renderer(const Stage& stage, GlChoice choice, const std::filesystem::path& shaders)
     : stage_(stage),
       shaders_(shaders),
@@ -75,15 +78,14 @@ Renderer::Renderer(const Stage& stage, GlChoice choice, const std::filesystem::p
       tiles_(stage.width, stage.height) {
   make_targets();
   visibility_program_ = std::make_unique<Program>(gl_, shaders, "visibility", "visibility");
-  shadows_ = std::make_unique<ShadowMap>(gl_, shaders, bounds_, largest_body_, to_key_light(), stage_.width);
+  shadows_ = std::make_unique<ShadowMap>(gl_, shaders, bounds_, largest_body_, stage_.light.to_key.normalized(), stage_.width);
   ground_ = std::make_unique<Ground>(gl_, shaders, stage_.width, stage_.height, bounds_, largest_body_);
-  captions_ = std::make_unique<Captions>(gl_, shaders, stage_.font, stage_.width, stage_.height);
   tile_buffer_ = std::make_unique<TileBuffer>(gl_);
   make_shading_program();
   prepare_field();
   check_test_picture();
   surfaces_ = std::make_unique<SurfaceBuffers>(gl_, stage_.meshes);
-  captions_->renew(stage_.meshes);
+  captions_ = std::make_unique<Captions>(stage_, places_of_overlays());
   check_gl(gl_, "preparing the stage");
 }
 
@@ -212,7 +214,7 @@ void Renderer::upload(const DrawList& list) {
   }
   for (const auto& [m, caption] : list.captions) {
     stage_.meshes[m].label = caption;
-    captions_->renew(m, stage_.meshes[m]);
+    captions_->renew(m, caption);
   }
   surfaces_->upload(stage_.meshes, list);
 }
@@ -228,11 +230,15 @@ void Renderer::draw_visibility(const Eigen::Matrix4f& view) {
   gl_.Enable(GL_CLIP_DISTANCE0);  // at the ground, which is drawn on its own
   visibility_program_->use();
   visibility_program_->set("view_matrix", view);
+  gl_.SampleMaski(0, 0x55555555u);
   for (std::size_t m = 0; m < stage_.meshes.size(); ++m) {
     // Closed bodies hide their far sides, which need not be drawn.
     stage_.meshes[m].two_sided ? gl_.Disable(GL_CULL_FACE) : gl_.Enable(GL_CULL_FACE);
     visibility_program_->set("first", surfaces_->first_triangle(m) + 1);
+    // A ghost is written into every second sample, so that half of each pixel shows what lies behind.
+    if (stage_.meshes[m].ghost) gl_.Enable(GL_SAMPLE_MASK);
     surfaces_->draw(m);
+    if (stage_.meshes[m].ghost) gl_.Disable(GL_SAMPLE_MASK);
   }
   gl_.Disable(GL_CLIP_DISTANCE0);
   gl_.Disable(GL_CULL_FACE);
@@ -265,9 +271,14 @@ void Renderer::shade(const Eigen::Matrix4f& view, const StageLight& light, const
 Image Renderer::draw(const DrawList& list) {
   const double aspect = static_cast<double>(stage_.width) / stage_.height;
   const Eigen::Matrix4f view = view_matrix(list.camera, aspect, bounds_.center(), bounds_.diagonal() + largest_body_);
-  const StageLight light = {
-      to_key_light(),           list.camera,     linear_of(stage_.background),
-      linear_of(stage_.ground), stage_.exposure, rays_through(list.camera, stage_.width, stage_.height)};
+  if (list.colors) stage_.colors = *list.colors;
+  const StageLight light = {stage_.light,
+                            stage_.light.to_key.normalized(),
+                            list.camera,
+                            linear_of(stage_.colors.background).cwiseProduct(stage_.light.background_tint),
+                            linear_of(stage_.colors.ground).cwiseProduct(stage_.light.ground_tint),
+                            stage_.colors.exposure,
+                            rays_through(list.camera, stage_.width, stage_.height)};
   DrawZone zone(gl_, "upload");
   upload(list);
   zone.next("shadow map");
@@ -275,16 +286,69 @@ Image Renderer::draw(const DrawList& list) {
   zone.next("visibility");
   draw_visibility(view);
   zone.next("ground");
-  ground_->draw(picture_framebuffer_, view, light, *shadows_, stage_.meshes, list.positions);
+  if (stage_.backdrop == Backdrop::ground) {
+    ground_->draw(picture_framebuffer_, view, light, *shadows_, stage_.meshes, list.positions);
+  } else {
+    clear_picture();
+  }
   zone.next("bodies");
   shade(view, light, list);
-  zone.next("captions");
-  captions_->draw(view);
+  if (!list.marks.empty()) draw_marks(view, list);
   zone.next("read back");
   Image image = read_picture();
+  zone.next("captions");
+  draw_overlays(list, image);
+  return image;
+}
+
+void Renderer::draw_marks(const Eigen::Matrix4f& view, const DrawList& list) {
+  if (!marks_) marks_ = std::make_unique<Marks>(gl_, shaders_, stage_.width, stage_.height, samples_);
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, picture_framebuffer_);
+  gl_.Viewport(0, 0, stage_.width, stage_.height);
+  const DepthScale scale = depth_scale(list.camera, bounds_.center(), bounds_.diagonal() + largest_body_);
+  // Vertices of a mesh lie up to a part of an element below a finer skin.
+  marks_->draw(list.marks, view, sample_texture(), depth_, {scale.factor, scale.offset}, 0.02 * largest_body_);
+}
+
+// Fills the picture with the colour of the background, or with nothing.
+void Renderer::clear_picture() {
+  const Vec3 color = backdrop_of(stage_);
+  const bool transparent = stage_.backdrop == Backdrop::transparent;
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, picture_framebuffer_);
+  gl_.Viewport(0, 0, stage_.width, stage_.height);
+  const auto channel = [&](int k) { return transparent ? 0.0f : static_cast<float>(color[k]); };
+  gl_.ClearColor(channel(0), channel(1), channel(2), transparent ? 0.0f : 1.0f);
+  gl_.Clear(GL_COLOR_BUFFER_BIT);
+}
+
+// Takes the coverage from the pixels that were read, and divides the colours by it.
+void Renderer::read_coverage(Image& image) const {
+  image.alpha.resize(image.rgb.size() / 3);
+  for (int y = 0; y < stage_.height; ++y) {
+    for (int x = 0; x < stage_.width; ++x) {
+      const std::size_t to = std::size_t(y) * stage_.width + x;
+      const int alpha = pixels_[4 * (std::size_t(stage_.height - 1 - y) * stage_.width + x) + 3];
+      image.alpha[to] = static_cast<std::uint8_t>(alpha);
+      for (std::size_t k = 3 * to; k < 3 * to + 3 && alpha > 0; ++k)
+        image.rgb[k] = static_cast<std::uint8_t>(std::min(255, (255 * image.rgb[k] + alpha / 2) / alpha));
+    }
+  }
+}
+
+// Returns the places of what stands in the same place in all pictures, which captions leave free.
+std::vector<PixelRect> Renderer::places_of_overlays() const {
+  if (legend_.width() == 0) return {};
+  return {legend_place(legend_, stage_.width, stage_.height)};
+}
+
+void Renderer::draw_overlays(const DrawList& list, Image& image) {
+  if (captions_) captions_->draw(image, list);  // not yet on the test picture
   const PixelRect legend = legend_place(legend_, stage_.width, stage_.height);
   legend_.onto(image, legend.x, legend.y);
-  return image;
+  if (list.headline.empty() || stage_.font.empty()) return;
+  const Sticker headline = headline_of(list.headline, stage_.font, stage_.height, ink_on(stage_));
+  const int margin = std::max(4, stage_.height / 45);
+  headline.onto(image, margin, margin);
 }
 
 Image Renderer::read_picture() {
@@ -302,6 +366,7 @@ Image Renderer::read_picture() {
     for (std::size_t x = 0; x + 1 < width; ++x) std::memcpy(to + 3 * x, from + 4 * x, 4);
     std::memcpy(to + 3 * (width - 1), from + 4 * (width - 1), 3);
   }
+  if (stage_.backdrop == Backdrop::transparent) read_coverage(image);
   return image;
 }
 

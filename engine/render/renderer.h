@@ -16,6 +16,7 @@
 #include "render/gl_table.h"
 #include "render/ground.h"
 #include "render/legend.h"
+#include "render/marks.h"
 #include "render/program.h"
 #include "render/shadow_map.h"
 #include "render/surface_buffers.h"
@@ -47,7 +48,12 @@ class Renderer {
   void upload(const DrawList& list);
   void draw_visibility(const Eigen::Matrix4f& view);
   void shade(const Eigen::Matrix4f& view, const StageLight& light, const DrawList& list);
+  std::vector<PixelRect> places_of_overlays() const;
+  void draw_overlays(const DrawList& list, Image& image);
+  void draw_marks(const Eigen::Matrix4f& view, const DrawList& list);
+  void clear_picture();
   Image read_picture();
+  void read_coverage(Image& image) const;
   GLenum sample_texture() const { return samples_ > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D; }
 
   Stage stage_;
@@ -66,6 +72,7 @@ class Renderer {
   std::unique_ptr<ShadowMap> shadows_;
   std::unique_ptr<Ground> ground_;
   std::unique_ptr<Captions> captions_;
+  std::unique_ptr<Marks> marks_;  // once there is one to draw
   std::unique_ptr<TileBuffer> tile_buffer_;
   GLuint color_buffer_ = 0, color_texture_ = 0;  // colours of the field; none without a field
   Sticker legend_;

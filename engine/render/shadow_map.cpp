@@ -67,6 +67,7 @@ void ShadowMap::draw(const SurfaceBuffers& surfaces, const std::vector<DrawMesh>
   program_.use();
   program_.set("light_matrix", matrix_);
   for (std::size_t m = 0; m < meshes.size(); ++m) {
+    if (meshes[m].ghost) continue;
     // Closed bodies hide their far sides, which need not be drawn.
     meshes[m].two_sided ? gl_.Disable(GL_CULL_FACE) : gl_.Enable(GL_CULL_FACE);
     surfaces.draw_caster(m);

@@ -261,7 +261,8 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
   body.pattern_size = table.number_if_given(
       {"pattern_size", "m", "edge of its squares; a sixth of the middle side, of cloth a twentieth of the longest"},
       Range::positive());
-  body.color = table.vector_if_given({"color", "sRGB", "over the shape's own"}, Range::between(0, 1));
+  body.color = table.color_if_given({"color", "sRGB", "over the shape's own"});
+  body.gloss = table.number_if_given({"gloss", "", "of the uncovered surface: 0 matt to 1 wet [0.25]"}, Range::between(0, 1));
   body.skin_cells = table.number({"skin_cells", "", "cells of the drawn skin along the longest side of a shape"}, 72,
                                  Range::between(8, 400));
   return body;

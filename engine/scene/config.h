@@ -213,6 +213,9 @@ class ConfigTable {
   Vec3 vector(const Key& key, std::optional<Vec3> fallback, const Range& range = Range::any()) const;
   std::optional<double> number_if_given(const Key& key, const Range& range) const;
   std::optional<Vec3> vector_if_given(const Key& key, const Range& range = Range::any()) const;
+  // Returns a colour in sRGB, which a file gives as three numbers or as "#rrggbb".
+  Vec3 color(const Key& key, const Vec3& fallback) const;
+  std::optional<Vec3> color_if_given(const Key& key) const;
   std::vector<Vec3> vectors(const Key& key, std::size_t count) const;
   // Returns two numbers, both in range.
   Eigen::Vector2d pair(const Key& key, const Range& range) const;
@@ -252,6 +255,7 @@ class ConfigTable {
   const toml::node* find(const Key& key, const char* type, std::string fallback, std::string allowed) const;
   void wrong(const Key& key, const toml::node& node, const std::string& allowed) const;
   std::string choice_if_given(const Key& key, const char* fallback, const Words& words) const;
+  Vec3 color_at(const Key& key, const toml::node* node, const Vec3& fallback) const;
   bool is_one_of(const Words& words, const Key& key, const toml::node& node) const;
 
   Config* config_;

@@ -282,6 +282,40 @@ Vec3 ConfigTable::vector(const Key& key, std::optional<Vec3> fallback, const Ran
   return instead;
 }
 
+namespace {
+
+constexpr const char* color_forms = "three numbers, each 0 to 1, or \"#rrggbb\"";
+
+// Reads "#rrggbb"; nothing where the text is something else.
+std::optional<Vec3> hex_color(const std::string& text) {
+  if (text.size() != 7 || text[0] != '#' || text.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
+    return std::nullopt;
+  const auto channel = [&text](std::size_t at) { return std::stoi(text.substr(at, 2), nullptr, 16) / 255.0; };
+  return Vec3(channel(1), channel(3), channel(5));
+}
+
+}  // namespace
+
+Vec3 ConfigTable::color_at(const Key& key, const toml::node* node, const Vec3& fallback) const {
+  if (node == nullptr) return fallback;
+  const std::optional<std::string> text = node->value_exact<std::string>();
+  const std::optional<Vec3> value = text ? hex_color(*text) : as_vector<3>(*node);
+  if (value && value->minCoeff() >= 0 && value->maxCoeff() <= 1) return *value;
+  wrong(key, *node, color_forms);
+  return fallback;
+}
+
+Vec3 ConfigTable::color(const Key& key, const Vec3& fallback) const {
+  const std::string usual = fmt::format("[{:g}, {:g}, {:g}]", fallback.x(), fallback.y(), fallback.z());
+  return color_at(key, find(key, "three numbers", usual, color_forms), fallback);
+}
+
+std::optional<Vec3> ConfigTable::color_if_given(const Key& key) const {
+  const toml::node* node = find(key, "three numbers", "none", color_forms);
+  if (node == nullptr) return std::nullopt;
+  return color_at(key, node, Vec3::Ones());
+}
+
 std::vector<Vec3> ConfigTable::vectors(const Key& key, std::size_t count) const {
   const std::string allowed = fmt::format("{} lists of three numbers", count);
   const toml::node* node = find(key, "list of points", "required", allowed);

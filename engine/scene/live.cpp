@@ -55,6 +55,12 @@ constexpr auto patterns = std::to_array<LivePattern>({
     {"collider[].ease", nothing},
     {"collider[].keys", nothing},
     {"camera", nothing},
+    {"look.ground", nothing},
+    {"look.background", nothing},
+    {"look.exposure", nothing},
+    {"body[].color", nothing},
+    {"body[].gloss", nothing},
+    {"collider[].color", new_surface},
 });
 
 // Tells whether a path is the pattern itself or lies below it.

@@ -5,11 +5,18 @@ namespace supple {
 LookDef read_look(const ConfigTable& root, LookDef look) {
   const auto table = root.table({"look", "", "ground, background and light"});
   if (!table) return look;
-  look.ground = table->vector({"ground", "sRGB", "colour of the ground"}, look.ground, Range::between(0, 1));
-  look.background = table->vector({"background", "sRGB", "colour that the ground fades into"}, look.background,
-                                  Range::between(0, 1));
+  look.backdrop = table->word<BackdropKind>(
+      {"backdrop", "", "a ground with shadows, the colour of the background alone, or pictures with coverage"},
+      look.backdrop);
+  look.ground = table->color({"ground", "sRGB", "colour of the ground"}, look.ground);
+  look.background = table->color({"background", "sRGB", "colour that the ground fades into"}, look.background);
+  look.light = table->word<LightKind>({"light", "", "the lamps, and the tint that they give ground and background"},
+                                      look.light);
   look.exposure = table->number({"exposure", "", "multiplies the light"}, look.exposure, Range::above(0, 100));
   look.show_labels = table->boolean({"labels", "", "captions below the bodies"}, look.show_labels);
+  look.ghost = table->text({"ghost", "", "folder of a run whose bodies are seen beside these, half transparent"}, "");
+  look.marks = table->boolean({"marks", "", "squares where handles hold vertices, discs where vertices touch colliders"},
+                              look.marks);
   look.wireframe =
       table->boolean({"wireframe", "", "bodies are drawn as their elements, with the elements' edges"}, look.wireframe);
   return look;
@@ -36,6 +43,21 @@ FieldDef read_field(const ConfigTable& root) {
   if (field.quantity != FieldQuantity::distance && !field.reference.empty())
     table->complain("reference", "reference: is used by quantity = \"distance\" alone");
   return field;
+}
+
+TextDef read_text(const ConfigTable& root) {
+  TextDef text;
+  const auto table = root.table({"text", "", "what the pictures say in words"});
+  if (!table) return text;
+  text.title = table->boolean({"title", "", "the scene's title, in the upper left corner"}, text.title);
+  text.time = table->boolean({"time", "", "the film's time, in the same line"}, text.time);
+  text.method = table->boolean({"method", "", "below each body: the solver's method"}, text.method);
+  text.milliseconds =
+      table->boolean({"milliseconds", "", "below each body: what its steps of the frame took"}, text.milliseconds);
+  text.iterations = table->boolean({"iterations", "", "below each body: how many they made"}, text.iterations);
+  text.error =
+      table->boolean({"error", "", "below each body: the error where it is measured, otherwise its estimate"}, text.error);
+  return text;
 }
 
 }  // namespace supple

@@ -1,4 +1,4 @@
-// Reads what is seen beside the bodies and the camera: the tables [look] and [field] of a scene file.
+// Reads what is seen beside the bodies and the camera: the tables [look], [field] and [text] of a scene file.
 #pragma once
 
 #include "scene/config.h"
@@ -8,5 +8,6 @@ namespace supple {
 
 LookDef read_look(const ConfigTable& root, LookDef look);
 FieldDef read_field(const ConfigTable& root);
+TextDef read_text(const ConfigTable& root);
 
 }  // namespace supple

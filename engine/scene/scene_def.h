@@ -162,6 +162,7 @@ struct BodyDef {
   Pattern pattern = Pattern::none;
   std::optional<double> pattern_size;  // edge of its squares [m]
   std::optional<Vec3> color;           // over the shape's own [sRGB]
+  std::optional<double> gloss;         // of the uncovered surface
   double skin_cells = 0;               // cells of the drawn skin along the longest side
   Problem place;
 
@@ -192,6 +193,16 @@ struct CameraKey {
   std::optional<double> fov_deg;
 };
 
+// Names what a camera without a place of its own has in the picture.
+enum class Framed {
+  start,  // the bodies where they start, and the ground below those that will fall
+  film,   // their whole motion, which only a drawing from saved motion knows
+};
+template <>
+struct Names<Framed> {
+  static constexpr std::array table = {Name{Framed::start, "start"}, Name{Framed::film, "film"}};
+};
+
 // Without a position the eye stands in the direction of azimuth and elevation, as far away as it must to see all
 // bodies.
 struct CameraDef {
@@ -199,6 +210,7 @@ struct CameraDef {
   double azimuth_deg = 30, elevation_deg = 14;
   std::optional<double> distance;  // [m]
   double fov_deg = 30;             // vertical
+  Framed frames = Framed::start;
   double margin = 1.25;            // air around the bodies when they are framed
   double orbit_deg = 0;            // that the eye goes round the target [degrees/s]
   std::string follow;              // the body or collider that it moves along with; empty: none
@@ -208,12 +220,32 @@ struct CameraDef {
   bool moves() const { return orbit_deg != 0 || !keys.empty(); }
 };
 
+// Names what is seen behind the bodies.
+enum class BackdropKind { ground, plain, transparent };
+template <>
+struct Names<BackdropKind> {
+  static constexpr std::array table = {Name{BackdropKind::ground, "ground"}, Name{BackdropKind::plain, "plain"},
+                                       Name{BackdropKind::transparent, "transparent"}};
+};
+
+// Names sets of lamps (render/light_rig.h).
+enum class LightKind { studio, sunset, overcast, dark };
+template <>
+struct Names<LightKind> {
+  static constexpr std::array table = {Name{LightKind::studio, "studio"}, Name{LightKind::sunset, "sunset"},
+                                       Name{LightKind::overcast, "overcast"}, Name{LightKind::dark, "dark"}};
+};
+
 struct LookDef {
+  LightKind light = LightKind::studio;
+  BackdropKind backdrop = BackdropKind::ground;
   Vec3 ground = Vec3(0.914, 0.894, 0.863);      // sRGB
   Vec3 background = Vec3(0.851, 0.871, 0.902);  // sRGB
   double exposure = 1;
   bool show_labels = true;
-  bool wireframe = false;  // bodies are drawn as their elements, with the elements' edges
+  std::filesystem::path ghost;  // folder of a run whose bodies are seen through these; empty: none
+  bool marks = false;           // where handles hold vertices, and where vertices touch colliders
+  bool wireframe = false;       // bodies are drawn as their elements, with the elements' edges
 };
 
 // Names the field that the surfaces of bodies show.
@@ -256,6 +288,15 @@ struct FieldDef {
   std::filesystem::path reference;  // folder of the run to which distances are measured
 };
 
+// Chooses what pictures say in words; each part can be switched.
+struct TextDef {
+  // These stand in the upper left corner.
+  bool title = false, time = false;
+  // These stand below the caption of each body, and tell of its steps in the frame.
+  bool method = false, milliseconds = false, iterations = false, error = false;
+  bool notes() const { return method || milliseconds || iterations || error; }
+};
+
 struct OutputDef {
   int width = 1280;
   int height = 720;
@@ -276,6 +317,7 @@ struct SceneDef {
   CameraDef camera;
   LookDef look;
   FieldDef field;
+  TextDef text;
   OutputDef output;
   std::size_t sweep_points = 0;  // of the [sweep] table (sweep.h), which a scene that is run alone leaves aside
   std::filesystem::path assets;

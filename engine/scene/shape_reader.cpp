@@ -172,7 +172,7 @@ ShapeGroup read_parts(const ConfigTable& table, const Key& key, Shape& shape, in
 }
 
 Vec3 read_color(const ConfigTable& table, const Vec3& fallback) {
-  return table.vector({"color", "sRGB", "red, green, blue"}, fallback, Range::between(0, 1));
+  return table.color({"color", "sRGB", "red, green, blue"}, fallback);
 }
 
 }  // namespace

@@ -185,6 +185,91 @@ TEST_F(DrawnRun, KnowsTheRangeOfTheFilmOnlyOnceItIsMade) {
   EXPECT_FALSE(std::filesystem::exists(path("none")));
 }
 
+TEST_F(DrawnRun, BecomesAFilmOfAnyFormat) {
+  for (const auto& [format, file] : std::vector<std::pair<std::string, std::string>>{
+           {"mp4-h265", "video.mp4"}, {"webm", "video.webm"}, {"webm-av1", "video.webm"}, {"gif", "video.gif"}}) {
+    const Result result = draw("as-" + format, {"--format", format, "--quality", "draft"});
+    ASSERT_EQ(result.status, 0) << format << ": " << result.err;
+    if (count_video_frames(path("run") / "video.mp4") < 0) continue;  // there is no ffmpeg
+    EXPECT_EQ(count_video_frames(path("as-" + format) / file), frames) << format;
+  }
+  ASSERT_EQ(draw("as-png", {"--format", "png", "--sheet"}).status, 0);
+  EXPECT_EQ(picture("as-png", 7), picture("run", 7));
+  EXPECT_FALSE(std::filesystem::exists(path("as-png") / "video.mp4"));
+  EXPECT_GT(read_png(path("as-png") / "sheet.png").width, 96);
+  EXPECT_EQ(draw("none", {"--format", "avi"}).status, 2);
+}
+
+// Colour type 6 of a PNG's header is RGB with coverage.
+TEST_F(DrawnRun, HasCoverageOnATransparentBackground) {
+  ASSERT_EQ(draw("clear", {"--set", "look.backdrop=transparent"}).status, 0);
+  EXPECT_EQ(picture("clear", 3)[25], 6);
+  EXPECT_EQ(picture("run", 3)[25], 2);
+  ASSERT_EQ(draw("plain", {"--set", "look.backdrop=plain"}).status, 0);
+  const PngImage plain = read_png(picture_file(path("plain") / "frames", 3));
+  const auto pixel = [&plain](std::size_t i) { return std::vector(&plain.rgb[3 * i], &plain.rgb[3 * i] + 3); };
+  EXPECT_EQ(pixel(0), pixel(std::size_t(plain.width) * (plain.height - 1))) << "the ground is still there";
+}
+
+TEST_F(DrawnRun, StandsBesideAnotherRun) {
+  ASSERT_EQ(run(folder_->path, {"replay", "replay.toml", "--out", "other-run", "--quiet", "--no-images", "--set",
+                                "solver.iterations=2", "--frames", "8"})
+                .status,
+            0);
+  const Result result =
+      run(folder_->path, {"draw", "run", "other-run", "--layout", "row", "--out", "both", "--quiet", "--format", "png"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(pictures("both"), 8) << "the film is as long as the shorter run";
+  const PngImage both = read_png(picture_file(path("both") / "frames", 5));
+  const PngImage left = read_png(picture_file(path("both") / "panel-1" / "frames", 5));
+  EXPECT_GE(both.width, 2 * left.width);
+  EXPECT_GT(both.height, left.height);
+  for (int y = 0; y < left.height; ++y)
+    ASSERT_TRUE(std::equal(&left.rgb[3 * std::size_t(y) * left.width], &left.rgb[3 * std::size_t(y + 1) * left.width] - 3,
+                           &both.rgb[3 * std::size_t(y) * both.width]));
+  const Result wrong = run(folder_->path, {"draw", "run", "other-run", "--frame", "1"});
+  EXPECT_EQ(wrong.status, 2);
+}
+
+TEST_F(DrawnRun, HasTheWholeMotionInThePicture) {
+  ASSERT_EQ(draw("framed", {"--set", "camera.frames=film"}).status, 0);
+  EXPECT_NE(picture("framed", 5), picture("run", 5));
+  ASSERT_EQ(draw("framed-last", {"--set", "camera.frames=film", "--first", "11"}).status, 0);
+  EXPECT_EQ(picture("framed-last", 0), picture("framed", 11)) << "the box depends on which frames are drawn";
+  const Result early = run(folder_->path, {"render", "two.toml", "--out", "none", "--quiet", "--set", "camera.frames=film"});
+  EXPECT_EQ(early.status, 2);
+  EXPECT_NE(early.err.find("is known only once the film has been made"), std::string::npos) << early.err;
+}
+
+// The scene has no table [output], so that the setting adds one.
+TEST_F(DrawnRun, MayHaveASizeOfWhichTheSceneSaysNothing) {
+  std::ofstream(path("bare.toml")) << "frames = 1\n[[body]]\nbox = { extent = [0.1, 0.1, 0.1], cells = [1, 1, 1] }\n"
+                                      "material = \"rubber\"\n";
+  ASSERT_EQ(run(folder_->path, {"render", "bare.toml", "--out", "bare", "--quiet", "--no-images"}).status, 0);
+  const Result result = run(folder_->path, {"draw", "bare", "--frame", "0", "--still", "bare.png", "--set",
+                                            "output.width=64", "--set", "output.height=48"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(read_png(path("bare.png")).width, 64);
+}
+
+TEST_F(DrawnRun, ShowsTheGhostOfAnotherRun) {
+  ASSERT_EQ(run(folder_->path, {"replay", "replay.toml", "--out", "ghost-run", "--quiet", "--no-images", "--set",
+                                "solver.iterations=1"})
+                .status,
+            0);
+  ASSERT_EQ(draw("with-ghost", {"--set", "look.ghost=ghost-run"}).status, 0);
+  EXPECT_NE(picture("with-ghost", 11), picture("run", 11));
+  ASSERT_EQ(draw("own-ghost", {"--set", "look.ghost=run"}).status, 0);
+  EXPECT_EQ(picture("own-ghost", 0), picture("run", 0)) << "a ghost in the same place is hidden";
+  EXPECT_EQ(draw("none", {"--set", "look.ghost=nowhere"}).status, 2);
+  ASSERT_EQ(run(folder_->path, {"replay", "replay.toml", "--out", "short-run", "--quiet", "--no-images", "--frames", "8"})
+                .status,
+            0);
+  const Result short_of = draw("none", {"--set", "look.ghost=short-run"});
+  EXPECT_EQ(short_of.status, 2);
+  EXPECT_NE(short_of.err.find("has 8 frames, and frame 8 is needed"), std::string::npos) << short_of.err;
+}
+
 TEST_F(DrawnRun, RefusesWhatWouldHaveMovedOtherwise) {
   const Result material = draw("none", {"--set", "body.bar.material.mu=1e4"});
   EXPECT_EQ(material.status, 2);

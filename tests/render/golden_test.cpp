@@ -220,7 +220,7 @@ TEST(Golden, AFieldIsShownInColoursWithItsLegend) {
   expect_golden("field-energy", with({"field.quantity=energy", "field.range=[0, 1e4]"}), {none, {{"field.range=[0, 1e6]"}}});
   expect_golden("field-stress", with({"field.quantity=stress", "field.range=[0, 4e4]"}), {none});
   expect_golden("field-speed", with({"field.quantity=speed", "field.range=[0, 0.5]"}, 3), {none});
-  expect_golden("field-depth", with({"field.quantity=depth", "field.range=[0, 0.1]"}), {none});
+  expect_golden("field-depth", with({"field.quantity=depth", "field.range=[0, 0.15]", "collider.ground.thickness=0.15"}), {none});
 }
 
 // The reference is a run in which nothing has moved, so that the colours show how far each body was deformed.
@@ -243,6 +243,42 @@ TEST(Golden, TheDistanceToAnotherRunIsShownInColours) {
 
 TEST(Golden, AWireframeShowsTheElementsOverAField) {
   expect_golden("wireframe", {written_for_tests("field"), {"look.wireframe=true"}}, {{{"look.wireframe=false"}}});
+}
+
+TEST(Golden, MarksShowHandlesAndContacts) {
+  expect_golden("marks", {written_for_tests("field"), {"look.marks=true"}}, {{{"look.marks=false"}}});
+}
+
+TEST(Golden, AGhostOfAnotherRunIsSeenThroughTheBodies) {
+  const test::TemporaryFolder run;
+  std::filesystem::create_directories(run.path / "motion");
+  std::ofstream(run.path / "run.json") << "{}";
+  const test::Film film(written_for_tests("field"), {});
+  for (const Body& body : film.bodies) {
+    const Positions& rest = body.description.mesh.rest;
+    const Positions moved = rest.rowwise() + Vec3(0.1, 0.15, 0.1).transpose() - motion_origin(rest).transpose();
+    PointCacheWriter(run.path / "motion" / (body.def.name + ".pc2"), int(rest.rows())).add(moved);
+  }
+  expect_golden("ghost", {written_for_tests("field"), {"look.ghost=" + run.path.string()}, 1}, {{{"look.ghost="}}});
+}
+
+TEST(Golden, EachSetOfLampsHasItsOwnMood) {
+  const Removal studio = {{"look.light=studio"}};
+  for (const char* light : {"sunset", "overcast", "dark"})
+    expect_golden(std::string("light-") + light, {written_for_tests("field"), {std::string("look.light=") + light}},
+                  {studio});
+}
+
+TEST(Golden, TheGroundCanBeLeftOut) {
+  expect_golden("plain", {written_for_tests("field"), {"look.backdrop=plain", "body.ball.gloss=0.9"}},
+                {{{"look.backdrop=ground"}}, {{"body.ball.gloss=0"}}});
+}
+
+TEST(Golden, WordsTellOfTheFilmAndItsBodies) {
+  if (!std::filesystem::exists(lato)) GTEST_SKIP() << lato << " is not installed";
+  expect_golden("words",
+                {written_for_tests("captions"), {"text.title=true", "text.time=true", "text.method=true"}, 0, lato},
+                {{{"text.title=false", "text.time=false"}}, {{"text.method=false"}}});
 }
 
 // The renewed meshes have colours that no mesh had when the film began.

@@ -251,6 +251,7 @@ keys = [{{ t = 0 }}]
 keys = [{{ t = 0 }}]
 [look]
 [field]
+[text]
 [output]
 [sweep.values]
 )",

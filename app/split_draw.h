@@ -1,0 +1,25 @@
+// Draws several runs into one film, side by side: supple draw RUN RUN ... --layout row.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "film/redraw.h"
+#include "film/split_screen.h"
+#include "output/video.h"
+
+namespace supple {
+
+struct SplitCommand {
+  DrawPlan plan;  // of each run, whose folder it does not name
+  std::vector<std::string> runs;
+  std::filesystem::path folder;
+  Layout layout = Layout::row;
+  FilmCoding coding;
+  bool quiet = false;
+};
+
+// Draws each run into a folder of its own below `folder`, and from these pictures the film. Returns the exit status.
+int draw_split(const SplitCommand& command);
+
+}  // namespace supple

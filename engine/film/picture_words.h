@@ -1,0 +1,21 @@
+// Writes what a picture says in words: a line at its top, and a note below each body.
+#pragma once
+
+#include <string>
+
+#include "output/profile.h"
+#include "scene/scene_def.h"
+
+namespace supple {
+
+// Returns the line at the top; empty where the scene asks for none. time: of the film [s].
+std::string headline_text(const SceneDef& scene, double time);
+
+// Returns the note below a body; empty where the scene asks for none. row: of the body's steps in the frame; null where
+// they are not known, and then only the method is.
+std::string note_text(const TextDef& text, const BodyDef& body, const BodyRow* row);
+
+// Returns a note that is as long as any of the scene's, so that captions can keep room for it.
+std::string longest_note(const SceneDef& scene);
+
+}  // namespace supple

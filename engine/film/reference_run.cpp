@@ -1,0 +1,32 @@
+#include "film/reference_run.h"
+
+#include <fmt/core.h>
+
+#include "base/error.h"
+#include "output/obj_file.h"
+#include "output/run_record.h"
+
+namespace supple {
+
+ReferenceRun::ReferenceRun(const std::filesystem::path& folder, const std::vector<Body>& bodies)
+    : folder_(folder) {
+  const RunRecord run = read_run(folder);
+  for (const Body& body : bodies) {
+    motion_.emplace_back(run.motion(body.def.name));
+    origin_.push_back(motion_origin(body.description.mesh.rest));
+    const auto vertices = static_cast<int>(body.description.mesh.rest.rows());
+    if (motion_.back().points() == vertices) continue;
+    throw InputError(folder.string(), fmt::format("body '{}' has {} vertices there and {} here, so that the two cannot "
+                                                  "be compared",
+                                                  body.def.name, motion_.back().points(), vertices));
+  }
+}
+
+Positions ReferenceRun::at(std::size_t body, int frame) {
+  if (frame >= motion_[body].frames())
+    throw InputError(folder_.string(), fmt::format("has {} frames, and frame {} is needed for the comparison",
+                                                   motion_[body].frames(), frame));
+  return motion_[body].frame(frame).rowwise() + origin_[body].transpose();
+}
+
+}  // namespace supple

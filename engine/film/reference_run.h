@@ -1,0 +1,27 @@
+// Gives the positions of another run's bodies, to which a picture compares.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "output/point_cache.h"
+#include "scene/assemble.h"
+
+namespace supple {
+
+class ReferenceRun {
+ public:
+  // Throws InputError when the folder is not a run's, and when a body has another number of vertices there.
+  ReferenceRun(const std::filesystem::path& folder, const std::vector<Body>& bodies);
+
+  // Returns where the body is in a frame, by vertex of its mesh [m]. Throws InputError when the run does not have the
+  // frame.
+  Positions at(std::size_t body, int frame);
+
+ private:
+  std::filesystem::path folder_;
+  std::vector<PointCacheReader> motion_;  // by body
+  std::vector<Vec3> origin_;              // of the files of motion [m]
+};
+
+}  // namespace supple

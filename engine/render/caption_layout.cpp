@@ -1,0 +1,99 @@
+#include "render/caption_layout.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace supple {
+namespace {
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+PixelRect widened(const PixelRect& r, int by) { return {r.x - by, r.y - by, r.width + 2 * by, r.height + 2 * by}; }
+
+bool is_free(const PixelRect& place, const std::vector<PixelRect>& taken, const std::vector<Outline>& bodies) {
+  const PixelRect with_air = widened(place, std::max(2, place.height / 6));
+  return std::ranges::none_of(taken, [&](const PixelRect& one) { return one.overlaps(with_air); }) &&
+         std::ranges::none_of(bodies, [&](const Outline& body) { return overlaps(place, body); });
+}
+
+// Returns the first free place for a caption, row after row, in the middle of a row before its sides.
+std::optional<PixelRect> place_of(const WantedCaption& caption, const std::vector<Outline>& bodies,
+                                  const std::vector<PixelRect>& taken, int width, int height) {
+  const int margin = std::max(2, height / 100);
+  const double left = caption.top.x() - 0.5 * caption.width;
+  PixelRect place{0, static_cast<int>(std::lround(caption.top.y())), caption.width, caption.height};
+  for (; place.bottom() <= height - margin; place.y += std::max(1, caption.height / 3)) {
+    for (const double aside : {0.0, -0.25, 0.25, -0.5, 0.5, -0.75, 0.75}) {
+      place.x = static_cast<int>(std::lround(left + aside * caption.width));
+      place.x = std::clamp(place.x, margin, std::max(margin, width - margin - caption.width));
+      if (place.right() <= width && is_free(place, taken, bodies)) return place;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+// By Andrew's monotone chain (1979).
+Outline hull_of(std::vector<Eigen::Vector2d> points) {
+  std::ranges::sort(points, [](const auto& a, const auto& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); });
+  Outline hull;
+  const auto add_chain = [&hull](auto begin, auto end) {
+    const std::size_t first = hull.size();
+    for (auto point = begin; point != end; ++point) {
+      while (hull.size() >= first + 2 &&
+             cross(hull.back() - hull[hull.size() - 2], *point - hull[hull.size() - 2]) <= 0)
+        hull.pop_back();
+      hull.push_back(*point);
+    }
+    hull.pop_back();
+  };
+  if (points.size() < 3) return points;
+  add_chain(points.begin(), points.end());
+  add_chain(points.rbegin(), points.rend());
+  return hull;
+}
+
+// By the separating axis theorem: the axes are those of the rectangle and the normals of the outline's edges.
+bool overlaps(const PixelRect& rectangle, const Outline& outline) {
+  if (outline.empty()) return false;
+  const std::array<Eigen::Vector2d, 4> corners = {
+      Eigen::Vector2d(rectangle.x, rectangle.y), Eigen::Vector2d(rectangle.right(), rectangle.y),
+      Eigen::Vector2d(rectangle.right(), rectangle.bottom()), Eigen::Vector2d(rectangle.x, rectangle.bottom())};
+  const auto apart_along = [&](const Eigen::Vector2d& axis) {
+    double least[2] = {1e300, 1e300}, most[2] = {-1e300, -1e300};
+    const auto include = [&](int which, const Eigen::Vector2d& point) {
+      least[which] = std::min(least[which], axis.dot(point));
+      most[which] = std::max(most[which], axis.dot(point));
+    };
+    for (const Eigen::Vector2d& corner : corners) include(0, corner);
+    for (const Eigen::Vector2d& corner : outline) include(1, corner);
+    return most[0] <= least[1] || most[1] <= least[0];
+  };
+  if (apart_along(Eigen::Vector2d::UnitX()) || apart_along(Eigen::Vector2d::UnitY())) return false;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Eigen::Vector2d edge = outline[(i + 1) % outline.size()] - outline[i];
+    if (apart_along({-edge.y(), edge.x()})) return false;
+  }
+  return true;
+}
+
+std::optional<std::vector<PixelRect>> caption_places(const std::vector<WantedCaption>& captions,
+                                                     const std::vector<Outline>& bodies,
+                                                     const std::vector<PixelRect>& taken, int width, int height) {
+  std::vector<std::size_t> order(captions.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return captions[a].top.x() < captions[b].top.x(); });
+  std::vector<PixelRect> places(captions.size()), all = taken;
+  for (const std::size_t i : order) {
+    const std::optional<PixelRect> place = place_of(captions[i], bodies, all, width, height);
+    if (!place) return std::nullopt;
+    places[i] = *place;
+    all.push_back(*place);
+  }
+  return places;
+}
+
+}  // namespace supple
