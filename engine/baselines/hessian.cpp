@@ -68,6 +68,14 @@ HessianMatrix::HessianMatrix(const Model& model) {
       }
     }
   });
+  // Contact couples the vertices of a triangle, which springs need not do.
+  for (Eigen::Index t = 0; t < model.surface.rows(); ++t) {
+    for (const std::int32_t row : model.surface.row(t)) {
+      for (const std::int32_t column : model.surface.row(t)) {
+        if (row > column && row < model.free) entries.emplace_back(column, row);
+      }
+    }
+  }
   std::sort(entries.begin(), entries.end());
   entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
   block_begin_.assign(model.free + 1, 0);
@@ -172,9 +180,12 @@ void HessianMatrix::assemble(const Model& model, const ElementMatrices& elements
   for (const Contact& contact : contacts) {
     const Mat3 along = contact.normal * contact.normal.transpose();
     Mat3 part = Mat3::Zero();
-    if (contact.normal.dot(x.row(contact.vertex)) < contact.offset) part += 2 * contact.stiffness * along;
+    if (gap(contact, x) < 0) part += 2 * contact.stiffness * along;
     if (contact.friction > 0) part += friction_stiffness(contact, x, stick_length) * (Mat3::Identity() - along);
-    add(contact.vertex, contact.vertex, part);
+    const ContactPoint& point = contact.point;
+    for (int i = 0; i < point.free; ++i) {
+      for (int j = 0; j <= i; ++j) add(point.vertex[i], point.vertex[j], point.weight[i] * point.weight[j] * part);
+    }
   }
 }
 

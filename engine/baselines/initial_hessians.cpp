@@ -196,7 +196,10 @@ ContactMatrixInverse::ContactMatrixInverse(const Model& model)
 void ContactMatrixInverse::apply(const Model& model, const StepInputs&, Workspace& w, Positions& r, Positions& z) {
   std::fill(stiffness_.begin(), stiffness_.end(), 0.0);
   for (const Contact& contact : w.current.contacts) {
-    if (contact.depth > 0) stiffness_[contact.vertex] += 2 * contact.stiffness;
+    if (contact.depth <= 0) continue;
+    // Of a point between vertices this is the sum of each row of its matrix, which is at least as stiff.
+    for (int k = 0; k < contact.point.free; ++k)
+      stiffness_[contact.point.vertex[k]] += 2 * contact.stiffness * contact.point.weight[k];
   }
   if (stiffness_ != factored_) {
     matrix_ = system_;

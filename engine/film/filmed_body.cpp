@@ -50,13 +50,6 @@ Triangles surface_of(const Body& body) {
   return body.def.cloth ? body.cloth.surface.triangles : boundary_faces(body.description.mesh.tets);
 }
 
-// Returns the surface that may touch colliders, in the model's numbering.
-Triangles touching_surface(const Body& body, const Model& model) {
-  Triangles surface = surface_of(body);
-  for (Eigen::Index i = 0; i < surface.size(); ++i) surface.data()[i] = model.internal_of[surface.data()[i]];
-  return surface;
-}
-
 }  // namespace
 
 FilmedBody::FilmedBody(const SceneDef& scene, Body& body, Model& model, const CollisionSet& set,
@@ -69,7 +62,6 @@ FilmedBody::FilmedBody(const SceneDef& scene, Body& body, Model& model, const Co
       motion_(folder.motion(body.def.name), model.vertices, kept_frames),
       origin_(motion_origin(body.description.mesh.rest)) {
   start_budget({});
-  if (!set.colliders.empty()) surface_ = touching_surface(body, model);
   write_obj(folder.surface(body.def.name), body.description.mesh.rest, surface_of(body), origin_);
 }
 
@@ -136,7 +128,7 @@ void FilmedBody::measure(int frame, BodyRow& row) {
   row.collapsed = shape.collapsed;
   if (row.contact) {
     const std::vector<Collider>& colliders = driver_.set().colliders;
-    const std::vector<double> depths = penetrations(colliders, driver_.inputs().collider_motions, state().x, surface_);
+    const std::vector<double> depths = penetrations(colliders, driver_.inputs().collider_motions, state().x, model().surface);
     const std::vector<Vec3>& forces = driver_.workspace().report.collider_forces;
     for (std::size_t c = 0; c < colliders.size(); ++c) {
       row.contact->colliders.push_back({colliders[c].name, depths[c] / model().size, forces[c].norm()});

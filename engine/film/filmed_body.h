@@ -59,7 +59,6 @@ class FilmedBody {
   const CutsByFrame* repeated_ = nullptr;  // null: the clock ends the steps that have a budget
   EnergyBudget budget_;
   Positions start_of_step_;                  // q [m]
-  Triangles surface_;                        // the part that may touch, in the model's order; empty without colliders
   std::unique_ptr<ErrorMeter> error_meter_;  // once an error is asked for
   std::uint64_t metered_model_ = 0;          // id of the model's values that the meter holds for
   PointCacheWriter motion_;

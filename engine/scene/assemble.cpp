@@ -127,6 +127,7 @@ void weave(Body& body) {
   BodyDescription& description = body.description;
   const ClothMesh& cloth = body.cloth;
   description.springs.clear();
+  description.surface = cloth.surface.triangles;
   const auto join = [&](const std::vector<VertexPair>& pairs, double stiffness) {
     if (stiffness <= 0) return;
     for (const auto& [from, to] : pairs) {

@@ -167,7 +167,10 @@ TEST(Hessian, OfAWholeBodyIsTheDerivativeOfItsGradient) {
 }
 
 TEST(Hessian, OfSpringsAndContactsIsTheDerivativeOfTheGradient) {
-  const Model model = build_model(test::spring_net(4));
+  BodyDescription net = test::spring_net(4);
+  net.surface.resize(1, 3);
+  net.surface.row(0) << 0, 7, 12;  // no spring joins these
+  const Model model = build_model(net);
   Workspace w;
   w.prepare(model, {});
   const State state = rest_state(model);
@@ -176,10 +179,21 @@ TEST(Hessian, OfSpringsAndContactsIsTheDerivativeOfTheGradient) {
   w.current.x = test::shaken(w.current.x, 0.02, 5);
   w.contact.stick_length = 1e-3;
   for (int v = 0; v < 5; ++v) {
-    Contact contact{v, 0, Vec3(0.6, 0, 0.8), 0, 1e3, 0.01};
+    Contact contact{ContactPoint::at_vertex(v), 0, Vec3(0.6, 0, 0.8), 0, 1e3, 0.01};
     contact.offset = contact.normal.dot(w.current.x.row(v)) + 0.01;  // the vertex lies inside the plane
     w.current.contacts.push_back(contact);
   }
+  Contact face{{{model.surface(0, 0), model.surface(0, 1), model.surface(0, 2)}, {0.5, 0.3, 0.2}, 3, 3},
+               0,
+               Vec3(0, 0.8, 0.6),
+               0,
+               2e3,
+               0.01};
+  std::sort(face.point.vertex.begin(), face.point.vertex.end());
+  while (face.point.free > 0 && face.point.vertex[face.point.free - 1] >= model.free) --face.point.free;
+  ASSERT_GT(face.point.free, 1);
+  face.offset = gap(face, w.current.x) + 0.01;
+  w.current.contacts.push_back(face);
   HessianMatrix hessian(model);
   hessian.assemble(model, w, false);
   const Eigen::MatrixXd found = by_differences(model, w, 1e-7);

@@ -116,8 +116,12 @@ Eigen::MatrixXd dense_system(ContactScene& scene) {
   return inverse.inverse();
 }
 
-void stiffen(Eigen::MatrixXd& system, int vertex, const Vec3& axis, double stiffness) {
-  system.block<3, 3>(3 * vertex, 3 * vertex) += stiffness * axis * axis.transpose();
+void stiffen(Eigen::MatrixXd& system, const ContactPoint& point, const Vec3& axis, double stiffness) {
+  for (int i = 0; i < point.free; ++i) {
+    for (int j = 0; j < point.free; ++j)
+      system.block<3, 3>(3 * point.vertex[i], 3 * point.vertex[j]) +=
+          point.weight[i] * point.weight[j] * stiffness * axis * axis.transpose();
+  }
 }
 
 // Compares (A + K)^-1 by the Woodbury identity with a dense inverse of A + K. On the flat ground, normals and tangents
@@ -131,7 +135,7 @@ TEST(Contact, LowRankDirectionsSolveTheSystemWithContacts) {
     prepare_direction(scene);
     ASSERT_GT(scene.w.correction.wanted.size(), 8u);
     Eigen::MatrixXd system = dense_system(scene);
-    for (const StiffDirection& s : scene.w.correction.wanted) stiffen(system, s.vertex, s.axis, s.stiffness);
+    for (const StiffDirection& s : scene.w.correction.wanted) stiffen(system, s.point, s.axis, s.stiffness);
     Positions r = shaken(Positions::Zero(scene.model.free, 3), 1, 2), z(scene.model.free, 3);
     const Eigen::VectorXd wanted = system.ldlt().solve(stacked(r));
     apply_inverse(scene.model, {}, scene.w.correction, scene.w.solve_scratch, r, z);
@@ -156,17 +160,17 @@ TEST(Contact, DirectionsBendAsTheQuadraticModelWithThePlanesAheadDoes) {
                   z);  // makes the system of what touches
 
     Eigen::MatrixXd system = dense_system(scene);
-    for (const StiffDirection& s : scene.w.correction.wanted) stiffen(system, s.vertex, s.axis, s.stiffness);
+    for (const StiffDirection& s : scene.w.correction.wanted) stiffen(system, s.point, s.axis, s.stiffness);
     Positions push = Positions::Zero(scene.model.free, 3);
     int ahead = 0;
-    const auto gap = [&](const Contact& k, const Positions& d) {
-      return k.normal.dot(x.row(k.vertex) + d.row(k.vertex)) - k.offset;
+    const auto gap_after = [&](const Contact& k, const Positions& d) {
+      return k.normal.dot(k.point.at(x) + k.point.of_free(d)) - k.offset;
     };
     for (const Contact& k : contacts) {
-      if (k.depth > 0 || gap(k, direction) >= 0) continue;
+      if (k.depth > 0 || gap_after(k, direction) >= 0) continue;
       ++ahead;
-      stiffen(system, k.vertex, k.normal, 2 * k.stiffness);
-      push.row(k.vertex) -= 2 * k.stiffness * gap(k, direction) * k.normal.transpose();
+      stiffen(system, k.point, k.normal, 2 * k.stiffness);
+      k.point.spread(-2 * k.stiffness * gap_after(k, direction) * k.normal, push);
     }
     ASSERT_GT(ahead, 0);
     EXPECT_EQ(scene.w.correction.wanted.empty(), height == 0.05);
@@ -199,15 +203,15 @@ TEST(Contact, DirectionsOfALargePatchAreSymmetricAndPositiveAndHoldTheVertices) 
   solve_system(scene.model, r, plain, scene.w.solve_scratch);
   double held = 0, unheld = 0;
   for (const StiffDirection& s : scene.w.correction.wanted) {
-    held += std::abs(ha.row(s.vertex).dot(s.axis));
-    unheld += std::abs(plain.row(s.vertex).dot(s.axis));
+    held += std::abs(s.along(ha));
+    unheld += std::abs(s.along(plain));
   }
   EXPECT_LT(held, 0.25 * unheld);
 }
 
 TEST(Contact, MomentumChangesByTheImpulsesOfGravityAndContacts) {
   for (const int iterations : {300, 4}) {
-    ContactScene scene(cube(3), {{"ball", shape_of(Sphere{0.5}), 0, 0.3}}, Vec3(0.05, 0.61, 0));
+    ContactScene scene(cube(5), {{"ball", shape_of(Sphere{0.5}), 0, 0.3}}, Vec3(0.05, 0.61, 0));
     scene.state.v.rowwise() = Eigen::RowVector3d(0.3, -1, 0.1);
     scene.inputs.solver.iterations = iterations;
     const double h = scene.model.time_step;
@@ -393,7 +397,7 @@ TEST(Contact, AClothThatLiesOnABallStaysThere) {
   double furthest = 0;
   for (const Contact& contact : scene.w.current.contacts) {
     if (contact.depth > 0)
-      furthest = std::max(furthest, (scene.state.x.row(contact.vertex) - start.row(contact.vertex)).norm());
+      furthest = std::max(furthest, (contact.point.at(scene.state.x) - contact.point.at(start)).norm());
   }
   EXPECT_GT(scene.w.contact.counts.touching, 20);
   EXPECT_LT(furthest, seconds * 1e-3 * scene.model.size);

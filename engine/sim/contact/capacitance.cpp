@@ -13,7 +13,7 @@ constexpr double right_angle = 1e-7;  // cosine below which directions are uncou
 // Tells whether two lists of directions are equal or nearly equal.
 bool alike(const std::vector<StiffDirection>& a, const std::vector<StiffDirection>& b) {
   const auto close = [](const StiffDirection& s, const StiffDirection& t) {
-    return s.vertex == t.vertex && s.axis.dot(t.axis) >= 0.999 &&
+    return s.point == t.point && s.axis.dot(t.axis) >= 0.999 &&
            std::abs(s.stiffness - t.stiffness) <= 0.1 * s.stiffness;
   };
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), close);
@@ -75,7 +75,7 @@ bool Capacitance::append(const System& system, const std::vector<StiffDirection>
   bool merged = false;
   std::vector<std::int32_t> touched;
   for (const StiffDirection& direction : more) {
-    touched.push_back(direction.vertex);
+    for (int k = 0; k < direction.point.free; ++k) touched.push_back(direction.point.vertex[k]);
     const std::size_t count = lists_.size();
     couple(direction, static_cast<Eigen::Index>(directions_.size()), lists_);
     merged |= lists_.size() < count;
@@ -94,15 +94,27 @@ bool Capacitance::append(const System& system, const std::vector<StiffDirection>
   return true;
 }
 
-// Consecutive directions of one vertex share an entry.
+// Returns the entry of A^-1 between two points: the mean of those among their vertices, by both points' weights.
+float Capacitance::entry(const System& system, const ContactPoint& a, const ContactPoint& b) {
+  if (a.is_vertex() && b.is_vertex()) return entries_.entry(system.factor, a.vertex[0], b.vertex[0]);
+  double sum = 0;
+  for (int i = 0; i < a.free; ++i) {
+    for (int j = 0; j < b.free; ++j)
+      sum += a.weight[i] * b.weight[j] * entries_.entry(system.factor, a.vertex[i], b.vertex[j]);
+  }
+  return static_cast<float>(sum);
+}
+
+// Consecutive directions of one point share an entry.
 void Capacitance::fill_row(const System& system, const CoupledDirections& list, Eigen::Index row, float* values) {
   const StiffDirection& own = directions_[list.members[row]];
-  std::int32_t other = -1;
-  float entry = 0;
+  const ContactPoint* other = nullptr;
+  float between = 0;
   for (Eigen::Index j = 0; j <= row; ++j) {
     const StiffDirection& s = directions_[list.members[j]];
-    if (s.vertex != other) entry = entries_.entry(system.factor, own.vertex, other = s.vertex);
-    values[j] = static_cast<float>(own.axis.dot(s.axis)) * entry;
+    if (other == nullptr || !(s.point == *other)) between = entry(system, own.point, s.point);
+    other = &s.point;
+    values[j] = static_cast<float>(own.axis.dot(s.axis)) * between;
   }
   values[row] += static_cast<float>(1 / own.stiffness);
 }

@@ -1,22 +1,29 @@
 // The small dense system of the Woodbury identity, K^-1 + N^T A^-1 N over some stiff directions: it gives the forces at
-// contacts that keep them from moving. It takes the entries of A^-1 among touched vertices alone, which are kept from
-// step to step as long as A stays. Directions at right angles do not feel each other, because A is the same for x, y
-// and z: on flat ground normals and both tangents are three systems. All in single precision.
+// contacts that keep them from moving. It takes the entries of A^-1 among the vertices of touching points alone, which
+// are kept from step to step as long as A stays. Directions at right angles do not feel each other, because A is the
+// same for x, y and z: on flat ground normals and both tangents are three systems. All in single precision.
 #pragma once
 
 #include <vector>
 
 #include "base/types.h"
+#include "sim/contact/contact_point.h"
 #include "sim/linear/inverse_entries.h"
 #include "sim/model/system.h"
 
 namespace supple {
 
-// Describes a direction in which a vertex has a stiffness that A does not contain.
+// Describes a direction in which a point of the body has a stiffness that A does not contain. It is the vector n of
+// equation (A + K), with `axis` times the point's weights at its free vertices.
 struct StiffDirection {
-  std::int32_t vertex;
+  ContactPoint point;
   Vec3 axis;         // of unit length
   double stiffness;  // k [N/m]
+
+  // Returns the product of n with a vector by free vertex.
+  double along(const Positions& d) const { return point.of_free(d).dot(axis); }
+  // Adds `factor` times n.
+  void add(double factor, Positions& sums) const { point.spread(factor * axis, sums); }
 };
 
 // Lists, by number, the directions that are solved for together.
@@ -58,6 +65,7 @@ class Capacitance {
   };
   bool extend(const System& system, const CoupledDirections& list, Factor& factor);
   void fill_row(const System& system, const CoupledDirections& list, Eigen::Index row, float* values);
+  float entry(const System& system, const ContactPoint& a, const ContactPoint& b);
 
   std::vector<StiffDirection> directions_;
   std::vector<CoupledDirections> lists_;

@@ -88,6 +88,11 @@ std::optional<double> ColliderView::meets(const Way& way, double from, double to
   return length > 0 ? gone / length : 0.0;
 }
 
+double ColliderView::most_moved(const Vec3& center, double radius) const {
+  const double turn = Eigen::AngleAxisd(end_.linear() * start_.linear().transpose()).angle();
+  return (carried(center) - center).norm() + turn * radius;
+}
+
 std::optional<ColliderView::Entry> ColliderView::entry(const Way& way, double field_at_a, std::int32_t& near) const {
   if (field_at_a <= 0) return Entry{closest(way.a, near), 0};
   const std::optional<double> share = meets(way, 0, 1, field_at_a, near);

@@ -27,8 +27,10 @@ class ColliderView {
  public:
   ColliderView(const Collider& collider, const ColliderMotion& motion, const ColliderTraits& traits);
 
+  const Eigen::Isometry3d& start() const { return start_; }
   const Eigen::Isometry3d& end() const { return end_; }
   Vec3 at_start(const Vec3& world) const { return to_start_ * world; }
+  Vec3 at_end(const Vec3& world) const { return to_end_ * world; }
   Vec3 carried(const Vec3& world) const { return end_ * (to_start_ * world); }  // moved with the collider
   Way way(const Vec3& q, const Vec3& x) const {
     Way way{q, x, to_start_ * q, to_end_ * x, 0};
@@ -54,6 +56,11 @@ class ColliderView {
   // Returns the closest point of that layer's surface.
   SurfacePoint closest(const Vec3& p, std::int32_t& near) const;
 
+  // Returns how far the collider's own points within a ball move in the step: they move with its centre and turn about
+  // it.
+  double most_moved(const Vec3& center, double radius) const;
+  // Returns by how much the distance may change within a length.
+  double uncertain(double length) const { return length / traits_.certainty; }
   // Returns how far a point at this distance from the layer can certainly go without meeting it.
   double clear(double distance) const {
     return std::max(0.0, traits_.certainty * (distance + collider_.thickness) - collider_.thickness);

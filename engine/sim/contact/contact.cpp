@@ -11,7 +11,7 @@ namespace {
 double friction_potential(double u, double s) { return u >= s ? u - s / 3 : u * u / s * (1 - u / (3 * s)); }
 double friction_slope_over_u(double u, double s) { return u >= s ? 1 / u : (2 - u / s) / s; }
 
-// Returns how far a vertex has slid along its plane since the step began.
+// Returns how far a point has slid along its plane since the step began.
 Vec3 slip(const Contact& contact, const Vec3& x) {
   const Vec3 moved = x - contact.origin;
   return moved - moved.dot(contact.normal) * contact.normal;
@@ -23,19 +23,19 @@ double friction_energy(const std::vector<Contact>& contacts, double stick_length
   double sum = 0;
   for (const Contact& contact : contacts) {
     if (contact.friction > 0)
-      sum += contact.friction * friction_potential(slip(contact, point.row(contact.vertex)).norm(), stick_length);
+      sum += contact.friction * friction_potential(slip(contact, contact.point.at(point)).norm(), stick_length);
   }
   return sum;
 }
 
 double friction_stiffness(const Contact& contact, const Positions& x, double stick_length) {
-  return contact.friction * friction_slope_over_u(slip(contact, x.row(contact.vertex)).norm(), stick_length);
+  return contact.friction * friction_slope_over_u(slip(contact, contact.point.at(x)).norm(), stick_length);
 }
 
 double contact_energy(const std::vector<Contact>& contacts, const Positions& point) {
   double sum = 0;
   for (const Contact& contact : contacts) {
-    const double below = std::min(0.0, contact.normal.dot(point.row(contact.vertex)) - contact.offset);
+    const double below = std::min(0.0, gap(contact, point));
     sum += contact.stiffness * below * below;
   }
   return sum;
@@ -43,15 +43,15 @@ double contact_energy(const std::vector<Contact>& contacts, const Positions& poi
 
 void add_normal_forces(const std::vector<Contact>& contacts, const Positions& point, double sign, Positions& force) {
   for (const Contact& contact : contacts) {
-    const double below = std::min(0.0, contact.normal.dot(point.row(contact.vertex)) - contact.offset);
-    force.row(contact.vertex) -= sign * 2 * contact.stiffness * below * contact.normal.transpose();
+    const double below = std::min(0.0, gap(contact, point));
+    contact.point.spread(-sign * 2 * contact.stiffness * below * contact.normal, force);
   }
 }
 
 void add_forces(const std::vector<Contact>& contacts, double stick_length, const Positions& point,
                 std::vector<Vec3>& by_collider) {
   for (const Contact& contact : contacts) {
-    const Vec3 p = point.row(contact.vertex);
+    const Vec3 p = contact.point.at(point);
     const double below = std::min(0.0, contact.normal.dot(p) - contact.offset);
     by_collider[contact.collider] -= 2 * contact.stiffness * below * contact.normal;
     if (contact.friction <= 0) continue;
@@ -64,11 +64,10 @@ ContactChange add_contacts(const std::vector<Contact>& contacts, double stick_le
                            const Positions* reference, const Positions& direction, Positions* gradient, double sign) {
   ContactChange change;
   for (const Contact& contact : contacts) {
-    const Vec3 p = point.row(contact.vertex);
+    const Vec3 p = contact.point.at(point);
     const double below = std::min(0.0, contact.normal.dot(p) - contact.offset);
     double below_before = 0;
-    if (reference != nullptr)
-      below_before = std::min(0.0, contact.normal.dot(reference->row(contact.vertex)) - contact.offset);
+    if (reference != nullptr) below_before = std::min(0.0, gap(contact, *reference));
     change.value += contact.stiffness * (below - below_before) * (below + below_before);
     Vec3 slope = 2 * contact.stiffness * below * contact.normal;
     if (contact.friction > 0) {
@@ -77,12 +76,12 @@ ContactChange add_contacts(const std::vector<Contact>& contacts, double stick_le
       change.value += contact.friction * friction_potential(u, stick_length);
       if (reference != nullptr)
         change.value -=
-            contact.friction * friction_potential(slip(contact, reference->row(contact.vertex)).norm(), stick_length);
+            contact.friction * friction_potential(slip(contact, contact.point.at(*reference)).norm(), stick_length);
       slope += contact.friction * friction_slope_over_u(u, stick_length) * slid;
     }
     if (gradient == nullptr) continue;
-    gradient->row(contact.vertex) += sign * slope.transpose();
-    change.slope += slope.dot(direction.row(contact.vertex));
+    contact.point.spread(sign * slope, *gradient);
+    change.slope += slope.dot(contact.point.of_free(direction));
   }
   return change;
 }

@@ -1,31 +1,37 @@
-// Defines contact of one body's vertices with rigid colliders (Liu et al. 2017, section 4.3): it adds energies to g and
-// nothing to A. Each touching vertex has the energy k_c min(0, n . x - offset)^2 of a plane that was found when the
-// iteration began. Not here: how contacts are found (find_contacts.h), how directions take them into account
-// (contact_direction.h), contact of bodies with each other.
+// Defines contact of one body with rigid colliders (Liu et al. 2017, section 4.3): it adds energies to g and nothing to
+// A. Each touching point of the body, which is a vertex or lies between vertices (contact_point.h), has the energy
+// k_c min(0, n . x - offset)^2 of a plane that was found when the iteration began. Not here: how contacts are found
+// (find_contacts.h), how directions take them into account (contact_direction.h), contact of bodies with each other.
 //
-// The planes are one-sided: a vertex that leaves is released at once, even in the middle of a line search, and the
-// energy is a continuous function. A vertex that starts a step below the surface is pushed out no faster than push_out:
+// The planes are one-sided: a point that leaves is released at once, even in the middle of a line search, and the
+// energy is a continuous function. A point that starts a step below the surface is pushed out no faster than push_out:
 // its plane lies that much lower. The energy itself therefore contains the rule that releases a vertex by its relative
 // velocity, n . ((x - q)/h - v_c) above a small hysteresis: above push_out there is no force.
 #pragma once
 
 #include <vector>
 
-#include "base/types.h"
+#include "sim/contact/contact_point.h"
 
 namespace supple {
 
 struct Contact {
-  std::int32_t vertex;
+  ContactPoint point;
   std::int32_t collider;
-  Vec3 normal;       // away from the collider
-  double offset;     // the plane n . x = offset [m]
-  double stiffness;  // k_c [N/m]
-  double depth;      // below the plane where it was found; 0: near, not touching [m]
+  Vec3 normal;              // away from the collider
+  double offset;            // the plane n . x = offset [m]
+  double stiffness;         // k_c [N/m]
+  double depth;             // below the plane where it was found; 0: near, not touching [m]
+  std::int32_t number = 0;  // of the point, within the step: the vertex, or beyond all vertices
   // Friction is lagged; it opposes x - origin along the plane.
   double friction = 0;         // coefficient times normal force [N]
-  Vec3 origin = Vec3::Zero();  // where the vertex would be had it moved with the collider [m]
+  Vec3 origin = Vec3::Zero();  // where the point would be had it moved with the collider [m]
 };
+
+// Returns how far a contact's point is above its plane, negative below [m].
+inline double gap(const Contact& contact, const Positions& x) {
+  return contact.normal.dot(contact.point.at(x)) - contact.offset;
+}
 
 // Returns the share of friction in the energy [J].
 double friction_energy(const std::vector<Contact>& contacts, double stick_length, const Positions& point);

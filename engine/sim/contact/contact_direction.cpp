@@ -10,19 +10,19 @@ void find_stiff_directions(const Model& model, const std::vector<Contact>& conta
   std::vector<StiffDirection>& stiff = correction.wanted;
   stiff.clear();
   for (const Contact& contact : contacts) {
-    if (contact.depth > 0) stiff.push_back({contact.vertex, contact.normal, 2 * contact.stiffness});
+    if (contact.depth > 0) stiff.push_back({contact.point, contact.normal, 2 * contact.stiffness});
   }
   correction.normals = stiff.size();
   for (const Contact& contact : contacts) {
-    if (contact.friction <= 0) continue;  // it is lagged: a vertex may have left and still be rubbed
+    if (contact.friction <= 0) continue;  // it is lagged: a point may have left and still be rubbed
     const double along = friction_stiffness(contact, x, stick_length);
-    // Inertia is the limit even where the elements around the vertex are stiffer, because together they hold a body
+    // Inertia is the limit even where the elements around the point are stiffer, because together they hold a body
     // that would slide as a whole.
-    if (along < model.scheme.inertia * model.mass[contact.vertex] / (model.time_step * model.time_step)) continue;
+    if (along < model.scheme.inertia * contact.point.mass(model.mass) / (model.time_step * model.time_step)) continue;
     const Vec3 n = contact.normal;
     const Vec3 side = n.cross(std::abs(n.y()) < 0.7 ? Vec3::UnitY() : Vec3::UnitX()).normalized();
-    stiff.push_back({contact.vertex, side, along});
-    stiff.push_back({contact.vertex, n.cross(side), along});
+    stiff.push_back({contact.point, side, along});
+    stiff.push_back({contact.point, n.cross(side), along});
   }
 }
 
@@ -67,50 +67,62 @@ void split(ContactCorrection& c, std::size_t most) {
   c.rest.clear();
   if (c.wanted.size() > most) {
     std::vector<std::uint32_t> ranks;
-    for (const StiffDirection& s : c.wanted) ranks.push_back(rank_of(s.vertex));
+    for (const StiffDirection& s : c.wanted) ranks.push_back(rank_of(s.point.vertex[0]));
     std::nth_element(ranks.begin(), ranks.begin() + static_cast<std::ptrdiff_t>(most), ranks.end());
-    const auto last = std::stable_partition(c.together.begin(), c.together.end(),
-                                            [&](const StiffDirection& s) { return rank_of(s.vertex) < ranks[most]; });
+    const auto last = std::stable_partition(c.together.begin(), c.together.end(), [&](const StiffDirection& s) {
+      return rank_of(s.point.vertex[0]) < ranks[most];
+    });
     c.rest.assign(last, c.together.end());
     c.together.erase(last, c.together.end());
     for (StiffDirection& s : c.together)
       s.stiffness *= static_cast<double>(c.wanted.size()) / static_cast<double>(c.together.size());
   }
-  std::stable_sort(c.together.begin(), c.together.end(),
-                   [](const StiffDirection& a, const StiffDirection& b) { return a.vertex < b.vertex; });
+  std::stable_sort(c.together.begin(), c.together.end(), [](const StiffDirection& a, const StiffDirection& b) {
+    return a.point.vertex[0] < b.point.vertex[0];
+  });
 }
 
 FactorPart part_of(const System& system, const std::vector<StiffDirection>& directions) {
   std::vector<std::int32_t> vertices;
-  for (const StiffDirection& s : directions) vertices.push_back(s.vertex);
+  for (const StiffDirection& s : directions)
+    vertices.insert(vertices.end(), s.point.vertex.begin(), s.point.vertex.begin() + s.point.free);
   return paths_to_root(system.factor, vertices);
 }
 
-// Returns the share of a motion that remains to a vertex in a direction of the rest.
+// Returns the entry of A for the motion of a point along n / |n|: the mean of the diagonal, by the squared weights.
+double diagonal_at(const System& system, const ContactPoint& point) {
+  if (point.is_vertex()) return system.diagonal[point.vertex[0]];
+  double sum = 0;
+  for (int k = 0; k < point.free; ++k) sum += point.weight[k] * point.weight[k] * system.diagonal[point.vertex[k]];
+  return sum / point.weights_squared();
+}
+
+// Returns the share of a motion that remains to a point in a direction of the rest.
 double share(const System& system, const StiffDirection& s) {
-  return std::sqrt(system.diagonal[s.vertex] / (system.diagonal[s.vertex] + s.stiffness));
+  const double a = diagonal_at(system, s.point);
+  return std::sqrt(a / (a + s.point.weights_squared() * s.stiffness));
 }
 
 // Scales the motion of the rest by T. When a vertex has several directions that are not at right angles, they are
 // applied one after the other, and in the opposite order on the way back.
 void scale_rest(const System& system, const StiffDirection& s, Positions& r) {
-  r.row(s.vertex) -= (1 - share(system, s)) * r.row(s.vertex).dot(s.axis) * s.axis.transpose();
+  s.add(-(1 - share(system, s)) * s.along(r) / s.point.weights_squared(), r);
 }
 
-// Computes z = H r with H = P A^-1 P + N diag(1 / (a + k)) N^T.
+// Computes z = H r with H = P A^-1 P + N diag(1 / (a + k)) N^T, for n of unit length.
 void apply_diagonal(const Model& model, ContactCorrection& c, SolveScratch& scratch, Positions& r, Positions& z) {
   c.answer.resize(static_cast<Eigen::Index>(c.wanted.size()));
   for (std::size_t i = 0; i < c.wanted.size(); ++i) {
     const StiffDirection& s = c.wanted[i];
-    const double part = r.row(s.vertex).dot(s.axis);
-    r.row(s.vertex) -= part * s.axis.transpose();
+    const double part = s.along(r), squared = s.point.weights_squared();
+    s.add(-part / squared, r);
     c.answer[static_cast<Eigen::Index>(i)] =
-        static_cast<float>(part / (system_of(model, c).diagonal[s.vertex] + s.stiffness));
+        static_cast<float>(part / (diagonal_at(system_of(model, c), s.point) + squared * s.stiffness));
   }
   solve_system(model, system_of(model, c), r, z, scratch);
   for (std::size_t i = c.wanted.size(); i-- > 0;) {
     const StiffDirection& s = c.wanted[i];
-    z.row(s.vertex) += (c.answer[static_cast<Eigen::Index>(i)] - z.row(s.vertex).dot(s.axis)) * s.axis.transpose();
+    s.add((c.answer[static_cast<Eigen::Index>(i)] - s.along(z)) / s.point.weights_squared(), z);
   }
 }
 
@@ -120,8 +132,8 @@ void add_answer(ContactCorrection& c, const FactorPart& part, Positions& r) {
   for (Eigen::Index i = 0; i < c.answer.size(); ++i) {
     const StiffDirection& s = c.system.directions()[i];
     const Vec3 force = -static_cast<double>(c.answer[i]) * s.axis;
-    c.solve.add(s.vertex, force);
-    r.row(s.vertex) += force.transpose();
+    for (int k = 0; k < s.point.free; ++k) c.solve.add(s.point.vertex[k], s.point.weight[k] * force);
+    s.point.spread(force, r);
   }
   c.solve.pass_on(part);
 }
@@ -137,8 +149,12 @@ void apply_low_rank(const Model& model, ContactCorrection& c, Positions& r, Posi
   c.solve.look(c.part);
   const std::vector<StiffDirection>& directions = c.system.directions();
   c.answer.resize(static_cast<Eigen::Index>(directions.size()));
-  for (Eigen::Index i = 0; i < c.answer.size(); ++i)
-    c.answer[i] = static_cast<float>(c.solve.seen(directions[i].vertex).dot(directions[i].axis));
+  for (Eigen::Index i = 0; i < c.answer.size(); ++i) {
+    const ContactPoint& point = directions[i].point;
+    Vec3 seen = point.weight[0] * c.solve.seen(point.vertex[0]);
+    for (int k = 1; k < point.free; ++k) seen += point.weight[k] * c.solve.seen(point.vertex[k]);
+    c.answer[i] = static_cast<float>(seen.dot(directions[i].axis));
+  }
   c.system.solve(c.answer);
   add_answer(c, c.part, r);
   finish(model, c, r, z);
@@ -169,9 +185,9 @@ void apply_inverse(const Model& model, const ContactSettings& settings, ContactC
 
 namespace {
 
-// Returns how far above its plane a vertex is after moving from x along a direction.
+// Returns how far above its plane a point is after moving from x along a direction.
 double gap_after(const Contact& contact, const Positions& x, const Positions& direction) {
-  return contact.normal.dot(x.row(contact.vertex) + direction.row(contact.vertex)) - contact.offset;
+  return contact.normal.dot(contact.point.at(x) + contact.point.of_free(direction)) - contact.offset;
 }
 
 // Minimises the quadratic model with the energies of these planes included: the direction then ends where the planes
@@ -204,7 +220,7 @@ bool foresee_contacts(const Model& model, const ContactSettings& settings, const
     if (contact.depth > 0) continue;
     const double gap = gap_after(contact, x, direction);
     if (gap >= 0) continue;
-    ahead.push_back({contact.vertex, contact.normal, 2 * contact.stiffness});
+    ahead.push_back({contact.point, contact.normal, 2 * contact.stiffness});
     gaps.push_back(static_cast<float>(gap));
   }
   if (ahead.empty()) return false;
@@ -218,7 +234,7 @@ bool foresee_contacts(const Model& model, const ContactSettings& settings, const
   for (const Contact& contact : contacts) {
     if (contact.depth > 0) continue;
     const double gap = gap_after(contact, x, direction);
-    if (gap < 0) direction.row(contact.vertex) -= gap * contact.normal.transpose();
+    if (gap < 0) contact.point.spread(-gap / contact.point.weights_squared() * contact.normal, direction);
   }
   return true;
 }

@@ -1,5 +1,5 @@
 // Corrects search directions for contacts. The stiffness of contacts is many times that of A = M/h^2 + L; A does not
-// contain it and is never factored again for it. With K = sum k n n^T over the stiff directions n (a touching vertex'
+// contain it and is never factored again for it. With K = sum k n n^T over the stiff directions n (a touching point's
 // normal; also its tangents while it sticks), two corrections need no factorisation of A + K:
 //   diagonal  H = P A^-1 P + N diag(1 / (a + k)) N^T,  P = I - N N^T, a the diagonal of A: each stiff direction is
 //             treated by itself. This costs almost nothing.

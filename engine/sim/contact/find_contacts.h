@@ -1,6 +1,6 @@
-// Finds where a body's vertices meet rigid colliders on their path through a step, and the planes that hold them: once
-// for each iterate, with an exact test of only those vertices that may have come near. Not here: the energies of these
-// planes (contact.h).
+// Finds where a body's vertices, and the points of its edges and faces that need it (face_points.h), meet rigid
+// colliders on their path through a step, and the planes that hold them: once for each iterate, with an exact test of
+// only those that may have come near. Not here: the energies of these planes (contact.h).
 #pragma once
 
 #include <vector>
@@ -8,6 +8,7 @@
 #include "base/threads.h"
 #include "sim/contact/collider_view.h"
 #include "sim/contact/contact.h"
+#include "sim/contact/face_points.h"
 #include "sim/model/model.h"
 #include "sim/model/report.h"
 
@@ -26,27 +27,29 @@ struct ContactWork {
   std::vector<ColliderTraits> traits;     // by collider
   std::vector<Vec3> way_out;              // by collider: of a body that starts deep inside it; zero: it does not
   Positions start;                        // q of the free vertices [m]
+  std::vector<FacePoints> faces;          // by collider
+  const Positions* begin = nullptr;       // q of the step, the caller's, n x 3 [m]
   const Positions* prediction = nullptr;  // y of the step, the caller's, n x 3 [m]
   double stick_length = 0;                // friction is whole above this slip in a step [m]
   std::uint64_t set_before = 0, set_now = 0;
   ContactCounts counts;
 };
 
-// Prepares a step from q: finds what can touch at all. y must outlive the step.
+// Prepares a step from q: finds what can touch at all. q and y must outlive the step.
 void begin_contacts(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& y,
-                    ContactWork& work);
+                    Threads* threads, ContactWork& work);
 
-// Finds the contacts of the vertices at x, on their path from q, ordered by collider and vertex.
+// Finds the contacts at x, on the path from q, ordered by collider and number of the point.
 void find_contacts(const Model& model, const StepInputs& inputs, const Positions& x, Threads* threads,
                    ContactWork& work, std::vector<Contact>& found);
 
-// The share of a step after which a vertex is deeper in a collider than it may be, and which collider that is.
+// The share of a step after which a point is deeper in a collider than it may be, and which collider that is.
 struct Impact {
   double share = 1;
   int collider = -1;  // -1: there is none
 };
 
-// Finds how much of the way from q to x the body can go before a vertex is deeper than `allowed` [m] below a surface
+// Finds how much of the way from q to x the body can go before a point is deeper than `allowed` [m] below a surface
 // that it enters on the way, or that comes to it.
 Impact first_impact(const Model& model, const StepInputs& inputs, const Positions& x, double allowed,
                     ContactWork& work);
@@ -54,7 +57,7 @@ Impact first_impact(const Model& model, const StepInputs& inputs, const Position
 // Returns the motion of a collider in the rest of a step, after a share of it.
 Eigen::Isometry3d motion_after(const StepInputs& inputs, int collider, double share);
 
-// Returns the collider that most vertices touch; -1 when nothing touches.
+// Returns the collider that most points touch; -1 when nothing touches.
 int most_touched(const std::vector<Contact>& contacts, std::size_t colliders);
 
 // Counts what changed between the contacts of two iterates, the later of which has just been accepted.

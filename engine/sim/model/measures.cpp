@@ -7,7 +7,8 @@
 #include <numbers>
 #include <utility>
 
-#include "geometry/shape_probe.h"
+#include "geometry/shape_pieces.h"
+#include "geometry/triangle_in_shape.h"
 #include "sim/elements/element_kernels.h"
 
 namespace supple {
@@ -83,29 +84,32 @@ double jiggle(const Model& model, const Positions& x, const Eigen::Isometry3d& m
 
 namespace {
 
-// Returns the largest depth in one shape, or `known` where none is larger.
+// Returns the largest depth in one shape, or `known` where none is larger. Depth is looked for in each piece of a
+// union, and measured in the whole.
 double deepest_in(const Shape& shape, const Eigen::Isometry3d& pose, const Positions& x, const Triangles& triangles,
                   double known) {
   const Eigen::Isometry3d to_local = pose.inverse();
-  const double certainty = shape.certainty();
   const ShapeProbe probe(shape);
-  std::int32_t near = -1;
+  const std::vector<ShapePiece> pieces = pieces_of(shape);
+  std::vector<ShapeProbe> probes;
+  for (const ShapePiece& piece : pieces) probes.emplace_back(piece.shape);
+  std::vector<std::int32_t> near(pieces.size() + 1, -1);
   double deepest = known;
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-    Vec3 corner[3];
+    TriangleCorners corner;
     for (int k = 0; k < 3; ++k) corner[k] = to_local * Vec3(x.row(triangles(t, k)));
     const Vec3 center = (corner[0] + corner[1] + corner[2]) / 3;
     double reach = 0;
     for (const Vec3& p : corner) reach = std::max(reach, (p - center).norm());
-    const double at_center = probe.distance(center, near);
-    if (certainty * at_center > reach) continue;
-    const auto look = [&](const Vec3& p) {
-      if (probe.distance(p, near) < -deepest) deepest = std::max(deepest, -probe.closest(p, near).distance);
-    };
-    look(center);
-    for (int k = 0; k < 3; ++k) {
-      look(corner[k]);
-      look(0.5 * (corner[k] + corner[(k + 1) % 3]));
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      if (pieces[i].shape.certainty() * probes[i].distance(center, near[i]) > reach) continue;
+      const TriangleInShape::Descent least =
+          TriangleInShape(probes[i], pieces[i].half_thickness, corner, near[i]).descend();
+      const auto look = [&](const Vec3& p, double distance) {
+        if (distance < -deepest) deepest = std::max(deepest, -probe.closest(p, near.back()).distance);
+      };
+      for (int k = 0; k < least.count; ++k) look(least.places[k].point, least.places[k].surface.distance);
+      for (int k = 0; k < 3; ++k) look(corner[k], least.at_corners);
     }
   }
   return deepest;

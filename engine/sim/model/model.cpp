@@ -1,6 +1,7 @@
 #include "sim/model/model.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 
 #include "base/error.h"
@@ -38,6 +39,20 @@ void number_vertices(Model& model, const BodyDescription& body, const std::vecto
   for (std::int32_t i = 0; i < model.vertices; ++i) model.internal_of[model.input_of[i]] = i;
   model.rest.resize(model.vertices, 3);
   for (std::int32_t i = 0; i < model.vertices; ++i) model.rest.row(i) = body.mesh.rest.row(model.input_of[i]);
+}
+
+// Sorts the triangles, so that neighbours stay together as their vertices do.
+void number_surface(Model& model, const Triangles& input) {
+  std::vector<std::array<std::int32_t, 3>> triangles;
+  for (Eigen::Index t = 0; t < input.rows(); ++t)
+    triangles.push_back(
+        {model.internal_of[input(t, 0)], model.internal_of[input(t, 1)], model.internal_of[input(t, 2)]});
+  std::stable_sort(triangles.begin(), triangles.end(), [](const auto& a, const auto& b) {
+    return *std::min_element(a.begin(), a.end()) < *std::min_element(b.begin(), b.end());
+  });
+  model.surface.resize(std::ssize(triangles), 3);
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    model.surface.row(t) << triangles[t][0], triangles[t][1], triangles[t][2];
 }
 
 // Lists the vertices of some elements, each once.
@@ -144,6 +159,7 @@ Model build_model(const BodyDescription& body) {
   if (std::count(held.begin(), held.end(), 0) == 0)
     throw InputError(body.name, "every vertex is held: nothing is left to move");
   number_vertices(model, body, held);
+  number_surface(model, body.surface.rows() > 0 ? body.surface : boundary_faces(body.mesh.tets));
   for (std::size_t h = 0; h < body.handles.size(); ++h) {
     for (const std::int32_t v : body.handles[h].vertices)
       model.handled.push_back({model.internal_of[v], static_cast<std::int32_t>(h)});

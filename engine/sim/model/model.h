@@ -48,6 +48,7 @@ struct BodyDescription {
   std::vector<Material> materials;  // by region tag of the elements
   std::vector<Fibre> fibres;        // by region tag; empty: none
   std::vector<Spring> springs;      // beside the tetrahedra or, for cloth, instead of them
+  Triangles surface;                // that contact sees; empty: the boundary of the tetrahedra
   double density = 1000;            // of the tetrahedra [kg/m^3]
   std::vector<double> point_mass;   // by vertex, on top of the tetrahedra's [kg]; empty: none
   std::vector<Handle> handles;
@@ -71,6 +72,7 @@ struct Model : System {
   double total_mass = 0;                  // of the free vertices [kg]
   std::vector<std::int32_t> input_of;     // vertex of the input file by ours
   std::vector<std::int32_t> internal_of;  // ours by vertex of the input file
+  Triangles surface;                      // that contact sees, in the order of their lowest vertices
 
   Integrator integrator = Integrator::backward_euler;
   TimeScheme scheme = scheme_of(Integrator::backward_euler);

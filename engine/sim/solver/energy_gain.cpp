@@ -28,9 +28,11 @@ double work_of_contacts(const Positions& q, Workspace& w) {
   add_contacts(w.current.contacts, w.contact.stick_length, w.current.x, nullptr, w.direction, &force, -1);
   double work = 0;
   for (const Contact& contact : w.current.contacts) {
-    const std::int32_t v = contact.vertex;
-    work += force.row(v).dot(w.current.x.row(v) - q.row(v));
-    force.row(v).setZero();  // a vertex may touch two colliders
+    for (int k = 0; k < contact.point.free; ++k) {
+      const std::int32_t v = contact.point.vertex[k];
+      work += force.row(v).dot(w.current.x.row(v) - q.row(v));
+      force.row(v).setZero();  // a vertex may belong to several contacts
+    }
   }
   return work;
 }

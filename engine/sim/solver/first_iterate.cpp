@@ -65,7 +65,7 @@ void begin_step(const Model& model, const StepInputs& inputs, const State& state
   w.trial.contacts.clear();
   if (has_colliders(inputs)) {
     const TimedPhase timed(w.clock, Phase::collide, "begin contacts");
-    begin_contacts(model, inputs, state.x, w.y, w.contact);
+    begin_contacts(model, inputs, state.x, w.y, w.threads, w.contact);
     begin_corrections(model, w.correction);
   }
   w.current.x = w.y;

@@ -39,6 +39,15 @@ void add_all(const Model& model, Workspace& workspace, const Pointers& a, const 
   });
 }
 
+// Returns how far the step of a pair leads along a stiff direction.
+double along_pair(const StiffDirection& stiff, const double* step) {
+  const ContactPoint& point = stiff.point;
+  Vec3 mean = point.weight[0] * Eigen::Map<const Vec3>(step + 3 * std::size_t(point.vertex[0]));
+  for (int k = 1; k < point.free; ++k)
+    mean += point.weight[k] * Eigen::Map<const Vec3>(step + 3 * std::size_t(point.vertex[k]));
+  return mean.dot(stiff.axis);
+}
+
 // Holds the share of normal forces in all pairs, t_i += K s_i, when it is kept separately (ContactHistory::current).
 // Friction is not included: its stiffness falls while it slides, which the pairs contain.
 class ContactPairs {
@@ -54,8 +63,7 @@ class ContactPairs {
     for (std::size_t k = 0; k < normals_; ++k) {
       const StiffDirection& stiff = correction_.wanted[k];
       double* along = &correction_.along[k * count];
-      for (int i = 0; i < count; ++i)
-        along[i] = Eigen::Map<const Vec3>(s[i] + 3 * std::size_t(stiff.vertex)).dot(stiff.axis);
+      for (int i = 0; i < count; ++i) along[i] = along_pair(stiff, s[i]);
       for (int i = 0; i < count; ++i) {
         for (int j = 0; j < count; ++j) correction_.products[i * count + j] += stiff.stiffness * along[i] * along[j];
       }
@@ -71,7 +79,7 @@ class ContactPairs {
       const StiffDirection& stiff = correction_.wanted[k];
       double sum = 0;
       for (int i = 0; i < count_; ++i) sum += factors[i] * correction_.along[k * count_ + i];
-      r.row(stiff.vertex) += stiff.stiffness * sum * stiff.axis.transpose();
+      stiff.add(stiff.stiffness * sum, r);
     }
   }
 
@@ -80,7 +88,7 @@ class ContactPairs {
     double sum = 0;
     for (std::size_t k = 0; k < normals_; ++k) {
       const StiffDirection& stiff = correction_.wanted[k];
-      sum += stiff.stiffness * correction_.along[k * count_ + i] * z.row(stiff.vertex).dot(stiff.axis);
+      sum += stiff.stiffness * correction_.along[k * count_ + i] * stiff.along(z);
     }
     return sum;
   }

@@ -1,0 +1,68 @@
+// Counts contacts and their changes.
+#include <algorithm>
+
+#include "base/hash.h"
+#include "sim/contact/find_contacts.h"
+
+namespace supple {
+namespace {
+
+// Returns the XXH64 of all pairs of point and collider that touch.
+std::uint64_t set_of(const std::vector<Contact>& contacts) {
+  std::uint64_t hash = 1;
+  for (const Contact& contact : contacts) {
+    if (contact.depth <= 0) continue;
+    const std::int32_t pair[] = {contact.number, contact.collider};
+    hash = hash_bytes(pair, sizeof pair, hash);
+  }
+  return hash;
+}
+
+bool before(const Contact& a, const Contact& b) {
+  return a.collider != b.collider ? a.collider < b.collider : a.number < b.number;
+}
+
+// Counts the pairs that touch in one list and not in the other; both lists are sorted.
+int changes_between(const std::vector<Contact>& a, const std::vector<Contact>& b) {
+  int changes = 0;
+  std::size_t i = 0, j = 0;
+  const auto skip = [](const std::vector<Contact>& list, std::size_t& at) {
+    while (at < list.size() && list[at].depth <= 0) ++at;
+  };
+  for (;;) {
+    skip(a, i);
+    skip(b, j);
+    if (i == a.size() && j == b.size()) return changes;
+    if (j == b.size() || (i < a.size() && before(a[i], b[j]))) {
+      ++changes;
+      ++i;
+    } else if (i == a.size() || before(b[j], a[i])) {
+      ++changes;
+      ++j;
+    } else {
+      ++i;
+      ++j;
+    }
+  }
+}
+
+}  // namespace
+
+void forget_counts(ContactWork& work) {
+  work.counts = {};
+  work.set_before = work.set_now = 0;
+}
+
+void count_contacts(const std::vector<Contact>& before, const std::vector<Contact>& now, ContactWork& work) {
+  work.counts.touching =
+      static_cast<int>(std::count_if(now.begin(), now.end(), [](const Contact& k) { return k.depth > 0; }));
+  const std::uint64_t set = set_of(now);
+  if (work.set_now != 0) {
+    work.counts.changes += changes_between(before, now);
+    work.counts.cycles += set == work.set_before && set != work.set_now;
+  }
+  work.set_before = work.set_now;
+  work.set_now = set;
+}
+
+}  // namespace supple

@@ -1,0 +1,281 @@
+#include "sim/contact/face_points.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/triangle_in_shape.h"
+#include "sim/contact/reach.h"
+
+namespace supple {
+namespace {
+
+constexpr int group_size = 64;           // consecutive triangles
+constexpr int groups_a_chunk = 4;        // a thread takes so many; fixed, so that results do not depend on threads
+constexpr double slack_share = 4e-3;     // of the body's size, below which contact of faces begins
+constexpr double least_weight = 1e-3;    // a point with a smaller one belongs to the opposite edge
+constexpr double same_place = 2;         // points nearer to each other than this, over the slack, are one
+constexpr double same_weight = 0.1;      // points whose weights differ by less are one
+constexpr int most_points = 8;           // of one triangle or edge in a step
+constexpr double unheld = 1.1;           // depth at which an iterate needs further points, over the slack
+constexpr double seen_from = 2;          // distance from which the surface beside a point is seen, over the slack
+constexpr double least_alignment = 0.3;  // cosine between a surface's normal and the directions across a face or edge
+
+int groups_of(const Model& model) { return static_cast<int>((model.surface.rows() + group_size - 1) / group_size); }
+int end_of(const Model& model, int group) {
+  return static_cast<int>(std::min<Eigen::Index>(model.surface.rows(), (group + 1) * group_size));
+}
+
+double longest_edge_squared(const TriangleCorners& corners) {
+  double longest = 0;
+  for (int k = 0; k < 3; ++k) longest = std::max(longest, (corners[(k + 1) % 3] - corners[k]).squaredNorm());
+  return longest;
+}
+
+double longest_edge_squared(const Model& model, const Positions& q) {
+  double longest = 0;
+  for (const auto& corner : model.surface.rowwise())
+    longest = std::max(longest, longest_edge_squared({q.row(corner[0]), q.row(corner[1]), q.row(corner[2])}));
+  return longest;
+}
+
+// Tells whether a triangle whose corners lie outside a bulge may reach deeper than the slack: its points are at most
+// 1/sqrt(3) of the longest edge from a corner, so that it cuts off a cap of at most this edge^2 / (6 radius).
+bool is_finer(const FacePoints::Piece& piece, double thickness, double edge_squared) {
+  return edge_squared > 6 * (piece.piece.bulge + thickness) * piece.slack;
+}
+
+// Returns the point of a triangle with these weights: of the triangle, an edge or a vertex, without those that are next
+// to nothing.
+ContactPoint contact_point(const Model& model, Eigen::Index triangle, const Vec3& weights) {
+  std::array<std::pair<std::int32_t, double>, 3> parts;
+  int count = 0;
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    if (weights[k] < least_weight) continue;
+    const std::int32_t v = model.surface(triangle, k);
+    int place = count++;
+    for (; place > 0 && parts[place - 1].first > v; --place) parts[place] = parts[place - 1];
+    parts[place] = {v, weights[k]};
+    sum += weights[k];
+  }
+  ContactPoint point = ContactPoint::at_vertex(parts[0].first);
+  point.count = count;
+  point.free = 0;
+  for (int k = 0; k < count; ++k) {
+    point.vertex[k] = parts[k].first;
+    point.weight[k] = parts[k].second / sum;
+    point.free += parts[k].first < model.free;
+  }
+  return point;
+}
+
+// Returns the direction from a place straight out of the collider: the part of the surface's normal at right angles to
+// the face or edge that the place lies in. Where that is next to nothing, it returns the normal.
+Vec3 straight_out(const TriangleCorners& corners, const TrianglePlace& place) {
+  const Vec3 normal = place.surface.normal;
+  int other = -1, count = 0;
+  for (int k = 0; k < 3; ++k) {
+    if (place.weights[k] >= least_weight) {
+      ++count;
+    } else {
+      other = k;
+    }
+  }
+  Vec3 part = normal;
+  if (count == 3) {
+    const Vec3 across = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+    part = normal.dot(across) * across;
+  } else if (count == 2) {
+    const Vec3 along = (corners[(other + 2) % 3] - corners[(other + 1) % 3]).normalized();
+    part = normal - normal.dot(along) * along;
+  }
+  return part.norm() > least_alignment ? part.normalized() : normal;
+}
+
+// Examines triangles against one collider, at q (`at_start`) or at an iterate.
+struct TriangleSearch {
+  const Model& model;
+  const ColliderView& view;
+  const Positions& q;
+  const Positions& x;
+  const Positions& y;
+  bool at_start;
+  const FacePoints& faces;
+
+  TriangleCorners corners(Eigen::Index triangle) const {
+    TriangleCorners places;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 place = x.row(model.surface(triangle, k));
+      places[k] = at_start ? view.at_start(place) : view.at_end(place);
+    }
+    return places;
+  }
+
+  // Returns the distance of the surface from which a triangle at the start may reach it in the step.
+  double reach(Eigen::Index triangle) const {
+    double freely = 0;
+    for (const std::int32_t v : model.surface.row(triangle))
+      freely = std::max(freely, view.length_to(y.row(v), view.way(q.row(v), q.row(v))));
+    return freely + reach_of(0, freely);
+  }
+
+  // Adds the candidates of one triangle against one piece.
+  void examine(Eigen::Index triangle, const TriangleCorners& corners, double reach, const FacePoints::Piece& piece,
+               std::vector<FacePoints::Candidate>& found) const {
+    const ShapeProbe probe(piece.piece.shape);
+    std::int32_t near = -1;
+    const TriangleInShape search(probe, piece.piece.half_thickness, corners, near);
+    const double within = faces.thickness + (at_start ? reach - piece.slack : -unheld * piece.slack);
+    double radius = 0;
+    for (const Vec3& corner : corners) radius = std::max(radius, (corner - search.center().point).norm());
+    if (std::max(search.bound(), search.center().surface.distance - radius) > within) return;
+    if (search.distance_at_nearest_corner() - search.bound() <= piece.slack) return;
+    const TriangleInShape::Descent least = search.descend();
+    for (int i = 0; i < least.count; ++i) {
+      const TrianglePlace& place = least.places[i];
+      if (place.surface.distance > within || place.surface.distance + piece.slack > least.at_corners) continue;
+      const ContactPoint point = contact_point(model, triangle, place.weights);
+      if (point.is_vertex() || point.free == 0) continue;
+      found.push_back({point, piece.slack, seen_from * piece.slack * straight_out(corners, place), near});
+    }
+  }
+
+  // Returns the longest way of a group's vertices since the start or, at the start, the way that they may make, as seen
+  // from the collider.
+  double longest_way(int group) const {
+    const Positions& to = at_start ? y : x;
+    double longest = 0;
+    for (int t = group * group_size; t < end_of(model, group); ++t) {
+      for (const std::int32_t v : model.surface.row(t))
+        longest = std::max(longest, (to.row(v) - q.row(v)).squaredNorm());
+    }
+    longest = std::sqrt(longest) + faces.collider_move[group];
+    return at_start ? longest + reach_of(0, longest) : longest;
+  }
+
+  // Adds the candidates of a group's triangles.
+  void examine_group(int group, std::vector<FacePoints::Candidate>& found) const {
+    if (longest_way(group) < view.clear(faces.distance[group])) return;
+    for (int t = group * group_size; t < end_of(model, group); ++t) {
+      const TriangleCorners places = corners(t);
+      const double edge = longest_edge_squared(places), within = at_start ? reach(t) : 0;
+      for (const FacePoints::Piece& piece : faces.pieces) {
+        if (is_finer(piece, faces.thickness, edge)) examine(t, places, within, piece, found);
+      }
+    }
+  }
+};
+
+// Tells whether there is a point of the same edge or face so near that it may stand for this one, or there are enough
+// of them. What is thin needs points closer to each other than what is round.
+bool is_known(const FacePoints& faces, const FacePoints::Candidate& candidate, const Positions& q) {
+  const ContactPoint& point = candidate.point;
+  const double edge = (q.row(point.vertex[1]) - q.row(point.vertex[0])).norm();
+  const double same = std::min(same_weight, same_place * candidate.slack / edge);
+  int known = 0;
+  for (std::int32_t i = faces.newest[point.vertex[0]]; i >= 0; i = faces.points[i].earlier) {
+    const ContactPoint& other = faces.points[i].point;
+    if (other.count != point.count || other.vertex != point.vertex) continue;
+    double apart = 0;
+    for (int k = 0; k < point.count; ++k) apart = std::max(apart, std::abs(other.weight[k] - point.weight[k]));
+    if (apart < same || ++known >= most_points) return true;
+  }
+  return false;
+}
+
+// Runs a search over all groups, and adds the points that are new in the order of the triangles.
+void search_all(const TriangleSearch& search, Threads* threads, FacePoints& faces) {
+  const int groups = groups_of(search.model), chunks = (groups + groups_a_chunk - 1) / groups_a_chunk;
+  faces.by_chunk.resize(chunks);
+  run_chunks(threads, chunks, long(search.model.surface.rows()) * 4, [&](int chunk) {
+    std::vector<FacePoints::Candidate>& found = faces.by_chunk[chunk];
+    found.clear();
+    for (int group = chunk * groups_a_chunk; group < std::min(groups, (chunk + 1) * groups_a_chunk); ++group)
+      search.examine_group(group, found);
+  });
+  for (const auto& list : faces.by_chunk) {
+    for (const FacePoints::Candidate& candidate : list) {
+      if (is_known(faces, candidate, search.q)) continue;
+      FacePoint face{
+          candidate.point, candidate.slack, candidate.out, 0, candidate.near, faces.newest[candidate.point.vertex[0]]};
+      const Vec3 start = search.view.at_start(candidate.point.at(search.q));
+      face.field = search.view.distance(start + face.out, face.near) - face.out.norm();
+      faces.newest[candidate.point.vertex[0]] = static_cast<std::int32_t>(faces.points.size());
+      faces.points.push_back(face);
+    }
+  }
+}
+
+// Keeps the pieces of a collider that are finer than the longest edge of the surface.
+void choose_pieces(const Model& model, const Collider& collider, const Positions& q, FacePoints& faces) {
+  faces.pieces.clear();
+  double longest = -1;
+  for (ShapePiece& shape : pieces_of(collider.shape)) {
+    if (std::isinf(shape.bulge)) continue;
+    FacePoints::Piece piece{std::move(shape), slack_share * model.size};
+    if (piece.piece.half_thickness > 0)
+      piece.slack = std::min(piece.slack, 0.25 * (piece.piece.half_thickness + collider.thickness));
+    if (longest < 0) longest = longest_edge_squared(model, q);
+    if (is_finer(piece, collider.thickness, longest)) faces.pieces.push_back(std::move(piece));
+  }
+}
+
+// Finds how far each group is from the collider, and how fast the collider moves there.
+void measure_groups(const Model& model, const ColliderView& view, const Positions& q, FacePoints& faces) {
+  faces.distance.resize(groups_of(model));
+  faces.collider_move.resize(groups_of(model));
+  for (int group = 0; group < groups_of(model); ++group) {
+    Bounds box;
+    for (int t = group * group_size; t < end_of(model, group); ++t) {
+      for (const std::int32_t v : model.surface.row(t)) box.include(q.row(v));
+    }
+    const Vec3 center = box.center();
+    const double radius = 0.5 * box.diagonal();
+    std::int32_t near = -1;
+    faces.collider_move[group] = view.most_moved(center, radius);
+    faces.distance[group] = view.distance(view.at_start(center), near) - view.uncertain(radius);
+  }
+}
+
+}  // namespace
+
+void begin_face_points(const Model& model, const Collider& collider, const ColliderView& view, const Positions& q,
+                       const Positions& y, Threads* threads, FacePoints& faces) {
+  faces.points.clear();
+  faces.pieces.clear();
+  faces.thickness = collider.thickness;
+  choose_pieces(model, collider, q, faces);
+  if (faces.pieces.empty()) return;
+  faces.newest.assign(model.vertices, -1);
+  measure_groups(model, view, q, faces);
+  search_all({model, view, q, q, y, true, faces}, threads, faces);
+}
+
+void find_face_points(const Model& model, const ColliderView& view, const Positions& q, const Positions& x,
+                      const Positions& y, Threads* threads, FacePoints& faces) {
+  if (!faces.pieces.empty()) search_all({model, view, q, x, y, false, faces}, threads, faces);
+}
+
+std::optional<SurfacePoint> plane_of(const ColliderView& view, const FacePoint& face, const Way& way, double reach,
+                                     std::int32_t& near) {
+  const double out = face.out.norm();
+  Way beside = way;
+  beside.a += face.out;
+  beside.b += face.out;
+  beside.q += view.start().linear() * face.out;
+  beside.x += view.end().linear() * face.out;
+  std::optional<SurfacePoint> plane;
+  const SurfacePoint here = view.closest(beside.b, near);
+  if (here.distance < 0) {
+    // Inside something thin, the side by which the point entered may be further than another one.
+    const std::optional<ColliderView::Entry> entered = view.entry(beside, face.field + out, near);
+    if (entered && entered->surface.normal.dot(face.out) > (here.normal.dot(face.out) + 0.2 * out))
+      plane = entered->surface;
+  }
+  if (!plane) plane = view.holding(beside, face.field + out, reach + out, near);
+  if (!plane) return std::nullopt;
+  const double gap = plane->normal.dot(beside.b - plane->point) - out;
+  return SurfacePoint{way.b - gap * plane->normal, plane->normal, gap};
+}
+
+}  // namespace supple

@@ -1,0 +1,69 @@
+// Chooses points of a body's edges and faces that need contact of their own, because a collider is finer there than the
+// body's surface: where a triangle lies deeper in the collider, or closer to it, than its corners do. Contact of these
+// points begins a little below the surface (`slack`), so that a triangle whose corners hold it needs none, and the
+// energy is continuous as a point becomes deeper than that. A point that was found stays for the rest of the step:
+// minimising over more and more points of the surface solves the problem over all of them (the exchange method for
+// semi-infinite programs: Hettich and Kortanek 1993, "Semi-infinite programming: theory, methods, and applications").
+// Not here: the planes (find_contacts.h).
+#pragma once
+
+#include <vector>
+
+#include "base/threads.h"
+#include "geometry/shape_pieces.h"
+#include "sim/contact/collider_view.h"
+#include "sim/contact/contact_point.h"
+#include "sim/model/model.h"
+
+namespace supple {
+
+struct FacePoint {
+  ContactPoint point;
+  double slack;          // depth below which contact begins [m]
+  Vec3 out;              // to the place from which its distance is measured, in the collider's frame [m]
+  double field;          // distance at the start of the step, negative inside [m]
+  std::int32_t near;     // memory of its queries
+  std::int32_t earlier;  // the point before it whose first vertex is the same; -1: there is none
+};
+
+// Holds the points for one collider in one step, and what is needed to find more; it is empty where the collider is
+// nowhere finer than the surface.
+struct FacePoints {
+  struct Piece {
+    ShapePiece piece;
+    double slack;  // [m]
+  };
+  std::vector<Piece> pieces;          // of the collider, that may be finer than the surface
+  double thickness = 0;               // of the collider's layer [m]
+  std::vector<double> distance;       // least signed distance of a group's triangles at the start [m]
+  std::vector<double> collider_move;  // of the collider's own points near a group [m]
+  std::vector<FacePoint> points;
+  std::vector<std::int32_t> newest;  // of points, by first vertex; -1: there is none
+
+  struct Candidate {
+    ContactPoint point;
+    double slack;
+    Vec3 out;
+    std::int32_t near;
+  };
+  std::vector<std::vector<Candidate>> by_chunk;  // scratch memory
+};
+
+// Prepares a step from q towards y (both n x 3): finds which pieces of a collider may need points, and the points that
+// triangles need on their way.
+void begin_face_points(const Model& model, const Collider& collider, const ColliderView& view, const Positions& q,
+                       const Positions& y, Threads* threads, FacePoints& faces);
+
+// Adds the points that triangles need at x (n x 3): where they are deeper than those that were found already allow.
+void find_face_points(const Model& model, const ColliderView& view, const Positions& q, const Positions& x,
+                      const Positions& y, Threads* threads, FacePoints& faces);
+
+// Finds the plane that holds a point of an edge or face at the end of its way, in the collider's frame; nothing when
+// there is no surface within `reach`. At a collider's edge, the closest point of a point inside jumps between the two
+// sides. So distances are measured from a place a little outside, straight away from the face or the edge of the body
+// as it lay when the point was found: there the normal turns evenly, and where the distance is least it stands straight
+// on the face.
+std::optional<SurfacePoint> plane_of(const ColliderView& view, const FacePoint& face, const Way& way, double reach,
+                                     std::int32_t& near);
+
+}  // namespace supple

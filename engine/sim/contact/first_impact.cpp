@@ -1,0 +1,59 @@
+// Finds where a body meets colliders first, and what it touches most.
+#include "sim/contact/vertex_search.h"
+
+namespace supple {
+namespace {
+
+// Returns which share of a way a point may go before it is deeper than `allowed` [m]. A point that touches already is
+// stopped only by a collider that comes to it: one that rests would be stopped on every step by its own weight.
+double share_to_impact(const ColliderView& view, const Way& way, double field, double allowed, std::int32_t& near) {
+  if (field <= 0) {
+    if (!view.moves()) return 1;
+    const Vec3 normal = view.closest(way.a, near).normal;
+    const double comes = -normal.dot(view.pace(view.way(way.q, way.q), 0)), falls = -normal.dot(view.pace(way, 0));
+    return std::min(comes, falls) > allowed ? allowed / falls : 1;
+  }
+  const std::optional<ColliderView::Entry> entered = view.entry(way, field, near);
+  if (!entered) return 1;
+  // Towards the surface, over a whole step.
+  const double falls = -entered->surface.normal.dot(view.pace(way, entered->way));
+  return falls * (1 - entered->way) > allowed ? entered->way + allowed / falls : 1;
+}
+
+}  // namespace
+
+Impact first_impact(const Model& model, const StepInputs& inputs, const Positions& x, double allowed,
+                    ContactWork& work) {
+  measure_moves(model, x, work, work.group_move);
+  Impact first;
+  for (std::size_t c = 0; c < inputs.colliders->size(); ++c) {
+    const VertexSearch search{model, inputs, x, work};
+    const ColliderView view = search.view(c);
+    for (int group = 0; group < vertex_groups(model); ++group) {
+      search.near(c, view, group, [&](int v, const Way& way, double field, double) {
+        const double share = share_to_impact(view, way, field, allowed, search.memory(c, v));
+        if (share < first.share) first = {share, static_cast<int>(c)};
+      });
+    }
+    for (FacePoint& face : work.faces[c].points) {
+      const Way way = view.way(face.point.at(*work.begin), face.point.at(x));
+      if (way.length < view.clear(face.field)) continue;
+      const double share = share_to_impact(view, way, face.field, allowed, face.near);
+      if (share < first.share) first = {share, static_cast<int>(c)};
+    }
+  }
+  return first;
+}
+
+Eigen::Isometry3d motion_after(const StepInputs& inputs, int collider, double share) {
+  return ColliderView((*inputs.colliders)[collider], inputs.collider_motions[collider], {}).motion_after(share);
+}
+
+int most_touched(const std::vector<Contact>& contacts, std::size_t colliders) {
+  std::vector<int> touching(colliders, 0);
+  for (const Contact& contact : contacts) touching[contact.collider] += contact.depth > 0;
+  const auto most = std::max_element(touching.begin(), touching.end());
+  return most == touching.end() || *most == 0 ? -1 : static_cast<int>(most - touching.begin());
+}
+
+}  // namespace supple

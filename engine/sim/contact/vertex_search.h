@@ -1,0 +1,74 @@
+// Looks through a body's vertices for those that may have met a collider: groups of vertices first, then one by one.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/contact/find_contacts.h"
+#include "sim/contact/reach.h"
+
+namespace supple {
+
+constexpr int vertices_a_group = 64;  // consecutive ones; the order of elimination keeps neighbours together
+
+inline int vertex_groups(const Model& model) { return (model.free + vertices_a_group - 1) / vertices_a_group; }
+
+// Holds everything that is needed to examine one vertex.
+struct VertexSearch {
+  const Model& model;
+  const StepInputs& inputs;
+  const Positions& x;
+  ContactWork& work;
+
+  ColliderView view(std::size_t c) const {
+    return ColliderView((*inputs.colliders)[c], inputs.collider_motions[c], work.traits[c]);
+  }
+
+  // The memory of queries for a vertex. Its first query starts from what the vertex before it in its group has found.
+  std::int32_t& memory(std::size_t c, int v) const {
+    std::int32_t& own = work.memory[c * model.free + v];
+    if (own < 0 && v % vertices_a_group > 0) own = work.memory[c * model.free + v - 1];
+    return own;
+  }
+
+  // Returns the signed distance of vertex v at the start of the step, which is computed once.
+  double start_field(const ColliderView& view, std::size_t c, int v, const Vec3& a) const {
+    double& known = work.clearance[c * model.free + v];
+    if (std::isnan(known)) known = view.distance(a, memory(c, v));
+    return known;
+  }
+
+  // Returns the least signed distance of all vertices at the start of the step, as far as it is negative.
+  double deepest_start(std::size_t c) const {
+    const ColliderView own = view(c);
+    double least = 0;
+    for (int v = 0; v < model.free; ++v) {
+      if (work.group_distance[c * vertex_groups(model) + v / vertices_a_group] >= 0) continue;
+      least = std::min(least, start_field(own, c, v, own.at_start(work.start.row(v))));
+    }
+    return least;
+  }
+
+  // Calls found(v, way, field_at_start, reach) for the vertices of a group that may have met collider c.
+  template <class Found>
+  void near(std::size_t c, const ColliderView& view, int group, const Found& found) const {
+    const int groups = vertex_groups(model);
+    const std::size_t at = c * groups + group;
+    const double moved = work.group_move[group] + work.collider_move[at];
+    const double freely = work.group_free_move[group] + work.collider_move[at];
+    if (moved + reach_of(moved, freely) < view.clear(work.group_distance[at])) return;
+    const int end = std::min(model.free, (group + 1) * vertices_a_group);
+    for (int v = group * vertices_a_group; v < end; ++v) {
+      const Way way = view.way(work.start.row(v), x.row(v));
+      const double reach = reach_of(way.length, view.length_to(work.prediction->row(v), way));
+      const double field = start_field(view, c, v, way.a);
+      if (way.length + reach < view.clear(field)) continue;
+      found(v, way, field, reach);
+    }
+  }
+};
+
+// Finds the largest distance of each group's vertices from where they started.
+void measure_moves(const Model& model, const Positions& x, const ContactWork& work, std::vector<double>& moves);
+
+}  // namespace supple
