@@ -252,6 +252,8 @@ int draw(DrawCommand command) {
   command.plan.scene = command.scene;
   command.plan.rate = command.rate.value_or(0);
   command.plan.quiet = command.quiet;
+  if (command.frame && !command.out.empty())
+    throw InputError("--out", "is the folder of a film; the picture of one frame goes into the file of --still");
   if (command.runs.size() > 1) return draw_several(command);
   if (command.index && *command.index >= static_cast<std::size_t>(command.of))
     throw InputError(fmt::format("--index {}", *command.index),

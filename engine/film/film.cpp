@@ -83,8 +83,8 @@ void make_skins(const FilmPlan& plan, LoadedFilm& film) {
   const Zone zone("make skins");
   MakingLine tells(plan.quiet);
   const bool as_elements = film.script.scene().look.wireframe;
-  film.drawn = drawn_bodies(film.bodies, making_with(plan.cache, tells),
-                            as_elements ? BodySurface::elements : BodySurface::skin);
+  film.drawn =
+      drawn_bodies(film.bodies, making_with(plan.cache, tells), as_elements ? DrawnAs::elements : DrawnAs::skin);
 }
 
 namespace {
@@ -140,11 +140,13 @@ FilmStart check_film(const FilmPlan& plan, const LoadedFilm& film) {
   const bool asks_for_whole_film =
       scene.field.quantity != FieldQuantity::none && scene.field.range_by == FieldRange::film;
   if (asks_for_whole_film && plan.pictures != FilmPictures::none)
-    throw InputError("field.range", "\"film\" is known only once the film has been made: give two numbers here, or draw "
-                                    "the run again with it (supple draw RUN --set field.range=film)");
+    throw InputError("field.range",
+                     "\"film\" is known only once the film has been made: give two numbers here, or draw "
+                     "the run again with it (supple draw RUN --set field.range=film)");
   if (scene.camera.frames == Framed::film && plan.pictures != FilmPictures::none)
-    throw InputError("camera.frames", "\"film\" is known only once the film has been made: draw the run again with it "
-                                      "(supple draw RUN --set camera.frames=film)");
+    throw InputError("camera.frames",
+                     "\"film\" is known only once the film has been made: draw the run again with it "
+                     "(supple draw RUN --set camera.frames=film)");
   if (plan.film_only && !run_program({"ffmpeg", "-version"}))
     throw InputError("--film-only", "needs ffmpeg, which is not installed (Debian: ffmpeg)");
   std::error_code ignored;

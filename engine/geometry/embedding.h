@@ -11,7 +11,7 @@ namespace supple {
 // By how much a frame of Embedding::frames counts for a point.
 struct FrameShare {
   std::int64_t frame;  // as wide as the share, so that no byte of a list is padding and lists are kept as they are
-  double share;  // not negative
+  double share;        // not negative
 };
 
 struct Embedding {

@@ -77,12 +77,12 @@ DrawnBody drawn_mesh(const Body& body) {
 
 }  // namespace
 
-std::vector<DrawnBody> drawn_bodies(const std::vector<Body>& bodies, const Making& making, BodySurface surface) {
+std::vector<DrawnBody> drawn_bodies(const std::vector<Body>& bodies, const Making& making, DrawnAs surface) {
   std::vector<DrawnBody> result;
   std::map<std::string, CarriedSkin> skins;  // by name
   for (const Body& body : bodies) {
     DrawnBody drawn;
-    if (surface == BodySurface::elements || (body.def.surface.empty() && body.def.shape.empty())) {
+    if (surface == DrawnAs::elements || (body.def.surface.empty() && body.def.shape.empty())) {
       drawn = drawn_mesh(body);
     } else {
       const SkinRequest request = request_for(body);

@@ -19,13 +19,13 @@ struct DrawnBody {
 };
 
 // Chooses the surface by which bodies are drawn.
-enum class BodySurface {
+enum class DrawnAs {
   skin,      // that of its shape or surface file, where it has one
   elements,  // the boundary of its elements
 };
 
 // Makes what is drawn of each body. Bodies that are drawn alike share the work, and skins are kept from run to run.
 std::vector<DrawnBody> drawn_bodies(const std::vector<Body>& bodies, const Making& making = {},
-                                    BodySurface surface = BodySurface::skin);
+                                    DrawnAs surface = DrawnAs::skin);
 
 }  // namespace supple

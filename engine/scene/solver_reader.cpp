@@ -84,6 +84,10 @@ ContactSettings read_contact(const ConfigTable& table, ContactSettings contact) 
                    contact.push_out, Range::positive());
   contact.stick = table.number({"stick", "1/s", "slip above which friction is whole, in the body's sizes a second"},
                                contact.stick, Range::positive());
+  contact.points = table.word<ContactPoints>({"points", "",
+                                              "what of a body touches: its vertices, or also points of edges and faces "
+                                              "where a collider is finer than the body's surface"},
+                                             contact.points);
   contact.history =
       table.word<ContactHistory>({"history", "",
                                   "L-BFGS pairs across a change of contacts: both gradients with the planes of "

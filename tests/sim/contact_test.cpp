@@ -211,7 +211,7 @@ TEST(Contact, DirectionsOfALargePatchAreSymmetricAndPositiveAndHoldTheVertices) 
 
 TEST(Contact, MomentumChangesByTheImpulsesOfGravityAndContacts) {
   for (const int iterations : {300, 4}) {
-    ContactScene scene(cube(5), {{"ball", shape_of(Sphere{0.5}), 0, 0.3}}, Vec3(0.05, 0.61, 0));
+    ContactScene scene(cube(3), {{"ball", shape_of(Sphere{0.5}), 0, 0.3}}, Vec3(0.05, 0.61, 0));
     scene.state.v.rowwise() = Eigen::RowVector3d(0.3, -1, 0.1);
     scene.inputs.solver.iterations = iterations;
     const double h = scene.model.time_step;

@@ -10,10 +10,17 @@
 namespace supple {
 namespace {
 
-using test::ContactScene;
 using test::cube;
 using test::shaken;
 using test::shape_of;
+
+// Keeps contact between vertices too.
+struct FaceScene : test::ContactScene {
+  FaceScene(const BodyDescription& body, std::vector<Collider> all, const Vec3& place = Vec3::Zero())
+      : ContactScene(body, std::move(all), place) {
+    inputs.solver.contact.points = ContactPoints::surface;
+  }
+};
 
 // A thin post below the middle of one of the triangles of the cube's lower face, which has 3 x 3 cells of 0.067 m.
 Collider post(double friction, double top = 0) {
@@ -21,7 +28,7 @@ Collider post(double friction, double top = 0) {
 }
 
 // Brings a scene to its first iterate, with its contacts and their stiff directions.
-void prepare(ContactScene& scene) {
+void prepare(FaceScene& scene) {
   scene.w.prepare(scene.model, scene.inputs.solver);
   begin_step(scene.model, scene.inputs, scene.state, scene.w);
   find_contacts_of(scene.model, scene.inputs, scene.w, scene.w.current);
@@ -29,14 +36,14 @@ void prepare(ContactScene& scene) {
                         scene.w.correction);
 }
 
-int touching_faces(const ContactScene& scene) {
+int touching_faces(const FaceScene& scene) {
   const std::vector<Contact>& found = scene.w.current.contacts;
   return static_cast<int>(
       std::count_if(found.begin(), found.end(), [](const Contact& c) { return c.depth > 0 && c.point.count == 3; }));
 }
 
 // Returns the depth of the deepest of 66 evenly spread points of each triangle of the surface.
-double deepest_sample(const ContactScene& scene) {
+double deepest_sample(const FaceScene& scene) {
   double deepest = 0;
   for (const auto& corner : scene.model.surface.rowwise()) {
     for (int i = 0; i <= 10; ++i) {
@@ -55,7 +62,7 @@ double deepest_sample(const ContactScene& scene) {
 }
 
 TEST(FaceContact, GradientIsTheDerivativeOfTheEnergy) {
-  ContactScene scene(cube(3), {post(0.4)}, Vec3(0, 0.1005, 0));
+  FaceScene scene(cube(3), {post(0.4)}, Vec3(0, 0.1005, 0));
   scene.inputs.gravity.setZero();
   scene.state.v.rowwise() = Eigen::RowVector3d(0.02, -0.07, 0.01);
   prepare(scene);
@@ -82,7 +89,7 @@ TEST(FaceContact, PlanesGiveTheDerivativeOfTheEnergyFoundAnew) {
                           shape_of(Box{Vec3(0.3, 0.03, 0.01), 0.002})};
   for (const Shape& shape : shapes) {
     const double top = shape.bounds().upper.y();
-    ContactScene scene(cube(3), {{"", shape}}, Vec3(0.01, top + 0.1005, 0.02));
+    FaceScene scene(cube(3), {{"", shape}}, Vec3(0.01, top + 0.1005, 0.02));
     scene.inputs.gravity.setZero();
     scene.state.v.rowwise() = Eigen::RowVector3d(0.02, -0.07, 0.01);
     prepare(scene);
@@ -105,7 +112,7 @@ TEST(FaceContact, PlanesGiveTheDerivativeOfTheEnergyFoundAnew) {
 
 // Compares (A + K)^-1 by the Woodbury identity, with contacts of faces and tangents of friction, with a dense inverse.
 TEST(FaceContact, LowRankDirectionsSolveTheSystem) {
-  ContactScene scene(cube(3), {post(0.5), {"ball", shape_of(Sphere{0.01}), 0, 0.5}}, Vec3(0, 0.1005, 0));
+  FaceScene scene(cube(3), {post(0.5), {"ball", shape_of(Sphere{0.01}), 0, 0.5}}, Vec3(0, 0.1005, 0));
   scene.inputs.collider_motions[1].start = scene.inputs.collider_motions[1].end =
       test::moved_to(Vec3(-0.07, -0.0105, -0.05));
   scene.state.v.rowwise() = Eigen::RowVector3d(0.001, -0.05, 0);
@@ -135,7 +142,7 @@ TEST(FaceContact, LowRankDirectionsSolveTheSystem) {
 }
 
 TEST(FaceContact, MomentumChangesByTheImpulsesOfGravityAndContacts) {
-  ContactScene scene(cube(3), {post(0.3)}, Vec3(0, 0.101, 0));
+  FaceScene scene(cube(3), {post(0.3)}, Vec3(0, 0.101, 0));
   scene.state.v.rowwise() = Eigen::RowVector3d(0.05, -0.4, 0.02);
   int touched = 0;
   for (int frame = 0; frame < 4; ++frame) {
@@ -170,7 +177,7 @@ TEST(FaceContact, SurfacesStayAboveWhatIsFinerThanTheirCells) {
     BodyDescription body = cube(3, Corotated{6e4, 1.2e5});
     if (name == "rim") body.mesh.rest *= Eigen::AngleAxisd(0.6, Vec3::UnitZ()).toRotationMatrix().transpose();
     for (const double speed : {0.5, 3.0}) {
-      ContactScene scene(body, {{name, shape, 0, 0.4}}, Vec3(aside + 0.004, top + 0.15, 0.013));
+      FaceScene scene(body, {{name, shape, 0, 0.4}}, Vec3(aside + 0.004, top + 0.15, 0.013));
       scene.state.v.col(1).setConstant(-speed);
       double deepest = 0;
       int touched = 0;
@@ -190,8 +197,8 @@ TEST(FaceContact, SurfacesStayAboveWhatIsFinerThanTheirCells) {
 }
 
 TEST(FaceContact, CostsNothingWhereCollidersAreCoarserThanTheSurface) {
-  ContactScene scene(cube(6), {{"ground", shape_of(HalfSpace{Vec3::UnitY(), 0})}, {"ball", shape_of(Sphere{3})}},
-                     Vec3(0, 0.1, 0));
+  FaceScene scene(cube(6), {{"ground", shape_of(HalfSpace{Vec3::UnitY(), 0})}, {"ball", shape_of(Sphere{3})}},
+                  Vec3(0, 0.1, 0));
   scene.inputs.collider_motions[1].start = scene.inputs.collider_motions[1].end = test::moved_to(Vec3(0, -3, 0));
   for (int frame = 0; frame < 3; ++frame) scene.step();
   EXPECT_GT(scene.w.contact.counts.touching, 0);
@@ -203,7 +210,7 @@ TEST(FaceContact, CostsNothingWhereCollidersAreCoarserThanTheSurface) {
 }
 
 TEST(FaceContact, FlatFacesOnFlatFacesNeedNoPoints) {
-  ContactScene scene(cube(3), {{"table", shape_of(Box{Vec3(0.5, 0.1, 0.5), 0})}}, Vec3(0, 0.2, 0));
+  FaceScene scene(cube(3), {{"table", shape_of(Box{Vec3(0.5, 0.1, 0.5), 0})}}, Vec3(0, 0.2, 0));
   for (int frame = 0; frame < 5; ++frame) scene.step();
   EXPECT_EQ(scene.w.contact.counts.touching, 16);
   EXPECT_TRUE(scene.w.contact.faces[0].points.empty());
@@ -211,7 +218,7 @@ TEST(FaceContact, FlatFacesOnFlatFacesNeedNoPoints) {
 
 TEST(FaceContact, SameBitsForAnyNumberOfThreads) {
   const auto hashes = [](Threads* threads) {
-    ContactScene scene(cube(6), {post(0.3), {"box", shape_of(Box{Vec3(0.02, 0.1, 0.5), 0})}}, Vec3(0, 0.102, 0));
+    FaceScene scene(cube(6), {post(0.3), {"box", shape_of(Box{Vec3(0.02, 0.1, 0.5), 0})}}, Vec3(0, 0.102, 0));
     scene.inputs.collider_motions[1].start = scene.inputs.collider_motions[1].end =
         test::moved_to(Vec3(-0.05, -0.11, 0));
     scene.w.threads = threads;

@@ -121,7 +121,9 @@ void begin_contacts(const Model& model, const StepInputs& inputs, const Position
   for (std::size_t c = 0; c < colliders; ++c) {
     const Collider& collider = (*inputs.colliders)[c];
     const ColliderView view(collider, inputs.collider_motions[c], work.traits[c]);
-    begin_face_points(model, collider, view, q, y, threads, work.faces[c]);
+    work.faces[c] = {};
+    if (inputs.solver.contact.points == ContactPoints::surface)
+      begin_face_points(model, collider, view, q, y, threads, work.faces[c]);
   }
   find_way_out(model, inputs, work);
 }

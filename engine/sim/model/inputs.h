@@ -57,10 +57,22 @@ struct Names<ContactDirection> {
                                        Name{ContactDirection::low_rank, "low-rank"}};
 };
 
+// Selects the points of a body's surface that touch colliders.
+enum class ContactPoints {
+  vertices,
+  surface,  // also points of edges and faces, where a collider is finer than the surface (contact/face_points.h)
+};
+template <>
+struct Names<ContactPoints> {
+  static constexpr std::array table = {Name{ContactPoints::vertices, "vertices"},
+                                       Name{ContactPoints::surface, "surface"}};
+};
+
 struct ContactSettings {
   double stiffness = 1e4;  // k_c over m_i / h^2
   double push_out = 1;     // fastest way out of an overlap [body sizes / s]
   double stick = 1.5e-4;   // friction is whole above this speed [body sizes / s]
+  ContactPoints points = ContactPoints::vertices;
   ContactHistory history = ContactHistory::current;
   ContactDirection direction = ContactDirection::low_rank;
 };
