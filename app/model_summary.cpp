@@ -20,14 +20,15 @@ std::string vertices_text(double vertices) {
 std::string piece_text(const SolidSurface& piece, double volume, std::size_t number) {
   const std::vector<ThicknessSample> samples = sampled_thickness(piece.boundary);
   const Vec3 extent = bounds_of(piece.boundary.points).extent();
-  std::string text = fmt::format("piece {:<10}{:.4g} x {:.4g} x {:.4g}, volume {:.4g}, {} triangles\n", number, extent.x(),
-                                 extent.y(), extent.z(), volume, piece.skin().triangles.rows());
+  std::string text = fmt::format("piece {:<10}{:.4g} x {:.4g} x {:.4g}, volume {:.4g}, {} triangles\n", number,
+                                 extent.x(), extent.y(), extent.z(), volume, piece.skin().triangles.rows());
   if (samples.empty()) return text;
   const Vec3& place = samples.front().place;
-  return text + fmt::format("  thickness     {:.3g} in the middle, {:.3g} at the thinnest hundredth, least at ({:.3g}, {:.3g}, "
-                            "{:.3g})\n  vertices      {} resolve all but the thinnest hundredth\n",
-                            samples[samples.size() / 2].thickness, samples[samples.size() / 100].thickness, place.x(),
-                            place.y(), place.z(), vertices_text(vertices_wanted(samples, volume, area_of(piece.boundary))));
+  return text + fmt::format(
+                    "  thickness     {:.3g} in the middle, {:.3g} at the thinnest twentieth, least at ({:.3g}, {:.3g}, "
+                    "{:.3g})\n  vertices      {} resolve all but the thinnest twentieth\n",
+                    samples[samples.size() / 2].thickness, samples[samples.size() / 20].thickness, place.x(), place.y(),
+                    place.z(), vertices_text(vertices_wanted(samples, volume, area_of(piece.boundary))));
 }
 
 }  // namespace
@@ -39,8 +40,8 @@ std::string surface_summary(const std::filesystem::path& file) {
   std::string text;
   for (const std::string& note : read.notes) text += fmt::format("note: {}\n", note);
   const Vec3 extent = read.box.extent();
-  text += fmt::format("surface         {}\nextent          {:.4g} x {:.4g} x {:.4g} in the file's units\n", file.string(),
-                      extent.x(), extent.y(), extent.z());
+  text += fmt::format("surface         {}\nextent          {:.4g} x {:.4g} x {:.4g} in the file's units\n",
+                      file.string(), extent.x(), extent.y(), extent.z());
   constexpr std::size_t most = 12;
   for (std::size_t p = 0; p < std::min(most, read.pieces.size()); ++p)
     text += piece_text(read.pieces[p], read.volumes[p], p + 1);

@@ -54,7 +54,7 @@ double spacing_for(double volume, double area, double vertices) {
 
 double vertices_wanted(const std::vector<ThicknessSample>& samples, double volume, double area) {
   if (samples.empty()) return 0;
-  return vertices_for(volume, area, std::max(samples[samples.size() / 100].thickness, 1e-300));
+  return vertices_for(volume, area, std::max(samples[samples.size() / 20].thickness, 1e-300));
 }
 
 }  // namespace supple

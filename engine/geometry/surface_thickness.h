@@ -15,13 +15,13 @@ struct ThicknessSample {
 // Samples the surface evenly by area; the thinnest place comes first. The surface must be closed and face outward.
 std::vector<ThicknessSample> sampled_thickness(const TriMesh& boundary);
 
-// Returns the spacing of the lattice that makes about this many vertices of a body, from its volume [m^3] and the area of
-// its surface [m^2], and the reverse. Two lattice points stand for each cell and one for each face of a cell on the
+// Returns the spacing of the lattice that makes about this many vertices of a body, from its volume [m^3] and the area
+// of its surface [m^2], and the reverse. Two lattice points stand for each cell and one for each face of a cell on the
 // surface.
 double spacing_for(double volume, double area, double vertices);
 double vertices_for(double volume, double area, double spacing);
 
-// Returns how many vertices resolve all but the thinnest hundredth of the surface: there the solid is one cell thick.
+// Returns how many vertices resolve all but the thinnest twentieth of the surface: there the solid is one cell thick.
 double vertices_wanted(const std::vector<ThicknessSample>& samples, double volume, double area);
 
 double area_of(const TriMesh& mesh);

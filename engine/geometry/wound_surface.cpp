@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/error.h"
@@ -30,8 +31,7 @@ Rings rings_of(const TriMesh& mesh) {
   std::vector<std::size_t> place(rings.start.begin(), rings.start.end() - 1);
   // On a closed manifold each neighbour of v follows v in exactly one triangle.
   for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
-    for (int k = 0; k < 3; ++k)
-      rings.next[place[std::size_t(mesh.triangles(t, k))]++] = mesh.triangles(t, (k + 1) % 3);
+    for (int k = 0; k < 3; ++k) rings.next[place[std::size_t(mesh.triangles(t, k))]++] = mesh.triangles(t, (k + 1) % 3);
   return rings;
 }
 
@@ -121,8 +121,8 @@ TriMesh without_unused_vertices(const TriMesh& mesh) {
   return result;
 }
 
-// Leaves out the parts of a closed surface that hold less than a ten-thousandth of the largest part's volume: crumbs that
-// the grid makes of parts thinner than its cells.
+// Leaves out the parts of a closed surface that hold less than a ten-thousandth of the largest part's volume: crumbs
+// that the grid makes of parts thinner than its cells.
 TriMesh without_crumbs(const TriMesh& boundary) {
   Numbered surface{boundary, std::vector<Eigen::Index>(at(boundary.triangles.rows()), 0)};
   const Flood parts = flood(surface, neighbours_of(surface));
@@ -146,18 +146,18 @@ TriMesh without_crumbs(const TriMesh& boundary) {
 // Says what is on a triangle's two sides, by samples half a cell away from it.
 enum class Side { surface, turned, hidden, loose };
 
-Side side_of(const TriangleSoup& soup, Eigen::Index t, double cell) {
+Side side_of(const TriangleSoup& soup, const TriangleSoup& field, Eigen::Index t, double cell) {
   const TriMesh& mesh = soup.mesh();
   const Vec3 a = corner(mesh, t, 0), b = corner(mesh, t, 1), c = corner(mesh, t, 2);
   const Vec3 step = 0.5 * cell * soup.normals().row(t).transpose();
   const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-  const int parts = std::clamp(int(longest / (4 * cell)), 1, 8);
+  const int parts = std::clamp(int(longest / (4 * cell)), 1, 6);
   int votes[4] = {0, 0, 0, 0};
   for (int i = 0; i < parts; ++i) {
     for (int j = 0; i + j < parts; ++j) {
       const double v = (i + 1.0 / 3) / parts, w = (j + 1.0 / 3) / parts;
       const Vec3 p = a + v * (b - a) + w * (c - a);
-      const bool front = soup.winding_number(p + step) > 0.5, behind = soup.winding_number(p - step) > 0.5;
+      const bool front = field.winding_number(p + step) > 0.5, behind = field.winding_number(p - step) > 0.5;
       ++votes[int(front == behind ? (front ? Side::hidden : Side::loose) : (front ? Side::turned : Side::surface))];
     }
   }
@@ -166,13 +166,50 @@ Side side_of(const TriangleSoup& soup, Eigen::Index t, double cell) {
   return votes[int(Side::loose)] > 0 ? Side::loose : Side::hidden;
 }
 
-std::vector<Side> sides_of(const TriangleSoup& soup, WoundSurface& result, Threads& threads) {
+// Cuts triangles in half at their longest edges until these are short, so that a tree's parts become small where they
+// are near: long triangles, of which models of machines are made, would have to be summed one by one. The winding
+// number stays the same.
+TriMesh with_short_edges(const TriMesh& mesh, double longest) {
+  constexpr std::size_t most_triangles = 2'000'000;
+  std::vector<Vec3> points;
+  for (Eigen::Index v = 0; v < mesh.points.rows(); ++v) points.emplace_back(mesh.points.row(v).transpose());
+  std::vector<std::array<std::int32_t, 3>> waiting, done;
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
+    waiting.push_back({mesh.triangles(t, 0), mesh.triangles(t, 1), mesh.triangles(t, 2)});
+  while (!waiting.empty()) {
+    const std::array<std::int32_t, 3> triangle = waiting.back();
+    waiting.pop_back();
+    const auto length = [&](std::size_t k) {
+      return (points[at(triangle[(k + 1) % 3])] - points[at(triangle[k])]).squaredNorm();
+    };
+    std::size_t edge = 0;
+    for (std::size_t k = 1; k < 3; ++k)
+      if (length(k) > length(edge)) edge = k;
+    if (length(edge) <= longest * longest || done.size() + waiting.size() > most_triangles) {
+      done.push_back(triangle);
+      continue;
+    }
+    const std::int32_t a = triangle[edge], b = triangle[(edge + 1) % 3], c = triangle[(edge + 2) % 3];
+    const auto middle = std::int32_t(points.size());
+    points.push_back(0.5 * (points[at(a)] + points[at(b)]));
+    waiting.push_back({a, middle, c});
+    waiting.push_back({middle, b, c});
+  }
+  TriMesh result{Positions(std::ssize(points), 3), Triangles(std::ssize(done), 3)};
+  for (std::size_t v = 0; v < points.size(); ++v) result.points.row(Eigen::Index(v)) = points[v].transpose();
+  for (std::size_t t = 0; t < done.size(); ++t)
+    result.triangles.row(Eigen::Index(t)) << done[t][0], done[t][1], done[t][2];
+  return result;
+}
+
+std::vector<Side> sides_of(const TriangleSoup& soup, const TriangleSoup& field, WoundSurface& result,
+                           Threads& threads) {
   const Eigen::Index count = soup.mesh().triangles.rows();
   std::vector<Side> sides(at(count), Side::surface);
   constexpr Eigen::Index chunk = 256;
   threads.run(int((count + chunk - 1) / chunk), [&](int c) {
     for (Eigen::Index t = c * chunk; t < std::min((c + 1) * chunk, count); ++t)
-      sides[at(t)] = side_of(soup, t, result.cell);
+      sides[at(t)] = side_of(soup, field, t, result.cell);
   });
   double area = 0;
   for (Eigen::Index t = 0; t < count; ++t) {
@@ -225,9 +262,11 @@ WoundSurface wound_surface(const Numbered& surface, const std::string& name, Thr
   result.cell = suitable_cell(oriented.mesh);
   constexpr double most_loose = 0.65;  // a solid with this much loose around it is a sheet with a bulge
   const std::string thin = "encloses no volume: thicken = 0.01 makes a solid of that thickness [m] around its sheets";
-  const std::vector<Side> sides = sides_of(soup, result, threads);
+  constexpr double shortness = 1.0 / 48;  // of the edges for the winding number, by the box's diagonal
+  const TriangleSoup field(with_short_edges(oriented.mesh, shortness * bounds_of(oriented.mesh.points).diagonal()));
+  const std::vector<Side> sides = sides_of(soup, field, result, threads);
   if (result.loose > most_loose) throw InputError(name, thin);
-  SignGrid grid = sampled_signs(soup, result.cell, threads);
+  SignGrid grid = sampled_signs(field, result.cell, threads);
   make_well_composed(grid);
   TriMesh boundary = boundary_of(grid);
   if (boundary.triangles.rows() == 0) throw InputError(name, thin);

@@ -69,8 +69,9 @@ std::string count_text(double vertices) {
 // Tells what of a surface is thinner than an element, before tetrahedra are made of it.
 struct Thinness {
   double spacing = 0;
-  double wanted = 0;  // vertices
-  std::string note;   // empty where nothing is
+  double wanted = 0;      // vertices
+  std::string note;       // empty where nothing is
+  bool hopeless = false;  // most of it is, so that no mesh can hold it
 };
 
 Thinness thinness_of(const TriMesh& boundary, int vertices) {
@@ -85,21 +86,28 @@ Thinness thinness_of(const TriMesh& boundary, int vertices) {
   const auto thin = std::count_if(samples.begin(), samples.end(),
                                   [&](const ThicknessSample& s) { return s.thickness < 0.7 * result.spacing; });
   const double share = double(thin) / std::max<double>(1, double(samples.size()));
-  if (share < 0.01) return result;
+  if (share < 0.05) return result;
+  const auto lost = std::count_if(samples.begin(), samples.end(),
+                                  [&](const ThicknessSample& s) { return s.thickness < 0.35 * result.spacing; });
+  result.hopeless = double(lost) > 0.5 * double(samples.size());
   const Vec3& place = samples.front().place;
   result.note = fmt::format(
-      "{:.1f} % of the surface belongs to parts thinner than an element of {} vertices ({:.2g}), the thinnest at ({:.3g}, "
+      "{:.1f} % of the surface belongs to parts thinner than an element of {} vertices ({:.2g}), the thinnest at "
+      "({:.3g}, "
       "{:.3g}, {:.3g}), in the file's units: {} vertices resolve them",
       100 * share, vertices, result.spacing, place.x(), place.y(), place.z(), count_text(result.wanted));
   return result;
 }
 
-TetMesh surface_tetrahedra(const TriMesh& boundary, const BodyDef& def, const Loaded& loaded, const Thinness& thinness,
-                           const Making& making) {
+// touching: whether parts are near each other without an overlap, and so may fall apart.
+TetMesh surface_tetrahedra(const SolidSurface& solid, bool touching, const BodyDef& def, const Loaded& loaded,
+                           const Thinness& thinness, const Making& making) {
+  const TriMesh& boundary = solid.boundary;
+  if (thinness.hopeless) throw InputError(loaded.source, "is too thin for its elements: " + thinness.note);
   try {
     return tetrahedra(shape_of(boundary), def.vertices, loaded.source, making);
   } catch (const InputError& error) {
-    const auto joined = bridged(boundary, 3 * thinness.spacing);
+    const auto joined = touching ? bridged(boundary, 3 * thinness.spacing) : std::nullopt;
     if (joined) return tetrahedra(*joined, def.vertices, loaded.source, making);
     if (thinness.note.empty()) throw;
     throw InputError(loaded.source, error.problems().front().message + "; " + thinness.note);
@@ -121,7 +129,7 @@ Loaded loaded_surface(const BodyDef& def, const Making& making) {
   const Thinness thinness = thinness_of(solid.boundary, def.vertices);
   if (!thinness.note.empty()) loaded.notes.push_back(thinness.note);
   loaded.mesh = kept_or_made(making.cache, kept_name(loaded, def.vertices), tet_mesh_from,
-                             [&] { return surface_tetrahedra(solid.boundary, def, loaded, thinness, making); });
+                             [&] { return surface_tetrahedra(solid, read.touching, def, loaded, thinness, making); });
   return loaded;
 }
 

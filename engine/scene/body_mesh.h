@@ -18,7 +18,7 @@ struct Loaded {
   ClothMesh cloth;
   TriMesh skin;     // of a body made from a surface, as it was read
   Positions whole;  // of a body that is one of several pieces: the vertices of all of them; else empty
-  Shape shape;   // of a body made from a shape
+  Shape shape;      // of a body made from a shape
 };
 
 // Reads or makes each mesh once, also when several bodies share it. Meshes that take long to make are kept from run to

@@ -21,10 +21,12 @@ std::vector<std::string> text_of_pieces(const SurfacePieces& found, std::size_t 
   const double all = std::accumulate(found.volumes.begin(), found.volumes.end(), 0.0);
   const double left = std::accumulate(found.volumes.begin() + std::ptrdiff_t(kept), found.volumes.end(), 0.0);
   std::string text = fmt::format("the surface has {} pieces", count);
-  if (kept > 1) text += fmt::format(", {} of which become bodies of their own", kept == count ? "all" : fmt::format("{}", kept));
+  if (kept > 1)
+    text += fmt::format(", {} of which become bodies of their own", kept == count ? "all" : fmt::format("{}", kept));
   if (kept == 1) text += ", of which the largest is the body";
   if (kept < count) text += fmt::format("; the rest, {:.2g} % of the volume, is left out", 100 * left / all);
-  if (kept > 1) text += rule == Pieces::join ? " (pieces = \"largest\" takes one)" : " (pieces = \"join\" unites those that touch)";
+  if (kept > 1)
+    text += rule == Pieces::join ? " (pieces = \"largest\" takes one)" : " (pieces = \"join\" unites those that touch)";
   return {text};
 }
 
@@ -40,10 +42,12 @@ BodySurface read_body_surface(const BodyDef& body) {
   std::size_t kept = 1;
   while (body.pieces != Pieces::largest && kept < found.pieces.size() && found.volumes[kept] >= least) ++kept;
   if (kept > 100) {
-    throw InputError(body.surface.string(),
-                     fmt::format("has {} pieces, and at most 100 can be bodies: pieces = \"largest\" takes one of them{}",
-                                 kept, body.pieces == Pieces::bodies ? ", pieces = \"join\" unites those that touch" : ""));
+    throw InputError(
+        body.surface.string(),
+        fmt::format("has {} pieces, and at most 100 can be bodies: pieces = \"largest\" takes one of them{}", kept,
+                    body.pieces == Pieces::bodies ? ", pieces = \"join\" unites those that touch" : ""));
   }
+  result.touching = found.touching;
   for (const std::string& line : text_of_pieces(found, kept, body.pieces)) result.notes.push_back(line);
   found.pieces.resize(kept);
   found.volumes.resize(kept);
@@ -64,7 +68,8 @@ BodySurface read_body_surface(const BodyDef& body) {
 std::vector<BodyDef> bodies_of(const ConfigTable& table, BodyDef body) {
   if (body.surface.empty()) return {std::move(body)};
   auto& known = known_surfaces(table.config())->of_bodies;
-  const std::string name = fmt::format("{}{} {}", body.surface.string(), body.surface_options.text(), name_of(body.pieces));
+  const std::string name =
+      fmt::format("{}{} {}", body.surface.string(), body.surface_options.text(), name_of(body.pieces));
   try {
     std::shared_ptr<const BodySurface>& read = known[name];
     if (!read) read = std::make_shared<BodySurface>(read_body_surface(body));

@@ -13,16 +13,17 @@ struct BodySurface {
   std::vector<SourceFile> sources;   // of each piece
   std::vector<double> volumes;       // of each piece [m^3]
   std::vector<std::string> notes;
-  Bounds box;                        // of all that was read [m]
-  Positions whole;                   // the vertices of all pieces together
+  bool touching = false;  // whether parts of a piece are near each other without an overlap
+  Bounds box;             // of all that was read [m]
+  Positions whole;        // the vertices of all pieces together
 };
 
 // Reads a surface and takes it apart by the body's rule. Throws InputError.
 BodySurface read_body_surface(const BodyDef& body);
 
-// Returns the body itself, or where its surface has several pieces one body for each: they share its vertices by volume,
-// and are named after it with numbers. The surfaces of a scene are read once for a Config and its copies. Problems are
-// recorded in the table's Config.
+// Returns the body itself, or where its surface has several pieces one body for each: they share its vertices by
+// volume, and are named after it with numbers. The surfaces of a scene are read once for a Config and its copies.
+// Problems are recorded in the table's Config.
 std::vector<BodyDef> bodies_of(const ConfigTable& table, BodyDef body);
 
 }  // namespace supple
