@@ -238,8 +238,9 @@ void add_short_forms(DrawCommand& command) {
 // Draws several runs side by side.
 int draw_several(const DrawCommand& command) {
   if (command.frame || command.index || command.merge || command.jobs > 1 || command.sheet)
-    throw InputError("draw", "several runs are drawn into one film as a whole: leave out --frame, --still, --jobs, "
-                             "--index, --merge and --sheet");
+    throw InputError("draw",
+                     "several runs are drawn into one film as a whole: leave out --frame, --still, --jobs, "
+                     "--index, --merge and --sheet");
   std::filesystem::path folder = command.out;
   if (folder.empty()) folder = std::filesystem::path(command.folder().string() + "-side-by-side");
   return draw_split({command.plan, command.runs, folder, command.layout, command.coding, command.quiet});
@@ -293,7 +294,8 @@ void add_options(Verb& verb, DrawCommand& command) {
           "of the film [mp4]: " + word_list(all_names<FilmFormat>()) + "; png makes pictures alone")
       .one_of(all_names<FilmFormat>());
   verb.option(
-          "--quality", [&command](const std::string& word) { command.coding.quality = *value_named<FilmQuality>(word); },
+          "--quality",
+          [&command](const std::string& word) { command.coding.quality = *value_named<FilmQuality>(word); },
           "of the film [good]: " + word_list(all_names<FilmQuality>()))
       .one_of(all_names<FilmQuality>());
   verb.flag("--sheet", command.sheet, "also sheet.png, on which a dozen of the pictures stand");

@@ -53,12 +53,12 @@ void add_info(CommandLine& line) {
   auto live = std::make_shared<bool>(false);
   Verb verb = line.verb("info", "What is in a mesh, a surface, a scene, a replay or the folder of a run.");
   verb.footer(
-      "Examples: supple info model.obj, supple info squirrel.mesh, supple info squirrel, supple info --live squirrel, supple info "
+      "Examples: supple info model.obj, supple info squirrel.mesh, supple info squirrel, supple info --live squirrel, "
+      "supple info "
       "out/squirrel\n"
       "Of a scene the first frames are simulated, to tell what one costs here; nothing is written.");
-  verb.option(
-          "SCENE|REPLAY|MODEL|RUN", *input,
-          "mesh, surface, scene or replay file or the name of one that ships, or a folder that supple render left")
+  verb.option("SCENE|REPLAY|MODEL|RUN", *input,
+              "mesh, surface, scene or replay file or the name of one that ships, or a folder that supple render left")
       .required();
   verb.flag("--live", *live, "list what of a scene can change while it runs, and what that costs");
   verb.runs([input, live] { return inform(*input, *live); });

@@ -61,8 +61,9 @@ void add_mesh(CommandLine& line) {
   auto options = std::make_shared<MeshOptions>();
   Verb verb = line.verb("mesh", "Make tetrahedra of a shape or a surface, or check and rewrite a mesh.");
   verb.footer("Example: supple mesh squirrel -o squirrel.mesh --vertices 8395");
-  verb.option("SHAPE", options->input,
-              "shape file (.toml), the name of a shape that ships, a surface (OBJ, PLY, STL, glTF, OFF), or a mesh (as -o)")
+  verb.option(
+          "SHAPE", options->input,
+          "shape file (.toml), the name of a shape that ships, a surface (OBJ, PLY, STL, glTF, OFF), or a mesh (as -o)")
       .required();
   verb.option("-o,--output", options->output, fmt::format("mesh to write: {}", mesh_formats)).required();
   verb.option("--vertices", options->vertices, "wanted (within 3 %)").between(50, 500000);

@@ -9,7 +9,10 @@ void add_render(CommandLine& line) {
   verb.footer(
       "Example: supple render squirrel --frames 60 --set body.polynomial.material.mu=6e4\n"
       "Leaves frames/, video.mp4, motion/, profile.json and run.json in out/NAME, and states/ if asked.");
-  add_film(verb, {"SCENE|MODEL", "scene file, the name of one that ships (supple list), or a mesh or surface, which falls onto the ground"}, line.words());
+  add_film(verb,
+           {"SCENE|MODEL",
+            "scene file, the name of one that ships (supple list), or a mesh or surface, which falls onto the ground"},
+           line.words());
 }
 
 }  // namespace supple

@@ -37,7 +37,8 @@ DrawPlan plan_of_panel(const SplitCommand& command, const std::string& run, int 
   const auto share = [columns](int size) { return std::max(16, size / columns / 2 * 2); };
   plan.settings.push_back(fmt::format("output.width={}", share(output.width)));
   // Panels in a row are narrow, so that they keep more of the height than of the width.
-  plan.settings.push_back(fmt::format("output.height={}", columns > 2 ? share(output.height) * 3 / 4 * 2 : share(output.height)));
+  plan.settings.push_back(
+      fmt::format("output.height={}", columns > 2 ? share(output.height) * 3 / 4 * 2 : share(output.height)));
   return plan;
 }
 

@@ -6,8 +6,8 @@
 
 namespace supple {
 
-// Returns the box that a camera frames [m]: colliders at the start, and the bodies' whole motion where the stage knows it;
-// otherwise the bodies at the start, and the ground below those that will fall on it.
+// Returns the box that a camera frames [m]: colliders at the start, and the bodies' whole motion where the stage knows
+// it; otherwise the bodies at the start, and the ground below those that will fall on it.
 Bounds framed_box(const SceneDef& scene, const Stage& stage);
 
 // Returns the camera at a time [s]. positions: by mesh, as in a DrawList; the camera moves along with the mesh that it

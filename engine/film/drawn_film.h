@@ -52,7 +52,7 @@ class DrawnFilm {
   std::vector<DrawnBody> drawn_;
   std::vector<Skin> collider_skins_;
   std::optional<ReferenceRun> ghosts_;  // whose bodies are the stage's last meshes
-  std::optional<SurfaceField> field_;  // where the scene shows one
+  std::optional<SurfaceField> field_;   // where the scene shows one
   Stage stage_;
   std::vector<std::size_t> renewed_;  // colliders, since the last list
 };

@@ -128,7 +128,8 @@ void FilmedBody::measure(int frame, BodyRow& row) {
   row.collapsed = shape.collapsed;
   if (row.contact) {
     const std::vector<Collider>& colliders = driver_.set().colliders;
-    const std::vector<double> depths = penetrations(colliders, driver_.inputs().collider_motions, state().x, model().surface);
+    const std::vector<double> depths =
+        penetrations(colliders, driver_.inputs().collider_motions, state().x, model().surface);
     const std::vector<Vec3>& forces = driver_.workspace().report.collider_forces;
     for (std::size_t c = 0; c < colliders.size(); ++c) {
       row.contact->colliders.push_back({colliders[c].name, depths[c] / model().size, forces[c].norm()});

@@ -57,9 +57,9 @@ class FrameLoop {
   Threads threads_;
   int first_;  // the first frame that this run makes; those before it are an earlier run's
   FilmLog& log_;
-  StateVerifier* verifier_;         // of --verify; null without it
-  Checkpoint before_;               // taken before the frame in progress; empty when the film keeps none
-  std::optional<DrawnFilm> drawn_;  // only with pictures
+  StateVerifier* verifier_;               // of --verify; null without it
+  Checkpoint before_;                     // taken before the frame in progress; empty when the film keeps none
+  std::optional<DrawnFilm> drawn_;        // only with pictures
   std::vector<Positions> before_motion_;  // of the bodies at the end of the last frame, where the pictures need it [m]
   std::vector<std::unique_ptr<FilmedBody>> filmed_;
   std::optional<PoseTableWriter> poses_;  // only with colliders

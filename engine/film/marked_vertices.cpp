@@ -29,8 +29,8 @@ std::vector<double> depths_in(const Positions& x, const CollisionSet& set, doubl
 void append_marks(const Body& body, const Positions& motion, const CollisionSet& set, double time, Threads* threads,
                   std::vector<std::array<float, 4>>& marks) {
   const auto add = [&](Eigen::Index v, float kind) {
-    marks.push_back({static_cast<float>(motion(v, 0)), static_cast<float>(motion(v, 1)),
-                     static_cast<float>(motion(v, 2)), kind});
+    marks.push_back(
+        {static_cast<float>(motion(v, 0)), static_cast<float>(motion(v, 1)), static_cast<float>(motion(v, 2)), kind});
   };
   for (std::size_t h = 0; h < body.description.handles.size(); ++h) {
     if (!body.def.handles[h].holds_at(time)) continue;

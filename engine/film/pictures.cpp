@@ -24,7 +24,11 @@ constexpr int compressing_threads = 2;
 }  // namespace
 
 Pictures::Pictures(const Stage& stage, GlChoice gl, const std::filesystem::path& shaders, const PictureTargets& targets)
-    : targets_(targets), background_(backdrop_of(stage)), lists_(frames_in_flight), drawn_(frames_in_flight), pictures_(frames_in_flight) {
+    : targets_(targets),
+      background_(backdrop_of(stage)),
+      lists_(frames_in_flight),
+      drawn_(frames_in_flight),
+      pictures_(frames_in_flight) {
   const BlockedSignals meanwhile;  // the thread that makes the frames takes signals
   drawing_ = std::thread([this, stage, gl, shaders] { guarded([&] { draw_all(stage, gl, shaders); }); });
   for (int number = 1; targets_.files && number <= compressing_threads; ++number)

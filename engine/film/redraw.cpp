@@ -29,9 +29,21 @@ using Json = nlohmann::ordered_json;
 
 // Lists the values of a scene that change what is seen and nothing else, by the names that generic_path() gives them. A
 // name also covers all values below it.
-constexpr std::array seen = {
-    "title", "camera", "look", "field", "text", "output.width", "output.height", "output.samples",
-    "body[].color", "body[].gloss", "body[].label", "body[].pattern", "body[].pattern_size", "body[].skin_cells", "collider[].color"};
+constexpr std::array seen = {"title",
+                             "camera",
+                             "look",
+                             "field",
+                             "text",
+                             "output.width",
+                             "output.height",
+                             "output.samples",
+                             "body[].color",
+                             "body[].gloss",
+                             "body[].label",
+                             "body[].pattern",
+                             "body[].pattern_size",
+                             "body[].skin_cells",
+                             "collider[].color"};
 
 bool is_seen(const std::string& path) {
   const std::string generic = generic_path(path);
@@ -158,8 +170,8 @@ class Drawing {
   }
 
  private:
-  // Finds the range of the field and the box of the motion over all frames of the run, so that each picture has the same
-  // colours and the same camera, whichever frames are drawn and in how many parts.
+  // Finds the range of the field and the box of the motion over all frames of the run, so that each picture has the
+  // same colours and the same camera, whichever frames are drawn and in how many parts.
   void span_film(bool field, bool camera) {
     Bounds box;
     for (int frame = 0; frame < drawing_.frame_count && !interrupted(); ++frame) {
@@ -232,7 +244,7 @@ class Drawing {
   DrawnFilm drawn_;
   Threads threads_;
   std::vector<Positions> motion_, before_;  // of the frame that was loaded, and of the one before it [m]
-  int followed_ = 0;  // frames whose changes are in scene_
+  int followed_ = 0;                        // frames whose changes are in scene_
 };
 
 }  // namespace

@@ -34,9 +34,9 @@ struct LoadedDrawing {
   std::vector<PointCacheReader> motion;
   std::vector<FrameRow> rows;  // of the run's profile; empty while it goes on
   int frame_count = 0;         // of the run
-  std::vector<int> frames;  // of the run, one for each picture
-  double rate = 0;          // frames a second of the film
-  std::string identity;     // JSON: all that the pictures depend on
+  std::vector<int> frames;     // of the run, one for each picture
+  double rate = 0;             // frames a second of the film
+  std::string identity;        // JSON: all that the pictures depend on
 };
 
 // Reads the run, its scene and its meshes. Throws InputError when the folder does not hold a run with all its motion,

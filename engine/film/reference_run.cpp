@@ -8,8 +8,7 @@
 
 namespace supple {
 
-ReferenceRun::ReferenceRun(const std::filesystem::path& folder, const std::vector<Body>& bodies)
-    : folder_(folder) {
+ReferenceRun::ReferenceRun(const std::filesystem::path& folder, const std::vector<Body>& bodies) : folder_(folder) {
   const RunRecord run = read_run(folder);
   for (const Body& body : bodies) {
     motion_.emplace_back(run.motion(body.def.name));

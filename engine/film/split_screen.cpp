@@ -92,7 +92,8 @@ Image split_picture(const std::vector<Panel>& panels, int columns, const std::st
     const PngImage panel = read_png(file);
     if (p == 0) {
       grid = grid_of(panel, static_cast<int>(panels.size()), columns);
-      image = {grid.width(), grid.height(), std::vector<std::uint8_t>(3 * std::size_t(grid.width()) * grid.height()), {}};
+      image = {
+          grid.width(), grid.height(), std::vector<std::uint8_t>(3 * std::size_t(grid.width()) * grid.height()), {}};
       Sticker background(image.width, image.height);
       background.fill({0, 0, image.width, image.height}, paper);
       background.onto(image, 0, 0);

@@ -55,13 +55,11 @@ bool body_has(FieldQuantity quantity, const Body& body) {
   return !body.def.cloth || (quantity != FieldQuantity::energy && quantity != FieldQuantity::stress);
 }
 
-double stiffness_of(const Body& body) {
-  return system_stiffness(body.def.substance.material, body.def.solver.fit).k;
-}
+double stiffness_of(const Body& body) { return system_stiffness(body.def.substance.material, body.def.solver.fit).k; }
 
 // Returns how far the usual range of a body reaches from the value at rest. Strains reach to a half or to the double,
-// stress and energy to those of a strain of 0.3, speed to that of a fall over the body's size, and lengths to a share of
-// the body.
+// stress and energy to those of a strain of 0.3, speed to that of a fall over the body's size, and lengths to a share
+// of the body.
 double usual_reach(FieldQuantity quantity, const Body& body, const SceneDef& scene) {
   constexpr double strain = 0.3, depth_share = 0.01, distance_share = 0.05;
   const double size = bounds_of(body.description.mesh.rest).diagonal();

@@ -1,6 +1,6 @@
 // Computes the field that surfaces show in colours: which value each vertex of a body has, and what range the colours
-// span. Everything follows from positions and from the scene, so that a film has the same colours when it is drawn again.
-// Not here: the formulas of elements (sim/solver/pose_elements.h), and how colours are drawn (render/).
+// span. Everything follows from positions and from the scene, so that a film has the same colours when it is drawn
+// again. Not here: the formulas of elements (sim/solver/pose_elements.h), and how colours are drawn (render/).
 #pragma once
 
 #include <optional>
@@ -21,8 +21,8 @@ namespace supple {
 struct FramePose {
   int frame = 0;
   double time = 0;  // at the end of the frame [s]
-  // These lists have one entry for each body, by vertex of its mesh [m]. `before` is empty where the field does not need
-  // it.
+  // These lists have one entry for each body, by vertex of its mesh [m]. `before` is empty where the field does not
+  // need it.
   std::vector<const Positions*> motion, before;
   const FrameRow* row = nullptr;  // of the frame in the run's profile; null where it is not known
 };

@@ -85,9 +85,10 @@ void check_holes(const Numbered& surface, const Neighbours& next, const std::vec
     if (share <= largest_hole_share) continue;
     const Hole& largest =
         *std::max_element(found.begin(), found.end(), [](const Hole& a, const Hole& b) { return a.area < b.area; });
-    throw InputError(name, fmt::format("the surface is open: holes of {:.3g} % of its area, the largest at {}; up to "
-                                       "{:.3g} % are allowed",
-                                       100 * share, triangle_text(surface, largest.triangle), 100 * largest_hole_share));
+    throw InputError(name,
+                     fmt::format("the surface is open: holes of {:.3g} % of its area, the largest at {}; up to "
+                                 "{:.3g} % are allowed",
+                                 100 * share, triangle_text(surface, largest.triangle), 100 * largest_hole_share));
   }
   if (edges > 0) {
     notes->push_back(fmt::format("{} open edges around {} holes, of up to {:.2g} % of the area: taken as closed", edges,
@@ -101,8 +102,8 @@ void measure_volumes(const Numbered& surface, std::vector<Component>& components
     for (const Eigen::Index t : component.triangles)
       component.volume += area_vector(surface.mesh, t).dot(corner(surface.mesh, t, 0) - center) / 3;
     if (!(std::abs(component.volume) > 1e-12 * component.area * component.box.diagonal()))
-      throw InputError(
-          name, fmt::format("the surface encloses no volume at {}", triangle_text(surface, component.triangles.front())));
+      throw InputError(name, fmt::format("the surface encloses no volume at {}",
+                                         triangle_text(surface, component.triangles.front())));
   }
 }
 

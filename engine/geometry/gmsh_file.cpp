@@ -60,7 +60,8 @@ void read_elements_2(Words& words, Gmsh& mesh) {
   const Eigen::Index count = words.count("elements", 6);
   for (Eigen::Index i = 0; i < count; ++i, words.end_row()) {
     (void)words.number<long long>("an element's number");
-    const int type = words.number<int>("an element's type"), tags = words.number<int>("the number of an element's tags");
+    const int type = words.number<int>("an element's type"),
+              tags = words.number<int>("the number of an element's tags");
     if (tags < 0 || tags > 1000) words.refuse(fmt::format("an element with {} tags", tags));
     long long group = 0;
     for (int k = 0; k < tags; ++k) {
@@ -100,8 +101,8 @@ void read_nodes_4(Words& words, Gmsh& mesh) {
     const bool parametric = words.number<int>("whether nodes have parameters") != 0;
     const auto here = words.number<long long>("the number of nodes in a block");
     if (here < 0 || here + std::ssize(mesh.points) > count)
-      words.refuse(fmt::format("{} nodes announced, but the blocks hold {} or more", count,
-                               here + std::ssize(mesh.points)));
+      words.refuse(
+          fmt::format("{} nodes announced, but the blocks hold {} or more", count, here + std::ssize(mesh.points)));
     std::vector<long long> tags;
     for (long long i = 0; i < here; ++i) tags.push_back(words.number<long long>("a node's tag"));
     for (const long long tag : tags) {
@@ -145,7 +146,8 @@ double read_version(Words& words) {
   const auto version = words.number<double>("the version");
   const bool known = (version >= 2 && version < 3) || (version >= 4.1 && version < 5);
   if (!known) words.refuse(fmt::format("version {} is not read (2.2 and 4.1 are: gmsh -format msh41)", version));
-  if (words.number<int>("the file type") != 0) words.refuse("binary files are not read (gmsh -save without -bin writes text)");
+  if (words.number<int>("the file type") != 0)
+    words.refuse("binary files are not read (gmsh -save without -bin writes text)");
   words.skip_line();
   return version;
 }

@@ -77,7 +77,8 @@ std::vector<Rim> rims_of(const TriMesh& mesh, const Neighbours& next, const Comp
       taken[i] = 1;
       const auto [t, k] = open[i];
       line.push_back({mesh.triangles(t, k), mesh.triangles(t, (k + 1) % 3)});
-      const auto start = std::find_if(line.begin(), line.end(), [&](const auto& edge) { return edge[0] == line.back()[1]; });
+      const auto start =
+          std::find_if(line.begin(), line.end(), [&](const auto& edge) { return edge[0] == line.back()[1]; });
       if (start == line.end()) continue;
       Rim rim;
       rim.edges.assign(start, line.end());
@@ -138,8 +139,8 @@ Capped with_caps(const Numbered& surface) {
       all.push_back(std::move(rim));
     }
     if (area > largest_cap_share * component.area) {
-      capped.refusal = fmt::format("caps would have {:.0f} % of the area of the part with {}", 100 * area / component.area,
-                                   triangle_text(surface, component.triangles.front()));
+      capped.refusal = fmt::format("caps would have {:.0f} % of the area of the part with {}",
+                                   100 * area / component.area, triangle_text(surface, component.triangles.front()));
       return capped;
     }
   }

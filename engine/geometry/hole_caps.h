@@ -6,11 +6,11 @@
 namespace supple {
 
 struct Capped {
-  Numbered surface;         // all components oriented alike, with the caps at the end
-  Eigen::Index caps = 0;    // how many holes were closed
-  double widest = 0;        // the longest side of the box around the widest hole [m]
-  Vec3 at = Vec3::Zero();   // the middle of that hole
-  std::string refusal;      // why there are no caps; empty: there are
+  Numbered surface;        // all components oriented alike, with the caps at the end
+  Eigen::Index caps = 0;   // how many holes were closed
+  double widest = 0;       // the longest side of the box around the widest hole [m]
+  Vec3 at = Vec3::Zero();  // the middle of that hole
+  std::string refusal;     // why there are no caps; empty: there are
 };
 
 // Closes each hole by a fan of triangles around the middle of its rim. Refuses where the surface has an edge with more

@@ -46,8 +46,7 @@ void orient(MeshFile& file, const std::vector<int>& lines, const std::string& na
   for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
     const double volume = tet_volume(mesh, e);
     // An element below 1e-18 of the box's cube is flat in double coordinates; the flattest sliver in use has 1e-14.
-    if (!(std::abs(volume) > 1e-18 * edge * edge * edge))
-      refuse(e, lines, name, "the element has no volume");
+    if (!(std::abs(volume) > 1e-18 * edge * edge * edge)) refuse(e, lines, name, "the element has no volume");
     if (volume < 0) {
       ++negative;
       if (first_negative < 0) first_negative = e;
@@ -79,8 +78,7 @@ struct Format {
 };
 
 constexpr std::array formats = {Format{".mesh", read_medit, medit_text}, Format{".msh", read_gmsh, gmsh_text},
-                                Format{".vtk", read_legacy_vtk, legacy_vtk_text},
-                                Format{".vtu", read_vtu, vtu_text}};
+                                Format{".vtk", read_legacy_vtk, legacy_vtk_text}, Format{".vtu", read_vtu, vtu_text}};
 
 const Format* format_of(const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
@@ -125,8 +123,8 @@ MeshFile read_mesh(const std::filesystem::path& path) {
 void check_writable(const std::filesystem::path& path) {
   if (is_mesh_file(path)) return;
   const std::string extension = path.extension().string();
-  throw InputError(path.string(), fmt::format("{} is no format for tetrahedra here: {}", extension.empty() ? "none" : extension,
-                                              mesh_formats));
+  throw InputError(path.string(), fmt::format("{} is no format for tetrahedra here: {}",
+                                              extension.empty() ? "none" : extension, mesh_formats));
 }
 
 void write_mesh(const std::filesystem::path& path, const TetMesh& mesh) {

@@ -43,8 +43,8 @@ class Words {
   Number number(std::string_view what) {
     const std::string_view word = next();
     if (word.empty() && announced_ > rows_) {
-      refuse(fmt::format("{} {} announced, but the file ends after {}: {} should stand here", announced_, section_, rows_,
-                         what));
+      refuse(fmt::format("{} {} announced, but the file ends after {}: {} should stand here", announced_, section_,
+                         rows_, what));
     }
     if (word.empty()) refuse(fmt::format("the file ends where {} should stand", what));
     Number value{};
@@ -133,4 +133,3 @@ class Words {
 };
 
 }  // namespace supple
-

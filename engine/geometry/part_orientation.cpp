@@ -37,8 +37,8 @@ bool faces_inward(const TriangleSoup& soup, const Component& part, double size) 
     const Eigen::Index t = part.triangles[std::min(found, sums.size() - 1)];
     double v = radical_inverse(i + 1, 2), w = radical_inverse(i + 1, 3);
     if (v + w > 1) v = 1 - v, w = 1 - w;
-    const Vec3 point = (1 - v - w) * corner(soup.mesh(), t, 0) + v * corner(soup.mesh(), t, 1) +
-                       w * corner(soup.mesh(), t, 2);
+    const Vec3 point =
+        (1 - v - w) * corner(soup.mesh(), t, 0) + v * corner(soup.mesh(), t, 1) + w * corner(soup.mesh(), t, 2);
     const Vec3 normal = soup.normals().row(t);
     const Vec3 ahead = direction_around(normal, radical_inverse(i + 1, 5), radical_inverse(i + 1, 7));
     const Vec3 behind = ahead - 2 * ahead.dot(normal) * normal;
@@ -60,9 +60,8 @@ Eigen::Index orient_parts(Numbered& surface, Threads& threads) {
   const TriangleSoup soup(surface.mesh);
   const double size = bounds_of(surface.mesh.points).diagonal();
   std::vector<char> inward(parts.components.size(), 0);
-  threads.run(int(parts.components.size()), [&](int c) {
-    inward[std::size_t(c)] = faces_inward(soup, parts.components[std::size_t(c)], size);
-  });
+  threads.run(int(parts.components.size()),
+              [&](int c) { inward[std::size_t(c)] = faces_inward(soup, parts.components[std::size_t(c)], size); });
   for (std::size_t c = 0; c < inward.size(); ++c) {
     if (!inward[c]) continue;
     for (const Eigen::Index t : parts.components[c].triangles) {

@@ -17,9 +17,7 @@ struct Blocks {
   std::vector<float> winding;  // at the blocks' lowest points, with one layer more at the end of each axis
 
   std::size_t at(int i, int j, int k) const { return (std::size_t(k) * count.y() + j) * count.x() + i; }
-  std::size_t corner(int i, int j, int k) const {
-    return (std::size_t(k) * (count.y() + 1) + j) * (count.x() + 1) + i;
-  }
+  std::size_t corner(int i, int j, int k) const { return (std::size_t(k) * (count.y() + 1) + j) * (count.x() + 1) + i; }
 };
 
 void mark_near(const TriangleSoup& soup, const SignGrid& grid, Blocks& blocks) {
@@ -225,8 +223,7 @@ class Nets {
           }
         }
         name(i, j, k) = crossed > 0 ? std::int32_t(points_.size()) : -1;
-        if (crossed > 0)
-          points_.push_back(grid_.position(i, j, k) + grid_.cell * sum / crossed);
+        if (crossed > 0) points_.push_back(grid_.position(i, j, k) + grid_.cell * sum / crossed);
       }
     }
   }

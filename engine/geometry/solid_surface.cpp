@@ -55,18 +55,21 @@ SolidSurface by_winding(const Numbered& surface, const std::string& reason, cons
   Threads threads(int(std::max(1u, std::thread::hardware_concurrency())));
   WoundSurface found = wound_surface(surface, name, threads);
   const std::string why = reason.empty() ? "" : reason + "; ";
-  notes.push_back(fmt::format("{}the solid is where its triangles wind around (close = \"winding\"), with details above "
-                              "{:.2g}",
-                              why, found.cell));
+  notes.push_back(
+      fmt::format("{}the solid is where its triangles wind around (close = \"winding\"), with details above "
+                  "{:.2g}",
+                  why, found.cell));
   if (found.turned > 0) notes.push_back(fmt::format("{} triangles were turned to face outward", found.turned));
   if (found.hidden > 0.005)
     notes.push_back(fmt::format("{:.0f} % of the triangles' area lies inside, and is not drawn", 100 * found.hidden));
   if (found.patched > 0.001)
-    notes.push_back(fmt::format("{:.2g} % of the solid's surface was added where there are holes", 100 * found.patched));
+    notes.push_back(
+        fmt::format("{:.2g} % of the solid's surface was added where there are holes", 100 * found.patched));
   if (found.loose > 0.005) {
-    notes.push_back(fmt::format("{:.2g} % of the triangles' area are sheets that enclose nothing: they are drawn, but "
-                                "are no part of the solid (thicken = 0.01 makes them one)",
-                                100 * found.loose));
+    notes.push_back(
+        fmt::format("{:.2g} % of the triangles' area are sheets that enclose nothing: they are drawn, but "
+                    "are no part of the solid (thicken = 0.01 makes them one)",
+                    100 * found.loose));
   }
   return {std::move(found.boundary), std::move(found.drawn)};
 }
@@ -74,8 +77,8 @@ SolidSurface by_winding(const Numbered& surface, const std::string& reason, cons
 SolidSurface thick(const Numbered& surface, double thickness, Notes& notes) {
   Thickened made = thickened(surface, thickness);
   if (made.sheets > 0) {
-    notes.push_back(fmt::format("{} sheet{} {:.3g} thick", made.sheets, made.sheets == 1 ? " was made" : "s were made",
-                                thickness));
+    notes.push_back(
+        fmt::format("{} sheet{} {:.3g} thick", made.sheets, made.sheets == 1 ? " was made" : "s were made", thickness));
   }
   return {std::move(made.boundary), {}};
 }

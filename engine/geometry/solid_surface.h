@@ -33,7 +33,7 @@ struct Names<UpAxis> {
 enum class LengthUnit { metre, centimetre, millimetre, kilometre, inch, foot };
 template <>
 struct Names<LengthUnit> {
-  static constexpr std::array table = {Name{LengthUnit::metre, "m"},      Name{LengthUnit::centimetre, "cm"},
+  static constexpr std::array table = {Name{LengthUnit::metre, "m"},       Name{LengthUnit::centimetre, "cm"},
                                        Name{LengthUnit::millimetre, "mm"}, Name{LengthUnit::kilometre, "km"},
                                        Name{LengthUnit::inch, "in"},       Name{LengthUnit::foot, "ft"}};
 };
@@ -61,8 +61,9 @@ struct SolidSurface {
   const TriMesh& skin() const { return drawn.triangles.rows() > 0 ? drawn : boundary; }
 };
 
-// Makes a solid of triangles that have been set up. Adds one line to `notes` for each thing that was done. Throws InputError where the options refuse the surface, where
-// numbers are no good, and where no volume is enclosed; it names the option that helps.
+// Makes a solid of triangles that have been set up. Adds one line to `notes` for each thing that was done. Throws
+// InputError where the options refuse the surface, where numbers are no good, and where no volume is enclosed; it names
+// the option that helps.
 SolidSurface solid_surface(const TriMesh& triangles, const SurfaceOptions& options, const std::string& name,
                            std::vector<std::string>* notes);
 

@@ -83,7 +83,8 @@ class TriangleSolid::Builder {
       centroids_.row(t) = ((solid.corner(t, 0) + solid.corner(t, 1) + solid.corner(t, 2)) / 3).transpose();
   }
 
-  // The root's children are built one by one or all at once, and then stand in the order in which one thread makes them.
+  // The root's children are built one by one or all at once, and then stand in the order in which one thread makes
+  // them.
   void build() {
     int count = 0;
     const Parts parts = parts_of(order_, count);
@@ -103,7 +104,7 @@ class TriangleSolid::Builder {
     for (int k = 0; k < width; ++k) {
       const Part own = k < count ? parts[std::size_t(k)] : Part();
       describe(own, k, root, dipoles);
-      root.child[std::size_t(k)] = own.empty()                         ? 0
+      root.child[std::size_t(k)] = own.empty()                        ? 0
                                    : own.size() <= std::size_t(width) ? add_leaf(own, all)
                                                                       : append(made[std::size_t(k)], all);
     }
@@ -220,7 +221,7 @@ class TriangleSolid::Builder {
     for (int k = 0; k < width; ++k) {
       const Part own = k < count ? parts[std::size_t(k)] : Part();
       describe(own, k, node, dipoles);
-      node.child[std::size_t(k)] = own.empty()                         ? 0
+      node.child[std::size_t(k)] = own.empty()                        ? 0
                                    : own.size() <= std::size_t(width) ? add_leaf(own, arrays)
                                                                       : add_node(own, arrays);
     }

@@ -28,8 +28,8 @@ class TriangleSolid {
   // the first one. The side is found from the surface's normals where that is safe, and otherwise as above.
   SurfacePoint closest(const Vec3& p, std::int32_t& near) const;
 
-  // Returns the signed distance, with the bits of closest(p), for a caller who knows that the surface is not further away
-  // than `most`, by more than round-off.
+  // Returns the signed distance, with the bits of closest(p), for a caller who knows that the surface is not further
+  // away than `most`, by more than round-off.
   double distance_within(const Vec3& p, double most) const;
 
   // Tells whether every edge is closed, so that the sign changes at the triangles alone.

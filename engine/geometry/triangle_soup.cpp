@@ -169,7 +169,8 @@ std::optional<double> TriangleSoup::first_hit(const Vec3& from, const Vec3& dire
     }
     for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
       const std::int32_t t = order_[std::size_t(i)];
-      if (t != except) best = std::min(best, hit_of_triangle(from, direction, corner(t, 0), corner(t, 1), corner(t, 2)));
+      if (t != except)
+        best = std::min(best, hit_of_triangle(from, direction, corner(t, 0), corner(t, 1), corner(t, 2)));
     }
   }
   return best < infinity ? std::optional(best) : std::nullopt;

@@ -21,8 +21,8 @@ class TriangleSoup {
   // count exactly, far parts by their expansion, with errors of up to about 0.02.
   double winding_number(const Vec3& p) const;
 
-  // Returns the length along a unit direction to the first triangle other than `except` (-1: none is left out), whichever
-  // way it faces; nothing when the ray meets none.
+  // Returns the length along a unit direction to the first triangle other than `except` (-1: none is left out),
+  // whichever way it faces; nothing when the ray meets none.
   std::optional<double> first_hit(const Vec3& from, const Vec3& direction, Eigen::Index except) const;
 
   struct Near {
@@ -30,8 +30,8 @@ class TriangleSoup {
     Vec3 point = Vec3::Zero();
     double squared = 0;  // of the distance [m^2]
   };
-  // Returns the closest point within a distance, among triangles whose normal has a positive share along `facing`; among
-  // all of them when `facing` is zero.
+  // Returns the closest point within a distance, among triangles whose normal has a positive share along `facing`;
+  // among all of them when `facing` is zero.
   Near closest(const Vec3& p, double within, const Vec3& facing) const;
 
   const TriMesh& mesh() const { return mesh_; }
@@ -41,9 +41,9 @@ class TriangleSoup {
   // A node's children are the next node and the node `other`; a leaf has triangles [first, first + count) of order_.
   struct Node {
     Bounds box;
-    Vec3 center;      // mean of the triangles, weighted by area [m]
-    Vec3 area;        // sum of their area vectors [m^2]
-    Mat3 moment;      // sum of (centroid - center) x area vector, as outer products [m^3]
+    Vec3 center;       // mean of the triangles, weighted by area [m]
+    Vec3 area;         // sum of their area vectors [m^2]
+    Mat3 moment;       // sum of (centroid - center) x area vector, as outer products [m^3]
     double reach = 0;  // distance from the centre beyond which the expansion serves [m]
     std::int32_t other = 0;
     std::int32_t first = 0, count = 0;  // count 0: not a leaf

@@ -61,11 +61,12 @@ void read_regions(Words& words, VtkCells& cells) {
 }  // namespace
 
 RawMesh read_legacy_vtk(std::string text, const std::string& name) {
-  if (!text.starts_with("# vtk DataFile Version")) throw InputError(name, "not a VTK file: it should begin with '# vtk DataFile Version'");
+  if (!text.starts_with("# vtk DataFile Version"))
+    throw InputError(name, "not a VTK file: it should begin with '# vtk DataFile Version'");
   const std::size_t title = text.find('\n'), rest = title == std::string::npos ? title : text.find('\n', title + 1);
   if (rest == std::string::npos) throw InputError(name, "the file ends after its title");
   for (std::size_t i = title + 1; i < rest; ++i) text[i] = ' ';  // a title may say anything
-  const bool arrays = text.size() > 23 && text[23] >= '5';  // the version's first digit
+  const bool arrays = text.size() > 23 && text[23] >= '5';       // the version's first digit
   Words words(std::move(text), name);
   const std::string format(words.next());
   if (format != "ASCII") words.refuse(fmt::format("{} files are not read; ASCII ones are", format.substr(0, 40)));

@@ -1,5 +1,5 @@
-// Implements VTK's XML format of mesh_formats.h for unstructured grids: docs.vtk.org, "VTK XML formats". Arrays are read
-// as text, or as base64 that is not compressed; XML is taken apart only as far as these files need it.
+// Implements VTK's XML format of mesh_formats.h for unstructured grids: docs.vtk.org, "VTK XML formats". Arrays are
+// read as text, or as base64 that is not compressed; XML is taken apart only as far as these files need it.
 #include <fmt/core.h>
 
 #include <array>
@@ -112,7 +112,8 @@ std::vector<To> binary_array(const Vtu& file, std::size_t at, const std::string&
   std::uint64_t announced = 0;
   std::memcpy(&announced, bytes.data(), skipped);  // the least byte first, as on this machine
   const std::string_view rest = std::string_view(bytes).substr(skipped);
-  if (announced != rest.size()) file.refuse(fmt::format("{} bytes announced, but an array holds {}", announced, rest.size()));
+  if (announced != rest.size())
+    file.refuse(fmt::format("{} bytes announced, but an array holds {}", announced, rest.size()));
   const std::string type = file.attribute(at, "type");
   if (type == "Float64") return cast_bytes<double, To>(rest);
   if (type == "Float32") return cast_bytes<float, To>(rest);
@@ -184,7 +185,8 @@ RawMesh read_vtu(std::string text, const std::string& name) {
   const std::string header = file.attribute(head, "header_type");
   const std::size_t piece = file.tag("Piece", head, file.size());
   if (piece == std::string::npos) file.refuse("the file has no <Piece>");
-  if (file.tag("Piece", piece + 1, file.size()) != std::string::npos) file.refuse("files with several pieces are not read");
+  if (file.tag("Piece", piece + 1, file.size()) != std::string::npos)
+    file.refuse("files with several pieces are not read");
   VtkCells cells;
   const auto coordinates = array_at<double>(file, required(file, "Points", ""), header);
   cells.points = array_at<long long>(file, required(file, "Cells", "connectivity"), header);

@@ -39,12 +39,13 @@ std::string codec_words(const FilmCoding& coding, int threads) {
   };
   switch (coding.format) {
     case FilmFormat::mp4_h265:
-      return fmt::format("-c:v libx265 -preset fast -crf {} -x265-params log-level=error:pools={}:frame-threads=1 "
-                         "-tag:v hvc1 -movflags +faststart",
-                         of_quality(30, 22, 15), threads);
+      return fmt::format(
+          "-c:v libx265 -preset fast -crf {} -x265-params log-level=error:pools={}:frame-threads=1 "
+          "-tag:v hvc1 -movflags +faststart",
+          of_quality(30, 22, 15), threads);
     case FilmFormat::webm:
-      return fmt::format("-c:v libvpx-vp9 -deadline good -cpu-used 4 -b:v 0 -crf {} -threads {}", of_quality(42, 31, 20),
-                         threads);
+      return fmt::format("-c:v libvpx-vp9 -deadline good -cpu-used 4 -b:v 0 -crf {} -threads {}",
+                         of_quality(42, 31, 20), threads);
     case FilmFormat::webm_av1:
       return fmt::format("-c:v libsvtav1 -preset 8 -crf {} -svtav1-params lp={}", of_quality(45, 32, 20), threads);
     default: break;
@@ -57,9 +58,10 @@ std::string codec_words(const FilmCoding& coding, int threads) {
 // keeps still parts still from frame to frame, which also makes the file small.
 std::string gif_words(const FilmCoding& coding) {
   const int colors = coding.quality == FilmQuality::draft ? 64 : 256;
-  return fmt::format("-filter_complex split[a][b];[a]palettegen=max_colors={}:stats_mode=diff[p];[b][p]paletteuse="
-                     "dither=bayer:bayer_scale={}:diff_mode=rectangle -loop 0",
-                     colors, coding.quality == FilmQuality::best ? 3 : 5);
+  return fmt::format(
+      "-filter_complex split[a][b];[a]palettegen=max_colors={}:stats_mode=diff[p];[b][p]paletteuse="
+      "dither=bayer:bayer_scale={}:diff_mode=rectangle -loop 0",
+      colors, coding.quality == FilmQuality::best ? 3 : 5);
 }
 
 std::vector<std::string> ffmpeg_words(const std::filesystem::path& part, int width, int height, double fps,

@@ -38,7 +38,8 @@ std::optional<PixelRect> place_of(const WantedCaption& caption, const std::vecto
 
 // By Andrew's monotone chain (1979).
 Outline hull_of(std::vector<Eigen::Vector2d> points) {
-  std::ranges::sort(points, [](const auto& a, const auto& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); });
+  std::ranges::sort(points,
+                    [](const auto& a, const auto& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); });
   Outline hull;
   const auto add_chain = [&hull](auto begin, auto end) {
     const std::size_t first = hull.size();
@@ -85,7 +86,8 @@ std::optional<std::vector<PixelRect>> caption_places(const std::vector<WantedCap
                                                      const std::vector<PixelRect>& taken, int width, int height) {
   std::vector<std::size_t> order(captions.size());
   std::iota(order.begin(), order.end(), std::size_t(0));
-  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return captions[a].top.x() < captions[b].top.x(); });
+  std::ranges::stable_sort(order,
+                           [&](std::size_t a, std::size_t b) { return captions[a].top.x() < captions[b].top.x(); });
   std::vector<PixelRect> places(captions.size()), all = taken;
   for (const std::size_t i : order) {
     const std::optional<PixelRect> place = place_of(captions[i], bodies, all, width, height);

@@ -23,8 +23,8 @@ class Captions {
     std::size_t mesh;
     PixelRect place;
   };
-  // Returns the places of all captions that are drawn. A caption for which even small letters find no place that is free
-  // of other captions is left out.
+  // Returns the places of all captions that are drawn. A caption for which even small letters find no place that is
+  // free of other captions is left out.
   const std::vector<Placed>& places(const Camera& camera);
 
   // Tells whether a caption stands in front of a body where there is no other room; `placed` counts in places().

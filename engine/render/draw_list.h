@@ -24,8 +24,8 @@ enum class Printed { grid, checks };
 
 // Describes the colours of a field that surfaces show, and its legend.
 struct FieldLook {
-  std::vector<Vec3> colors;                            // from the low end of the range to the high one [sRGB]
-  std::string title;                                   // of the legend, with the unit; no legend when empty
+  std::vector<Vec3> colors;                           // from the low end of the range to the high one [sRGB]
+  std::string title;                                  // of the legend, with the unit; no legend when empty
   std::vector<std::pair<double, std::string>> ticks;  // place from 0 (low) to 1 (high), and the value there
 };
 
@@ -70,12 +70,12 @@ struct StageColors {
 struct Stage {
   Backdrop backdrop = Backdrop::ground;
   std::vector<DrawMesh> meshes;
-  std::optional<Bounds> motion;    // of all bodies over the film, which cameras frame in place of their boxes at rest [m]
+  std::optional<Bounds> motion;  // of all bodies over the film, which cameras frame in place of their boxes at rest [m]
   int width = 1280, height = 720;  // pixels
   int samples = 4;                 // samples a pixel, for antialiasing
   StageColors colors;
   LightRig light = studio_light();
-  std::string font;  // font file; no captions when empty
+  std::string font;                // font file; no captions when empty
   std::optional<FieldLook> field;  // that meshes show
   std::string note_template;       // a note as long as any below a caption; there are none when empty
 };
@@ -87,8 +87,9 @@ struct Camera {
 
 struct DrawList {
   Camera camera;
-  std::vector<std::vector<float>> positions;                  // by mesh: x y z by vertex [m]
-  std::vector<std::vector<float>> field;  // by mesh: by vertex, from 0 (low) to 1 (high) or no_field; empty if not mapped
+  std::vector<std::vector<float>> positions;  // by mesh: x y z by vertex [m]
+  std::vector<std::vector<float>>
+      field;  // by mesh: by vertex, from 0 (low) to 1 (high) or no_field; empty if not mapped
   std::vector<std::pair<std::size_t, DrawMesh>> renewed;      // meshes that replace the stage's from now on
   std::vector<std::pair<std::size_t, std::string>> captions;  // captions of meshes from now on
   std::vector<std::string> notes;                             // by mesh: what stands below its caption in this frame
@@ -99,8 +100,9 @@ struct DrawList {
 
 struct Image {
   int width = 0, height = 0;
-  std::vector<std::uint8_t> rgb;    // rows from the top
-  std::vector<std::uint8_t> alpha = {};  // coverage by pixel, by which the colours are not multiplied; empty: all is covered
+  std::vector<std::uint8_t> rgb;  // rows from the top
+  std::vector<std::uint8_t> alpha =
+      {};  // coverage by pixel, by which the colours are not multiplied; empty: all is covered
 };
 
 // Returns the colour of the background as pictures show it [sRGB].

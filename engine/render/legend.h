@@ -1,5 +1,5 @@
-// Draws the legend of a field (a bar with the field's colours, its values beside it and its name above), and the line at
-// the top of a picture.
+// Draws the legend of a field (a bar with the field's colours, its values beside it and its name above), and the line
+// at the top of a picture.
 #pragma once
 
 #include "render/sticker.h"

@@ -21,7 +21,8 @@ class Marks {
   Marks& operator=(const Marks&) = delete;
 
   // Draws into the framebuffer that is bound. marks: x y z [m] and the kind, 0 for handles and 1 for contacts.
-  // depths: a texture of the kind `target`. scale: see DepthScale. behind: how far a mark may lie behind the surface [m].
+  // depths: a texture of the kind `target`. scale: see DepthScale. behind: how far a mark may lie behind the surface
+  // [m].
   void draw(const std::vector<std::array<float, 4>>& marks, const Eigen::Matrix4f& view, GLenum target, GLuint depths,
             const Eigen::Vector2d& scale, double behind) const;
 

@@ -78,7 +78,8 @@ Renderer::Renderer(const Stage& stage, GlChoice choice, const std::filesystem::p
       tiles_(stage.width, stage.height) {
   make_targets();
   visibility_program_ = std::make_unique<Program>(gl_, shaders, "visibility", "visibility");
-  shadows_ = std::make_unique<ShadowMap>(gl_, shaders, bounds_, largest_body_, stage_.light.to_key.normalized(), stage_.width);
+  shadows_ =
+      std::make_unique<ShadowMap>(gl_, shaders, bounds_, largest_body_, stage_.light.to_key.normalized(), stage_.width);
   ground_ = std::make_unique<Ground>(gl_, shaders, stage_.width, stage_.height, bounds_, largest_body_);
   tile_buffer_ = std::make_unique<TileBuffer>(gl_);
   make_shading_program();

@@ -26,7 +26,8 @@ void Sticker::fill(const PixelRect& area, const Vec3& color, double opacity) {
 }
 
 void Sticker::plate(const PixelRect& area, double radius, const Vec3& color, double opacity) {
-  const auto beyond = [radius](int at, int from, int length) {  // how far a pixel's middle lies beyond the straight part
+  const auto beyond = [radius](int at, int from,
+                               int length) {  // how far a pixel's middle lies beyond the straight part
     const double middle = at + 0.5 - from;
     return std::max({0.0, radius - middle, middle - (length - radius)});
   };

@@ -1,5 +1,5 @@
-// A small picture with coverage (text, plates, bars) that is laid over a finished picture, without OpenGL. Not here: what
-// is written and where (captions.h, legend.h).
+// A small picture with coverage (text, plates, bars) that is laid over a finished picture, without OpenGL. Not here:
+// what is written and where (captions.h, legend.h).
 #pragma once
 
 #include <cstdint>

@@ -28,8 +28,8 @@ class SurfaceBuffers {
   // Draws the triangles that cast one mesh's shadow, which may be fewer.
   void draw_caster(std::size_t mesh) const;
 
-  // Makes a program's samplers places, normals, triangles, paint, squares, materials and values read these buffers. Returns the
-  // first unit that is still free.
+  // Makes a program's samplers places, normals, triangles, paint, squares, materials and values read these buffers.
+  // Returns the first unit that is still free.
   int bind(const Program& program, int first_unit) const;
 
  private:

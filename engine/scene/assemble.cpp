@@ -83,8 +83,9 @@ void check_distance(const Body& body, std::vector<Problem>& problems) {
 void note_size(Body& body) {
   const double size = bounds_of(body.description.mesh.rest).extent().maxCoeff();
   if (size <= 20 && size >= 1e-3) return;
-  body.notes.push_back(fmt::format("body '{}' is {:.3g} m long; size = 0.5 makes it half a metre{}", body.def.name, size,
-                                   body.def.surface.empty() ? "" : ", and units = \"mm\" takes the file's numbers for that"));
+  body.notes.push_back(
+      fmt::format("body '{}' is {:.3g} m long; size = 0.5 makes it half a metre{}", body.def.name, size,
+                  body.def.surface.empty() ? "" : ", and units = \"mm\" takes the file's numbers for that"));
 }
 
 void set_substances(Body& body, std::vector<Problem>& problems) {

@@ -224,7 +224,8 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
        "of a surface: join: those that overlap or touch are one body, others have their own; largest: one of these; "
        "bodies: each has its own"},
       body.pieces);
-  if (table.has("pieces") && !table.has("surface")) table.complain("pieces", "pieces: of a 'surface'; there is none here");
+  if (table.has("pieces") && !table.has("surface"))
+    table.complain("pieces", "pieces: of a 'surface'; there is none here");
   // A thickness is one of the finished body, so that the surface must have its size before it is thickened.
   if (body.surface_options.thickness > 0 && body.size) body.surface_options.size = *body.size;
   body.position = table.vector({"position", "m", "of the middle of the bounding box's bottom"}, Vec3(0, 0, 0));
@@ -262,7 +263,8 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
       {"pattern_size", "m", "edge of its squares; a sixth of the middle side, of cloth a twentieth of the longest"},
       Range::positive());
   body.color = table.color_if_given({"color", "sRGB", "over the shape's own"});
-  body.gloss = table.number_if_given({"gloss", "", "of the uncovered surface: 0 matt to 1 wet [0.25]"}, Range::between(0, 1));
+  body.gloss =
+      table.number_if_given({"gloss", "", "of the uncovered surface: 0 matt to 1 wet [0.25]"}, Range::between(0, 1));
   body.skin_cells = table.number({"skin_cells", "", "cells of the drawn skin along the longest side of a shape"}, 72,
                                  Range::between(8, 400));
   return body;

@@ -75,7 +75,8 @@ CameraDef read_camera(const ConfigTable& table, CameraDef camera) {
   camera.margin = table.number({"margin", "", "air around the bodies; without position and distance all are framed"},
                                camera.margin, Range::between(0.5, 10));
   camera.frames = table.word<Framed>(
-      {"frames", "", "what is in the picture: the bodies as they start, or their whole motion (supple draw)"}, camera.frames);
+      {"frames", "", "what is in the picture: the bodies as they start, or their whole motion (supple draw)"},
+      camera.frames);
   camera.orbit_deg = table.number({"orbit", "degrees/s", "how fast the eye goes round the target"}, camera.orbit_deg,
                                   Range::between(-3600, 3600));
   camera.follow = table.text({"follow", "", "name of a body or collider with which eye and target move along"}, "");

@@ -18,7 +18,7 @@ struct KnownSurfaces {
     std::vector<std::string> notes;
     SourceFile source;
   };
-  std::map<std::string, Read> of_parts;                                // by path and options
+  std::map<std::string, Read> of_parts;                                 // by path and options
   std::map<std::string, std::shared_ptr<const BodySurface>> of_bodies;  // by path, options and rule for pieces
 };
 

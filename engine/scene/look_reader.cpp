@@ -10,13 +10,13 @@ LookDef read_look(const ConfigTable& root, LookDef look) {
       look.backdrop);
   look.ground = table->color({"ground", "sRGB", "colour of the ground"}, look.ground);
   look.background = table->color({"background", "sRGB", "colour that the ground fades into"}, look.background);
-  look.light = table->word<LightKind>({"light", "", "the lamps, and the tint that they give ground and background"},
-                                      look.light);
+  look.light =
+      table->word<LightKind>({"light", "", "the lamps, and the tint that they give ground and background"}, look.light);
   look.exposure = table->number({"exposure", "", "multiplies the light"}, look.exposure, Range::above(0, 100));
   look.show_labels = table->boolean({"labels", "", "captions below the bodies"}, look.show_labels);
   look.ghost = table->text({"ghost", "", "folder of a run whose bodies are seen beside these, half transparent"}, "");
-  look.marks = table->boolean({"marks", "", "squares where handles hold vertices, discs where vertices touch colliders"},
-                              look.marks);
+  look.marks = table->boolean(
+      {"marks", "", "squares where handles hold vertices, discs where vertices touch colliders"}, look.marks);
   look.wireframe =
       table->boolean({"wireframe", "", "bodies are drawn as their elements, with the elements' edges"}, look.wireframe);
   return look;
@@ -55,8 +55,8 @@ TextDef read_text(const ConfigTable& root) {
   text.milliseconds =
       table->boolean({"milliseconds", "", "below each body: what its steps of the frame took"}, text.milliseconds);
   text.iterations = table->boolean({"iterations", "", "below each body: how many they made"}, text.iterations);
-  text.error =
-      table->boolean({"error", "", "below each body: the error where it is measured, otherwise its estimate"}, text.error);
+  text.error = table->boolean({"error", "", "below each body: the error where it is measured, otherwise its estimate"},
+                              text.error);
   return text;
 }
 

@@ -13,7 +13,8 @@ namespace supple {
 namespace {
 
 // The endings of surfaces that are often met; assimp reads more of them, in scenes that name them.
-constexpr std::array surface_endings = {".obj", ".ply", ".stl", ".off", ".gltf", ".glb", ".dae", ".3ds", ".fbx", ".blend", ".3mf", ".x3d"};
+constexpr std::array surface_endings = {".obj", ".ply", ".stl", ".off",   ".gltf", ".glb",
+                                        ".dae", ".3ds", ".fbx", ".blend", ".3mf",  ".x3d"};
 
 std::string ending_of(const std::filesystem::path& path) {
   std::string ending = path.extension().string();
@@ -35,7 +36,8 @@ std::string quoted(const std::string& name) {
 
 bool is_model(const std::filesystem::path& path) {
   const std::string ending = ending_of(path);
-  return is_mesh_file(path) || std::find(surface_endings.begin(), surface_endings.end(), ending) != surface_endings.end();
+  return is_mesh_file(path) ||
+         std::find(surface_endings.begin(), surface_endings.end(), ending) != surface_endings.end();
 }
 
 std::string model_scene(const std::filesystem::path& model) {

@@ -1,5 +1,5 @@
-// Makes a scene of a model's file alone, for a first look at it: a body of jelly, half a metre long, that falls onto the
-// ground and is filmed by the usual camera. `--set` changes it as it does any scene.
+// Makes a scene of a model's file alone, for a first look at it: a body of jelly, half a metre long, that falls onto
+// the ground and is filmed by the usual camera. `--set` changes it as it does any scene.
 #pragma once
 
 #include <filesystem>

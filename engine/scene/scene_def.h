@@ -140,9 +140,9 @@ struct BodyDef {
   std::filesystem::path shape;
   std::filesystem::path surface;
   SurfaceOptions surface_options;
-  Pieces pieces = Pieces::join;                    // of the surface
+  Pieces pieces = Pieces::join;                     // of the surface
   std::shared_ptr<const BodySurface> read_surface;  // what was read of it; null: nothing yet
-  std::size_t piece = 0;                           // of that surface, which is this body
+  std::size_t piece = 0;                            // of that surface, which is this body
   std::filesystem::path mesh;
   std::optional<BoxDef> box;
   std::optional<ClothDef> cloth;
@@ -211,9 +211,9 @@ struct CameraDef {
   std::optional<double> distance;  // [m]
   double fov_deg = 30;             // vertical
   Framed frames = Framed::start;
-  double margin = 1.25;            // air around the bodies when they are framed
-  double orbit_deg = 0;            // that the eye goes round the target [degrees/s]
-  std::string follow;              // the body or collider that it moves along with; empty: none
+  double margin = 1.25;  // air around the bodies when they are framed
+  double orbit_deg = 0;  // that the eye goes round the target [degrees/s]
+  std::string follow;    // the body or collider that it moves along with; empty: none
   Ease ease = Ease::smooth;
   std::vector<CameraKey> keys;  // in order of time
 
@@ -252,12 +252,15 @@ struct LookDef {
 enum class FieldQuantity { none, stretch, compression, volume, energy, stress, speed, depth, distance };
 template <>
 struct Names<FieldQuantity> {
-  static constexpr std::array table = {
-      Name{FieldQuantity::none, "none"},         Name{FieldQuantity::stretch, "stretch"},
-      Name{FieldQuantity::compression, "compression"}, Name{FieldQuantity::volume, "volume"},
-      Name{FieldQuantity::energy, "energy"},     Name{FieldQuantity::stress, "stress"},
-      Name{FieldQuantity::speed, "speed"},       Name{FieldQuantity::depth, "depth"},
-      Name{FieldQuantity::distance, "distance"}};
+  static constexpr std::array table = {Name{FieldQuantity::none, "none"},
+                                       Name{FieldQuantity::stretch, "stretch"},
+                                       Name{FieldQuantity::compression, "compression"},
+                                       Name{FieldQuantity::volume, "volume"},
+                                       Name{FieldQuantity::energy, "energy"},
+                                       Name{FieldQuantity::stress, "stress"},
+                                       Name{FieldQuantity::speed, "speed"},
+                                       Name{FieldQuantity::depth, "depth"},
+                                       Name{FieldQuantity::distance, "distance"}};
 };
 
 // Names how the range of a field is found where no numbers are given.
@@ -274,9 +277,9 @@ struct Names<FieldRange> {
 enum class FieldColors { usual, viridis, blue_yellow, blue_orange };
 template <>
 struct Names<FieldColors> {
-  static constexpr std::array table = {
-      Name{FieldColors::usual, "usual"}, Name{FieldColors::viridis, "viridis"},
-      Name{FieldColors::blue_yellow, "blue-yellow"}, Name{FieldColors::blue_orange, "blue-orange"}};
+  static constexpr std::array table = {Name{FieldColors::usual, "usual"}, Name{FieldColors::viridis, "viridis"},
+                                       Name{FieldColors::blue_yellow, "blue-yellow"},
+                                       Name{FieldColors::blue_orange, "blue-orange"}};
 };
 
 struct FieldDef {

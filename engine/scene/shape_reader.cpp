@@ -52,8 +52,10 @@ ClosedSurface known_surface(Config& config, const std::filesystem::path& file, c
 SurfaceOptions read_part_surface(const ConfigTable& part) {
   SurfaceOptions options = read_surface_options(part);
   options.size =
-      part.number_if_given({"size", "m", "longest side of a surface; without it the file's units count"}, lengths).value_or(0);
-  options.center = part.boolean({"center", "", "puts the middle of the bottom of a surface's box at the part's origin"}, false);
+      part.number_if_given({"size", "m", "longest side of a surface; without it the file's units count"}, lengths)
+          .value_or(0);
+  options.center =
+      part.boolean({"center", "", "puts the middle of the bottom of a surface's box at the part's origin"}, false);
   for (const char* key : {"size", "center"}) {
     if (part.has(key) && !part.has("surface"))
       part.complain(key, fmt::format("{}: of a 'surface'; there is none here", key));

@@ -152,8 +152,8 @@ TEST_F(DrawnRun, ShowsAFieldWithTheRangeOfTheWholeFilm) {
 TEST_F(DrawnRun, HasTheBytesOfARunWithAField) {
   for (const char* field : {"speed", "depth"}) {
     const std::string name = std::string("run-") + field;
-    ASSERT_EQ(run(folder_->path, {"replay", "replay.toml", "--out", name, "--quiet", "--set",
-                                  std::string("field.quantity=") + field})
+    ASSERT_EQ(run(folder_->path,
+                  {"replay", "replay.toml", "--out", name, "--quiet", "--set", std::string("field.quantity=") + field})
                   .status,
               0);
     ASSERT_EQ(run(folder_->path, {"draw", name, "--quiet"}).status, 0);
@@ -163,8 +163,8 @@ TEST_F(DrawnRun, HasTheBytesOfARunWithAField) {
 }
 
 TEST_F(DrawnRun, ShowsTheDistanceToAnotherRun) {
-  ASSERT_EQ(run(folder_->path, {"replay", "replay.toml", "--out", "rough", "--quiet", "--no-images", "--set",
-                                "solver.iterations=1"})
+  ASSERT_EQ(run(folder_->path,
+                {"replay", "replay.toml", "--out", "rough", "--quiet", "--no-images", "--set", "solver.iterations=1"})
                 .status,
             0);
   ASSERT_EQ(draw("far", {"--field", "distance", "--reference", "rough"}).status, 0);
@@ -216,8 +216,8 @@ TEST_F(DrawnRun, StandsBesideAnotherRun) {
                                 "solver.iterations=2", "--frames", "8"})
                 .status,
             0);
-  const Result result =
-      run(folder_->path, {"draw", "run", "other-run", "--layout", "row", "--out", "both", "--quiet", "--format", "png"});
+  const Result result = run(
+      folder_->path, {"draw", "run", "other-run", "--layout", "row", "--out", "both", "--quiet", "--format", "png"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(pictures("both"), 8) << "the film is as long as the shorter run";
   const PngImage both = read_png(picture_file(path("both") / "frames", 5));
@@ -225,7 +225,8 @@ TEST_F(DrawnRun, StandsBesideAnotherRun) {
   EXPECT_GE(both.width, 2 * left.width);
   EXPECT_GT(both.height, left.height);
   for (int y = 0; y < left.height; ++y)
-    ASSERT_TRUE(std::equal(&left.rgb[3 * std::size_t(y) * left.width], &left.rgb[3 * std::size_t(y + 1) * left.width] - 3,
+    ASSERT_TRUE(std::equal(&left.rgb[3 * std::size_t(y) * left.width],
+                           &left.rgb[3 * std::size_t(y + 1) * left.width] - 3,
                            &both.rgb[3 * std::size_t(y) * both.width]));
   const Result wrong = run(folder_->path, {"draw", "run", "other-run", "--frame", "1"});
   EXPECT_EQ(wrong.status, 2);
@@ -236,7 +237,8 @@ TEST_F(DrawnRun, HasTheWholeMotionInThePicture) {
   EXPECT_NE(picture("framed", 5), picture("run", 5));
   ASSERT_EQ(draw("framed-last", {"--set", "camera.frames=film", "--first", "11"}).status, 0);
   EXPECT_EQ(picture("framed-last", 0), picture("framed", 11)) << "the box depends on which frames are drawn";
-  const Result early = run(folder_->path, {"render", "two.toml", "--out", "none", "--quiet", "--set", "camera.frames=film"});
+  const Result early =
+      run(folder_->path, {"render", "two.toml", "--out", "none", "--quiet", "--set", "camera.frames=film"});
   EXPECT_EQ(early.status, 2);
   EXPECT_NE(early.err.find("is known only once the film has been made"), std::string::npos) << early.err;
 }
@@ -262,9 +264,10 @@ TEST_F(DrawnRun, ShowsTheGhostOfAnotherRun) {
   ASSERT_EQ(draw("own-ghost", {"--set", "look.ghost=run"}).status, 0);
   EXPECT_EQ(picture("own-ghost", 0), picture("run", 0)) << "a ghost in the same place is hidden";
   EXPECT_EQ(draw("none", {"--set", "look.ghost=nowhere"}).status, 2);
-  ASSERT_EQ(run(folder_->path, {"replay", "replay.toml", "--out", "short-run", "--quiet", "--no-images", "--frames", "8"})
-                .status,
-            0);
+  ASSERT_EQ(
+      run(folder_->path, {"replay", "replay.toml", "--out", "short-run", "--quiet", "--no-images", "--frames", "8"})
+          .status,
+      0);
   const Result short_of = draw("none", {"--set", "look.ghost=short-run"});
   EXPECT_EQ(short_of.status, 2);
   EXPECT_NE(short_of.err.find("has 8 frames, and frame 8 is needed"), std::string::npos) << short_of.err;

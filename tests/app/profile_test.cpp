@@ -147,8 +147,9 @@ TEST(Profile, ComparisonsRefuseWhatCannotBeCompared) {
   profile("stiff", {"--repeats", "4", "--set", "body.bar.material.mu=3e4"});
   const Result anyway = run(folder.path, {"profile", "--compare", "a/zones.json", "stiff/zones.json", "--anyway"});
   EXPECT_EQ(anyway.status, 0) << anyway.err;
-  EXPECT_NE(anyway.err.find("note: compared all the same: the scenes differ at /body/0/material/mu: 10000.0 and 30000.0"),
-            std::string::npos)
+  EXPECT_NE(
+      anyway.err.find("note: compared all the same: the scenes differ at /body/0/material/mu: 10000.0 and 30000.0"),
+      std::string::npos)
       << anyway.err;
   EXPECT_EQ(compare("a", "none").status, 2);
   EXPECT_EQ(compare("a", "a/../bar.toml/..").status, 2);

@@ -158,7 +158,9 @@ TEST(SurfaceField, RefusesARangeThatRunsBackwards) {
            {"reference = \"out/a\"", "reference: is used by quantity = \"distance\" alone"},
            {"colors = \"jet\"", "colors = 'jet': must be usual, viridis, blue-yellow or blue-orange"}}) {
     const std::vector<std::string> problems = test::problems_of(
-        "[[body]]\nbox = { extent = [1, 1, 1], cells = [1, 1, 1] }\nmaterial = { model = \"neo-hookean\", mu = 1e4, lambda = 1e4 }\n[field]\n" + text + "\n");
+        "[[body]]\nbox = { extent = [1, 1, 1], cells = [1, 1, 1] }\nmaterial = { model = \"neo-hookean\", mu = 1e4, "
+        "lambda = 1e4 }\n[field]\n" +
+        text + "\n");
     ASSERT_EQ(problems.size(), 1u) << text;
     EXPECT_NE(problems[0].find(expected), std::string::npos) << problems[0];
     EXPECT_TRUE(problems[0].starts_with("scene.toml:5:")) << problems[0];

@@ -84,7 +84,8 @@ TEST_F(MeshFormats, GmshOfVersion2HasNumbersOfItsOwnAndOtherElements) {
 constexpr char gmsh_4[] =
     "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n1 0 1 2\n1 0 0 0 0\n1 0 0 0 1 1 0 0 0\n"
     "1 0 0 0 1 1 1 1 9 1 1\n2 0 0 0 1 1 1 0 1 1\n$EndEntities\n$Nodes\n2 5 10 20\n2 1 0 2\n10\n11\n0 0 0\n1 0 0\n"
-    "3 1 0 3\n12\n13\n20\n0 1 0\n0 0 1\n1 1 1\n$EndNodes\n$Elements\n3 3 1 3\n2 1 2 1\n1 10 11 12\n3 1 4 1\n2 10 11 12 13\n"
+    "3 1 0 3\n12\n13\n20\n0 1 0\n0 0 1\n1 1 1\n$EndNodes\n$Elements\n3 3 1 3\n2 1 2 1\n1 10 11 12\n3 1 4 1\n2 10 11 12 "
+    "13\n"
     "3 2 4 1\n3 20 12 11 13\n$EndElements\n";
 
 TEST_F(MeshFormats, GmshOfVersion4HasBlocksAndGroupsOfEntities) {
@@ -94,8 +95,10 @@ TEST_F(MeshFormats, GmshOfVersion4HasBlocksAndGroupsOfEntities) {
 }
 
 constexpr char vtk_5[] =
-    "# vtk DataFile Version 5.1\nany # title\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n0 0 0 1 0 0 0 1 0 0 0 1\n"
-    "1 1 1\nMETADATA\nINFORMATION 0\n\nCELLS 3 8\nOFFSETS vtktypeint64\n0 4 8\nCONNECTIVITY vtktypeint64\n0 1 2 3 4 2 1 3\n"
+    "# vtk DataFile Version 5.1\nany # title\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n0 0 0 1 0 0 0 1 0 0 0 "
+    "1\n"
+    "1 1 1\nMETADATA\nINFORMATION 0\n\nCELLS 3 8\nOFFSETS vtktypeint64\n0 4 8\nCONNECTIVITY vtktypeint64\n0 1 2 3 4 2 "
+    "1 3\n"
     "CELL_TYPES 2\n10\n10\n";
 
 TEST_F(MeshFormats, VtkOfVersion5HasTwoArraysForCells) {
@@ -111,8 +114,7 @@ TEST_F(MeshFormats, VtuArraysMayBeBase64) {
       unsigned block = 0;
       for (std::size_t k = 0; k < 3; ++k)
         block = block << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-      for (std::size_t k = 0; k < 4; ++k)
-        text += i + k <= bytes.size() ? digits[block >> (18 - 6 * k) & 63] : '=';
+      for (std::size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? digits[block >> (18 - 6 * k) & 63] : '=';
     }
     return text;
   };
@@ -121,8 +123,8 @@ TEST_F(MeshFormats, VtuArraysMayBeBase64) {
     const std::uint32_t size = std::uint32_t(sizeof(Value) * values.size());
     const std::string head(reinterpret_cast<const char*>(&size), 4);
     const std::string body(reinterpret_cast<const char*>(values.data()), size);
-    return fmt::format("<DataArray type=\"{}\" Name=\"{}\" format=\"binary\">{}{}</DataArray>\n", type, name, base64(head),
-                       base64(body));
+    return fmt::format("<DataArray type=\"{}\" Name=\"{}\" format=\"binary\">{}{}</DataArray>\n", type, name,
+                       base64(head), base64(body));
   };
   const std::string text =
       "<?xml version=\"1.0\"?><VTKFile type=\"UnstructuredGrid\" header_type=\"UInt32\"><UnstructuredGrid>"
@@ -158,7 +160,8 @@ TEST_F(MeshFormats, WhatIsNotReadIsNamed) {
             "x.msh:2: version 4 is not read (2.2 and 4.1 are: gmsh -format msh41)");
   EXPECT_EQ(refusal("x.msh", "$MeshFormat\n2.2 1 8\n"),
             "x.msh:2: binary files are not read (gmsh -save without -bin writes text)");
-  EXPECT_EQ(refusal("x.vtk", "# vtk DataFile Version 3.0\nt\nBINARY\n"), "x.vtk:3: BINARY files are not read; ASCII ones are");
+  EXPECT_EQ(refusal("x.vtk", "# vtk DataFile Version 3.0\nt\nBINARY\n"),
+            "x.vtk:3: BINARY files are not read; ASCII ones are");
   EXPECT_EQ(refusal("x.vtu", "<VTKFile type=\"UnstructuredGrid\" compressor=\"vtkZLibDataCompressor\">"),
             "x.vtu: compressed arrays are not read; 'ascii' ones are");
   write("t.node", "1 2 0 0\n1 0 0\n");

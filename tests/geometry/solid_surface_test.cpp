@@ -12,8 +12,8 @@
 
 #include "base/error.h"
 #include "geometry/surface_file.h"
-#include "geometry/triangle_soup.h"
 #include "geometry/triangle_solid.h"
+#include "geometry/triangle_soup.h"
 #include "geometry/wound_surface.h"
 #include "support/surfaces.h"
 

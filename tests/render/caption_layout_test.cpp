@@ -1,5 +1,5 @@
-// Tests where captions stand: below their bodies, over no other caption, and over no body, in all scenes that ship and at
-// three sizes of the picture.
+// Tests where captions stand: below their bodies, over no other caption, and over no body, in all scenes that ship and
+// at three sizes of the picture.
 #include "render/caption_layout.h"
 
 #include <gtest/gtest.h>
@@ -53,9 +53,9 @@ TEST_P(CaptionsOfScene, OverlapNeitherEachOtherNorABodyAtAnySize) {
   const std::string font = caption_font();
   if (font.empty()) GTEST_SKIP() << "no font is installed";
   for (const Size size : {Size{640, 360}, Size{1280, 720}, Size{3840, 2160}}) {
-    const SceneDef scene = load_scene(test::assets / "scenes" / (GetParam() + ".toml"), test::assets,
-                                      {"output.width=" + std::to_string(size.width),
-                                       "output.height=" + std::to_string(size.height)});
+    const SceneDef scene =
+        load_scene(test::assets / "scenes" / (GetParam() + ".toml"), test::assets,
+                   {"output.width=" + std::to_string(size.width), "output.height=" + std::to_string(size.height)});
     const std::vector<Body> bodies = assemble(scene);
     const CollisionSet set = collision_set(scene);
     const Stage stage = make_stage(scene, bodies, std::vector<DrawnBody>(bodies.size()), set.obstacles,
@@ -95,8 +95,9 @@ INSTANTIATE_TEST_SUITE_P(Shipped, CaptionsOfScene, testing::ValuesIn(shipped_sce
 
 TEST(Captions, ABodyThatIsAloneAndHasNoNameHasNone) {
   const auto label_of = [](const std::string& text) {
-    Config config = Config::parse("[[body]]\nbox = { extent = [1, 1, 1], cells = [1, 1, 1] }\nmaterial = \"rubber\"\n" + text, "scene.toml",
-                                  test::assets);
+    Config config =
+        Config::parse("[[body]]\nbox = { extent = [1, 1, 1], cells = [1, 1, 1] }\nmaterial = \"rubber\"\n" + text,
+                      "scene.toml", test::assets);
     return read_scene(config).bodies.front().label;
   };
   EXPECT_EQ(label_of(""), "");

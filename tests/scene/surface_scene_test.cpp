@@ -59,8 +59,9 @@ TEST_F(SurfaceScene, PiecesApartAreBodiesThatKeepTheirPlaces) {
   EXPECT_NEAR(large.lower.y(), 1, 0.01);
   EXPECT_NEAR(small.lower.y(), 1.1, 0.01);
   ASSERT_EQ(bodies[0].notes.size(), 1u);
-  EXPECT_EQ(bodies[0].notes[0], "the surface has 2 pieces, all of which become bodies of their own (pieces = \"largest\" "
-                                "takes one)");
+  EXPECT_EQ(bodies[0].notes[0],
+            "the surface has 2 pieces, all of which become bodies of their own (pieces = \"largest\" "
+            "takes one)");
   EXPECT_EQ(scene_of("surface = \"two.obj\"\npieces = \"largest\"\n").bodies.size(), 1u);
 }
 
@@ -88,8 +89,7 @@ TEST_F(SurfaceScene, SheetsGetTheirThicknessInMetres) {
 TEST_F(SurfaceScene, BadValuesAndKeysWithoutASurfaceAreRefused) {
   write("box.obj", obj_text(test::box_surface(Vec3(1, 1, 1))));
   const std::string box = "surface = \"box.obj\"\n";
-  EXPECT_EQ(refusal_of(box + "close = \"always\"\n"),
-            "close = 'always': must be auto, caps, winding or never");
+  EXPECT_EQ(refusal_of(box + "close = \"always\"\n"), "close = 'always': must be auto, caps, winding or never");
   EXPECT_EQ(refusal_of(box + "pieces = \"all\"\n"), "pieces = 'all': must be join, largest or bodies");
   EXPECT_EQ(refusal_of(box + "thicken = -1\n"), "thicken = -1: must be above 0 to 1e+06");
   EXPECT_EQ(refusal_of(box + "up = \"w\"\n"), "up = 'w': must be x, y or z; did you mean 'x'?");
@@ -111,8 +111,9 @@ TEST_F(SurfaceScene, UnitsAndAxesAreThoseOfTheFile) {
   EXPECT_LT((extent("units = \"mm\"\nup = \"z\"\n") - Vec3(0.2, 0.8, 0.4)).norm(), 0.02);
   const std::vector<Body> large = assemble(scene_of("surface = \"long.obj\"\n"));
   ASSERT_EQ(large[0].notes.size(), 1u);
-  EXPECT_EQ(large[0].notes[0], "body 'body' is 800 m long; size = 0.5 makes it half a metre, and units = \"mm\" takes the "
-                               "file's numbers for that");
+  EXPECT_EQ(large[0].notes[0],
+            "body 'body' is 800 m long; size = 0.5 makes it half a metre, and units = \"mm\" takes the "
+            "file's numbers for that");
 }
 
 TEST_F(SurfaceScene, ASurfaceAsAColliderHasASizeAndAPlace) {

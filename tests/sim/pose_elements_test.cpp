@@ -57,7 +57,8 @@ TEST(PoseElements, AreTheFieldsOfTheModel) {
 }
 
 TEST(PoseElements, AreTheSameForAnyNumberOfThreads) {
-  const BodyDescription body = test::bar(StableNeoHookean{1e4, 2e4}, test::Held::nothing, Precision::double_precision, 8);
+  const BodyDescription body =
+      test::bar(StableNeoHookean{1e4, 2e4}, test::Held::nothing, Precision::double_precision, 8);
   ASSERT_GT(body.mesh.tets.rows(), 2048) << "too few elements for several chunks";
   const Positions x = test::shaken(body.mesh.rest, 0.004, 6);
   Threads threads(3);

@@ -1,6 +1,6 @@
-// Describes a material point of a body's surface where contact is kept: a vertex, or a point of an edge or of a triangle
-// between vertices, which moves with the weighted mean of theirs and whose forces act on them by the same weights. The
-// weights add up to 1.
+// Describes a material point of a body's surface where contact is kept: a vertex, or a point of an edge or of a
+// triangle between vertices, which moves with the weighted mean of theirs and whose forces act on them by the same
+// weights. The weights add up to 1.
 #pragma once
 
 #include <array>

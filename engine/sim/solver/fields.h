@@ -21,7 +21,8 @@ struct ElementFields {
   std::vector<double> spring_energy;  // [J]
 };
 
-// Returns von Mises' equivalent of Cauchy's stress P F^T / det F; NaN where det F = 0. piola: P, in the unit of the result.
+// Returns von Mises' equivalent of Cauchy's stress P F^T / det F; NaN where det F = 0. piola: P, in the unit of the
+// result.
 double von_mises(const Mat3& f, const Mat3& piola);
 
 // x: positions in the model's order.

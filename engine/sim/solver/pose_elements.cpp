@@ -57,8 +57,7 @@ double PoseElements::of_element(ElementQuantity quantity, const Positions& x, Ei
   Matrix3<double> stress;
   double density =
       std::visit([&](const auto& material) { return density_of(material, at, stress); }, body_.materials[region]);
-  if (!body_.fibres.empty() && body_.fibres[region].kappa > 0)
-    density += add_fibre(body_.fibres[region], at, stress);
+  if (!body_.fibres.empty() && body_.fibres[region].kappa > 0) density += add_fibre(body_.fibres[region], at, stress);
   if (quantity == ElementQuantity::energy) return density;
   Mat3 piola;
   for (int i = 0; i < 9; ++i) piola(i / 3, i % 3) = stress.m[i];

@@ -1,6 +1,6 @@
-// Computes one number for each tetrahedron of a body at a pose, from the body's description alone: what pictures show on
-// a surface. No model is needed, so that a film can be coloured from its saved motion. Not here: fields of a model for
-// other programs (fields.h).
+// Computes one number for each tetrahedron of a body at a pose, from the body's description alone: what pictures show
+// on a surface. No model is needed, so that a film can be coloured from its saved motion. Not here: fields of a model
+// for other programs (fields.h).
 #pragma once
 
 #include <vector>
