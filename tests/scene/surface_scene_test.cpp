@@ -8,6 +8,7 @@
 #include "scene/body_mesh.h"
 #include "scene/body_pieces.h"
 #include "scene/model_scene.h"
+#include "scene/obstacle.h"
 #include "scene/scene_reader.h"
 #include "support/bodies.h"
 #include "support/scene_text.h"
@@ -152,6 +153,8 @@ TEST_F(SurfaceScene, AModelsFileAloneIsASceneOfIt) {
   EXPECT_EQ(scene.frames, 3);
   ASSERT_EQ(scene.bodies.size(), 1u);
   EXPECT_EQ(scene.bodies[0].vertices, 300);
+  ASSERT_EQ(scene.colliders.size(), 1u) << "the ground that every film shows";
+  EXPECT_LT(collision_set(scene).colliders[0].shape.distance(Vec3(0.3, -1, 0.2)), -0.99);
   EXPECT_NEAR(bounds_of(assemble(scene)[0].description.mesh.rest).extent().maxCoeff(), 0.5, 0.01);
   EXPECT_THROW(load_scene(folder_.path / "none.obj", test::assets, {}), InputError);
 }

@@ -223,6 +223,8 @@ void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
     IterationRecord record;
     const Search search = find_next(model, inputs, w, rule, descent.slope, change, record);
     if (search != Search::found) {
+      // A first search that finds nothing above round-off leaves nothing to gain, and nothing to compare it with.
+      if (search == Search::exhausted && report.iterations == 0) report.remaining_estimate = 0;
       report.stop_reason = search == Search::exhausted ? StopReason::round_off : StopReason::line_search_failed;
       break;
     }
