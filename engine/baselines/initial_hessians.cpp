@@ -197,7 +197,7 @@ void ContactMatrixInverse::apply(const Model& model, const StepInputs&, Workspac
   std::fill(stiffness_.begin(), stiffness_.end(), 0.0);
   for (const Contact& contact : w.current.contacts) {
     if (contact.depth <= 0) continue;
-    // Of a point between vertices this is the sum of each row of its matrix, which is at least as stiff.
+    // A point between vertices adds the sum of each row of its matrix, which is at least as stiff.
     for (int k = 0; k < contact.point.free; ++k)
       stiffness_[contact.point.vertex[k]] += 2 * contact.stiffness * contact.point.weight[k];
   }

@@ -129,7 +129,7 @@ TEST(SolidSurface, WhatToDoWithHolesIsForTheUserToSay) {
   const SolidSurface wound = made(open, {.close = Closing::winding}, notes);
   EXPECT_TRUE(is_closed_manifold(wound.boundary));
   EXPECT_NEAR(volume(wound.boundary), by_caps, 0.01 * by_caps);
-  // What is drawn are the file's triangles and those that close the mouth.
+  // The film draws the file's triangles and those that close the mouth.
   EXPECT_GT(wound.drawn.triangles.rows(), open.triangles.rows());
 }
 

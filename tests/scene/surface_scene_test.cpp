@@ -17,12 +17,7 @@
 namespace supple {
 namespace {
 
-std::string obj_text(const TriMesh& mesh) {
-  std::string text;
-  for (const auto& p : mesh.points.rowwise()) text += fmt::format("v {} {} {}\n", p.x(), p.y(), p.z());
-  for (const auto& t : mesh.triangles.rowwise()) text += fmt::format("f {} {} {}\n", t.x() + 1, t.y() + 1, t.z() + 1);
-  return text;
-}
+using test::obj_text;
 
 class SurfaceScene : public ::testing::Test {
  protected:

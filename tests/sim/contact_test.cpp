@@ -43,19 +43,7 @@ TEST(Contact, GradientIsTheDerivativeOfTheEnergyWithPlanesAsTheyStand) {
   const std::vector<Contact>& found = scene.w.current.contacts;
   EXPECT_GT(std::count_if(found.begin(), found.end(), [](const Contact& c) { return c.depth > 0; }), 3);
   EXPECT_GT(std::count_if(found.begin(), found.end(), [](const Contact& c) { return c.friction > 0; }), 3);
-  const double stick = scene.w.contact.stick_length;
-  Positions& x = scene.w.current.x;
-  Positions gradient = Positions::Zero(scene.model.free, 3);
-  const Positions direction = shaken(Positions::Zero(scene.model.free, 3), 1, 6);
-  const ContactChange at = add_contacts(found, stick, x, nullptr, direction, &gradient);
-  EXPECT_NEAR(at.slope, (gradient.array() * direction.array()).sum(), 1e-12 * std::abs(at.slope));
-  double best = 1e300;
-  for (const double h : {1e-6, 1e-7, 1e-8}) {
-    const Positions forward = x + h * direction, backward = x - h * direction;
-    const double slope = add_contacts(found, stick, forward, &backward, direction, nullptr).value / (2 * h);
-    best = std::min(best, std::abs(slope - at.slope));
-  }
-  EXPECT_LT(best, 1e-6 * std::abs(at.slope));
+  test::expect_derivative_of_contacts(scene);
 }
 
 // The planes are found again at each point, so that the energy of the reference is the one whose gradient the planes

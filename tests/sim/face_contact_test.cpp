@@ -67,20 +67,7 @@ TEST(FaceContact, GradientIsTheDerivativeOfTheEnergy) {
   scene.state.v.rowwise() = Eigen::RowVector3d(0.02, -0.07, 0.01);
   prepare(scene);
   ASSERT_GT(touching_faces(scene), 0);
-  const std::vector<Contact>& found = scene.w.current.contacts;
-  const double stick = scene.w.contact.stick_length;
-  const Positions& x = scene.w.current.x;
-  Positions gradient = Positions::Zero(scene.model.free, 3);
-  const Positions direction = shaken(Positions::Zero(scene.model.free, 3), 1, 6);
-  const ContactChange at = add_contacts(found, stick, x, nullptr, direction, &gradient);
-  EXPECT_NEAR(at.slope, (gradient.array() * direction.array()).sum(), 1e-12 * std::abs(at.slope));
-  double best = 1e300;
-  for (const double h : {1e-6, 1e-7, 1e-8}) {
-    const Positions forward = x + h * direction, backward = x - h * direction;
-    const double slope = add_contacts(found, stick, forward, &backward, direction, nullptr).value / (2 * h);
-    best = std::min(best, std::abs(slope - at.slope));
-  }
-  EXPECT_LT(best, 1e-6 * std::abs(at.slope));
+  test::expect_derivative_of_contacts(scene);
 }
 
 // The planes are found again at each point.
@@ -188,7 +175,7 @@ TEST(FaceContact, SurfacesStayAboveWhatIsFinerThanTheirCells) {
       }
       EXPECT_GT(touched, 0) << name << " at " << speed;
       EXPECT_LT(deepest, (name == "rim" ? 0.005 : 0.012) * scene.model.size) << name << " at " << speed;
-      // What is not held falls by more than its height. A post of a tenth of a cell does not stop a cube at 3 m/s.
+      // A cube that nothing holds falls by more than its height. A post of a tenth of a cell does not stop it at 3 m/s.
       if (name != "rim" && !(name == "post" && speed > 1)) {
         EXPECT_GT(scene.center().y(), top + 0.05) << name << " at " << speed;
       }
