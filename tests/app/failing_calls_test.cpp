@@ -8,6 +8,7 @@
 
 #include "output/png_file.h"
 #include "support/bodies.h"
+#include "support/places.h"
 #include "support/program.h"
 
 namespace supple {
@@ -47,8 +48,8 @@ samples = 1
     ::setenv("FAILING_CALL", call.c_str(), 1);
     ::setenv("FAILING_AT", std::to_string(at).c_str(), 1);
     ::setenv("FAILING_COUNT", (folder_.path / "count.txt").c_str(), 1);
-    ::setenv("FAILING_PROGRAM", std::filesystem::canonical(SUPPLE_PROGRAM).c_str(), 1);
-    ::setenv("LD_PRELOAD", SUPPLE_FAILING_CALLS, 1);
+    ::setenv("FAILING_PROGRAM", std::filesystem::canonical(test::program_name).c_str(), 1);
+    ::setenv("LD_PRELOAD", test::failing_calls_name, 1);
     Result result = test::run(folder_.path, arguments);
     ::unsetenv("LD_PRELOAD");
     return result;

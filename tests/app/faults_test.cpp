@@ -13,6 +13,7 @@
 #include "output/png_file.h"
 #include "output/whole_file.h"
 #include "support/bodies.h"
+#include "support/places.h"
 #include "support/program.h"
 
 namespace supple {
@@ -41,7 +42,7 @@ samples = 1
   // Runs the program through a shell, after the commands in `before`.
   Result in_shell(const std::string& before, const std::string& arguments) const {
     const std::string command = fmt::format("cd '{}' && {} '{}' {} > stdout.txt 2> stderr.txt", folder_.path.string(),
-                                            before, SUPPLE_PROGRAM, arguments);
+                                            before, test::program_name, arguments);
     const int status = std::system(fmt::format("bash -c \"{}\"", command).c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, test::read_file(folder_.path / "stdout.txt"),
             test::read_file(folder_.path / "stderr.txt")};
@@ -176,7 +177,7 @@ TEST_F(Faults, AClosedTerminalEndsTheFilmAfterItsFrameUnlessNohupSaysOtherwise) 
 TEST_F(Faults, WordsForAClosedStreamDoNotLandInResults) {
   const auto motion = [&](const std::string& streams) {
     const std::string line =
-        fmt::format("cd '{}' && '{}' render bar.toml {}", folder_.path.string(), SUPPLE_PROGRAM, streams);
+        fmt::format("cd '{}' && '{}' render bar.toml {}", folder_.path.string(), test::program_name, streams);
     EXPECT_EQ(std::system(fmt::format("bash -c \"{}\"", line).c_str()), 0) << streams;
     return test::read_file(folder_.path / "out" / "bar" / "motion" / "bar.pc2");
   };

@@ -14,6 +14,7 @@
 #include "output/png_file.h"
 #include "output/video.h"
 #include "support/bodies.h"
+#include "support/places.h"
 #include "support/program.h"
 
 namespace supple {
@@ -147,7 +148,7 @@ TEST_F(FilmOfABar, WithoutFilesIsTheSameFilm) {
 }
 
 TEST_F(FilmOfABar, WithoutFilesNeedsFfmpegToTheEnd) {
-  const std::string program = fmt::format("'{}' render bar.toml --quiet --film-only", SUPPLE_PROGRAM);
+  const std::string program = fmt::format("'{}' render bar.toml --quiet --film-only", test::program_name);
   const Result without = in_shell("PATH=/nowhere " + program);
   EXPECT_EQ(without.status, 2);
   EXPECT_EQ(without.err, "--film-only: needs ffmpeg, which is not installed (Debian: ffmpeg)\n");
@@ -163,7 +164,7 @@ TEST_F(FilmOfABar, WithoutFilesNeedsFfmpegToTheEnd) {
 TEST_F(FilmOfABar, AnEncoderThatDiesInTheMiddleCostsNoFrame) {
   // The pictures are so large that the pipe holds only one of them.
   const std::string program =
-      fmt::format("'{}' render bar.toml --quiet --set output.width=640 --set output.height=480", SUPPLE_PROGRAM);
+      fmt::format("'{}' render bar.toml --quiet --set output.width=640 --set output.height=480", test::program_name);
   const std::pair<const char*, const char*> ends[] = {
       {"head -c 3000000 > /dev/null; echo out of luck; kill -9 $$",
        "supple: no film: ffmpeg was ended by signal 9; the frames are whole. out of luck\n"},
@@ -190,7 +191,7 @@ TEST_F(FilmOfABar, IsWholeUpToAnInterruptOfTheWholeGroup) {
         in_shell(fmt::format("set -m\n'{}' render bar.toml --quiet --frames 20000 {} &\nprogram=$!\n"
                              "until [ -s out/bar/motion/bar.pc2 ]; do sleep 0.01; done\nsleep 0.5\n"
                              "kill -INT -$program\nwait $program",
-                             SUPPLE_PROGRAM, more));
+                             test::program_name, more));
     EXPECT_EQ(result.status, 130) << result.err;
     const auto frames = static_cast<int>(test::profile_of(folder_.path / "out" / "bar")["frames"].size());
     EXPECT_GT(frames, 0);

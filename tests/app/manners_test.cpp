@@ -11,6 +11,7 @@
 
 #include "output/child_program.h"
 #include "support/bodies.h"
+#include "support/places.h"
 #include "support/program.h"
 
 namespace supple {
@@ -162,7 +163,7 @@ TEST(Completion, OffersWordsAndFilesInBash) {
   const auto offered = [&](const std::string& line) {
     const std::string script = "cd '" + folder.path.string() + "'; . '" +
                                (test::assets / "completion/supple.bash").string() + "'; COMP_WORDS=('" +
-                               SUPPLE_PROGRAM + "' " + line +
+                               test::program_name + "' " + line +
                                "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _supple; printf '%s|' \"${COMPREPLY[@]}\"";
     const auto end = run_program({"bash", "-c", script});
     return end ? end->output : "no bash";

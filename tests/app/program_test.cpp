@@ -9,6 +9,7 @@
 #include "output/png_file.h"
 #include "output/video.h"
 #include "support/bodies.h"
+#include "support/places.h"
 #include "support/program.h"
 
 namespace supple {
@@ -148,7 +149,7 @@ TEST(Program, FinishesARunWhoseListenerHasGone) {
   const test::TemporaryFolder folder;
   write_scene(folder.path / "head.toml");
   const std::string command =
-      fmt::format("cd '{}' && '{}' render head.toml --no-images 2>&1 | true", folder.path.string(), SUPPLE_PROGRAM);
+      fmt::format("cd '{}' && '{}' render head.toml --no-images 2>&1 | true", folder.path.string(), test::program_name);
   (void)!std::system(command.c_str());
   const auto info = nlohmann::json::parse(test::read_file(folder.path / "out" / "head" / "run.json"));
   EXPECT_EQ(info["ended"], "done");

@@ -16,6 +16,7 @@
 #include "output/point_cache.h"
 #include "render/renderer.h"
 #include "support/film.h"
+#include "support/places.h"
 
 namespace supple {
 namespace {
@@ -113,7 +114,7 @@ Difference difference_of(const std::vector<std::uint8_t>& a, const std::vector<s
 
 void expect_golden(const std::string& name, const Image& image) {
   const std::filesystem::path golden = golden_folder / (name + ".png");
-  const std::filesystem::path candidate = std::filesystem::path(SUPPLE_BUILD_FOLDER) / (name + "-candidate.png");
+  const std::filesystem::path candidate = test::build_folder / (name + "-candidate.png");
   write_png(candidate, image.width, image.height, image.rgb);
   ASSERT_TRUE(std::filesystem::exists(golden)) << "no stored picture; the candidate is " << candidate;
   const PngImage expected = read_png(golden);

@@ -8,6 +8,7 @@
 #include "sim/model/measures.h"
 #include "sim/solver/energies.h"
 #include "support/film.h"
+#include "support/places.h"
 
 namespace supple {
 namespace {
@@ -31,7 +32,7 @@ TEST(Energy, IsLostByBackwardEulerKeptByAWellSolvedMidpointAndPumpedIntoABadlySo
                             solved = energy_of("midpoint", {"solver.iterations=100"}, frames),
                             substeps = energy_of("midpoint", {"substeps=4"}, frames),
                             damped = energy_of("damped", {}, frames);
-  std::ofstream out(std::filesystem::path(SUPPLE_BUILD_FOLDER) / "energies.csv");
+  std::ofstream out(test::build_folder / "energies.csv");
   out << "time,backward Euler,midpoint,midpoint 100 iterations,midpoint 4 substeps,damped midpoint\n";
   for (int i = 0; i < frames; ++i)
     out << fmt::format("{:.4f},{},{},{},{},{}\n", (i + 1) / 30.0, euler[i], midpoint[i], solved[i], substeps[i],

@@ -12,6 +12,7 @@
 #include "scene/shape_reader.h"
 #include "scene/warnings.h"
 #include "support/bodies.h"
+#include "support/places.h"
 #include "support/scene_text.h"
 
 namespace supple {
@@ -309,7 +310,7 @@ TEST(Documentation, ListsEveryKeyOfScenesAndShapesWithItsDefault) {
   for (const auto& [name, table] :
        {std::pair<std::string, std::string>{"scene", table_of(all_keys())}, {"shape", table_of(shape_keys())}}) {
     if (page.find(table) != std::string::npos) continue;
-    const std::filesystem::path candidate = std::filesystem::path(SUPPLE_BUILD_FOLDER) / (name + "-keys.md");
+    const std::filesystem::path candidate = test::build_folder / (name + "-keys.md");
     std::ofstream(candidate) << table;
     ADD_FAILURE() << "docs/scene-format.md does not hold the " << name << " table as the code has it; it is in "
                   << candidate;

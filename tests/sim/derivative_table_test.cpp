@@ -14,6 +14,7 @@
 #include "sim/elements/element.h"
 #include "support/bodies.h"
 #include "support/deformations.h"
+#include "support/places.h"
 
 namespace supple {
 namespace {
@@ -185,7 +186,7 @@ TEST(Derivatives, ForcesOfEveryElementAreTheDerivativesOfItsEnergyAndBalance) {
         << "docs/derivatives.md has no row for " << name << "; build/release/derivatives.md has";
   }
   std::cout << table_of(rows);
-  std::ofstream(std::filesystem::path(SUPPLE_BUILD_FOLDER) / "derivatives.md") << table_of(rows);
+  std::ofstream(test::build_folder / "derivatives.md") << table_of(rows);
 }
 
 TEST(Derivatives, NetForceAndTorqueOfAWholeBodyVanishAtEveryIteration) {

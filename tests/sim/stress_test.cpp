@@ -10,6 +10,7 @@
 
 #include "sim/elements/tetrahedron.h"
 #include "support/bodies.h"
+#include "support/places.h"
 
 namespace supple {
 namespace {
@@ -235,7 +236,7 @@ TEST(Materials, SmallStrainsFollowYoungsModulusAndPoissonsRatio) {
 // Writes the curves of figure 6, for docs/stress-curves.svg.
 TEST(Stress, CurvesAreWrittenForThePlot) {
   const Lame lame{1, 1};
-  std::ofstream out(std::filesystem::path(SUPPLE_BUILD_FOLDER) / "stress-curves.csv");
+  std::ofstream out(test::build_folder / "stress-curves.csv");
   out << "stretch,neo-hookean,spline A,spline B,polynomial,strain-limiting,corotated,st-venant-kirchhoff\n";
   const std::vector<Material> shown = {NeoHookean::from(lame),
                                        Spline::preset_a(lame),

@@ -8,11 +8,9 @@
 #include <vector>
 
 #include "sim/solver/step.h"
+#include "support/places.h"
 
 namespace supple::test {
-
-inline const std::filesystem::path source_folder = SUPPLE_SOURCE_FOLDER;
-inline const std::filesystem::path assets = source_folder / "assets";
 
 // Finds the paper's mesh of this name. When there is none, the calling test is skipped with that name (with
 // SUPPLE_REQUIRE_PAPER=1 it fails).

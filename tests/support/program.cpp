@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "support/bodies.h"
+#include "support/places.h"
 
 namespace supple::test {
 
@@ -16,7 +17,7 @@ pid_t start(const std::filesystem::path& folder, const std::vector<std::string>&
     std::filesystem::current_path(folder);
     (void)!freopen("stdout.txt", "w", stdout);
     (void)!freopen("stderr.txt", "w", stderr);
-    std::vector<char*> words = {const_cast<char*>(SUPPLE_PROGRAM)};
+    std::vector<char*> words = {const_cast<char*>(program_name)};
     for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
     words.push_back(nullptr);
     execv(words[0], words.data());
