@@ -39,6 +39,8 @@ std::vector<MethodTimes> all_methods() {
           {{"ours, tangent", Method::quasi_newton, 200, 5, LineSearch::armijo, {}, SystemMatrix::tangent}},
           {{"Projective Dynamics", Method::projective_dynamics, 300}},
           {{"Chebyshev", Method::chebyshev, 300}},
+          {{"ADMM", Method::admm, 300}},
+          {{"vertex block descent", Method::vertex_block_descent, 300}},
           {{"Newton", Method::newton, 15}},
           {{"Newton, on demand", Method::newton_on_demand, 20}},
           {{"Newton, shifted", Method::newton_shifted, 20}},
@@ -156,13 +158,10 @@ ReportSection bench_profiles(const BenchSetting& setting) {
     say_doing(setting, fmt::format("{}, {} ({})", choice.scene, choice.body, subject.size_text()));
     SolverComparison comparison(subject, *setting.threads);
     std::vector<BenchState> states = states_of(subject, {6, 12, 18, 30, 42, 54, 66}, setting);
-    const ChebyshevSettings chebyshev = trained_chebyshev(comparison, states[1]);
-    states.erase(states.begin() + 1);  // it was for training
     std::vector<SolverEntry> entries;
-    for (const MethodTimes& method : list) {
-      entries.push_back(method.entry);
-      entries.back().chebyshev = chebyshev;
-    }
+    for (const MethodTimes& method : list) entries.push_back(method.entry);
+    train_chebyshev(comparison, states[1], entries);
+    states.erase(states.begin() + 1);  // it was for training
     for (const BenchState& state : states) {
       const std::vector<Outcome> outcomes = comparison.run(state, entries, 1, 200);
       const Minimum lowest = comparison.reference(state, outcomes);
@@ -218,12 +217,16 @@ ReportSection bench_scenes(const BenchSetting& setting) {
     SolverComparison comparison(subject, *setting.threads);
     const std::vector<BenchState> states = states_of(subject, {frame - 6, frame}, setting);
     const BenchState& state = states.back();
-    std::vector<SolverEntry> entries = {
-        {"ours", Method::quasi_newton, 100},          {"Projective Dynamics", Method::projective_dynamics, 100},
-        {"Chebyshev", Method::chebyshev, 100},        {"Newton", Method::newton, 12},
-        {"Newton, 15 CG", Method::newton_cg(15), 40}, {"ours, tangent", Method::quasi_newton, 100}};
+    std::vector<SolverEntry> entries = {{"ours", Method::quasi_newton, 100},
+                                        {"Projective Dynamics", Method::projective_dynamics, 100},
+                                        {"Chebyshev", Method::chebyshev, 100},
+                                        {"Newton", Method::newton, 12},
+                                        {"Newton, 15 CG", Method::newton_cg(15), 40},
+                                        {"ADMM", Method::admm, 100},
+                                        {"vertex block descent", Method::vertex_block_descent, 100},
+                                        {"ours, tangent", Method::quasi_newton, 100}};
     entries.back().matrix = SystemMatrix::tangent;
-    entries[2].chebyshev = trained_chebyshev(comparison, states.front());
+    train_chebyshev(comparison, states.front(), entries);
     const std::vector<Outcome> outcomes = comparison.run(state, entries, 2, 2000);
     const Minimum lowest = comparison.reference(state, outcomes);
     ReportPlot plot{fmt::format("scene-{}-{}", choice.scene, choice.body),

@@ -60,6 +60,7 @@ const std::vector<Benchmark>& benchmarks() {
       {"figure15", "the interval of equation 11", 0.3, bench_figure15},
       {"figure16", "direct solves and conjugate gradients", 0.4, bench_figure16},
       {"figure17", "preconditioners", 0.3, bench_figure17},
+      {"rivals", "methods of other papers on the same state", 0.5, bench_rivals},
       {"scenes", "error against milliseconds, scene by scene", 1.5, bench_scenes},
       {"profiles", "performance profiles of all methods on all states", 8, bench_profiles},
       {"minima", "whether converged solvers agree", 1, bench_minima},

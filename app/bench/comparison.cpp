@@ -141,11 +141,11 @@ double time_to(const Outcome& outcome, double whole, double tolerance) {
   return std::numeric_limits<double>::infinity();
 }
 
-ChebyshevSettings trained_chebyshev(SolverComparison& comparison, const BenchState& training) {
+ChebyshevSettings trained_chebyshev(SolverComparison& comparison, const BenchState& training, const Method& method) {
   ChebyshevSettings best{10, 0.99};
   double most = -std::numeric_limits<double>::infinity();
-  for (const double radius : {0.8, 0.9, 0.95, 0.97, 0.98, 0.99, 0.995, 0.999}) {
-    SolverEntry entry{"", Method::chebyshev, 30};
+  for (const double radius : {0.7, 0.8, 0.9, 0.95, 0.97, 0.98, 0.99, 0.995, 0.999}) {
+    SolverEntry entry{"", method, 30};
     entry.chebyshev = {best.delay, radius};
     const Outcome outcome = comparison.run(training, {entry}, 0).front();
     if (outcome.failed || outcome.gained.back() <= most) continue;
@@ -153,6 +153,13 @@ ChebyshevSettings trained_chebyshev(SolverComparison& comparison, const BenchSta
     best.radius = radius;
   }
   return best;
+}
+
+void train_chebyshev(SolverComparison& comparison, const BenchState& training, std::vector<SolverEntry>& entries) {
+  for (SolverEntry& entry : entries) {
+    if (entry.method.acceleration == Acceleration::chebyshev)
+      entry.chebyshev = trained_chebyshev(comparison, training, entry.method);
+  }
 }
 
 }  // namespace supple

@@ -87,8 +87,11 @@ double last_error(const Outcome& outcome, double whole);
 // Returns the first time at which the error is at most `tolerance`, or infinity when it never is [ms].
 double time_to(const Outcome& outcome, double whole, double tolerance);
 
-// Finds the radius with which Chebyshev's method comes closest to the minimum after 30 iterations on a training state,
-// with the delay of Wang 2015.
-ChebyshevSettings trained_chebyshev(SolverComparison& comparison, const BenchState& training);
+// Finds the radius with which a method that Chebyshev's semi-iterative method accelerates comes closest to the minimum
+// after 30 iterations on a training state, with the delay of Wang 2015.
+ChebyshevSettings trained_chebyshev(SolverComparison& comparison, const BenchState& training, const Method& method);
+
+// Trains all of these entries that Chebyshev's method accelerates.
+void train_chebyshev(SolverComparison& comparison, const BenchState& training, std::vector<SolverEntry>& entries);
 
 }  // namespace supple

@@ -80,9 +80,7 @@ ReportSection compare(const BenchSetting& setting, const std::string& name, cons
   Subject subject(twisting_bar(setting));
   SolverComparison comparison(subject, *setting.threads);
   const std::vector<BenchState> states = states_of(subject, {60, example_frame}, setting);
-  for (SolverEntry& entry : entries) {
-    if (entry.method == Method::chebyshev) entry.chebyshev = trained_chebyshev(comparison, states[0]);
-  }
+  train_chebyshev(comparison, states[0], entries);
   const std::vector<Outcome> outcomes = comparison.run(states[1], entries, 5);
   const Minimum lowest = comparison.reference(states[1], outcomes);
   ReportSection section{name, heading};
@@ -123,6 +121,23 @@ ReportSection bench_figure8(const BenchSetting& setting) {
       "L-BFGS with m = 5 from each. The paper's order by time: ours, then the warped rest pose, the rest pose "
       "and the identity; the Hessian of the frame's start is best by iterations and pays for its "
       "factorisation.");
+}
+
+ReportSection bench_rivals(const BenchSetting& setting) {
+  const Method plain_blocks = {.matrix = StartMatrix::vertex_blocks, .acceleration = Acceleration::none};
+  return compare(setting, "rivals", "Methods of other papers",
+                 {{"ours", Method::quasi_newton, 100},
+                  tangent("tangent"),
+                  {"Projective Dynamics", Method::projective_dynamics, 100},
+                  {"ADMM", Method::admm, 200},
+                  {"vertex block descent", Method::vertex_block_descent, 300},
+                  {"the same, not accelerated", plain_blocks, 300},
+                  {"Newton", Method::newton, 12},
+                  {"Newton, on demand", Method::newton_on_demand, 12}},
+                 "ours",
+                 "ADMM is that of Overby et al. 2017 with our factor, vertex block descent that of Chen et al. 2024 "
+                 "with a radius trained on another frame of the same motion; Newton's method on demand is that of "
+                 "Longva et al. 2023.");
 }
 
 ReportSection bench_figure13(const BenchSetting& setting) {

@@ -14,6 +14,7 @@ ReportSection bench_table2(const BenchSetting& setting);
 // convergence.cpp
 ReportSection bench_figure7(const BenchSetting& setting);
 ReportSection bench_figure8(const BenchSetting& setting);
+ReportSection bench_rivals(const BenchSetting& setting);
 ReportSection bench_figure13(const BenchSetting& setting);
 ReportSection bench_figure14(const BenchSetting& setting);
 ReportSection bench_figure15(const BenchSetting& setting);

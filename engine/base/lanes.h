@@ -12,7 +12,7 @@ using Lanes = xsimd::batch<double>;
 constexpr int lanes = static_cast<int>(Lanes::size);
 
 // Sums the lanes in their order, so that the order of a sum is the order of the elements.
-double sum_in_order(const Lanes& v) {
+[[maybe_unused]] double sum_in_order(const Lanes& v) {
   alignas(64) double value[lanes];
   v.store_aligned(value);
   double sum = value[0];

@@ -3,8 +3,11 @@
 #include <utility>
 
 #include "base/error.h"
+#include "baselines/chebyshev_weight.h"
 #include "baselines/initial_hessians.h"
 #include "baselines/newton.h"
+#include "baselines/splitting.h"
+#include "baselines/vertex_blocks.h"
 
 namespace supple {
 namespace {
@@ -23,7 +26,8 @@ std::unique_ptr<InitialInverse> initial_inverse(const Method& method, const Mode
       return std::make_unique<FrameInverse>(model);
     case StartMatrix::hecht: return std::make_unique<HechtInverse>(model);
     case StartMatrix::contact: return std::make_unique<ContactMatrixInverse>(model);
-    case StartMatrix::hessian: break;  // Newton's rules hold theirs, which no pairs of L-BFGS correct
+    case StartMatrix::hessian:
+    case StartMatrix::vertex_blocks: break;  // their rules hold them; no pairs of L-BFGS correct them
   }
   return nullptr;
 }
@@ -49,9 +53,8 @@ class LbfgsFrom final : public SearchRule {
   LbfgsRule rule_;
 };
 
-// Implements Chebyshev semi-iterative acceleration (Wang 2015, "A Chebyshev semi-iterative approach for accelerating
-// projective and position-based dynamics"; Liu et al. 2017, algorithm 3). After an ascent the acceleration starts
-// again.
+// Implements Projective Dynamics with Chebyshev's acceleration (Wang 2015; Liu et al. 2017, algorithm 3). After an
+// ascent the acceleration starts again.
 class ChebyshevRule final : public SearchRule {
  public:
   void begin(const Model&, const StepInputs&, Workspace&) override { iteration_ = 0; }
@@ -62,15 +65,7 @@ class ChebyshevRule final : public SearchRule {
     find_stiff_directions(model, w.current.contacts, w.current.x, w.contact.stick_length, w.correction);
     apply_inverse(model, inputs.solver.contact, w.correction, w.solve_scratch, w.scratch, w.direction);
     w.direction = -w.direction;
-    const auto [delay, radius] = inputs.solver.chebyshev;
-    const double rho2 = radius * radius;
-    if (iteration_ < delay) {
-      omega_ = 1;
-    } else if (iteration_ == delay) {
-      omega_ = 2 / (2 - rho2);
-    } else {
-      omega_ = 4 / (4 - rho2 * omega_);
-    }
+    omega_ = chebyshev_weight(inputs.solver.chebyshev, iteration_, omega_);
     // omega (x_{k+1} - x_{k-1}) + x_{k-1} - x_k with x_{k+1} = x_k + q
     if (iteration_ > 0)
       w.direction =
@@ -101,7 +96,10 @@ std::unique_ptr<SearchRule> newton_rule(const Method& method, const Model& model
 
 std::unique_ptr<SearchRule> make_rule(const Method& method, const Model& model) {
   if (const auto problem = problem_of(method)) throw InputError("method", problem->message);
-  if (method.acceleration == Acceleration::chebyshev) return std::make_unique<ChebyshevRule>();
+  const bool chebyshev = method.acceleration == Acceleration::chebyshev;
+  if (method.matrix == StartMatrix::vertex_blocks) return std::make_unique<VertexBlockRule>(model, chebyshev);
+  if (method.acceleration == Acceleration::admm) return std::make_unique<SplittingRule>();
+  if (chebyshev) return std::make_unique<ChebyshevRule>();
   if (method.matrix == StartMatrix::hessian) return newton_rule(method, model);
   return std::make_unique<LbfgsFrom>(initial_inverse(method, model));
 }
@@ -109,7 +107,9 @@ std::unique_ptr<SearchRule> make_rule(const Method& method, const Model& model) 
 SolverSettings settings_of(const Method& method, SolverSettings settings) {
   if (method.acceleration != Acceleration::lbfgs) settings.history = 0;
   if (method != Method::quasi_newton) settings.matrix = SystemMatrix::constant;
-  if (method.matrix == StartMatrix::hecht) settings.line_search = LineSearch::none;
+  if (method.matrix == StartMatrix::hecht || method.matrix == StartMatrix::vertex_blocks ||
+      method.acceleration == Acceleration::admm)
+    settings.line_search = LineSearch::none;
   return settings;
 }
 

@@ -23,6 +23,7 @@ enum class StartMatrix {
   hessian,              // the Hessian at each iterate: Newton's method
   hecht,                // a warped Hessian that is renewed every other step (Hecht et al. 2012)
   contact,              // A with the stiffness of contacts on its diagonal, factored anew when they change
+  vertex_blocks,        // the Hessian's 3 x 3 block of each vertex, when its turn comes (Chen et al. 2024)
 };
 template <>
 struct Names<StartMatrix> {
@@ -33,7 +34,8 @@ struct Names<StartMatrix> {
                                        Name{StartMatrix::frame_hessian, "frame-hessian"},
                                        Name{StartMatrix::hessian, "hessian"},
                                        Name{StartMatrix::hecht, "hecht"},
-                                       Name{StartMatrix::contact, "contact"}};
+                                       Name{StartMatrix::contact, "contact"},
+                                       Name{StartMatrix::vertex_blocks, "vertex-blocks"}};
 };
 
 enum class LinearSolver { direct, cg };  // by a factor, or by conjugate gradients
@@ -60,11 +62,12 @@ enum class Acceleration {
   none,
   lbfgs,      // SolverSettings::history pairs
   chebyshev,  // Chebyshev's semi-iterative method (Wang 2015), SolverSettings::chebyshev
+  admm,       // multipliers that tie each element's own deformation to the positions (Overby et al. 2017)
 };
 template <>
 struct Names<Acceleration> {
   static constexpr std::array table = {Name{Acceleration::none, "none"}, Name{Acceleration::lbfgs, "l-bfgs"},
-                                       Name{Acceleration::chebyshev, "chebyshev"}};
+                                       Name{Acceleration::chebyshev, "chebyshev"}, Name{Acceleration::admm, "admm"}};
 };
 
 // Selects the remedy for a Hessian that is not positive definite.
@@ -94,7 +97,7 @@ struct Method {
   bool operator==(const Method&) const = default;
 
   // These are the usual methods, which have short names.
-  static const Method quasi_newton, projective_dynamics, chebyshev, newton, gast, hecht;
+  static const Method quasi_newton, projective_dynamics, chebyshev, newton, gast, hecht, vertex_block_descent, admm;
 
   // Returns the paper's method with A solved by conjugate gradients.
   static constexpr Method quasi_newton_cg(int iterations);
@@ -124,6 +127,9 @@ inline constexpr Method Method::gast = {.matrix = StartMatrix::hessian,
                                         .acceleration = Acceleration::none,
                                         .safeguard = Safeguard::curvature};
 inline constexpr Method Method::hecht = {.matrix = StartMatrix::hecht, .acceleration = Acceleration::none};
+inline constexpr Method Method::vertex_block_descent = {.matrix = StartMatrix::vertex_blocks,
+                                                        .acceleration = Acceleration::chebyshev};
+inline constexpr Method Method::admm = {.acceleration = Acceleration::admm};
 
 constexpr Method Method::quasi_newton_cg(int iterations) {
   return {.linear = LinearSolver::cg, .inner_iterations = iterations, .preconditioner = Preconditioner::jacobi};
@@ -159,9 +165,11 @@ inline constexpr std::array short_names = {
     ShortName{"newton", Method::newton},
     ShortName{"gast", Method::gast},
     ShortName{"hecht", Method::hecht},
+    ShortName{"vertex-block-descent", Method::vertex_block_descent},
+    ShortName{"admm", Method::admm},
 };
 
-// Holds up to three values of one part; the first is the default.
+// Holds up to four values of one part; the first is the default.
 template <class E>
 class PartChoice {
  public:
@@ -179,7 +187,7 @@ class PartChoice {
   constexpr const E* end() const { return values_.data() + count_; }
 
  private:
-  std::array<E, 3> values_{};
+  std::array<E, 4> values_{};
   std::size_t count_ = 0;
 };
 
@@ -199,7 +207,7 @@ inline constexpr auto method_forms = [] {
   constexpr Preconditioner without = Preconditioner::none, jacobi = Preconditioner::jacobi;
   constexpr Safeguard definite = Safeguard::none;
   return std::to_array<MethodForm>({
-      {system, direct, {without}, {lbfgs, chebyshev, none}, {definite}},
+      {system, direct, {without}, {lbfgs, chebyshev, admm, none}, {definite}},
       {system, cg, {jacobi}, {lbfgs, none}, {definite}},
       {identity, direct, {without}, {lbfgs, none}, {definite}},
       {rest_hessian, direct, {without}, {lbfgs, none}, {definite}},
@@ -210,6 +218,7 @@ inline constexpr auto method_forms = [] {
       {hessian, cg, {jacobi}, {none}, {Safeguard::projection, Safeguard::curvature}},
       {hecht, direct, {without}, {none}, {definite}},
       {contact, direct, {without}, {lbfgs, none}, {definite}},
+      {vertex_blocks, direct, {without}, {chebyshev, none}, {definite}},
   });
 }();
 

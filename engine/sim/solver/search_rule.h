@@ -28,6 +28,10 @@ class SearchRule {
   // Tells whether a direction costs so little that one more is worth what it tells of the last iterate.
   virtual bool looks_beyond() const { return false; }
 
+  // Tells whether the rule reads the gradients of iterates. Where it does not and no line search is made, they are not
+  // computed.
+  virtual bool needs_gradient() const { return true; }
+
   // Forgets what was learned in earlier iterations, when the direction was of no use. Returns false when there was
   // nothing to forget.
   virtual bool forget() { return false; }

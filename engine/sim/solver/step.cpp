@@ -96,7 +96,7 @@ Search find_next(const Model& model, const StepInputs& inputs, Workspace& w, Sea
   const TimedPhase timed(w.clock, Phase::evaluate, "line search");
   if (inputs.solver.line_search == LineSearch::none) {
     set_trial(model, w, 1);
-    change = evaluate_trial(model, w, Wanted::gradient);
+    change = evaluate_trial(model, w, rule.needs_gradient() ? Wanted::gradient : Wanted::value);
     ++w.report.line_search;
     find_contacts_of(model, inputs, w, w.trial);
     return Search::found;

@@ -1,0 +1,28 @@
+// Declares the loops over elements of the methods that solve many small problems, vertex block descent and ADMM, as a
+// table of functions that is compiled once for each instruction set, like sim/elements/element_kernels.h.
+#pragma once
+
+#include "sim/elements/element_kernels.h"
+
+namespace supple {
+
+constexpr int corner_numbers = 9;     // dE/dx of a corner, then the packed block of second derivatives
+constexpr int most_multipliers = 12;  // of an element: 9 of F, and 3 of F d for fibres; a spring has 3
+
+struct LocalKernels {
+  // Writes for each lane what moving the element's corner 1 changes: its force [N] and block [N/m], corner_numbers of
+  // them (element_corner.h).
+  void (*corners)(const ElementChunk& chunk, const double* x, double* out);
+
+  // Makes ADMM's local step of each element (element_proximal.h), or with `start` sets its multipliers to the stress at
+  // x. k: weight of its material in A [Pa]. multipliers: blocks x most_multipliers x block_width. Writes the forces by
+  // list vertex (vertices x 3) [N].
+  void (*proximal)(const ElementChunk& chunk, double k, const double* x, bool start, double* multipliers,
+                   double* force);
+};
+
+// Returns the loops of the widest variant that this machine can run, or of any variant that it can (base/variants.h).
+const LocalKernels& local_kernels();
+const LocalKernels& local_kernels(int variant);
+
+}  // namespace supple

@@ -1,0 +1,26 @@
+// Implements ADMM (Overby, Brown, Li, Narain 2017, "ADMM ⊇ projective dynamics"): each element has a deformation of its
+// own, which a local step finds (element_proximal.h), and multipliers that tie it to the positions, which the global
+// step finds with the factor of A. The weights of the ties are those of L.
+#pragma once
+
+#include "baselines/local_kernels.h"
+#include "sim/solver/search_rule.h"
+
+namespace supple {
+
+// An iteration makes the local step at the current iterate and then the global one. Its direction leads to the
+// positions that the latter finds, and is followed to its end.
+class SplittingRule final : public SearchRule {
+ public:
+  void begin(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
+  double direction(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
+  bool needs_gradient() const override { return false; }
+
+ private:
+  void make_local_steps(const Model& model, Workspace& workspace);
+
+  AlignedVector<double> multipliers_;  // u, by block, most_multipliers x block_width
+  bool start_ = true;                  // they have no values yet
+};
+
+}  // namespace supple

@@ -1,0 +1,35 @@
+// Computes what a vertex alone adds to g: its inertia, the spring of a soft handle and its row of the damping. Methods
+// that treat elements one by one add the elements' forces themselves. The whole of g is in sim/solver/objective.h.
+#pragma once
+
+#include "sim/solver/workspace.h"
+
+namespace supple {
+
+struct VertexTerms {
+  Vec3 slope;        // dg/dx_v [N]
+  double stiffness;  // the second derivative is this times the identity [N/m]
+};
+
+inline VertexTerms vertex_terms(const Model& model, const Workspace& w, const Positions& x, int v) {
+  const double inertia = model.scheme.inertia / (model.time_step * model.time_step) * model.mass[v];
+  const double theta = model.scheme.theta;
+  VertexTerms terms{inertia * (x.row(v) - w.y.row(v)).transpose(), inertia};
+  if (!model.handle_stiffness.empty() && model.handle_stiffness[v] > 0) {
+    Vec3 place = x.row(v);
+    if (theta < 1) place = theta * place + (1 - theta) * w.start_copy.row(v).transpose();
+    // e theta = 1 for both integrators.
+    terms.slope += model.handle_stiffness[v] * (place - w.target.row(v).transpose());
+    terms.stiffness += theta * model.handle_stiffness[v];
+  }
+  if (!model.damping.begin.empty()) {
+    for (std::int32_t k = model.damping.begin[v]; k < model.damping.begin[v + 1]; ++k) {
+      const std::int32_t other = model.damping.column[k];
+      terms.slope += model.damping.value[k] * (x.row(other) - w.start_copy.row(other)).transpose();
+      if (other == v) terms.stiffness += model.damping.value[k];
+    }
+  }
+  return terms;
+}
+
+}  // namespace supple
