@@ -12,6 +12,7 @@
 #include "geometry/tetrahedralize.h"
 #include "support/allocation_counter.h"
 #include "support/bodies.h"
+#include "support/contact_scene.h"
 #include "support/objective_checks.h"
 
 namespace supple {
@@ -181,6 +182,23 @@ TEST(Step, GravityAloneIsFreeFall) {
   // Backward Euler gives x_n = x_0 + g h^2 n (n + 1) / 2.
   const double h = model.time_step, fall = -9.81 * h * h * frames * (frames + 1) / 2;
   EXPECT_LT((state.x.col(1).array() - model.rest.col(1).array() - fall).abs().maxCoeff(), 1e-10);
+}
+
+// Equation 12 divides by what there is to gain, and near rest that is round-off.
+TEST(Step, ABodyThatComesToRestOnTheGroundHasNoError) {
+  for (const Material& material : {Material(Corotated{1.07e4, 4.3e4}), Material(NeoHookean{1.07e4, 4.3e4})}) {
+    BodyDescription body = test::cube(2, material);
+    body.precision = Precision::single_precision;
+    test::ContactScene scene(body, {{"ground", test::shape_of(HalfSpace{Vec3::UnitY(), 0})}}, Vec3(0, 0.1, 0));
+    int slow = 0;
+    for (int frame = 0; frame < 150; ++frame) {
+      const StepReport& report = scene.step();
+      if (scene.fastest() > 1e-5) continue;
+      ++slow;
+      EXPECT_LT(report.error_estimate, 0.1) << name_of(material) << ", frame " << frame;
+    }
+    EXPECT_GT(slow, 50);
+  }
 }
 
 TEST(Step, ConvergesToAnErrorOf1e12WithoutStalling) {

@@ -7,41 +7,13 @@
 
 #include "base/trace.h"
 #include "sim/solver/energy_gain.h"
+#include "sim/solver/error_estimate.h"
 #include "sim/solver/lbfgs.h"
 #include "sim/solver/line_search.h"
 #include "sim/solver/matrix_rule.h"
 
 namespace supple {
 namespace {
-
-// Estimates what the remaining decreases would add up to if they went on as they did since objective[first]: the
-// numerator of equation 12, without a reference, for rules that do not look beyond the last iterate [J]. Decreases of
-// quasi-Newton iterations shrink unevenly, so the ratio is averaged over the last three. Where there are too few, the
-// estimate is as much again as was gained.
-double estimate_remaining(const StepReport& report, std::size_t first) {
-  const std::vector<double>& g = report.objective;
-  const std::size_t steps = g.size() - 1 - first;
-  if (steps < 2) return steps == 0 ? 0 : std::max(0.0, g[first] - g[first + 1]);
-  const double last = g[g.size() - 2] - g.back();
-  const std::size_t back = std::min<std::size_t>(3, steps - 1);
-  const double earlier = g[g.size() - 2 - back] - g[g.size() - 1 - back];
-  if (last <= 0 || earlier <= 0) return 0;
-  const double ratio = std::min(0.95, std::pow(last / earlier, 1.0 / static_cast<double>(back)));
-  return last * ratio / (1 - ratio);
-}
-
-// Returns the share that remains of the whole possible gain.
-double as_error(double remaining, double gained) {
-  return remaining > 0 ? remaining / (std::max(gained, 0.0) + remaining) : 0;
-}
-
-// The estimate of what is left to gain is this factor times |tr(grad^T d)|/2 at the end. The factor would be 1 if the
-// matrix of d, corrected by L-BFGS, were the Hessian. docs/method.md ("Error and its estimate") says how it was found.
-constexpr double share_of_decrement = 2;
-
-bool is_near_enough(const StepReport& report, const SolverSettings& solver) {
-  return solver.target_error > 0 && as_error(report.remaining_estimate, report.decrease) < solver.target_error;
-}
 
 int first_bad_vertex(const Model& model, const Positions& x) {
   int worst = 0;
@@ -209,7 +181,7 @@ void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
     const Descent descent = next_direction(model, inputs, w, rule);
     if (!std::isfinite(descent.slope)) return fail(model, w, "solve", descent.slope);
     report.decrement = descent.done ? 0 : -0.5 * descent.slope;
-    if (rule.looks_beyond()) report.remaining_estimate = share_of_decrement * report.decrement;
+    if (rule.looks_beyond()) report.remaining_estimate = left_by_decrement(report.decrement);
     if (descent.done || -descent.slope <= enough) {
       report.stop_reason = StopReason::round_off;
       break;
@@ -231,7 +203,7 @@ void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
     accept(model, inputs, w, rule, change, record);
     if (absurd(model, w.current.g, start)) return fail(model, w, "line search", w.current.g);
     if (rule.looks_beyond()) continue;
-    report.remaining_estimate = estimate_remaining(report, first);
+    report.remaining_estimate = left_by_decreases(report.objective, first);
     if (is_near_enough(report, solver)) {
       report.stop_reason = StopReason::target_error;
       break;
@@ -381,7 +353,7 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   zone.next("end step");
   if (!report.failed && inputs.solver.line_search != LineSearch::none)
     descend_from_staying(model, inputs, state, w, rule);
-  report.error_estimate = as_error(report.remaining_estimate, report.decrease + above_start);
+  report.error_estimate = error_at_end(model, w, report.decrease + above_start);
   const Positions& x = w.current.x;
   if (!report.failed && !x.allFinite()) fail(model, w, "step", std::numeric_limits<double>::quiet_NaN());
   if (!report.failed) {
