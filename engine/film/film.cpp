@@ -214,7 +214,7 @@ bool make_frames(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const
   if (frames) guarded([&] { frames->finish(result); });
   if (log) {
     log->drop_others();
-    result.rows = log->rows();
+    result.rows = log->take_rows();
   }
   progress.end();
   result.wall_ms = loop.elapsed_ms();

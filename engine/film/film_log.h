@@ -44,6 +44,8 @@ class FilmLog {
   int whole() const { return whole_; }
   // Drops the rows of all other frames, at the end of a film whose pictures failed.
   void drop_others() { rows_.resize(whole_); }
+  // Gives the rows away, once the film is over.
+  std::vector<FrameRow> take_rows() { return std::move(rows_); }
 
  private:
   void note_rows(Pictures* pictures);
