@@ -67,8 +67,11 @@ FilmPlan plan_of_run(const DrawPlan& plan, const Json& info) {
   film.quiet = plan.quiet;
   film.scene = plan.scene.empty() ? info["scene_file"].get<std::string>() : plan.scene.string();
   std::error_code error;
-  if (!std::filesystem::is_regular_file(film.scene, error))
+  if (plan.scene.empty() && info.contains("scene_text") && info["scene_text"].is_string()) {
+    film.scene_text = info["scene_text"].get<std::string>();
+  } else if (!std::filesystem::is_regular_file(film.scene, error)) {
     throw InputError(film.scene, "the run's scene is no longer there; --scene FILE says where it is now");
+  }
   for (const Json& setting : info["settings"]) film.settings.push_back(setting.get<std::string>());
   film.settings.insert(film.settings.end(), plan.settings.begin(), plan.settings.end());
   if (info.contains("sweep_point")) film.sweep_point = info["sweep_point"].get<std::size_t>();
@@ -299,11 +302,7 @@ void open_drawing(const std::filesystem::path& folder, const LoadedDrawing& draw
   std::filesystem::create_directories(folder / "frames", error);
   if (error) throw RunError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
   if (known) {
-    for (const char* ending : {"mp4", "webm", "gif"}) {
-      for (const char* film : {"video.", "video.part."})
-        std::filesystem::remove(folder / (std::string(film) + ending), error);
-    }
-    std::filesystem::remove(folder / "sheet.png", error);
+    remove_film(folder);
     remove_pictures(folder / "frames", 0);
   }
   write_whole_file(record, drawing.identity);

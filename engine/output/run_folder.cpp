@@ -126,9 +126,18 @@ RunFolder::RunFolder(const std::filesystem::path& path, int kept_frames) : path_
     remove_run(path);
   }
   remove_pictures(path / "frames", kept_frames);
-  for (const char* part : {"video.mp4", "video.part.mp4", "profile.json", "trace.json"})
-    std::filesystem::remove(path / part, error);
+  remove_film(path);
+  for (const char* part : {"profile.json", "trace.json"}) std::filesystem::remove(path / part, error);
   for (const char* part : {"frames", "motion", "checkpoint"}) make_folder(path / part);
+}
+
+void remove_film(const std::filesystem::path& folder) {
+  std::error_code error;
+  for (const char* ending : {"mp4", "webm", "gif"}) {
+    for (const char* film : {"video.", "video.part."})
+      std::filesystem::remove(folder / (std::string(film) + ending), error);
+  }
+  for (const char* still : {"poster.png", "sheet.png"}) std::filesystem::remove(folder / still, error);
 }
 
 void remove_pictures(const std::filesystem::path& frames, int first) {
@@ -169,6 +178,8 @@ std::string info_json(const RunInfo& info) {
                               {"elements", mesh.elements}});
   }
   json["scene_file"] = info.scene_file;
+  if (info.scene_text) json["scene_text"] = *info.scene_text;
+  if (info.preview) json["preview"] = true;
   json["settings"] = info.settings;
   if (info.sweep_point) json["sweep_point"] = *info.sweep_point;
   json["scene"] = json_if_valid<nlohmann::ordered_json>(info.scene_json);

@@ -49,7 +49,9 @@ std::string model_scene(const std::filesystem::path& model) {
       file, is_mesh_file(model) ? "mesh" : "surface", file);
 }
 
-Config load_document(const std::filesystem::path& path, const std::filesystem::path& assets) {
+Config load_document(const SceneSource& source, const std::filesystem::path& assets) {
+  const std::filesystem::path& path = source.path;
+  if (source.text) return Config::parse_beside(*source.text, path, assets);
   if (!is_model(path)) return Config::load(path, assets);
   check_regular_file(path);
   return Config::parse_beside(model_scene(path), path, assets);
