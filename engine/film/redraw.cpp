@@ -165,6 +165,7 @@ class Drawing {
   }
 
   const Stage& stage() const { return drawn_.stage(); }
+  DrawnFilm& drawn() { return drawn_; }
 
   DrawList list(int frame) {
     follow_script(frame);
@@ -313,10 +314,14 @@ PictureRange part_of(const LoadedDrawing& drawing, int index, int count) {
   return {static_cast<int>(pictures * index / count), static_cast<int>(pictures * (index + 1) / count)};
 }
 
+Eigen::Vector2d field_range(LoadedDrawing& drawing) { return Drawing(drawing).drawn().field_range(); }
+
 DrawResult draw_pictures(const DrawPlan& plan, LoadedDrawing& drawing, const std::filesystem::path& folder,
                          PictureRange range, VideoEncoder* video, const std::function<void(int done)>& told) {
   DrawResult result;
   Drawing lists(drawing);
+  result.legend = lists.drawn().field_look();
+  if (plan.legend_apart && result.legend) lists.drawn().hide_legend();
   Pictures pictures(lists.stage(), plan.gl, shaders_folder(), PictureTargets{folder / "frames", true, video, 0});
   for (int picture = range.first; picture < range.last; ++picture) {
     if (interrupted()) {

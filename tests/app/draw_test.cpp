@@ -228,6 +228,16 @@ TEST_F(DrawnRun, StandsBesideAnotherRun) {
     ASSERT_TRUE(std::equal(&left.rgb[3 * std::size_t(y) * left.width],
                            &left.rgb[3 * std::size_t(y + 1) * left.width] - 3,
                            &both.rgb[3 * std::size_t(y) * both.width]));
+  // With a field, the legend stands beside the panels, whose colours have one range.
+  const Result field = run(folder_->path, {"draw", "run", "other-run", "--out", "both-stretched", "--quiet", "--format",
+                                           "png", "--field", "stretch"});
+  ASSERT_EQ(field.status, 0) << field.err;
+  EXPECT_GT(read_png(picture_file(path("both-stretched") / "frames", 5)).width, both.width);
+  ASSERT_EQ(draw("no-legend", {"--field", "stretch", "--set", "field.legend=false", "--set", "output.width=48", "--set",
+                               "output.height=32", "--format", "png"})
+                .status,
+            0);
+  EXPECT_EQ(picture("both-stretched/panel-1", 5), picture("no-legend", 5));
   const Result wrong = run(folder_->path, {"draw", "run", "other-run", "--frame", "1"});
   EXPECT_EQ(wrong.status, 2);
 }
