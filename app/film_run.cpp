@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "base/timing.h"
 #include "film/places.h"
+#include "film/rough_motion.h"
 #include "output/json_text.h"
 #include "output/run_page.h"
 #include "output/run_record.h"
@@ -255,6 +256,7 @@ int run_film(const FilmCommand& command, const std::vector<std::string>& words, 
     say(stderr, fmt::format("note: {}: {}\n", plan.verify, start.verifier->remark()));
   say_place(plan, start.place);
   catch_interrupts();
+  find_framing(plan, start, all_solvers(), film);
   const RunFolder folder = open_folder(start, film);
   if (!plan.quiet && plan.pictures == FilmPictures::all && !plan.film_only)
     say(stderr, fmt::format("frames appear in {}\n", folder.frames().string()));

@@ -83,7 +83,7 @@ LoadedFilm load_coarse(const FilmPlan& plan, const std::vector<std::string>& set
     for (std::string& setting : preview_settings(scene, share)) all.push_back(std::move(setting));
     return all;
   };
-  for (const double share : {0.25, 0.5}) {
+  for (const double share : plan.rough ? std::vector{0.06, 0.25, 0.5} : std::vector{0.25, 0.5}) {
     try {
       return film_with(plan, with(share), command);
     } catch (const InputError&) {  // the last attempt says what is wrong
@@ -98,7 +98,7 @@ LoadedFilm load_film(const FilmPlan& plan, const std::vector<std::string>& comma
   std::vector<std::string> settings = plan.settings;
   if (plan.frames > 0) settings.push_back(fmt::format("frames={}", plan.frames));
   if (plan.seed >= 0) settings.push_back(fmt::format("seed={}", plan.seed));
-  return plan.preview ? load_coarse(plan, settings, command) : film_with(plan, settings, command);
+  return plan.preview || plan.rough ? load_coarse(plan, settings, command) : film_with(plan, settings, command);
 }
 
 void build_models(const FilmPlan& plan, LoadedFilm& film) {
@@ -177,10 +177,6 @@ void check_pictures_asked(const FilmPlan& plan, const SceneDef& scene) {
     throw InputError("field.range",
                      "\"film\" is known only once the film has been made: give two numbers here, or draw "
                      "the run again with it (supple draw RUN --set field.range=film)");
-  if (scene.camera.frames == Framed::film && plan.pictures != FilmPictures::none)
-    throw InputError("camera.frames",
-                     "\"film\" is known only once the film has been made: draw the run again with it "
-                     "(supple draw RUN --set camera.frames=film)");
   if (plan.film_only && plan.coding.format == FilmFormat::png)
     throw InputError("--film-only", "leaves a film, and --format png makes none");
   if (plan.film_only && !run_program({"ffmpeg", "-version"}))

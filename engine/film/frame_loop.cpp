@@ -129,6 +129,7 @@ FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
       verifier_(start.verifier ? &*start.verifier : nullptr) {
   if (plan.pictures != FilmPictures::none) {
     drawn_.emplace(script_, bodies_, std::move(film.drawn), set_, caption_font());
+    if (film.info.framed) drawn_->frame_motion(*film.info.framed);
     pictures_.emplace(drawn_->stage(), plan.gl, shaders_folder(),
                       PictureTargets{folder.frames(), !plan.film_only, video, first_});
   }

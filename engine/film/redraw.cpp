@@ -161,7 +161,9 @@ class Drawing {
         threads_(drawing.film.info.threads) {
     const bool field = scene_.field.quantity != FieldQuantity::none && scene_.field.range_by == FieldRange::film;
     const bool camera = scene_.camera.frames == Framed::film;
-    if (field || camera) span_film(field, camera);
+    const std::optional<Bounds>& framed = drawing.film.info.framed;
+    if (camera && framed) drawn_.frame_motion(*framed);
+    if (field || (camera && !framed)) span_film(field, camera && !framed);
   }
 
   const Stage& stage() const { return drawn_.stage(); }
@@ -259,6 +261,7 @@ LoadedDrawing load_drawing(const DrawPlan& plan) {
   const FilmPlan film = plan_of_run(plan, info);
   LoadedDrawing drawing{load_film(film, {}), {}, {}, 0, {}, 0, {}};
   check_same_motion(plan, info, drawing.film);
+  drawing.film.info.framed = framed_in(run.info_json);
   make_skins(film, drawing.film);
   drawing.motion = motion_of(run, drawing.film);
   drawing.rows = run.rows;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/types.h"
 #include "output/profile.h"
 
 namespace supple {
@@ -16,6 +17,7 @@ struct RunInfo {
   std::vector<std::string> command;       // the command line
   std::string scene_file;                 // an absolute path
   std::optional<std::string> scene_text;  // of the scene, where it came from standard input
+  std::optional<Bounds> framed;           // what the camera has in view, where a first pass found it [m]
   bool preview = false;                   // a quarter of the size, with coarse meshes
   std::vector<std::string> settings;      // path=value over the scene's
   std::optional<std::size_t> sweep_point;
@@ -34,6 +36,9 @@ struct RunInfo {
   std::string video;                                // name of its file, or why there is none
   std::string ended;                                // "done", "interrupted" or the failure's message
 };
+
+// Returns `framed` of a run.json; nothing where it has none.
+std::optional<Bounds> framed_in(const std::string& info_json);
 
 // Writes the information as run.json holds it.
 std::string info_json(const RunInfo& info);

@@ -45,7 +45,7 @@ std::string model_scene(const std::filesystem::path& model) {
   return fmt::format(
       "title = {}\nframes = 90\n[[body]]\nname = \"model\"\n{} = {}\nmaterial = \"jelly\"\nsize = 0.5\n"
       "position = [0, 0.25, 0]\n[[collider]]\nname = \"ground\"\nshape = {{ half_space = {{ normal = [0, 1, 0] }} }}\n"
-      "friction = 0.5\n[look]\nlabels = false\n",
+      "friction = 0.5\n[camera]\nframes = \"film\"\n[look]\nlabels = false\n",
       file, is_mesh_file(model) ? "mesh" : "surface", file);
 }
 
