@@ -14,11 +14,11 @@ namespace supple {
 namespace {
 
 int check(const std::string& name, const std::vector<std::string>& settings, bool cache) {
-  const Script script = Script::load(scene_file(name), assets_folder(), settings);
+  const SceneSource source = scene_source(name);
+  const Script script = Script::load(source, assets_folder(), settings);
   const SceneDef& scene = script.scene();
   if (scene.sweep_points > 0 && !script.is_replay()) {
-    check_sweep_points(scene_file(name), assets_folder(), settings,
-                       load_sweep(scene_file(name), assets_folder(), settings));
+    check_sweep_points(source, assets_folder(), settings, load_sweep(source, assets_folder(), settings));
   }
   std::vector<Body> bodies;
   std::vector<DrawnBody> drawn;
@@ -70,7 +70,8 @@ void add_check(CommandLine& line) {
   auto no_cache = std::make_shared<bool>(false);
   Verb verb = line.verb("check", "Every error and warning of a scene or replay at once; writes nothing but the cache.");
   verb.footer("Example: supple check my-scene.toml");
-  verb.option("SCENE|REPLAY", *name, "scene or replay file, or the name of one that ships").required();
+  verb.option("SCENE|REPLAY", *name, "scene or replay file, the name of one that ships, or - for standard input")
+      .required();
   verb.option("--set", *settings, "path=value over the scene's; may be repeated").repeatable();
   verb.flag("--no-cache", *no_cache, "make meshes anew; keep none in the user's cache folder");
   verb.runs([name, settings, no_cache] { return check(*name, *settings, !*no_cache); });

@@ -4,6 +4,7 @@
 #include <memory>
 #include <thread>
 
+#include "app/film_run.h"
 #include "app/split_draw.h"
 #include "app/verbs.h"
 #include "base/console.h"
@@ -11,8 +12,7 @@
 #include "base/interrupts.h"
 #include "base/text.h"
 #include "base/timing.h"
-#include "film/contact_sheet.h"
-#include "film/places.h"
+#include "film/film_stills.h"
 #include "film/progress.h"
 #include "film/redraw.h"
 #include "film/skin_files.h"
@@ -53,28 +53,18 @@ int say_end(const DrawResult& result, const std::filesystem::path& folder) {
   return interrupted ? 130 : 1;
 }
 
-// Writes sheet.png, on which up to a dozen of the pictures stand, with their times.
-void write_sheet(const DrawCommand& command, const LoadedDrawing& drawing) {
-  constexpr int most = 12, columns = 4;
-  const auto count = static_cast<int>(drawing.frames.size());
+void make_sheet(const DrawCommand& command, const LoadedDrawing& drawing) {
   const SceneDef& scene = drawing.film.script.scene();
-  Sheet sheet{scene.title, {}, std::min(columns, count), caption_font()};
-  const int shown = std::min(most, count);
-  for (int i = 0; i < shown; ++i) {
-    const int picture = shown == 1 ? 0 : i * (count - 1) / (shown - 1);
-    const std::string time = fmt::format("{:.2f} s", (drawing.frames[picture] + 1) / scene.fps);
-    sheet.pictures.push_back({picture_file(command.folder() / "frames", picture), {}, {time}, {}});
-  }
-  const PngImage image = compose(sheet);
-  const std::filesystem::path file = command.folder() / "sheet.png";
-  write_png(file, image.width, image.height, image.rgb);
+  std::vector<double> times;
+  for (const int frame : drawing.frames) times.push_back((frame + 1) / scene.fps);
+  const std::filesystem::path file = write_sheet(command.folder(), scene.title, times);
   if (!command.quiet) say(stdout, fmt::format("  sheet    {}\n", file.string()));
 }
 
 // Ends the film and prints the result. Returns the exit status.
 int finish_film(const DrawCommand& command, const LoadedDrawing& drawing, std::optional<VideoEncoder>& video,
                 int pictures, double seconds) {
-  if (command.sheet) write_sheet(command, drawing);
+  if (command.sheet) make_sheet(command, drawing);
   if (!video) {
     if (!command.quiet) say(stdout, fmt::format("  {} pictures in {}\n", pictures, duration_text(seconds)));
     return 0;
@@ -289,15 +279,7 @@ void add_options(Verb& verb, DrawCommand& command) {
   verb.option("--first", plan.first, "first frame of the run").between(0, 1000000).shows_default();
   verb.option("--last", plan.last, "last frame [the run's]").between(0, 1000000);
   verb.option("--every", plan.every, "draw every Nth frame").between(1, 100000).shows_default();
-  verb.option(
-          "--format", [&command](const std::string& word) { command.coding.format = *value_named<FilmFormat>(word); },
-          "of the film [mp4]: " + word_list(all_names<FilmFormat>()) + "; png makes pictures alone")
-      .one_of(all_names<FilmFormat>());
-  verb.option(
-          "--quality",
-          [&command](const std::string& word) { command.coding.quality = *value_named<FilmQuality>(word); },
-          "of the film [good]: " + word_list(all_names<FilmQuality>()))
-      .one_of(all_names<FilmQuality>());
+  add_coding_options(verb, command.coding);
   verb.flag("--sheet", command.sheet, "also sheet.png, on which a dozen of the pictures stand");
   verb.option("--rate", command.rate, "frames a second of the film [as fast as it happened]").between(0.01, 1000.0);
   const Option frame = verb.option("--frame", command.frame, "draw this frame alone, into the file of --still")

@@ -12,6 +12,8 @@
 #include "base/interrupts.h"
 #include "base/text.h"
 #include "base/timing.h"
+#include "film/places.h"
+#include "film/rough_motion.h"
 #include "output/json_text.h"
 #include "output/run_page.h"
 #include "output/run_record.h"
@@ -46,6 +48,22 @@ void say_bodies(const RunInfo& info) {
         fmt::format("{}: {} vertices, {} elements ({})\n", mesh.body, mesh.vertices, mesh.elements, mesh.source));
 }
 
+// Tells in which folder the run goes, where that is not as a user may expect. Another folder than the one that was
+// asked for is told even where nothing else is.
+void say_place(const FilmPlan& plan, const RunPlace& place) {
+  if (!place.note.empty() && (!plan.quiet || !place.is_as_asked)) say(stderr, fmt::format("note: {}\n", place.note));
+}
+
+// Tells what a preview leaves out.
+void say_preview(const LoadedFilm& film) {
+  const SceneDef& scene = film.script.scene();
+  std::string meshes;
+  for (const RunInfo::Mesh& mesh : film.info.meshes)
+    meshes += fmt::format("{}'{}' has {} vertices", meshes.empty() ? "" : ", ", mesh.body, mesh.vertices);
+  say(stderr,
+      fmt::format("preview: {} x {} pixels, every other frame; {}\n", scene.output.width, scene.output.height, meshes));
+}
+
 void print_result(const FilmResult& result, const RunFolder& folder, const SceneDef& scene) {
   say(stdout, fmt::format("\n{}\n", profile_table(result.rows)));
   const double seconds = result.wall_ms / 1000;
@@ -54,29 +72,48 @@ void print_result(const FilmResult& result, const RunFolder& folder, const Scene
   const std::string rate = made > 0 ? fmt::format("{:.1f} a second; ", made / seconds) : "";
   say(stdout, fmt::format("  {} frames{} in {} ({}the film's rate is {:g}), after {} of set-up\n", made, kept,
                           duration_text(seconds), rate, scene.fps, duration_text(result.setup_ms / 1000)));
-  if (result.video_written) say(stdout, fmt::format("  film     {}\n", folder.video().string()));
+  if (result.video_written) say(stdout, fmt::format("  film     {}\n", result.video.string()));
   if (!result.video_message.empty() && !result.video_failed) say(stdout, fmt::format("  {}\n", result.video_message));
+  for (const std::filesystem::path& still : result.stills)
+    say(stdout, fmt::format("  {:<8} {}\n", still.stem().string(), still.string()));
   say(stdout, fmt::format("  profile  {}\n", (folder.path() / "profile.json").string()));
   say(stdout, fmt::format("  {}\n", verdict_on(result)));
 }
 
 void print_json(const FilmResult& result, const RunFolder& folder) {
-  nlohmann::ordered_json json = {
-      {"ended", text_of(result.end)}, {"message", result.message},
-      {"frames", result.rows.size()}, {"wall_ms", result.wall_ms},
-      {"setup_ms", result.setup_ms},  {"profile", (folder.path() / "profile.json").string()}};
+  nlohmann::ordered_json json = {{"ended", text_of(result.end)},
+                                 {"message", result.message},
+                                 {"frames", result.rows.size()},
+                                 {"wall_ms", result.wall_ms},
+                                 {"setup_ms", result.setup_ms},
+                                 {"folder", folder.path().string()},
+                                 {"profile", (folder.path() / "profile.json").string()}};
   json["video"] =
-      result.video_written ? nlohmann::ordered_json(folder.video().string()) : nlohmann::ordered_json(nullptr);
+      result.video_written ? nlohmann::ordered_json(result.video.string()) : nlohmann::ordered_json(nullptr);
   json["video_message"] = result.video_message;
   json["verdict"] = verdict_on(result);
   json["warnings"] = warnings_of(result.rows);
   say(stdout, fmt::format("{}\n", json_text(json)));
 }
 
-// Prints how the film ended; returns the exit status. unrecorded: the message of a final record that could not be
-// written.
-int say_result(const FilmCommand& command, const FilmResult& result, const RunFolder& folder, const SceneDef& scene,
-               const std::string& unrecorded) {
+struct EndOfRun {
+  const FilmResult& result;
+  const RunFolder& folder;
+  const RunPlace& place;
+  const SceneDef& scene;
+  std::string unrecorded;  // the message of a final record that could not be written
+};
+
+// Returns how an interrupted film is resumed; empty where it cannot be. A numbered folder must be named.
+std::string resuming_text(const EndOfRun& end) {
+  if (!std::filesystem::exists(end.folder.checkpoint())) return "";
+  if (end.place.is_as_asked) return "; --resume goes on";
+  return fmt::format("; --resume --out {} goes on", shell_word(end.folder.path().string()));
+}
+
+// Prints how the film ended; returns the exit status.
+int say_result(const FilmCommand& command, const EndOfRun& end) {
+  const auto& [result, folder, place, scene, unrecorded] = end;
   if (command.json) {
     print_json(result, folder);
   } else if (command.table && !command.plan.quiet && !result.rows.empty()) {
@@ -92,14 +129,15 @@ int say_result(const FilmCommand& command, const FilmResult& result, const RunFo
     say(stderr, fmt::format("warning: {}\n", unsolved));
   if (!unrecorded.empty()) say(stderr, fmt::format("supple: {}\n", unrecorded));
   if (result.video_failed) say(stderr, fmt::format("supple: {}\n", result.video_message));
+  if (!result.stills_message.empty()) say(stderr, fmt::format("supple: {}\n", result.stills_message));
   if (result.end == FilmEnd::interrupted) {
     say(stderr, fmt::format("supple: interrupted after {} frames; they are whole, and so is what belongs to them in "
                             "{}{}\n",
-                            result.rows.size(), folder.path().string(),
-                            std::filesystem::exists(folder.checkpoint()) ? "; --resume goes on" : ""));
+                            result.rows.size(), folder.path().string(), resuming_text(end)));
     return 130;
   }
-  return result.end == FilmEnd::done && !result.video_failed && unrecorded.empty() ? 0 : 1;
+  const bool all_written = !result.video_failed && unrecorded.empty() && result.stills_message.empty();
+  return result.end == FilmEnd::done && all_written ? 0 : 1;
 }
 
 // Prints the result of the comparison with a record. Returns false when there was nothing to compare.
@@ -158,17 +196,48 @@ void add_film_options(Verb& verb, FilmCommand& command) {
   verb.flag("--json", command.json, "the result as one line of JSON on standard output");
 }
 
+void add_coding_options(Verb& verb, FilmCoding& coding) {
+  verb.option(
+          "--format", [&coding](const std::string& word) { coding.format = *value_named<FilmFormat>(word); },
+          "of the film [mp4]: " + word_list(all_names<FilmFormat>()) + "; png makes pictures alone")
+      .one_of(all_names<FilmFormat>());
+  verb.option(
+          "--quality", [&coding](const std::string& word) { coding.quality = *value_named<FilmQuality>(word); },
+          "of the film [good]: " + word_list(all_names<FilmQuality>()))
+      .one_of(all_names<FilmQuality>());
+}
+
+void take_standard_input(FilmPlan& plan) {
+  if (plan.scene != "-") return;
+  SceneSource source = scene_source(plan.scene);
+  plan.scene = source.path.string();
+  plan.scene_text = std::move(source.text);
+}
+
 void add_film(Verb& verb, const FilmArgument& argument, const std::vector<std::string>& words) {
   auto command = std::make_shared<FilmCommand>();
   verb.option(argument.name, command->plan.scene, argument.meaning).required();
   add_film_options(verb, *command);
-  verb.flag("--resume", command->plan.resume, "go on with the film in --out that was interrupted or killed");
+  FilmPlan& plan = command->plan;
+  plan.stills = true;
+  plan.force = false;
+  verb.flag("--resume", plan.resume, "go on with the film in --out that was interrupted or killed");
+  verb.flag("--force", plan.force, "overwrite another run in the folder; without it a numbered folder is taken");
+  verb.flag("--preview", plan.preview,
+            "a first look: a quarter of the size, every other frame, coarse meshes, into out/NAME-preview")
+      .excludes({"--resume", "--checkpoint-every"});
+  add_coding_options(verb, plan.coding);
+  verb.flag(
+      "--no-stills", [&plan] { plan.stills = false; }, "no poster.png and no sheet.png");
   verb.flag("--page", command->page, "also one HTML page of the run: index.html, as supple page makes it");
-  verb.flag("--film-only", command->plan.film_only,
+  verb.flag("--film-only", plan.film_only,
             "leave the film and no files of its frames; without those there are no checkpoints, so that --resume "
             "starts anew after a run that was killed")
       .excludes({"--no-video", "--no-images", "--checkpoint-every"});
-  verb.runs([command, words] { return run_film(*command, words); });
+  verb.runs([command, words] {
+    take_standard_input(command->plan);
+    return run_film(*command, words);
+  });
 }
 
 int run_film(const FilmCommand& command, const std::vector<std::string>& words, FilmRecord* record) {
@@ -181,21 +250,24 @@ int run_film(const FilmCommand& command, const std::vector<std::string>& words, 
   if (!plan.quiet) say_remarks(film);
   build_models(plan, film);
   if (!plan.quiet) say_bodies(film.info);
+  if (!plan.quiet && plan.preview) say_preview(film);
   FilmStart start = check_film(plan, film);
   if (start.verifier && !start.verifier->remark().empty())
     say(stderr, fmt::format("note: {}: {}\n", plan.verify, start.verifier->remark()));
+  say_place(plan, start.place);
+  catch_interrupts();
+  find_framing(plan, start, all_solvers(), film);
   const RunFolder folder = open_folder(start, film);
   if (!plan.quiet && plan.pictures == FilmPictures::all && !plan.film_only)
     say(stderr, fmt::format("frames appear in {}\n", folder.frames().string()));
 
-  catch_interrupts();
   const double before_film = setup.elapsed_ms();
   FilmResult result = make_film(plan, film, start, folder, all_solvers());
   result.setup_ms += before_film;
 
   std::vector<ThreadTrace> trace = plan.trace ? stop_trace() : std::vector<ThreadTrace>();
   const std::string unrecorded = write_records(result, film, folder, plan.trace ? &trace : nullptr);
-  int status = say_result(command, result, folder, scene, unrecorded);
+  int status = say_result(command, {result, folder, start.place, scene, unrecorded});
   if (start.verifier && result.end == FilmEnd::done &&
       !say_verdict(command, *start.verifier, static_cast<int>(result.rows.size())))
     status = 1;

@@ -22,6 +22,12 @@ struct FilmCommand {
 // Adds the options that every run of a scene has. --resume is not among them, because it is for single films only.
 void add_film_options(Verb& verb, FilmCommand& command);
 
+// Adds the options of a film's file.
+void add_coding_options(Verb& verb, FilmCoding& coding);
+
+// Reads the scene from standard input where the plan names "-". Throws InputError.
+void take_standard_input(FilmPlan& plan);
+
 // Makes a verb that films what its argument names. words: the command line with which the program was called.
 struct FilmArgument {
   const char *name, *meaning;

@@ -32,10 +32,10 @@ int inform(const std::string& input, bool live) {
     say(stdout, mesh_summary(file.mesh));
     return 0;
   }
-  const std::filesystem::path scene = scene_file(input);
-  if (is_model(scene)) {
-    say(stdout, surface_summary(scene));
-  } else if (scene.extension() != ".toml") {
+  const SceneSource scene = scene_source(input);
+  if (is_model(scene.path)) {
+    say(stdout, surface_summary(scene.path));
+  } else if (!scene.text && scene.path.extension() != ".toml") {
     throw InputError(input, "neither a mesh, a surface, a scene (.toml, or a name of supple list) nor a run's folder");
   }
   if (live) {
@@ -58,7 +58,9 @@ void add_info(CommandLine& line) {
       "out/squirrel\n"
       "Of a scene the first frames are simulated, to tell what one costs here; nothing is written.");
   verb.option("SCENE|REPLAY|MODEL|RUN", *input,
-              "mesh, surface, scene or replay file or the name of one that ships, or a folder that supple render left")
+              "mesh, surface, scene or replay file or the name of one that ships, - for a scene on standard input, or "
+              "a folder "
+              "that supple render left")
       .required();
   verb.flag("--live", *live, "list what of a scene can change while it runs, and what that costs");
   verb.runs([input, live] { return inform(*input, *live); });

@@ -28,8 +28,8 @@ double cost_of_factor(const Body& body) {
 
 }  // namespace
 
-std::string live_summary(const std::filesystem::path& file) {
-  const Script script = Script::load(file, assets_folder(), {});
+std::string live_summary(const SceneSource& source) {
+  const Script script = Script::load(source, assets_folder(), {});
   const std::vector<LiveKey> live = script.live();
   std::size_t widest = 0;
   for (const LiveKey& key : live) widest = std::max(widest, key.key.path.size());

@@ -20,6 +20,7 @@ int run(int argc, char** argv) {
   supple::add_replay(line);
   supple::add_draw(line);
   supple::add_page(line);
+  supple::add_gallery(line);
   supple::add_sweep(line);
   supple::add_profile(line);
   supple::add_bench(line);

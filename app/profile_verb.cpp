@@ -75,6 +75,7 @@ void report(const ProfileCommand& request, const ZoneProfile& profile, const std
 int profile_once(const ProfileCommand& request, const std::vector<std::string>& command) {
   FilmCommand film = request.film;
   film.plan.trace = true;
+  film.plan.force = true;  // each repeat replaces the one before
   film.plan.video = false;
   film.json = film.table = false;
   FilmRecord record;
@@ -215,6 +216,8 @@ void add_profile(CommandLine& line) {
   add_film_options(verb, request->film);
   verb.runs([request, verb, words = line.words()] {
     if (!request->compared.empty()) check_compare_options(verb);
+    if (request->film.plan.scene == "-")
+      throw InputError("profile", "runs a scene several times, so that it needs a file of it");
     return run(*request, words);
   });
 }

@@ -10,7 +10,8 @@ void add_replay(CommandLine& line) {
       "Example: supple replay softening --record first.rec && supple replay softening --verify first.rec\n"
       "A replay names a scene and timed changes: docs/replays.md. `supple info --live SCENE` lists what can change.\n"
       "Leaves what `supple render` leaves.");
-  add_film(verb, {"REPLAY", "replay file, or the name of one that ships (supple list)"}, line.words());
+  add_film(verb, {"REPLAY", "replay file, the name of one that ships (supple list), or - for standard input"},
+           line.words());
 }
 
 }  // namespace supple

@@ -109,8 +109,8 @@ std::string changes_text(const Script& script) {
 
 }  // namespace
 
-std::string scene_summary(const std::filesystem::path& file, int thread_count) {
-  const Script script = Script::load(file, assets_folder(), {});
+std::string scene_summary(const SceneSource& source, int thread_count) {
+  const Script script = Script::load(source, assets_folder(), {});
   const SceneDef& scene = script.scene();
   std::vector<Body> bodies = assemble(scene);
   const CollisionSet set = collision_set(scene);

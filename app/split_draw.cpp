@@ -32,6 +32,7 @@ std::string name_of_run(const std::filesystem::path& run, const SceneDef& scene)
 DrawPlan plan_of_panel(const SplitCommand& command, const std::string& run, int columns) {
   DrawPlan plan = command.plan;
   plan.run = run;
+  plan.legend_apart = true;
   const LoadedDrawing whole = load_drawing(plan);
   const OutputDef& output = whole.film.script.scene().output;
   const auto share = [columns](int size) { return std::max(16, size / columns / 2 * 2); };
@@ -44,7 +45,7 @@ DrawPlan plan_of_panel(const SplitCommand& command, const std::string& run, int 
 
 // Holds what has been drawn of all runs.
 struct Drawn {
-  std::vector<Panel> panels;
+  SplitScreen screen;
   std::vector<int> frames;  // of the runs, by picture: as many as all of them have
   double rate = 0;
   DrawResult result;
@@ -53,7 +54,7 @@ struct Drawn {
 void draw_panel(const SplitCommand& command, const std::string& run, int columns, Drawn& drawn) {
   const DrawPlan plan = plan_of_panel(command, run, columns);
   LoadedDrawing drawing = load_drawing(plan);
-  const std::filesystem::path folder = command.folder / fmt::format("panel-{}", drawn.panels.size() + 1);
+  const std::filesystem::path folder = command.folder / fmt::format("panel-{}", drawn.screen.panels.size() + 1);
   open_drawing(folder, drawing, false);
   const auto count = static_cast<int>(drawing.frames.size());
   Progress progress(count, 0, command.quiet);
@@ -61,17 +62,18 @@ void draw_panel(const SplitCommand& command, const std::string& run, int columns
     if (done > 0) progress.show(done);
   });
   progress.end();
-  if (drawn.panels.empty()) drawn.rate = drawing.rate;
-  if (drawn.panels.empty() || drawing.frames.size() < drawn.frames.size()) drawn.frames = drawing.frames;
-  drawn.panels.push_back({folder / "frames", name_of_run(run, drawing.film.script.scene()), read_run(run).rows});
+  drawn.screen.legend = drawn.result.legend;
+  if (drawn.screen.panels.empty()) drawn.rate = drawing.rate;
+  if (drawn.screen.panels.empty() || drawing.frames.size() < drawn.frames.size()) drawn.frames = drawing.frames;
+  drawn.screen.panels.push_back({folder / "frames", name_of_run(run, drawing.film.script.scene()), read_run(run).rows});
 }
 
-int make_film_of(const SplitCommand& command, const Drawn& drawn, int columns) {
-  const std::string font = caption_font(), file = film_file(command.coding.format);
+int make_film_of(const SplitCommand& command, const Drawn& drawn) {
+  const std::string file = film_file(command.coding.format);
   std::optional<VideoEncoder> video;
   for (std::size_t picture = 0; picture < drawn.frames.size() && !interrupted(); ++picture) {
     const auto number = static_cast<int>(picture);
-    const Image image = split_picture(drawn.panels, columns, font, number, drawn.frames[picture]);
+    const Image image = split_picture(drawn.screen, number, drawn.frames[picture]);
     write_png(picture_file(command.folder / "frames", number), image.width, image.height, image.rgb);
     if (!video && !file.empty())
       video.emplace(command.folder / file, image.width, image.height, drawn.rate, command.coding);
@@ -90,6 +92,22 @@ int make_film_of(const SplitCommand& command, const Drawn& drawn, int columns) {
   return 0;
 }
 
+// Gives the fields of all panels one range, the widest of theirs, so that equal colours mean equal values.
+SplitCommand with_one_range(SplitCommand command) {
+  std::optional<Eigen::Vector2d> all;
+  for (const std::string& run : command.runs) {
+    DrawPlan plan = command.plan;
+    plan.run = run;
+    LoadedDrawing drawing = load_drawing(plan);
+    const FieldDef& field = drawing.film.script.scene().field;
+    if (field.quantity == FieldQuantity::none || field.range) return command;
+    const Eigen::Vector2d range = field_range(drawing);
+    all = all ? Eigen::Vector2d(std::min(all->x(), range.x()), std::max(all->y(), range.y())) : range;
+  }
+  if (all) command.plan.settings.push_back(fmt::format("field.range=[{}, {}]", all->x(), all->y()));
+  return command;
+}
+
 // Takes the folder over, as a single drawing does; draw.json tells which runs it holds.
 void open_split(const SplitCommand& command) {
   DrawPlan first = command.plan;
@@ -104,12 +122,15 @@ void open_split(const SplitCommand& command) {
 
 }  // namespace
 
-int draw_split(const SplitCommand& command) {
+int draw_split(const SplitCommand& asked) {
   const Stopwatch watch;
-  open_split(command);
+  open_split(asked);
   catch_interrupts();
+  const SplitCommand command = with_one_range(asked);
   const int columns = columns_of(command.layout, static_cast<int>(command.runs.size()));
   Drawn drawn;
+  drawn.screen.columns = columns;
+  drawn.screen.font = caption_font();
   for (const std::string& run : command.runs) {
     draw_panel(command, run, columns, drawn);
     if (drawn.result.end == FilmEnd::failed) throw RunError(drawn.result.message);
@@ -118,9 +139,9 @@ int draw_split(const SplitCommand& command) {
       return 130;
     }
   }
-  const int status = make_film_of(command, drawn, columns);
+  const int status = make_film_of(command, drawn);
   if (status == 0 && !command.quiet)
-    say(stdout, fmt::format("  {} pictures of {} runs in {}\n", drawn.frames.size(), drawn.panels.size(),
+    say(stdout, fmt::format("  {} pictures of {} runs in {}\n", drawn.frames.size(), drawn.screen.panels.size(),
                             duration_text(watch.elapsed_ms() / 1000)));
   return status;
 }

@@ -6,6 +6,7 @@
 
 #include "geometry/mesh.h"
 #include "output/run_record.h"
+#include "scene/scene_source.h"
 
 namespace supple {
 
@@ -18,11 +19,11 @@ std::string surface_summary(const std::filesystem::path& file);
 
 // Describes a scene or replay and its bodies, and measures what a frame's steps cost on this machine: it simulates the
 // first frames with this many threads and writes nothing. Throws InputError as loading a scene does.
-std::string scene_summary(const std::filesystem::path& file, int threads);
+std::string scene_summary(const SceneSource& source, int threads);
 
 // Lists the values of a scene or replay that may change while it runs, each with its path, type, unit, value, allowed
 // values and the cost of a change. The time of a new factor is measured. Throws InputError as loading a scene does.
-std::string live_summary(const std::filesystem::path& file);
+std::string live_summary(const SceneSource& source);
 
 // Describes what was run, how it ended, its times, and which files there are.
 std::string run_summary(const RunRecord& run);

@@ -10,6 +10,7 @@ void add_render(CommandLine& line);
 void add_replay(CommandLine& line);
 void add_draw(CommandLine& line);
 void add_page(CommandLine& line);
+void add_gallery(CommandLine& line);
 void add_sweep(CommandLine& line);
 void add_profile(CommandLine& line);
 void add_check(CommandLine& line);

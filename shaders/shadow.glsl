@@ -18,7 +18,7 @@ float depth_at(vec2 texel) { return texelFetch(shadow_map, clamp(ivec2(floor(tex
 float passing(vec2 texel, float depth) {
   vec4 there = textureGather(shadow_map, texel / float(map_texels));
   vec2 part = fract(texel - 0.5);
-  vec4 free = step(vec4(depth), there);
+  vec4 free = step(vec4(min(depth, 1.0)), there);
   vec2 rows = mix(free.wx, free.zy, part.x);
   return mix(rows.x, rows.y, part.y);
 }
@@ -41,22 +41,24 @@ float light_reaching(vec3 position, vec3 normal, float in_map) {
   mat2 rotation = mat2(way.x, way.y, -way.y, way.x);
   // Most points are fully lit or fully in shadow, and eight wide taps tell so.
   float casters = 0.0, caster_depth = 0.0;
+  // Where nothing casts a shadow the map has the depth 1. The ground under a low sun lies deeper still, and must not
+  // take that for a caster.
   // What is nearly as deep as the surface itself is a hollow of it rather than a caster.
   float above = depth - in_map * 0.25 * widest_penumbra / float(map_texels);
   for (int i = 0; i < 8; ++i) {
     vec2 off = widest_penumbra * (rotation * around[i]);
     float there = depth_at(texel + off);
-    float casts = 1.0 - step(above + dot(slope, off), there);
+    float casts = 1.0 - step(min(above + dot(slope, off), 1.0), there);
     casters += casts;
     caster_depth += casts * there;
   }
-  bool inside = all(greaterThan(at, vec3(0.0))) && all(lessThan(at, vec3(1.0)));
+  bool inside = all(greaterThan(at, vec3(0.0))) && all(lessThan(at.xy, vec2(1.0)));
   if (!inside) casters = 0.0;
   // The border takes as many taps on a spiral as it needs, one at a time, because a software rasteriser runs through a
   // loop's body once even when no pixel of a block wants it.
   // In a hollow, all of the wide taps may meet the walls while the light still reaches the point itself, or a part of
   // the light where the border is narrow.
-  bool reached = depth_at(texel) >= above;
+  bool reached = depth_at(texel) >= min(above, 1.0);
   float radius = clamp(penumbra_slope * (depth - caster_depth / max(casters, 1.0)), 1.0, widest_penumbra);
   bool border = casters > 0.5 && (casters < 7.5 || reached || radius < 0.7 * widest_penumbra) && !turned_away;
   const mat2 golden = mat2(-0.7373688, 0.6754903, -0.6754903, -0.7373688);

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 
@@ -68,6 +69,19 @@ std::string read_file(const std::filesystem::path& path, std::uintmax_t most_byt
   }
   text.resize(done);
   return text;
+}
+
+std::string read_standard_input(std::uintmax_t most_bytes) {
+  std::string text;
+  std::array<char, 65536> part{};
+  for (;;) {
+    const ssize_t count = ::read(STDIN_FILENO, part.data(), part.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) refuse("<stdin>", errno);
+    if (count == 0) return text;
+    text.append(part.data(), std::size_t(count));
+    if (text.size() > most_bytes) throw InputError("<stdin>", fmt::format("is larger than {}", bytes_text(most_bytes)));
+  }
 }
 
 }  // namespace supple

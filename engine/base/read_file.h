@@ -14,6 +14,10 @@ inline constexpr std::uintmax_t usual_most_bytes = 1'000'000'000;
 // it is larger than `most_bytes`, or the system's reason why it cannot be read.
 std::string read_file(const std::filesystem::path& path, std::uintmax_t most_bytes = usual_most_bytes);
 
+// Returns all of standard input. Throws InputError that names `<stdin>` when it is larger than `most_bytes` or cannot
+// be read.
+std::string read_standard_input(std::uintmax_t most_bytes);
+
 // Throws InputError as read_file() does when the path does not name a regular file.
 void check_regular_file(const std::filesystem::path& path);
 

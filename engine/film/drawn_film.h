@@ -41,6 +41,12 @@ class DrawnFilm {
   // been included and settle_field() has been called, which must happen before the stage is used.
   void include_in_field(const FramePose& pose, const CollisionSet& set, Threads& threads);
   void settle_field();
+  // Returns the colours and the legend of the field, where there is one.
+  std::optional<FieldLook> field_look() const { return field_ ? std::optional(field_->look()) : std::nullopt; }
+  // Returns the range of the field, which the scene must have.
+  Eigen::Vector2d field_range() const { return field_->range(); }
+  // Leaves the legend to the caller. Must be called before the stage is used.
+  void hide_legend() { stage_.field->title.clear(); }
   // Makes cameras frame this box over the whole film [m]. Must be called before the stage is used.
   void frame_motion(const Bounds& motion) { stage_.motion = motion; }
 

@@ -14,8 +14,10 @@
 #include "film/film_checks.h"
 #include "film/film_identity.h"
 #include "film/film_solvers.h"
+#include "film/film_stills.h"
 #include "film/frame_loop.h"
 #include "film/places.h"
+#include "film/preview.h"
 #include "film/progress.h"
 #include "output/child_program.h"
 #include "output/chrome_trace.h"
@@ -37,15 +39,22 @@ const char* text_of(FilmEnd end) {
   return "failed";
 }
 
-LoadedFilm load_film(const FilmPlan& plan, const std::vector<std::string>& command) {
+namespace {
+
+// Returns the scene of a plan as the reader takes it.
+SceneSource source_of(const FilmPlan& plan) {
+  return plan.scene_text ? SceneSource(plan.scene, *plan.scene_text) : SceneSource(scene_file(plan.scene));
+}
+
+LoadedFilm film_with(const FilmPlan& plan, const std::vector<std::string>& settings,
+                     const std::vector<std::string>& command) {
   Zone zone("read scene");
-  const std::string file = scene_file(plan.scene).string();
-  std::vector<std::string> settings = plan.settings;
-  if (plan.frames > 0) settings.push_back(fmt::format("frames={}", plan.frames));
-  if (plan.seed >= 0) settings.push_back(fmt::format("seed={}", plan.seed));
-  LoadedFilm film{Script::load(file, assets_folder(), settings, plan.sweep_point), {}, {}, {}, {}};
+  const SceneSource source = source_of(plan);
+  LoadedFilm film{Script::load(source, assets_folder(), settings, plan.sweep_point), {}, {}, {}, {}};
   film.info.command = command;
-  film.info.scene_file = std::filesystem::absolute(file).lexically_normal().string();
+  film.info.scene_file = std::filesystem::absolute(source.path).lexically_normal().string();
+  film.info.scene_text = source.text;
+  film.info.preview = plan.preview;
   film.info.settings = settings;
   film.info.sweep_point = plan.sweep_point;
   film.info.scene_json = film.script.scene_json();
@@ -63,6 +72,33 @@ LoadedFilm load_film(const FilmPlan& plan, const std::vector<std::string>& comma
     film.info.meshes.push_back({body.def.name, body.source, mesh_hash(body), int(mesh.rest.rows()), elements});
   }
   return film;
+}
+
+// Loads the coarsest form of the scene that can be meshed: thin parts may want finer elements.
+LoadedFilm load_coarse(const FilmPlan& plan, const std::vector<std::string>& settings,
+                       const std::vector<std::string>& command) {
+  const SceneDef scene = Script::load(source_of(plan), assets_folder(), settings, plan.sweep_point).scene();
+  const auto with = [&](double share) {
+    std::vector<std::string> all = settings;
+    for (std::string& setting : preview_settings(scene, share)) all.push_back(std::move(setting));
+    return all;
+  };
+  for (const double share : plan.rough ? std::vector{0.06, 0.25, 0.5} : std::vector{0.25, 0.5}) {
+    try {
+      return film_with(plan, with(share), command);
+    } catch (const InputError&) {  // the last attempt says what is wrong
+    }
+  }
+  return film_with(plan, with(1), command);
+}
+
+}  // namespace
+
+LoadedFilm load_film(const FilmPlan& plan, const std::vector<std::string>& command) {
+  std::vector<std::string> settings = plan.settings;
+  if (plan.frames > 0) settings.push_back(fmt::format("frames={}", plan.frames));
+  if (plan.seed >= 0) settings.push_back(fmt::format("seed={}", plan.seed));
+  return plan.preview || plan.rough ? load_coarse(plan, settings, command) : film_with(plan, settings, command);
 }
 
 void build_models(const FilmPlan& plan, LoadedFilm& film) {
@@ -113,18 +149,38 @@ std::vector<std::string> names_of(const std::vector<Body>& bodies) {
 // Checks that the folder holds all that is needed by a film that starts there.
 void check_folder(const FilmPlan& plan, const LoadedFilm& film, const FilmStart& start) {
   const SceneDef& scene = film.script.scene();
-  check_save_states(plan.save_states, scene, start.path, start.kept_frames());
-  check_rows_and_motion(start.path, film.bodies, static_cast<int>(scene.colliders.size()), start.kept_frames());
-  if (plan.pictures == FilmPictures::all && !plan.film_only) check_pictures(start.path / "frames", start.kept_frames());
+  check_save_states(plan.save_states, scene, start.place.path, start.kept_frames());
+  check_rows_and_motion(start.place.path, film.bodies, static_cast<int>(scene.colliders.size()), start.kept_frames());
+  if (plan.pictures == FilmPictures::all && !plan.film_only)
+    check_pictures(start.place.path / "frames", start.kept_frames());
 }
 
 void check_records(const FilmPlan& plan, const FilmStart& start) {
   if (plan.record.empty()) return;
-  check_record(plan.record, start.path, start.record_head, start.kept_frames());
+  check_record(plan.record, start.place.path, start.record_head, start.kept_frames());
   std::error_code ignored;
   const bool same = !plan.verify.empty() &&
                     (plan.record == plan.verify || std::filesystem::equivalent(plan.record, plan.verify, ignored));
   if (same) throw InputError("--record " + plan.record, "is the file to --verify with, which would be overwritten");
+}
+
+std::filesystem::path asked_folder(const FilmPlan& plan, const SceneDef& scene) {
+  if (!plan.out.empty()) return plan.out;
+  return std::filesystem::path("out") / (scene.name + (plan.preview ? "-preview" : ""));
+}
+
+// Refuses what a film cannot know before it has been made, and ways to film that contradict each other.
+void check_pictures_asked(const FilmPlan& plan, const SceneDef& scene) {
+  const bool asks_for_whole_film =
+      scene.field.quantity != FieldQuantity::none && scene.field.range_by == FieldRange::film;
+  if (asks_for_whole_film && plan.pictures != FilmPictures::none)
+    throw InputError("field.range",
+                     "\"film\" is known only once the film has been made: give two numbers here, or draw "
+                     "the run again with it (supple draw RUN --set field.range=film)");
+  if (plan.film_only && plan.coding.format == FilmFormat::png)
+    throw InputError("--film-only", "leaves a film, and --format png makes none");
+  if (plan.film_only && !run_program({"ffmpeg", "-version"}))
+    throw InputError("--film-only", "needs ffmpeg, which is not installed (Debian: ffmpeg)");
 }
 
 }  // namespace
@@ -133,32 +189,21 @@ FilmStart check_film(const FilmPlan& plan, const LoadedFilm& film) {
   const Zone zone("begin folder");
   const SceneDef& scene = film.script.scene();
   FilmStart start;
-  start.path = plan.out.empty() ? std::filesystem::path("out") / scene.name : std::filesystem::path(plan.out);
+  start.place = place_of_run(asked_folder(plan, scene), plan, film.info);
   start.identity = identity_of(film.info, film.script, film.bodies, plan);
-  start.checkpoint_every = remembers_steps(film.script) || plan.film_only ? 0 : plan.checkpoint_every;
+  start.checkpoint_every = remembers_steps(film.script) || plan.film_only || plan.preview ? 0 : plan.checkpoint_every;
   start.record_head = record_head(film.info, film.bodies);
-  const bool asks_for_whole_film =
-      scene.field.quantity != FieldQuantity::none && scene.field.range_by == FieldRange::film;
-  if (asks_for_whole_film && plan.pictures != FilmPictures::none)
-    throw InputError("field.range",
-                     "\"film\" is known only once the film has been made: give two numbers here, or draw "
-                     "the run again with it (supple draw RUN --set field.range=film)");
-  if (scene.camera.frames == Framed::film && plan.pictures != FilmPictures::none)
-    throw InputError("camera.frames",
-                     "\"film\" is known only once the film has been made: draw the run again with it "
-                     "(supple draw RUN --set camera.frames=film)");
-  if (plan.film_only && !run_program({"ffmpeg", "-version"}))
-    throw InputError("--film-only", "needs ffmpeg, which is not installed (Debian: ffmpeg)");
+  check_pictures_asked(plan, scene);
   std::error_code ignored;
-  if (!plan.folder_is_locked && std::filesystem::is_directory(start.path, ignored))
-    start.lock = std::make_unique<FolderLock>(start.path);
-  if (plan.resume) start.checkpoint = checkpoint_in(start.path, start.identity, scene.frames, film.info);
+  if (!plan.folder_is_locked && std::filesystem::is_directory(start.place.path, ignored))
+    start.lock = std::make_unique<FolderLock>(start.place.path);
+  if (plan.resume) start.checkpoint = checkpoint_in(start.place.path, start.identity, scene.frames, film.info);
   check_folder(plan, film, start);
   check_records(plan, start);
   if (!plan.verify.empty()) start.verifier.emplace(plan.verify, start.record_head, plan.tolerance, start.kept_frames());
   if (!plan.repeat.empty()) start.repeated = repeated_cuts(plan.repeat, names_of(film.bodies), scene.frames);
   // A folder that does not exist yet is locked only now, so that a film that is refused leaves no trace.
-  if (!plan.folder_is_locked && !start.lock) start.lock = std::make_unique<FolderLock>(start.path);
+  if (!plan.folder_is_locked && !start.lock) start.lock = std::make_unique<FolderLock>(start.place.path);
   return start;
 }
 
@@ -174,10 +219,10 @@ std::vector<int> resumed_before(const std::filesystem::path& run) {
 
 RunFolder open_folder(FilmStart& start, LoadedFilm& film) {
   const Zone zone("begin folder");
-  RunFolder folder(start.path, start.kept_frames());
+  RunFolder folder(start.place.path, start.kept_frames());
   film.info.ended = "running";
   if (start.checkpoint) {
-    film.info.resumed = resumed_before(start.path);
+    film.info.resumed = resumed_before(start.place.path);
     film.info.resumed.push_back(start.kept_frames());
   }
   folder.write_info(film.info);
@@ -221,22 +266,44 @@ bool make_frames(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const
   return frames.has_value();
 }
 
-void begin_video(const SceneDef& scene, const RunFolder& folder, std::optional<VideoEncoder>& video) {
-  video.emplace(folder.video(), scene.output.width, scene.output.height, scene.fps);
+void begin_video(const FilmPlan& plan, const SceneDef& scene, const RunFolder& folder,
+                 std::optional<VideoEncoder>& video) {
+  video.emplace(folder.path() / film_file(plan.coding.format), scene.output.width, scene.output.height,
+                scene.fps / plan.pictures_every(), plan.coding);
+}
+
+// Returns how many pictures the whole frames have.
+int pictures_of(const FilmPlan& plan, const FilmResult& result) {
+  const int every = plan.pictures_every();
+  return (static_cast<int>(result.rows.size()) + every - 1) / every;
+}
+
+// Makes the poster and the sheet from the files of the frames.
+void make_stills(const FilmPlan& plan, const SceneDef& scene, const RunFolder& folder, FilmResult& result) {
+  const Zone zone("stills");
+  std::vector<double> times;
+  for (int picture = 0; picture < pictures_of(plan, result); ++picture)
+    times.push_back((picture * plan.pictures_every() + 1) / scene.fps);
+  try {
+    result.stills = write_stills(folder.path(), scene.title, times);
+  } catch (const std::exception& error) {
+    result.stills_message = fmt::format("no poster and sheet: {}", error.what());
+  }
 }
 
 // Ends the video, so that it has exactly the frames that are whole.
 void finish_video(const FilmPlan& plan, const SceneDef& scene, const RunFolder& folder,
                   std::optional<VideoEncoder>& video, FilmResult& result) {
   const Zone zone("video");
-  const auto frames = static_cast<int>(result.rows.size());
+  const int frames = pictures_of(plan, result);
   // A frame may have reached the disk although its row did not.
   if (video->frames() > frames && !plan.film_only) {
-    begin_video(scene, folder, video);
+    begin_video(plan, scene, folder, video);
     video->add_files(folder.frames(), frames);
   }
   const VideoResult end = video->finish();
   result.video_written = end.outcome == VideoOutcome::written;
+  if (result.video_written) result.video = folder.path() / film_file(plan.coding.format);
   result.video_failed = end.outcome == VideoOutcome::failed || (plan.film_only && !result.video_written);
   result.encode_ms = end.cpu_ms / frames;
   if (result.video_written) return;
@@ -252,9 +319,11 @@ FilmResult make_film(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
   result.kept_frames = start.kept_frames();
   const SceneDef scene = film.script.scene();
   std::optional<VideoEncoder> video;
-  if (plan.pictures == FilmPictures::all && plan.video) begin_video(scene, folder, video);
+  if (plan.wants_video()) begin_video(plan, scene, folder, video);
   const bool begun = make_frames(plan, film, start, folder, solvers, video ? &*video : nullptr, result);
   if (video && begun && !result.rows.empty()) finish_video(plan, scene, folder, video, result);
+  const bool has_files = plan.pictures == FilmPictures::all && !plan.film_only && !result.rows.empty();
+  if (plan.stills && begun && has_files) make_stills(plan, scene, folder, result);
   return result;
 }
 
@@ -269,7 +338,7 @@ std::string write_records(const FilmResult& result, LoadedFilm& film, const RunF
   info.frames = static_cast<int>(result.rows.size());
   info.ended = text_of(result.end);
   if (result.end == FilmEnd::failed) info.ended += ": " + result.message;
-  info.video = result.video_written ? "video.mp4" : result.video_message;
+  info.video = result.video_written ? result.video.filename().string() : result.video_message;
   try {
     folder.write_info(info);
     folder.write_profile(result.rows, verdict_on(result));

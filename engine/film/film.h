@@ -13,6 +13,7 @@
 #include "film/checkpoint.h"
 #include "film/film_plan.h"
 #include "film/repeated_cuts.h"
+#include "film/run_place.h"
 #include "film/state_record.h"
 #include "output/folder_lock.h"
 #include "output/profile.h"
@@ -43,7 +44,7 @@ void make_skins(const FilmPlan& plan, LoadedFilm& film);
 
 // Describes how a film starts: where, and after which frames of an earlier run.
 struct FilmStart {
-  std::filesystem::path path;        // of the run's folder
+  RunPlace place;                    // of the run's folder
   std::unique_ptr<FolderLock> lock;  // on it; null where the caller holds it
   std::string identity;              // of what a checkpoint belongs to
   int checkpoint_every = 0;          // frames; 0: never
@@ -73,10 +74,13 @@ struct FilmResult {
   std::string gl_backend, gl_renderer, gl_version;
   std::string video_message;  // why there is no video
   bool video_written = false;
-  bool video_failed = false;  // ffmpeg is there, and did not make it
-  double encode_ms = 0;       // its processor time for a frame of the video; 0: there is none
+  std::filesystem::path video;  // its file, where it was written
+  bool video_failed = false;    // ffmpeg is there, and did not make it
+  double encode_ms = 0;         // its processor time for a frame of the video; 0: there is none
   double setup_ms = 0;
   double wall_ms = 0;  // of the loop
+  std::vector<std::filesystem::path> stills;
+  std::string stills_message;  // why there are none although they were asked for
 };
 
 // Makes the frames and the video. Whatever happens, the frames up to that point are whole, and `rows` describes them.

@@ -148,8 +148,8 @@ bool is_of_run(const std::filesystem::path& file, const std::filesystem::path& r
   const std::filesystem::path inside = full_path(file).lexically_relative(full_path(run));
   if (inside.empty()) return false;
   const std::string first = inside.begin()->string();
-  for (const char* own :
-       {"frames", "motion", "states", "fields", "checkpoint", "run.json", "profile.json", "trace.json", "video.mp4"}) {
+  for (const char* own : {"frames", "motion", "states", "fields", "checkpoint", "run.json", "profile.json",
+                          "trace.json", "video.mp4", "video.webm", "video.gif", "poster.png", "sheet.png"}) {
     if (first == own || first == std::string(own) + ".part") return true;
   }
   return false;

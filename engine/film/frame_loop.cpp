@@ -86,8 +86,9 @@ void FrameLoop::save_outputs(int frame, const FrameRow& row) {
 
 // Hands the frame to the pictures. Returns false when they have failed.
 bool FrameLoop::show(int frame, FrameRow& row) {
-  const bool drawn = plan_.pictures == FilmPictures::all || frame + 1 == scene_.frames;
   if (!pictures_) return true;
+  const bool every = plan_.pictures == FilmPictures::all;
+  const bool drawn = every ? frame % plan_.pictures_every() == 0 : frame + 1 == scene_.frames;
   if (!drawn) {
     keep_motion();
     return true;
@@ -104,7 +105,7 @@ bool FrameLoop::show(int frame, FrameRow& row) {
     row.bodies[b].skin_excess = drawn_->skin_excess_of(b, list, bodies_[b].description.mesh, *pose.motion[b]);
   row.draw_ms = watch.elapsed_ms();
   zone.next("wait for render");
-  return pictures_->put(frame, std::move(list));
+  return pictures_->put(every ? frame / plan_.pictures_every() : frame, std::move(list));
 }
 
 // Keeps the frame's positions for the next one, where the pictures need them.
@@ -128,6 +129,7 @@ FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
       verifier_(start.verifier ? &*start.verifier : nullptr) {
   if (plan.pictures != FilmPictures::none) {
     drawn_.emplace(script_, bodies_, std::move(film.drawn), set_, caption_font());
+    if (film.info.framed) drawn_->frame_motion(*film.info.framed);
     pictures_.emplace(drawn_->stage(), plan.gl, shaders_folder(),
                       PictureTargets{folder.frames(), !plan.film_only, video, first_});
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <system_error>
 
+#include "base/read_file.h"
+
 namespace supple {
 namespace {
 
@@ -48,6 +50,12 @@ std::filesystem::path scene_file(const std::string& name) {
     if (std::filesystem::exists(shipped, error)) return shipped;
   }
   return name;
+}
+
+SceneSource scene_source(const std::string& name) {
+  constexpr std::uintmax_t largest = 1'000'000;  // as of a scene's file
+  if (name == "-") return {SceneSource::standard_input, read_standard_input(largest)};
+  return scene_file(name);
 }
 
 }  // namespace supple

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "scene/scene_source.h"
+
 namespace supple {
 
 std::filesystem::path assets_folder();
@@ -20,5 +22,7 @@ std::string caption_font();
 
 // Returns the scene or replay that a user means: a file, or the name of one that ships ("squirrel").
 std::filesystem::path scene_file(const std::string& name);
+// Does the same, and takes "-" for standard input, which it reads. Throws InputError.
+SceneSource scene_source(const std::string& name);
 
 }  // namespace supple

@@ -67,8 +67,11 @@ FilmPlan plan_of_run(const DrawPlan& plan, const Json& info) {
   film.quiet = plan.quiet;
   film.scene = plan.scene.empty() ? info["scene_file"].get<std::string>() : plan.scene.string();
   std::error_code error;
-  if (!std::filesystem::is_regular_file(film.scene, error))
+  if (plan.scene.empty() && info.contains("scene_text") && info["scene_text"].is_string()) {
+    film.scene_text = info["scene_text"].get<std::string>();
+  } else if (!std::filesystem::is_regular_file(film.scene, error)) {
     throw InputError(film.scene, "the run's scene is no longer there; --scene FILE says where it is now");
+  }
   for (const Json& setting : info["settings"]) film.settings.push_back(setting.get<std::string>());
   film.settings.insert(film.settings.end(), plan.settings.begin(), plan.settings.end());
   if (info.contains("sweep_point")) film.sweep_point = info["sweep_point"].get<std::size_t>();
@@ -158,10 +161,13 @@ class Drawing {
         threads_(drawing.film.info.threads) {
     const bool field = scene_.field.quantity != FieldQuantity::none && scene_.field.range_by == FieldRange::film;
     const bool camera = scene_.camera.frames == Framed::film;
-    if (field || camera) span_film(field, camera);
+    const std::optional<Bounds>& framed = drawing.film.info.framed;
+    if (camera && framed) drawn_.frame_motion(*framed);
+    if (field || (camera && !framed)) span_film(field, camera && !framed);
   }
 
   const Stage& stage() const { return drawn_.stage(); }
+  DrawnFilm& drawn() { return drawn_; }
 
   DrawList list(int frame) {
     follow_script(frame);
@@ -255,6 +261,7 @@ LoadedDrawing load_drawing(const DrawPlan& plan) {
   const FilmPlan film = plan_of_run(plan, info);
   LoadedDrawing drawing{load_film(film, {}), {}, {}, 0, {}, 0, {}};
   check_same_motion(plan, info, drawing.film);
+  drawing.film.info.framed = framed_in(run.info_json);
   make_skins(film, drawing.film);
   drawing.motion = motion_of(run, drawing.film);
   drawing.rows = run.rows;
@@ -299,11 +306,7 @@ void open_drawing(const std::filesystem::path& folder, const LoadedDrawing& draw
   std::filesystem::create_directories(folder / "frames", error);
   if (error) throw RunError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
   if (known) {
-    for (const char* ending : {"mp4", "webm", "gif"}) {
-      for (const char* film : {"video.", "video.part."})
-        std::filesystem::remove(folder / (std::string(film) + ending), error);
-    }
-    std::filesystem::remove(folder / "sheet.png", error);
+    remove_film(folder);
     remove_pictures(folder / "frames", 0);
   }
   write_whole_file(record, drawing.identity);
@@ -314,10 +317,14 @@ PictureRange part_of(const LoadedDrawing& drawing, int index, int count) {
   return {static_cast<int>(pictures * index / count), static_cast<int>(pictures * (index + 1) / count)};
 }
 
+Eigen::Vector2d field_range(LoadedDrawing& drawing) { return Drawing(drawing).drawn().field_range(); }
+
 DrawResult draw_pictures(const DrawPlan& plan, LoadedDrawing& drawing, const std::filesystem::path& folder,
                          PictureRange range, VideoEncoder* video, const std::function<void(int done)>& told) {
   DrawResult result;
   Drawing lists(drawing);
+  result.legend = lists.drawn().field_look();
+  if (plan.legend_apart && result.legend) lists.drawn().hide_legend();
   Pictures pictures(lists.stage(), plan.gl, shaders_folder(), PictureTargets{folder / "frames", true, video, 0});
   for (int picture = range.first; picture < range.last; ++picture) {
     if (interrupted()) {

@@ -24,8 +24,9 @@ struct DrawPlan {
   int first = 0, last = -1, every = 1;  // frames of the run; a negative last one is the run's
   double rate = 0;                      // frames a second of the film; 0: as fast as it happened
   GlChoice gl = GlChoice::automatic;
-  bool cache = true;   // of meshes and skins
-  bool quiet = false;  // no progress while meshing
+  bool legend_apart = false;  // pictures have no legend; the result holds it
+  bool cache = true;          // of meshes and skins
+  bool quiet = false;         // no progress while meshing
 };
 
 // Holds a run that is ready to be drawn.
@@ -60,9 +61,13 @@ PictureRange part_of(const LoadedDrawing& drawing, int index, int count);
 
 struct DrawResult {
   FilmEnd end = FilmEnd::done;
-  std::string message;  // why it failed
-  int pictures = 0;     // that are whole
+  std::string message;                   // why it failed
+  int pictures = 0;                      // that are whole
+  std::optional<FieldLook> legend = {};  // of the field, where there is one
 };
+
+// Returns the range of the drawing's field over the whole film. The scene must have a field.
+Eigen::Vector2d field_range(LoadedDrawing& drawing);
 
 // Draws pictures into the folder's frames/, and hands them to `video` where there is one. Calls told(done) from time to
 // time.

@@ -9,6 +9,7 @@
 #include "output/png_file.h"
 #include "output/run_folder.h"
 #include "render/caption.h"
+#include "render/legend.h"
 #include "render/sticker.h"
 
 namespace supple {
@@ -21,7 +22,9 @@ int even(int number) { return number + number % 2; }
 // Holds the sizes of a split screen's parts [pixels].
 struct Grid {
   int panel_width, panel_height, gap, em, small_em, strip, columns, rows;
-  int width() const { return even(columns * panel_width + (columns - 1) * gap); }
+  int legend = 0;  // width of the column at the right
+  int panels_width() const { return columns * panel_width + (columns - 1) * gap; }
+  int width() const { return even(panels_width() + legend); }
   int height() const { return even(rows * (panel_height + strip)); }
 };
 
@@ -56,6 +59,15 @@ void paste(const PngImage& panel, Image& image, int x, int y) {
                 &image.rgb[3 * (std::size_t(y + row) * image.width + x)]);
 }
 
+Image blank(const Grid& grid) {
+  Image image = {
+      grid.width(), grid.height(), std::vector<std::uint8_t>(3 * std::size_t(grid.width()) * grid.height()), {}};
+  Sticker background(image.width, image.height);
+  background.fill({0, 0, image.width, image.height}, paper);
+  background.onto(image, 0, 0);
+  return image;
+}
+
 }  // namespace
 
 int columns_of(Layout layout, int panels) {
@@ -84,31 +96,33 @@ std::string figures_of(const std::vector<FrameRow>& rows, int frame) {
                      measured ? "error" : "estimated error", measured ? error : estimate);
 }
 
-Image split_picture(const std::vector<Panel>& panels, int columns, const std::string& font, int picture, int frame) {
+Image split_picture(const SplitScreen& screen, int picture, int frame) {
   Image image;
   Grid grid{};
-  for (std::size_t p = 0; p < panels.size(); ++p) {
-    const std::filesystem::path file = picture_file(panels[p].frames, picture);
+  Sticker legend;
+  for (std::size_t p = 0; p < screen.panels.size(); ++p) {
+    const std::filesystem::path file = picture_file(screen.panels[p].frames, picture);
     const PngImage panel = read_png(file);
     if (p == 0) {
-      grid = grid_of(panel, static_cast<int>(panels.size()), columns);
-      image = {
-          grid.width(), grid.height(), std::vector<std::uint8_t>(3 * std::size_t(grid.width()) * grid.height()), {}};
-      Sticker background(image.width, image.height);
-      background.fill({0, 0, image.width, image.height}, paper);
-      background.onto(image, 0, 0);
+      grid = grid_of(panel, static_cast<int>(screen.panels.size()), screen.columns);
+      if (screen.legend) legend = legend_of(*screen.legend, screen.font, panel.height);
+      if (legend.width() > 0) grid.legend = legend.width() + 2 * grid.em;
+      image = blank(grid);
     }
     if (panel.width != grid.panel_width || panel.height != grid.panel_height)
       throw InputError(file.string(), fmt::format("has {} x {} pixels, and the first run's pictures have {} x {}",
                                                   panel.width, panel.height, grid.panel_width, grid.panel_height));
-    const int x = static_cast<int>(p) % columns * (grid.panel_width + grid.gap);
-    const int y = static_cast<int>(p) / columns * (grid.panel_height + grid.strip);
+    const int x = static_cast<int>(p) % grid.columns * (grid.panel_width + grid.gap);
+    const int y = static_cast<int>(p) / grid.columns * (grid.panel_height + grid.strip);
     paste(panel, image, x, y);
     Sticker strip(grid.panel_width, grid.strip);
-    write_line(strip, font, panels[p].name, grid.em, grid.em / 3, ink);
-    write_line(strip, font, figures_of(panels[p].rows, frame), grid.small_em, grid.em / 3 + 3 * grid.em / 2, soft_ink);
+    write_line(strip, screen.font, screen.panels[p].name, grid.em, grid.em / 3, ink);
+    write_line(strip, screen.font, figures_of(screen.panels[p].rows, frame), grid.small_em,
+               grid.em / 3 + 3 * grid.em / 2, soft_ink);
     strip.onto(image, x, y + grid.panel_height);
   }
+  const int middle = (image.height - grid.strip - legend.height()) / 2;
+  if (legend.width() > 0) legend.onto(image, grid.panels_width() + grid.em, middle);
   return image;
 }
 

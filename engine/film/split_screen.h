@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,15 @@ struct Panel {
   std::vector<FrameRow> rows;    // of the run's profile; empty where it has none
 };
 
+// Describes a split screen. Panels have no legend of their own, because it would cover much of a narrow one: all have
+// the same colours, and the legend stands at the right of them all.
+struct SplitScreen {
+  std::vector<Panel> panels;
+  int columns = 1;
+  std::string font;                 // a file; empty: no words
+  std::optional<FieldLook> legend;  // of the field that all panels show
+};
+
 // Returns what the second line says of a frame of the run: time of its steps, iterations, and the last error that was
 // measured up to there, or else its estimate. Of several bodies it is the sum of the times and iterations, and the
 // largest error. Empty without rows.
@@ -36,6 +46,6 @@ std::string figures_of(const std::vector<FrameRow>& rows, int frame);
 
 // Composes picture number `picture` of all panels, which show this frame of the runs. Width and height are even. Throws
 // InputError when a picture cannot be read or has another size than the first.
-Image split_picture(const std::vector<Panel>& panels, int columns, const std::string& font, int picture, int frame);
+Image split_picture(const SplitScreen& screen, int picture, int frame);
 
 }  // namespace supple

@@ -126,9 +126,18 @@ RunFolder::RunFolder(const std::filesystem::path& path, int kept_frames) : path_
     remove_run(path);
   }
   remove_pictures(path / "frames", kept_frames);
-  for (const char* part : {"video.mp4", "video.part.mp4", "profile.json", "trace.json"})
-    std::filesystem::remove(path / part, error);
+  remove_film(path);
+  for (const char* part : {"profile.json", "trace.json"}) std::filesystem::remove(path / part, error);
   for (const char* part : {"frames", "motion", "checkpoint"}) make_folder(path / part);
+}
+
+void remove_film(const std::filesystem::path& folder) {
+  std::error_code error;
+  for (const char* ending : {"mp4", "webm", "gif"}) {
+    for (const char* film : {"video.", "video.part."})
+      std::filesystem::remove(folder / (std::string(film) + ending), error);
+  }
+  for (const char* still : {"poster.png", "sheet.png"}) std::filesystem::remove(folder / still, error);
 }
 
 void remove_pictures(const std::filesystem::path& frames, int first) {
@@ -150,6 +159,19 @@ std::filesystem::path RunFolder::fields(const std::string& body, int frame) cons
   return fields() / fmt::format("{}-{:06}.vtu", body, frame);
 }
 
+std::optional<Bounds> framed_in(const std::string& info_json) {
+  const auto info = json_if_valid<nlohmann::ordered_json>(info_json);
+  if (!info.is_object() || !info.contains("framed")) return std::nullopt;
+  try {
+    const auto corners = info["framed"].get<std::vector<std::vector<double>>>();
+    Bounds box;
+    for (const std::vector<double>& c : corners) box.include(Vec3(c.at(0), c.at(1), c.at(2)));
+    return box.empty() ? std::nullopt : std::optional(box);
+  } catch (const std::exception&) {
+    throw InputError("run.json", "is damaged: 'framed' is not two corners of a box");
+  }
+}
+
 std::string info_json(const RunInfo& info) {
   nlohmann::ordered_json json;
   json["program"] = {
@@ -169,6 +191,12 @@ std::string info_json(const RunInfo& info) {
                               {"elements", mesh.elements}});
   }
   json["scene_file"] = info.scene_file;
+  if (info.scene_text) json["scene_text"] = *info.scene_text;
+  if (info.preview) json["preview"] = true;
+  if (info.framed) {
+    const auto list = [](const Vec3& v) { return std::vector<double>{v.x(), v.y(), v.z()}; };
+    json["framed"] = {list(info.framed->lower), list(info.framed->upper)};
+  }
   json["settings"] = info.settings;
   if (info.sweep_point) json["sweep_point"] = *info.sweep_point;
   json["scene"] = json_if_valid<nlohmann::ordered_json>(info.scene_json);

@@ -1,5 +1,5 @@
-// Manages the folder that a run leaves behind: run.json, frames/, video.mp4, motion/, profile.json and checkpoint/, and
-// states/ and fields/ if they were requested.
+// Manages the folder that a run leaves behind: run.json, frames/, video.mp4 (or .webm, .gif), motion/, profile.json and
+// checkpoint/, and states/ and fields/ if they were requested.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +8,18 @@
 #include <string>
 #include <vector>
 
+#include "base/types.h"
 #include "output/profile.h"
 
 namespace supple {
 
 struct RunInfo {
-  std::vector<std::string> command;   // the command line
-  std::string scene_file;             // an absolute path
-  std::vector<std::string> settings;  // path=value over the scene's
+  std::vector<std::string> command;       // the command line
+  std::string scene_file;                 // an absolute path
+  std::optional<std::string> scene_text;  // of the scene, where it came from standard input
+  std::optional<Bounds> framed;           // what the camera has in view, where a first pass found it [m]
+  bool preview = false;                   // a quarter of the size, with coarse meshes
+  std::vector<std::string> settings;      // path=value over the scene's
   std::optional<std::size_t> sweep_point;
   std::string scene_json;   // the scene at the start of the film, after --set
   std::string replay_json;  // the file of a replay, else empty
@@ -33,11 +37,16 @@ struct RunInfo {
   std::string ended;                                // "done", "interrupted" or the failure's message
 };
 
+// Returns `framed` of a run.json; nothing where it has none.
+std::optional<Bounds> framed_in(const std::string& info_json);
+
 // Writes the information as run.json holds it.
 std::string info_json(const RunInfo& info);
 
 // Returns the file of a frame's picture in a folder of pictures.
 std::filesystem::path picture_file(const std::filesystem::path& frames, int index);
+// Removes the film in a folder, of any format, with its poster and sheet.
+void remove_film(const std::filesystem::path& folder);
 // Removes the pictures of frames from `first` on, and those that are incomplete. Other files stay.
 void remove_pictures(const std::filesystem::path& frames, int first);
 
@@ -58,7 +67,6 @@ class RunFolder {
   std::filesystem::path fields() const { return path_ / "fields"; }
   std::filesystem::path fields(const std::string& body, int frame) const;
   std::filesystem::path field_collection(const std::string& body) const { return fields() / (body + ".pvd"); }
-  std::filesystem::path video() const { return path_ / "video.mp4"; }
   std::filesystem::path trace() const { return path_ / "trace.json"; }  // written if it is asked for
   std::filesystem::path checkpoint() const { return checkpoint_of(path_); }
   std::filesystem::path rows() const { return path_ / "checkpoint" / "rows.jsonl"; }  // rows of profile.json so far

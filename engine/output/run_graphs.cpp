@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <span>
 
 #include "output/markup.h"
 
@@ -14,6 +15,8 @@ namespace supple {
 namespace {
 
 constexpr std::array colors = {"#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#767b80", "#8c6d31"};
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 using Value = std::function<double(const BodyRow&)>;
 
@@ -39,15 +42,15 @@ std::vector<FrameSeries> by_body(const std::vector<FrameRow>& rows, const std::s
 }  // namespace
 
 std::vector<FrameGraph> graphs_of(const std::vector<FrameRow>& rows) {
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  FrameGraph times{"Time by stage", "ms", false, {}};
+  FrameGraph times{"Time by stage", "ms", false, {}, true};
   times.series.push_back(by_frame(rows, "solving", [](const FrameRow& row) { return row.step_ms; }));
   if (rows.front().render_ms)
-    times.series.push_back(by_frame(
-        rows, "drawing", [](const FrameRow& row) { return row.draw_ms.value_or(0) + row.render_ms.value_or(0); }));
+    times.series.push_back(by_frame(rows, "drawing", [](const FrameRow& row) {
+      return row.draw_ms.value_or(none) + row.render_ms.value_or(none);
+    }));
   if (rows.front().compress_ms)
     times.series.push_back(
-        by_frame(rows, "compressing", [](const FrameRow& row) { return row.compress_ms.value_or(0); }));
+        by_frame(rows, "compressing", [](const FrameRow& row) { return row.compress_ms.value_or(none); }));
   FrameGraph errors{"Error of a step: what is left to gain over what there was (equation 12)", "", true, {}};
   errors.series = by_body(rows, ", estimate", [](const BodyRow& body) { return body.error_estimate; });
   for (FrameSeries& measured : by_body(rows, ", measured", [](const BodyRow& body) {
@@ -98,7 +101,8 @@ Axis log_axis(double smallest, double largest) {
 Axis axis_of(const FrameGraph& graph) {
   double smallest = std::numeric_limits<double>::infinity(), largest = 0;
   for (const FrameSeries& series : graph.series) {
-    for (const double value : series.values) {
+    const std::size_t from = graph.first_apart && series.values.size() > 1 ? 1 : 0;
+    for (const double value : std::span(series.values).subspan(from)) {
       if (!std::isfinite(value) || value <= 0) continue;
       smallest = std::min(smallest, value);
       largest = std::max(largest, value);
@@ -117,17 +121,19 @@ Axis axis_of(const FrameGraph& graph) {
   return axis;
 }
 
-// The curve in a square from (0, 0), the upper left corner, to (1000, 1000).
+// The curve in a square from (0, 0), the upper left corner, to (1000, 1000). It leads on over frames without a value;
+// what a logarithmic axis cannot show interrupts it.
 std::string path_of(const FrameSeries& series, const Axis& axis) {
   std::string path;
   bool drawing = false;
   const double last = std::max<double>(1, static_cast<double>(series.values.size()) - 1);
   for (std::size_t i = 0; i < series.values.size(); ++i) {
     const double value = series.values[i];
-    const bool shown = std::isfinite(value) && (!axis.logarithmic || value > 0);
+    if (!std::isfinite(value)) continue;
+    const bool shown = !axis.logarithmic || value > 0;
     if (shown)
       path += fmt::format("{}{:.1f} {:.1f}", drawing ? "L" : "M", 1000.0 * static_cast<double>(i) / last,
-                          1000 * (1 - axis.place(value)));
+                          1000 * (1 - std::clamp(axis.place(value), 0.0, 1.0)));
     drawing = shown;
   }
   return path;

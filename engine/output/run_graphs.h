@@ -19,6 +19,7 @@ struct FrameGraph {
   std::string title, unit;
   bool logarithmic = false;
   std::vector<FrameSeries> series;
+  bool first_apart = false;  // the first frame may leave the axis: it compiles shaders and warms caches
 };
 
 // Returns the graphs for which the rows have values: times, errors, stretch, contacts, penetration. There must be rows.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -77,7 +78,7 @@ function show(frame) {
   shown = Math.min(last, Math.max(0, frame));
   for (const area of areas) area.querySelector(".cursor").style.left = 100 * (last ? shown / last : 0) + "%";
   for (const out of document.querySelectorAll(".legend output")) out.value = text(data.series[out.dataset.series][shown]);
-  for (const out of document.querySelectorAll("output.frame")) out.value = "frame " + shown + ", " + (shown / data.rate).toFixed(2) + " s";
+  for (const out of document.querySelectorAll("output.frame")) out.value = "Shown: frame " + shown + ", " + (shown / data.rate).toFixed(2) + " s.";
 }
 function seek(frame) {
   if (film) { film.pause(); film.currentTime = (frame + 0.5) / data.rate; }
@@ -118,18 +119,43 @@ std::string film_html(const RunRecord& run) {
     return picture_file(run.folder / "frames", static_cast<int>(frame));
   };
   const bool poster = std::filesystem::exists(picture_of(0), error);
-  if (std::filesystem::exists(run.folder / "video.mp4", error)) {
+  for (const char* kind : {"mp4", "webm"}) {
+    const std::filesystem::path film = run.folder / (std::string("video.") + kind);
+    if (!std::filesystem::exists(film, error)) continue;
     return fmt::format(
-        "<video controls loop muted playsinline preload=\"auto\" {} src=\"data:video/mp4;base64,{}\"></video>\n",
-        poster ? "poster=\"data:image/png;base64," + file_as_base64(picture_of(0)) + "\"" : "",
-        file_as_base64(run.folder / "video.mp4"));
+        "<video controls loop muted playsinline preload=\"auto\" {} src=\"data:video/{};base64,{}\"></video>\n",
+        poster ? "poster=\"data:image/png;base64," + file_as_base64(picture_of(0)) + "\"" : "", kind,
+        file_as_base64(film));
   }
+  if (std::filesystem::exists(run.folder / "video.gif", error))
+    return fmt::format("<img class=\"picture\" alt=\"the film\" src=\"data:image/gif;base64,{}\">\n",
+                       file_as_base64(run.folder / "video.gif"));
   if (run.rows.empty() || !std::filesystem::exists(picture_of(run.rows.size() - 1), error))
     return "<p class=\"soft\">This run has no film.</p>\n";
   return fmt::format(
       "<img class=\"picture\" alt=\"the last frame\" src=\"data:image/png;base64,{}\">\n"
       "<p class=\"soft\">This run has no film; this is its last picture.</p>\n",
       file_as_base64(picture_of(run.rows.size() - 1)));
+}
+
+constexpr std::array slowest_heads = {"solving [ms]", "evaluating",  "linear solves", "contacts", "changes",
+                                      "drawing",      "compressing", "iterations",    "trials"};
+constexpr std::size_t first_count = 7;  // of the heads: those before it are milliseconds
+
+// Returns the values of a frame below those heads.
+std::vector<std::optional<double>> slowest_cells(const FrameRow& row) {
+  double evaluating = 0, solving = 0;
+  std::optional<double> colliding, drawing;
+  int iterations = 0, trials = 0;
+  for (const BodyRow& body : row.bodies) {
+    evaluating += body.evaluate_ms;
+    solving += body.solve_ms;
+    iterations += body.iterations;
+    trials += body.line_search;
+    if (body.contact) colliding = colliding.value_or(0) + body.contact->collide_ms;
+  }
+  if (row.render_ms) drawing = row.draw_ms.value_or(0) + *row.render_ms;
+  return {row.step_ms, evaluating, solving, colliding, row.change_ms, drawing, row.compress_ms, iterations, trials};
 }
 
 std::string slowest_html(const std::vector<FrameRow>& rows) {
@@ -140,29 +166,23 @@ std::string slowest_html(const std::vector<FrameRow>& rows) {
   for (const FrameRow& row : rows) slowest.push_back(&row);
   std::ranges::stable_sort(slowest, [&](const FrameRow* a, const FrameRow* b) { return total(*a) > total(*b); });
   slowest.resize(std::min<std::size_t>(slowest.size(), 10));
-  std::string html =
-      "<h2>Slowest frames</h2><div class=\"box\"><table><thead><tr><th>frame</th><th>solving "
-      "[ms]</th><th>evaluating</th>"
-      "<th>linear solves</th><th>contacts</th><th>changes</th><th>drawing</th><th>compressing</th><th>iterations</th>"
-      "<th>trials</th></tr></thead><tbody>\n";
-  const auto cell = [](const std::optional<double>& value) {
-    return value ? fmt::format("<td>{:.2f}</td>", *value) : std::string("<td>–</td>");
-  };
-  for (const FrameRow* row : slowest) {
-    double evaluating = 0, solving = 0;
-    std::optional<double> colliding, drawing;
-    int iterations = 0, trials = 0;
-    for (const BodyRow& body : row->bodies) {
-      evaluating += body.evaluate_ms;
-      solving += body.solve_ms;
-      iterations += body.iterations;
-      trials += body.line_search;
-      if (body.contact) colliding = colliding.value_or(0) + body.contact->collide_ms;
+  std::vector<std::vector<std::optional<double>>> values;
+  for (const FrameRow* row : slowest) values.push_back(slowest_cells(*row));
+  std::string html = "<h2>Slowest frames</h2><div class=\"box\"><table><thead><tr><th>frame</th>";
+  std::vector<std::size_t> columns;  // that have a value in some row
+  for (std::size_t c = 0; c < slowest_heads.size(); ++c) {
+    if (std::ranges::none_of(values, [c](const auto& row) { return row[c].has_value(); })) continue;
+    columns.push_back(c);
+    html += fmt::format("<th>{}</th>", slowest_heads[c]);
+  }
+  html += "</tr></thead><tbody>\n";
+  for (std::size_t r = 0; r < slowest.size(); ++r) {
+    html += fmt::format("<tr data-frame=\"{0}\"><td>{0}</td>", slowest[r]->frame);
+    for (const std::size_t c : columns) {
+      const int digits = c < first_count ? 2 : 0;
+      html += values[r][c] ? fmt::format("<td>{:.{}f}</td>", *values[r][c], digits) : std::string("<td>–</td>");
     }
-    if (row->render_ms) drawing = row->draw_ms.value_or(0) + *row->render_ms;
-    html += fmt::format("<tr data-frame=\"{0}\"><td>{0}</td>", row->frame) + cell(row->step_ms) + cell(evaluating) +
-            cell(solving) + cell(colliding) + cell(row->change_ms) + cell(drawing) + cell(row->compress_ms) +
-            fmt::format("<td>{}</td><td>{}</td></tr>\n", iterations, trials);
+    html += "</tr>\n";
   }
   return html + "</tbody></table></div>\n";
 }

@@ -14,6 +14,8 @@ constexpr double plate_opacity = 0.82;  // text stays legible on any background,
 // Holds the sizes of a legend's parts [pixels].
 struct Layout {
   int em, line, pad, bar_width, bar_height, labels, width, height;
+  // Half a line lies between the title and the highest number, which stands beside the top of the bar.
+  int bar_top() const { return pad + 2 * line; }
 };
 
 Layout layout_of(const FieldLook& field, const std::string& font, int picture_height) {
@@ -27,7 +29,7 @@ Layout layout_of(const FieldLook& field, const std::string& font, int picture_he
   for (const auto& [place, value] : field.ticks)
     layout.labels = std::max(layout.labels, draw_caption(font, value, layout.em).width);
   layout.width = 2 * layout.pad + std::max(title.width, layout.bar_width + layout.pad + layout.labels);
-  layout.height = 2 * layout.pad + layout.line + layout.line / 2 + layout.bar_height + layout.line / 2;
+  layout.height = layout.bar_top() + layout.bar_height + layout.line / 2 + layout.pad;
   return layout;
 }
 
@@ -39,7 +41,7 @@ Sticker legend_of(const FieldLook& field, const std::string& font, int height) {
   Sticker legend(layout.width, layout.height);
   legend.plate({0, 0, layout.width, layout.height}, 0.5 * layout.em, paper, plate_opacity);
   legend.text(font, field.title, layout.em, layout.pad, layout.pad, ink);
-  const int top = layout.pad + layout.line + layout.line / 2, left = layout.pad;
+  const int top = layout.bar_top(), left = layout.pad;
   for (int row = 0; row < layout.bar_height; ++row) {
     const double place = 1 - (row + 0.5) / layout.bar_height;
     const auto color = static_cast<std::size_t>(place * static_cast<double>(field.colors.size()));

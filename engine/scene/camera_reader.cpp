@@ -75,7 +75,7 @@ CameraDef read_camera(const ConfigTable& table, CameraDef camera) {
   camera.margin = table.number({"margin", "", "air around the bodies; without position and distance all are framed"},
                                camera.margin, Range::between(0.5, 10));
   camera.frames = table.word<Framed>(
-      {"frames", "", "what is in the picture: the bodies as they start, or their whole motion (supple draw)"},
+      {"frames", "", "what is in the picture: the bodies as they start, or their whole motion, by a first pass"},
       camera.frames);
   camera.orbit_deg = table.number({"orbit", "degrees/s", "how fast the eye goes round the target"}, camera.orbit_deg,
                                   Range::between(-3600, 3600));

@@ -45,11 +45,13 @@ std::string model_scene(const std::filesystem::path& model) {
   return fmt::format(
       "title = {}\nframes = 90\n[[body]]\nname = \"model\"\n{} = {}\nmaterial = \"jelly\"\nsize = 0.5\n"
       "position = [0, 0.25, 0]\n[[collider]]\nname = \"ground\"\nshape = {{ half_space = {{ normal = [0, 1, 0] }} }}\n"
-      "friction = 0.5\n[look]\nlabels = false\n",
+      "friction = 0.5\n[camera]\nframes = \"film\"\n[look]\nlabels = false\n",
       file, is_mesh_file(model) ? "mesh" : "surface", file);
 }
 
-Config load_document(const std::filesystem::path& path, const std::filesystem::path& assets) {
+Config load_document(const SceneSource& source, const std::filesystem::path& assets) {
+  const std::filesystem::path& path = source.path;
+  if (source.text) return Config::parse_beside(*source.text, path, assets);
   if (!is_model(path)) return Config::load(path, assets);
   check_regular_file(path);
   return Config::parse_beside(model_scene(path), path, assets);

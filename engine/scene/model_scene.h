@@ -6,6 +6,7 @@
 #include <string>
 
 #include "scene/config.h"
+#include "scene/scene_source.h"
 
 namespace supple {
 
@@ -16,6 +17,6 @@ bool is_model(const std::filesystem::path& path);
 std::string model_scene(const std::filesystem::path& model);
 
 // Loads a scene or replay, or the scene of a model. Throws InputError as Config::load does.
-Config load_document(const std::filesystem::path& path, const std::filesystem::path& assets);
+Config load_document(const SceneSource& source, const std::filesystem::path& assets);
 
 }  // namespace supple

@@ -196,7 +196,7 @@ struct CameraKey {
 // Names what a camera without a place of its own has in the picture.
 enum class Framed {
   start,  // the bodies where they start, and the ground below those that will fall
-  film,   // their whole motion, which only a drawing from saved motion knows
+  film,   // their whole motion, which a rough first pass finds, or a drawing knows
 };
 template <>
 struct Names<Framed> {

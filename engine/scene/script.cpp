@@ -168,9 +168,9 @@ void Script::Parts::read_replay(const std::filesystem::path& assets, const std::
                    [](const TimedChange& a, const TimedChange& b) { return a.at < b.at; });
 }
 
-Script Script::load(const std::filesystem::path& path, const std::filesystem::path& assets,
+Script Script::load(const SceneSource& source, const std::filesystem::path& assets,
                     const std::vector<std::string>& settings, std::optional<std::size_t> sweep_point) {
-  auto parts = std::make_unique<Parts>(Parts{std::nullopt, load_document(path, assets), {}, {}, {}});
+  auto parts = std::make_unique<Parts>(Parts{std::nullopt, load_document(source, assets), {}, {}, {}});
   const ConfigTable root = parts->scene_file.root();
   if (root.has("scene") || root.has("change") || root.has("grab")) {
     parts->replay = parts->scene_file.copy();
@@ -180,7 +180,7 @@ Script Script::load(const std::filesystem::path& path, const std::filesystem::pa
     for (const std::string& setting : settings) parts->scene_file.set(setting, exclusive_keys());
     if (sweep_point) put_sweep_point(parts->scene_file, *sweep_point);
   }
-  parts->start.name = path.stem().string();
+  parts->start.name = source.name();
   Config document = parts->document_at(at_start, parts->changes.size());
   parts->start = parts->read(document);
   return Script(std::move(parts));

@@ -4,6 +4,7 @@
 
 #include "scene/live.h"
 #include "scene/scene_def.h"
+#include "scene/scene_source.h"
 
 namespace supple {
 
@@ -33,7 +34,7 @@ class Script {
   // Loads a scene file, or a replay, which is a file that names its `scene`. `settings` are those of --set and apply to
   // the scene at the start of the film. `sweep_point` is a point of the scene's sweep. Throws InputError with all that
   // is wrong at any time of the film.
-  static Script load(const std::filesystem::path& path, const std::filesystem::path& assets,
+  static Script load(const SceneSource& source, const std::filesystem::path& assets,
                      const std::vector<std::string>& settings, std::optional<std::size_t> sweep_point = {});
   Script(Script&&) noexcept;
   ~Script();

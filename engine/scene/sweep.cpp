@@ -26,9 +26,9 @@ void check_paths(const SweepDef& sweep, Config& config) {
   }
 }
 
-Config config_of(const std::filesystem::path& path, const std::filesystem::path& assets,
+Config config_of(const SceneSource& source, const std::filesystem::path& assets,
                  const std::vector<std::string>& settings) {
-  Config config = load_document(path, assets);
+  Config config = load_document(source, assets);
   for (const std::string& setting : settings) config.set(setting, exclusive_keys());
   return config;
 }
@@ -115,18 +115,18 @@ SweepDef read_sweep(const ConfigTable& root) {
   return sweep;
 }
 
-SweepDef load_sweep(const std::filesystem::path& path, const std::filesystem::path& assets,
+SweepDef load_sweep(const SceneSource& source, const std::filesystem::path& assets,
                     const std::vector<std::string>& settings) {
-  Config config = config_of(path, assets, settings);
+  Config config = config_of(source, assets, settings);
   if (config.value_at("scene"))
-    throw InputError(path.string(),
+    throw InputError(source.path.string(),
                      "is a replay; a sweep is of a scene, where a grab stands as a handle with 'from' and 'until'");
   (void)read_scene(config);
   config.finish();
   const SweepDef sweep = read_sweep(config.root());
   if (sweep.points() == 0) {
     throw InputError(
-        path.string(),
+        source.path.string(),
         "has no [sweep] table; one can also be given, as in --set 'sweep.values.solver.iterations=[5, 10]'");
   }
   for (const std::string& setting : settings) {
@@ -151,9 +151,9 @@ std::string sweep_point_json(const std::filesystem::path& path, const std::files
   return config.as_json();
 }
 
-void check_sweep_points(const std::filesystem::path& path, const std::filesystem::path& assets,
+void check_sweep_points(const SceneSource& source, const std::filesystem::path& assets,
                         const std::vector<std::string>& settings, const SweepDef& sweep) {
-  const Config base = config_of(path, assets, settings);
+  const Config base = config_of(source, assets, settings);
   std::vector<Problem> all;
   std::set<std::tuple<std::string, int, int, std::string>> seen;
   for (std::size_t point = 0; point < sweep.points(); ++point) {

@@ -4,6 +4,7 @@
 
 #include "scene/config.h"
 #include "scene/scene_def.h"
+#include "scene/scene_source.h"
 
 namespace supple {
 
@@ -34,7 +35,7 @@ SweepDef read_sweep(const ConfigTable& root);
 
 // Loads the sweep of a file after "path=value" settings, which must not set a value that the sweep varies. Throws
 // InputError, also when the scene itself cannot be read or has no sweep.
-SweepDef load_sweep(const std::filesystem::path& path, const std::filesystem::path& assets,
+SweepDef load_sweep(const SceneSource& source, const std::filesystem::path& assets,
                     const std::vector<std::string>& settings);
 
 // Puts the values of a point into a scene's document, and removes its sweep. Throws InputError when a path is refused.
@@ -45,7 +46,7 @@ std::string sweep_point_json(const std::filesystem::path& path, const std::files
                              const std::vector<std::string>& settings, const SweepDef& sweep, std::size_t point);
 
 // Reads the scene of every point. Throws InputError with all problems, each once.
-void check_sweep_points(const std::filesystem::path& path, const std::filesystem::path& assets,
+void check_sweep_points(const SceneSource& source, const std::filesystem::path& assets,
                         const std::vector<std::string>& settings, const SweepDef& sweep);
 
 }  // namespace supple

@@ -130,7 +130,7 @@ TEST(ColliderProgram, WarnsOfADepthAboveAHundredthAlsoWhenQuiet) {
   EXPECT_NE(result.err.find("warning: the surface of body 'box' was up to "), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("% of its size deep inside collider 'post' (at frame "), std::string::npos) << result.err;
   std::ofstream(folder.path / "s.toml") << box_scene << ground_and_press;
-  EXPECT_EQ(run(folder.path, render("s.toml")).err, "");
+  EXPECT_EQ(run(folder.path, render("s.toml", {"--no-images", "--quiet", "--force"})).err, "");
 }
 
 TEST(ColliderProgram, SaysNothingOfContactsWithoutColliders) {
@@ -142,7 +142,7 @@ TEST(ColliderProgram, SaysNothingOfContactsWithoutColliders) {
   EXPECT_NE(with.out.find("penetration"), std::string::npos);
   ASSERT_TRUE(std::filesystem::exists(out / "motion" / "colliders.csv"));
   std::ofstream(scene) << box_scene;
-  const Result without = run(folder.path, render("s.toml", {"--no-images"}));
+  const Result without = run(folder.path, render("s.toml", {"--no-images", "--force"}));
   ASSERT_EQ(without.status, 0) << without.err;
   EXPECT_EQ(without.out.find("penetration"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(out / "motion" / "colliders.csv"));  // nor the run's before

@@ -47,7 +47,7 @@ shape = { half_space = { normal = [0, 1, 0] } }
 std::filesystem::path filmed(const test::TemporaryFolder& folder, const std::string& text,
                              const std::vector<std::string>& more) {
   std::ofstream(folder.path / "scene.toml") << text;
-  std::vector<std::string> words = {"render", "scene.toml", "--no-images", "--quiet"};
+  std::vector<std::string> words = {"render", "scene.toml", "--no-images", "--quiet", "--force"};
   words.insert(words.end(), more.begin(), more.end());
   const Result result = run(folder.path, words);
   EXPECT_EQ(result.status, 0) << result.err;

@@ -58,7 +58,7 @@ keys = [{ t = 0 }, { t = 1, move = [0, 3, 0] }]
 )";
 
 Result render(const std::filesystem::path& folder, const std::vector<std::string>& more = {}) {
-  std::vector<std::string> arguments = {"render", "s.toml", "--no-images", "--quiet"};
+  std::vector<std::string> arguments = {"render", "s.toml", "--no-images", "--quiet", "--force"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return run(folder, arguments);
 }

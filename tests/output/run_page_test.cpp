@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -81,6 +82,34 @@ TEST(RunPage, ShowsHowValuesDifferThatAreAllNearOne) {
   const std::string ticks = graph.substr(0, graph.find("<svg"));
   EXPECT_NE(ticks.find(">1.04<"), std::string::npos) << ticks;
   EXPECT_EQ(ticks.find(">0<"), std::string::npos) << ticks;
+}
+
+// The curve of a value that only some frames have leads over the others, and a first frame that takes long does not
+// press the others to the ground.
+TEST(RunPage, ShowsValuesOfSomeFramesAndLeavesTheFirstFramesTimeAside) {
+  const test::TemporaryFolder folder;
+  RunRecord run = small_run(folder.path, 6);
+  run.rows[0].step_ms = 5000;
+  for (FrameRow& row : run.rows) {
+    row.bodies[0].error_measured = row.frame % 2 == 0;
+    if (row.bodies[0].error_measured) row.bodies[0].error = 1e-3 / (row.frame + 1);
+  }
+  const std::string page = run_page(run);
+  const std::string times = page.substr(page.find("Time by stage"));
+  EXPECT_NE(times.substr(0, times.find("<svg")).find(">100<"), std::string::npos) << times;
+  EXPECT_EQ(times.substr(0, times.find("<svg")).find("000<"), std::string::npos) << times;
+  const std::string errors = page.substr(page.find("Error of a step"));
+  const std::size_t measured = errors.find("<path", errors.find("<path", errors.find("<path") + 1) + 1);
+  const std::string curve = errors.substr(measured, errors.find("/>", measured) - measured);
+  EXPECT_EQ(std::ranges::count(curve, 'M'), 1) << curve;
+  EXPECT_EQ(std::ranges::count(curve, 'L'), 2) << curve;
+}
+
+TEST(RunPage, HasNoColumnWithoutAValue) {
+  const test::TemporaryFolder folder;
+  const std::string page = run_page(small_run(folder.path, 6));
+  EXPECT_EQ(page.find("<th>drawing</th>"), std::string::npos);
+  EXPECT_NE(page.find("<th>contacts</th>"), std::string::npos);
 }
 
 TEST(RunPage, TellsWhatWasRunBeforeThereAreFrames) {

@@ -11,9 +11,11 @@
 #include <functional>
 
 #include "film/drawn_film.h"
+#include "film/split_screen.h"
 #include "output/obj_file.h"
 #include "output/png_file.h"
 #include "output/point_cache.h"
+#include "output/run_folder.h"
 #include "render/renderer.h"
 #include "support/film.h"
 #include "support/places.h"
@@ -285,6 +287,37 @@ TEST(Golden, WordsTellOfTheFilmAndItsBodies) {
   expect_golden("words",
                 {written_for_tests("captions"), {"text.title=true", "text.time=true", "text.method=true"}, 0, lato},
                 {{{"text.title=false", "text.time=false"}, {}, true}, {{"text.method=false"}, {}, true}});
+}
+
+TEST(Golden, PanelsStandInEveryLayoutWithTheLegendBesideThem) {
+  if (!std::filesystem::exists(lato)) GTEST_SKIP() << lato << " is not installed";
+  const test::TemporaryFolder folder;
+  Picture picture = picture_of(
+      {written_for_tests("field"), {"field.quantity=stretch", "output.width=160", "output.height=120"}, 0, lato});
+  SplitScreen screen{{}, 1, lato, picture.stage.field};
+  picture.stage.field->title.clear();
+  const Image panel = draw(picture);
+  FrameRow row;
+  row.step_ms = 12.3;
+  row.bodies.resize(1);
+  row.bodies[0].iterations = 10;
+  row.bodies[0].error_estimate = 2.5e-4;
+  for (const char* name : {"ours", "one Newton iteration", "Projective Dynamics"}) {
+    const std::filesystem::path frames = folder.path / name;
+    std::filesystem::create_directory(frames);
+    write_png(picture_file(frames, 0), panel.width, panel.height, panel.rgb);
+    screen.panels.push_back({frames, name, {row}});
+  }
+  for (const Layout layout : {Layout::row, Layout::column, Layout::grid}) {
+    screen.columns = columns_of(layout, 3);
+    const Image image = split_picture(screen, 0, 0);
+    expect_golden("split-" + std::string(name_of(layout)), image);
+    SplitScreen bare = screen;
+    bare.panels[1].name.clear();
+    EXPECT_GT(difference_of(image.rgb, split_picture(bare, 0, 0).rgb).mean, least_noticed) << "a name is not seen";
+    bare.legend.reset();
+    EXPECT_LT(split_picture(bare, 0, 0).width, image.width) << "the legend takes no room";
+  }
 }
 
 // The renewed meshes have colours that no mesh had when the film began.

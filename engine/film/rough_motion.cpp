@@ -1,0 +1,90 @@
+#include "film/rough_motion.h"
+
+#include <unistd.h>
+
+#include <cstdlib>
+
+#include "base/error.h"
+#include "output/obj_file.h"
+#include "output/point_cache.h"
+#include "output/run_record.h"
+
+namespace supple {
+namespace {
+
+constexpr double air = 0.03;  // around the box, because finer bodies move a little differently; by its diagonal
+
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "supple-first-pass-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) throw RunError(name + ": the folder of the first pass cannot be made");
+    path = name;
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  std::filesystem::path path;
+};
+
+// Returns the plan of the first pass: the same film, coarse, without pictures and without anything that is asked for
+// beside them.
+FilmPlan first_pass(const FilmPlan& plan, const std::filesystem::path& folder) {
+  FilmPlan rough;
+  rough.scene = plan.scene;
+  rough.scene_text = plan.scene_text;
+  rough.sweep_point = plan.sweep_point;
+  rough.settings = plan.settings;
+  rough.frames = plan.frames;
+  rough.seed = plan.seed;
+  rough.threads = plan.threads;
+  rough.cache = plan.cache;
+  rough.out = folder.string();
+  rough.rough = rough.force = rough.quiet = true;
+  rough.pictures = FilmPictures::none;
+  rough.video = false;
+  rough.checkpoint_every = 0;
+  return rough;
+}
+
+Bounds rough_motion(const FilmPlan& plan, const FilmSolvers& solvers) {
+  const Zone zone("first pass");
+  const ScratchFolder scratch;
+  const FilmPlan rough = first_pass(plan, scratch.path);
+  LoadedFilm film = load_film(rough, {});
+  build_models(rough, film);
+  FilmStart start = check_film(rough, film);
+  const RunFolder folder = open_folder(start, film);
+  (void)make_film(rough, film, start, folder, solvers);  // a pass that fails tells of the frames before
+  Bounds box;
+  const auto include = [&box](const Positions& points) {
+    box.include(bounds_of(points).lower);
+    box.include(bounds_of(points).upper);
+  };
+  for (const Body& body : film.bodies) {
+    const Positions& rest = body.description.mesh.rest;
+    include(rest);
+    PointCacheReader motion(folder.motion(body.def.name));
+    for (int frame = 0; frame < motion.frames(); ++frame)
+      include(motion.frame(frame).rowwise() + motion_origin(rest).transpose());
+  }
+  const Vec3 more = Vec3::Constant(air * box.diagonal());
+  box.include(box.lower - more);
+  box.include(box.upper + more);
+  return box;
+}
+
+}  // namespace
+
+void find_framing(const FilmPlan& plan, const FilmStart& start, const FilmSolvers& solvers, LoadedFilm& film) {
+  const bool asked = film.script.scene().camera.frames == Framed::film && plan.pictures != FilmPictures::none;
+  if (!asked) return;
+  if (start.kept_frames() > 0) film.info.framed = framed_in(read_run(start.place.path).info_json);
+  if (!film.info.framed) film.info.framed = rough_motion(plan, solvers);
+}
+
+}  // namespace supple

@@ -1,0 +1,27 @@
+// Names a scene, a replay or a model: by its file, or as a text that came from standard input and stands for a file in
+// the working folder.
+#pragma once
+
+#include <concepts>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace supple {
+
+struct SceneSource {
+  static constexpr const char* standard_input = "<stdin>";  // in the place of a file's name
+
+  std::filesystem::path path;       // messages name it, and files that the scene names lie beside it
+  std::optional<std::string> text;  // nothing: the file's
+
+  template <std::convertible_to<std::filesystem::path> Path>
+  SceneSource(const Path& file) : path(file) {}  // NOLINT: a file's name is a source
+  SceneSource(std::filesystem::path place, std::string given) : path(std::move(place)), text(std::move(given)) {}
+
+  // Returns the name of the scene, after which a run's folder is called.
+  std::string name() const { return text ? "stdin" : path.stem().string(); }
+};
+
+}  // namespace supple
