@@ -20,12 +20,13 @@
 namespace supple {
 namespace {
 
-// Returns the name of a run: the last folder of its path, and the method of its only body.
+// Returns the name of a run: the last folder of its path, and the method of its only body where that has not said it.
 std::string name_of_run(const std::filesystem::path& run, const SceneDef& scene) {
   const std::filesystem::path path = std::filesystem::absolute(run / "").lexically_normal().parent_path();
   std::string name = path.filename().string();
-  if (scene.bodies.size() == 1) name += fmt::format(" ({})", name_of(scene.bodies.front().solver.method));
-  return name;
+  if (scene.bodies.size() != 1) return name;
+  const std::string method(name_of(scene.bodies.front().solver.method));
+  return name == method ? name : fmt::format("{} ({})", name, method);
 }
 
 // Returns the plan of one run: its pictures share the width or the height of the whole.

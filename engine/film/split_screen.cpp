@@ -35,7 +35,9 @@ Grid grid_of(const PngImage& first, int panels, int columns) {
   grid.columns = columns;
   grid.rows = (panels + columns - 1) / columns;
   grid.gap = std::max(2, first.width / 160) & ~1;
-  grid.em = std::max(10, static_cast<int>(std::lround(std::min(first.height / 22.0, first.width / 30.0))));
+  // Words fit the height of a panel; below a flat one they are larger, and below a narrow one smaller.
+  const double em = std::min(std::max(first.height / 22.0, first.width / 55.0), first.width / 30.0);
+  grid.em = std::max(10, static_cast<int>(std::lround(em)));
   grid.small_em = std::max(9, grid.em * 4 / 5);
   grid.strip = 3 * grid.em + grid.em / 2;
   return grid;

@@ -31,7 +31,7 @@ p { margin: 0 0 1rem; }
 .view { position: relative; aspect-ratio: 16 / 9; background: var(--faint); border-radius: 6px; overflow: hidden; display: flex;
   align-items: center; justify-content: center; }
 .view.film { cursor: pointer; }
-.view.film::after { content: "▶"; position: absolute; left: 0.6rem; bottom: 0.6rem; width: 1.9rem; height: 1.9rem; border-radius: 50%;
+.view.film::after { content: "▶"; position: absolute; right: 0.6rem; top: 0.6rem; width: 1.9rem; height: 1.9rem; border-radius: 50%;
   background: rgba(29, 31, 33, 0.62); color: #fff; font-size: 0.75rem; line-height: 1.9rem; text-align: center; text-indent: 0.12em;
   transition: opacity 0.2s; pointer-events: none; }
 .view.playing::after { opacity: 0; }
