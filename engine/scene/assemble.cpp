@@ -234,6 +234,7 @@ std::vector<Body> assemble(const SceneDef& scene, const Making& making) {
       body.files = loaded.files;
       body.seed = scene.seed;
       body.skin = loaded.skin;
+      body.colors = loaded.colors;
       body.shape = loaded.shape;
       body.unplaced = loaded.mesh.rest;
       body.description.name = def.name;

@@ -263,6 +263,13 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
       {"pattern_size", "m", "edge of its squares; a sixth of the middle side, of cloth a twentieth of the longest"},
       Range::positive());
   body.color = table.color_if_given({"color", "sRGB", "over the shape's own"});
+  body.colors = table.word<ColorSource>({"colors", "",
+                                         "whose colour is drawn: usual: those of the surface's file, unless there is a "
+                                         "color here; file: the file's where "
+                                         "it has some; body: color"},
+                                        body.colors);
+  if (table.has("colors") && !table.has("surface"))
+    table.complain("colors", "colors: of a 'surface'; there is none here");
   body.gloss =
       table.number_if_given({"gloss", "", "of the uncovered surface: 0 matt to 1 wet [0.25]"}, Range::between(0, 1));
   body.skin_cells = table.number({"skin_cells", "", "cells of the drawn skin along the longest side of a shape"}, 72,

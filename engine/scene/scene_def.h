@@ -131,6 +131,18 @@ struct Names<Pieces> {
                                        Name{Pieces::bodies, "bodies"}};
 };
 
+// Chooses where the colour of a body made from a surface comes from.
+enum class ColorSource {
+  usual,  // the file where it has colours and the body has none, else the body
+  file,   // the file where it has colours
+  body,   // the body's `color`
+};
+template <>
+struct Names<ColorSource> {
+  static constexpr std::array table = {Name{ColorSource::usual, "usual"}, Name{ColorSource::file, "file"},
+                                       Name{ColorSource::body, "body"}};
+};
+
 struct BodySurface;  // body_pieces.h
 
 struct BodyDef {
@@ -162,10 +174,12 @@ struct BodyDef {
   Pattern pattern = Pattern::none;
   std::optional<double> pattern_size;  // edge of its squares [m]
   std::optional<Vec3> color;           // over the shape's own [sRGB]
-  std::optional<double> gloss;         // of the uncovered surface
-  double skin_cells = 0;               // cells of the drawn skin along the longest side
+  ColorSource colors = ColorSource::usual;
+  std::optional<double> gloss;  // of the uncovered surface
+  double skin_cells = 0;        // cells of the drawn skin along the longest side
   Problem place;
 
+  bool takes_colors_of_file() const { return colors == ColorSource::usual ? !color : colors == ColorSource::file; }
   double body_density() const { return density.value_or(substance.usual_density.value_or(cloth ? 0.2 : 1000)); }
 };
 
