@@ -160,6 +160,7 @@ struct BodyDef {
   std::optional<ClothDef> cloth;
   int vertices = 0;               // of the tetrahedra made from a shape
   std::optional<double> size;     // longest side; otherwise the file's units are metres [m]
+  double scale = 1;               // where there is no size
   Vec3 position = Vec3(0, 0, 0);  // of the middle of the bounding box's bottom [m]
   Vec3 turn_deg = Vec3(0, 0, 0);
   std::optional<double> density;     // [kg/m^3]; of cloth [kg/m^2]
