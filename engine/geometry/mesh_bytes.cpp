@@ -106,10 +106,10 @@ std::optional<CarriedSkin> carried_skin_from(std::string_view bytes) {
   VertexFrames& frames = embedding.frames;
   const bool read = reader.rows(skin.rest.points) && reader.rows(skin.rest.triangles) && reader.list(skin.occlusion) &&
                     reader.list(skin.paint) && reader.list(skin.square) && reader.list(skin.color) &&
-                    reader.list(skin.smooth) && reader.rows(embedding.corners) &&
-                    reader.rows(embedding.weights) && reader.list(embedding.begin) && reader.list(embedding.shares) &&
-                    reader.rows(embedding.offset) && reader.list(frames.vertex) && reader.list(frames.begin) &&
-                    reader.list(frames.corner) && reader.rows(frames.gradient);
+                    reader.list(skin.smooth) && reader.rows(embedding.corners) && reader.rows(embedding.weights) &&
+                    reader.list(embedding.begin) && reader.list(embedding.shares) && reader.rows(embedding.offset) &&
+                    reader.list(frames.vertex) && reader.list(frames.begin) && reader.list(frames.corner) &&
+                    reader.rows(frames.gradient);
   return read && reader.at_end() ? std::optional(std::move(carried)) : std::nullopt;
 }
 

@@ -17,9 +17,9 @@ namespace supple {
 // but for surfaces that are not closed.
 ColoredSurface read_colored_surface(const std::filesystem::path& path);
 
-// Reads a file and returns its closed surface, without its colours. Remarks are added to `notes`, as by closed_surface. Throws InputError when the file
-// does not exist, has no triangles or is too large, when its reader crashed, took too long or refused it, and when the
-// surface is not closed.
+// Reads a file and returns its closed surface, without its colours. Remarks are added to `notes`, as by closed_surface.
+// Throws InputError when the file does not exist, has no triangles or is too large, when its reader crashed, took too
+// long or refused it, and when the surface is not closed.
 TriMesh read_closed_surface(const std::filesystem::path& path, std::vector<std::string>* notes);
 
 // The same for a surface that need not be closed: solid_surface makes a solid of it as the options say.
