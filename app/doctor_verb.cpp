@@ -94,8 +94,8 @@ Finding surface_reader() {
           runs,
           false,
           runs ? program.string() : program.string() + " cannot be run",
-          "bodies from OBJ, PLY, STL, glTF and OFF files",
-          "libassimp5"};
+          "bodies from OBJ, PLY, STL, glTF and OFF files, with their colours",
+          "libassimp5, libpng16-16 and libjpeg62-turbo"};
 }
 
 Finding scenes() {

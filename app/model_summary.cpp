@@ -42,6 +42,7 @@ std::string surface_summary(const std::filesystem::path& file) {
   const Vec3 extent = read.box.extent();
   text += fmt::format("surface         {}\nextent          {:.4g} x {:.4g} x {:.4g} in the file's units\n",
                       file.string(), extent.x(), extent.y(), extent.z());
+  text += fmt::format("colours         {}\n", read.found.empty() ? "none" : read.found);
   constexpr std::size_t most = 12;
   for (std::size_t p = 0; p < std::min(most, read.pieces.size()); ++p)
     text += piece_text(read.pieces[p], read.volumes[p], p + 1);

@@ -5,6 +5,9 @@
 #include "film.glsl"
 #include "lighting.glsl"
 #include "shadow.glsl"
+#ifdef COLORED
+#include "texture.glsl"
+#endif
 #if SAMPLES > 1
 #define SampledNumbers usampler2DMS
 #define SampledDepths sampler2DMS
@@ -23,6 +26,10 @@ uniform samplerBuffer materials;  // by mesh, eighteen texels
 #ifdef FIELD
 uniform samplerBuffer values;     // by vertex: the field, 0 at the low end of its range and 1 at the high one; negative: none
 uniform samplerBuffer colors;     // of the field, from low to high, in the colours of the screen
+#endif
+#ifdef COLORED
+uniform samplerBuffer tints;           // by vertex: the file's colour, linear, and the number of its texture from one, or zero
+uniform samplerBuffer texture_places;  // by vertex: place in that texture
 #endif
 #ifdef WIRES
 uniform float wire_width;         // in pixels
@@ -79,8 +86,25 @@ Seen look(uint number, vec2 at) {
   return seen;
 }
 
+#ifdef COLORED
+// Returns the colour that the file of the surface gives it.
+vec3 color_of_file(Seen seen) {
+  vec4 a = texelFetch(tints, seen.corners.x), b = texelFetch(tints, seen.corners.y), c = texelFetch(tints, seen.corners.z);
+  vec3 tint = clamp(seen.weights.x * a.rgb + seen.weights.y * b.rgb + seen.weights.z * c.rgb, 0.0, 1.0);
+  if (a.w < 0.5) return tint;
+  vec2 p = texelFetch(texture_places, seen.corners.x).xy, q = texelFetch(texture_places, seen.corners.y).xy,
+       r = texelFetch(texture_places, seen.corners.z).xy;
+  vec2 at = seen.weights.x * p + seen.weights.y * q + seen.weights.z * r;
+  vec2 right = seen.right.x * p + seen.right.y * q + seen.right.z * r, up = seen.up.x * p + seen.up.y * q + seen.up.z * r;
+  return tint * texture_color(int(a.w + 0.5) - 1, at, right, up);
+}
+#endif
+
 vec4 material_of(Seen seen) {
   vec4 material = texelFetch(materials, seen.material + seen.covering);
+#ifdef COLORED
+  if (texelFetch(materials, seen.material + 17).w > 0.5) material.rgb = color_of_file(seen);
+#endif
 #ifdef PAINTED
   uint left = seen.bordering;
   do {  // one layer at a time, the lowest first; a block of pixels without a border goes through this once, for nothing

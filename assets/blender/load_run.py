@@ -40,9 +40,9 @@ def read_surface(path):
             if word == "#" and numbers[0] == "origin":
                 origin = tuple(float(number.rstrip(":")) for number in numbers[1:4])
             elif word == "v":
-                points.append(tuple(map(float, numbers)))
+                points.append(tuple(map(float, numbers[:3])))  # a colour may follow
             elif word == "f":
-                faces.append(tuple(int(number) - 1 for number in numbers))
+                faces.append(tuple(int(number.split("/")[0]) - 1 for number in numbers))
     return points, faces, Vector(origin)
 
 

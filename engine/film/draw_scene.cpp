@@ -26,6 +26,8 @@ DrawMesh mesh_of(const Skin& skin, const std::vector<PaintLayer>& layers) {
   mesh.occlusion = skin.occlusion;
   mesh.paint = skin.paint;
   mesh.square = skin.square;
+  mesh.surface_colors = skin.color;
+  mesh.smooth.assign(skin.smooth.begin(), skin.smooth.end());
   for (const PaintLayer& layer : layers) mesh.layers.push_back({layer.color, layer.gloss, layer.soft});
   return mesh;
 }
@@ -110,6 +112,7 @@ Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const s
     mesh.shadow_triangles.assign(drawn[b].casters.data(), drawn[b].casters.data() + drawn[b].casters.size());
     mesh.two_sided = drawn[b].two_sided;
     mesh.color = drawn[b].color;
+    mesh.textures = drawn[b].textures;
     mesh.gloss = bodies[b].def.gloss.value_or(mesh.gloss);
     mesh.wires = scene.look.wireframe;
     mesh.rest = bounds_of(bodies[b].description.mesh.rest);
@@ -130,10 +133,10 @@ double pixel_on(const Bounds& body, const Camera& camera, int height) {
 void fit_to_pixels(DrawnBody& drawn, const TetMesh& mesh, double pixel) {
   // The surface bends from element to element, so the triangles that are drawn may be no longer than two elements. With
   // an error of 0.75 pixels, dents were visible in enlarged pictures.
-  drawn.skin.rest.triangles = simplified(drawn.skin, 0.4 * pixel, 2 * mean_edge(mesh), drawn.layers);
+  drawn.skin.rest.triangles = simplified(drawn.skin, 0.4 * pixel, 2 * mean_edge(mesh), drawn.layers, drawn.skin.color);
   const std::vector<std::int32_t> kept = remove_unused_vertices(drawn.skin);
   keep_points(drawn.embedding, kept);
-  // A texel of the shadow map is about as large as a pixel, and a shadow shows neither normals nor paint.
+  // A texel of the shadow map is about as large as a pixel, and a shadow shows neither normals nor colours.
   drawn.casters = simplified(drawn.skin, 0.8 * pixel, 2 * mean_edge(mesh), {});
 }
 

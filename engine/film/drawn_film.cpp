@@ -49,6 +49,7 @@ void DrawnFilm::add_ghosts(const SceneDef& scene, const std::vector<Body>& bodie
     ghost.label.clear();
     ghost.layers.clear();
     ghost.square.clear();
+    ghost.surface_colors.clear();
     ghost.color = Vec3(0.604, 0.604, 0.604);  // the grey of references in all plots
     ghost.gloss = 0;
     ghost.wires = false;
@@ -88,7 +89,9 @@ void DrawnFilm::follow_colors(const SceneDef& scene, DrawList& list) {
     DrawMesh& mesh = stage_.meshes[b];
     const Vec3 color = scene.bodies[b].color.value_or(drawn_[b].color);
     const double gloss = scene.bodies[b].gloss.value_or(DrawMesh{}.gloss);
-    if (mesh.color == color && mesh.gloss == gloss) continue;
+    const bool takes_own = !scene.bodies[b].takes_colors_of_file();  // since a change of its color
+    if (mesh.color == color && mesh.gloss == gloss && !(takes_own && !mesh.surface_colors.empty())) continue;
+    if (takes_own) mesh.surface_colors.clear();
     mesh.color = color;
     mesh.gloss = gloss;
     list.renewed.emplace_back(b, mesh);

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/interrupts.h"
 #include "film/draw_scene.h"
+#include "output/colored_obj.h"
 #include "output/obj_file.h"
 #include "output/whole_file.h"
 
@@ -14,9 +15,13 @@ namespace supple {
 namespace {
 
 // Writes one body's skin at rest. Returns the place that its files are relative to [m].
-Vec3 write_rest(const std::filesystem::path& file, const Skin& skin) {
+Vec3 write_rest(const std::filesystem::path& file, const DrawnBody& drawn) {
+  const Skin& skin = drawn.skin;
   const Vec3 origin = motion_origin(skin.rest.points);
-  write_obj(file, skin.rest.points, skin.rest.triangles, origin);
+  if (skin.color.empty())
+    write_obj(file, skin.rest.points, skin.rest.triangles, origin);
+  else
+    write_colored_obj(file, {skin.rest.points, skin.rest.triangles, skin.color, drawn.textures.get(), origin});
   return origin;
 }
 
@@ -50,9 +55,9 @@ int write_skins(LoadedDrawing& drawing, const std::filesystem::path& folder, con
   std::vector<Vec3> origins;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const std::filesystem::path file = folder / "motion" / bodies[b].def.name;
-    const Skin& skin = drawing.film.drawn[b].skin;
-    origins.push_back(write_rest(file.string() + ".obj", skin));
-    caches.emplace_back(file.string() + ".pc2", static_cast<int>(skin.rest.points.rows()));
+    const DrawnBody& drawn = drawing.film.drawn[b];
+    origins.push_back(write_rest(file.string() + ".obj", drawn));
+    caches.emplace_back(file.string() + ".pc2", static_cast<int>(drawn.skin.rest.points.rows()));
   }
   int done = 0;
   for (const int frame : drawing.frames) {

@@ -1,4 +1,4 @@
-// The program supple-read-surface reads one file through assimp and writes its triangles to standard output
+// The program supple-read-surface reads one file through assimp and writes its triangles and colours to standard output
 // (surface_stream.h). It is a program of its own because assimp may crash or never end on a broken file.
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -16,6 +16,7 @@
 #include <system_error>
 #include <vector>
 
+#include "geometry/assimp_colors.h"
 #include "geometry/surface_stream.h"
 
 namespace {
@@ -45,15 +46,25 @@ void limit_this_process(const char* path) {
 #ifndef __SANITIZE_ADDRESS__
   limit(RLIMIT_AS, rlim_t(2) << 30, rlim_t(2) << 30);
 #endif
-  limit(RLIMIT_CPU, seconds_for(path), seconds_for(path) + 1);
+  rlimit now{RLIM_INFINITY, RLIM_INFINITY};
+  ::getrlimit(RLIMIT_CPU, &now);
+  limit(RLIMIT_CPU, std::min(seconds_for(path), now.rlim_max), now.rlim_max);
   limit(RLIMIT_CORE, 0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
 }
 
+// Gives the process this many seconds from now on.
+void allow_seconds(int seconds) {
+  rusage used{};
+  ::getrusage(RUSAGE_SELF, &used);
+  rlimit now{};
+  ::getrlimit(RLIMIT_CPU, &now);
+  const auto spent = rlim_t(used.ru_utime.tv_sec + used.ru_stime.tv_sec);
+  limit(RLIMIT_CPU, std::min(std::max(now.rlim_cur, spent + rlim_t(seconds)), now.rlim_max), now.rlim_max);
+}
+
 int refuse(std::string reason) {
-  reason = reason.substr(0, reason.find('\n')).substr(0, 200);
-  for (char& c : reason)
-    if (c < ' ' || c > '~') c = '?';
+  reason = supple::printable(std::move(reason));
   std::fwrite(stream::refused, 1, sizeof stream::refused, stdout);
   std::fwrite(reason.data(), 1, reason.size(), stdout);
   return std::fflush(stdout) == 0 ? 0 : 1;
@@ -82,20 +93,46 @@ void write(const T* values, std::size_t count) {
   std::fwrite(values, sizeof(T), count, stdout);
 }
 
+void write_textures(const std::vector<supple::Texture>& textures) {
+  for (const supple::Texture& texture : textures) {
+    const stream::TextureHead head{texture.width, texture.height, std::int32_t(texture.wrap_u),
+                                   std::int32_t(texture.wrap_v), std::int32_t(texture.name.size())};
+    write(&head, 1);
+    write(texture.name.data(), texture.name.size());
+    write(texture.rgb.data(), texture.rgb.size());
+  }
+}
+
 int read(const char* path) {
   Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_PreTransformVertices);
+  const aiScene* scene =
+      importer.ReadFile(path, aiProcess_Triangulate | aiProcess_TransformUVCoords | aiProcess_PreTransformVertices);
   if (scene == nullptr) return refuse(importer.GetErrorString());
   Soup soup;
+  supple::ColorReader reader(*scene, path, allow_seconds);
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
     const std::string problem = append(*scene->mMeshes[m], soup);
     if (!problem.empty()) return refuse(problem);
+    reader.append(*scene->mMeshes[m]);
   }
-  const std::int64_t counts[] = {std::int64_t(soup.positions.size() / 3), std::int64_t(soup.indices.size() / 3)};
+  const supple::FoundColors colors = reader.take();
+  std::string remarks;
+  for (const std::string& remark : colors.remarks)
+    if (std::ssize(remarks) + std::ssize(remark) < stream::most_text) remarks += remark + '\n';
+  const stream::Counts counts{std::int64_t(soup.positions.size() / 3),
+                              std::int64_t(soup.indices.size() / 3),
+                              std::int64_t(colors.by_vertex.size()),
+                              std::int64_t(colors.textures.size()),
+                              std::int64_t(remarks.size()),
+                              std::int64_t(colors.found.size())};
   write(stream::accepted, sizeof stream::accepted);
-  write(counts, 2);
+  write(&counts, 1);
   write(soup.positions.data(), soup.positions.size());
   write(soup.indices.data(), soup.indices.size());
+  write(colors.by_vertex.data(), colors.by_vertex.size());
+  write_textures(colors.textures);
+  write(remarks.data(), remarks.size());
+  write(colors.found.data(), colors.found.size());
   return std::fflush(stdout) == 0 ? 0 : 1;
 }
 

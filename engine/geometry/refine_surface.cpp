@@ -12,7 +12,8 @@ using Corners = std::array<std::int32_t, 3>;
 // Halves each edge that is too long once.
 class Pass {
  public:
-  Pass(std::vector<Vec3>& points, double longest) : points_(points), longest_(longest) {}
+  Pass(std::vector<Vec3>& points, std::vector<std::array<std::int32_t, 2>>& ends, double longest)
+      : points_(points), ends_(ends), longest_(longest) {}
 
   // Appends the parts of a triangle: it alone where no edge is too long.
   void split(const Corners& corners, std::vector<Corners>& parts) {
@@ -55,11 +56,15 @@ class Pass {
     const auto [low, high] = std::minmax(a, b);
     const std::uint64_t edge = std::uint64_t(low) << 32 | std::uint64_t(high);
     const auto [at, added] = middles_.try_emplace(edge, static_cast<std::int32_t>(points_.size()));
-    if (added) points_.emplace_back(0.5 * (points_[std::size_t(low)] + points_[std::size_t(high)]));
+    if (added) {
+      points_.emplace_back(0.5 * (points_[std::size_t(low)] + points_[std::size_t(high)]));
+      ends_.push_back({low, high});
+    }
     return at->second;
   }
 
   std::vector<Vec3>& points_;
+  std::vector<std::array<std::int32_t, 2>>& ends_;
   const double longest_;
   std::unordered_map<std::uint64_t, std::int32_t> middles_;  // by edge
 };
@@ -67,6 +72,7 @@ class Pass {
 }  // namespace
 
 RefinedSurface refined(const TriMesh& surface, double longest, Eigen::Index most) {
+  RefinedSurface result;
   std::vector<Vec3> points(std::size_t(surface.points.rows()));
   for (std::size_t v = 0; v < points.size(); ++v) points[v] = surface.points.row(Eigen::Index(v));
   std::vector<Corners> triangles(std::size_t(surface.triangles.rows()));
@@ -77,7 +83,7 @@ RefinedSurface refined(const TriMesh& surface, double longest, Eigen::Index most
   }
   // No triangle has more than four parts, so that a pass that starts below a fourth of the limit cannot exceed it.
   for (bool halved = true; halved && 4 * Eigen::Index(triangles.size()) <= most;) {
-    Pass pass(points, longest);
+    Pass pass(points, result.ends, longest);
     std::vector<Corners> parts;
     std::vector<std::int32_t> parents;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -88,7 +94,6 @@ RefinedSurface refined(const TriMesh& surface, double longest, Eigen::Index most
     triangles = std::move(parts);
     parent = std::move(parents);
   }
-  RefinedSurface result;
   result.parent = std::move(parent);
   result.mesh.points.resize(Eigen::Index(points.size()), 3);
   for (std::size_t v = 0; v < points.size(); ++v) result.mesh.points.row(Eigen::Index(v)) = points[v].transpose();

@@ -2,13 +2,17 @@
 // corners alone, and so could only tilt.
 #pragma once
 
+#include <array>
+#include <cstdint>
+
 #include "geometry/mesh.h"
 
 namespace supple {
 
 struct RefinedSurface {
-  TriMesh mesh;                      // the first vertices are those of the surface
-  std::vector<std::int32_t> parent;  // by triangle: the one that it is a part of
+  TriMesh mesh;                                   // the first vertices are those of the surface
+  std::vector<std::int32_t> parent;               // by triangle: the one that it is a part of
+  std::vector<std::array<std::int32_t, 2>> ends;  // by vertex after the first ones: those in whose middle it lies
 };
 
 // Halves edges that are longer than `longest` [m] until none is. Both triangles at an edge meet in its midpoint, so no

@@ -2,9 +2,12 @@
 
 #include <meshoptimizer.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+
+#include "geometry/triangle_soup.h"
 
 namespace supple {
 namespace {
@@ -25,7 +28,8 @@ using Cell = std::tuple<int, int, int>;
 // Simplifies one group of triangles and leaves its outer edges alone, so that it still fits its neighbours.
 class GroupSimplifier {
  public:
-  explicit GroupSimplifier(const Skin& skin) : skin_(skin), local_(skin.rest.points.rows(), -1) {}
+  GroupSimplifier(const Skin& skin, const std::vector<SurfaceColor>& colors)
+      : skin_(skin), colors_(colors), local_(skin.rest.points.rows(), -1) {}
 
   // Appends what is left of the group.
   void run(const std::int32_t* group, std::size_t triangles, double error, std::vector<std::int32_t>& out) {
@@ -45,33 +49,84 @@ class GroupSimplifier {
     constexpr std::size_t stride = 3 * sizeof(float);
     const float size = meshopt_simplifyScale(places_.data(), names_.size(), stride);
     result_.resize(indices_.size());
-    const std::size_t left =
+    std::size_t left =
         size <= 0 ? 0
                   : meshopt_simplify(result_.data(), indices_.data(), indices_.size(), places_.data(), names_.size(),
                                      stride, 0, static_cast<float>(error) / size, meshopt_SimplifyLockBorder, nullptr);
+    if (!colors_.empty() && left > 0 && left < indices_.size() && !keeps_colors(left, error)) left = 0;
     const std::vector<unsigned>& from = left == 0 ? indices_ : result_;
     for (std::size_t i = 0; i < (left == 0 ? indices_.size() : left); ++i) out.push_back(names_[from[i]]);
   }
 
  private:
+  // Tells whether the colours at the vertices that were removed are still there.
+  bool keeps_colors(std::size_t left, double error) const {
+    std::vector<char> stays(names_.size(), 0);
+    for (std::size_t i = 0; i < left; ++i) stays[result_[i]] = 1;
+    for (std::size_t v = 0; v < names_.size(); ++v) {
+      if (stays[v] == 0 && !finds_color(names_[v], left, error)) return false;
+    }
+    return true;
+  }
+
+  // Tells whether one of the triangles that are left and close to a vertex has its colour there.
+  bool finds_color(std::int32_t vertex, std::size_t left, double error) const {
+    const Vec3 place = skin_.rest.points.row(vertex);
+    for (std::size_t i = 0; i < left; i += 3) {
+      std::array<std::int32_t, 3> corners;
+      Positions points(3, 3);
+      for (int k = 0; k < 3; ++k) {
+        corners[std::size_t(k)] = names_[result_[i + std::size_t(k)]];
+        points.row(k) = skin_.rest.points.row(corners[std::size_t(k)]);
+      }
+      const Vec3 a = points.row(0), b = points.row(1), c = points.row(2), at = closest_in_triangle(place, a, b, c);
+      if ((at - place).squaredNorm() > 4 * error * error) continue;
+      if (alike(colors_[std::size_t(vertex)], corners, points, weights_in_triangle(at, a, b, c), error)) return true;
+    }
+    return false;
+  }
+
+  bool alike(const SurfaceColor& color, const std::array<std::int32_t, 3>& corners, const Positions& points,
+             const Vec3& weights, double error) const {
+    const auto of = [&](std::size_t k) -> const SurfaceColor& { return colors_[std::size_t(corners[k])]; };
+    const auto mixed = [&](float SurfaceColor::*part) {
+      return weights[0] * of(0).*part + weights[1] * of(1).*part + weights[2] * of(2).*part;
+    };
+    for (float SurfaceColor::*part : {&SurfaceColor::red, &SurfaceColor::green, &SurfaceColor::blue}) {
+      constexpr double shade = 0.02;  // in roots of linear light, which are about as far apart as they look
+      if (std::abs(std::sqrt(mixed(part)) - std::sqrt(double(color.*part))) > shade) return false;
+    }
+    if (color.texture != of(0).texture) return false;
+    if (color.texture < 0) return true;
+    // Lengths on the surface over those in the texture: the root of the ratio of the areas.
+    const Vec3 side = points.row(1) - points.row(0), other = points.row(2) - points.row(0);
+    const double u1 = of(1).u - of(0).u, v1 = of(1).v - of(0).v, u2 = of(2).u - of(0).u, v2 = of(2).v - of(0).v;
+    const double area = std::abs(u1 * v2 - u2 * v1),
+                 off = std::hypot(mixed(&SurfaceColor::u) - color.u, mixed(&SurfaceColor::v) - color.v);
+    return off * std::sqrt(side.cross(other).norm()) <= error * std::sqrt(area);
+  }
+
   const Skin& skin_;
+  const std::vector<SurfaceColor>& colors_;
   std::vector<std::int32_t> local_, names_;  // by vertex: its place in the group or -1; by place: the vertex
   std::vector<float> places_;
   std::vector<unsigned> indices_, result_;
 };
 
 // Sorts triangles by the cell of a grid that holds their middle, and simplifies each cell's own.
-std::vector<std::int32_t> simplified_by_cells(const Skin& skin, const std::vector<std::int32_t>& corners, double cell,
-                                              double shift, double error) {
+std::vector<std::int32_t> simplified_by_cells(const Skin& skin, const std::vector<SurfaceColor>& colors,
+                                              const std::vector<std::int32_t>& corners, double cell, double shift,
+                                              double error) {
   std::vector<std::pair<Cell, std::size_t>> order;
   for (std::size_t t = 0; t < corners.size(); t += 3) {
     const Vec3 middle = (skin.rest.points.row(corners[t]) + skin.rest.points.row(corners[t + 1]) +
-                         skin.rest.points.row(corners[t + 2])) / 3;
+                         skin.rest.points.row(corners[t + 2])) /
+                        3;
     const auto at = [&](int k) { return static_cast<int>(std::floor(middle[k] / cell + shift)); };
     order.push_back({Cell{at(0), at(1), at(2)}, t});
   }
   std::ranges::sort(order);
-  GroupSimplifier simplifier(skin);
+  GroupSimplifier simplifier(skin, colors);
   std::vector<std::int32_t> group, result;
   for (std::size_t i = 0; i < order.size();) {
     group.clear();
@@ -86,18 +141,19 @@ std::vector<std::int32_t> simplified_by_cells(const Skin& skin, const std::vecto
 
 }  // namespace
 
-Triangles simplified(const Skin& skin, double error, double longest, const std::vector<PaintLayer>& layers) {
+Triangles simplified(const Skin& skin, double error, double longest, const std::vector<PaintLayer>& layers,
+                     const std::vector<SurfaceColor>& colors) {
   std::vector<std::int32_t> plain, bordering;
   for (Eigen::Index t = 0; t < skin.rest.triangles.rows(); ++t) {
     const std::int32_t* corners = skin.rest.triangles.row(t).data();
     std::vector<std::int32_t>& where = carries_border(skin, layers, corners) ? bordering : plain;
     where.insert(where.end(), corners, corners + 3);
   }
-  // A pass leaves the edges between two cells alone. The next one shifts the grid, so that these edges lie within a cell
-  // and can be simplified. The errors of the passes add up.
+  // A pass leaves the edges between two cells alone. The next one shifts the grid, so that these edges lie within a
+  // cell and can be simplified. The errors of the passes add up.
   constexpr int passes = 3;
   for (int pass = 0; pass < passes; ++pass)
-    plain = simplified_by_cells(skin, plain, longest, static_cast<double>(pass) / passes, error / passes);
+    plain = simplified_by_cells(skin, colors, plain, longest, static_cast<double>(pass) / passes, error / passes);
   plain.insert(plain.end(), bordering.begin(), bordering.end());
   // Triangles that share vertices follow each other, so that a rasteriser computes few vertices twice.
   Triangles result(static_cast<Eigen::Index>(plain.size() / 3), 3);
@@ -125,6 +181,8 @@ std::vector<std::int32_t> remove_unused_vertices(Skin& skin) {
   keep(skin.occlusion);
   keep(skin.paint);
   keep(skin.square);
+  keep(skin.color);
+  keep(skin.smooth);
   for (std::size_t v = 0; v < kept.size(); ++v)
     skin.rest.points.row(static_cast<Eigen::Index>(v)) = skin.rest.points.row(kept[v]).eval();
   skin.rest.points.conservativeResize(static_cast<Eigen::Index>(kept.size()), 3);

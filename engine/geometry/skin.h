@@ -5,6 +5,7 @@
 #include <array>
 
 #include "base/names.h"
+#include "base/texture.h"
 #include "geometry/mesh.h"
 #include "geometry/shape.h"
 
@@ -25,6 +26,10 @@ struct Skin {
   std::vector<float> occlusion;  // share of the sky that the rest shape leaves open at each vertex, 0 to 1
   std::vector<std::array<float, max_paint_layers>> paint;  // signed distance to each colour layer, by vertex [m]
   std::vector<std::array<float, 2>> square;  // place in the printed pattern by vertex, in squares; empty without one
+  std::vector<SurfaceColor> color;           // of the file, by vertex; empty where it has none
+  // Numbers by vertex, if there are colours: vertices with the same one were one before colours split it, and have one
+  // normal.
+  std::vector<std::int32_t> smooth;
 };
 
 // Contours the shape with cells of the given size [m] (surface nets) and moves the vertices onto the zero set.

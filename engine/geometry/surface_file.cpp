@@ -2,6 +2,7 @@
 
 #include <cstring>
 #include <fstream>
+#include <sstream>
 #include <string_view>
 #include <system_error>
 
@@ -46,6 +47,11 @@ class Stream {
     std::memcpy(values, rest_.data(), count * sizeof(T));
     rest_.remove_prefix(count * sizeof(T));
   }
+  std::string text(std::int64_t count) {
+    std::string result(std::size_t(count), '\0');
+    take(result.data(), result.size());
+    return result;
+  }
   std::string_view rest() const { return rest_; }
   [[noreturn]] void refuse() const { throw InputError(name_, "is broken: its reader wrote half a surface"); }
 
@@ -54,22 +60,58 @@ class Stream {
   std::string name_;
 };
 
-TriMesh decode(const std::string& bytes, const std::string& name) {
+std::shared_ptr<const std::vector<Texture>> textures_from(Stream& in, std::int64_t count) {
+  namespace stream = surface_stream;
+  if (count == 0) return nullptr;
+  std::vector<Texture> textures(static_cast<std::size_t>(count));
+  std::int64_t pixels = 0;
+  for (Texture& texture : textures) {
+    stream::TextureHead head;
+    in.take(&head, 1);
+    const auto is_wrap = [](std::int32_t rule) { return rule >= 0 && rule <= std::int32_t(Wrap::mirror); };
+    pixels += std::int64_t(head.width) * head.height;
+    if (head.width <= 0 || head.height <= 0 || pixels > stream::most_pixels || head.name < 0 || !is_wrap(head.wrap_u) ||
+        !is_wrap(head.wrap_v))
+      in.refuse();
+    texture.width = head.width;
+    texture.height = head.height;
+    texture.wrap_u = Wrap(head.wrap_u);
+    texture.wrap_v = Wrap(head.wrap_v);
+    texture.name = in.text(head.name);
+    texture.rgb.resize(3 * std::size_t(head.width) * std::size_t(head.height));
+    in.take(texture.rgb.data(), texture.rgb.size());
+  }
+  return std::make_shared<const std::vector<Texture>>(std::move(textures));
+}
+
+ColoredSurface decode(const std::string& bytes, const std::string& name) {
   namespace stream = surface_stream;
   Stream in(bytes, name);
   char head[8];
   in.take(head, sizeof head);
   if (std::memcmp(head, stream::refused, sizeof head) == 0)
     throw InputError(name, fmt::format("cannot be read: {}", in.rest()));
-  std::int64_t counts[2];
-  in.take(counts, 2);
-  if (std::memcmp(head, stream::accepted, sizeof head) != 0 || counts[0] < 0 || counts[1] < 0 ||
-      counts[0] > stream::most_vertices || counts[1] > stream::most_triangles)
+  stream::Counts counts;
+  in.take(&counts, 1);
+  const auto within = [](std::int64_t count, std::int64_t most) { return count >= 0 && count <= most; };
+  if (std::memcmp(head, stream::accepted, sizeof head) != 0 || !within(counts.vertices, stream::most_vertices) ||
+      !within(counts.triangles, stream::most_triangles) || (counts.colors != 0 && counts.colors != counts.vertices) ||
+      !within(counts.textures, stream::most_textures) || !within(counts.remarks, stream::most_text) ||
+      !within(counts.found, stream::most_text))
     in.refuse();
-  TriMesh mesh{Positions(counts[0], 3), Triangles(counts[1], 3)};
-  in.take(mesh.points.data(), std::size_t(mesh.points.size()));
-  in.take(mesh.triangles.data(), std::size_t(mesh.triangles.size()));
-  return mesh;
+  ColoredSurface surface;
+  surface.mesh = {Positions(counts.vertices, 3), Triangles(counts.triangles, 3)};
+  in.take(surface.mesh.points.data(), std::size_t(surface.mesh.points.size()));
+  in.take(surface.mesh.triangles.data(), std::size_t(surface.mesh.triangles.size()));
+  surface.colors.resize(std::size_t(counts.colors));
+  in.take(surface.colors.data(), surface.colors.size());
+  for (const SurfaceColor& color : surface.colors)
+    if (color.texture < -1 || color.texture >= counts.textures) in.refuse();
+  surface.textures = textures_from(in, counts.textures);
+  std::istringstream remarks(in.text(counts.remarks));
+  for (std::string line; std::getline(remarks, line);) surface.remarks.push_back(line);
+  surface.found = in.text(counts.found);
+  return surface;
 }
 
 }  // namespace
@@ -84,22 +126,18 @@ std::filesystem::path surface_reader_program() {
   return SUPPLE_INSTALLED_READER;  // of a program elsewhere that uses the library
 }
 
-namespace {
-
-TriMesh read_triangles(const std::filesystem::path& path) {
+ColoredSurface read_colored_surface(const std::filesystem::path& path) {
   check_file(path);
   return decode(run_reader(surface_reader_program(), path), path.string());
 }
 
-}  // namespace
-
 TriMesh read_closed_surface(const std::filesystem::path& path, std::vector<std::string>* notes) {
-  return closed_surface(read_triangles(path), path.string(), notes);
+  return closed_surface(read_colored_surface(path).mesh, path.string(), notes);
 }
 
 SolidSurface read_solid_surface(const std::filesystem::path& path, const SurfaceOptions& options,
                                 std::vector<std::string>* notes) {
-  return solid_surface(set_up(read_triangles(path), options), options, path.string(), notes);
+  return solid_surface(set_up(read_colored_surface(path).mesh, options), options, path.string(), notes);
 }
 
 }  // namespace supple

@@ -8,13 +8,18 @@
 #include <vector>
 
 #include "geometry/solid_surface.h"
+#include "geometry/surface_colors.h"
 
 namespace supple {
 
-// Reads a file and returns its closed surface. Node transforms are applied; polygons are cut into triangles; points,
-// lines and materials are left out. Remarks are added to `notes`, as by closed_surface. Throws InputError when the file
-// does not exist, has no triangles or is too large, when its reader crashed, took too long or refused it, and when the
-// surface is not closed.
+// Reads the triangles and colours of a file as they are there. Node transforms are applied; polygons are cut into
+// triangles; points and lines are left out; textures inside the file or beside it are read. Throws InputError as below,
+// but for surfaces that are not closed.
+ColoredSurface read_colored_surface(const std::filesystem::path& path);
+
+// Reads a file and returns its closed surface, without its colours. Remarks are added to `notes`, as by closed_surface.
+// Throws InputError when the file does not exist, has no triangles or is too large, when its reader crashed, took too
+// long or refused it, and when the surface is not closed.
 TriMesh read_closed_surface(const std::filesystem::path& path, std::vector<std::string>* notes);
 
 // The same for a surface that need not be closed: solid_surface makes a solid of it as the options say.

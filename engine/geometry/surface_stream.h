@@ -1,15 +1,30 @@
-// Defines what supple-read-surface writes: either `refused` and a reason of one line, or `accepted`, two counts
-// (int64), the positions (3 doubles a vertex) and the indices (3 int32 a triangle), all with the bytes that they have
-// in memory.
+// Defines what supple-read-surface writes: either `refused` and a reason of one line, or `accepted` and, all with the
+// bytes that they have in memory,
+//   Counts, the positions (3 doubles a vertex), the indices (3 int32 a triangle), the colours (a SurfaceColor a
+//   vertex), the textures (TextureHead, name, 3 bytes a pixel), the remarks and what was found, as text.
 #pragma once
 
 #include <cstdint>
 
 namespace supple::surface_stream {
 
-inline constexpr char accepted[8] = {'s', 'u', 'r', 'f', 'a', 'c', 'e', '1'};
+inline constexpr char accepted[8] = {'s', 'u', 'r', 'f', 'a', 'c', 'e', '2'};
 inline constexpr char refused[8] = {'r', 'e', 'f', 'u', 's', 'e', 'd', ':'};
 inline constexpr std::int64_t most_triangles = 5'000'000;
 inline constexpr std::int64_t most_vertices = 3 * most_triangles;  // reached when no vertex is shared
+inline constexpr std::int64_t most_textures = 64;
+inline constexpr std::int64_t most_pixels = 1 << 26;  // of all textures together
+inline constexpr std::int64_t most_text = 1 << 16;    // bytes of the remarks, and of what was found
+
+struct Counts {
+  std::int64_t vertices = 0, triangles = 0;
+  std::int64_t colors = 0;  // as many as vertices; 0: the file has none
+  std::int64_t textures = 0;
+  std::int64_t remarks = 0, found = 0;  // bytes
+};
+
+struct TextureHead {
+  std::int32_t width = 0, height = 0, wrap_u = 0, wrap_v = 0, name = 0;  // name: its bytes
+};
 
 }  // namespace supple::surface_stream

@@ -37,6 +37,12 @@ double hit_of_triangle(const Vec3& from, const Vec3& direction, const Vec3& a, c
   return v >= 0 && w >= 0 && v + w <= 1 && length > 0 ? length : infinity;
 }
 
+double squared_distance(const Bounds& box, const Vec3& p) {
+  return (box.lower - p).cwiseMax(p - box.upper).cwiseMax(0).squaredNorm();
+}
+
+}  // namespace
+
 // Follows Ericson, Real-Time Collision Detection, 2005, section 5.1.5.
 Vec3 closest_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
@@ -52,11 +58,14 @@ Vec3 closest_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
   return sum > 0 ? Vec3(a + vb / sum * ab + vc / sum * ac) : a;
 }
 
-double squared_distance(const Bounds& box, const Vec3& p) {
-  return (box.lower - p).cwiseMax(p - box.upper).cwiseMax(0).squaredNorm();
+Vec3 weights_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, ap = p - a, normal = ab.cross(ac);
+  const double area = normal.squaredNorm();
+  if (!(area > 0)) return Vec3(1, 0, 0);
+  const double v = std::max(0.0, ap.cross(ac).dot(normal) / area), w = std::max(0.0, ab.cross(ap).dot(normal) / area);
+  const double u = std::max(0.0, 1 - v - w);
+  return Vec3(u, v, w) / (u + v + w);
 }
-
-}  // namespace
 
 TriangleSoup::TriangleSoup(TriMesh mesh) : mesh_(std::move(mesh)) {
   const Eigen::Index count = mesh_.triangles.rows();

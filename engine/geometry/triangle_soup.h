@@ -11,6 +11,12 @@
 
 namespace supple {
 
+// Returns the point of a triangle that is closest to p.
+Vec3 closest_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+
+// Returns the barycentric weights of a point of a triangle, none of them negative.
+Vec3 weights_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+
 // The object is constant after construction; queries may run on any number of threads and give the same bits on each.
 class TriangleSoup {
  public:

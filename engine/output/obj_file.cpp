@@ -25,11 +25,13 @@ Vec3 motion_origin(const Positions& rest) {
   return unit * (box.center() / unit).array().round().matrix();
 }
 
+std::string origin_line_of_obj(const Vec3& origin) {
+  return origin.isZero(0) ? "" : fmt::format(fmt::runtime(origin_line), origin.x(), origin.y(), origin.z());
+}
+
 void write_obj(const std::filesystem::path& path, const Positions& points, const Triangles& triangles,
                const Vec3& origin) {
-  std::string text;
-  if (!origin.isZero(0))
-    fmt::format_to(std::back_inserter(text), fmt::runtime(origin_line), origin.x(), origin.y(), origin.z());
+  std::string text = origin_line_of_obj(origin);
   for (Eigen::Index v = 0; v < points.rows(); ++v) {
     const Vec3 p = points.row(v).transpose() - origin;
     fmt::format_to(std::back_inserter(text), "v {:.9g} {:.9g} {:.9g}\n", p.x(), p.y(), p.z());

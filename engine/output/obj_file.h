@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "base/types.h"
 
@@ -17,6 +18,8 @@ Vec3 motion_origin(const Positions& rest);
 void write_obj(const std::filesystem::path& path, const Positions& points, const Triangles& triangles,
                const Vec3& origin = Vec3::Zero());
 
+// The first line that tells an origin; empty where that is zero.
+std::string origin_line_of_obj(const Vec3& origin);
 // The origin that a file's first line tells; zero where it tells none.
 Vec3 origin_of_obj(const std::filesystem::path& path);
 

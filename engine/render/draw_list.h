@@ -4,11 +4,13 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/texture.h"
 #include "base/types.h"
 #include "render/light_rig.h"
 
@@ -41,16 +43,19 @@ struct DrawMesh {
   std::vector<std::array<float, 8>> paint;      // by vertex: signed distance to each layer, negative where it covers
   std::vector<std::array<float, 2>> square;  // by vertex: place in a printed pattern, in squares; no pattern when empty
   Printed printed = Printed::grid;
-  bool two_sided = false;          // for cloth, and for bodies that may be inside out
-  Vec3 color;                      // sRGB colour of the uncovered surface
-  double gloss = 0.25;             // gloss of the uncovered surface
-  std::vector<PaintColor> layers;  // at most 8
-  Bounds rest;                     // bounds at the start: captions stand below them, cameras frame them [m]
-  bool mapped = false;             // whether it shows the field; its own colours are then not seen
-  bool wires = false;              // whether the edges of its triangles are drawn
-  bool ghost = false;              // whether it is half transparent, and casts no shadow
-  bool kept_clear = false;         // whether captions stay away from it
-  bool framed = true;              // whether lights, shadows and cameras cover it; false for planes without end
+  std::vector<SurfaceColor> surface_colors;  // by vertex, in place of `color`; empty where that is the colour
+  std::vector<std::uint32_t> smooth;         // by vertex, beside those: vertices with the same number have one normal
+  std::shared_ptr<const std::vector<Texture>> textures;  // of the surface's colours; null: none
+  bool two_sided = false;                                // for cloth, and for bodies that may be inside out
+  Vec3 color;                                            // sRGB colour of the uncovered surface
+  double gloss = 0.25;                                   // gloss of the uncovered surface
+  std::vector<PaintColor> layers;                        // at most 8
+  Bounds rest;              // bounds at the start: captions stand below them, cameras frame them [m]
+  bool mapped = false;      // whether it shows the field; its own colours are then not seen
+  bool wires = false;       // whether the edges of its triangles are drawn
+  bool ghost = false;       // whether it is half transparent, and casts no shadow
+  bool kept_clear = false;  // whether captions stay away from it
+  bool framed = true;       // whether lights, shadows and cameras cover it; false for planes without end
 };
 
 // Chooses what is seen behind the bodies.

@@ -82,10 +82,11 @@ Renderer::Renderer(const Stage& stage, GlChoice choice, const std::filesystem::p
       std::make_unique<ShadowMap>(gl_, shaders, bounds_, largest_body_, stage_.light.to_key.normalized(), stage_.width);
   ground_ = std::make_unique<Ground>(gl_, shaders, stage_.width, stage_.height, bounds_, largest_body_);
   tile_buffer_ = std::make_unique<TileBuffer>(gl_);
+  textures_ = std::make_unique<TextureBuffer>(gl_, stage_.meshes);
   make_shading_program();
   prepare_field();
   check_test_picture();
-  surfaces_ = std::make_unique<SurfaceBuffers>(gl_, stage_.meshes);
+  surfaces_ = std::make_unique<SurfaceBuffers>(gl_, stage_.meshes, *textures_);
   captions_ = std::make_unique<Captions>(stage_, places_of_overlays());
   check_gl(gl_, "preparing the stage");
 }
@@ -149,6 +150,9 @@ void Renderer::make_shading_program() {
   if (std::ranges::any_of(stage_.meshes, [](const DrawMesh& mesh) { return !mesh.square.empty(); }))
     definitions.emplace_back("PRINTED");
   if (stage_.field) definitions.emplace_back("FIELD");
+  const bool colored =
+      std::ranges::any_of(stage_.meshes, [](const DrawMesh& mesh) { return !mesh.surface_colors.empty(); });
+  if (colored) definitions.emplace_back("COLORED");
   if (std::ranges::any_of(stage_.meshes, &DrawMesh::wires)) definitions.emplace_back("WIRES");
   if (shading_program_ && definitions == definitions_) return;
   definitions_ = definitions;
@@ -191,7 +195,7 @@ void Renderer::check_test_picture() {
   Stage test;
   test.meshes.push_back(mesh);
   std::swap(stage_.meshes, test.meshes);
-  surfaces_ = std::make_unique<SurfaceBuffers>(gl_, stage_.meshes);
+  surfaces_ = std::make_unique<SurfaceBuffers>(gl_, stage_.meshes, *textures_);
   DrawList list;
   list.camera = {Vec3(0, 1, 3), Vec3(0, 1, 0), 30};
   list.positions = {{-9, 0, 0, 9, 0, 0, 0, 9, 0}};
@@ -210,7 +214,7 @@ void Renderer::check_test_picture() {
 void Renderer::upload(const DrawList& list) {
   for (const auto& [m, mesh] : list.renewed) stage_.meshes[m] = mesh;
   if (!list.renewed.empty()) {
-    surfaces_ = std::make_unique<SurfaceBuffers>(gl_, stage_.meshes);
+    surfaces_ = std::make_unique<SurfaceBuffers>(gl_, stage_.meshes, *textures_);
     make_shading_program();
   }
   for (const auto& [m, caption] : list.captions) {
@@ -257,6 +261,7 @@ void Renderer::shade(const Eigen::Matrix4f& view, const StageLight& light, const
   set_light(program, light);
   int unit = surfaces_->bind(program, 0);
   shadows_->bind(program, unit++);
+  unit = textures_->bind(program, unit);
   program.set_texture("visible", unit++, sample_texture(), visible_);
   program.set_texture("depths", unit++, sample_texture(), depth_);
   const DepthScale scale = depth_scale(list.camera, bounds_.center(), bounds_.diagonal() + largest_body_);

@@ -20,6 +20,7 @@
 #include "render/program.h"
 #include "render/shadow_map.h"
 #include "render/surface_buffers.h"
+#include "render/texture_buffer.h"
 #include "render/tile_buffer.h"
 #include "render/tiles.h"
 
@@ -68,6 +69,7 @@ class Renderer {
   int samples_ = 1;  // that a pixel has
   std::unique_ptr<Program> visibility_program_, shading_program_;
   std::vector<std::string> definitions_;  // of the shading program
+  std::unique_ptr<TextureBuffer> textures_;
   std::unique_ptr<SurfaceBuffers> surfaces_;
   std::unique_ptr<ShadowMap> shadows_;
   std::unique_ptr<Ground> ground_;

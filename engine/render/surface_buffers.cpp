@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "base/error.h"
@@ -13,7 +14,7 @@ namespace {
 
 // A mesh's material takes this many texels of four floats: linear colours with gloss, of which the first is the
 // uncovered surface and eight are its layers; the widths of the layers' borders, one in each of eight texels; the kind
-// of print, whether it shows the field, and whether its edges are drawn.
+// of print, whether it shows the field, whether its edges are drawn, and whether it has the colours of its file.
 constexpr std::size_t material_texels = 18;
 
 void append_material(const DrawMesh& mesh, std::vector<float>& out) {
@@ -32,6 +33,7 @@ void append_material(const DrawMesh& mesh, std::vector<float>& out) {
   out[begin + 4 * 17] = mesh.square.empty() ? 0.0f : mesh.printed == Printed::grid ? 1.0f : 2.0f;
   out[begin + 4 * 17 + 1] = mesh.mapped ? 1.0f : 0.0f;
   out[begin + 4 * 17 + 2] = mesh.wires ? 1.0f : 0.0f;
+  out[begin + 4 * 17 + 3] = mesh.surface_colors.empty() ? 0.0f : 1.0f;
 }
 
 // Packs what the shader must know of a triangle's colours: its mesh (16 bits), the topmost layer that covers all of it
@@ -58,7 +60,7 @@ std::uint32_t packed_look(const DrawMesh& mesh, std::size_t index, const std::ui
 }
 
 // Assigns a patch number to each vertex of a mesh, from `first` on: triangles that share a vertex belong to one patch.
-// A crease has separate vertices on its two sides, so a patch is smooth.
+// A crease has separate vertices on its two sides, so a patch is smooth. Vertices that colours split belong together.
 void append_patches(const DrawMesh& mesh, unsigned first, std::vector<float>& out) {
   std::vector<std::uint32_t> parent(mesh.occlusion.size());
   std::iota(parent.begin(), parent.end(), 0u);
@@ -69,17 +71,23 @@ void append_patches(const DrawMesh& mesh, unsigned first, std::vector<float>& ou
   for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
     for (std::size_t k = 1; k < 3; ++k) parent[root(mesh.triangles[t + k])] = root(mesh.triangles[t]);
   }
+  std::map<std::uint32_t, std::uint32_t> first_of;  // by number of DrawMesh::smooth
+  for (std::uint32_t v = 0; v < mesh.smooth.size(); ++v)
+    parent[root(v)] = root(first_of.try_emplace(mesh.smooth[v], v).first->second);
   for (std::uint32_t v = 0; v < parent.size(); ++v) out.push_back(static_cast<float>((first + 37 * root(v)) % 255));
 }
 
 }  // namespace
 
-SurfaceBuffers::SurfaceBuffers(const GlTable& gl, const std::vector<DrawMesh>& meshes) : gl_(gl) {
+SurfaceBuffers::SurfaceBuffers(const GlTable& gl, const std::vector<DrawMesh>& meshes, const TextureBuffer& textures)
+    : gl_(gl) {
   make_static(meshes);
+  make_colors(meshes, textures);
 }
 
 SurfaceBuffers::~SurfaceBuffers() {
-  for (const Lookup* lookup : {&places_, &normals_, &triangles_, &paint_, &squares_, &materials_, &values_}) {
+  for (const Lookup* lookup :
+       {&places_, &normals_, &triangles_, &paint_, &squares_, &materials_, &values_, &tints_, &texture_places_}) {
     gl_.DeleteTextures(1, &lookup->texture);
     gl_.DeleteBuffers(1, &lookup->buffer);
   }
@@ -163,6 +171,23 @@ void SurfaceBuffers::make_static(const std::vector<DrawMesh>& meshes) {
   gl_.BindVertexArray(0);
 }
 
+void SurfaceBuffers::make_colors(const std::vector<DrawMesh>& meshes, const TextureBuffer& textures) {
+  std::vector<float> tints, places;
+  if (std::ranges::any_of(meshes, [](const DrawMesh& mesh) { return !mesh.surface_colors.empty(); })) {
+    for (const DrawMesh& mesh : meshes) {
+      const int first = textures.first_of(mesh);
+      for (std::size_t v = 0; v < mesh.occlusion.size(); ++v) {
+        const SurfaceColor color = mesh.surface_colors.empty() ? SurfaceColor{} : mesh.surface_colors[v];
+        const int number = color.texture < 0 ? 0 : first + color.texture + 1;
+        tints.insert(tints.end(), {color.red, color.green, color.blue, static_cast<float>(number)});
+        places.insert(places.end(), {color.u, color.v});
+      }
+    }
+  }
+  make_lookup(tints_, GL_RGBA32F, tints.size() * sizeof(float), tints.data(), GL_STATIC_DRAW);
+  make_lookup(texture_places_, GL_RG32F, places.size() * sizeof(float), places.data(), GL_STATIC_DRAW);
+}
+
 void SurfaceBuffers::upload(const std::vector<DrawMesh>& meshes, const DrawList& list) {
   const std::vector<std::vector<float>>& positions = list.positions;
   SUPPLE_CHECK(positions.size(), ==, ranges_.size());
@@ -170,7 +195,8 @@ void SurfaceBuffers::upload(const std::vector<DrawMesh>& meshes, const DrawList&
     SUPPLE_CHECK(positions[m].size(), ==, 3 * meshes[m].occlusion.size());
     float* place = place_data_.data() + 4 * std::size_t(ranges_[m].first_vertex);
     for (std::size_t i = 0; i < positions[m].size(); i += 3, place += 4) std::copy_n(&positions[m][i], 3, place);
-    compute_normals(positions[m], meshes[m].triangles, normal_data_.data() + 4 * std::size_t(ranges_[m].first_vertex));
+    compute_normals(positions[m], meshes[m].triangles, meshes[m].smooth,
+                    normal_data_.data() + 4 * std::size_t(ranges_[m].first_vertex));
   }
   put(places_, place_data_);
   put(normals_, normal_data_);
@@ -213,7 +239,9 @@ int SurfaceBuffers::bind(const Program& program, int unit) const {
                                      {"paint", &paint_},
                                      {"squares", &squares_},
                                      {"materials", &materials_},
-                                     {"values", &values_}}) {
+                                     {"values", &values_},
+                                     {"tints", &tints_},
+                                     {"texture_places", &texture_places_}}) {
     program.set_texture(name, unit++, GL_TEXTURE_BUFFER, lookup->texture);
   }
   return unit;

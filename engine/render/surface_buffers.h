@@ -8,12 +8,13 @@
 #include "render/draw_list.h"
 #include "render/gl_table.h"
 #include "render/program.h"
+#include "render/texture_buffer.h"
 
 namespace supple {
 
 class SurfaceBuffers {
  public:
-  SurfaceBuffers(const GlTable& gl, const std::vector<DrawMesh>& meshes);
+  SurfaceBuffers(const GlTable& gl, const std::vector<DrawMesh>& meshes, const TextureBuffer& textures);
   ~SurfaceBuffers();
   SurfaceBuffers(const SurfaceBuffers&) = delete;
   SurfaceBuffers& operator=(const SurfaceBuffers&) = delete;
@@ -28,7 +29,8 @@ class SurfaceBuffers {
   // Draws the triangles that cast one mesh's shadow, which may be fewer.
   void draw_caster(std::size_t mesh) const;
 
-  // Makes a program's samplers places, normals, triangles, paint, squares, materials and values read these buffers.
+  // Makes a program's samplers places, normals, triangles, paint, squares, materials, values, tints and texture_places
+  // read these buffers.
   // Returns the first unit that is still free.
   int bind(const Program& program, int first_unit) const;
 
@@ -45,17 +47,20 @@ class SurfaceBuffers {
   void upload_field(const std::vector<DrawMesh>& meshes, const std::vector<std::vector<float>>& field);
   void put(const Lookup& lookup, const std::vector<float>& data) const;
   void make_static(const std::vector<DrawMesh>& meshes);
+  void make_colors(const std::vector<DrawMesh>& meshes, const TextureBuffer& textures);
 
   const GlTable& gl_;
   std::vector<Range> ranges_;  // by mesh
   GLuint array_ = 0, indices_ = 0, patches_ = 0;
-  Lookup places_;     // by vertex: x y z, and the open sky
-  Lookup normals_;    // by vertex
-  Lookup triangles_;  // three vertices, and packed_look
-  Lookup paint_;      // by vertex and layer: distances, eight for each vertex
-  Lookup squares_;    // by vertex: place in the printed pattern
-  Lookup materials_;  // by mesh, see material_texels
-  Lookup values_;     // by vertex: the field; empty when no mesh shows one
+  Lookup places_;          // by vertex: x y z, and the open sky
+  Lookup normals_;         // by vertex
+  Lookup triangles_;       // three vertices, and packed_look
+  Lookup paint_;           // by vertex and layer: distances, eight for each vertex
+  Lookup squares_;         // by vertex: place in the printed pattern
+  Lookup materials_;       // by mesh, see material_texels
+  Lookup tints_;           // by vertex: the file's linear colour, and the number of its texture from one or zero
+  Lookup texture_places_;  // by vertex; both empty when no mesh has colours of its file
+  Lookup values_;          // by vertex: the field; empty when no mesh shows one
   std::vector<float> place_data_, normal_data_, value_data_;
 };
 

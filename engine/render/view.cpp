@@ -83,7 +83,20 @@ Camera framing(const Bounds& box, const Vec3& direction, double fov_deg, double 
   return camera;
 }
 
-void compute_normals(const std::vector<float>& positions, const std::vector<std::uint32_t>& triangles, float* normals) {
+namespace {
+
+// Gives vertices with the same number the sum of their normals.
+void unite_normals(const std::vector<std::uint32_t>& smooth, float* normals) {
+  std::vector<std::array<float, 3>> sums(1 + std::size_t(*std::ranges::max_element(smooth)));
+  for (std::size_t v = 0; v < smooth.size(); ++v)
+    for (std::size_t k = 0; k < 3; ++k) sums[smooth[v]][k] += normals[4 * v + k];
+  for (std::size_t v = 0; v < smooth.size(); ++v) std::copy_n(sums[smooth[v]].data(), 3, normals + 4 * v);
+}
+
+}  // namespace
+
+void compute_normals(const std::vector<float>& positions, const std::vector<std::uint32_t>& triangles,
+                     const std::vector<std::uint32_t>& smooth, float* normals) {
   const std::size_t vertices = positions.size() / 3;
   std::fill_n(normals, 4 * vertices, 0.0f);
   for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) {
@@ -97,6 +110,7 @@ void compute_normals(const std::vector<float>& positions, const std::vector<std:
       for (int k = 0; k < 3; ++k) sum[k] += n[k];
     }
   }
+  if (!smooth.empty()) unite_normals(smooth, normals);
   for (std::size_t i = 0; i < 4 * vertices; i += 4) {
     float* n = normals + i;
     const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);

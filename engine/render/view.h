@@ -33,7 +33,9 @@ struct Rays {
 Rays rays_through(const Camera& camera, int width, int height);
 
 // Computes smooth normals (x y z and a zero by vertex): each vertex's normal is the sum of its triangles' normals,
-// weighted by area.
-void compute_normals(const std::vector<float>& positions, const std::vector<std::uint32_t>& triangles, float* normals);
+// weighted by area. smooth: by vertex; vertices with the same number have one normal, that of all their triangles.
+// Empty: each has its own.
+void compute_normals(const std::vector<float>& positions, const std::vector<std::uint32_t>& triangles,
+                     const std::vector<std::uint32_t>& smooth, float* normals);
 
 }  // namespace supple

@@ -20,7 +20,7 @@ Eigen::Affine3d placement(const BodyDef& def, const Positions& points) {
     box.include(turned * Vec3(points.row(v)));
     untouched.include(points.row(v).transpose());
   }
-  const double scale = def.size ? *def.size / untouched.extent().maxCoeff() : 1;
+  const double scale = def.size ? *def.size / untouched.extent().maxCoeff() : def.scale;
   const Vec3 foot(box.center().x(), box.lower.y(), box.center().z());
   return Eigen::Translation3d(def.position) * Eigen::Scaling(scale) * Eigen::Translation3d(-foot) * turned;
 }
@@ -234,6 +234,7 @@ std::vector<Body> assemble(const SceneDef& scene, const Making& making) {
       body.files = loaded.files;
       body.seed = scene.seed;
       body.skin = loaded.skin;
+      body.colors = loaded.colors;
       body.shape = loaded.shape;
       body.unplaced = loaded.mesh.rest;
       body.description.name = def.name;

@@ -4,6 +4,7 @@
 
 #include "geometry/cloth.h"
 #include "geometry/pose.h"
+#include "geometry/surface_colors.h"
 #include "scene/keyed_motion.h"
 #include "scene/making.h"
 #include "scene/scene_def.h"
@@ -28,13 +29,14 @@ struct Body {
   std::vector<std::string> regions;  // names by tag
   double volume = 0;                 // of its tetrahedra at rest [m^3]
   ClothMesh cloth;
-  TriMesh skin;                                // of a body made from a surface, in the file's frame
-  Shape shape;                                 // of a body made from a shape, in the file's frame
-  Positions unplaced;                          // the rest positions of the mesh in the file's frame
-  std::uint64_t seed = 0;                      // of its random start
-  std::vector<Overlap> overlaps;               // at the start; what the scene does about them is in its definition
-  Vec3 start_move = Vec3(0, 0, 0);             // out of the colliders that it would start in [m]
-  Eigen::Affine3d placement = no_placement();  // from the file's frame to the world: turned, scaled, moved
+  TriMesh skin;                                 // of a body made from a surface, in the file's frame
+  std::shared_ptr<const SurfaceColors> colors;  // of that skin; null where it has the body's own
+  Shape shape;                                  // of a body made from a shape, in the file's frame
+  Positions unplaced;                           // the rest positions of the mesh in the file's frame
+  std::uint64_t seed = 0;                       // of its random start
+  std::vector<Overlap> overlaps;                // at the start; what the scene does about them is in its definition
+  Vec3 start_move = Vec3(0, 0, 0);              // out of the colliders that it would start in [m]
+  Eigen::Affine3d placement = no_placement();   // from the file's frame to the world: turned, scaled, moved
 };
 
 // Makes all bodies of a scene. Throws InputError with the problems of all bodies at once: meshes that cannot be read,

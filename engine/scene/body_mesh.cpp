@@ -130,6 +130,11 @@ Loaded loaded_surface(const BodyDef& def, const Making& making) {
   if (!thinness.note.empty()) loaded.notes.push_back(thinness.note);
   loaded.mesh = kept_or_made(making.cache, kept_name(loaded, def.vertices), tet_mesh_from,
                              [&] { return surface_tetrahedra(solid, read.touching, def, loaded, thinness, making); });
+  if (def.takes_colors_of_file()) loaded.colors = read.colors[def.piece];
+  // What is drawn depends on the colours, the tetrahedra above do not.
+  if (loaded.colors) loaded.files.push_back({def.surface, loaded.colors->hash});
+  if (def.colors == ColorSource::file && !loaded.colors)
+    loaded.notes.push_back("the file has no colours (colors = \"file\"): the body's own is drawn");
   return loaded;
 }
 
@@ -169,7 +174,8 @@ const Loaded& MeshCache::get(const SceneDef& scene, const BodyDef& def) {
   std::string key = !def.mesh.empty() ? def.mesh.string()
                                       : fmt::format("{}{}#{}{}", def.shape.string(), def.surface.string(), def.vertices,
                                                     def.surface_options.text());
-  if (!def.surface.empty()) key += fmt::format(" {} {}", name_of(def.pieces), def.piece);
+  if (!def.surface.empty())
+    key += fmt::format(" {} {} {} {}", name_of(def.pieces), def.piece, name_of(def.colors), def.color.has_value());
   if (def.box || def.cloth) key = "body " + def.name;
   const auto known = loaded_.find(key);
   if (known != loaded_.end()) return known->second;

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "geometry/cloth.h"
+#include "geometry/surface_colors.h"
 #include "scene/making.h"
 #include "scene/scene_def.h"
 
@@ -16,7 +17,8 @@ struct Loaded {
   std::string source;
   std::vector<SourceFile> files;
   ClothMesh cloth;
-  TriMesh skin;     // of a body made from a surface, as it was read
+  TriMesh skin;                                 // of a body made from a surface, as it was read
+  std::shared_ptr<const SurfaceColors> colors;  // of that skin; null where it has the body's own
   Positions whole;  // of a body that is one of several pieces: the vertices of all of them; else empty
   Shape shape;      // of a body made from a shape
 };

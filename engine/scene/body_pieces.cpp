@@ -34,7 +34,11 @@ std::vector<std::string> text_of_pieces(const SurfacePieces& found, std::size_t 
 
 BodySurface read_body_surface(const BodyDef& body) {
   BodySurface result;
-  SolidSurface solid = read_solid_surface(body.surface, body.surface_options, &result.notes);
+  ColoredSurface file = read_colored_surface(body.surface);
+  file.mesh = set_up(std::move(file.mesh), body.surface_options);
+  SolidSurface solid = solid_surface(file.mesh, body.surface_options, body.surface.string(), &result.notes);
+  result.notes.insert(result.notes.end(), file.remarks.begin(), file.remarks.end());
+  result.found = file.found;
   result.box = bounds_of(solid.boundary.points);
   const Joining joining = body.pieces == Pieces::bodies ? Joining::cavities : Joining::near;
   SurfacePieces found = pieces_of(std::move(solid), joining, touching_gap * result.box.diagonal());
@@ -57,6 +61,7 @@ BodySurface read_body_surface(const BodyDef& body) {
   Eigen::Index row = 0;
   for (const SolidSurface& piece : found.pieces) {
     result.sources.push_back(source_of(body.surface, piece));
+    result.colors.push_back(colors_on(piece.skin(), file));
     result.whole.middleRows(row, piece.boundary.points.rows()) = piece.boundary.points;
     row += piece.boundary.points.rows();
   }

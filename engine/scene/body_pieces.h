@@ -1,6 +1,7 @@
 // Makes bodies of the pieces of a surface: one for each piece, with the settings of the table that names the surface.
 #pragma once
 
+#include "geometry/surface_colors.h"
 #include "geometry/surface_pieces.h"
 #include "scene/config.h"
 #include "scene/scene_def.h"
@@ -12,6 +13,8 @@ struct BodySurface {
   std::vector<SolidSurface> pieces;  // the largest first; those that are left out are not among them
   std::vector<SourceFile> sources;   // of each piece
   std::vector<double> volumes;       // of each piece [m^3]
+  std::vector<std::shared_ptr<const SurfaceColors>> colors;  // of each piece's skin; null where the file has none
+  std::string found;                                         // which colours the file has, in words; empty: none
   std::vector<std::string> notes;
   bool touching = false;  // whether parts of a piece are near each other without an overlap
   Bounds box;             // of all that was read [m]

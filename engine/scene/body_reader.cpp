@@ -218,6 +218,8 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
                                 Range::between(50, 500000));
   body.size = table.number_if_given({"size", "m", "longest side; without it the file's units are metres"},
                                     Range::above(0, 1e6));
+  body.scale = table.number({"scale", "", "enlarges the body, after its units"}, 1.0, Range::above(0, 1e6));
+  if (body.size && table.has("scale")) table.complain("scale", "a body has a size or a scale, not both");
   body.surface_options = read_surface_options(table);
   body.pieces = table.word<Pieces>(
       {"pieces", "",
@@ -228,6 +230,7 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
     table.complain("pieces", "pieces: of a 'surface'; there is none here");
   // A thickness is one of the finished body, so that the surface must have its size before it is thickened.
   if (body.surface_options.thickness > 0 && body.size) body.surface_options.size = *body.size;
+  body.surface_options.thickness /= body.scale;
   body.position = table.vector({"position", "m", "of the middle of the bounding box's bottom"}, Vec3(0, 0, 0));
   body.turn_deg =
       table.vector({"turn_deg", "degrees", "rotation about x, then y, then z, before it is placed"}, Vec3(0, 0, 0));
@@ -263,6 +266,13 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
       {"pattern_size", "m", "edge of its squares; a sixth of the middle side, of cloth a twentieth of the longest"},
       Range::positive());
   body.color = table.color_if_given({"color", "sRGB", "over the shape's own"});
+  body.colors = table.word<ColorSource>({"colors", "",
+                                         "whose colour is drawn: usual: those of the surface's file, unless there is a "
+                                         "color here; file: the file's where "
+                                         "it has some; body: color"},
+                                        body.colors);
+  if (table.has("colors") && !table.has("surface"))
+    table.complain("colors", "colors: of a 'surface'; there is none here");
   body.gloss =
       table.number_if_given({"gloss", "", "of the uncovered surface: 0 matt to 1 wet [0.25]"}, Range::between(0, 1));
   body.skin_cells = table.number({"skin_cells", "", "cells of the drawn skin along the longest side of a shape"}, 72,

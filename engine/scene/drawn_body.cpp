@@ -46,7 +46,9 @@ struct SkinRequest {
   Skin of_surface(const TetMesh& mesh) const {
     constexpr double edges = 1.5;             // of the elements, that a triangle's edge may be long
     constexpr Eigen::Index most = 2'000'000;  // triangles
-    const TriMesh surface = refined(body.skin, edges * mean_edge(mesh), most).mesh;
+    const double longest = edges * mean_edge(mesh);
+    if (body.colors) return colored_skin(body.skin, *body.colors, longest, most, number);
+    const TriMesh surface = refined(body.skin, longest, most).mesh;
     std::vector<std::int32_t> vertex_of;
     return skin_of_surface(surface.points, surface.triangles, number, vertex_of);
   }
@@ -100,6 +102,7 @@ std::vector<DrawnBody> drawn_bodies(const std::vector<Body>& bodies, const Makin
         drawn.skin.rest.points.row(v) = (body.placement * Vec3(drawn.skin.rest.points.row(v))).transpose();
       drawn.color = body.def.color.value_or(body.shape.color);
       drawn.layers = body.shape.paint;
+      if (body.colors) drawn.textures = body.colors->textures;
     }
     drawn.two_sided = body.def.cloth || !std::holds_alternative<AtRest>(body.def.start);
     result.push_back(std::move(drawn));

@@ -3,6 +3,7 @@
 
 #include "geometry/embedding.h"
 #include "geometry/skin.h"
+#include "geometry/surface_colors.h"
 #include "scene/assemble.h"
 
 namespace supple {
@@ -16,6 +17,7 @@ struct DrawnBody {
   bool two_sided = false;
   Vec3 color;
   std::vector<PaintLayer> layers;  // colours only; their areas live in the skin
+  Textures textures;               // of the skin's colours
 };
 
 // Chooses the surface by which bodies are drawn.

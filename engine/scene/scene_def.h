@@ -131,6 +131,18 @@ struct Names<Pieces> {
                                        Name{Pieces::bodies, "bodies"}};
 };
 
+// Chooses where the colour of a body made from a surface comes from.
+enum class ColorSource {
+  usual,  // the file where it has colours and the body has none, else the body
+  file,   // the file where it has colours
+  body,   // the body's `color`
+};
+template <>
+struct Names<ColorSource> {
+  static constexpr std::array table = {Name{ColorSource::usual, "usual"}, Name{ColorSource::file, "file"},
+                                       Name{ColorSource::body, "body"}};
+};
+
 struct BodySurface;  // body_pieces.h
 
 struct BodyDef {
@@ -148,6 +160,7 @@ struct BodyDef {
   std::optional<ClothDef> cloth;
   int vertices = 0;               // of the tetrahedra made from a shape
   std::optional<double> size;     // longest side; otherwise the file's units are metres [m]
+  double scale = 1;               // where there is no size
   Vec3 position = Vec3(0, 0, 0);  // of the middle of the bounding box's bottom [m]
   Vec3 turn_deg = Vec3(0, 0, 0);
   std::optional<double> density;     // [kg/m^3]; of cloth [kg/m^2]
@@ -162,10 +175,12 @@ struct BodyDef {
   Pattern pattern = Pattern::none;
   std::optional<double> pattern_size;  // edge of its squares [m]
   std::optional<Vec3> color;           // over the shape's own [sRGB]
-  std::optional<double> gloss;         // of the uncovered surface
-  double skin_cells = 0;               // cells of the drawn skin along the longest side
+  ColorSource colors = ColorSource::usual;
+  std::optional<double> gloss;  // of the uncovered surface
+  double skin_cells = 0;        // cells of the drawn skin along the longest side
   Problem place;
 
+  bool takes_colors_of_file() const { return colors == ColorSource::usual ? !color : colors == ColorSource::file; }
   double body_density() const { return density.value_or(substance.usual_density.value_or(cloth ? 0.2 : 1000)); }
 };
 

@@ -17,6 +17,7 @@
 #include "output/point_cache.h"
 #include "output/run_folder.h"
 #include "render/renderer.h"
+#include "support/colored_files.h"
 #include "support/film.h"
 #include "support/places.h"
 
@@ -318,6 +319,43 @@ TEST(Golden, PanelsStandInEveryLayoutWithTheLegendBesideThem) {
     bare.legend.reset();
     EXPECT_LT(split_picture(bare, 0, 0).width, image.width) << "the legend takes no room";
   }
+}
+
+void remove_file_colors(Stage& stage) {
+  for (DrawMesh& mesh : stage.meshes) mesh.surface_colors.clear();
+}
+
+void flip_textures(Stage& stage) {
+  for (DrawMesh& mesh : stage.meshes)
+    for (SurfaceColor& color : mesh.surface_colors) color.v = 1 - color.v;
+}
+
+// Writes a scene of one ball that is seen from its right, where the texture's two ends meet.
+std::filesystem::path ball_scene(const std::filesystem::path& folder, const std::string& surface) {
+  test::write_text(folder / "ball.toml", "[[body]]\nsurface = \"" + surface +
+                                             "\"\nlabel = \"\"\nvertices = 300\nmaterial = \"jelly\"\n"
+                                             "[camera]\nposition = [2.2, 0.9, 0.9]\ntarget = [0, 0.4, 0]\n");
+  return folder / "ball.toml";
+}
+
+TEST(Golden, TheVerticesOfAFileHaveTheirColours) {
+  const test::TemporaryFolder folder;
+  const auto rainbow = [](const Vec3& p) {
+    return std::array{int(127 + 300 * p.x()), int(127 + 300 * p.y()), int(127 + 300 * p.z())};
+  };
+  test::write_text(folder.path / "ball.ply", test::ply_text(test::sphere_surface(0.4, 32, 16), rainbow));
+  expect_golden("vertex-colors", {ball_scene(folder.path, "ball.ply")},
+                {{.on_stage = remove_file_colors}, {{"body.body.colors=body"}}});
+}
+
+TEST(Golden, ATextureIsLaidOntoABody) {
+  const test::TemporaryFolder folder;
+  test::write_text(folder.path / "ball.obj",
+                   test::textured_obj(test::textured_ball(0.4, 32, 16), "mtllib ball.mtl\nusemtl skin\n"));
+  test::write_text(folder.path / "ball.mtl", "newmtl skin\nmap_Kd squares.png\n");
+  write_png(folder.path / "squares.png", 256, 256, test::squares_picture(256, 8));
+  expect_golden("texture", {ball_scene(folder.path, "ball.obj")},
+                {{.on_stage = remove_file_colors}, {.on_stage = flip_textures}});
 }
 
 // The renewed meshes have colours that no mesh had when the film began.

@@ -37,6 +37,32 @@ class SurfaceScene : public ::testing::Test {
   test::TemporaryFolder folder_;
 };
 
+TEST_F(SurfaceScene, AScaleEnlargesABodyAfterItsUnitsAndLeavesItsThicknessAsItIs) {
+  write("box.obj", obj_text(test::box_surface(Vec3(100, 200, 50))));
+  const auto extent = [&](const std::string& keys) {
+    return bounds_of(assemble(scene_of("surface = \"box.obj\"\n" + keys)).front().description.mesh.rest).extent();
+  };
+  EXPECT_LT((extent("units = \"mm\"\nscale = 2\n") - Vec3(0.4, 0.8, 0.2)).cwiseAbs().maxCoeff(), 0.01);
+  EXPECT_LT((extent("scale = 1e-3\nturn_deg = [0, 0, 90]\n") - Vec3(0.4, 0.2, 0.1)).cwiseAbs().maxCoeff(), 0.01);
+  EXPECT_LT((extent("size = 0.4\n") - extent("scale = 1e-3\n")).cwiseAbs().maxCoeff(), 1e-3);
+  write("sheet.obj", "v 0 0 0\nv 100 0 0\nv 100 0 100\nv 0 0 100\nf 1 2 3\nf 1 3 4\n");
+  const Vec3 sheet =
+      bounds_of(
+          assemble(scene_of("surface = \"sheet.obj\"\nscale = 0.01\nthicken = 0.2\n")).front().description.mesh.rest)
+          .extent();
+  EXPECT_NEAR(sheet.y(), 0.2, 0.01);
+  EXPECT_NEAR(sheet.x(), 1, 0.02);
+}
+
+TEST_F(SurfaceScene, AScaleThatIsNoneIsRefused) {
+  write("box.obj", obj_text(test::box_surface(Vec3(1, 2, 3))));
+  EXPECT_EQ(refusal_of("surface = \"box.obj\"\nsize = 1\nscale = 2\n"), "a body has a size or a scale, not both");
+  for (const char* scale : {"0", "-1", "1e7", "nan", "\"mm\"", "[1, 1, 2]"})
+    EXPECT_NE(refusal_of(std::string("surface = \"box.obj\"\nscale = ") + scale + "\n").find("scale"),
+              std::string::npos)
+        << scale;
+}
+
 TEST_F(SurfaceScene, PiecesApartAreBodiesThatKeepTheirPlaces) {
   write("two.obj", obj_text(test::together(test::box_surface(Vec3(1, 1, 1)),
                                            test::moved(test::box_surface(Vec3(0.5, 0.5, 0.5)), Vec3(3, 0, 0)))));
