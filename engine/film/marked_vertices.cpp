@@ -15,7 +15,7 @@ std::vector<double> depths_in(const Positions& x, const CollisionSet& set, doubl
     const Eigen::Isometry3d to_local = set.obstacles[c].pose(time).inverse();
     const ShapeProbe probe(collider.shape);
     run_chunks(threads, static_cast<int>((x.rows() + chunk - 1) / chunk), 200 * x.rows(), [&](int number) {
-      std::int32_t near = -1;
+      QueryMemory near;
       for (Eigen::Index v = number * chunk; v < std::min(x.rows(), (number + 1) * chunk); ++v) {
         const Vec3 p = to_local * Vec3(x.row(v));
         if (probe.distance(p, near) > collider.thickness + reach) continue;

@@ -1,5 +1,7 @@
 #include "geometry/shape_probe.h"
 
+#include <limits>
+
 namespace supple {
 namespace {
 
@@ -17,9 +19,18 @@ ShapeProbe::ShapeProbe(const Shape& shape) : shape_(shape), surface_(lone_surfac
   if (surface_ != nullptr) solid_ = std::get<ClosedSurface>(surface_->primitive).solid.get();
 }
 
-double ShapeProbe::distance(const Vec3& p, std::int32_t& near) const {
+double ShapeProbe::distance(const Vec3& p, QueryMemory& near) const {
   if (solid_ == nullptr) return shape_.distance(p);
   return surface_->scale * solid_->closest(local(p), near).distance;
+}
+
+double ShapeProbe::certain_distance(const Vec3& p, const QueryMemory& near) const {
+  if (solid_ == nullptr) return -std::numeric_limits<double>::infinity();
+  return surface_->scale * solid_->certain_distance(local(p), near);
+}
+
+std::shared_ptr<const TriangleSolid> ShapeProbe::remembered() const {
+  return surface_ == nullptr ? nullptr : std::get<ClosedSurface>(surface_->primitive).solid;
 }
 
 double ShapeProbe::distance_within(const Vec3& p, double most) const {
@@ -27,12 +38,20 @@ double ShapeProbe::distance_within(const Vec3& p, double most) const {
   return surface_->scale * solid_->distance_within(local(p), most / surface_->scale);
 }
 
-SurfacePoint ShapeProbe::closest(const Vec3& p, std::int32_t& near) const {
+SurfacePoint ShapeProbe::closest(const Vec3& p, QueryMemory& near) const {
+  return solid_ == nullptr ? shape_.closest(p) : in_frame_of_shape(p, solid_->closest(local(p), near));
+}
+
+std::optional<SurfacePoint> ShapeProbe::closest_within(const Vec3& p, double most, QueryMemory& near) const {
   if (solid_ == nullptr) return shape_.closest(p);
+  const std::optional<SurfacePoint> found = solid_->closest_within(local(p), most / surface_->scale, near);
+  return found ? std::optional(in_frame_of_shape(p, *found)) : std::nullopt;
+}
+
+SurfacePoint ShapeProbe::in_frame_of_shape(const Vec3& p, const SurfacePoint& found) const {
   const Mat3 turn = surface_->to_local.linear().transpose();
-  const Vec3 at = local(p);
-  const SurfacePoint found = solid_->closest(at, near);
-  return {p - surface_->scale * (turn * (at - found.point)), turn * found.normal, surface_->scale * found.distance};
+  return {p - surface_->scale * (turn * (local(p) - found.point)), turn * found.normal,
+          surface_->scale * found.distance};
 }
 
 }  // namespace supple

@@ -15,9 +15,16 @@ class ShapeProbe {
 
   double distance(const Vec3& p) const { return shape_.distance(p); }
 
-  // `near` is the memory of one caller, what the query before left in it, and -1 before the first one.
-  double distance(const Vec3& p, std::int32_t& near) const;
-  SurfacePoint closest(const Vec3& p, std::int32_t& near) const;
+  // `near` is the memory of one caller about this shape.
+  double distance(const Vec3& p, QueryMemory& near) const;
+  SurfacePoint closest(const Vec3& p, QueryMemory& near) const;
+
+  // Returns the closest point, or nothing where it is certainly further away than `most`. Shapes other than a closed
+  // surface always return it.
+  std::optional<SurfacePoint> closest_within(const Vec3& p, double most, QueryMemory& near) const;
+
+  // Returns a bound below the distance of p that follows from earlier answers; minus infinity where nothing follows.
+  double certain_distance(const Vec3& p, const QueryMemory& near) const;
 
   // Returns shape.distance(p), for a caller who knows that it is not above `most` in size.
   double distance_within(const Vec3& p, double most) const;
@@ -32,8 +39,12 @@ class ShapeProbe {
   // does not. Only for shapes that know entries.
   std::optional<double> entry(const Vec3& a, const Vec3& b) const { return solid_->entry(local(a), local(b)); }
 
+  // Returns the solid whose answers a memory keeps; null for other shapes, which have no use for one.
+  std::shared_ptr<const TriangleSolid> remembered() const;
+
  private:
   Vec3 local(const Vec3& p) const { return surface_->to_local * p / surface_->scale; }
+  SurfacePoint in_frame_of_shape(const Vec3& p, const SurfacePoint& found) const;
 
   const Shape& shape_;
   const ShapePart* surface_ = nullptr;    // the whole shape, where that is one closed surface

@@ -45,7 +45,7 @@ Vec3 closest_weights(const TriangleCorners& corners, const Vec3& p) {
 }
 
 TriangleInShape::TriangleInShape(const ShapeProbe& shape, double half_thickness, const TriangleCorners& corners,
-                                 std::int32_t& near)
+                                 QueryMemory& near)
     : shape_(shape), corners_(corners), near_(near) {
   edge_ = 0;
   for (int k = 0; k < 3; ++k) edge_ = std::max(edge_, (corners[(k + 1) % 3] - corners[k]).norm());

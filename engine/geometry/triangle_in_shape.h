@@ -25,7 +25,7 @@ class TriangleInShape {
  public:
   // half_thickness: Shape::half_thickness [m]; near: a memory of queries (ShapeProbe). Corners, shape and memory must
   // outlive this.
-  TriangleInShape(const ShapeProbe& shape, double half_thickness, const TriangleCorners& corners, std::int32_t& near);
+  TriangleInShape(const ShapeProbe& shape, double half_thickness, const TriangleCorners& corners, QueryMemory& near);
 
   // Returns what the shape answers at the centre.
   const TrianglePlace& center() const { return center_; }
@@ -51,7 +51,7 @@ class TriangleInShape {
 
   const ShapeProbe& shape_;
   const TriangleCorners& corners_;
-  std::int32_t& near_;
+  QueryMemory& near_;
   double half_thickness_, edge_;
   TrianglePlace center_;
   int nearest_corner_ = 0;

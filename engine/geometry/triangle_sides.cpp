@@ -16,11 +16,6 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int stack_size = 64;  // as for the closest point
 
-template <class L>
-auto dot(const L& a, const L& b) {
-  return (a.x * b.x + a.y * b.y + a.z * b.z).eval();
-}
-
 // Computes the signed solid angle over 4 pi: Van Oosterom and Strackee, The solid angle of a plane triangle, 1983,
 // equation 8.
 double winding_of_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -53,14 +48,14 @@ double TriangleSolid::winding_number(const Vec3& p) const {
     }
     const Node& node = nodes_[std::size_t(index)];
     const Dipoles& dipoles = dipoles_[std::size_t(index)];
-    const Lanes3 d{dipoles.center.x - p.x(), dipoles.center.y - p.y(), dipoles.center.z - p.z()};
-    const Lanes squared = dot(d, d);
+    const Lanes x = dipoles.center.x - p.x(), y = dipoles.center.y - p.y(), z = dipoles.center.z - p.z();
+    const Lanes squared = x * x + y * y + z * z;
     const Lanes reach = far * dipoles.radius;
-    const Lanes seen = dot(dipoles.area, d) / (squared * squared.sqrt() * (4 * std::numbers::pi));
+    const Lanes flux = dipoles.area.x * x + dipoles.area.y * y + dipoles.area.z * z;
     for (int k = 0; k < width; ++k) {
       if (node.lower.x[k] > node.upper.x[k]) continue;  // there is no child here
       if (squared[k] > reach[k] * reach[k]) {
-        sum += seen[k];
+        sum += flux[k] / (squared[k] * std::sqrt(squared[k]) * (4 * std::numbers::pi));
       } else {
         stack[std::size_t(top++)] = node.child[std::size_t(k)];
       }
@@ -129,9 +124,8 @@ int TriangleSolid::crossings(const Vec3& p) const {
       continue;
     }
     const Node& node = nodes_[std::size_t(index)];
-    const auto met = (node.lower.x <= upper.x() && node.upper.x >= lower.x() && node.lower.y <= upper.y() &&
-                      node.upper.y >= lower.y() && node.lower.z <= upper.z() && node.upper.z >= lower.z())
-                         .eval();
+    const auto met = (node.lower.x <= upper.x()) & (node.upper.x >= lower.x()) & (node.lower.y <= upper.y()) &
+                     (node.upper.y >= lower.y()) & (node.lower.z <= upper.z()) & (node.upper.z >= lower.z());
     for (int k = 0; k < width; ++k)
       if (met[k]) stack[std::size_t(top++)] = node.child[std::size_t(k)];
   }
@@ -218,7 +212,7 @@ void TriangleSolid::prepare_sides() {
 
 double TriangleSolid::side_of(const Vec3& p, const Nearest& found) const {
   constexpr double at_edge = 1e-12;
-  const std::int32_t t = triangle_of(found);
+  const std::int32_t t = found.triangle;
   const double weight[3] = {1 - found.v - found.w, found.v, found.w};  // of the corners
   int zeros = 0, zero = 0, whole = 0;
   for (int k = 0; k < 3; ++k) {
@@ -240,14 +234,16 @@ double TriangleSolid::side_of(const Vec3& p, const Nearest& found) const {
 void TriangleSolid::entry_in_leaf(const Vec3& a, const Vec3& way, std::int32_t index, double& first) const {
   constexpr double slack = 1e-9;
   const Leaf& leaf = leaves_[std::size_t(index)];
-  const auto cross = [](const auto& l, const auto& r) {
-    return Lanes3{l.y * r.z - l.z * r.y, l.z * r.x - l.x * r.z, l.x * r.y - l.y * r.x};
-  };
-  const Lanes3 d{Lanes::Constant(way.x()), Lanes::Constant(way.y()), Lanes::Constant(way.z())};
-  const Lanes3 from{a.x() - leaf.a.x, a.y() - leaf.a.y, a.z() - leaf.a.z};
-  const Lanes3 across = cross(d, leaf.ac), turned = cross(from, leaf.ab);
-  const Lanes facing = dot(leaf.ab, across);
-  const Lanes v = dot(from, across) / facing, w = dot(d, turned) / facing, share = dot(leaf.ac, turned) / facing;
+  const Lanes from_x = a.x() - leaf.a.x, from_y = a.y() - leaf.a.y, from_z = a.z() - leaf.a.z;
+  const Lanes across_x = way.y() * leaf.ac.z - way.z() * leaf.ac.y,
+              across_y = way.z() * leaf.ac.x - way.x() * leaf.ac.z,
+              across_z = way.x() * leaf.ac.y - way.y() * leaf.ac.x;
+  const Lanes turned_x = from_y * leaf.ab.z - from_z * leaf.ab.y, turned_y = from_z * leaf.ab.x - from_x * leaf.ab.z,
+              turned_z = from_x * leaf.ab.y - from_y * leaf.ab.x;
+  const Lanes facing = leaf.ab.x * across_x + leaf.ab.y * across_y + leaf.ab.z * across_z;
+  const Lanes v = (from_x * across_x + from_y * across_y + from_z * across_z) / facing;
+  const Lanes w = (way.x() * turned_x + way.y() * turned_y + way.z() * turned_z) / facing;
+  const Lanes share = (leaf.ac.x * turned_x + leaf.ac.y * turned_y + leaf.ac.z * turned_z) / facing;
   for (int k = 0; k < leaf.count; ++k) {
     const bool met = facing[k] > 0 && v[k] >= -slack && w[k] >= -slack && v[k] + w[k] <= 1 + slack;
     if (met && share[k] >= 0 && share[k] < first) first = share[k];
@@ -269,15 +265,17 @@ std::optional<double> TriangleSolid::entry(const Vec3& a, const Vec3& b) const {
       continue;
     }
     const Node& node = nodes_[std::size_t(index)];
-    const auto slab = [&](const Lanes& lower, const Lanes& upper, int k, Lanes& in, Lanes& out) {
+    const Lanes zero = {};
+    Lanes in = zero, out = zero + first;
+    const auto slab = [&](const Lanes& lower, const Lanes& upper, int k) __attribute__((always_inline)) {
       const Lanes l = (lower - a[k]) * inverse[k], u = (upper - a[k]) * inverse[k];
-      in = in.max(l.min(u));
-      out = out.min(l.max(u));
+      const Lanes near = l < u ? l : u, far = l < u ? u : l;
+      in = near > in ? near : in;
+      out = far < out ? far : out;
     };
-    Lanes in = Lanes::Zero(), out = Lanes::Constant(first);
-    slab(node.lower.x, node.upper.x, 0, in, out);
-    slab(node.lower.y, node.upper.y, 1, in, out);
-    slab(node.lower.z, node.upper.z, 2, in, out);
+    slab(node.lower.x, node.upper.x, 0);
+    slab(node.lower.y, node.upper.y, 1);
+    slab(node.lower.z, node.upper.z, 2);
     for (int k = 0; k < width; ++k) {
       if (node.lower.x[k] > node.upper.x[k]) continue;  // there is no child here
       if (in[k] <= out[k] + 1e-12) stack[std::size_t(top++)] = node.child[std::size_t(k)];

@@ -19,24 +19,11 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// The tree is balanced, so that 2^31 triangles make 15 levels; each level leaves at most three siblings on the stack.
-constexpr int stack_size = 64;
-
-template <class L>
-auto dot(const L& a, const L& b) {
-  return (a.x * b.x + a.y * b.y + a.z * b.z).eval();
-}
-
 template <class L>
 void set(L& lanes, int k, const Vec3& value) {
   lanes.x[k] = value.x();
   lanes.y[k] = value.y();
   lanes.z[k] = value.z();
-}
-
-template <class L>
-Vec3 get(const L& lanes, int k) {
-  return Vec3(lanes.x[k], lanes.y[k], lanes.z[k]);
 }
 
 double half_area(const Bounds& box) {
@@ -261,6 +248,7 @@ TriangleSolid::TriangleSolid(TriMesh surface) : surface_(std::move(surface)), bo
   // Both ends of (p - t) carry the round-off of the coordinates; at 1e-11 of their size, its direction keeps four good
   // digits.
   on_surface_ = 1e-11 * std::max(bounds_.lower.cwiseAbs().maxCoeff(), bounds_.upper.cwiseAbs().maxCoeff());
+  certainty_ = 1e-7 * bounds_.diagonal() + on_surface_;
   close_holes();
   normals_.resize(surface_.triangles.rows(), 3);
   for (Eigen::Index t = 0; t < normals_.rows(); ++t) {
@@ -278,119 +266,6 @@ void TriangleSolid::close_holes() {
   Vec3 apex = Vec3::Zero();
   for (const auto& [from, to] : open) apex += surface_.points.row(from).transpose() / double(open.size());
   for (const auto& [from, to] : open) lids_.push_back({surface_.points.row(to), surface_.points.row(from), apex});
-}
-
-// Follows Ericson, Real-Time Collision Detection, 2005, section 5.1.5, for four triangles at once. Instead of choosing
-// a region first, it tries all three edges and, where it lies within, the foot on the plane: every candidate is a point
-// of the triangle, so that round-off in a sliver's plane can't make it look nearer than it is.
-void TriangleSolid::nearest_in_leaf(const Vec3& p, std::int32_t index, Nearest& best) const {
-  const Leaf& leaf = leaves_[std::size_t(index)];
-  const Lanes3 ap{p.x() - leaf.a.x, p.y() - leaf.a.y, p.z() - leaf.a.z};
-  const auto offset = [&](const Lanes& s, const Lanes& t) {
-    return Lanes3{ap.x - s * leaf.ab.x - t * leaf.ac.x, ap.y - s * leaf.ab.y - t * leaf.ac.y,
-                  ap.z - s * leaf.ab.z - t * leaf.ac.z};
-  };
-  const auto squared_length = [](const Lanes3& d) { return dot(d, d); };
-  const Lanes d1 = dot(leaf.ab, ap), d2 = dot(leaf.ac, ap), along_bc = d2 - d1 - leaf.bc_start;
-
-  Lanes v = (d1 * leaf.inverse_ab).max(0).min(1), w = Lanes::Zero();
-  Lanes squared = squared_length(offset(v, w));
-  const auto consider = [&](const Lanes& s, const Lanes& t, const Lanes& other, const auto& better) {
-    v = better.select(s, v);
-    w = better.select(t, w);
-    squared = better.select(other, squared);
-  };
-  const auto consider_edge = [&](const Lanes& s, const Lanes& t) {
-    const Lanes other = squared_length(offset(s, t));
-    consider(s, t, other, (other < squared).eval());
-  };
-  consider_edge(Lanes::Zero(), (d2 * leaf.inverse_ac).max(0).min(1));
-  const Lanes of_c = (along_bc * leaf.inverse_bc).max(0).min(1);
-  consider_edge(1 - of_c, of_c);
-  // The foot on the plane is corrected once for what round-off left, which in slivers is much.
-  Lanes s = dot(leaf.to_v, ap), t = dot(leaf.to_w, ap);
-  const Lanes3 rest = offset(s, t);
-  s += dot(leaf.to_v, rest);
-  t += dot(leaf.to_w, rest);
-  const Lanes other = squared_length(offset(s, t));
-  consider(s, t, other, (other < squared && s >= 0 && t >= 0 && s + t <= 1).eval());
-
-  for (int k = 0; k < leaf.count; ++k)
-    if (squared[k] < best.squared) best = {squared[k], index, k, v[k], w[k]};
-}
-
-// Searches by branch and bound, the nearer child first. A leaf that is likely to be near saves most of the search.
-// most: only triangles nearer than this are found.
-TriangleSolid::Nearest TriangleSolid::nearest(const Vec3& p, std::int32_t likely, double most) const {
-  struct Entry {
-    double squared;
-    std::int32_t node;
-  };
-  std::array<Entry, stack_size> stack;
-  int top = 0;
-  stack[std::size_t(top++)] = {0, 0};
-  Nearest best{most * most, most < infinity ? -1 : 0, 0, 0, 0};
-  if (likely >= 0) nearest_in_leaf(p, likely, best);
-  while (top > 0) {
-    const Entry entry = stack[std::size_t(--top)];
-    if (!(entry.squared < best.squared)) continue;
-    if (entry.node < 0) {
-      nearest_in_leaf(p, ~entry.node, best);
-      continue;
-    }
-    const Node& node = nodes_[std::size_t(entry.node)];
-    const Lanes x = (node.lower.x - p.x()).max(p.x() - node.upper.x).max(0);
-    const Lanes y = (node.lower.y - p.y()).max(p.y() - node.upper.y).max(0);
-    const Lanes z = (node.lower.z - p.z()).max(p.z() - node.upper.z).max(0);
-    const Lanes squared = x * x + y * y + z * z;
-    const int first = top;
-    for (int k = 0; k < width; ++k) {
-      if (!(squared[k] < best.squared)) continue;
-      int place = top++;  // keeps the furthest child lowest on the stack
-      for (; place > first && stack[std::size_t(place - 1)].squared < squared[k]; --place)
-        stack[std::size_t(place)] = stack[std::size_t(place - 1)];
-      stack[std::size_t(place)] = {squared[k], node.child[std::size_t(k)]};
-    }
-  }
-  return best;
-}
-
-SurfacePoint TriangleSolid::closest(const Vec3& p) const {
-  // Seen from very far away, all points of the surface are equally distant up to round-off, and squares overflow, so
-  // the query starts from a nearer point.
-  const Vec3 from_center = p - bounds_.center();
-  const double far = 1e12 * (bounds_.diagonal() + on_surface_), away = from_center.cwiseAbs().maxCoeff();
-  const Nearest found = nearest(away > far ? Vec3(bounds_.center() + from_center / away * far) : p, -1, infinity);
-  return seen_from(p, found, inside(p) ? -1 : 1);
-}
-
-SurfacePoint TriangleSolid::closest(const Vec3& p, std::int32_t& near) const {
-  const bool usual = sides_by_normals_ && (p - bounds_.center()).cwiseAbs().maxCoeff() <= 1e3 * bounds_.diagonal();
-  if (!usual) return closest(p);
-  const Nearest found = nearest(p, near, infinity);
-  near = found.leaf;
-  return seen_from(p, found, side_of(p, found));
-}
-
-double TriangleSolid::distance_within(const Vec3& p, double most) const {
-  const Nearest found = nearest(p, -1, 1.001 * most + 1e3 * on_surface_);
-  if (found.leaf < 0) return closest(p).distance;
-  const double side = sides_by_normals_ ? side_of(p, found) : inside(p) ? -1 : 1;
-  return seen_from(p, found, side).distance;
-}
-
-Vec3 TriangleSolid::point_of(const Nearest& found) const {
-  const Leaf& leaf = leaves_[std::size_t(found.leaf)];
-  return get(leaf.a, found.lane) + found.v * get(leaf.ab, found.lane) + found.w * get(leaf.ac, found.lane);
-}
-
-SurfacePoint TriangleSolid::seen_from(const Vec3& p, const Nearest& found, double sign) const {
-  const Vec3 point = point_of(found), offset = p - point;
-  const double largest = offset.cwiseAbs().maxCoeff();
-  if (largest <= on_surface_) return {point, normals_.row(triangle_of(found)), sign * offset.norm()};
-  const Vec3 direction = offset / largest;  // its square neither overflows nor vanishes
-  const double length = direction.norm();
-  return {point, sign / length * direction, sign * length * largest};
 }
 
 }  // namespace supple

@@ -15,6 +15,19 @@
 
 namespace supple {
 
+// Keeps what queries about places near each other have found, for one caller. It saves work and changes no answer: the
+// same place has the same answer, whatever was asked before.
+struct QueryMemory {
+  struct Answer {
+    Vec3 place;
+    SurfacePoint surface;
+  };
+  std::int32_t leaf = -1;  // of the solid's tree, where the last search ended; -1: there was none
+  std::array<Answer, 2> answers;
+  std::int32_t count = 0;   // of the answers
+  std::int32_t oldest = 0;  // of the two, which the next one replaces
+};
+
 // The object is constant after construction; queries may run on any number of threads and give the same bits on each.
 class TriangleSolid {
  public:
@@ -24,9 +37,16 @@ class TriangleSolid {
   // Accepts any finite point. The distance is exact up to round-off of the surface's coordinates.
   SurfacePoint closest(const Vec3& p) const;
 
-  // The same for a caller that asks about places near each other: `near` is what the query before left in it, -1 before
-  // the first one. The side is found from the surface's normals where that is safe, and otherwise as above.
-  SurfacePoint closest(const Vec3& p, std::int32_t& near) const;
+  // The same for a caller that asks about places near each other. The side is found from the surface's normals where
+  // that is safe, and otherwise as above.
+  SurfacePoint closest(const Vec3& p, QueryMemory& near) const;
+
+  // The same, but nothing where the surface is certainly further away than `most`.
+  std::optional<SurfacePoint> closest_within(const Vec3& p, double most, QueryMemory& near) const;
+
+  // Returns a bound below the distance of p that follows from the answers before it, less a ten-millionth of the
+  // solid's size; minus infinity where nothing follows.
+  double certain_distance(const Vec3& p, const QueryMemory& near) const;
 
   // Returns the signed distance, with the bits of closest(p), for a caller who knows that the surface is not further
   // away than `most`, by more than round-off.
@@ -48,7 +68,8 @@ class TriangleSolid {
  private:
   // The tree has four children a node and up to four triangles a leaf, one in each vector lane.
   static constexpr int width = 4;
-  using Lanes = Eigen::Array<double, width, 1>;
+  // The compiler's vectors: on a machine with shorter registers, it takes several, and the bits are the same.
+  using Lanes = double __attribute__((vector_size(width * sizeof(double))));
   struct Lanes3 {
     Lanes x, y, z;
   };
@@ -73,6 +94,7 @@ class TriangleSolid {
     double squared;
     std::int32_t leaf;
     int lane;
+    std::int32_t triangle;
     double v, w;
   };
   using Corners = std::array<Vec3, 3>;
@@ -84,9 +106,6 @@ class TriangleSolid {
   }
   void nearest_in_leaf(const Vec3& p, std::int32_t leaf, Nearest& best) const;
   Nearest nearest(const Vec3& p, std::int32_t likely, double most) const;
-  std::int32_t triangle_of(const Nearest& found) const {
-    return leaves_[std::size_t(found.leaf)].triangle[std::size_t(found.lane)];
-  }
   Vec3 point_of(const Nearest& found) const;
   SurfacePoint seen_from(const Vec3& p, const Nearest& found, double sign) const;
   double side_of(const Vec3& p, const Nearest& found) const;
@@ -101,6 +120,7 @@ class TriangleSolid {
   TriMesh surface_;
   Bounds bounds_;
   double on_surface_ = 0;      // nearer than this, the vector to a query point has no reliable direction [m]
+  double certainty_ = 0;       // what certain distances are shorter by, so that round-off can't make them wrong [m]
   std::vector<Corners> lids_;  // triangles that would close the holes; they matter to the sign alone
   std::vector<Node> nodes_;
   std::vector<Dipoles> dipoles_;  // one for each of nodes_

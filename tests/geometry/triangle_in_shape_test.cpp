@@ -38,7 +38,7 @@ TEST(TriangleInShape, FindsTheLeastDistanceToConvexShapes) {
       const TriangleCorners corners = {random_point(random, 0.8), random_point(random, 0.8), random_point(random, 0.8)};
       double longest = 0, least = 1e300;
       for (int k = 0; k < 3; ++k) longest = std::max(longest, (corners[(k + 1) % 3] - corners[k]).norm());
-      std::int32_t near = -1;
+      QueryMemory near;
       for (int i = 0; i <= 60; ++i) {
         for (int j = 0; j <= 60 - i; ++j) {
           const Vec3 p = (i * corners[0] + j * corners[1] + (60 - i - j) * corners[2]) / 60;

@@ -419,6 +419,33 @@ TEST(Contact, SameBitsWhateverTheWorkspaceDidBefore) {
   EXPECT_EQ(hashes(threaded, 20), expected);
 }
 
+// What is remembered of triangles from step to step saves work alone.
+TEST(Contact, SameBitsOnAMeshWhateverTheWorkspaceDidBefore) {
+  for (const double thickness : {0.0, 0.01}) {
+    const auto solid = std::make_shared<const TriangleSolid>(test::sphere_surface(0.3, 60, 30));
+    const std::vector<Collider> colliders = {{"ball", shape_of(ClosedSurface{solid}), thickness, 0.3},
+                                             {"ground", ground, thickness}};
+    const Vec3 place(0.1, 0.42, 0);
+    ContactScene used(cube(4), colliders, place), threaded(cube(4), colliders, place);
+    Threads threads(3);
+    threaded.w.threads = &threads;
+    for (ContactScene* scene : {&used, &threaded})
+      scene->inputs.collider_motions[0].end = scene->inputs.collider_motions[0].start = moved_to(Vec3(0.01, 0, 0.02));
+    for (int frame = 0; frame < 25; ++frame) {
+      // A workspace that knows nothing makes the same step.
+      ContactScene fresh(cube(4), colliders);
+      fresh.inputs.collider_motions = used.inputs.collider_motions;
+      fresh.state = used.state;
+      fresh.advance();
+      used.advance();
+      threaded.advance();
+      EXPECT_EQ(state_hash(fresh.model, fresh.state), state_hash(used.model, used.state)) << frame;
+      EXPECT_EQ(state_hash(threaded.model, threaded.state), state_hash(used.model, used.state)) << frame;
+    }
+    EXPECT_GT(used.w.contact.counts.touching, 0);
+  }
+}
+
 TEST(Contact, CostsNothingWithoutColliders) {
   ContactScene scene(cube(2), {});
   scene.inputs.colliders = nullptr;

@@ -62,17 +62,24 @@ Vec3 ColliderView::pace(const Way& way, double share) const {
 
 Eigen::Isometry3d ColliderView::motion_after(double share) const { return end_ * pose(share).inverse(); }
 
-SurfacePoint ColliderView::closest(const Vec3& p, std::int32_t& near) const {
-  SurfacePoint s = shape_.closest(p, near);
+SurfacePoint ColliderView::on_layer(SurfacePoint s) const {
   s.point += collider_.thickness * s.normal;
   s.distance -= collider_.thickness;
   return s;
 }
 
-// Returns which share of a way, from one time in the step to another, leads to the layer; nothing when it is not met.
-// Steps as long as the distance never overshoot (Hart 1996, "Sphere tracing"); triangles are asked for the way itself.
+SurfacePoint ColliderView::closest(const Vec3& p, QueryMemory& near) const { return on_layer(shape_.closest(p, near)); }
+
+std::optional<SurfacePoint> ColliderView::closest_within(const Vec3& p, double most, QueryMemory& near) const {
+  const std::optional<SurfacePoint> found = shape_.closest_within(p, most + collider_.thickness, near);
+  return found ? std::optional(on_layer(*found)) : std::nullopt;
+}
+
+// Returns which share of a way, from one time in the step to another, leads to the layer; nothing when it is not met,
+// or not within the share `latest`. Steps as long as the distance never overshoot (Hart 1996, "Sphere tracing");
+// triangles are asked for the way itself.
 std::optional<double> ColliderView::meets(const Way& way, double from, double to, double field_at_start,
-                                          std::int32_t& near) const {
+                                          QueryMemory& near, double latest) const {
   const double length = way.length;
   const double close = 1e-9 * (length + std::abs(field_at_start));
   const Vec3 start = from > 0 ? way.b : way.a, end = from > 0 ? way.a : way.b;
@@ -81,7 +88,7 @@ std::optional<double> ColliderView::meets(const Way& way, double from, double to
   double gone = 0, field = field_at_start;
   for (int march = 0; march < most_marches && field > close; ++march) {
     gone += clear(field);
-    if (gone >= length) return std::nullopt;
+    if (gone >= length || gone > latest * length) return std::nullopt;
     const double share = gone / length;
     field = distance(straight ? Vec3(start + share * (end - start)) : at(way, from + share * (to - from)), near);
   }
@@ -93,20 +100,38 @@ double ColliderView::most_moved(const Vec3& center, double radius) const {
   return (carried(center) - center).norm() + turn * radius;
 }
 
-std::optional<ColliderView::Entry> ColliderView::entry(const Way& way, double field_at_a, std::int32_t& near) const {
+std::optional<ColliderView::Entry> ColliderView::entry(const Way& way, double field_at_a, QueryMemory& near,
+                                                       double latest) const {
   if (field_at_a <= 0) return Entry{closest(way.a, near), 0};
-  const std::optional<double> share = meets(way, 0, 1, field_at_a, near);
+  const std::optional<double> share = meets(way, 0, 1, field_at_a, near, latest);
   if (!share) return std::nullopt;
   return Entry{closest(at(way, *share), near), *share};
 }
 
+// Tells whether a straight way between two places in the open may lead through triangles, not just through the layer
+// around them.
+bool ColliderView::leads_through(const Way& way, double field_at_a, double field_at_b) const {
+  const double to_a = field_at_a + collider_.thickness, to_b = field_at_b + collider_.thickness;
+  if (to_a <= 0 || to_b <= 0) return true;
+  if (to_a + to_b > (1 + 1e-9) * way.length) return false;  // the balls without triangles around the ends hold the way
+  return shape_.entry(way.a, way.b).has_value();
+}
+
 std::optional<SurfacePoint> ColliderView::holding(const Way& way, double field_at_a, double reach,
-                                                  std::int32_t& near) const {
-  const SurfacePoint here = closest(way.b, near);
+                                                  QueryMemory& near) const {
+  // Where there is nothing in the balls around both ends, which hold the way, it meets nothing.
+  const double around = std::max(reach, way.length - field_at_a);
+  if (field_at_a > 0 && certain_distance(way.b, near) > around) return std::nullopt;
+  const std::optional<SurfacePoint> nearest =
+      field_at_a > 0 && knows_bounds() ? closest_within(way.b, (1 + 1e-6) * around, near) : closest(way.b, near);
+  if (!nearest) return std::nullopt;
+  const SurfacePoint& here = *nearest;
   if (short_way(way.length + std::max(0.0, -field_at_a)))
     return here.distance < reach ? std::optional(here) : std::nullopt;
   // The way leads straight onto the side that is closest: the usual case, which needs no ray.
   if (!bends_ && here.distance < 0 && field_at_a > 0 && (way.a - here.point).dot(here.normal) >= 0) return here;
+  if (!bends_ && knows_bounds() && !leads_through(way, field_at_a, here.distance))
+    return here.distance < reach ? std::optional(here) : std::nullopt;
   const std::optional<Entry> entered = entry(way, field_at_a, near);
   if (!entered) return here.distance < reach ? std::optional(here) : std::nullopt;
   if (here.distance < 0) return opposite(here.normal, entered->surface.normal) ? entered->surface : here;

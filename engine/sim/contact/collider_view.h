@@ -51,10 +51,21 @@ class ColliderView {
   bool moves() const { return moves_; }
 
   // Returns the distance to the layer around the shape. `near` is the memory of a caller that asks about places near
-  // each other: what the query before left in it, -1 before the first one.
-  double distance(const Vec3& p, std::int32_t& near) const { return shape_.distance(p, near) - collider_.thickness; }
+  // each other.
+  double distance(const Vec3& p, QueryMemory& near) const { return shape_.distance(p, near) - collider_.thickness; }
   // Returns the closest point of that layer's surface.
-  SurfacePoint closest(const Vec3& p, std::int32_t& near) const;
+  SurfacePoint closest(const Vec3& p, QueryMemory& near) const;
+  // Tells whether a search within a bound costs less than one without, and its failure shows that the sign of the
+  // distance is the same all around. A surface with holes has places where the sign changes without triangles.
+  bool knows_bounds() const { return shape_.is_exact(); }
+  // The same, but nothing where it is certainly further away than `most`, outside or inside.
+  std::optional<SurfacePoint> closest_within(const Vec3& p, double most, QueryMemory& near) const;
+
+  // Returns a bound below the distance of p to the layer that follows from earlier answers; minus infinity where
+  // nothing follows.
+  double certain_distance(const Vec3& p, const QueryMemory& near) const {
+    return shape_.certain_distance(p, near) - collider_.thickness;
+  }
 
   // Returns how far the collider's own points within a ball move in the step: they move with its centre and turn about
   // it.
@@ -71,18 +82,22 @@ class ColliderView {
     SurfacePoint surface;
     double way;  // share of the step, 0 to 1
   };
-  // Finds where a way enters; nothing when it stays outside.
-  std::optional<Entry> entry(const Way& way, double field_at_a, std::int32_t& near) const;
+  // Finds where a way enters; nothing when it stays outside, or when it does so only after this share of the step.
+  std::optional<Entry> entry(const Way& way, double field_at_a, QueryMemory& near, double latest = 1) const;
 
   // Finds the surface that holds a vertex at the end of its way: the closest one, unless it went through to another
-  // side; then it is the one by which the vertex entered. Nothing when there is none within `reach`.
-  std::optional<SurfacePoint> holding(const Way& way, double field_at_a, double reach, std::int32_t& near) const;
+  // side; then it is the one by which the vertex entered. Nothing when there is none within `reach`. What goes around
+  // the rim of a plate of triangles, through no more than the layer, is held by the closest side.
+  std::optional<SurfacePoint> holding(const Way& way, double field_at_a, double reach, QueryMemory& near) const;
 
  private:
   double bent_length(const Vec3& q, const Vec3& x) const;
+  SurfacePoint on_layer(SurfacePoint s) const;
+  bool leads_through(const Way& way, double field_at_a, double field_at_b) const;
   // Tells whether a way is too short to lead through the shape.
   bool short_way(double way) const { return way < traits_.half_thickness; }
-  std::optional<double> meets(const Way& way, double from, double to, double field_at_start, std::int32_t& near) const;
+  std::optional<double> meets(const Way& way, double from, double to, double field_at_start, QueryMemory& near,
+                              double latest = 1) const;
   Eigen::Isometry3d pose(double share) const;
 
   const Collider& collider_;

@@ -123,7 +123,7 @@ struct TriangleSearch {
   void examine(Eigen::Index triangle, const TriangleCorners& corners, double reach, const FacePoints::Piece& piece,
                std::vector<FacePoints::Candidate>& found) const {
     const ShapeProbe probe(piece.piece.shape);
-    std::int32_t near = -1;
+    QueryMemory near;
     const TriangleInShape search(probe, piece.piece.half_thickness, corners, near);
     const double within = faces.thickness + (at_start ? reach - piece.slack : -unheld * piece.slack);
     double radius = 0;
@@ -231,7 +231,7 @@ void measure_groups(const Model& model, const ColliderView& view, const Position
     }
     const Vec3 center = box.center();
     const double radius = 0.5 * box.diagonal();
-    std::int32_t near = -1;
+    QueryMemory near;
     faces.collider_move[group] = view.most_moved(center, radius);
     faces.distance[group] = view.distance(view.at_start(center), near) - view.uncertain(radius);
   }
@@ -257,7 +257,7 @@ void find_face_points(const Model& model, const ColliderView& view, const Positi
 }
 
 std::optional<SurfacePoint> plane_of(const ColliderView& view, const FacePoint& face, const Way& way, double reach,
-                                     std::int32_t& near) {
+                                     QueryMemory& near) {
   const double out = face.out.norm();
   Way beside = way;
   beside.a += face.out;

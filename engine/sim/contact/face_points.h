@@ -22,7 +22,7 @@ struct FacePoint {
   double slack;          // depth below which contact begins [m]
   Vec3 out;              // to the place from which its distance is measured, in the collider's frame [m]
   double field;          // distance at the start of the step, negative inside [m]
-  std::int32_t near;     // memory of its queries
+  QueryMemory near;      // of its queries
   std::int32_t earlier;  // the point before it whose first vertex is the same; -1: there is none
 };
 
@@ -44,7 +44,7 @@ struct FacePoints {
     ContactPoint point;
     double slack;
     Vec3 out;
-    std::int32_t near;
+    QueryMemory near;
   };
   std::vector<std::vector<Candidate>> by_chunk;  // scratch memory
 };
@@ -64,6 +64,6 @@ void find_face_points(const Model& model, const ColliderView& view, const Positi
 // as it lay when the point was found: there the normal turns evenly, and where the distance is least it stands straight
 // on the face.
 std::optional<SurfacePoint> plane_of(const ColliderView& view, const FacePoint& face, const Way& way, double reach,
-                                     std::int32_t& near);
+                                     QueryMemory& near);
 
 }  // namespace supple

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "base/error.h"
 #include "sim/contact/vertex_search.h"
@@ -24,7 +25,7 @@ double push_out_of(const Model& model, const StepInputs& inputs) {
 // Sets the plane of a point that started inside a collider which the body leaves by a common way: at the end of the
 // step it lies as much further along that way as it may go, or as it has left to go. It slides out without friction.
 void leave(const ColliderView& view, const Way& way, const Vec3& way_out, double field, double push_out,
-           std::int32_t& near, Contact& contact) {
+           QueryMemory& near, Contact& contact) {
   const Eigen::Isometry3d motion = view.motion_after(0);
   const Vec3 local = view.end().linear().transpose() * motion.linear() * way_out;
   double left = 0;
@@ -53,7 +54,7 @@ void find_way_out(const Model& model, const StepInputs& inputs, ContactWork& wor
   std::vector<std::size_t> deep;
   std::vector<Vec3> between;  // vertices
   for (std::size_t c = 0; c < colliders.size(); ++c) {
-    double least = search.deepest_start(c);
+    double least = search.deepest_start(c, -push_out);
     for (const FacePoint& face : work.faces[c].points) {
       least = std::min(least, face.field);
       between.push_back(face.point.at(*work.begin));
@@ -70,6 +71,19 @@ void find_way_out(const Model& model, const StepInputs& inputs, ContactWork& wor
   const std::optional<WayOut> way =
       way_out(Obstacles(colliders, poses), points, 0.1 * push_out, furthest_way_out * model.size);
   for (const std::size_t c : deep) work.way_out[c] = way ? way->direction : Vec3::Zero();
+}
+
+// Keeps what was remembered of the same solids for as many vertices.
+void remember_vertices(const Model& model, const std::vector<Collider>& colliders, ContactWork& work) {
+  work.memories.resize(colliders.size());
+  for (std::size_t c = 0; c < colliders.size(); ++c) {
+    VertexMemories& memories = work.memories[c];
+    std::shared_ptr<const TriangleSolid> solid = ShapeProbe(colliders[c].shape).remembered();
+    const std::size_t wanted = solid == nullptr ? 0 : std::size_t(model.free);
+    if (memories.solid == solid && memories.by_vertex.size() == wanted) continue;
+    memories.by_vertex.assign(wanted, {});
+    memories.solid = std::move(solid);
+  }
 }
 
 }  // namespace
@@ -96,7 +110,7 @@ void begin_contacts(const Model& model, const StepInputs& inputs, const Position
   work.begin = &q;
   work.start = q.topRows(model.free);
   work.clearance.assign(colliders * model.free, unknown);
-  work.memory.assign(colliders * model.free, -1);
+  remember_vertices(model, *inputs.colliders, work);
   work.group_distance.resize(colliders * groups);
   work.collider_move.resize(colliders * groups);
   measure_moves(model, y, work, work.group_free_move);
@@ -110,7 +124,7 @@ void begin_contacts(const Model& model, const StepInputs& inputs, const Position
     const double radius = std::sqrt(
         (work.start.middleRows(first, count).rowwise() - center.transpose()).rowwise().squaredNorm().maxCoeff());
     for (std::size_t c = 0; c < colliders; ++c) {
-      std::int32_t near = -1;
+      QueryMemory near;
       const ColliderMotion& motion = inputs.collider_motions[c];
       const ColliderView view((*inputs.colliders)[c], motion, work.traits[c]);
       work.collider_move[c * groups + group] = view.most_moved(center, radius);
@@ -146,7 +160,7 @@ class Planes {
         push_out_(push_out_of(model, inputs)),
         unit_stiffness_(inputs.solver.contact.stiffness / (model.time_step * model.time_step)) {}
 
-  void of_vertex(int v, const Way& way, double field, double reach, std::int32_t& near,
+  void of_vertex(int v, const Way& way, double field, double reach, QueryMemory& near,
                  std::vector<Contact>& list) const {
     Contact contact = contact_at(ContactPoint::at_vertex(v), v);
     if (is_leaving() && field <= 0) {
@@ -180,8 +194,8 @@ class Planes {
 
   // Adds a contact with the plane through a surface's point, lowered by the slack and by as much of the depth as need
   // not be corrected in this step.
-  void add(const SurfacePoint& surface, const Way& way, double field, double slack, std::int32_t& near,
-           Contact& contact, std::vector<Contact>& list) const {
+  void add(const SurfacePoint& surface, const Way& way, double field, double slack, QueryMemory& near, Contact& contact,
+           std::vector<Contact>& list) const {
     contact.normal = view_.end().linear() * surface.normal;
     if (is_leaving() && contact.normal.dot(way_out_) < 0.5) return;  // the others, which leave, pull it through
     const double deep = field < -push_out_ ? std::max(0.0, -view_.closest(way.a, near).distance - push_out_) : 0;

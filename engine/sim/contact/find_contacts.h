@@ -3,6 +3,7 @@
 // only those that may have come near. Not here: the energies of these planes (contact.h).
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "base/threads.h"
@@ -14,12 +15,20 @@
 
 namespace supple {
 
+// Remembers what queries for a body's vertices have found on a collider that is one closed surface, also from earlier
+// steps: this saves work and changes no answer.
+struct VertexMemories {
+  std::shared_ptr<const TriangleSolid> solid;  // null: another collider, of which nothing is remembered
+  std::vector<QueryMemory> by_vertex;          // free vertices; empty without a solid
+};
+
 // Holds the memory of the search for contacts within a step, and its scratch memory; empty while there are no
 // colliders.
 struct ContactWork {
   std::vector<std::vector<Contact>> by_chunk;
   std::vector<double> clearance;          // signed distance at the start, colliders x free; NaN: not asked yet [m]
-  std::vector<std::int32_t> memory;       // of queries for a vertex (ColliderView::closest), colliders x free
+  std::vector<VertexMemories> memories;   // by collider
+  QueryMemory no_memory;                  // stands for those of colliders of which nothing is remembered
   std::vector<double> group_distance;     // least distance of a group's vertices at the start, colliders x groups [m]
   std::vector<double> group_move;         // largest of a group's vertices, start to iterate [m]
   std::vector<double> group_free_move;    // the same, start to prediction [m]

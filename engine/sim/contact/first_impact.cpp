@@ -4,16 +4,21 @@
 namespace supple {
 namespace {
 
-// Returns which share of a way a point may go before it is deeper than `allowed` [m]. A point that touches already is
-// stopped only by a collider that comes to it: one that rests would be stopped on every step by its own weight.
-double share_to_impact(const ColliderView& view, const Way& way, double field, double allowed, std::int32_t& near) {
+// Returns which share of a way a point may go before it is deeper than `allowed` [m]; 1 also where that is no less than
+// `least`. A point that touches already is stopped only by a collider that comes to it: one that rests would be stopped
+// on every step by its own weight.
+double share_to_impact(const ColliderView& view, const Way& way, double field, double allowed, double least,
+                       QueryMemory& near) {
   if (field <= 0) {
     if (!view.moves()) return 1;
     const Vec3 normal = view.closest(way.a, near).normal;
     const double comes = -normal.dot(view.pace(view.way(way.q, way.q), 0)), falls = -normal.dot(view.pace(way, 0));
     return std::min(comes, falls) > allowed ? allowed / falls : 1;
   }
-  const std::optional<ColliderView::Entry> entered = view.entry(way, field, near);
+  // The depth grows no faster than the way.
+  const double furthest = least * way.length - (1 - 1e-9) * allowed;
+  if (view.clear(field) > furthest) return 1;
+  const std::optional<ColliderView::Entry> entered = view.entry(way, field, near, furthest / way.length);
   if (!entered) return 1;
   // Towards the surface, over a whole step.
   const double falls = -entered->surface.normal.dot(view.pace(way, entered->way));
@@ -31,14 +36,14 @@ Impact first_impact(const Model& model, const StepInputs& inputs, const Position
     const ColliderView view = search.view(c);
     for (int group = 0; group < vertex_groups(model); ++group) {
       search.near(c, view, group, [&](int v, const Way& way, double field, double) {
-        const double share = share_to_impact(view, way, field, allowed, search.memory(c, v));
+        const double share = share_to_impact(view, way, field, allowed, first.share, search.memory(c, v));
         if (share < first.share) first = {share, static_cast<int>(c)};
       });
     }
     for (FacePoint& face : work.faces[c].points) {
       const Way way = view.way(face.point.at(*work.begin), face.point.at(x));
       if (way.length < view.clear(face.field)) continue;
-      const double share = share_to_impact(view, way, face.field, allowed, face.near);
+      const double share = share_to_impact(view, way, face.field, allowed, first.share, face.near);
       if (share < first.share) first = {share, static_cast<int>(c)};
     }
   }

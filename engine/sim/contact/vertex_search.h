@@ -24,11 +24,21 @@ struct VertexSearch {
     return ColliderView((*inputs.colliders)[c], inputs.collider_motions[c], work.traits[c]);
   }
 
-  // The memory of queries for a vertex. Its first query starts from what the vertex before it in its group has found.
-  std::int32_t& memory(std::size_t c, int v) const {
-    std::int32_t& own = work.memory[c * model.free + v];
-    if (own < 0 && v % vertices_a_group > 0) own = work.memory[c * model.free + v - 1];
-    return own;
+  // Returns the memory of queries for a vertex. Its first query starts from what the vertex before it in its group has
+  // found.
+  QueryMemory& memory(std::size_t c, int v) const {
+    std::vector<QueryMemory>& of_collider = work.memories[c].by_vertex;
+    if (of_collider.empty()) return work.no_memory;
+    if (of_collider[v].leaf < 0 && v % vertices_a_group > 0) of_collider[v].leaf = of_collider[v - 1].leaf;
+    return of_collider[v];
+  }
+
+  // Tells whether a place is certainly further out than `most`, without asking how far. is_outside: what is known of
+  // it.
+  static bool is_certainly_clear(const ColliderView& view, const Vec3& p, double most, bool is_outside,
+                                 QueryMemory& near) {
+    return most < view.certain_distance(p, near) ||
+           (is_outside && view.knows_bounds() && !view.closest_within(p, most, near));
   }
 
   // Returns the signed distance of vertex v at the start of the step, which is computed once.
@@ -38,13 +48,15 @@ struct VertexSearch {
     return known;
   }
 
-  // Returns the least signed distance of all vertices at the start of the step, as far as it is negative.
-  double deepest_start(std::size_t c) const {
+  // Returns the least signed distance of all vertices at the start of the step, as far as it is below `above`.
+  double deepest_start(std::size_t c, double above) const {
     const ColliderView own = view(c);
-    double least = 0;
+    double least = above;
     for (int v = 0; v < model.free; ++v) {
-      if (work.group_distance[c * vertex_groups(model) + v / vertices_a_group] >= 0) continue;
-      least = std::min(least, start_field(own, c, v, own.at_start(work.start.row(v))));
+      if (work.group_distance[c * vertex_groups(model) + v / vertices_a_group] >= above) continue;
+      const Vec3 place = own.at_start(work.start.row(v));
+      if (own.certain_distance(place, memory(c, v)) >= above) continue;
+      least = std::min(least, start_field(own, c, v, place));
     }
     return least;
   }
@@ -61,6 +73,9 @@ struct VertexSearch {
     for (int v = group * vertices_a_group; v < end; ++v) {
       const Way way = view.way(work.start.row(v), x.row(v));
       const double reach = reach_of(way.length, view.length_to(work.prediction->row(v), way));
+      const bool asked = !std::isnan(work.clearance[c * model.free + v]);
+      if (!asked && is_certainly_clear(view, way.a, way.length + reach, work.group_distance[at] > 0, memory(c, v)))
+        continue;
       const double field = start_field(view, c, v, way.a);
       if (way.length + reach < view.clear(field)) continue;
       found(v, way, field, reach);

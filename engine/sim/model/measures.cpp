@@ -84,6 +84,21 @@ double jiggle(const Model& model, const Positions& x, const Eigen::Isometry3d& m
 
 namespace {
 
+// Tells whether no point of a triangle is deeper in a shape than `known`, as the distances of places in it show: of its
+// centre and, down to some level, of the centres of its quarters. Only for shapes whose distance is exact.
+bool certainly_no_deeper(const ShapeProbe& probe, const Vec3& a, const Vec3& b, const Vec3& c, double known, int levels,
+                         QueryMemory& near) {
+  const Vec3 center = (a + b + c) / 3;
+  const double needed = std::max({(a - center).norm(), (b - center).norm(), (c - center).norm()}) - known;
+  if (probe.certain_distance(center, near) >= needed || probe.distance(center, near) >= needed) return true;
+  if (levels == 0) return false;
+  const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
+  const auto clear = [&](const Vec3& p, const Vec3& q, const Vec3& r) {
+    return certainly_no_deeper(probe, p, q, r, known, levels - 1, near);
+  };
+  return clear(ab, bc, ca) && clear(a, ab, ca) && clear(ab, b, bc) && clear(ca, bc, c);
+}
+
 // Returns the largest depth in one shape, or `known` where none is larger. Depth is looked for in each piece of a
 // union, and measured in the whole.
 double deepest_in(const Shape& shape, const Eigen::Isometry3d& pose, const Positions& x, const Triangles& triangles,
@@ -93,7 +108,7 @@ double deepest_in(const Shape& shape, const Eigen::Isometry3d& pose, const Posit
   const std::vector<ShapePiece> pieces = pieces_of(shape);
   std::vector<ShapeProbe> probes;
   for (const ShapePiece& piece : pieces) probes.emplace_back(piece.shape);
-  std::vector<std::int32_t> near(pieces.size() + 1, -1);
+  std::vector<QueryMemory> near(pieces.size() + 1);
   double deepest = known;
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
     TriangleCorners corner;
@@ -102,7 +117,9 @@ double deepest_in(const Shape& shape, const Eigen::Isometry3d& pose, const Posit
     double reach = 0;
     for (const Vec3& p : corner) reach = std::max(reach, (p - center).norm());
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      if (pieces[i].shape.certainty() * probes[i].distance(center, near[i]) > reach) continue;
+      if (probes[i].is_exact() ? certainly_no_deeper(probes[i], corner[0], corner[1], corner[2], deepest, 2, near[i])
+                               : pieces[i].shape.certainty() * probes[i].distance(center, near[i]) > reach)
+        continue;
       const TriangleInShape::Descent least =
           TriangleInShape(probes[i], pieces[i].half_thickness, corner, near[i]).descend();
       const auto look = [&](const Vec3& p, double distance) {
