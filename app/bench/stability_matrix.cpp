@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
-#include <string_view>
 
 #include "app/bench/sections.h"
 #include "film/places.h"
@@ -20,98 +18,6 @@ namespace {
 constexpr double much_energy = 0.2;  // from nothing, over what was exchanged: where a run warns
 // The strain limits have no force up to 1.05, and the polynomial hardly any.
 constexpr double rest_stretch = 1.06;
-
-std::string joined(std::initializer_list<std::string_view> parts) {
-  std::string text;
-  for (const std::string_view part : parts) text += part;
-  return text;
-}
-
-std::string cube(std::string_view keys, int cells = 3, double edge = 0.2) {
-  return fmt::format(
-      "[[body]]\nname = \"cube\"\nbox = {{ extent = [{0:g}, {0:g}, {0:g}], cells = [{1}, {1}, {1}] }}\nmaterial = "
-      "MATERIAL\n{2}\n",
-      edge, cells, keys);
-}
-
-std::string bar(std::string_view keys) {
-  return joined(
-      {"[[body]]\nname = \"bar\"\nbox = { extent = [0.6, 0.2, 0.2], cells = [9, 3, 3] }\nmaterial = MATERIAL\n", keys,
-       "\n"});
-}
-
-constexpr std::string_view held_end =
-    "[[body.handles]]\nname = \"end\"\nselect = { box = [[0, 0, 0], [0.01, 1, 1]] }\n";
-constexpr std::string_view ground = "[[collider]]\nshape = { half_space = { normal = [0, 1, 0] } }\n";
-constexpr std::string_view weightless = "frames = 90\ngravity = [0, 0, 0]\n", two_seconds = "frames = 60\n";
-
-using Cases = std::vector<HardCase>;
-
-void add(Cases& list, const std::string& name, StableEnd end, std::initializer_list<std::string_view> scene,
-         const std::string& only = {}) {
-  list.push_back({name, joined(scene), end, only});
-}
-
-void add_starts(Cases& list) {
-  const auto start = [&](const std::string& name, std::string_view keys, StableEnd end) {
-    add(list, name, end, {weightless, cube(joined({"start = { ", keys, " }"}))});
-  };
-  for (int seed = 1; seed <= 3; ++seed)
-    add(list, fmt::format("random positions, seed {}", seed), StableEnd::bounded,
-        {fmt::format("seed = {}\n", seed), weightless, cube("start = { random = [0.2, 0.2, 0.2] }")});
-  start("collapsed to a point", "flatten = \"point\"", StableEnd::bounded);
-  start("collapsed to a line", "flatten = \"line\"", StableEnd::bounded);
-  start("collapsed to a plane", "flatten = \"plane\"", StableEnd::bounded);
-  start("mirrored", "stretch = [-1, 1, 1]", StableEnd::bounded);
-  start("stretched 3 times", "stretch = [3, 1, 1]", StableEnd::recovered);
-  start("stretched 10 times", "stretch = [10, 10, 10]", StableEnd::bounded);
-  start("squashed to 1 %", "stretch = [1, 0.01, 1]", StableEnd::bounded);
-  for (const double turns : {0.5, 2.0, 8.0})
-    add(list, fmt::format("twisted {:g} turns", turns), turns < 1 ? StableEnd::recovered : StableEnd::bounded,
-        {weightless, bar(fmt::format("start = {{ twist_deg = {:g} }}", 360 * turns))});
-}
-
-void add_loads(Cases& list) {
-  add(list, "hanging from its end", StableEnd::whole, {two_seconds, bar(held_end)});
-  add(list, "gravity x 100", StableEnd::bounded, {two_seconds, "gravity = [0, -981, 0]\n", bar(held_end)});
-  add(list, "shaken by its end", StableEnd::whole,
-      {two_seconds, bar(held_end),
-       "keys = [{ t = 0 }, { t = 0.3, move = [0, 0.6, 0] }, { t = 0.6 }, { t = 0.9, move = [0, 0.6, 0] }, { t = 1.2 "
-       "}]"});
-  add(list, "light as air", StableEnd::whole, {two_seconds, bar(joined({"density = 1\n", held_end}))});
-  add(list, "overloaded", StableEnd::bounded, {two_seconds, bar(joined({"density = 2e4\n", held_end}))});
-  for (const double rate : {1000.0, 30.0, 10.0, 2.0})
-    add(list, fmt::format("steps of 1/{:g} s", rate), rate >= 30 ? StableEnd::whole : StableEnd::bounded,
-        {fmt::format("frames = {}\nfps = {:g}\n", std::clamp(int(rate), 20, 100), rate), bar(held_end)});
-  for (const double poisson : {0.45, 0.49, 0.495})
-    add(list, fmt::format("Poisson's ratio {:g}", poisson), StableEnd::whole, {two_seconds, bar(held_end)},
-        fmt::format("{{ model = \"neo-hookean\", young = 3e4, poisson = {:g} }}", poisson));
-  for (const int iterations : {1, 2, 3})
-    add(list, fmt::format("{} iteration{}", iterations, iterations == 1 ? "" : "s"), StableEnd::bounded,
-        {two_seconds, fmt::format("[solver]\niterations = {}\n", iterations), bar(held_end)});
-  for (const int history : {0, 1, 100})
-    add(list, fmt::format("window m = {}", history), StableEnd::whole,
-        {two_seconds, fmt::format("[solver]\nhistory = {}\n", history), bar(held_end)});
-}
-
-void add_motions(Cases& list) {
-  const auto falls = [&](const std::string& name, std::string_view keys, StableEnd end) {
-    add(list, name, end, {two_seconds, cube(joined({"position = [0, 0.02, 0]\n", keys})), ground});
-  };
-  falls("dropped", "velocity = [0, -1, 0]", StableEnd::whole);
-  falls("impact of one size a step", "velocity = [0, -6, 0]", StableEnd::bounded);
-  falls("impact of three sizes a step", "velocity = [0, -18, 0]", StableEnd::bounded);
-  add(list, "free fall", StableEnd::recovered, {two_seconds, cube("")});
-  add(list, "1e4 sizes from the origin", StableEnd::recovered, {two_seconds, cube("position = [2000, 0, 0]")});
-  for (const double edge : {1e-4, 1e-2, 1e2, 1e4})
-    add(list, fmt::format("a cube of {:g} m", edge), StableEnd::bounded,
-        {weightless, cube("start = { stretch = [1.5, 1, 1] }", 3, edge)});
-  add(list, "one cell", StableEnd::recovered, {weightless, cube("start = { stretch = [2, 1, 1] }", 1)});
-  add(list, "elements 1:100", StableEnd::bounded,
-      {two_seconds,
-       "[[body]]\nname = \"sheet\"\nbox = { extent = [1, 0.01, 1], cells = [4, 4, 4] }\nmaterial = MATERIAL\n",
-       held_end});
-}
 
 SceneDef scene_of(const std::string& text) {
   Config config = Config::parse(text, "hard case", assets_folder());
@@ -148,18 +54,10 @@ std::vector<NamedMaterial> stability_materials() {
   return list;
 }
 
-std::vector<HardCase> hard_cases() {
-  std::vector<HardCase> list;
-  add_starts(list);
-  add_loads(list);
-  add_motions(list);
-  return list;
-}
+namespace {
 
-StabilityOutcome run_case(const HardCase& hard, const NamedMaterial& material, Threads& threads) {
-  std::string text = hard.scene;
-  const std::string word = "MATERIAL";  // stands in every case's scene for the material's table
-  text.replace(text.find(word), word.size(), hard.only.empty() ? material.table : hard.only);
+// Plays the scene of a case that is drawn by one seed.
+StabilityOutcome run_scene(const std::string& text, StableEnd end, Threads& threads) {
   const SceneDef scene = scene_of(text);
   Body body = std::move(assemble(scene).front());
   Model model = build_model(body.description);
@@ -189,8 +87,38 @@ StabilityOutcome run_case(const HardCase& hard, const NamedMaterial& material, T
   outcome.inverted = shape.inverted;
   outcome.collapsed = shape.collapsed;
   outcome.told = !outcome.finite || outcome.from_nothing > much_energy || shape.inverted > 0 || shape.collapsed > 0;
-  outcome.failure = broken_rule(outcome, hard.end);
+  outcome.failure = broken_rule(outcome, end);
   return outcome;
+}
+
+// Describes what the runs of a case ended as, in a cell: the first rule that was broken, or what a run warns of.
+std::string text_of(const std::vector<StabilityOutcome>& outcomes) {
+  const auto broken = [](const StabilityOutcome& outcome) { return !outcome.passed(); };
+  if (const auto count = std::count_if(outcomes.begin(), outcomes.end(), broken); count > 0) {
+    const std::string first = std::find_if(outcomes.begin(), outcomes.end(), broken)->failure;
+    return outcomes.size() == 1 ? first : fmt::format("{} of {}: {}", count, outcomes.size(), first);
+  }
+  int inverted = 0, collapsed = 0;
+  for (const StabilityOutcome& outcome : outcomes) {
+    inverted = std::max(inverted, outcome.inverted);
+    collapsed = std::max(collapsed, outcome.collapsed);
+  }
+  if (inverted > 0) return fmt::format("({} inverted)", inverted);
+  return collapsed > 0 ? fmt::format("({} without volume)", collapsed) : "";
+}
+
+}  // namespace
+
+std::vector<StabilityOutcome> run_case(const HardCase& hard, const NamedMaterial& material, Threads& threads) {
+  const auto filled = [](std::string text, const std::string& word, const std::string& value) {
+    if (const std::size_t at = text.find(word); at != std::string::npos) text.replace(at, word.size(), value);
+    return text;
+  };
+  const std::string scene = filled(hard.scene, "MATERIAL", hard.only.empty() ? material.table : hard.only);
+  std::vector<StabilityOutcome> outcomes;
+  for (int seed = 1; seed <= hard.seeds; ++seed)
+    outcomes.push_back(run_scene(filled(scene, "SEED", std::to_string(seed)), hard.end, threads));
+  return outcomes;
 }
 
 ReportSection bench_stability(const BenchSetting& setting) {
@@ -207,7 +135,7 @@ ReportSection bench_stability(const BenchSetting& setting) {
   ReportTable work{"stability-work", "Evaluations a frame, and the worst error estimate"};
   work.columns = table.columns;
   int runs = 0, passed = 0, silent = 0;
-  for (const HardCase& hard : hard_cases()) {
+  for (const HardCase& hard : hard_cases(setting.paper_meshes)) {
     say_doing(setting, hard.name);
     const char* rule = hard.end == StableEnd::recovered ? "at rest"
                        : hard.end == StableEnd::whole   ? "whole"
@@ -219,15 +147,17 @@ ReportSection bench_stability(const BenchSetting& setting) {
         costs.emplace_back("-");
         continue;
       }
-      const StabilityOutcome outcome = run_case(hard, materials[m], *setting.threads);
-      ++runs;
-      passed += outcome.passed();
-      silent += !outcome.passed() && !outcome.told;
-      const std::string remark = outcome.inverted > 0    ? fmt::format("({} inverted)", outcome.inverted)
-                                 : outcome.collapsed > 0 ? fmt::format("({} without volume)", outcome.collapsed)
-                                                         : "";
-      cells.push_back(outcome.passed() ? remark : outcome.failure);
-      costs.push_back(fmt::format("{:.0f}; {:.1e}", outcome.trials, outcome.error_estimate));
+      const std::vector<StabilityOutcome> outcomes = run_case(hard, materials[m], *setting.threads);
+      double trials = 0, error = 0;
+      for (const StabilityOutcome& outcome : outcomes) {
+        ++runs;
+        passed += outcome.passed();
+        silent += !outcome.passed() && !outcome.told;
+        trials += outcome.trials / double(outcomes.size());
+        error = std::max(error, outcome.error_estimate);
+      }
+      cells.push_back(text_of(outcomes));
+      costs.push_back(fmt::format("{:.0f}; {:.1e}", trials, error));
     }
     table.rows.push_back(std::move(cells));
     work.rows.push_back(std::move(costs));

@@ -10,7 +10,7 @@ namespace supple {
 namespace {
 
 StabilityOutcome outcome_of(const std::string& hard, const std::string& material) {
-  const std::vector<HardCase> cases = hard_cases();
+  const std::vector<HardCase> cases = hard_cases(std::nullopt);
   const std::vector<NamedMaterial> materials = stability_materials();
   const auto one = std::find_if(cases.begin(), cases.end(), [&](const HardCase& c) { return c.name == hard; });
   const auto of =
@@ -18,12 +18,14 @@ StabilityOutcome outcome_of(const std::string& hard, const std::string& material
   EXPECT_NE(one, cases.end()) << hard;
   EXPECT_NE(of, materials.end()) << material;
   Threads threads(1);
-  return run_case(*one, *of, threads);
+  HardCase once = *one;
+  once.seeds = 1;
+  return run_case(once, *of, threads).front();
 }
 
 TEST(StabilityMatrix, HasNoTwoCasesOfOneName) {
   std::set<std::string> names;
-  for (const HardCase& hard : hard_cases()) EXPECT_TRUE(names.insert(hard.name).second) << hard.name;
+  for (const HardCase& hard : hard_cases("meshes")) EXPECT_TRUE(names.insert(hard.name).second) << hard.name;
 }
 
 TEST(StabilityMatrix, SomeOfTheHardestCasesKeepTheirRules) {
@@ -47,7 +49,7 @@ TEST(StabilityMatrix, ABodyAtRestIsNoHarderThanAMovingOne) {
 
 // Whatever breaks its rule is told of.
 TEST(StabilityMatrix, NothingFailsInSilence) {
-  for (const char* hard : {"mirrored", "random positions, seed 1", "twisted 2 turns"}) {
+  for (const char* hard : {"mirrored", "random positions", "twisted 2 turns"}) {
     const StabilityOutcome outcome = outcome_of(hard, "neo-hookean");
     EXPECT_TRUE(outcome.passed() || outcome.told) << hard << ": " << outcome.failure;
   }

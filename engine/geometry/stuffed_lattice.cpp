@@ -1,0 +1,385 @@
+#include "geometry/stuffed_lattice.h"
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+
+#include "base/error.h"
+#include "geometry/mesh_repair.h"
+#include "geometry/shape_probe.h"
+
+namespace supple {
+namespace {
+
+// A cut point within these fractions of an edge pulls its lattice point onto the surface. They are the pair for which
+// the paper's computer search proves the dihedral angles (Labelle and Shewchuk 2007, section 4, uniform tetrahedra).
+constexpr double snap_long = 0.24999;
+constexpr double snap_short = 0.41189;
+
+// Lattice coordinates count half spacings: even triples are cell corners, odd triples are cell centres.
+using Site = std::array<int, 3>;
+
+constexpr Site forward_edges[7] = {{2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 1, 1}, {-1, 1, 1}, {1, -1, 1}, {-1, -1, 1}};
+constexpr int long_edges = 3;  // the first three are the long ones
+
+class IsosurfaceStuffing {
+ public:
+  IsosurfaceStuffing(const Shape& shape, double spacing, const Vec3& shift, const std::function<void(double)>& heard,
+                     Threads& threads)
+      : probe_(shape), spacing_(spacing), heard_(heard), threads_(threads) {
+    const Bounds box = shape.bounds();
+    origin_ = box.lower - (1.5 * Vec3::Ones() + shift) * spacing;
+    for (int axis = 0; axis < 3; ++axis) {
+      cells_[static_cast<std::size_t>(axis)] = static_cast<int>(std::ceil(box.extent()[axis] / spacing + 4));
+    }
+    const auto layers = static_cast<std::size_t>(2 * cells_[2] + 1);
+    const std::size_t sites =
+        layers * static_cast<std::size_t>(cells_[1] + 1) * static_cast<std::size_t>(cells_[0] + 1);
+    field_.assign(sites, 1.0);
+    moved_.resize(sites);
+    cut_.assign(sites * 7, no_cut);
+    cut_vertex_.assign(sites * 7, -1);
+    site_vertex_.assign(sites, -1);
+  }
+
+  TetMesh run() {
+    sample();
+    find_cuts();
+    snap();
+    emit_all();
+    TetMesh mesh;
+    mesh.rest.resize(static_cast<Eigen::Index>(vertices_.size()), 3);
+    for (std::size_t v = 0; v < vertices_.size(); ++v) mesh.rest.row(static_cast<Eigen::Index>(v)) = vertices_[v];
+    mesh.tets.resize(static_cast<Eigen::Index>(tets_.size()), 4);
+    for (std::size_t e = 0; e < tets_.size(); ++e) {
+      for (int k = 0; k < 4; ++k) mesh.tets(static_cast<Eigen::Index>(e), k) = tets_[e][static_cast<std::size_t>(k)];
+      if (tet_volume(mesh, static_cast<Eigen::Index>(e)) < 0) {
+        std::swap(mesh.tets(static_cast<Eigen::Index>(e), 2), mesh.tets(static_cast<Eigen::Index>(e), 3));
+      }
+    }
+    return mesh;
+  }
+
+ private:
+  static constexpr double no_cut = -1;
+
+  bool inside_lattice(const Site& s) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (s[axis] < 0 || s[axis] > 2 * cells_[axis]) return false;
+    }
+    return true;
+  }
+  std::size_t id(const Site& s) const {
+    return (static_cast<std::size_t>(s[2]) * static_cast<std::size_t>(cells_[1] + 1) +
+            static_cast<std::size_t>(s[1] / 2)) *
+               static_cast<std::size_t>(cells_[0] + 1) +
+           static_cast<std::size_t>(s[0] / 2);
+  }
+  Vec3 lattice_position(const Site& s) const { return origin_ + 0.5 * spacing_ * Vec3(s[0], s[1], s[2]); }
+  Vec3 position(const Site& s) const { return lattice_position(s) + moved_[id(s)]; }
+
+  // Passes the rows of sites along x, layer by layer, each layer by one thread; a row may write to its own sites alone.
+  // Tells after some layers how far that is: sampling and finding cuts, which pass once each, take nearly all of the
+  // time.
+  template <class Visit>
+  void for_each_row(const Visit& visit) {
+    constexpr int layers_at_once = 8, passes = 2;
+    const int layers = 2 * cells_[2] + 1;
+    for (int first = 0; first < layers; first += layers_at_once) {
+      const int count = std::min(layers_at_once, layers - first);
+      threads_.run(count, [&](int n) {
+        const int k = first + n;
+        for (int j = k % 2; j <= 2 * cells_[1] - k % 2; j += 2) visit(j, k);
+      });
+      layers_done_ += count;
+      if (heard_) heard_(std::min(1.0, layers_done_ / double(passes * layers)));
+    }
+  }
+
+  template <class Visit>
+  void for_each_site(const Visit& visit) {
+    for (int k = 0; k <= 2 * cells_[2]; ++k) {
+      for (int j = k % 2; j <= 2 * cells_[1] - k % 2; j += 2) {
+        for (int i = k % 2; i <= 2 * cells_[0] - k % 2; i += 2) visit(Site{i, j, k});
+      }
+    }
+  }
+
+  void sample() {
+    for (Vec3& m : moved_) m.setZero();
+    for_each_row([&](int j, int k) { sample_row(j, k); });
+  }
+
+  // An exact distance says how far the surface is at most from the next site, and, where it is large, that all edges of
+  // the next sites lie on its side. The values of these sites are then of no use beyond their signs.
+  void sample_row(int j, int k) {
+    double known = 1e300;
+    int skip = 0, passed = 0;  // sites since the last value
+    for (int i = k % 2; i <= 2 * cells_[0] - k % 2; i += 2) {
+      const Site s{i, j, k};
+      ++passed;
+      if (skip > 0) {
+        --skip;
+        field_[id(s)] = known;
+        continue;
+      }
+      const double most = std::abs(known) + passed * spacing_;
+      known = probe_.is_exact() && most < 1e299 ? probe_.distance_within(lattice_position(s), most)
+                                                : probe_.distance(lattice_position(s));
+      field_[id(s)] = known;
+      passed = 0;
+      if (probe_.is_exact()) skip = std::clamp(int(std::abs(known) / spacing_ - 1.01), 0, 1 << 20);
+    }
+  }
+
+  // Finds the cut's parameter along a -> b by bisection, starting from the secant's guess; the field has opposite signs
+  // at a and b.
+  double find_cut(const Site& a, const Site& b) const {
+    const Vec3 from = lattice_position(a), to = lattice_position(b);
+    double low = 0, high = 1;
+    const bool low_inside = field_[id(a)] < 0;
+    double t = field_[id(a)] / (field_[id(a)] - field_[id(b)]);
+    // The surface is no further than the nearer end of the edge and the way there.
+    const double most = std::min(std::abs(field_[id(a)]), std::abs(field_[id(b)])) + (to - from).norm();
+    for (int step = 0; step < 30; ++step) {
+      const Vec3 place = from + t * (to - from);
+      const double value = probe_.is_exact() ? probe_.distance_within(place, most) : probe_.distance(place);
+      if (std::abs(value) < 1e-9 * spacing_) break;
+      ((value < 0) == low_inside ? low : high) = t;
+      if (high - low < 1e-7) break;
+      t = 0.5 * (low + high);
+    }
+    return t;
+  }
+
+  void find_cuts() {
+    for_each_row([&](int j, int k) {
+      for (int i = k % 2; i <= 2 * cells_[0] - k % 2; i += 2) find_cuts_at(Site{i, j, k});
+    });
+  }
+
+  void find_cuts_at(const Site& s) {
+    for (int e = 0; e < 7; ++e) {
+      const Site other = stepped(s, forward_edges[e], 1);
+      if (!inside_lattice(other)) continue;
+      if ((field_[id(s)] < 0) != (field_[id(other)] < 0))
+        cut_[id(s) * 7 + static_cast<std::size_t>(e)] = find_cut(s, other);
+    }
+  }
+
+  static Site stepped(const Site& s, const Site& edge, int sign) {
+    return {s[0] + sign * edge[0], s[1] + sign * edge[1], s[2] + sign * edge[2]};
+  }
+
+  // Calls visit(slot of the edge, the other end, the cut's fraction from s, the edge's direction) for each cut edge of
+  // s.
+  template <class Visit>
+  void for_each_cut(const Site& s, const Visit& visit) {
+    for (int e = 0; e < 7; ++e) {
+      const std::size_t slot = id(s) * 7 + static_cast<std::size_t>(e);
+      if (cut_[slot] != no_cut) visit(slot, stepped(s, forward_edges[e], 1), cut_[slot], e);
+      const Site other = stepped(s, forward_edges[e], -1);
+      if (!inside_lattice(other)) continue;
+      const std::size_t back = id(other) * 7 + static_cast<std::size_t>(e);
+      if (cut_[back] != no_cut) visit(back, other, 1 - cut_[back], e);
+    }
+  }
+
+  void snap() {
+    for_each_site([&](const Site& s) {
+      double nearest = 1;  // in units of the edge's own snapping distance
+      Vec3 target = Vec3::Zero();
+      for_each_cut(s, [&](std::size_t, const Site& other, double fraction, int edge) {
+        const double relative = fraction / (edge < long_edges ? snap_long : snap_short);
+        if (relative >= nearest) return;
+        nearest = relative;
+        target = fraction * (lattice_position(other) - lattice_position(s));
+      });
+      if (nearest >= 1) return;
+      for_each_cut(s, [&](std::size_t slot, const Site&, double, int) { cut_[slot] = no_cut; });
+      moved_[id(s)] = target;
+      field_[id(s)] = 0;
+    });
+  }
+
+  static bool is_long(const Site& a, const Site& b) { return (a[0] + b[0]) % 2 == 0; }
+
+  int vertex(const Site& s) {
+    int& name = site_vertex_[id(s)];
+    if (name < 0) {
+      name = static_cast<int>(vertices_.size());
+      vertices_.push_back(position(s).transpose());
+    }
+    return name;
+  }
+
+  int cut_vertex(const Site& a, const Site& b) {
+    for (int e = 0; e < 7; ++e) {
+      for (const bool swapped : {false, true}) {
+        const Site& from = swapped ? b : a;
+        if (stepped(from, forward_edges[e], 1) != (swapped ? a : b)) continue;
+        const std::size_t slot = id(from) * 7 + static_cast<std::size_t>(e);
+        SUPPLE_CHECK(cut_[slot], >=, 0.0);
+        int& name = cut_vertex_[slot];
+        if (name < 0) {
+          name = static_cast<int>(vertices_.size());
+          const Vec3 p = lattice_position(from), q = lattice_position(swapped ? a : b);
+          vertices_.push_back((p + cut_[slot] * (q - p)).transpose());
+        }
+        return name;
+      }
+    }
+    SUPPLE_CHECK(0, ==, 1);
+    return -1;
+  }
+
+  // On a face with a and b inside and c outside, the kept quadrilateral is (a, b, bc, ac). Returns true when its
+  // diagonal is a-bc, false when it is b-ac. Both elements at a face decide alike. With both cuts on short edges, the
+  // lattice's parity decides; otherwise the diagonal starts at the cut on the long edge.
+  static bool diagonal_from_first(const Site& a, const Site& b, const Site& c) {
+    if (is_long(a, b)) {
+      std::size_t axis = 0;
+      while (a[axis] == b[axis]) ++axis;
+      return (a[axis] / 2) % 2 == 0;
+    }
+    return is_long(b, c);
+  }
+
+  void add(int a, int b, int c, int d) { tets_.push_back({a, b, c, d}); }
+
+  // Adds the pyramid over the quadrilateral (a, b, b_cut, a_cut).
+  void add_pyramid(int apex, int a, int b, int b_cut, int a_cut, bool from_a) {
+    if (from_a) {
+      add(apex, a, b, b_cut);
+      add(apex, a, b_cut, a_cut);
+    } else {
+      add(apex, a, b, a_cut);
+      add(apex, b, b_cut, a_cut);
+    }
+  }
+
+  void emit_three_inside(std::array<Site, 3> in, const Site& out) {
+    // in[0] becomes the corner that the long edge joins to `out`. Both diagonals on its side start at the cut on that
+    // edge.
+    for (std::size_t k = 1; k < 3; ++k) {
+      if (is_long(in[k], out)) std::swap(in[0], in[k]);
+    }
+    const int a = vertex(in[0]), b = vertex(in[1]), c = vertex(in[2]);
+    const int a_cut = cut_vertex(in[0], out), b_cut = cut_vertex(in[1], out), c_cut = cut_vertex(in[2], out);
+    add(a, b, c, a_cut);
+    add_pyramid(a_cut, b, c, c_cut, b_cut, diagonal_from_first(in[1], in[2], out));
+  }
+
+  void emit_two_inside(const Site& a, const Site& b, Site c, Site d) {
+    const int va = vertex(a), vb = vertex(b);
+    if (!is_long(a, b) && !is_long(a, c)) std::swap(c, d);
+    const int ac = cut_vertex(a, c), ad = cut_vertex(a, d), bc = cut_vertex(b, c), bd = cut_vertex(b, d);
+    if (!is_long(a, b)) {
+      // Here a-c and b-d are long: the diagonals are b-ac and a-bd, which leave ac-bd as the only one for the surface.
+      add(va, ac, ad, bd);
+      add(va, vb, ac, bd);
+      add(vb, ac, bc, bd);
+      return;
+    }
+    const double first =
+        (vertices_[static_cast<std::size_t>(ac)] - vertices_[static_cast<std::size_t>(bd)]).squaredNorm();
+    const double second =
+        (vertices_[static_cast<std::size_t>(bc)] - vertices_[static_cast<std::size_t>(ad)]).squaredNorm();
+    if (diagonal_from_first(a, b, c)) {
+      add(va, vb, bc, bd);
+      add_pyramid(va, ac, bc, bd, ad, first <= second);
+    } else {
+      add(vb, va, ac, ad);
+      add_pyramid(vb, ac, bc, bd, ad, first <= second);
+    }
+  }
+
+  void emit(const std::array<Site, 4>& corners) {
+    std::array<Site, 4> in, out, on;
+    std::size_t ins = 0, outs = 0, ons = 0;
+    for (const Site& s : corners) {
+      const double value = field_[id(s)];
+      if (value < 0)
+        in[ins++] = s;
+      else if (value > 0)
+        out[outs++] = s;
+      else
+        on[ons++] = s;
+    }
+    if (ins == 0) return;
+    if (outs == 0) {
+      add(vertex(corners[0]), vertex(corners[1]), vertex(corners[2]), vertex(corners[3]));
+    } else if (ins == 1) {
+      int names[3];
+      for (std::size_t k = 0; k < ons; ++k) names[k] = vertex(on[k]);
+      for (std::size_t k = 0; k < outs; ++k) names[ons + k] = cut_vertex(in[0], out[k]);
+      add(vertex(in[0]), names[0], names[1], names[2]);
+    } else if (ins == 3) {
+      emit_three_inside({in[0], in[1], in[2]}, out[0]);
+    } else if (outs == 1) {
+      add_pyramid(vertex(on[0]), vertex(in[0]), vertex(in[1]), cut_vertex(in[1], out[0]), cut_vertex(in[0], out[0]),
+                  diagonal_from_first(in[0], in[1], out[0]));
+    } else {
+      emit_two_inside(in[0], in[1], out[0], out[1]);
+    }
+  }
+
+  // Each element of the lattice has two neighbouring centres and one edge of the square between their cells.
+  void emit_all() {
+    for (int k = 1; k < 2 * cells_[2]; k += 2) {
+      for (int j = 1; j < 2 * cells_[1]; j += 2) {
+        for (int i = 1; i < 2 * cells_[0]; i += 2) {
+          for (std::size_t axis = 0; axis < 3; ++axis) {
+            const Site a{i, j, k};
+            Site b = a;
+            b[axis] += 2;
+            if (b[axis] > 2 * cells_[axis]) continue;
+            const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+            constexpr int square[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+            for (int side = 0; side < 4; ++side) {
+              Site c = a, d = a;
+              c[axis] += 1;
+              d[axis] += 1;
+              c[u] += square[side][0];
+              c[v] += square[side][1];
+              d[u] += square[(side + 1) % 4][0];
+              d[v] += square[(side + 1) % 4][1];
+              emit({a, b, c, d});
+            }
+          }
+        }
+      }
+    }
+  }
+
+  const ShapeProbe probe_;
+  const double spacing_;
+  const std::function<void(double)>& heard_;
+  Threads& threads_;
+  int layers_done_ = 0;  // of both passes
+  Vec3 origin_;
+  std::array<int, 3> cells_{};
+  std::vector<double> field_;     // distance at each site; 0 where the site was moved onto the surface
+  std::vector<Vec3> moved_;       // displacement of each site [m]
+  std::vector<double> cut_;       // fraction at which each forward edge is cut, or no_cut
+  std::vector<int> cut_vertex_;   // vertex on each forward edge, or -1
+  std::vector<int> site_vertex_;  // vertex at each site, or -1
+  std::vector<Eigen::RowVector3d> vertices_;
+  std::vector<std::array<int, 4>> tets_;
+};
+
+}  // namespace
+
+TetMesh stuffed_lattice(const Shape& shape, double spacing, const Vec3& shift, const std::function<void(double)>& heard,
+                        Threads& threads) {
+  TetMesh mesh = one_manifold_piece(IsosurfaceStuffing(shape, spacing, shift, heard, threads).run());
+  mesh.regions.resize(static_cast<std::size_t>(mesh.tets.rows()));
+  for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
+    Vec3 centroid = Vec3::Zero();
+    for (int k = 0; k < 4; ++k) centroid += 0.25 * mesh.rest.row(mesh.tets(e, k)).transpose();
+    mesh.regions[static_cast<std::size_t>(e)] = shape.region(centroid);
+  }
+  return mesh;
+}
+
+}  // namespace supple
