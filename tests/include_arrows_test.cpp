@@ -37,11 +37,12 @@ const std::map<std::string, std::set<std::string>> rooms = {
 // Lists headers of third parties, and the files that may include them.
 const std::vector<std::pair<std::regex, std::regex>> cages = {
     {std::regex("cholmod\\.h"), std::regex("engine/sim/linear/cholesky\\.cpp")},
-    {std::regex("png\\.h"), std::regex("engine/output/png_file\\.cpp")},
+    {std::regex("png\\.h"), std::regex("engine/(output/png_file|geometry/texture_reader)\\.cpp")},
+    {std::regex("jpeglib\\.h"), std::regex("engine/geometry/texture_reader\\.cpp")},
     {std::regex("(GL|EGL)/.*"), std::regex("engine/render/.*")},
     {std::regex("ft2build\\.h"), std::regex("engine/render/caption\\.cpp")},
     {std::regex("toml\\+\\+/.*"), std::regex("engine/scene/toml_document\\.h")},
-    {std::regex("assimp/.*"), std::regex("engine/geometry/assimp_reader\\.cpp")},
+    {std::regex("assimp/.*"), std::regex("engine/geometry/assimp_(reader\\.cpp|colors\\.(h|cpp))")},
     {std::regex("meshoptimizer\\.h"), std::regex("engine/geometry/simplify\\.cpp")},
     {std::regex("xxhash\\.h"), std::regex("engine/base/hash\\.cpp")},
     {std::regex("CLI/.*"), std::regex("app/command_line\\.cpp")},

@@ -112,13 +112,13 @@ TEST(Method, PartsThatDoNotGoTogetherAreRefusedWithWhatDoes) {
             "scene.toml:2:64: inner_tolerance = 0.1: must be 0 but with matrix = 'hessian' and linear = 'cg'");
   EXPECT_EQ(refusal("method = { linear = \"cg\" }"),
             "scene.toml:2:10: 'matrix' is missing: what a search direction starts from (system, identity, "
-            "rest-hessian, warped-rest-hessian, frame-hessian, hessian, hecht or contact)");
+            "rest-hessian, warped-rest-hessian, frame-hessian, hessian, hecht, contact or vertex-blocks)");
   EXPECT_EQ(refusal("method = \"newtn\""),
-            "scene.toml:2:10: method = 'newtn': must be quasi-newton, projective-dynamics, chebyshev, newton, gast or "
-            "hecht; did you mean 'newton'?");
+            "scene.toml:2:10: method = 'newtn': must be quasi-newton, projective-dynamics, chebyshev, newton, gast, "
+            "hecht, vertex-block-descent or admm; did you mean 'newton'?");
   EXPECT_EQ(refusal("method = { matrix = \"hesian\" }"),
             "scene.toml:2:21: matrix = 'hesian': must be system, identity, rest-hessian, warped-rest-hessian, "
-            "frame-hessian, hessian, hecht or contact; did you mean 'hessian'?");
+            "frame-hessian, hessian, hecht, contact or vertex-blocks; did you mean 'hessian'?");
 }
 
 TEST(Method, PartsCanBeSetByTheirPaths) {
