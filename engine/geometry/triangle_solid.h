@@ -37,11 +37,11 @@ class TriangleSolid {
   // Accepts any finite point. The distance is exact up to round-off of the surface's coordinates.
   SurfacePoint closest(const Vec3& p) const;
 
-  // The same for a caller that asks about places near each other. The side is found from the surface's normals where
-  // that is safe, and otherwise as above.
+  // Does the same for a caller that asks about places near each other. The side is found from the surface's normals
+  // where that is safe, and otherwise as above.
   SurfacePoint closest(const Vec3& p, QueryMemory& near) const;
 
-  // The same, but nothing where the surface is certainly further away than `most`.
+  // Does the same, but returns nothing where the surface is certainly further away than `most`.
   std::optional<SurfacePoint> closest_within(const Vec3& p, double most, QueryMemory& near) const;
 
   // Returns a bound below the distance of p that follows from the answers before it, less a ten-millionth of the

@@ -58,7 +58,7 @@ class ColliderView {
   // Tells whether a search within a bound costs less than one without, and its failure shows that the sign of the
   // distance is the same all around. A surface with holes has places where the sign changes without triangles.
   bool knows_bounds() const { return shape_.is_exact(); }
-  // The same, but nothing where it is certainly further away than `most`, outside or inside.
+  // Does the same as closest(), but returns nothing where it is certainly further away than `most`, outside or inside.
   std::optional<SurfacePoint> closest_within(const Vec3& p, double most, QueryMemory& near) const;
 
   // Returns a bound below the distance of p to the layer that follows from earlier answers; minus infinity where
