@@ -74,7 +74,7 @@ RunPlace place_of_run(const std::filesystem::path& asked, const FilmPlan& plan, 
   for (int number = 2;; ++number) {
     const Holds held = what_is_in(path, plan, now);
     const bool is_first = number == 2;
-    // Of the numbered folders only those are taken that are free or a run's.
+    // A numbered folder is taken only where it is free or holds a run.
     const bool free = is_first || !std::filesystem::exists(path, error) ||
                       (std::filesystem::is_directory(path, error) &&
                        (!has_files(path) || std::filesystem::exists(path / "run.json", error)));

@@ -119,7 +119,7 @@ bool ColliderView::leads_through(const Way& way, double field_at_a, double field
 
 std::optional<SurfacePoint> ColliderView::holding(const Way& way, double field_at_a, double reach,
                                                   QueryMemory& near) const {
-  // Where there is nothing in the balls around both ends, which hold the way, it meets nothing.
+  // The balls around both ends contain the whole way, so that it meets nothing where both are empty.
   const double around = std::max(reach, way.length - field_at_a);
   if (field_at_a > 0 && certain_distance(way.b, near) > around) return std::nullopt;
   const std::optional<SurfacePoint> nearest =
