@@ -30,7 +30,7 @@ struct MeshLinks {
     }
     for (std::vector<std::int32_t>& list : beside) {
       std::ranges::sort(list);
-      list.erase(std::ranges::unique(list).begin(), list.end());
+      list.erase(std::unique(list.begin(), list.end()), list.end());
     }
   }
 

@@ -59,8 +59,8 @@ SkinGraph skin_graph(const TriMesh& skin) {
   graph.normal.rowwise().normalize();
   for (std::vector<SkinEdge>& edges : graph.edges) {
     std::ranges::sort(edges, {}, &SkinEdge::to);
-    const auto twice = std::ranges::unique(edges, {}, &SkinEdge::to);
-    edges.erase(twice.begin(), twice.end());
+    const auto same = [](const SkinEdge& a, const SkinEdge& b) { return a.to == b.to; };
+    edges.erase(std::unique(edges.begin(), edges.end(), same), edges.end());
   }
   return graph;
 }

@@ -2,6 +2,7 @@
 // (P1816, C++20), which the tables of names rely on (base/names.h).
 #pragma once
 
+#if __cplusplus >= 202002L  // CMake tries the compiler with its own default first, which knows no deduction at all
 namespace supple {
 
 template <class E>
@@ -10,3 +11,4 @@ template <class E>
 Name(E, const char*) -> Name<E>;
 
 }  // namespace supple
+#endif
