@@ -22,6 +22,19 @@ double push_out_of(const Model& model, const StepInputs& inputs) {
   return inputs.solver.contact.push_out * model.size * model.time_step;
 }
 
+// Returns k_c over m / h^2 for a collider. The depth of a vertex is inversely proportional to it. A vertex that is
+// deeper than half the thickness of a plate belongs to the other side from the next step on, and would hang there for
+// ever, so plates that are thin beside the body are stiffer: a depth that is usual at an impact stays within a quarter
+// of the thickness.
+double stiffness_of(const Model& model, const StepInputs& inputs, const ContactWork& work, std::size_t collider) {
+  constexpr double usual_depth = 0.004;  // over the body's size
+  constexpr double most = 1000;          // times as stiff
+  const double given = inputs.solver.contact.stiffness;
+  const double half_thickness = work.traits[collider].half_thickness + (*inputs.colliders)[collider].thickness;
+  if (work.traits[collider].half_thickness <= 0) return given;  // it has none that is known
+  return given * std::clamp(2 * usual_depth * model.size / half_thickness, 1.0, most);
+}
+
 // Sets the plane of a point that started inside a collider which the body leaves by a common way: at the end of the
 // step it lies as much further along that way as it may go, or as it has left to go. It slides out without friction.
 void leave(const ColliderView& view, const Way& way, const Vec3& way_out, double field, double push_out,
@@ -158,7 +171,7 @@ class Planes {
         collider_(static_cast<std::int32_t>(c)),
         friction_((*inputs.colliders)[c].friction),
         push_out_(push_out_of(model, inputs)),
-        unit_stiffness_(inputs.solver.contact.stiffness / (model.time_step * model.time_step)) {}
+        unit_stiffness_(stiffness_of(model, inputs, work, c) / (model.time_step * model.time_step)) {}
 
   void of_vertex(int v, const Way& way, double field, double reach, QueryMemory& near,
                  std::vector<Contact>& list) const {
