@@ -5,13 +5,13 @@
 
 #include "geometry/triangle_in_shape.h"
 #include "sim/contact/reach.h"
+#include "sim/contact/usual_depth.h"
 
 namespace supple {
 namespace {
 
 constexpr int group_size = 64;           // consecutive triangles
 constexpr int groups_a_chunk = 4;        // a thread takes so many; fixed, so that results do not depend on threads
-constexpr double slack_share = 4e-3;     // of the body's size, below which contact of faces begins
 constexpr double least_weight = 1e-3;    // a point with a smaller one belongs to the opposite edge
 constexpr double same_place = 2;         // points nearer to each other than this, over the slack, are one
 constexpr double same_weight = 0.1;      // points whose weights differ by less are one
@@ -212,9 +212,8 @@ void choose_pieces(const Model& model, const Collider& collider, const Positions
   double longest = -1;
   for (ShapePiece& shape : pieces_of(collider.shape)) {
     if (std::isinf(shape.bulge)) continue;
-    FacePoints::Piece piece{std::move(shape), slack_share * model.size};
-    if (piece.piece.half_thickness > 0)
-      piece.slack = std::min(piece.slack, 0.25 * (piece.piece.half_thickness + collider.thickness));
+    const double slack = usual_depth(model, collider, shape.half_thickness);
+    FacePoints::Piece piece{std::move(shape), slack};
     if (longest < 0) longest = longest_edge_squared(model, q);
     if (is_finer(piece, collider.thickness, longest)) faces.pieces.push_back(std::move(piece));
   }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "sim/contact/usual_depth.h"
 #include "sim/contact/vertex_search.h"
 #include "sim/contact/way_out.h"
 
@@ -22,17 +23,12 @@ double push_out_of(const Model& model, const StepInputs& inputs) {
   return inputs.solver.contact.push_out * model.size * model.time_step;
 }
 
-// Returns k_c over m / h^2 for a collider. The depth of a vertex is inversely proportional to it. A vertex that is
-// deeper than half the thickness of a plate belongs to the other side from the next step on, and would hang there for
-// ever, so plates that are thin beside the body are stiffer: a depth that is usual at an impact stays within a quarter
-// of the thickness.
+// Returns k_c over m / h^2 for a collider. The depth of a vertex is inversely proportional to it.
 double stiffness_of(const Model& model, const StepInputs& inputs, const ContactWork& work, std::size_t collider) {
-  constexpr double usual_depth = 0.004;  // over the body's size
-  constexpr double most = 1000;          // times as stiff
-  const double given = inputs.solver.contact.stiffness;
-  const double half_thickness = work.traits[collider].half_thickness + (*inputs.colliders)[collider].thickness;
-  if (work.traits[collider].half_thickness <= 0) return given;  // it has none that is known
-  return given * std::clamp(2 * usual_depth * model.size / half_thickness, 1.0, most);
+  constexpr double most = 1000;  // times as stiff as for a thick one
+  const double share =
+      usual_depth(model, (*inputs.colliders)[collider], work.traits[collider].half_thickness) / usual_depth(model);
+  return inputs.solver.contact.stiffness * std::min(1 / share, most);
 }
 
 // Sets the plane of a point that started inside a collider which the body leaves by a common way: at the end of the

@@ -1,4 +1,5 @@
 // Finds where a body meets colliders first, and what it touches most.
+#include "sim/contact/usual_depth.h"
 #include "sim/contact/vertex_search.h"
 
 namespace supple {
@@ -34,16 +35,17 @@ Impact first_impact(const Model& model, const StepInputs& inputs, const Position
   for (std::size_t c = 0; c < inputs.colliders->size(); ++c) {
     const VertexSearch search{model, inputs, x, work};
     const ColliderView view = search.view(c);
+    const double here = std::min(allowed, usual_depth(model, (*inputs.colliders)[c], work.traits[c].half_thickness));
     for (int group = 0; group < vertex_groups(model); ++group) {
       search.near(c, view, group, [&](int v, const Way& way, double field, double) {
-        const double share = share_to_impact(view, way, field, allowed, first.share, search.memory(c, v));
+        const double share = share_to_impact(view, way, field, here, first.share, search.memory(c, v));
         if (share < first.share) first = {share, static_cast<int>(c)};
       });
     }
     for (FacePoint& face : work.faces[c].points) {
       const Way way = view.way(face.point.at(*work.begin), face.point.at(x));
       if (way.length < view.clear(face.field)) continue;
-      const double share = share_to_impact(view, way, face.field, allowed, first.share, face.near);
+      const double share = share_to_impact(view, way, face.field, here, first.share, face.near);
       if (share < first.share) first = {share, static_cast<int>(c)};
     }
   }

@@ -1,0 +1,22 @@
+// How deep a point of a body may be in a collider, during a step and where contact presses it. Beyond half the
+// thickness of a plate, it would belong to the other side from the next step on, and hang there for ever.
+#pragma once
+
+#include <algorithm>
+
+#include "sim/model/inputs.h"
+#include "sim/model/model.h"
+
+namespace supple {
+
+// Returns the depth in a collider that is thick beside the body [m].
+inline double usual_depth(const Model& model) { return 0.004 * model.size; }
+
+// Returns the depth in any collider, whose thin ones allow a quarter of half their thickness [m]. half_thickness: of
+// its shape [m]; 0 where it is not known.
+inline double usual_depth(const Model& model, const Collider& collider, double half_thickness) {
+  if (half_thickness <= 0) return usual_depth(model);
+  return std::min(usual_depth(model), 0.25 * (half_thickness + collider.thickness));
+}
+
+}  // namespace supple
