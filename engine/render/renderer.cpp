@@ -115,7 +115,11 @@ void Renderer::make_targets() {
 
 void Renderer::make_surfaces() {
   surfaces_ = std::make_unique<SurfaceBuffers>(gl_, stage_.meshes, *textures_);
-  visibility_ = std::make_unique<Visibility>(stage_.width, stage_.height, stage_.samples, stage_.meshes);
+  if (!visibility_) {
+    visibility_ = std::make_unique<Visibility>(stage_.width, stage_.height, stage_.samples, stage_.meshes);
+  } else {
+    visibility_->renew(stage_.meshes);
+  }
   shading_program_->use();
   shading_program_->set_pairs("sample_places", visibility_->sample_places());
 }

@@ -49,10 +49,11 @@ Visibility::Visibility(int width, int height, int samples, const std::vector<Dra
       full_(width, height),
       surfaces_(2 * std::size_t(width) * height) {
   SUPPLE_CHECK(std::max(width, height) * (reach + 1) / 2 * SampleBuffer::parts, <, SampleBuffer::furthest);
-  number_patches(meshes);
+  renew(meshes);
 }
 
-void Visibility::number_patches(const std::vector<DrawMesh>& meshes) {
+void Visibility::renew(const std::vector<DrawMesh>& meshes) {
+  patches_.clear();
   std::uint32_t vertices = 0;
   for (const DrawMesh& mesh : meshes) {
     for (const std::uint32_t patch : smooth_patches(mesh)) patches_.push_back(vertices + patch);

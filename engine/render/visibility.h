@@ -18,6 +18,9 @@ class Visibility {
   // The triangles of all meshes count through, in the order of the meshes.
   Visibility(int width, int height, int samples, const std::vector<DrawMesh>& meshes);
 
+  // Takes other meshes, whose triangles count anew.
+  void renew(const std::vector<DrawMesh>& meshes);
+
   // Finds what a frame shows. positions: x y z by mesh and vertex [m]; view: maps the world to clip coordinates, of
   // which the fourth is the distance along the viewing direction; nearest: the least such distance that is seen [m];
   // pixel: a pixel's edge at distance one. What lies below the ground, y = 0, is not seen.
@@ -44,7 +47,6 @@ class Visibility {
   };
 
   void clear();
-  void number_patches(const std::vector<DrawMesh>& meshes);
   void project(const std::vector<float>& positions, const Eigen::Matrix4f& view);
   WorldCorner corner_at(const float* place, const Eigen::Matrix4f& view) const;
   ScreenCorner on_screen(const WorldCorner& corner) const;
