@@ -8,15 +8,7 @@
 #ifdef COLORED
 #include "texture.glsl"
 #endif
-#if SAMPLES > 1
-#define SampledNumbers usampler2DMS
-#define SampledDepths sampler2DMS
-#else
-#define SampledNumbers usampler2D
-#define SampledDepths sampler2D
-#endif
-uniform SampledNumbers visible;   // by sample: patch (8 bits) and number of the triangle, from one; zero: none
-uniform SampledDepths depths;
+uniform usampler2D visible;       // by pixel, see Visibility: samples (8 bits) and triangle of two surfaces
 uniform samplerBuffer places;     // by vertex: x y z, and the open sky
 uniform samplerBuffer normals;    // by vertex
 uniform usamplerBuffer triangles; // three vertices; mesh (16 bits), covering layer (4 bits), bordering layers (8 bits)
@@ -34,7 +26,6 @@ uniform samplerBuffer texture_places;  // by vertex: place in that texture
 #ifdef WIRES
 uniform float wire_width;         // in pixels
 #endif
-uniform vec3 depth_scale;         // see DepthScale; the third is a pixel's edge at distance one
 uniform vec2 sample_places[SAMPLES];
 out vec4 pixel;
 
@@ -223,47 +214,24 @@ vec3 shown(Seen seen) {
   return color;
 }
 
-float distance_of(ivec2 at, int i) { return depth_scale.x / (depth_scale.y - texelFetch(depths, at, i).r); }
+// Returns the mean place of some of a pixel's samples, and their number.
+vec3 place_of(uint samples) {
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < SAMPLES; ++i) sum += float(samples >> i & 1u) * vec3(sample_places[i], 1.0);
+  return vec3(sum.xy / max(sum.z, 1.0), sum.z);
+}
 
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
-  uint number[SAMPLES];
-  float there[SAMPLES];
-  for (int i = 0; i < SAMPLES; ++i) {
-    number[i] = texelFetch(visible, at, i).r;
-    there[i] = distance_of(at, i);
-  }
-  // Samples are of one surface when they show the same smooth patch at nearly the same depth. The triangle that most
-  // samples show stands for the first surface. If there is a second one, each is shaded once; a third counts as the
-  // second.
-  uint first = 0u, second = 0u;
-  float depth = 1.0;
-  int most = 0;
-  for (int i = 0; i < SAMPLES; ++i) {
-    int alike = 0;
-    for (int k = 0; k < SAMPLES; ++k) alike += number[k] == number[i] ? 1 : 0;
-    bool better = number[i] != 0u && alike > most;
-    first = better ? number[i] : first;
-    depth = better ? there[i] : depth;
-    most = better ? alike : most;
-  }
-  if (first == 0u) discard;
-  vec2 weight = vec2(0.0), first_place = vec2(0.0), second_place = vec2(0.0);
-  for (int i = 0; i < SAMPLES; ++i) {
-    bool covered = number[i] != 0u;
-    bool same = number[i] >> 24 == first >> 24 && abs(there[i] - depth) < 6.0 * depth_scale.z * depth;
-    weight += covered ? (same ? vec2(1.0, 0.0) : vec2(0.0, 1.0)) : vec2(0.0);
-    first_place += covered && same ? sample_places[i] : vec2(0.0);
-    second_place += covered && !same ? sample_places[i] : vec2(0.0);
-    second = covered && !same ? number[i] : second;
-  }
-  vec3 sum = vec3(0.0);
-  int looked = 0, looks = second == 0u ? 1 : 2;
-  do {
-    vec2 place = looked == 0 ? first_place / weight.x : second_place / max(weight.y, 1.0);
-    uint one = looked == 0 ? first : second == 0u ? first : second;
-    sum += (looked == 0 ? weight.x : weight.y) * shown(look(one, vec2(at) + place));
+  uvec2 surfaces = texelFetch(visible, at, 0).rg;
+  if (surfaces.x == 0u) discard;
+  vec4 sum = vec4(0.0);
+  int looked = 0, looks = surfaces.y == 0u ? 1 : 2;
+  do {  // each surface is shaded once
+    uint one = looked == 0 || surfaces.y == 0u ? surfaces.x : surfaces.y;
+    vec3 place = place_of((looked == 0 ? surfaces.x : surfaces.y) >> 24);
+    sum += place.z * vec4(shown(look(one, vec2(at) + place.xy)), 1.0);
     ++looked;
   } while (looked < looks);
-  pixel = vec4(sum, weight.x + weight.y) / float(SAMPLES);
+  pixel = sum / float(SAMPLES);
 }

@@ -17,7 +17,6 @@
   F(PFNGLBUFFERSUBDATAPROC, BufferSubData)                                   \
   F(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)                 \
   F(PFNGLCLEARPROC, Clear)                                                   \
-  F(PFNGLCLEARBUFFERUIVPROC, ClearBufferuiv)                                 \
   F(PFNGLCLEARCOLORPROC, ClearColor)                                         \
   F(PFNGLCOMPILESHADERPROC, CompileShader)                                   \
   F(PFNGLCREATEPROGRAMPROC, CreateProgram)                                   \
@@ -46,7 +45,6 @@
   F(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                               \
   F(PFNGLGETERRORPROC, GetError)                                             \
   F(PFNGLGETINTEGERVPROC, GetIntegerv)                                       \
-  F(PFNGLGETMULTISAMPLEFVPROC, GetMultisamplefv)                             \
   F(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)                           \
   F(PFNGLGETPROGRAMIVPROC, GetProgramiv)                                     \
   F(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)                             \
@@ -59,12 +57,11 @@
   F(PFNGLREADBUFFERPROC, ReadBuffer)                                         \
   F(PFNGLREADPIXELSPROC, ReadPixels)                                         \
   F(PFNGLRENDERBUFFERSTORAGEMULTISAMPLEPROC, RenderbufferStorageMultisample) \
-  F(PFNGLSAMPLEMASKIPROC, SampleMaski)                                       \
   F(PFNGLSHADERSOURCEPROC, ShaderSource)                                     \
   F(PFNGLTEXBUFFERPROC, TexBuffer)                                           \
   F(PFNGLTEXIMAGE2DPROC, TexImage2D)                                         \
-  F(PFNGLTEXIMAGE2DMULTISAMPLEPROC, TexImage2DMultisample)                   \
   F(PFNGLTEXPARAMETERIPROC, TexParameteri)                                   \
+  F(PFNGLTEXSUBIMAGE2DPROC, TexSubImage2D)                                   \
   F(PFNGLUNIFORM1FPROC, Uniform1f)                                           \
   F(PFNGLUNIFORM1IPROC, Uniform1i)                                           \
   F(PFNGLUNIFORM1UIPROC, Uniform1ui)                                         \

@@ -98,10 +98,8 @@ void Ground::mark_shadows(const Eigen::Matrix4f& view, const StageLight& light, 
                           const std::vector<DrawMesh>& meshes, const std::vector<std::vector<float>>& positions) {
   const auto across_x = static_cast<float>(light.to_key.x() / light.to_key.y());
   const auto across_z = static_cast<float>(light.to_key.z() / light.to_key.y());
-  // The widest border of a shadow is a disc in front of the light, which the ground stretches; this bounds its size in
-  // the picture.
-  const double nearest = std::max((light.camera.eye - center_).norm() - radius_, 0.25 * radius_);
-  const double margin = penumbra / light.to_key.y() / nearest / light.rays.up.norm();
+  // The widest border of a shadow is a disc in front of the light, which the ground stretches.
+  const double around = penumbra / light.to_key.y();
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     const std::vector<float>& points = positions[m];
     cast_.resize(points.size());
@@ -112,9 +110,8 @@ void Ground::mark_shadows(const Eigen::Matrix4f& view, const StageLight& light, 
       cast_[i + 2] = points[i + 2] - height * across_z;
     }
     const bool fewer = !meshes[m].shadow_triangles.empty();
-    tiles_.mark(cast_, fewer ? meshes[m].shadow_triangles : meshes[m].triangles, view);
+    tiles_.mark(cast_, fewer ? meshes[m].shadow_triangles : meshes[m].triangles, view, around);
   }
-  tiles_.widen(margin);
 }
 
 // Marks where bodies hide a part of the sky from the ground that can be seen.
@@ -139,7 +136,8 @@ void Ground::mark_occlusion(const Eigen::Matrix4f& view, const std::vector<float
 }
 
 void Ground::draw(GLuint picture, const Eigen::Matrix4f& view, const StageLight& light, const ShadowMap& shadows,
-                  const std::vector<DrawMesh>& meshes, const std::vector<std::vector<float>>& positions) {
+                  const std::vector<DrawMesh>& meshes, const std::vector<std::vector<float>>& positions,
+                  const Tiles& covered) {
   const StageColors colors = {light.ground, light.background, light.exposure};
   if (!bare_view_ || *bare_view_ != view || bare_colors_ != colors) draw_bare(view, light);
   gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
@@ -152,7 +150,12 @@ void Ground::draw(GLuint picture, const Eigen::Matrix4f& view, const StageLight&
   mark_shadows(view, light, shadows.widest_penumbra(), meshes, positions);
   mark_occlusion(view, open);
   open_tiles_.unmark(tiles_);
+  // Pixels on the border of a tile take light from the tile beside it.
+  Tiles hidden = covered;
+  hidden.narrow();
+  for (Tiles* tiles : {&tiles_, &open_tiles_}) tiles->unmark(hidden);
   draw_arriving(light, shadows, open);
+  for (Tiles* tiles : {&tiles_, &open_tiles_}) tiles->unmark(covered);
 
   gl_.BindFramebuffer(GL_FRAMEBUFFER, picture);
   gl_.Viewport(0, 0, width_, height_);

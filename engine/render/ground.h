@@ -41,9 +41,10 @@ class Ground {
   Ground(const Ground&) = delete;
   Ground& operator=(const Ground&) = delete;
 
-  // Fills the picture's framebuffer.
+  // Fills the picture's framebuffer, except for the tiles that bodies cover.
   void draw(GLuint picture, const Eigen::Matrix4f& view, const StageLight& light, const ShadowMap& shadows,
-            const std::vector<DrawMesh>& meshes, const std::vector<std::vector<float>>& positions);
+            const std::vector<DrawMesh>& meshes, const std::vector<std::vector<float>>& positions,
+            const Tiles& covered);
 
  private:
   void draw_bare(const Eigen::Matrix4f& view, const StageLight& light);

@@ -9,22 +9,21 @@
 
 #include "render/gl_table.h"
 #include "render/program.h"
+#include "render/visibility.h"
 
 namespace supple {
 
 class Marks {
  public:
-  // samples: of the texture of depths.
-  Marks(const GlTable& gl, const std::filesystem::path& shaders, int width, int height, int samples);
+  Marks(const GlTable& gl, const std::filesystem::path& shaders, int width, int height);
   ~Marks();
   Marks(const Marks&) = delete;
   Marks& operator=(const Marks&) = delete;
 
-  // Draws into the framebuffer that is bound. marks: x y z [m] and the kind, 0 for handles and 1 for contacts.
-  // depths: a texture of the kind `target`. scale: see DepthScale. behind: how far a mark may lie behind the surface
-  // [m].
-  void draw(const std::vector<std::array<float, 4>>& marks, const Eigen::Matrix4f& view, GLenum target, GLuint depths,
-            const Eigen::Vector2d& scale, double behind) const;
+  // Draws into the framebuffer that is bound. marks: x y z [m] and the kind, 0 for handles and 1 for contacts. view:
+  // maps the world to clip coordinates. behind: how far a mark may lie behind the surface that a pixel shows [m].
+  void draw(const std::vector<std::array<float, 4>>& marks, const Eigen::Matrix4f& view, const Visibility& visible,
+            double behind) const;
 
  private:
   const GlTable& gl_;

@@ -74,10 +74,8 @@ Renderer::Renderer(const Stage& stage, GlChoice choice, const std::filesystem::p
       name_(gl_text(gl_, GL_RENDERER)),
       version_(gl_text(gl_, GL_VERSION)),
       bounds_(stage_bounds(stage)),
-      largest_body_(largest_of(stage)),
-      tiles_(stage.width, stage.height) {
+      largest_body_(largest_of(stage)) {
   make_targets();
-  visibility_program_ = std::make_unique<Program>(gl_, shaders, "visibility", "visibility");
   shadows_ =
       std::make_unique<ShadowMap>(gl_, shaders, bounds_, largest_body_, stage_.light.to_key.normalized(), stage_.width);
   ground_ = std::make_unique<Ground>(gl_, shaders, stage_.width, stage_.height, bounds_, largest_body_);
@@ -85,66 +83,50 @@ Renderer::Renderer(const Stage& stage, GlChoice choice, const std::filesystem::p
   textures_ = std::make_unique<TextureBuffer>(gl_, stage_.meshes);
   make_shading_program();
   prepare_field();
-  check_test_picture();
-  surfaces_ = std::make_unique<SurfaceBuffers>(gl_, stage_.meshes, *textures_);
+  make_surfaces();
   captions_ = std::make_unique<Captions>(stage_, places_of_overlays());
   check_gl(gl_, "preparing the stage");
 }
 
 Renderer::~Renderer() {
-  gl_.DeleteFramebuffers(1, &visible_framebuffer_);
   gl_.DeleteFramebuffers(1, &picture_framebuffer_);
   gl_.DeleteTextures(1, &visible_);
-  gl_.DeleteTextures(1, &depth_);
   gl_.DeleteTextures(1, &color_texture_);
   gl_.DeleteBuffers(1, &color_buffer_);
   gl_.DeleteRenderbuffers(1, &picture_color_);
 }
 
 void Renderer::make_targets() {
-  const auto check = [this](const char* what) {
-    const GLenum status = gl_.CheckFramebufferStatus(GL_FRAMEBUFFER);
-    if (status != GL_FRAMEBUFFER_COMPLETE)
-      throw RunError(fmt::format("the {} framebuffer is incomplete (0x{:04x})", what, status));
-  };
-  samples_ = stage_.samples;
-  for (const GLenum limit : {GL_MAX_INTEGER_SAMPLES, GL_MAX_DEPTH_TEXTURE_SAMPLES}) {
-    GLint most = 1;
-    gl_.GetIntegerv(limit, &most);
-    samples_ = std::min(samples_, std::max(most, 1));
-  }
-  gl_.GenFramebuffers(1, &visible_framebuffer_);
-  gl_.BindFramebuffer(GL_FRAMEBUFFER, visible_framebuffer_);
-  // A multisample texture with one sample is another kind of texture, and some drivers give it four samples.
-  const auto target = [this](GLuint& texture, GLenum format, GLenum meaning, GLenum attachment) {
-    gl_.GenTextures(1, &texture);
-    gl_.BindTexture(sample_texture(), texture);
-    if (samples_ > 1) {
-      gl_.TexImage2DMultisample(GL_TEXTURE_2D_MULTISAMPLE, samples_, format, stage_.width, stage_.height, GL_TRUE);
-    } else {
-      gl_.TexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format), stage_.width, stage_.height, 0, meaning,
-                     GL_UNSIGNED_INT, nullptr);
-      gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-      gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    }
-    gl_.FramebufferTexture2D(GL_FRAMEBUFFER, attachment, sample_texture(), texture, 0);
-  };
-  target(visible_, GL_R32UI, GL_RED_INTEGER, GL_COLOR_ATTACHMENT0);
-  target(depth_, GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_DEPTH_ATTACHMENT);
-  check("visibility");
-  if (samples_ > 1) gl_.GetIntegerv(GL_SAMPLES, &samples_);  // a driver may take more than were asked for
+  gl_.GenTextures(1, &visible_);
+  gl_.BindTexture(GL_TEXTURE_2D, visible_);
+  gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RG32UI, stage_.width, stage_.height, 0, GL_RG_INTEGER, GL_UNSIGNED_INT, nullptr);
+  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   gl_.GenFramebuffers(1, &picture_framebuffer_);
   gl_.BindFramebuffer(GL_FRAMEBUFFER, picture_framebuffer_);
   gl_.GenRenderbuffers(1, &picture_color_);
   gl_.BindRenderbuffer(GL_RENDERBUFFER, picture_color_);
   gl_.RenderbufferStorageMultisample(GL_RENDERBUFFER, 0, GL_RGBA8, stage_.width, stage_.height);
   gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, picture_color_);
-  check("picture");
+  const GLenum status = gl_.CheckFramebufferStatus(GL_FRAMEBUFFER);
+  if (status != GL_FRAMEBUFFER_COMPLETE)
+    throw RunError(fmt::format("the picture's framebuffer is incomplete (0x{:04x})", status));
+}
+
+void Renderer::make_surfaces() {
+  surfaces_ = std::make_unique<SurfaceBuffers>(gl_, stage_.meshes, *textures_);
+  if (!visibility_) {
+    visibility_ = std::make_unique<Visibility>(stage_.width, stage_.height, stage_.samples, stage_.meshes);
+  } else {
+    visibility_->renew(stage_.meshes);
+  }
+  shading_program_->use();
+  shading_program_->set_pairs("sample_places", visibility_->sample_places());
 }
 
 // Makes a program that shades what the stage's meshes have and no more.
 void Renderer::make_shading_program() {
-  std::vector<std::string> definitions = {fmt::format("SAMPLES {}", samples_)};
+  std::vector<std::string> definitions = {fmt::format("SAMPLES {}", stage_.samples)};
   if (std::ranges::any_of(stage_.meshes, [](const DrawMesh& mesh) { return !mesh.layers.empty(); }))
     definitions.emplace_back("PAINTED");
   if (std::ranges::any_of(stage_.meshes, [](const DrawMesh& mesh) { return !mesh.square.empty(); }))
@@ -157,12 +139,6 @@ void Renderer::make_shading_program() {
   if (shading_program_ && definitions == definitions_) return;
   definitions_ = definitions;
   shading_program_ = std::make_unique<Program>(gl_, shaders_, "tiles", "surface", definitions);
-  std::vector<float> places(2 * std::size_t(samples_), 0.5f);
-  gl_.BindFramebuffer(GL_FRAMEBUFFER, visible_framebuffer_);
-  for (int s = 0; s < samples_ && samples_ > 1; ++s)
-    gl_.GetMultisamplefv(GL_SAMPLE_POSITION, static_cast<GLuint>(s), &places[2 * std::size_t(s)]);
-  shading_program_->use();
-  shading_program_->set_pairs("sample_places", places);
 }
 
 // Makes the legend, and gives the colours of the field to the shader.
@@ -183,39 +159,11 @@ void Renderer::prepare_field() {
   gl_.TexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, color_buffer_);
 }
 
-// Some software rasterisers accept a multisampled framebuffer and leave it blank, without an error; a triangle drawn
-// into it shows whether this one does. It is shaded by the film's own program, which takes long to compile.
-void Renderer::check_test_picture() {
-  DrawMesh mesh;
-  mesh.triangles = {0, 1, 2};
-  mesh.occlusion = {1, 1, 1};
-  mesh.paint.resize(3);
-  mesh.color = Vec3::Ones();
-  mesh.two_sided = true;
-  Stage test;
-  test.meshes.push_back(mesh);
-  std::swap(stage_.meshes, test.meshes);
-  surfaces_ = std::make_unique<SurfaceBuffers>(gl_, stage_.meshes, *textures_);
-  DrawList list;
-  list.camera = {Vec3(0, 1, 3), Vec3(0, 1, 0), 30};
-  list.positions = {{-9, 0, 0, 9, 0, 0, 0, 9, 0}};
-  const Image image = draw(list);
-  std::swap(stage_.meshes, test.meshes);
-  const std::size_t center = 3 * (std::size_t(image.height / 2) * image.width + image.width / 2);
-  bool blank = true;
-  for (std::size_t k = 0; k < 3; ++k) blank = blank && image.rgb[center + k] < 32;
-  if (blank) {
-    throw RunError(
-        fmt::format("{} ({}) draws blank frames with {} samples a pixel; try --set output.samples=1 or another --gl",
-                    name_, context_.backend(), samples_));
-  }
-}
-
 void Renderer::upload(const DrawList& list) {
   for (const auto& [m, mesh] : list.renewed) stage_.meshes[m] = mesh;
   if (!list.renewed.empty()) {
-    surfaces_ = std::make_unique<SurfaceBuffers>(gl_, stage_.meshes, *textures_);
     make_shading_program();
+    make_surfaces();
   }
   for (const auto& [m, caption] : list.captions) {
     stage_.meshes[m].label = caption;
@@ -224,36 +172,20 @@ void Renderer::upload(const DrawList& list) {
   surfaces_->upload(stage_.meshes, list);
 }
 
-// Writes the number of the nearest triangle into each sample, counted from one; zero is left where there is none.
-void Renderer::draw_visibility(const Eigen::Matrix4f& view) {
-  gl_.BindFramebuffer(GL_FRAMEBUFFER, visible_framebuffer_);
-  gl_.Viewport(0, 0, stage_.width, stage_.height);
-  const GLuint none[4] = {0, 0, 0, 0};
-  gl_.ClearBufferuiv(GL_COLOR, 0, none);
-  gl_.Clear(GL_DEPTH_BUFFER_BIT);
-  gl_.Enable(GL_DEPTH_TEST);
-  gl_.Enable(GL_CLIP_DISTANCE0);  // at the ground, which is drawn on its own
-  visibility_program_->use();
-  visibility_program_->set("view_matrix", view);
-  gl_.SampleMaski(0, 0x55555555u);
-  for (std::size_t m = 0; m < stage_.meshes.size(); ++m) {
-    // Closed bodies hide their far sides, which need not be drawn.
-    stage_.meshes[m].two_sided ? gl_.Disable(GL_CULL_FACE) : gl_.Enable(GL_CULL_FACE);
-    visibility_program_->set("first", surfaces_->first_triangle(m) + 1);
-    // A ghost is written into every second sample, so that half of each pixel shows what lies behind.
-    if (stage_.meshes[m].ghost) gl_.Enable(GL_SAMPLE_MASK);
-    surfaces_->draw(m);
-    if (stage_.meshes[m].ghost) gl_.Disable(GL_SAMPLE_MASK);
-  }
-  gl_.Disable(GL_CLIP_DISTANCE0);
-  gl_.Disable(GL_CULL_FACE);
-  gl_.Disable(GL_DEPTH_TEST);
+// Finds what each pixel shows, and uploads the rectangle around the bodies.
+void Renderer::find_visible(const Eigen::Matrix4f& view, const StageLight& light, const DrawList& list) {
+  const double nearest = nearest_seen(list.camera, bounds_.center(), bounds_.diagonal() + largest_body_);
+  visibility_->find(stage_.meshes, list.positions, view, nearest, light.rays.up.norm());
+  const Tiles::Area box = visibility_->tiles().around();
+  if (box.width == 0) return;
+  gl_.BindTexture(GL_TEXTURE_2D, visible_);
+  gl_.PixelStorei(GL_UNPACK_ROW_LENGTH, stage_.width);
+  gl_.TexSubImage2D(GL_TEXTURE_2D, 0, box.left, box.low, box.width, box.height, GL_RG_INTEGER, GL_UNSIGNED_INT,
+                    &visibility_->surfaces()[2 * (std::size_t(box.low) * stage_.width + box.left)]);
+  gl_.PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
 }
 
-void Renderer::shade(const Eigen::Matrix4f& view, const StageLight& light, const DrawList& list) {
-  tiles_.clear();
-  for (std::size_t m = 0; m < stage_.meshes.size(); ++m)
-    tiles_.mark(list.positions[m], stage_.meshes[m].triangles, view);
+void Renderer::shade(const StageLight& light) {
   gl_.BindFramebuffer(GL_FRAMEBUFFER, picture_framebuffer_);
   gl_.Viewport(0, 0, stage_.width, stage_.height);
   const Program& program = *shading_program_;
@@ -262,15 +194,12 @@ void Renderer::shade(const Eigen::Matrix4f& view, const StageLight& light, const
   int unit = surfaces_->bind(program, 0);
   shadows_->bind(program, unit++);
   unit = textures_->bind(program, unit);
-  program.set_texture("visible", unit++, sample_texture(), visible_);
-  program.set_texture("depths", unit++, sample_texture(), depth_);
-  const DepthScale scale = depth_scale(list.camera, bounds_.center(), bounds_.diagonal() + largest_body_);
-  program.set("depth_scale", Vec3(scale.factor, scale.offset, light.rays.up.norm()));
+  program.set_texture("visible", unit++, GL_TEXTURE_2D, visible_);
   if (stage_.field) program.set_texture("colors", unit++, GL_TEXTURE_BUFFER, color_texture_);
   program.set("wire_width", std::max(1.0, stage_.height / 720.0));
   gl_.Enable(GL_BLEND);
   gl_.BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);  // the samples are already weighted by their coverage
-  tile_buffer_->draw(tiles_.corners());
+  tile_buffer_->draw(visibility_->tiles().corners());
   gl_.Disable(GL_BLEND);
 }
 
@@ -290,15 +219,15 @@ Image Renderer::draw(const DrawList& list) {
   zone.next("shadow map");
   shadows_->draw(*surfaces_, stage_.meshes);
   zone.next("visibility");
-  draw_visibility(view);
+  find_visible(view, light, list);
   zone.next("ground");
   if (stage_.backdrop == Backdrop::ground) {
-    ground_->draw(picture_framebuffer_, view, light, *shadows_, stage_.meshes, list.positions);
+    ground_->draw(picture_framebuffer_, view, light, *shadows_, stage_.meshes, list.positions, visibility_->full());
   } else {
     clear_picture();
   }
   zone.next("bodies");
-  shade(view, light, list);
+  shade(light);
   if (!list.marks.empty()) draw_marks(view, list);
   zone.next("read back");
   Image image = read_picture();
@@ -308,12 +237,11 @@ Image Renderer::draw(const DrawList& list) {
 }
 
 void Renderer::draw_marks(const Eigen::Matrix4f& view, const DrawList& list) {
-  if (!marks_) marks_ = std::make_unique<Marks>(gl_, shaders_, stage_.width, stage_.height, samples_);
+  if (!marks_) marks_ = std::make_unique<Marks>(gl_, shaders_, stage_.width, stage_.height);
   gl_.BindFramebuffer(GL_FRAMEBUFFER, picture_framebuffer_);
   gl_.Viewport(0, 0, stage_.width, stage_.height);
-  const DepthScale scale = depth_scale(list.camera, bounds_.center(), bounds_.diagonal() + largest_body_);
   // Vertices of a mesh lie up to a part of an element below a finer skin.
-  marks_->draw(list.marks, view, sample_texture(), depth_, {scale.factor, scale.offset}, 0.02 * largest_body_);
+  marks_->draw(list.marks, view, *visibility_, 0.02 * largest_body_);
 }
 
 // Fills the picture with the colour of the background, or with nothing.
@@ -348,7 +276,7 @@ std::vector<PixelRect> Renderer::places_of_overlays() const {
 }
 
 void Renderer::draw_overlays(const DrawList& list, Image& image) {
-  if (captions_) captions_->draw(image, list);  // not yet on the test picture
+  captions_->draw(image, list);
   const PixelRect legend = legend_place(legend_, stage_.width, stage_.height);
   legend_.onto(image, legend.x, legend.y);
   if (list.headline.empty() || stage_.font.empty()) return;

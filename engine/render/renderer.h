@@ -1,9 +1,8 @@
 // Draws a stage with OpenGL 3.3: key light with shadow map, fill, rim and sky light, a ground that fades into the
 // background, and captions. All functions are called on the thread that made the renderer.
 //
-// Triangles are rasterised with several samples a pixel, but only their numbers are written (the visibility buffer of
-// Burns and Hunt 2013). A second pass shades each pixel once from that, and each sample on its own only where
-// different surfaces meet. So neither small triangles nor hidden ones cost shading.
+// What each pixel shows is found first, as numbers of triangles (visibility.h). OpenGL then shades each pixel once, and
+// twice only where different surfaces meet. So neither small triangles nor hidden ones cost shading.
 #pragma once
 
 #include <filesystem>
@@ -22,14 +21,13 @@
 #include "render/surface_buffers.h"
 #include "render/texture_buffer.h"
 #include "render/tile_buffer.h"
-#include "render/tiles.h"
+#include "render/visibility.h"
 
 namespace supple {
 
 class Renderer {
  public:
-  // Throws RunError when no context can be created, when the context is broken (a test picture shows it), and when
-  // shaders do not compile.
+  // Throws RunError when no context can be created, and when shaders do not compile.
   Renderer(const Stage& stage, GlChoice choice, const std::filesystem::path& shaders);
   ~Renderer();
   Renderer(const Renderer&) = delete;
@@ -45,17 +43,16 @@ class Renderer {
   void make_targets();
   void make_shading_program();
   void prepare_field();
-  void check_test_picture();
+  void make_surfaces();
   void upload(const DrawList& list);
-  void draw_visibility(const Eigen::Matrix4f& view);
-  void shade(const Eigen::Matrix4f& view, const StageLight& light, const DrawList& list);
+  void find_visible(const Eigen::Matrix4f& view, const StageLight& light, const DrawList& list);
+  void shade(const StageLight& light);
   std::vector<PixelRect> places_of_overlays() const;
   void draw_overlays(const DrawList& list, Image& image);
   void draw_marks(const Eigen::Matrix4f& view, const DrawList& list);
   void clear_picture();
   Image read_picture();
   void read_coverage(Image& image) const;
-  GLenum sample_texture() const { return samples_ > 1 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D; }
 
   Stage stage_;
   std::filesystem::path shaders_;
@@ -64,13 +61,13 @@ class Renderer {
   std::string name_, version_;
   Bounds bounds_;  // bounds of the stage at rest; lights and shadows cover them
   double largest_body_ = 1;
-  GLuint visible_framebuffer_ = 0, visible_ = 0, depth_ = 0;  // number of the triangle in each sample, and its depth
+  GLuint visible_ = 0;  // see Visibility::surfaces()
   GLuint picture_framebuffer_ = 0, picture_color_ = 0;
-  int samples_ = 1;  // that a pixel has
-  std::unique_ptr<Program> visibility_program_, shading_program_;
+  std::unique_ptr<Program> shading_program_;
   std::vector<std::string> definitions_;  // of the shading program
   std::unique_ptr<TextureBuffer> textures_;
   std::unique_ptr<SurfaceBuffers> surfaces_;
+  std::unique_ptr<Visibility> visibility_;
   std::unique_ptr<ShadowMap> shadows_;
   std::unique_ptr<Ground> ground_;
   std::unique_ptr<Captions> captions_;
@@ -78,7 +75,6 @@ class Renderer {
   std::unique_ptr<TileBuffer> tile_buffer_;
   GLuint color_buffer_ = 0, color_texture_ = 0;  // colours of the field; none without a field
   Sticker legend_;
-  Tiles tiles_;
   std::vector<std::uint8_t> pixels_;  // scratch: the picture as it is read back
 };
 

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <numeric>
 
 #include "base/error.h"
 #include "render/color.h"
@@ -59,24 +57,6 @@ std::uint32_t packed_look(const DrawMesh& mesh, std::size_t index, const std::ui
   return static_cast<std::uint32_t>(index) | covering << 16 | bordering << 20;
 }
 
-// Assigns a patch number to each vertex of a mesh, from `first` on: triangles that share a vertex belong to one patch.
-// A crease has separate vertices on its two sides, so a patch is smooth. Vertices that colours split belong together.
-void append_patches(const DrawMesh& mesh, unsigned first, std::vector<float>& out) {
-  std::vector<std::uint32_t> parent(mesh.occlusion.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&parent](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
-    for (std::size_t k = 1; k < 3; ++k) parent[root(mesh.triangles[t + k])] = root(mesh.triangles[t]);
-  }
-  std::map<std::uint32_t, std::uint32_t> first_of;  // by number of DrawMesh::smooth
-  for (std::uint32_t v = 0; v < mesh.smooth.size(); ++v)
-    parent[root(v)] = root(first_of.try_emplace(mesh.smooth[v], v).first->second);
-  for (std::uint32_t v = 0; v < parent.size(); ++v) out.push_back(static_cast<float>((first + 37 * root(v)) % 255));
-}
-
 }  // namespace
 
 SurfaceBuffers::SurfaceBuffers(const GlTable& gl, const std::vector<DrawMesh>& meshes, const TextureBuffer& textures)
@@ -92,7 +72,6 @@ SurfaceBuffers::~SurfaceBuffers() {
     gl_.DeleteBuffers(1, &lookup->buffer);
   }
   gl_.DeleteBuffers(1, &indices_);
-  gl_.DeleteBuffers(1, &patches_);
   gl_.DeleteVertexArrays(1, &array_);
 }
 
@@ -109,14 +88,16 @@ void SurfaceBuffers::make_lookup(Lookup& lookup, GLenum format, std::size_t byte
 
 void SurfaceBuffers::make_static(const std::vector<DrawMesh>& meshes) {
   std::vector<std::uint32_t> triangles, indices;
-  std::vector<float> paint, squares, materials, patches;
+  std::vector<float> paint, squares, materials;
   unsigned vertices = 0;
   const bool printed = std::ranges::any_of(meshes, [](const DrawMesh& mesh) { return !mesh.square.empty(); });
   const bool painted = std::ranges::any_of(meshes, [](const DrawMesh& mesh) { return !mesh.layers.empty(); });
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     const DrawMesh& mesh = meshes[m];
-    Range range{vertices, static_cast<unsigned>(triangles.size() / 4), static_cast<unsigned>(mesh.triangles.size() / 3),
-                0, 0};
+    const auto first_caster = static_cast<unsigned>(indices.size() / 3);
+    const std::vector<std::uint32_t>& casters = mesh.shadow_triangles.empty() ? mesh.triangles : mesh.shadow_triangles;
+    for (const std::uint32_t vertex : casters) indices.push_back(vertices + vertex);
+    ranges_.push_back({vertices, first_caster, static_cast<unsigned>(casters.size() / 3)});
     for (std::size_t t = 0; t < mesh.triangles.size(); t += 3) {
       for (std::size_t k = 0; k < 3; ++k) triangles.push_back(vertices + mesh.triangles[t + k]);
       triangles.push_back(packed_look(mesh, m, &mesh.triangles[t]));
@@ -129,18 +110,7 @@ void SurfaceBuffers::make_static(const std::vector<DrawMesh>& meshes) {
       squares.insert(squares.end(), square.begin(), square.end());
     }
     append_material(mesh, materials);
-    append_patches(mesh, static_cast<unsigned>(97 * m), patches);
     vertices += static_cast<unsigned>(mesh.occlusion.size());
-    ranges_.push_back(range);
-  }
-  for (std::size_t m = 0; m < meshes.size(); ++m) {
-    for (const std::uint32_t vertex : meshes[m].triangles) indices.push_back(ranges_[m].first_vertex + vertex);
-  }
-  for (std::size_t m = 0; m < meshes.size(); ++m) {
-    const std::vector<std::uint32_t>& casters = meshes[m].shadow_triangles;
-    ranges_[m].first_caster = casters.empty() ? ranges_[m].first_triangle : static_cast<unsigned>(indices.size() / 3);
-    ranges_[m].casters = casters.empty() ? ranges_[m].triangles : static_cast<unsigned>(casters.size() / 3);
-    for (const std::uint32_t vertex : casters) indices.push_back(ranges_[m].first_vertex + vertex);
   }
   normal_data_.assign(4 * std::size_t(vertices), 0.0f);
   const std::size_t by_vertex = 4 * sizeof(float) * vertices;
@@ -158,12 +128,6 @@ void SurfaceBuffers::make_static(const std::vector<DrawMesh>& meshes) {
   gl_.BindBuffer(GL_ARRAY_BUFFER, places_.buffer);
   gl_.EnableVertexAttribArray(0);
   gl_.VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 4 * sizeof(float), nullptr);
-  gl_.GenBuffers(1, &patches_);
-  gl_.BindBuffer(GL_ARRAY_BUFFER, patches_);
-  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(patches.size() * sizeof(float)), patches.data(),
-                 GL_STATIC_DRAW);
-  gl_.EnableVertexAttribArray(1);
-  gl_.VertexAttribPointer(1, 1, GL_FLOAT, GL_FALSE, 0, nullptr);
   gl_.GenBuffers(1, &indices_);
   gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_);
   gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * sizeof(std::uint32_t)),
@@ -216,13 +180,6 @@ void SurfaceBuffers::upload_field(const std::vector<DrawMesh>& meshes, const std
 void SurfaceBuffers::put(const Lookup& lookup, const std::vector<float>& data) const {
   gl_.BindBuffer(GL_TEXTURE_BUFFER, lookup.buffer);
   gl_.BufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(data.size() * sizeof(float)), data.data());
-}
-
-void SurfaceBuffers::draw(std::size_t mesh) const {
-  gl_.BindVertexArray(array_);
-  const std::size_t begin = 3 * sizeof(std::uint32_t) * ranges_[mesh].first_triangle;
-  gl_.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * ranges_[mesh].triangles), GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(begin));
 }
 
 void SurfaceBuffers::draw_caster(std::size_t mesh) const {

@@ -1,6 +1,5 @@
-// Holds all surfaces of a stage in OpenGL's memory, one after the other: as vertices and indices for the passes that
-// rasterise triangles, and as buffer textures for the pass that shades, which is given only the number of a triangle
-// and looks up the rest.
+// Holds all surfaces of a stage in OpenGL's memory, one after the other: as vertices and indices for the shadow map,
+// and as buffer textures for the pass that shades, which is given only the number of a triangle and looks up the rest.
 #pragma once
 
 #include <vector>
@@ -23,10 +22,7 @@ class SurfaceBuffers {
   // meshes show one. The meshes must be those for which the buffers were made.
   void upload(const std::vector<DrawMesh>& meshes, const DrawList& list);
 
-  // Draws one mesh; its triangles count from first_triangle(mesh).
-  void draw(std::size_t mesh) const;
-  unsigned first_triangle(std::size_t mesh) const { return ranges_[mesh].first_triangle; }
-  // Draws the triangles that cast one mesh's shadow, which may be fewer.
+  // Draws the triangles that cast one mesh's shadow, which may be fewer than it has.
   void draw_caster(std::size_t mesh) const;
 
   // Makes a program's samplers places, normals, triangles, paint, squares, materials, values, tints and texture_places
@@ -40,7 +36,7 @@ class SurfaceBuffers {
     GLuint buffer = 0, texture = 0;
   };
   struct Range {
-    unsigned first_vertex, first_triangle, triangles, first_caster, casters;
+    unsigned first_vertex, first_caster, casters;
   };
 
   void make_lookup(Lookup& lookup, GLenum format, std::size_t bytes, const void* data, GLenum usage);
@@ -51,7 +47,7 @@ class SurfaceBuffers {
 
   const GlTable& gl_;
   std::vector<Range> ranges_;  // by mesh
-  GLuint array_ = 0, indices_ = 0, patches_ = 0;
+  GLuint array_ = 0, indices_ = 0;
   Lookup places_;          // by vertex: x y z, and the open sky
   Lookup normals_;         // by vertex
   Lookup triangles_;       // three vertices, and packed_look

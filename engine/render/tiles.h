@@ -17,29 +17,41 @@ class Tiles {
   void clear();
 
   // Marks each tile that the box of a triangle touches, and all tiles when a vertex lies behind the camera. positions:
-  // x y z by vertex; view: maps the world to clip coordinates.
+  // x y z by vertex; view: maps the world to clip coordinates; around: what lies so far from a triangle along the
+  // ground is marked too, in the unit of the positions.
   void mark(const std::vector<float>& positions, const std::vector<std::uint32_t>& triangles,
-            const Eigen::Matrix4f& view);
+            const Eigen::Matrix4f& view, double around = 0);
 
   // Unmarks the tiles that are marked in another set of the same picture.
   void unmark(const Tiles& others);
 
-  // Also marks the tiles that lie within this many pixels of a marked tile.
-  void widen(double pixels);
+  // Unmarks the tiles of which a neighbour is not marked; beyond the picture all are.
+  void narrow();
+
+  void mark(int column, int row) { marked_[std::size_t(row) * columns_ + column] = 1; }
+  int columns() const { return columns_; }
+  int rows() const { return rows_; }
 
   bool marked(int x, int y) const { return marked_[std::size_t(y) * columns_ + x] != 0; }
+
+  // A rectangle of pixels, from its lower left.
+  struct Area {
+    int left, low, width, height;
+  };
+  // Returns the smallest one around all marked tiles; of no width when none is marked.
+  Area around() const;
 
   // Returns runs of marked tiles as triangles over the picture: six corners for each run, x y each, in clip
   // coordinates. The y of the rows grows upwards, as in clip coordinates.
   const std::vector<float>& corners();
 
  private:
-  bool find_tiles(const std::vector<float>& positions, const Eigen::Matrix4f& view);
+  bool find_tiles(const std::vector<float>& positions, const Eigen::Matrix4f& view, float around);
 
   int width_, height_, columns_, rows_;
   std::vector<std::uint8_t> marked_;
   std::vector<float> corners_;
-  std::vector<std::int32_t> column_of_, row_of_;  // by vertex
+  std::vector<std::int32_t> left_of_, right_of_, low_of_, high_of_;  // by vertex: the tiles around it
 };
 
 }  // namespace supple

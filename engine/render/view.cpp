@@ -51,10 +51,8 @@ Eigen::Matrix4f view_matrix(const Camera& camera, double aspect, const Vec3& cen
   return perspective(camera.fov_deg, aspect, depths.near, depths.far) * look_at(camera.eye, camera.target);
 }
 
-DepthScale depth_scale(const Camera& camera, const Vec3& center, double reach) {
-  const Depths depths = depths_of(camera, center, reach);
-  const double length = depths.far - depths.near;
-  return {depths.far * depths.near / length, depths.far / length};
+double nearest_seen(const Camera& camera, const Vec3& center, double reach) {
+  return depths_of(camera, center, reach).near;
 }
 
 Rays rays_through(const Camera& camera, int width, int height) {

@@ -18,12 +18,8 @@ Eigen::Matrix4f look_at(const Vec3& eye, const Vec3& target);
 // [m].
 Eigen::Matrix4f view_matrix(const Camera& camera, double aspect, const Vec3& center, double reach);
 
-// Maps a value of the depth buffer, 0 to 1, to the distance along the viewing direction: factor / (offset - value). The
-// arguments are those of view_matrix.
-struct DepthScale {
-  double factor, offset;
-};
-DepthScale depth_scale(const Camera& camera, const Vec3& center, double reach);
+// Returns the least distance along the viewing direction that is seen [m]. The arguments are those of view_matrix.
+double nearest_seen(const Camera& camera, const Vec3& center, double reach);
 
 // Holds the directions from the eye through the picture: corner + x right + y up for a place in pixels from the lower
 // left. They have length one along the viewing direction.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "render/view.h"
@@ -26,7 +27,8 @@ TEST(Tiles, EachPlaceWhereATriangleIsSeenLiesInAMarkedTile) {
       float a = share(random), b = share(random);
       if (a + b > 1) a = 1 - a, b = 1 - b;
       Eigen::Vector4f point(0, 0, 0, 1);
-      for (int k = 0; k < 3; ++k) point[k] = corners[k] + a * (corners[3 + k] - corners[k]) + b * (corners[6 + k] - corners[k]);
+      for (int k = 0; k < 3; ++k)
+        point[k] = corners[k] + a * (corners[3 + k] - corners[k]) + b * (corners[6 + k] - corners[k]);
       const Eigen::Vector4f clip = view() * point;
       const auto x = int((clip.x() / clip.w() + 1) * width / 2), y = int((clip.y() / clip.w() + 1) * height / 2);
       if (x < 0 || y < 0 || x >= width || y >= height) continue;
@@ -76,34 +78,60 @@ TEST(Tiles, ATriangleThatReachesBehindTheCameraMarksThemAll) {
   }
 }
 
-TEST(Tiles, WideningReachesAsFarAsItSays) {
-  Tiles tiles(width, height);
-  tiles.mark({0, 0, 0, 0.01f, 0, 0, 0, 0.01f, 0}, {0, 1, 2}, view());
-  std::vector<std::pair<int, int>> before;
-  for (int y = 0; y < height / Tiles::edge; ++y) {
-    for (int x = 0; x < width / Tiles::edge; ++x) {
-      if (tiles.marked(x, y)) before.emplace_back(x, y);
+TEST(Tiles, WhatLiesAroundATriangleOnTheGroundIsMarkedToo) {
+  const std::vector<float> triangle = {0.1f, 0, 0.3f, 0.2f, 0, 0.3f, 0.1f, 0, 0.4f};
+  Tiles own(width, height), wide(width, height);
+  own.mark(triangle, {0, 1, 2}, view());
+  constexpr float around = 0.25f;
+  wide.mark(triangle, {0, 1, 2}, view(), around);
+  int beyond = 0, marked = 0;
+  for (int step = 0; step < 64; ++step) {
+    const float angle = 0.1f * float(step);
+    for (std::size_t corner = 0; corner < 9; corner += 3) {
+      const Eigen::Vector4f point(triangle[corner] + around * std::cos(angle), 0,
+                                  triangle[corner + 2] + around * std::sin(angle), 1);
+      const Eigen::Vector4f clip = view() * point;
+      const int x = int((clip.x() / clip.w() + 1) * width / 2) / Tiles::edge,
+                y = int((clip.y() / clip.w() + 1) * height / 2) / Tiles::edge;
+      EXPECT_TRUE(wide.marked(x, y)) << x << ", " << y;
+      beyond += own.marked(x, y) ? 0 : 1;
     }
   }
-  ASSERT_FALSE(before.empty());
-  tiles.widen(40);  // pixels: three tiles
-  for (const auto& [x, y] : before) {
-    EXPECT_TRUE(tiles.marked(x + 3, y));
-    EXPECT_TRUE(tiles.marked(x, y - 3));
-    EXPECT_FALSE(tiles.marked(x + 5, y));
+  EXPECT_GT(beyond, 100);
+  for (int y = 0; y < wide.rows(); ++y) {
+    for (int x = 0; x < wide.columns(); ++x) marked += wide.marked(x, y) ? 1 : 0;
   }
+  // The disc is flat: from a camera 11 degrees above the ground it is some four times as wide as high.
+  EXPECT_LT(marked, 80);
+}
+
+TEST(Tiles, NarrowingLeavesThoseThatAreSurrounded) {
+  Tiles tiles(width, height);
+  for (int y = 3; y <= 7; ++y) {
+    for (int x = 0; x <= 6; ++x) tiles.mark(x, y);
+  }
+  const Tiles::Area box = tiles.around();
+  EXPECT_EQ(box.left, 0);
+  EXPECT_EQ(box.low, 3 * Tiles::edge);
+  EXPECT_EQ(box.width, 7 * Tiles::edge);
+  EXPECT_EQ(box.height, 5 * Tiles::edge);
+  tiles.narrow();
+  for (int y = 0; y < tiles.rows(); ++y) {
+    for (int x = 0; x < tiles.columns(); ++x)
+      EXPECT_EQ(tiles.marked(x, y), y >= 4 && y <= 6 && x <= 5) << x << ", " << y;
+  }
+  EXPECT_EQ(Tiles(width, height).around().width, 0);
 }
 
 TEST(Rays, LeadThroughThePixelsOfTheViewMatrix) {
   const Rays rays = rays_through(camera, width, height);
-  const DepthScale scale = depth_scale(camera, Vec3::Zero(), 3);
   for (const Vec3& point : {Vec3(0.3, 0.1, 0.2), Vec3(-1, 0.7, -1), Vec3(0.8, -0.3, 1)}) {
     const Eigen::Vector4f clip = view() * point.homogeneous().cast<float>();
     const double x = (clip.x() / clip.w() + 1) * width / 2, y = (clip.y() / clip.w() + 1) * height / 2;
     const Vec3 ray = rays.corner + x * rays.right + y * rays.up;
     EXPECT_LT(ray.cross(point - camera.eye).norm(), 1e-5 * (point - camera.eye).norm());
     const double along = (point - camera.eye).dot((camera.target - camera.eye).normalized());
-    EXPECT_NEAR(scale.factor / (scale.offset - (0.5 * clip.z() / clip.w() + 0.5)), along, 2e-3 * along);
+    EXPECT_NEAR(clip.w(), along, 1e-5 * along);
   }
 }
 

@@ -108,6 +108,7 @@ int main(int argc, char** argv) {
     for (const TraceEvent& event : thread.events)
       stages[event.name].push_back(1e-6 * double(event.end_ns - event.begin_ns));
   }
-  for (auto& [name, times] : stages) fmt::print("  {:<16}{:8.2f} ms\n", name, median(times));
+  for (auto& [name, times] : stages)
+    fmt::print("  {:<16}{:8.2f} ms (least {:.2f})\n", name, median(times), *std::ranges::min_element(times));
   write_png(argv[2], image.width, image.height, image.rgb);
 }

@@ -1,0 +1,65 @@
+// Rasterises triangles with several samples a pixel: each sample keeps the number of the nearest triangle. There are
+// neither colours nor attributes, so a small triangle costs little more than its samples.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace supple {
+
+// A corner of a triangle on the screen.
+struct ScreenCorner {
+  std::int32_t x, y;  // in parts of a pixel, from the lower left of the picture
+  float nearness;     // one over the distance along the viewing direction [1/m]
+};
+
+enum class Samples { all, every_second };
+enum class Facing { towards, both };  // anticlockwise triangles alone, or clockwise ones too
+
+class SampleBuffer {
+ public:
+  static constexpr int parts = 256;  // of a pixel along each edge
+  // Corners may lie this far from the origin [parts], beyond the picture too.
+  static constexpr std::int32_t furthest = 1 << 24;
+
+  // samples: 1, 2, 4 or 8, in the places that Direct3D and Vulkan name standard.
+  SampleBuffer(int width, int height, int samples);
+
+  int samples() const { return samples_; }
+  // Returns the places of the samples in a pixel from its lower left, x y each, from 0 to 1.
+  std::vector<float> places() const;
+
+  // Empties the samples of some pixels of a row.
+  void clear(int y, int from, int to);
+
+  // Describes pixels, the last ones included; empty where the last lie before the first.
+  struct Box {
+    int left, right, low, high;
+  };
+  // Writes a triangle into the samples that it covers and in which it is nearest. number: not zero. Where triangles
+  // share an edge, each sample on it belongs to one of them. Returns the pixels that it may have covered.
+  Box fill(const std::array<ScreenCorner, 3>& corners, std::uint32_t number, Facing facing, Samples which);
+
+  // Return the numbers in a pixel's samples, zero where there is none, and their nearness.
+  const std::uint32_t* numbers(int x, int y) const { return &numbers_[at(x, y)]; }
+  const float* nearness(int x, int y) const { return &nearness_[at(x, y)]; }
+
+ private:
+  static constexpr int lanes = 8;
+
+  template <class Integer>
+  void cover(const std::array<ScreenCorner, 3>& corners, const Box& box, double area, std::uint32_t number,
+             Samples which);
+  std::size_t at(int x, int y) const { return (std::size_t(y) * stride_ + x) * samples_; }
+
+  int width_, height_, samples_;
+  std::size_t stride_;  // pixels of a row, with room for the last register
+  // By lane of a register, which begins at a pixel's first sample: the sample's place from that pixel's corner [parts].
+  std::array<std::int32_t, lanes> lane_x_, lane_y_;
+  std::array<std::array<std::int32_t, lanes>, 2> allowed_;  // by value of Samples: -1 in lanes that are written
+  std::vector<std::uint32_t> numbers_;
+  std::vector<float> nearness_;
+};
+
+}  // namespace supple

@@ -1,0 +1,73 @@
+// Finds which surfaces each pixel shows: at most two, with the samples that show them (the visibility buffer of Burns
+// and Hunt 2013). This is done without OpenGL, whose software rasterisers take several times as long for triangles of a
+// few pixels, so that pictures do not depend on the driver's rules for edges and samples either.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "render/draw_list.h"
+#include "render/sample_buffer.h"
+#include "render/tiles.h"
+
+namespace supple {
+
+class Visibility {
+ public:
+  // The triangles of all meshes count through, in the order of the meshes.
+  Visibility(int width, int height, int samples, const std::vector<DrawMesh>& meshes);
+
+  // Takes other meshes, whose triangles count anew.
+  void renew(const std::vector<DrawMesh>& meshes);
+
+  // Finds what a frame shows. positions: x y z by mesh and vertex [m]; view: maps the world to clip coordinates, of
+  // which the fourth is the distance along the viewing direction; nearest: the least such distance that is seen [m];
+  // pixel: a pixel's edge at distance one. What lies below the ground, y = 0, is not seen.
+  void find(const std::vector<DrawMesh>& meshes, const std::vector<std::vector<float>>& positions,
+            const Eigen::Matrix4f& view, double nearest, double pixel);
+
+  // Two numbers for each pixel, rows from the bottom: its first surface and its second. The lower 24 bits are a
+  // triangle, counted from one, or zero; the upper 8 are the samples that show its surface. Only marked tiles are up to
+  // date.
+  const std::vector<std::uint32_t>& surfaces() const { return surfaces_; }
+
+  Tiles& tiles() { return tiles_; }            // in which a pixel shows something
+  const Tiles& full() const { return full_; }  // in which all samples do
+  std::vector<float> sample_places() const { return buffer_.places(); }
+
+  // Returns the distance along the viewing direction of what the first sample of a pixel shows; infinity for nothing.
+  double distance(int x, int y) const { return 1.0 / buffer_.nearness(x, y)[0]; }
+
+ private:
+  // A corner that is cut off has to be computed before it is projected: clip coordinates and the height over the
+  // ground.
+  struct WorldCorner {
+    float x, y, w, height;
+  };
+
+  void clear();
+  void project(const std::vector<float>& positions, const Eigen::Matrix4f& view);
+  WorldCorner corner_at(const float* place, const Eigen::Matrix4f& view) const;
+  ScreenCorner on_screen(const WorldCorner& corner) const;
+  std::uint8_t outside(const WorldCorner& corner) const;
+  void cut(std::vector<WorldCorner>& polygon) const;
+  void fill(const std::array<ScreenCorner, 3>& corners, std::uint32_t number, const DrawMesh& mesh);
+  void resolve(float pixel);
+  template <int samples>
+  bool resolve_tile(int column, int row, float pixel);
+  template <int samples>
+  void resolve_pixel(const std::uint32_t* numbers, const float* nearness, float pixel, std::uint32_t* surfaces) const;
+
+  int width_, height_;
+  float nearest_ = 0;
+  SampleBuffer buffer_;
+  Tiles tiles_, full_;
+  std::vector<std::uint32_t> patches_;  // by triangle: triangles that share vertices have the same number
+  std::vector<std::uint32_t> surfaces_;
+  std::vector<ScreenCorner> corners_;       // of a mesh, by vertex
+  std::vector<std::uint8_t> outside_;       // by vertex: the bounds that it lies beyond, by bit
+  std::vector<WorldCorner> polygon_, cut_;  // scratch
+};
+
+}  // namespace supple
