@@ -39,6 +39,7 @@ const std::vector<std::pair<std::regex, std::regex>> cages = {
     {std::regex("cholmod\\.h"), std::regex("engine/sim/linear/cholesky\\.cpp")},
     {std::regex("png\\.h"), std::regex("engine/(output/png_file|geometry/texture_reader)\\.cpp")},
     {std::regex("jpeglib\\.h"), std::regex("engine/geometry/texture_reader\\.cpp")},
+    {std::regex("stb/.*"), std::regex("engine/geometry/texture_reader\\.cpp")},
     {std::regex("(GL|EGL)/.*"), std::regex("engine/render/.*")},
     {std::regex("ft2build\\.h"), std::regex("engine/render/caption\\.cpp")},
     {std::regex("toml\\+\\+/.*"), std::regex("engine/scene/toml_document\\.h")},

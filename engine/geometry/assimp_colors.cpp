@@ -196,7 +196,7 @@ std::int32_t ColorReader::texture_of(const aiString& path, const aiTextureMapMod
 std::string ColorReader::bytes_of(const aiString& path, const aiTexture* inside, std::string& refusal) const {
   if (inside != nullptr) {
     if (inside->mHeight == 0) return std::string(reinterpret_cast<const char*>(inside->pcData), inside->mWidth);
-    refusal = "is neither PNG nor JPEG";
+    refusal = "is neither PNG, JPEG, TGA nor BMP";
     return "";
   }
   const fs::path place = found_beside(file_, path.C_Str());

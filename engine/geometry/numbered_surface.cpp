@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "base/error.h"
+#include "geometry/triangle_edges.h"
 
 namespace supple {
 
@@ -127,32 +128,16 @@ Numbered cleaned(const TriMesh& raw, const std::string& name, std::vector<std::s
 }
 
 Neighbours neighbours_of(const Numbered& surface) {
-  struct Side {
-    std::int32_t low, high;
-    Eigen::Index triangle;
-    int k;
-    bool upward;
-  };
-  const Triangles& triangles = surface.mesh.triangles;
-  std::vector<Side> sides;
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      const std::int32_t from = triangles(t, k), to = triangles(t, (k + 1) % 3);
-      sides.push_back({std::min(from, to), std::max(from, to), t, k, from < to});
-    }
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
-  });
+  const std::vector<TriangleEdge> sides = sorted_edges(surface.mesh.triangles);
   Neighbours result;
-  result.of.resize(at(triangles.rows()));
+  result.of.resize(at(surface.mesh.triangles.rows()));
   for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
     for (end = i + 1; end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high;) ++end;
     if (end - i > 2 && result.crowded < 0) result.crowded = sides[i + 2].triangle;
     if (end - i != 2) continue;
-    const Side &a = sides[i], &b = sides[i + 1];
-    result.of[at(a.triangle)][at(a.k)] = {b.triangle, a.upward != b.upward};
-    result.of[at(b.triangle)][at(b.k)] = {a.triangle, a.upward != b.upward};
+    const TriangleEdge &a = sides[i], &b = sides[i + 1];
+    result.of[at(a.triangle)][at(a.side)] = {b.triangle, a.upward != b.upward};
+    result.of[at(b.triangle)][at(b.side)] = {a.triangle, a.upward != b.upward};
   }
   return result;
 }

@@ -33,11 +33,6 @@ std::shared_ptr<const TriangleSolid> ShapeProbe::remembered() const {
   return surface_ == nullptr ? nullptr : std::get<ClosedSurface>(surface_->primitive).solid;
 }
 
-double ShapeProbe::distance_within(const Vec3& p, double most) const {
-  if (solid_ == nullptr) return shape_.distance(p);
-  return surface_->scale * solid_->distance_within(local(p), most / surface_->scale);
-}
-
 SurfacePoint ShapeProbe::closest(const Vec3& p, QueryMemory& near) const {
   return solid_ == nullptr ? shape_.closest(p) : in_frame_of_shape(p, solid_->closest(local(p), near));
 }

@@ -26,9 +26,6 @@ class ShapeProbe {
   // Returns a bound below the distance of p that follows from earlier answers; minus infinity where nothing follows.
   double certain_distance(const Vec3& p, const QueryMemory& near) const;
 
-  // Returns shape.distance(p), for a caller who knows that it is not above `most` in size.
-  double distance_within(const Vec3& p, double most) const;
-
   // Tells whether the distance changes no faster than the point moves, and its sign where it is 0 alone: from one value
   // then follow the signs around.
   bool is_exact() const { return solid_ != nullptr && solid_->is_closed(); }

@@ -44,6 +44,23 @@ void mark_near(const TriangleSoup& soup, const SignGrid& grid, Blocks& blocks) {
   }
 }
 
+// Asks about all points of a block at once.
+void sample_block(const TriangleSoup& soup, const Eigen::Vector3i& low, const Eigen::Vector3i& high, SignGrid& grid) {
+  std::vector<Vec3> places;
+  std::vector<double> windings;
+  std::vector<std::size_t> points;
+  for (int k = low.z(); k < high.z(); ++k) {
+    for (int j = low.y(); j < high.y(); ++j) {
+      for (int i = low.x(); i < high.x(); ++i) {
+        places.push_back(grid.position(i, j, k));
+        points.push_back(grid.at(i, j, k));
+      }
+    }
+  }
+  soup.winding_numbers(places, windings);
+  for (std::size_t n = 0; n < points.size(); ++n) grid.inside[points[n]] = windings[n] > 0.5;
+}
+
 // Fills one layer of blocks. Where no triangle is near, the winding number is smooth: it changes side in a block only
 // when it does so among its corners, or comes close to 1/2 there.
 void fill_layer(const TriangleSoup& soup, const Blocks& blocks, int bk, SignGrid& grid) {
@@ -59,12 +76,15 @@ void fill_layer(const TriangleSoup& soup, const Blocks& blocks, int bk, SignGrid
       const bool smooth = !blocks.near[blocks.at(bi, bj, bk)];
       const bool all_in = smooth && low > 0.5f + margin, all_out = smooth && high < 0.5f - margin;
       if (all_out) continue;
-      for (int k = block * bk; k < std::min(block * (bk + 1), grid.points.z()); ++k) {
-        for (int j = block * bj; j < std::min(block * (bj + 1), grid.points.y()); ++j) {
-          for (int i = block * bi; i < std::min(block * (bi + 1), grid.points.x()); ++i)
-            grid.inside[grid.at(i, j, k)] = all_in || soup.winding_number(grid.position(i, j, k)) > 0.5;
-        }
+      const Eigen::Vector3i first = block * Eigen::Vector3i(bi, bj, bk);
+      const Eigen::Vector3i last = (first.array() + block).min(grid.points.array());
+      if (!all_in) {
+        sample_block(soup, first, last, grid);
+        continue;
       }
+      for (int k = first.z(); k < last.z(); ++k)
+        for (int j = first.y(); j < last.y(); ++j)
+          for (int i = first.x(); i < last.x(); ++i) grid.inside[grid.at(i, j, k)] = 1;
     }
   }
 }
@@ -112,11 +132,13 @@ SignGrid sampled_signs(const TriangleSoup& soup, double cell, Threads& threads) 
   blocks.winding.resize(std::size_t((blocks.count.array() + 1).prod()));
   mark_near(soup, grid, blocks);
   threads.run(blocks.count.z() + 1, [&](int k) {
-    for (int j = 0; j <= blocks.count.y(); ++j) {
-      for (int i = 0; i <= blocks.count.x(); ++i)
-        blocks.winding[blocks.corner(i, j, k)] =
-            float(soup.winding_number(grid.position(block * i, block * j, block * k)));
-    }
+    std::vector<Vec3> places;
+    std::vector<double> windings;
+    for (int j = 0; j <= blocks.count.y(); ++j)
+      for (int i = 0; i <= blocks.count.x(); ++i) places.push_back(grid.position(block * i, block * j, block * k));
+    soup.winding_numbers(places, windings);
+    std::transform(windings.begin(), windings.end(), blocks.winding.begin() + std::ptrdiff_t(blocks.corner(0, 0, k)),
+                   [](double winding) { return float(winding); });
   });
   threads.run(blocks.count.z(), [&](int k) { fill_layer(soup, blocks, k, grid); });
   clear_border(grid);

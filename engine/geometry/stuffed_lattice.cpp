@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "geometry/lattice_probe.h"
 #include "geometry/mesh_repair.h"
-#include "geometry/shape_probe.h"
 
 namespace supple {
 namespace {
@@ -22,12 +22,18 @@ using Site = std::array<int, 3>;
 constexpr Site forward_edges[7] = {{2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 1, 1}, {-1, 1, 1}, {1, -1, 1}, {-1, -1, 1}};
 constexpr int long_edges = 3;  // the first three are the long ones
 
+Bounds grown(Bounds box, double by) {
+  box.lower.array() -= by;
+  box.upper.array() += by;
+  return box;
+}
+
 class IsosurfaceStuffing {
  public:
-  IsosurfaceStuffing(const Shape& shape, double spacing, const Vec3& shift, const std::function<void(double)>& heard,
-                     Threads& threads)
-      : probe_(shape), spacing_(spacing), heard_(heard), threads_(threads) {
-    const Bounds box = shape.bounds();
+  IsosurfaceStuffing(const Shape& shape, double spacing, const Vec3& shift, double swell,
+                     const std::function<void(double)>& heard, Threads& threads)
+      : probe_(shape, swell), spacing_(spacing), heard_(heard), threads_(threads) {
+    const Bounds box = grown(shape.bounds(), swell);
     origin_ = box.lower - (1.5 * Vec3::Ones() + shift) * spacing;
     for (int axis = 0; axis < 3; ++axis) {
       cells_[static_cast<std::size_t>(axis)] = static_cast<int>(std::ceil(box.extent()[axis] / spacing + 4));
@@ -36,9 +42,7 @@ class IsosurfaceStuffing {
     const std::size_t sites =
         layers * static_cast<std::size_t>(cells_[1] + 1) * static_cast<std::size_t>(cells_[0] + 1);
     field_.assign(sites, 1.0);
-    moved_.resize(sites);
-    cut_.assign(sites * 7, no_cut);
-    cut_vertex_.assign(sites * 7, -1);
+    cuts_of_.assign(sites, -1);
     site_vertex_.assign(sites, -1);
   }
 
@@ -63,6 +67,18 @@ class IsosurfaceStuffing {
  private:
   static constexpr double no_cut = -1;
 
+  // Describes a site with cut edges.
+  struct Cuts {
+    Site site;
+    Vec3 moved = Vec3::Zero();      // displacement of the site [m]
+    std::array<double, 7> cut;      // fraction at which each forward edge is cut, or no_cut
+    std::array<int, 7> cut_vertex;  // vertex on each forward edge, or -1
+    explicit Cuts(const Site& at) : site(at) {
+      cut.fill(no_cut);
+      cut_vertex.fill(-1);
+    }
+  };
+
   bool inside_lattice(const Site& s) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (s[axis] < 0 || s[axis] > 2 * cells_[axis]) return false;
@@ -76,74 +92,76 @@ class IsosurfaceStuffing {
            static_cast<std::size_t>(s[0] / 2);
   }
   Vec3 lattice_position(const Site& s) const { return origin_ + 0.5 * spacing_ * Vec3(s[0], s[1], s[2]); }
-  Vec3 position(const Site& s) const { return lattice_position(s) + moved_[id(s)]; }
+  Vec3 position(const Site& s) const {
+    const int cuts = cuts_of_[id(s)];
+    return cuts < 0 ? lattice_position(s) : Vec3(lattice_position(s) + cuts_[std::size_t(cuts)].moved);
+  }
 
-  // Passes the rows of sites along x, layer by layer, each layer by one thread; a row may write to its own sites alone.
-  // Tells after some layers how far that is: sampling and finding cuts, which pass once each, take nearly all of the
-  // time.
+  // Runs chunks some at a time, and tells how far that is: sampling and finding cuts, which pass once each, take nearly
+  // all of the time.
   template <class Visit>
-  void for_each_row(const Visit& visit) {
-    constexpr int layers_at_once = 8, passes = 2;
-    const int layers = 2 * cells_[2] + 1;
-    for (int first = 0; first < layers; first += layers_at_once) {
-      const int count = std::min(layers_at_once, layers - first);
-      threads_.run(count, [&](int n) {
-        const int k = first + n;
-        for (int j = k % 2; j <= 2 * cells_[1] - k % 2; j += 2) visit(j, k);
-      });
-      layers_done_ += count;
-      if (heard_) heard_(std::min(1.0, layers_done_ / double(passes * layers)));
+  void run_chunks(int chunks, double done_before, const Visit& visit) {
+    constexpr int at_once = 8, passes = 2;
+    for (int first = 0; first < chunks; first += at_once) {
+      const int count = std::min(at_once, chunks - first);
+      threads_.run(count, [&](int n) { visit(first + n); });
+      if (heard_) heard_(done_before + (first + count) / double(passes * chunks));
     }
   }
 
+  int layers() const { return 2 * cells_[2] + 1; }
+
   template <class Visit>
-  void for_each_site(const Visit& visit) {
-    for (int k = 0; k <= 2 * cells_[2]; ++k) {
-      for (int j = k % 2; j <= 2 * cells_[1] - k % 2; j += 2) {
-        for (int i = k % 2; i <= 2 * cells_[0] - k % 2; i += 2) visit(Site{i, j, k});
-      }
-    }
+  void for_each_site_of(int k, const Visit& visit) {
+    for (int j = k % 2; j <= 2 * cells_[1] - k % 2; j += 2)
+      for (int i = k % 2; i <= 2 * cells_[0] - k % 2; i += 2) visit(Site{i, j, k});
   }
 
   void sample() {
-    for (Vec3& m : moved_) m.setZero();
-    for_each_row([&](int j, int k) { sample_row(j, k); });
+    constexpr int thickness = 8;  // layers of a chunk
+    run_chunks((layers() + thickness - 1) / thickness, 0, [&](int chunk) {
+      LatticeProbe::Memory near = probe_.memory();
+      const int first = chunk * thickness;
+      for (int k = first; k < std::min(first + thickness, layers()); ++k)
+        for_each_site_of(k, [&](const Site& s) { sample_at(s, first, near); });
+    });
   }
 
-  // An exact distance says how far the surface is at most from the next site, and, where it is large, that all edges of
-  // the next sites lie on its side. The values of these sites are then of no use beyond their signs.
-  void sample_row(int j, int k) {
-    double known = 1e300;
-    int skip = 0, passed = 0;  // sites since the last value
-    for (int i = k % 2; i <= 2 * cells_[0] - k % 2; i += 2) {
-      const Site s{i, j, k};
-      ++passed;
-      if (skip > 0) {
-        --skip;
-        field_[id(s)] = known;
-        continue;
+  // The surface is so far from a site, by what is known of the sites before it, that all of the site's edges lie on one
+  // side. What is kept of these sites is of no use beyond its sign and that it is no further away.
+  void sample_at(const Site& s, int first_layer, LatticeProbe::Memory& near) {
+    double clear = -1, side = 1;
+    const auto look = [&](const Site& before, double away) {
+      const double known = field_[id(before)], left = probe_.clearance(known) - away * spacing_;
+      if (left <= clear) return;
+      clear = left;
+      side = known;
+    };
+    if (s[0] >= 2) look({s[0] - 2, s[1], s[2]}, 1);
+    if (s[1] >= 2) look({s[0], s[1] - 2, s[2]}, 1);
+    if (s[2] > first_layer) {
+      for (const int dj : {-1, 1}) {
+        for (const int di : {-1, 1}) {
+          const Site below{s[0] + di, s[1] + dj, s[2] - 1};
+          if (inside_lattice(below)) look(below, 0.8661);  // half of the diagonal of a cell
+        }
       }
-      const double most = std::abs(known) + passed * spacing_;
-      known = probe_.is_exact() && most < 1e299 ? probe_.distance_within(lattice_position(s), most)
-                                                : probe_.distance(lattice_position(s));
-      field_[id(s)] = known;
-      passed = 0;
-      if (probe_.is_exact()) skip = std::clamp(int(std::abs(known) / spacing_ - 1.01), 0, 1 << 20);
     }
+    field_[id(s)] = clear > longest_edge * spacing_ ? std::copysign(clear / probe_.clearance(1), side)
+                                                    : probe_.distance(lattice_position(s), near);
   }
 
   // Finds the cut's parameter along a -> b by bisection, starting from the secant's guess; the field has opposite signs
   // at a and b.
-  double find_cut(const Site& a, const Site& b) const {
+  double find_cut(const Site& a, const Site& b, LatticeProbe::Memory& near) const {
     const Vec3 from = lattice_position(a), to = lattice_position(b);
+    const double length = (to - from).norm();
+    LatticeProbe::Way way(probe_, from, length, near);
     double low = 0, high = 1;
     const bool low_inside = field_[id(a)] < 0;
     double t = field_[id(a)] / (field_[id(a)] - field_[id(b)]);
-    // The surface is no further than the nearer end of the edge and the way there.
-    const double most = std::min(std::abs(field_[id(a)]), std::abs(field_[id(b)])) + (to - from).norm();
     for (int step = 0; step < 30; ++step) {
-      const Vec3 place = from + t * (to - from);
-      const double value = probe_.is_exact() ? probe_.distance_within(place, most) : probe_.distance(place);
+      const double value = way.distance(from + t * (to - from), length * std::max(t - low, high - t));
       if (std::abs(value) < 1e-9 * spacing_) break;
       ((value < 0) == low_inside ? low : high) = t;
       if (high - low < 1e-7) break;
@@ -152,54 +170,76 @@ class IsosurfaceStuffing {
     return t;
   }
 
+  // Sites are in the order of layers, rows and places in a row.
   void find_cuts() {
-    for_each_row([&](int j, int k) {
-      for (int i = k % 2; i <= 2 * cells_[0] - k % 2; i += 2) find_cuts_at(Site{i, j, k});
+    std::vector<std::vector<Site>> by_layer{std::size_t(layers())};
+    threads_.run(layers(), [&](int k) {
+      for_each_site_of(k, [&](const Site& s) {
+        if (has_cuts(s)) by_layer[std::size_t(k)].push_back(s);
+      });
+    });
+    for (const std::vector<Site>& layer : by_layer) {
+      for (const Site& s : layer) {
+        cuts_of_[id(s)] = int(cuts_.size());
+        cuts_.emplace_back(s);
+      }
+    }
+    constexpr int size = 64;  // sites of a chunk
+    const int count = int(cuts_.size());
+    run_chunks((count + size - 1) / size, 0.5, [&](int chunk) {
+      LatticeProbe::Memory near = probe_.memory();
+      for (int c = chunk * size; c < std::min((chunk + 1) * size, count); ++c) {
+        Cuts& cuts = cuts_[std::size_t(c)];
+        for (std::size_t e = 0; e < 7; ++e) {
+          const Site other = stepped(cuts.site, forward_edges[e], 1);
+          if (is_cut(cuts.site, other)) cuts.cut[e] = find_cut(cuts.site, other, near);
+        }
+      }
     });
   }
 
-  void find_cuts_at(const Site& s) {
-    for (int e = 0; e < 7; ++e) {
-      const Site other = stepped(s, forward_edges[e], 1);
-      if (!inside_lattice(other)) continue;
-      if ((field_[id(s)] < 0) != (field_[id(other)] < 0))
-        cut_[id(s) * 7 + static_cast<std::size_t>(e)] = find_cut(s, other);
-    }
+  bool has_cuts(const Site& s) const {
+    for (const Site& edge : forward_edges)
+      if (is_cut(s, stepped(s, edge, 1)) || is_cut(s, stepped(s, edge, -1))) return true;
+    return false;
+  }
+
+  bool is_cut(const Site& s, const Site& other) const {
+    return inside_lattice(other) && (field_[id(s)] < 0) != (field_[id(other)] < 0);
   }
 
   static Site stepped(const Site& s, const Site& edge, int sign) {
     return {s[0] + sign * edge[0], s[1] + sign * edge[1], s[2] + sign * edge[2]};
   }
 
-  // Calls visit(slot of the edge, the other end, the cut's fraction from s, the edge's direction) for each cut edge of
-  // s.
+  // Calls visit(the cut's fraction from its forward end, the other end, the fraction from s, the edge's direction) for
+  // each cut edge of s.
   template <class Visit>
-  void for_each_cut(const Site& s, const Visit& visit) {
-    for (int e = 0; e < 7; ++e) {
-      const std::size_t slot = id(s) * 7 + static_cast<std::size_t>(e);
-      if (cut_[slot] != no_cut) visit(slot, stepped(s, forward_edges[e], 1), cut_[slot], e);
-      const Site other = stepped(s, forward_edges[e], -1);
-      if (!inside_lattice(other)) continue;
-      const std::size_t back = id(other) * 7 + static_cast<std::size_t>(e);
-      if (cut_[back] != no_cut) visit(back, other, 1 - cut_[back], e);
+  void for_each_cut(Cuts& cuts, const Visit& visit) {
+    for (std::size_t e = 0; e < 7; ++e) {
+      const Site ahead = stepped(cuts.site, forward_edges[e], 1), behind = stepped(cuts.site, forward_edges[e], -1);
+      if (cuts.cut[e] != no_cut) visit(cuts.cut[e], ahead, cuts.cut[e], int(e));
+      if (!inside_lattice(behind) || cuts_of_[id(behind)] < 0) continue;
+      double& back = cuts_[std::size_t(cuts_of_[id(behind)])].cut[e];
+      if (back != no_cut) visit(back, behind, 1 - back, int(e));
     }
   }
 
   void snap() {
-    for_each_site([&](const Site& s) {
+    for (Cuts& cuts : cuts_) {
       double nearest = 1;  // in units of the edge's own snapping distance
       Vec3 target = Vec3::Zero();
-      for_each_cut(s, [&](std::size_t, const Site& other, double fraction, int edge) {
+      for_each_cut(cuts, [&](double, const Site& other, double fraction, int edge) {
         const double relative = fraction / (edge < long_edges ? snap_long : snap_short);
         if (relative >= nearest) return;
         nearest = relative;
-        target = fraction * (lattice_position(other) - lattice_position(s));
+        target = fraction * (lattice_position(other) - lattice_position(cuts.site));
       });
-      if (nearest >= 1) return;
-      for_each_cut(s, [&](std::size_t slot, const Site&, double, int) { cut_[slot] = no_cut; });
-      moved_[id(s)] = target;
-      field_[id(s)] = 0;
-    });
+      if (nearest >= 1) continue;
+      for_each_cut(cuts, [&](double& cut, const Site&, double, int) { cut = no_cut; });
+      cuts.moved = target;
+      field_[id(cuts.site)] = 0;
+    }
   }
 
   static bool is_long(const Site& a, const Site& b) { return (a[0] + b[0]) % 2 == 0; }
@@ -218,13 +258,14 @@ class IsosurfaceStuffing {
       for (const bool swapped : {false, true}) {
         const Site& from = swapped ? b : a;
         if (stepped(from, forward_edges[e], 1) != (swapped ? a : b)) continue;
-        const std::size_t slot = id(from) * 7 + static_cast<std::size_t>(e);
-        SUPPLE_CHECK(cut_[slot], >=, 0.0);
-        int& name = cut_vertex_[slot];
+        Cuts& cuts = cuts_[std::size_t(cuts_of_[id(from)])];
+        const double fraction = cuts.cut[std::size_t(e)];
+        SUPPLE_CHECK(fraction, >=, 0.0);
+        int& name = cuts.cut_vertex[std::size_t(e)];
         if (name < 0) {
           name = static_cast<int>(vertices_.size());
           const Vec3 p = lattice_position(from), q = lattice_position(swapped ? a : b);
-          vertices_.push_back((p + cut_[slot] * (q - p)).transpose());
+          vertices_.push_back((p + fraction * (q - p)).transpose());
         }
         return name;
       }
@@ -329,6 +370,8 @@ class IsosurfaceStuffing {
     for (int k = 1; k < 2 * cells_[2]; k += 2) {
       for (int j = 1; j < 2 * cells_[1]; j += 2) {
         for (int i = 1; i < 2 * cells_[0]; i += 2) {
+          const double center = field_[id({i, j, k})];
+          if (center > 0 && probe_.clearance(center) > longest_edge * spacing_) continue;  // all around is outside
           for (std::size_t axis = 0; axis < 3; ++axis) {
             const Site a{i, j, k};
             Site b = a;
@@ -352,17 +395,17 @@ class IsosurfaceStuffing {
     }
   }
 
-  const ShapeProbe probe_;
+  static constexpr double longest_edge = 1.01;  // in spacings, with room for round-off
+
+  const LatticeProbe probe_;
   const double spacing_;
   const std::function<void(double)>& heard_;
   Threads& threads_;
-  int layers_done_ = 0;  // of both passes
   Vec3 origin_;
   std::array<int, 3> cells_{};
   std::vector<double> field_;     // distance at each site; 0 where the site was moved onto the surface
-  std::vector<Vec3> moved_;       // displacement of each site [m]
-  std::vector<double> cut_;       // fraction at which each forward edge is cut, or no_cut
-  std::vector<int> cut_vertex_;   // vertex on each forward edge, or -1
+  std::vector<Cuts> cuts_;        // of the sites with cut edges
+  std::vector<int> cuts_of_;      // of each site, its place among them, or -1
   std::vector<int> site_vertex_;  // vertex at each site, or -1
   std::vector<Eigen::RowVector3d> vertices_;
   std::vector<std::array<int, 4>> tets_;
@@ -370,16 +413,9 @@ class IsosurfaceStuffing {
 
 }  // namespace
 
-TetMesh stuffed_lattice(const Shape& shape, double spacing, const Vec3& shift, const std::function<void(double)>& heard,
-                        Threads& threads) {
-  TetMesh mesh = one_manifold_piece(IsosurfaceStuffing(shape, spacing, shift, heard, threads).run());
-  mesh.regions.resize(static_cast<std::size_t>(mesh.tets.rows()));
-  for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
-    Vec3 centroid = Vec3::Zero();
-    for (int k = 0; k < 4; ++k) centroid += 0.25 * mesh.rest.row(mesh.tets(e, k)).transpose();
-    mesh.regions[static_cast<std::size_t>(e)] = shape.region(centroid);
-  }
-  return mesh;
+TetMesh stuffed_lattice(const Shape& shape, double spacing, const Vec3& shift, double swell,
+                        const std::function<void(double)>& heard, Threads& threads) {
+  return one_manifold_piece(IsosurfaceStuffing(shape, spacing, shift, swell, heard, threads).run());
 }
 
 }  // namespace supple

@@ -1,11 +1,20 @@
 #include "geometry/texture_reader.h"
 
+#include <algorithm>
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
 
 #include <jpeglib.h>
 #include <png.h>
+
+// Of stb, only the readers of TGA and BMP are compiled.
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_NO_STDIO
+#define STBI_ONLY_TGA
+#define STBI_ONLY_BMP
+#include <stb/stb_image.h>
 
 namespace supple {
 namespace {
@@ -98,13 +107,74 @@ ReadTexture read_jpeg(const std::uint8_t* bytes, std::size_t count, std::int64_t
   return whole ? result : refused(std::string("is a damaged JPEG (") + why + ")");
 }
 
+// Gives the bytes of a picture to stb, which takes what is missing at the end for zeros, or leaves memory as it is.
+struct Source {
+  const std::uint8_t* bytes;
+  std::size_t left;
+  int first_request = 0;   // of stb's own buffer, which it fills as far as there are bytes
+  bool too_short = false;  // whether more was asked for than there is
+};
+
+int give(void* user, char* data, int size) {
+  Source& source = *static_cast<Source*>(user);
+  if (source.first_request == 0) source.first_request = size;
+  const std::size_t count = std::min(source.left, std::size_t(size));
+  std::memcpy(data, source.bytes, count);
+  source.bytes += count;
+  source.left -= count;
+  source.too_short |= count == 0 || (count < std::size_t(size) && size != source.first_request);
+  return int(count);
+}
+
+void skip(void* user, int count) {
+  Source& source = *static_cast<Source*>(user);
+  const std::size_t passed = std::min(source.left, std::size_t(std::max(0, count)));
+  source.too_short |= passed < std::size_t(std::max(0, count));
+  source.bytes += passed;
+  source.left -= passed;
+}
+
+int is_at_end(void* user) { return static_cast<Source*>(user)->left == 0 ? 1 : 0; }
+
+ReadTexture read_by_stb(const std::uint8_t* bytes, std::size_t count, std::int64_t most_pixels,
+                        const std::string& kind) {
+  const stbi_io_callbacks callbacks{give, skip, is_at_end};
+  int width = 0, height = 0, channels = 0;
+  Source head{bytes, count}, source{bytes, count};
+  if (stbi_info_from_callbacks(&callbacks, &head, &width, &height, &channels) == 0)
+    return refused("is no " + kind + " that can be read");
+  const std::int64_t pixels = std::int64_t(width) * height;
+  if (pixels <= 0 || pixels > most_pixels) return refused(too_large(width, height));
+  std::uint8_t* const rgba = stbi_load_from_callbacks(&callbacks, &source, &width, &height, &channels, 4);
+  ReadTexture result;
+  if (rgba != nullptr && !source.too_short) {
+    result.texture.width = width;
+    result.texture.height = height;
+    result.texture.rgb.resize(3 * std::size_t(pixels));
+    for (std::size_t p = 0; p < std::size_t(pixels); ++p) {
+      std::memcpy(&result.texture.rgb[3 * p], &rgba[4 * p], 3);
+      result.transparent |= rgba[4 * p + 3] != 255;
+    }
+  } else {
+    result = refused("is a damaged " + kind + " (" + (rgba == nullptr ? stbi_failure_reason() : "too short") + ")");
+  }
+  stbi_image_free(rgba);
+  return result;
+}
+
 }  // namespace
 
 ReadTexture read_texture(const std::uint8_t* bytes, std::size_t count, std::int64_t most_pixels) {
   constexpr std::uint8_t png[] = {0x89, 'P', 'N', 'G'}, jpeg[] = {0xff, 0xd8, 0xff};
   if (count >= sizeof png && std::memcmp(bytes, png, sizeof png) == 0) return read_png(bytes, count, most_pixels);
   if (count >= sizeof jpeg && std::memcmp(bytes, jpeg, sizeof jpeg) == 0) return read_jpeg(bytes, count, most_pixels);
-  return refused("is neither PNG nor JPEG");
+  if (count >= 2 && bytes[0] == 'B' && bytes[1] == 'M') return read_by_stb(bytes, count, most_pixels, "BMP");
+  Source start{bytes, count};
+  const stbi_io_callbacks callbacks{give, skip, is_at_end};
+  int width = 0, height = 0, channels = 0;  // a TGA begins with no mark, so that its whole head must make sense
+  if (stbi_info_from_callbacks(&callbacks, &start, &width, &height, &channels) != 0)
+    return read_by_stb(bytes, count, most_pixels, "TGA");
+  return refused("is neither PNG, JPEG, TGA nor BMP");
 }
 
 }  // namespace supple

@@ -1,4 +1,5 @@
-// Reads PNG and JPEG pictures within bounds. A part of supple-read-surface; no other part of the program uses libjpeg.
+// Reads PNG, JPEG, TGA and BMP pictures within bounds. A part of supple-read-surface; no other part of the program uses
+// libjpeg or stb.
 #pragma once
 
 #include <cstddef>

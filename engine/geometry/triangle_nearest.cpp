@@ -19,6 +19,20 @@ Vec3 get(const L& lanes, int k) {
   return Vec3(lanes.x[k], lanes.y[k], lanes.z[k]);
 }
 
+// Returns the squared distances of p from the boxes of a node's children.
+template <class Node>
+[[gnu::always_inline]] inline auto squared_distances(const Node& node, const Vec3& p) {
+  using Lanes = decltype(node.lower.x);
+  const Lanes zero = {};
+  const auto outside = [&](const Lanes& lower, const Lanes& upper, double at) __attribute__((always_inline)) {
+    const Lanes below = lower - at, above = at - upper, either = below > above ? below : above;
+    return Lanes(either > zero ? either : zero);
+  };
+  const Lanes x = outside(node.lower.x, node.upper.x, p.x()), y = outside(node.lower.y, node.upper.y, p.y()),
+              z = outside(node.lower.z, node.upper.z, p.z());
+  return Lanes(x * x + y * y + z * z);
+}
+
 }  // namespace
 
 // Follows Ericson, Real-Time Collision Detection, 2005, section 5.1.5, for four triangles at once. Instead of choosing
@@ -92,7 +106,6 @@ TriangleSolid::Nearest TriangleSolid::nearest(const Vec3& p, std::int32_t likely
   };
   if (most < infinity) bound = best.squared;
   if (likely >= 0) look(likely);
-  const Lanes zero = {};
   while (top > 0) {
     const Entry entry = stack[std::size_t(--top)];
     if (!(entry.squared < bound)) continue;
@@ -101,13 +114,7 @@ TriangleSolid::Nearest TriangleSolid::nearest(const Vec3& p, std::int32_t likely
       continue;
     }
     const Node& node = nodes_[std::size_t(entry.node)];
-    const auto outside = [&](const Lanes& lower, const Lanes& upper, double at) __attribute__((always_inline)) {
-      const Lanes below = lower - at, above = at - upper, either = below > above ? below : above;
-      return Lanes(either > zero ? either : zero);
-    };
-    const Lanes x = outside(node.lower.x, node.upper.x, p.x()), y = outside(node.lower.y, node.upper.y, p.y()),
-                z = outside(node.lower.z, node.upper.z, p.z());
-    const Lanes squared = x * x + y * y + z * z;
+    const Lanes squared = squared_distances(node, p);
     const int first = top;
     for (int k = 0; k < width; ++k) {
       if (!(squared[k] < bound)) continue;
@@ -143,8 +150,7 @@ std::optional<SurfacePoint> TriangleSolid::closest_within(const Vec3& p, double 
   if (!usual) return closest(p);
   const Nearest found = nearest(p, near.leaf, most);
   if (found.leaf < 0) return std::nullopt;
-  const double side = sides_by_normals_ ? side_of(p, found) : inside(p) ? -1 : 1;
-  const SurfacePoint surface = seen_from(p, found, side);
+  const SurfacePoint surface = seen_from(p, found, side_at(p, found));
   near.leaf = found.leaf;
   near.answers[std::size_t(near.oldest)] = {p, surface};
   near.count = std::max(near.count, near.oldest + 1);
@@ -162,11 +168,34 @@ double TriangleSolid::certain_distance(const Vec3& p, const QueryMemory& near) c
   return most;
 }
 
-double TriangleSolid::distance_within(const Vec3& p, double most) const {
-  const Nearest found = nearest(p, -1, 1.001 * most + 1e3 * on_surface_);
-  if (found.leaf < 0) return closest(p).distance;
-  const double side = sides_by_normals_ ? side_of(p, found) : inside(p) ? -1 : 1;
-  return seen_from(p, found, side).distance;
+bool TriangleSolid::find_leaves(const Vec3& p, double reach, NearLeaves& found) const {
+  const double with_slack = 1.001 * reach + 1e3 * on_surface_, bound = with_slack * with_slack;
+  std::array<std::int32_t, stack_size> stack;
+  int top = 0;
+  stack[std::size_t(top++)] = 0;
+  found.count = 0;
+  while (top > 0) {
+    const std::int32_t index = stack[std::size_t(--top)];
+    if (index < 0) {
+      if (found.count == int(found.leaf.size())) {
+        found.count = 0;
+        return false;
+      }
+      found.leaf[std::size_t(found.count++)] = ~index;
+      continue;
+    }
+    const Node& node = nodes_[std::size_t(index)];
+    const Lanes squared = squared_distances(node, p);
+    for (int k = 0; k < width; ++k)
+      if (squared[k] <= bound) stack[std::size_t(top++)] = node.child[std::size_t(k)];
+  }
+  return true;
+}
+
+double TriangleSolid::distance_among(const Vec3& p, const NearLeaves& leaves) const {
+  Nearest best{infinity, -1, 0, 0, 0, 0};
+  for (int i = 0; i < leaves.count; ++i) nearest_in_leaf(p, leaves.leaf[std::size_t(i)], best);
+  return seen_from(p, best, side_at(p, best)).distance;
 }
 
 Vec3 TriangleSolid::point_of(const Nearest& found) const {

@@ -5,9 +5,9 @@
 #include <limits>
 #include <numbers>
 #include <thread>
-#include <tuple>
 
 #include "base/threads.h"
+#include "geometry/triangle_edges.h"
 #include "geometry/triangle_solid.h"
 
 namespace supple {
@@ -23,6 +23,19 @@ double winding_of_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double y = a.dot(b.cross(c));
   const double x = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
   return std::atan2(y, x) / (2 * std::numbers::pi);
+}
+
+// Tells whether a way from a passes through a triangle, from either side: Moeller and Trumbore, Fast, minimum storage
+// ray-triangle intersection, 1997.
+template <class Corners>
+bool passes_through(const Vec3& a, const Vec3& way, const Corners& corners) {
+  constexpr double slack = 1e-9;
+  const Vec3 ab = corners[1] - corners[0], ac = corners[2] - corners[0], across = way.cross(ac);
+  const double facing = ab.dot(across);
+  if (facing == 0) return false;
+  const Vec3 away = a - corners[0], turned = away.cross(ab);
+  const double v = away.dot(across) / facing, w = way.dot(turned) / facing, share = ac.dot(turned) / facing;
+  return v > slack && w > slack && v + w < 1 - slack && share > slack && share < 1 - slack;
 }
 
 }  // namespace
@@ -142,64 +155,98 @@ bool TriangleSolid::inside(const Vec3& p) const {
   return crossings(p) - of_lids > 0.5;
 }
 
-namespace {
-
-// An edge of a triangle, as its neighbour on the other side sees it.
-struct HalfEdge {
-  std::int32_t from, to;
-  std::int32_t triangle;
-  int side;  // 0: from corner 0 to 1, 1: from 1 to 2, 2: from 2 to 0
-};
-
-std::vector<HalfEdge> half_edges(const Triangles& triangles) {
-  std::vector<HalfEdge> edges;
-  for (std::int32_t t = 0; t < triangles.rows(); ++t) {
-    for (int k = 0; k < 3; ++k) edges.push_back({triangles(t, k), triangles(t, (k + 1) % 3), t, k});
-  }
-  return edges;
-}
-
-}  // namespace
-
 // Pairs each edge with the same edge of its neighbour. Returns false when some edge has not exactly one neighbour.
 bool TriangleSolid::find_neighbours() {
-  std::vector<HalfEdge> forward = half_edges(surface_.triangles), backward = forward;
-  for (HalfEdge& e : backward) std::swap(e.from, e.to);
-  const auto before = [](const HalfEdge& l, const HalfEdge& r) {
-    return std::tie(l.from, l.to, l.triangle) < std::tie(r.from, r.to, r.triangle);
-  };
-  std::sort(forward.begin(), forward.end(), before);
-  std::sort(backward.begin(), backward.end(), before);
+  const std::vector<TriangleEdge> edges = sorted_edges(surface_.triangles);
   neighbours_.resize(surface_.triangles.rows(), 3);
-  for (std::size_t i = 0; i < forward.size(); ++i) {
-    const HalfEdge &f = forward[i], &b = backward[i];
-    const bool repeated = i > 0 && forward[i - 1].from == f.from && forward[i - 1].to == f.to;
-    if (repeated || f.from != b.from || f.to != b.to) return false;
-    neighbours_(f.triangle, f.side) = b.triangle;
+  const auto are_one = [](const TriangleEdge& a, const TriangleEdge& b) { return a.low == b.low && a.high == b.high; };
+  for (std::size_t i = 0; i < edges.size(); i += 2) {
+    const bool pair = i + 1 < edges.size() && are_one(edges[i], edges[i + 1]) && edges[i].upward != edges[i + 1].upward;
+    if (!pair || (i + 2 < edges.size() && are_one(edges[i], edges[i + 2]))) return false;
+    neighbours_(edges[i].triangle, edges[i].side) = edges[i + 1].triangle;
+    neighbours_(edges[i + 1].triangle, edges[i + 1].side) = edges[i].triangle;
   }
   return true;
 }
 
-// Prepares to find a point's side. If every edge has one neighbour and all parts of the surface face empty space, the
-// side follows from the normals around its closest point alone: Baerentzen and Aanaes, Signed distance computation
-// using the angle weighted pseudonormal, 2005. Overlapping parts, of which some lie inside others, need the winding
-// number.
-void TriangleSolid::prepare_sides() {
-  if (!lids_.empty() || !find_neighbours()) return;
-  // Each chunk stops at its first triangle that faces the inside.
-  constexpr Eigen::Index chunk = 4096;
+// Tells whether the edge between two vertices passes through a triangle that has neither of them. The triangles' own
+// edges end there, so that touching does not count.
+bool TriangleSolid::pierced_by(std::int32_t from, std::int32_t to) const {
+  const Vec3 a = surface_.points.row(from), b = surface_.points.row(to), way = b - a;
+  const Vec3 lower = a.cwiseMin(b), upper = a.cwiseMax(b);
+  std::array<std::int32_t, stack_size> stack;
+  int top = 0;
+  stack[std::size_t(top++)] = 0;
+  while (top > 0) {
+    const std::int32_t index = stack[std::size_t(--top)];
+    if (index < 0) {
+      const Leaf& leaf = leaves_[std::size_t(~index)];
+      for (int k = 0; k < leaf.count; ++k) {
+        const auto corner_names = surface_.triangles.row(leaf.triangle[std::size_t(k)]);
+        if ((corner_names.array() == from).any() || (corner_names.array() == to).any()) continue;
+        if (passes_through(a, way, corners(leaf.triangle[std::size_t(k)]))) return true;
+      }
+      continue;
+    }
+    const Node& node = nodes_[std::size_t(index)];
+    const auto met = (node.lower.x <= upper.x()) & (node.upper.x >= lower.x()) & (node.lower.y <= upper.y()) &
+                     (node.upper.y >= lower.y()) & (node.lower.z <= upper.z()) & (node.upper.z >= lower.z());
+    for (int k = 0; k < width; ++k)
+      if (met[k]) stack[std::size_t(top++)] = node.child[std::size_t(k)];
+  }
+  return false;
+}
+
+// Where two triangles cross each other, an edge of one of them passes through the other.
+bool TriangleSolid::crosses_itself() const {
+  constexpr Eigen::Index chunk = 4096;  // each stops at its first edge that does
   const auto chunks = std::size_t((surface_.triangles.rows() + chunk - 1) / chunk);
-  std::vector<char> faces_inside(chunks, 0);
+  std::vector<char> crossed(chunks, 0);
   Threads threads(chunks > 1 ? int(std::max(1u, std::thread::hardware_concurrency())) : 1);
   threads.run(int(chunks), [&](int c) {
     const Eigen::Index end = std::min((c + 1) * chunk, surface_.triangles.rows());
-    for (Eigen::Index t = c * chunk; t < end && !faces_inside[std::size_t(c)]; ++t) {
-      const Vec3 middle = (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3;
-      const double edge = (corner(t, 1) - corner(t, 0)).norm();
-      faces_inside[std::size_t(c)] = inside(middle + 1e-3 * edge * normals_.row(t).transpose());
+    for (Eigen::Index t = c * chunk; t < end && !crossed[std::size_t(c)]; ++t) {
+      for (int k = 0; k < 3; ++k) {
+        const std::int32_t from = surface_.triangles(t, k), to = surface_.triangles(t, (k + 1) % 3);
+        crossed[std::size_t(c)] |= neighbours_(t, k) > t && pierced_by(from, to);
+      }
     }
   });
-  if (std::find(faces_inside.begin(), faces_inside.end(), 1) != faces_inside.end()) return;
+  return std::find(crossed.begin(), crossed.end(), 1) != crossed.end();
+}
+
+std::vector<Eigen::Index> TriangleSolid::one_of_each_component() const {
+  std::vector<Eigen::Index> firsts, waiting;
+  std::vector<char> reached(std::size_t(surface_.triangles.rows()), 0);
+  for (Eigen::Index t = 0; t < surface_.triangles.rows(); ++t) {
+    if (reached[std::size_t(t)]) continue;
+    firsts.push_back(t);
+    waiting.push_back(t);
+    reached[std::size_t(t)] = 1;
+    while (!waiting.empty()) {
+      const Eigen::Index next = waiting.back();
+      waiting.pop_back();
+      for (int k = 0; k < 3; ++k) {
+        const std::int32_t other = neighbours_(next, k);
+        if (!reached[std::size_t(other)]) waiting.push_back(other);
+        reached[std::size_t(other)] = 1;
+      }
+    }
+  }
+  return firsts;
+}
+
+// Prepares to find a point's side. If every edge has one neighbour, the surface does not cross itself and all parts of
+// it face empty space, the side follows from the normals around its closest point alone: Baerentzen and Aanaes, Signed
+// distance computation using the angle weighted pseudonormal, 2005. Overlapping parts, of which some lie inside others,
+// need the winding number.
+void TriangleSolid::prepare_sides() {
+  if (!lids_.empty() || !find_neighbours() || crosses_itself()) return;
+  for (const Eigen::Index t : one_of_each_component()) {
+    const Vec3 middle = (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3;
+    const double edge = (corner(t, 1) - corner(t, 0)).norm();
+    if (inside(middle + 1e-3 * edge * normals_.row(t).transpose())) return;
+  }
   vertex_normals_.setZero(surface_.points.rows(), 3);
   for (Eigen::Index t = 0; t < surface_.triangles.rows(); ++t) {
     for (int k = 0; k < 3; ++k) {

@@ -28,6 +28,12 @@ struct QueryMemory {
   std::int32_t oldest = 0;  // of the two, which the next one replaces
 };
 
+// Names leaves of a solid's tree, among which the closest triangle lies for all places near each other.
+struct NearLeaves {
+  std::array<std::int32_t, 12> leaf;
+  int count = 0;
+};
+
 // The object is constant after construction; queries may run on any number of threads and give the same bits on each.
 class TriangleSolid {
  public:
@@ -48,9 +54,12 @@ class TriangleSolid {
   // solid's size; minus infinity where nothing follows.
   double certain_distance(const Vec3& p, const QueryMemory& near) const;
 
-  // Returns the signed distance, with the bits of closest(p), for a caller who knows that the surface is not further
-  // away than `most`, by more than round-off.
-  double distance_within(const Vec3& p, double most) const;
+  // Finds all leaves that come nearer to p than `reach`. Returns false, and finds none, where there are too many.
+  bool find_leaves(const Vec3& p, double reach, NearLeaves& found) const;
+
+  // Returns the signed distance, with the bits of closest(p), for a caller who knows that the closest triangle is in
+  // one of these leaves.
+  double distance_among(const Vec3& p, const NearLeaves& leaves) const;
 
   // Tells whether every edge is closed, so that the sign changes at the triangles alone.
   bool is_closed() const { return lids_.empty(); }
@@ -109,8 +118,14 @@ class TriangleSolid {
   Vec3 point_of(const Nearest& found) const;
   SurfacePoint seen_from(const Vec3& p, const Nearest& found, double sign) const;
   double side_of(const Vec3& p, const Nearest& found) const;
+  double side_at(const Vec3& p, const Nearest& found) const {
+    return sides_by_normals_ ? side_of(p, found) : inside(p) ? -1 : 1;
+  }
   void entry_in_leaf(const Vec3& a, const Vec3& way, std::int32_t leaf, double& first) const;
   bool find_neighbours();
+  std::vector<Eigen::Index> one_of_each_component() const;
+  bool crosses_itself() const;
+  bool pierced_by(std::int32_t from, std::int32_t to) const;
   void prepare_sides();
   void close_holes();
   bool inside(const Vec3& p) const;

@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
+#include <thread>
+#include <utility>
 
 #include "base/error.h"
+#include "base/threads.h"
 
 namespace supple {
 namespace {
@@ -17,15 +19,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int leaf_size = 4;
 constexpr int stack_size = 64;  // the tree is balanced: 2^31 triangles make 31 levels, with one sibling waiting at each
 constexpr double far = 2.5;     // a part counts as far beyond this many of its radii: section 3.2 of the paper has 2
-
-// Computes the signed solid angle over 4 pi: Van Oosterom and Strackee, The solid angle of a plane triangle, 1983,
-// equation 8.
-double winding_of_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const double la = a.norm(), lb = b.norm(), lc = c.norm();
-  const double y = a.dot(b.cross(c));
-  const double x = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-  return std::atan2(y, x) / (2 * std::numbers::pi);
-}
 
 // Follows Moeller and Trumbore, Fast, minimum storage ray-triangle intersection, 1997, for triangles of both sides.
 double hit_of_triangle(const Vec3& from, const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -67,6 +60,94 @@ Vec3 weights_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
   return Vec3(u, v, w) / (u + v + w);
 }
 
+// Builds the tree, with its halves' halves on all threads. Each node has its place before it is made: a subtree of some
+// triangles has as many nodes as any other of as many.
+class TriangleSoup::Builder {
+ public:
+  explicit Builder(TriangleSoup& soup) : soup_(soup), keys_(soup.order_.size()) {
+    boxes_.reserve(keys_.size());
+    for (Eigen::Index t = 0; t < soup.mesh_.triangles.rows(); ++t) {
+      Bounds& box = boxes_.emplace_back();
+      for (int k = 0; k < 3; ++k) box.include(soup.corner(t, k));
+    }
+  }
+
+  void build() {
+    const auto all = std::int32_t(keys_.size());
+    soup_.nodes_.resize(std::size_t(nodes_of(all)));
+    constexpr std::int32_t worth_threads = 50000;  // triangles
+    std::vector<Part> waiting;
+    add({0, 0, all}, all > worth_threads ? all / 8 : all, waiting);
+    Threads threads(waiting.size() > 1 ? int(std::max(1u, std::thread::hardware_concurrency())) : 1);
+    threads.run(int(waiting.size()), [&](int p) {
+      std::vector<Part> none;
+      add(waiting[std::size_t(p)], 0, none);
+    });
+  }
+
+ private:
+  // Says which triangles of the order make the subtree of a node.
+  struct Part {
+    std::int32_t node, first, count;
+  };
+
+  static std::int32_t nodes_of(std::int32_t triangles) {
+    return triangles <= leaf_size ? 1 : 1 + nodes_of(triangles / 2) + nodes_of(triangles - triangles / 2);
+  }
+
+  // Leaves parts of at most `small` triangles waiting.
+  void add(const Part& part, std::int32_t small, std::vector<Part>& waiting) {
+    if (part.count <= small) return waiting.push_back(part);
+    Node& node = soup_.nodes_[std::size_t(part.node)];
+    summarise(node, part.first, part.count);
+    if (part.count <= leaf_size) {
+      node.first = part.first;
+      node.count = part.count;
+      return;
+    }
+    int axis = 0;
+    node.box.extent().maxCoeff(&axis);
+    const auto keys = keys_.begin() + part.first;
+    const auto order = soup_.order_.begin() + part.first;
+    for (std::ptrdiff_t i = 0; i < part.count; ++i) keys[i] = {soup_.centroids_(order[i], axis), order[i]};
+    std::nth_element(keys, keys + part.count / 2, keys + part.count);
+    for (std::ptrdiff_t i = 0; i < part.count; ++i) order[i] = keys[i].second;
+    const Part one{part.node + 1, part.first, part.count / 2};
+    const Part other{one.node + nodes_of(one.count), one.first + one.count, part.count - one.count};
+    node.other = other.node;
+    add(one, small, waiting);
+    add(other, small, waiting);
+  }
+
+  void summarise(Node& node, std::int32_t first, std::int32_t count) const {
+    Vec3 sum = Vec3::Zero();
+    double weight = 0;
+    node.area.setZero();
+    for (std::int32_t i = first; i < first + count; ++i) {
+      const std::int32_t t = soup_.order_[std::size_t(i)];
+      const double own = soup_.areas_.row(t).norm();
+      node.area += soup_.areas_.row(t).transpose();
+      sum += own * soup_.centroids_.row(t).transpose();
+      weight += own;
+      node.box.lower = node.box.lower.cwiseMin(boxes_[std::size_t(t)].lower);
+      node.box.upper = node.box.upper.cwiseMax(boxes_[std::size_t(t)].upper);
+    }
+    node.center = weight > 0 ? Vec3(sum / weight) : node.box.center();
+    node.moment.setZero();
+    double radius = 0;
+    for (std::int32_t i = first; i < first + count; ++i) {
+      const std::int32_t t = soup_.order_[std::size_t(i)];
+      node.moment += (soup_.centroids_.row(t).transpose() - node.center) * soup_.areas_.row(t);
+      for (int k = 0; k < 3; ++k) radius = std::max(radius, (soup_.corner(t, k) - node.center).squaredNorm());
+    }
+    node.reach = far * std::sqrt(radius);
+  }
+
+  TriangleSoup& soup_;
+  std::vector<std::pair<double, std::int32_t>> keys_;  // scratch
+  std::vector<Bounds> boxes_;                          // of the triangles [m]
+};
+
 TriangleSoup::TriangleSoup(TriMesh mesh) : mesh_(std::move(mesh)) {
   const Eigen::Index count = mesh_.triangles.rows();
   SUPPLE_CHECK(count, >, 0);
@@ -83,81 +164,7 @@ TriangleSoup::TriangleSoup(TriMesh mesh) : mesh_(std::move(mesh)) {
   }
   order_.resize(std::size_t(count));
   std::iota(order_.begin(), order_.end(), 0);
-  nodes_.reserve(std::size_t(count));
-  add_node(0, std::int32_t(count));
-}
-
-void TriangleSoup::summarise(Node& node, std::int32_t first, std::int32_t count) const {
-  Vec3 sum = Vec3::Zero();
-  double weight = 0;
-  node.area.setZero();
-  for (std::int32_t i = first; i < first + count; ++i) {
-    const std::int32_t t = order_[std::size_t(i)];
-    const double own = areas_.row(t).norm();
-    node.area += areas_.row(t).transpose();
-    sum += own * centroids_.row(t).transpose();
-    weight += own;
-    for (int k = 0; k < 3; ++k) node.box.include(corner(t, k));
-  }
-  node.center = weight > 0 ? Vec3(sum / weight) : node.box.center();
-  node.moment.setZero();
-  double radius = 0;
-  for (std::int32_t i = first; i < first + count; ++i) {
-    const std::int32_t t = order_[std::size_t(i)];
-    node.moment += (centroids_.row(t).transpose() - node.center) * areas_.row(t);
-    for (int k = 0; k < 3; ++k) radius = std::max(radius, (corner(t, k) - node.center).squaredNorm());
-  }
-  node.reach = far * std::sqrt(radius);
-}
-
-std::int32_t TriangleSoup::add_node(std::int32_t first, std::int32_t count) {
-  const std::size_t index = nodes_.size();
-  Node node;
-  summarise(node, first, count);
-  nodes_.push_back(node);
-  if (count <= leaf_size) {
-    nodes_[index].first = first;
-    nodes_[index].count = count;
-    return std::int32_t(index);
-  }
-  int axis = 0;
-  node.box.extent().maxCoeff(&axis);
-  const auto begin = order_.begin() + first;
-  std::nth_element(begin, begin + count / 2, begin + count, [&](std::int32_t s, std::int32_t t) {
-    return std::pair(centroids_(s, axis), s) < std::pair(centroids_(t, axis), t);
-  });
-  add_node(first, count / 2);
-  const std::int32_t other = add_node(first + count / 2, count - count / 2);
-  nodes_[index].other = other;
-  return std::int32_t(index);
-}
-
-double TriangleSoup::winding_number(const Vec3& p) const {
-  std::array<std::int32_t, stack_size> stack;
-  int top = 0;
-  stack[std::size_t(top++)] = 0;
-  double sum = 0;
-  while (top > 0) {
-    const std::int32_t index = stack[std::size_t(--top)];
-    const Node& node = nodes_[std::size_t(index)];
-    const Vec3 d = node.center - p;
-    const double squared = d.squaredNorm();
-    if (squared > node.reach * node.reach) {
-      // The gradient of the dipoles' field is I / d^3 - 3 d d' / d^5: equation 15 of the paper.
-      const double cubed = squared * std::sqrt(squared);
-      const double first = node.area.dot(d) + node.moment.trace();
-      sum += (first - 3 * d.dot(node.moment * d) / squared) / (cubed * (4 * std::numbers::pi));
-    } else if (node.count > 0) {
-      for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
-        const std::int32_t t = order_[std::size_t(i)];
-        sum += winding_of_triangle(corner(t, 0) - p, corner(t, 1) - p, corner(t, 2) - p);
-      }
-    } else {
-      stack[std::size_t(top++)] = node.other;
-      stack[std::size_t(top++)] = index + 1;
-    }
-  }
-  return sum;
+  Builder(*this).build();
 }
 
 std::optional<double> TriangleSoup::first_hit(const Vec3& from, const Vec3& direction, Eigen::Index except) const {

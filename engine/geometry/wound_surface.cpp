@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "base/error.h"
 #include "geometry/sign_grid.h"
@@ -146,20 +147,29 @@ TriMesh without_crumbs(const TriMesh& boundary) {
 // Says what is on a triangle's two sides, by samples half a cell away from it.
 enum class Side { surface, turned, hidden, loose };
 
-Side side_of(const TriangleSoup& soup, const TriangleSoup& field, Eigen::Index t, double cell) {
+// Adds the places of a triangle's samples, those in front of it and behind it in turns.
+void add_samples(const TriangleSoup& soup, Eigen::Index t, double cell, std::vector<Vec3>& places) {
   const TriMesh& mesh = soup.mesh();
   const Vec3 a = corner(mesh, t, 0), b = corner(mesh, t, 1), c = corner(mesh, t, 2);
   const Vec3 step = 0.5 * cell * soup.normals().row(t).transpose();
   const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
   const int parts = std::clamp(int(longest / (4 * cell)), 1, 6);
-  int votes[4] = {0, 0, 0, 0};
   for (int i = 0; i < parts; ++i) {
     for (int j = 0; i + j < parts; ++j) {
       const double v = (i + 1.0 / 3) / parts, w = (j + 1.0 / 3) / parts;
       const Vec3 p = a + v * (b - a) + w * (c - a);
-      const bool front = field.winding_number(p + step) > 0.5, behind = field.winding_number(p - step) > 0.5;
-      ++votes[int(front == behind ? (front ? Side::hidden : Side::loose) : (front ? Side::turned : Side::surface))];
+      places.push_back(p + step);
+      places.push_back(p - step);
     }
+  }
+}
+
+// Takes the winding numbers at a triangle's samples from the first to the last.
+Side side_of(std::span<const double> windings) {
+  int votes[4] = {0, 0, 0, 0};
+  for (std::size_t i = 0; i < windings.size(); i += 2) {
+    const bool front = windings[i] > 0.5, behind = windings[i + 1] > 0.5;
+    ++votes[int(front == behind ? (front ? Side::hidden : Side::loose) : (front ? Side::turned : Side::surface))];
   }
   // A triangle of which any part can be seen is drawn, and faces the way that most of its visible part faces.
   if (votes[0] + votes[1] > 0) return votes[0] >= votes[1] ? Side::surface : Side::turned;
@@ -208,8 +218,19 @@ std::vector<Side> sides_of(const TriangleSoup& soup, const TriangleSoup& field, 
   std::vector<Side> sides(at(count), Side::surface);
   constexpr Eigen::Index chunk = 256;
   threads.run(int((count + chunk - 1) / chunk), [&](int c) {
-    for (Eigen::Index t = c * chunk; t < std::min((c + 1) * chunk, count); ++t)
-      sides[at(t)] = side_of(soup, field, t, result.cell);
+    const Eigen::Index end = std::min((c + 1) * chunk, count);
+    std::vector<Vec3> places;
+    std::vector<double> windings;
+    std::vector<std::size_t> starts;  // of each triangle's samples
+    for (Eigen::Index t = c * chunk; t < end; ++t) {
+      starts.push_back(places.size());
+      add_samples(soup, t, result.cell, places);
+    }
+    starts.push_back(places.size());
+    field.winding_numbers(places, windings);
+    const std::span<const double> all(windings);
+    for (std::size_t i = 0; i + 1 < starts.size(); ++i)
+      sides[at(c * chunk) + i] = side_of(all.subspan(starts[i], starts[i + 1] - starts[i]));
   });
   double area = 0;
   for (Eigen::Index t = 0; t < count; ++t) {

@@ -35,12 +35,14 @@ Loaded loaded_box(const BoxDef& def) {
   return loaded;
 }
 
-TetMesh tetrahedra(const Shape& shape, int vertices, const std::string& source, const Making& making) {
-  return tetrahedralize(shape, vertices, source, [&](int attempt, double share) {
+TetMesh tetrahedra(const Shape& shape, int vertices, const std::string& source, const Making& making,
+                   double swell = 0) {
+  const auto heard = [&](int attempt, double share) {
     if (making.tell)
       making.tell(
           fmt::format("meshing {} with {} vertices: attempt {}, {:.0f} %", source, vertices, attempt, 100 * share));
-  });
+  };
+  return tetrahedralize(shape, vertices, source, heard, swell);
 }
 
 std::string kept_name(const Loaded& loaded, int vertices) {
@@ -71,7 +73,7 @@ struct Thinness {
   double spacing = 0;
   double wanted = 0;      // vertices
   std::string note;       // empty where nothing is
-  bool hopeless = false;  // most of it is, so that no mesh can hold it
+  bool hopeless = false;  // most of it is, so that no lattice inside it holds together
 };
 
 Thinness thinness_of(const TriMesh& boundary, int vertices) {
@@ -87,9 +89,7 @@ Thinness thinness_of(const TriMesh& boundary, int vertices) {
                                   [&](const ThicknessSample& s) { return s.thickness < 0.7 * result.spacing; });
   const double share = double(thin) / std::max<double>(1, double(samples.size()));
   if (share < 0.05) return result;
-  const auto lost = std::count_if(samples.begin(), samples.end(),
-                                  [&](const ThicknessSample& s) { return s.thickness < 0.35 * result.spacing; });
-  result.hopeless = double(lost) > 0.5 * double(samples.size());
+  result.hopeless = share > 0.5;
   const Vec3& place = samples.front().place;
   result.note = fmt::format(
       "{:.1f} % of the surface belongs to parts thinner than an element of {} vertices ({:.2g}), the thinnest at "
@@ -99,19 +99,49 @@ Thinness thinness_of(const TriMesh& boundary, int vertices) {
   return result;
 }
 
+// Makes the body of what is near the surface, where that is too thin or hangs together too loosely for a body inside
+// it. reason: why there is none inside.
+TetMesh swollen_tetrahedra(const TriMesh& boundary, const BodyDef& def, const Loaded& loaded, const Thinness& thinness,
+                           const std::string& reason, const Making& making) {
+  const Shape shape = shape_of(boundary);
+  for (const double swell : {0.5, 1.0}) {
+    try {
+      return tetrahedra(shape, def.vertices, loaded.source, making, swell);
+    } catch (const InputError&) {  // the reason is that of the body inside
+    }
+  }
+  throw InputError(
+      loaded.source,
+      fmt::format("{}{}{}; more vertices (now {}) may help, or pieces = \"largest\", or thicken = 0.01 [m], "
+                  "which gives sheets a thickness",
+                  reason, thinness.note.empty() ? "" : "; ", thinness.note, def.vertices));
+}
+
 // touching: whether parts are near each other without an overlap, and so may fall apart.
 TetMesh surface_tetrahedra(const SolidSurface& solid, bool touching, const BodyDef& def, const Loaded& loaded,
                            const Thinness& thinness, const Making& making) {
   const TriMesh& boundary = solid.boundary;
-  if (thinness.hopeless) throw InputError(loaded.source, "is too thin for its elements: " + thinness.note);
-  try {
-    return tetrahedra(shape_of(boundary), def.vertices, loaded.source, making);
-  } catch (const InputError& error) {
-    const auto joined = touching ? bridged(boundary, 3 * thinness.spacing) : std::nullopt;
-    if (joined) return tetrahedra(*joined, def.vertices, loaded.source, making);
-    if (thinness.note.empty()) throw;
-    throw InputError(loaded.source, error.problems().front().message + "; " + thinness.note);
+  std::string reason = "is too thin for its elements";
+  if (!thinness.hopeless) {
+    try {
+      return tetrahedra(shape_of(boundary), def.vertices, loaded.source, making);
+    } catch (const InputError& error) {
+      reason = error.problems().front().message;
+    }
+    try {
+      const auto joined = touching ? bridged(boundary, 3 * thinness.spacing) : std::nullopt;
+      if (joined) return tetrahedra(*joined, def.vertices, loaded.source, making);
+    } catch (const InputError& error) {
+      reason = error.problems().front().message;
+    }
   }
+  return swollen_tetrahedra(boundary, def, loaded, thinness, reason, making);
+}
+
+// Returns how far elements reach beyond the box of a surface.
+double reach_beyond(const TetMesh& mesh, const TriMesh& boundary) {
+  const Bounds own = bounds_of(mesh.rest), box = bounds_of(boundary.points);
+  return std::max((box.lower - own.lower).maxCoeff(), (own.upper - box.upper).maxCoeff());
 }
 
 Loaded loaded_surface(const BodyDef& def, const Making& making) {
@@ -130,6 +160,14 @@ Loaded loaded_surface(const BodyDef& def, const Making& making) {
   if (!thinness.note.empty()) loaded.notes.push_back(thinness.note);
   loaded.mesh = kept_or_made(making.cache, kept_name(loaded, def.vertices), tet_mesh_from,
                              [&] { return surface_tetrahedra(solid, read.touching, def, loaded, thinness, making); });
+  const double beyond = reach_beyond(loaded.mesh, solid.boundary);
+  if (beyond > 0.1 * thinness.spacing) {
+    loaded.notes.push_back(fmt::format(
+        "the elements reach {:.2g} beyond the surface, in the file's units, so that they hold its thin or loose parts: "
+        "it bends as what is that much thicker does, and other things touch the elements (points = \"surface\" in "
+        "[solver.contact] lets them touch the surface too)",
+        beyond));
+  }
   if (def.takes_colors_of_file()) loaded.colors = read.colors[def.piece];
   // What is drawn depends on the colours, the tetrahedra above do not.
   if (loaded.colors) loaded.files.push_back({def.surface, loaded.colors->hash});

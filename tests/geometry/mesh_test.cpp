@@ -6,11 +6,13 @@
 
 #include "base/error.h"
 #include "geometry/embedding.h"
+#include "geometry/lattice_probe.h"
 #include "geometry/mesh_file.h"
 #include "geometry/skin.h"
 #include "geometry/tetrahedralize.h"
 #include "scene/shape_reader.h"
 #include "support/bodies.h"
+#include "support/surfaces.h"
 
 namespace supple {
 namespace {
@@ -125,6 +127,50 @@ TEST(Tetrahedralize, RefusesAShapeInTwoPieces) {
   other.to_local.translation() = Vec3(-3, 0, 0);
   two.root.parts.push_back(other);
   EXPECT_THROW(tetrahedralize(two, 1000, "x"), InputError);
+}
+
+// A plate of a hundredth of an element's thickness is lost to a lattice inside it.
+TEST(Tetrahedralize, ASwollenBodyHoldsWhatIsThinnerThanItsElements) {
+  Shape plate;
+  plate.root.parts.emplace_back().primitive =
+      ClosedSurface{std::make_shared<TriangleSolid>(test::box_surface(Vec3(1, 5e-4, 0.5)))};
+  EXPECT_THROW(tetrahedralize(plate, 600, "plate"), InputError);
+  const TetMesh mesh = tetrahedralize(plate, 600, "plate", {}, 0.5);
+  EXPECT_NEAR(double(mesh.rest.rows()), 600, 60);
+  EXPECT_EQ(manifoldness(mesh).pieces, 1);
+  const Vec3 extent = bounds_of(mesh.rest).extent();
+  const double beyond = 0.5 * (extent.x() - 2);
+  EXPECT_GT(beyond, 0.01);
+  EXPECT_NEAR(extent.z() - 1, 2 * beyond, 0.01);
+  EXPECT_NEAR(quality(mesh).volume, extent.x() * extent.y() * extent.z(), 0.15 * quality(mesh).volume);
+}
+
+// Two balls that do not quite touch, joined by a blend, and one far away.
+TEST(LatticeProbe, GivesTheBitsOfTheShapeAlsoOnAWayAndSwollen) {
+  const auto solid = std::make_shared<TriangleSolid>(test::sphere_surface(1, 24, 12));
+  Shape shape;
+  for (const double x : {0.0, 2.1, 6.0}) {
+    ShapePart& part = shape.root.parts.emplace_back();
+    part.primitive = ClosedSurface{solid};
+    part.to_local.translation() = Vec3(-x, 0, 0);
+    part.blend = x > 0 ? 0.3 : 0;
+  }
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> place(-1.5, 1.5), share(0, 1);
+  for (const double swell : {0.0, 0.125}) {
+    const LatticeProbe probe(shape, swell);
+    LatticeProbe::Memory near = probe.memory();
+    for (int i = 0; i < 3000; ++i) {
+      const Vec3 start(1 + 1.4 * place(random), place(random), place(random));
+      const Vec3 way = 0.1 * Vec3(place(random), place(random), place(random));
+      EXPECT_EQ(probe.distance(start, near), shape.distance(start) - swell) << start.transpose();
+      LatticeProbe::Way along(probe, start, way.norm(), near);
+      for (int step = 0; step < 5; ++step) {
+        const Vec3 p = start + share(random) * way;
+        EXPECT_EQ(along.distance(p, way.norm()), shape.distance(p) - swell) << p.transpose();
+      }
+    }
+  }
 }
 
 TEST(BoxMesh, FillsTheBoxWithPositiveElements) {

@@ -249,6 +249,18 @@ TEST(TriangleSoup, TheWindingNumberIsThatOfASumOverAllTriangles) {
   EXPECT_LT(worst, 0.03);
 }
 
+TEST(TriangleSoup, ManyPlacesHaveTheBitsOfEachAlone) {
+  const TriangleSoup soup(bowl(0.2));
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> place(-1.5, 1.5);
+  std::vector<Vec3> places = {soup.mesh().points.row(0), soup.mesh().points.row(9)};
+  while (places.size() < 200) places.emplace_back(place(random), place(random), place(random));
+  std::vector<double> windings;
+  soup.winding_numbers(places, windings);
+  ASSERT_EQ(windings.size(), places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) EXPECT_EQ(windings[i], soup.winding_number(places[i])) << i;
+}
+
 TEST(TriangleSoup, RaysAndNearestPointsAreThoseOfTheSphere) {
   const TriangleSoup soup(test::sphere_surface(1, 120, 80));
   EXPECT_NEAR(soup.first_hit(Vec3(0.1, 0.05, 0), Vec3(0, 0, 1), -1).value_or(0), std::sqrt(1 - 0.0125), 2e-3);

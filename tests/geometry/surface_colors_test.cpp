@@ -185,9 +185,9 @@ TEST_F(ColoredFiles, WhatIsMissingOrBrokenIsNamedAndTheBaseColourIsDrawn) {
   };
   expect_base(ball_with(material), "texture 'squares.png' is missing: there is no such file beside the model");
   write("squares.png", "");
-  expect_base(ball_with(material), "is neither PNG nor JPEG");
+  expect_base(ball_with(material), "is neither PNG, JPEG, TGA nor BMP");
   write("squares.png", "GIF89a and so on");
-  expect_base(ball_with(material), "is neither PNG nor JPEG");
+  expect_base(ball_with(material), "is neither PNG, JPEG, TGA nor BMP");
   for (const std::size_t cut : {5u, 20u, 40u, 90u, 130u}) {
     ASSERT_LT(cut, png().size());
     write("squares.png", png().substr(0, cut));
@@ -199,6 +199,49 @@ TEST_F(ColoredFiles, WhatIsMissingOrBrokenIsNamedAndTheBaseColourIsDrawn) {
   std::string large = png().substr(0, 16) + std::string("\0\0\x75\x30\0\0\x75\x30\x08\x02\0\0\0\xe9\x45\x6f\xed", 17);
   write("squares.png", large + png().substr(33));
   expect_base(ball_with(material), "has 30000 x 30000 pixels");
+}
+
+// Four pixels in two rows, the lower one first: blue, green; red, white.
+const std::string bgr_pixels("\xff\0\0\0\xff\0\0\0\xff\xff\xff\xff", 12);
+const std::vector<std::uint8_t> rgb_pixels = {255, 0, 0, 255, 255, 255, 0, 0, 255, 0, 255, 0};
+
+std::string tga_head(char kind) {
+  return std::string("\0\0", 2) + kind + std::string("\0\0\0\0\0\0\0\0\0\2\0\2\0\x18\0", 15);
+}
+
+std::string bmp_bytes() {
+  const std::string head("BM\x46\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\2\0\0\0\2\0\0\0\1\0\x18\0", 30);
+  const std::string rest(24, '\0'), pad(2, '\0');  // rows are filled up to four bytes
+  return head + rest + bgr_pixels.substr(0, 6) + pad + bgr_pixels.substr(6) + pad;
+}
+
+TEST_F(ColoredFiles, TexturesMayBeTgaOrBmp) {
+  const std::string runs = std::string("\1", 1) + bgr_pixels.substr(0, 6) + std::string("\x80", 1) +
+                           bgr_pixels.substr(6, 3) + std::string("\x80", 1) + bgr_pixels.substr(9);
+  const struct {
+    const char* name;
+    std::string bytes;
+  } cases[] = {{"plain.tga", tga_head(2) + bgr_pixels}, {"runs.tga", tga_head(10) + runs}, {"plain.bmp", bmp_bytes()}};
+  for (const auto& [name, bytes] : cases) {
+    const std::string material = std::string("newmtl skin\nKd 1 0 0\nmap_Kd ") + name + "\n";
+    write(name, bytes);
+    const ColoredSurface read = ball_with(material);
+    EXPECT_TRUE(read.remarks.empty()) << name << ": " << read.remarks[0];
+    ASSERT_TRUE(read.textures) << name;
+    EXPECT_EQ(read.textures->front().width, 2) << name;
+    EXPECT_EQ(read.textures->front().rgb, rgb_pixels) << name;
+    for (const std::size_t missing : {std::size_t(3), std::size_t(7), bytes.size() - 17}) {
+      write(name, bytes.substr(0, bytes.size() - missing));
+      const ColoredSurface cut = ball_with(material);
+      ASSERT_EQ(cut.remarks.size(), 1u) << name << " without " << missing;
+      EXPECT_EQ(cut.textures, nullptr) << name << " without " << missing;
+    }
+  }
+  std::string large = tga_head(2);
+  large[13] = large[15] = '\x7f';
+  write("plain.tga", large + bgr_pixels);
+  EXPECT_EQ(ball_with("newmtl skin\nmap_Kd plain.tga\n").remarks.at(0).find("texture 'plain.tga' has 32514 x 32514"),
+            0u);
 }
 
 TEST_F(ColoredFiles, MissingMaterialsAndTransparencyAreNamed) {

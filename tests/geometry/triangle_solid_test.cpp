@@ -329,6 +329,43 @@ TEST(TriangleSolid, AnswersToPlacesNearEachOtherAreThoseToEachAlone) {
   }
 }
 
+// A corner of a box is pulled out through the opposite side. The middles of all triangles face the outside, and yet the
+// normals tell nothing of the side where the surface crosses itself.
+TEST(TriangleSolid, ASurfaceThatCrossesItselfHasTheSidesOfItsWindingNumber) {
+  TriMesh pulled = test::box_surface(Vec3(1, 1, 1));
+  pulled.points.row(7) << -1.5, -0.5, -0.25;
+  const TriangleSolid solid(pulled);
+  Points points(4);
+  int inside = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const Vec3 p = points.in_box(Vec3::Constant(2));
+    const double winding = solid.winding_number(p);
+    QueryMemory memory;
+    const SurfacePoint found = solid.closest(p, memory);
+    EXPECT_EQ(found.distance<0, winding> 0.5) << p.transpose() << " " << winding;
+    inside += winding > 0.5;
+  }
+  EXPECT_GT(inside, 300);
+}
+
+TEST(TriangleSolid, TheLeavesThatAreNearHoldTheClosestTriangle) {
+  const TriangleSolid solid(test::sphere_surface(1, 60, 30));
+  Points points(6);
+  int found = 0;
+  for (int i = 0; i < 5'000; ++i) {
+    const Vec3 p = points.near_surface(solid.surface(), 0.05);
+    NearLeaves leaves;
+    if (!solid.find_leaves(p, std::abs(solid.closest(p).distance) + 0.02, leaves)) continue;
+    ++found;
+    const Vec3 q = p + points.in_box(Vec3::Constant(0.01));
+    QueryMemory memory;
+    EXPECT_EQ(solid.distance_among(q, leaves), solid.closest(q, memory).distance) << q.transpose();
+  }
+  EXPECT_GT(found, 1000);
+  NearLeaves leaves;
+  EXPECT_FALSE(solid.find_leaves(Vec3::Zero(), 2, leaves));
+}
+
 TEST(TriangleSolid, AWayEntersWhereTheDistanceFirstVanishes) {
   for (const TriMesh& mesh : {test::torus_surface(1, 0.4, 60, 30), test::box_surface(Vec3(1, 0.5, 0.25))}) {
     const TriangleSolid solid(mesh);

@@ -100,6 +100,21 @@ TEST_F(SurfaceScene, PiecesThatTouchBecomeOneBodyByWhatLiesBetween) {
   EXPECT_EQ(scene_of("surface = \"near.obj\"\npieces = \"bodies\"\n").bodies.size(), 2u);
 }
 
+TEST_F(SurfaceScene, WhatIsThinnerThanAnElementIsHeldByElementsAroundIt) {
+  write("plate.obj", obj_text(test::box_surface(Vec3(1, 1e-3, 0.5))));
+  const SceneDef scene = scene_of("surface = \"plate.obj\"\n");
+  MeshCache meshes;
+  const Loaded& loaded = meshes.get(scene, scene.bodies.at(0));
+  EXPECT_NEAR(double(loaded.mesh.rest.rows()), 600, 60);
+  EXPECT_EQ(manifoldness(loaded.mesh).pieces, 1);
+  const Vec3 beyond = 0.5 * (bounds_of(loaded.mesh.rest).extent() - Vec3(2, 2e-3, 1));
+  EXPECT_GT(beyond.minCoeff(), 0.02);
+  ASSERT_EQ(loaded.notes.size(), 2u);
+  EXPECT_NE(loaded.notes[0].find("thinner than an element of 600 vertices"), std::string::npos) << loaded.notes[0];
+  EXPECT_EQ(loaded.notes[1].find(fmt::format("the elements reach {:.2g} beyond the surface", beyond.maxCoeff())), 0u)
+      << loaded.notes[1];
+}
+
 TEST_F(SurfaceScene, SheetsGetTheirThicknessInMetres) {
   write("sheet.obj", "v 0 0 0\nv 200 0 0\nv 200 0 100\nv 0 0 100\nf 1 3 2\nf 1 4 3\n");
   EXPECT_NE(refusal_of("surface = \"sheet.obj\"\n").find("thicken = 0.01"), std::string::npos);
