@@ -118,10 +118,11 @@ TetMesh tetrahedralize(const Shape& shape, int vertices, const std::string& sour
     if (spacing < finest) break;
   }
   if (miss(best) > (swell > 0 ? 0.1 : 0.03)) {
-    throw InputError(
-        source,
-        fmt::format("cannot be meshed with {} vertices{}; {} is the nearest number that gives a mesh", vertices,
-                    best.rest.rows() > vertices ? ": its thinnest part needs more of them" : "", best.rest.rows()));
+    const auto found = best.rest.rows();
+    throw InputError(source,
+                     fmt::format("cannot be meshed with {} vertices{}{}", vertices,
+                                 found == 0 || found > vertices ? ": its thinnest part needs more of them" : "",
+                                 found == 0 ? "" : fmt::format("; {} is the nearest number that gives a mesh", found)));
   }
   // With a volume far below the sampled one (whose own error is a few per cent), whole parts are missing.
   if (swell > 0) volume = sampled_volume(shape, swell * spacing, threads);

@@ -164,8 +164,7 @@ Loaded loaded_surface(const BodyDef& def, const Making& making) {
   if (beyond > 0.1 * thinness.spacing) {
     loaded.notes.push_back(fmt::format(
         "the elements reach {:.2g} beyond the surface, in the file's units, so that they hold its thin or loose parts: "
-        "it bends as what is that much thicker does, and other things touch the elements (points = \"surface\" in "
-        "[solver.contact] lets them touch the surface too)",
+        "it bends as what is that much thicker does, and colliders touch the elements",
         beyond));
   }
   if (def.takes_colors_of_file()) loaded.colors = read.colors[def.piece];

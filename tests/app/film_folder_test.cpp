@@ -175,14 +175,13 @@ TEST_F(FilmFolder, OfAPreviewHasAQuarterOfTheSizeAndHalfThePictures) {
 
 // A quarter of the vertices cannot hold the sheet; half of them can.
 TEST_F(FilmFolder, OfAPreviewHasFinerElementsWhereTheBodyIsThin) {
-  std::ofstream(path("thin.obj")) << "v 0 0 0\nv 1 0 0\nv 1 0.07 0\nv 0 0.07 0\nv 0 0 1\nv 1 0 1\nv 1 0.07 1\n"
-                                     "v 0 0.07 1\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
-  std::ofstream(path("thin.toml")) << "frames = 1\n[[body]]\nname = \"sheet\"\nsurface = \"thin.obj\"\n"
-                                      "material = \"rubber\"\nvertices = 1500\n[output]\nwidth = 64\nheight = 64\n";
+  std::ofstream(path("sheet.toml")) << "[[part]]\nbox = { extent = [1, 0.03, 1] }\n";
+  std::ofstream(path("thin.toml")) << "frames = 1\n[[body]]\nname = \"sheet\"\nshape = \"sheet.toml\"\n"
+                                      "material = \"rubber\"\nvertices = 3000\n[output]\nwidth = 64\nheight = 64\n";
   const Result result = run(folder_.path, {"render", "thin.toml", "--preview", "--no-video"});
   ASSERT_EQ(result.status, 0) << result.err;
   const int vertices = info("thin-preview")["meshes"][0]["vertices"];
-  EXPECT_GT(vertices, 500);
+  EXPECT_GT(vertices, 1000);
 }
 
 TEST_F(FilmFolder, HasAFilmOfAnyFormat) {

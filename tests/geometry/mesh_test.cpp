@@ -118,6 +118,13 @@ TEST(Tetrahedralize, RefusesWhatCannotBeMeshed) {
   cut.combine = Combine::cut;
   nothing.root.parts.push_back(cut);
   EXPECT_THROW(tetrahedralize(nothing, 500, "x"), InputError);
+  try {
+    tetrahedralize(shape_of(Box{Vec3(0.5, 0.015, 0.5), 0}), 750, "sheet");
+    FAIL() << "was meshed";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.problems().front().message,
+              "cannot be meshed with 750 vertices: its thinnest part needs more of them");
+  }
 }
 
 TEST(Tetrahedralize, RefusesAShapeInTwoPieces) {
