@@ -16,6 +16,33 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int stack_size = 64;  // as for the closest point
 
+// Calls ends(triangle) for all triangles of those leaves whose boxes meet a box, until it returns true. Returns whether
+// it did.
+template <class Node, class Leaf, class Ends>
+bool any_near(const std::vector<Node>& nodes, const std::vector<Leaf>& leaves, const Vec3& lower, const Vec3& upper,
+              const Ends& ends) {
+  std::array<std::int32_t, stack_size> stack;
+  int top = 0;
+  stack[std::size_t(top++)] = 0;
+  while (top > 0) {
+    const std::int32_t index = stack[std::size_t(--top)];
+    if (index < 0) {
+      const Leaf& leaf = leaves[std::size_t(~index)];
+      for (int k = 0; k < leaf.count; ++k) {
+        if (ends(leaf.triangle[std::size_t(k)])) return true;
+      }
+      continue;
+    }
+    const Node& node = nodes[std::size_t(index)];
+    const auto met = (node.lower.x <= upper.x()) & (node.upper.x >= lower.x()) & (node.lower.y <= upper.y()) &
+                     (node.upper.y >= lower.y()) & (node.lower.z <= upper.z()) & (node.upper.z >= lower.z());
+    for (std::size_t k = 0; k < node.child.size(); ++k) {
+      if (met[k]) stack[std::size_t(top++)] = node.child[k];
+    }
+  }
+  return false;
+}
+
 // Computes the signed solid angle over 4 pi: Van Oosterom and Strackee, The solid angle of a plane triangle, 1983,
 // equation 8.
 double winding_of_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -124,24 +151,12 @@ int TriangleSolid::crossings(const Vec3& p) const {
   }
   Vec3 lower = p, upper = p;  // the ray's box
   (direction > 0 ? upper : lower)[axis] = direction * infinity;
-  std::array<std::int32_t, stack_size> stack;
-  int top = 0;
-  stack[std::size_t(top++)] = 0;
   int sum = 0;
   for (const Corners& lid : lids_) sum += crossing(p, lid, axis, direction);
-  while (top > 0) {
-    const std::int32_t index = stack[std::size_t(--top)];
-    if (index < 0) {
-      const Leaf& leaf = leaves_[std::size_t(~index)];
-      for (int k = 0; k < leaf.count; ++k) sum += crossing(p, corners(leaf.triangle[std::size_t(k)]), axis, direction);
-      continue;
-    }
-    const Node& node = nodes_[std::size_t(index)];
-    const auto met = (node.lower.x <= upper.x()) & (node.upper.x >= lower.x()) & (node.lower.y <= upper.y()) &
-                     (node.upper.y >= lower.y()) & (node.lower.z <= upper.z()) & (node.upper.z >= lower.z());
-    for (int k = 0; k < width; ++k)
-      if (met[k]) stack[std::size_t(top++)] = node.child[std::size_t(k)];
-  }
+  any_near(nodes_, leaves_, lower, upper, [&](std::int32_t triangle) {
+    sum += crossing(p, corners(triangle), axis, direction);
+    return false;
+  });
   return sum;
 }
 
@@ -173,28 +188,11 @@ bool TriangleSolid::find_neighbours() {
 // edges end there, so that touching does not count.
 bool TriangleSolid::pierced_by(std::int32_t from, std::int32_t to) const {
   const Vec3 a = surface_.points.row(from), b = surface_.points.row(to), way = b - a;
-  const Vec3 lower = a.cwiseMin(b), upper = a.cwiseMax(b);
-  std::array<std::int32_t, stack_size> stack;
-  int top = 0;
-  stack[std::size_t(top++)] = 0;
-  while (top > 0) {
-    const std::int32_t index = stack[std::size_t(--top)];
-    if (index < 0) {
-      const Leaf& leaf = leaves_[std::size_t(~index)];
-      for (int k = 0; k < leaf.count; ++k) {
-        const auto corner_names = surface_.triangles.row(leaf.triangle[std::size_t(k)]);
-        if ((corner_names.array() == from).any() || (corner_names.array() == to).any()) continue;
-        if (passes_through(a, way, corners(leaf.triangle[std::size_t(k)]))) return true;
-      }
-      continue;
-    }
-    const Node& node = nodes_[std::size_t(index)];
-    const auto met = (node.lower.x <= upper.x()) & (node.upper.x >= lower.x()) & (node.lower.y <= upper.y()) &
-                     (node.upper.y >= lower.y()) & (node.lower.z <= upper.z()) & (node.upper.z >= lower.z());
-    for (int k = 0; k < width; ++k)
-      if (met[k]) stack[std::size_t(top++)] = node.child[std::size_t(k)];
-  }
-  return false;
+  return any_near(nodes_, leaves_, a.cwiseMin(b), a.cwiseMax(b), [&](std::int32_t triangle) {
+    const auto corner_names = surface_.triangles.row(triangle);
+    if ((corner_names.array() == from).any() || (corner_names.array() == to).any()) return false;
+    return passes_through(a, way, corners(triangle));
+  });
 }
 
 // Where two triangles cross each other, an edge of one of them passes through the other.
