@@ -32,6 +32,12 @@ TEST(HostileText, WhatOnlyAnAssertionOfTheParserNoticesIsAnErrorWithAPlace) {
             "scene.toml:2:12: not TOML: a key or a value belongs here, not '}'");
 }
 
+// Sanitizers see it, too: the parser's tables of characters call such letters unreachable.
+TEST(HostileText, ALetterBeyondAsciiThatIsNoKeyIsAnErrorWithAPlace) {
+  EXPECT_EQ(refusal_of("a\xc4\xbc = 1").substr(0, 25), "scene.toml:1:2: not TOML:");
+  EXPECT_EQ(refusal_of("\xe2\x86\x92 = 1").substr(0, 25), "scene.toml:1:1: not TOML:");
+}
+
 TEST(HostileText, ASettingThatTripsAnAssertionIsTheWordThatItIs) {
   Config config =
       Config::parse("[[body]]\nname = \"a\"\nbox = { extent = [1, 1, 1], cells = [1, 1, 1] }\nmaterial = \"jelly\"\n",
