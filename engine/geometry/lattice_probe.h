@@ -14,7 +14,7 @@ class LatticeProbe {
   // The shape must outlive the probe. swell: what is subtracted from all distances [m].
   explicit LatticeProbe(const Shape& shape, double swell = 0);
 
-  // What one caller has found so far.
+  // Keeps what one caller has found so far, which saves later questions work.
   using Memory = std::vector<QueryMemory>;
   Memory memory() const { return Memory(surfaces_.size()); }
 

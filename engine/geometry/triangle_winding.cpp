@@ -39,7 +39,7 @@ inline double angle_of(double y, double x) {
   series = 1.0 / 5 - z * series;
   series = 1.0 / 3 - z * series;
   series = 1.0 - z * series;
-  // Behind the origin it is pi less that.
+  // Where x is negative, the angle is pi minus this one.
   return std::copysign((x < 0 ? pi : 0) + (x < 0 ? -8 : 8) * (t * series), y);
 }
 
