@@ -54,6 +54,20 @@ double work_from_outside(const Model& model, const Positions& q, Workspace& w) {
          (w.current.contacts.empty() ? 0 : work_of_contacts(q, w));
 }
 
+bool may_gain_energy(const Model& model, const StepInputs& inputs, const State& state, const Workspace& w,
+                     double share) {
+  if (model.integrator != Integrator::backward_euler) return false;
+  double bound = 0, kinetic = 0, fallen = 0;
+  for (int v = 0; v < model.free; ++v) {
+    const Vec3 way = (w.current.x.row(v) - state.x.row(v)).transpose();
+    const Vec3 velocity = way / model.time_step, before = state.v.row(v).transpose();
+    bound += w.current.gradient.row(v).dot(way) - 0.5 * model.mass[v] * (velocity - before).squaredNorm();
+    kinetic += 0.5 * model.mass[v] * (velocity.squaredNorm() + before.squaredNorm());
+    fallen += model.mass[v] * way.dot(inputs.gravity);
+  }
+  return bound > share * (kinetic + std::abs(fallen));
+}
+
 double share_from_nothing(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
   if (model.integrator != Integrator::backward_euler) return 0;
   double kinetic = 0, before = 0, fallen = 0;

@@ -14,6 +14,12 @@ namespace supple {
 // trial energies and forces.
 double work_from_outside(const Model& model, const Positions& q, Workspace& workspace);
 
+// Tells whether such a step may have gained more than this share of the energies that it moves, by a bound that
+// evaluates nothing. Where E is convex between q and x, the energy from nothing is at most r . (x - q) - 1/2 |v' -
+// v|^2_M, where r is what is left of the gradient of g at x: the current iterate's, which must be there.
+bool may_gain_energy(const Model& model, const StepInputs& inputs, const State& state, const Workspace& workspace,
+                     double share);
+
 // Returns the energy that the step to the current iterate gained from nothing, over the energies that it exchanged: a
 // hundredth is much. Zero or less where it gained none, and for integrators other than backward Euler. Evaluates all
 // elements at q.

@@ -111,14 +111,22 @@ void accept(const Model& model, const StepInputs& inputs, Workspace& w, SearchRu
   w.report.history.push_back(record);
 }
 
-// Tells whether the step, left as it is, would gain energy from nothing. This costs an evaluation, so only steps whose
-// iterations had a hard time are examined.
-bool gains_energy(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
+// Tells what a step began with.
+struct Origin {
+  const State& state;
+  double above_start;  // g(y) - g of its first iterate, where that is known [J]
+};
+
+// Tells whether the step, left as it is, would gain energy from nothing. This costs an evaluation, so only steps are
+// examined whose iterations had a hard time, or whose gradient leaves it possible while there was still much to gain.
+bool gains_energy(const Model& model, const StepInputs& inputs, const Origin& origin, Workspace& w, bool has_gradient) {
   constexpr double much = 0.01;  // of the energies that were exchanged
   const StepReport& report = w.report;
-  if (report.line_search <= 2 * report.iterations) return false;
+  const bool hard = report.line_search > 2 * report.iterations;
+  const bool unsolved = -report.slope > 1e-4 * (report.decrease + origin.above_start);  // of the last direction
+  if (!hard && !(unsolved && has_gradient && may_gain_energy(model, inputs, origin.state, w, much))) return false;
   const TimedPhase timed(w.clock, Phase::evaluate, "check energy");
-  return share_from_nothing(model, inputs, state, w) > much;
+  return share_from_nothing(model, inputs, origin.state, w) > much;
 }
 
 // Ends the iterations of a step's search where a budget of time asks for it, and notes their number in the report, so
@@ -153,10 +161,10 @@ class TimeBudget {
   std::optional<int> repeated_;  // -1 where the earlier run's search was not ended
 };
 
-// Runs the iterations of algorithm 1 from the current iterate, which has been evaluated. With the state that a step
-// began with, goes on for some rounds where the answer gains energy from nothing. budget: null where time has no bound.
+// Runs the iterations of algorithm 1 from the current iterate, which has been evaluated. With the origin of a step,
+// goes on for some rounds where the answer gains energy from nothing. budget: null where time has no bound.
 void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, double enough,
-                    TimeBudget* budget = nullptr, const State* state = nullptr) {
+                    TimeBudget* budget = nullptr, const Origin* origin = nullptr) {
   const SolverSettings& solver = inputs.solver;
   StepReport& report = w.report;
   const std::size_t first = report.objective.size() - 1;
@@ -172,8 +180,8 @@ void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
     const bool late = budget != nullptr && budget->is_spent(report.iterations);
     bool spent = late || report.iterations >= most;
     if (late) report.stop_reason = StopReason::budget;
-    if (spent && !late && state != nullptr && most < solver.rounds * solver.iterations &&
-        gains_energy(model, inputs, *state, w)) {
+    if (spent && !late && origin != nullptr && most < solver.rounds * solver.iterations &&
+        gains_energy(model, inputs, *origin, w, rule.needs_gradient())) {
       most += solver.iterations;
       spent = false;
     }
@@ -349,7 +357,8 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   report.start_ms = w.clock.elapsed_ms();
   zone.next("iterate");
   TimeBudget budget(inputs, w, TimeBudget::from_first_iterate);
-  run_iterations(model, inputs, w, rule, 0, &budget, &state);
+  const Origin origin{state, above_start};
+  run_iterations(model, inputs, w, rule, 0, &budget, &origin);
   zone.next("end step");
   if (!report.failed && inputs.solver.line_search != LineSearch::none)
     descend_from_staying(model, inputs, state, w, rule);
