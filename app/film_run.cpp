@@ -17,7 +17,6 @@
 #include "output/json_text.h"
 #include "output/run_page.h"
 #include "output/run_record.h"
-#include "output/unsolved.h"
 #include "output/whole_file.h"
 #include "scene/script_trial.h"
 
@@ -65,9 +64,9 @@ void say_preview(const LoadedFilm& film) {
 }
 
 void print_result(const FilmResult& result, const RunFolder& folder, const SceneDef& scene) {
-  say(stdout, fmt::format("\n{}\n", profile_table(result.rows)));
+  say(stdout, fmt::format("\n{}\n", result.tally.table()));
   const double seconds = result.wall_ms / 1000;
-  const int made = static_cast<int>(result.rows.size()) - result.kept_frames;
+  const int made = result.rows.size() - result.kept_frames;
   const std::string kept = result.kept_frames > 0 ? fmt::format(" after {} from before", result.kept_frames) : "";
   const std::string rate = made > 0 ? fmt::format("{:.1f} a second; ", made / seconds) : "";
   say(stdout, fmt::format("  {} frames{} in {} ({}the film's rate is {:g}), after {} of set-up\n", made, kept,
@@ -92,7 +91,7 @@ void print_json(const FilmResult& result, const RunFolder& folder) {
       result.video_written ? nlohmann::ordered_json(result.video.string()) : nlohmann::ordered_json(nullptr);
   json["video_message"] = result.video_message;
   json["verdict"] = verdict_on(result);
-  json["warnings"] = warnings_of(result.rows);
+  json["warnings"] = result.tally.warnings();
   say(stdout, fmt::format("{}\n", json_text(json)));
 }
 
@@ -119,13 +118,13 @@ int say_result(const FilmCommand& command, const EndOfRun& end) {
   } else if (command.table && !command.plan.quiet && !result.rows.empty()) {
     print_result(result, folder, scene);
   }
-  for (const std::string& warning : warnings_of(result.rows)) say(stderr, fmt::format("warning: {}\n", warning));
+  for (const std::string& warning : result.tally.warnings()) say(stderr, fmt::format("warning: {}\n", warning));
   if (result.end == FilmEnd::failed) {
     say(stderr, fmt::format("supple: {}\n  kept: {} {} in {}\n", result.message,
-                            std::max(int(result.rows.size()), result.kept_frames),
+                            std::max(result.rows.size(), result.kept_frames),
                             command.plan.film_only ? "frames' motion" : "whole frames", folder.path().string()));
   }
-  if (const std::string unsolved = unsolved_text(result.rows); !unsolved.empty())
+  if (const std::string unsolved = result.tally.unsolved_text(); !unsolved.empty())
     say(stderr, fmt::format("warning: {}\n", unsolved));
   if (!unrecorded.empty()) say(stderr, fmt::format("supple: {}\n", unrecorded));
   if (result.video_failed) say(stderr, fmt::format("supple: {}\n", result.video_message));
@@ -268,8 +267,7 @@ int run_film(const FilmCommand& command, const std::vector<std::string>& words, 
   std::vector<ThreadTrace> trace = plan.trace ? stop_trace() : std::vector<ThreadTrace>();
   const std::string unrecorded = write_records(result, film, folder, plan.trace ? &trace : nullptr);
   int status = say_result(command, {result, folder, start.place, scene, unrecorded});
-  if (start.verifier && result.end == FilmEnd::done &&
-      !say_verdict(command, *start.verifier, static_cast<int>(result.rows.size())))
+  if (start.verifier && result.end == FilmEnd::done && !say_verdict(command, *start.verifier, result.rows.size()))
     status = 1;
   if (command.page && !result.rows.empty()) {
     const std::filesystem::path page = folder.path() / "index.html";

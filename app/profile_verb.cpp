@@ -35,7 +35,7 @@ ProfiledRun run_of(const FilmRecord& record) {
   run.scene_json = record.info.scene_json;
   run.replay_json = record.info.replay_json;
   for (const RunInfo::Mesh& mesh : record.info.meshes) run.meshes.emplace_back(mesh.body, mesh.hash);
-  run.frames = static_cast<int>(record.result.rows.size());
+  run.frames = record.result.rows.size();
   run.fps = record.fps;
   run.threads = record.info.threads;
   run.pictures = record.info.gl_renderer;
@@ -43,7 +43,7 @@ ProfiledRun run_of(const FilmRecord& record) {
   run.kernels = record.info.kernel_variant;
   run.version = program_version();
   run.build = build_flags();
-  run.state_hash = hash_text_form(record.result.rows.back().state_hash);
+  run.state_hash = hash_text_form(record.result.tally.last_hash());
   return run;
 }
 

@@ -258,8 +258,8 @@ bool make_frames(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const
   });
   if (frames) guarded([&] { frames->finish(result); });
   if (log) {
-    log->drop_others();
-    result.rows = log->take_rows();
+    result.rows = log->whole_rows();
+    guarded([&] { result.rows.each([&result](const FrameRow& row) { result.tally.add(row); }); });
   }
   progress.end();
   result.wall_ms = loop.elapsed_ms();
@@ -275,7 +275,7 @@ void begin_video(const FilmPlan& plan, const SceneDef& scene, const RunFolder& f
 // Returns how many pictures the whole frames have.
 int pictures_of(const FilmPlan& plan, const FilmResult& result) {
   const int every = plan.pictures_every();
-  return (static_cast<int>(result.rows.size()) + every - 1) / every;
+  return (result.rows.size() + every - 1) / every;
 }
 
 // Makes the poster and the sheet from the files of the frames.
@@ -327,7 +327,7 @@ FilmResult make_film(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
   return result;
 }
 
-std::string verdict_on(const FilmResult& result) { return verdict(work_of(result.rows, result.encode_ms)); }
+std::string verdict_on(const FilmResult& result) { return verdict(result.tally.work(result.encode_ms)); }
 
 std::string write_records(const FilmResult& result, LoadedFilm& film, const RunFolder& folder,
                           const std::vector<ThreadTrace>* trace) {
@@ -335,13 +335,13 @@ std::string write_records(const FilmResult& result, LoadedFilm& film, const RunF
   info.gl_backend = result.gl_backend;
   info.gl_renderer = result.gl_renderer;
   info.gl_version = result.gl_version;
-  info.frames = static_cast<int>(result.rows.size());
+  info.frames = result.rows.size();
   info.ended = text_of(result.end);
   if (result.end == FilmEnd::failed) info.ended += ": " + result.message;
   info.video = result.video_written ? result.video.filename().string() : result.video_message;
   try {
     folder.write_info(info);
-    folder.write_profile(result.rows, verdict_on(result));
+    folder.write_profile(result.rows, result.tally, verdict_on(result));
     if (trace != nullptr) write_whole_file(folder.trace(), chrome_trace(*trace));
   } catch (const RunError& error) {
     return error.what();

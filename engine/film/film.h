@@ -16,7 +16,8 @@
 #include "film/run_place.h"
 #include "film/state_record.h"
 #include "output/folder_lock.h"
-#include "output/profile.h"
+#include "output/frame_rows.h"
+#include "output/row_tally.h"
 #include "output/run_folder.h"
 #include "scene/drawn_body.h"
 #include "scene/script.h"
@@ -68,9 +69,10 @@ const char* text_of(FilmEnd end);
 
 struct FilmResult {
   FilmEnd end = FilmEnd::done;
-  std::string message;         // why it failed, for people
-  std::vector<FrameRow> rows;  // of finished frames
-  int kept_frames = 0;         // of them, of an earlier run
+  std::string message;  // why it failed, for people
+  FrameRows rows;       // of finished frames
+  RowTally tally;       // of them
+  int kept_frames = 0;  // of them, of an earlier run
   std::string gl_backend, gl_renderer, gl_version;
   std::string video_message;  // why there is no video
   bool video_written = false;

@@ -17,12 +17,13 @@ namespace supple {
 NotedRows noted_rows(const std::filesystem::path& file, int frames) {
   NotedRows noted;
   std::ifstream stream(file);
-  for (std::string line; int(noted.rows.size()) < frames && std::getline(stream, line);
-       noted.bytes += std::int64_t(line.size()) + 1)
-    noted.rows.push_back(row_of_line(line, file.string()));
+  int count = 0;
+  for (std::string line; count < frames && std::getline(stream, line); noted.bytes += std::int64_t(line.size()) + 1) {
+    noted.last = row_of_line(line, file.string());
+    ++count;
+  }
   if (stream.bad()) throw InputError(file.string(), "cannot be read");
-  if (int(noted.rows.size()) < frames)
-    throw InputError(file.string(), fmt::format("does not have the {} frames to go on from", frames));
+  if (count < frames) throw InputError(file.string(), fmt::format("does not have the {} frames to go on from", frames));
   return noted;
 }
 
@@ -30,12 +31,17 @@ FilmLog::FilmLog(const RunFolder& folder, int every, std::string identity, int k
     : folder_(folder), every_(every), identity_(std::move(identity)), record_(std::move(record)), whole_(kept) {
   const std::string source = folder.rows().string();
   NotedRows noted = noted_rows(folder.rows(), kept);
-  rows_ = std::move(noted.rows);
-  if (every_ == 0) return;
-  notes_.reset(std::fopen(source.c_str(), kept > 0 ? "r+" : "w"));
+  last_kept_ = std::move(noted.last);
+  notes_.reset(std::fopen(source.c_str(), kept > 0 ? "r+" : "w+"), [](std::FILE* file) {
+    if (file != nullptr) std::fclose(file);
+  });
   if (!notes_ || ftruncate(fileno(notes_.get()), off_t(noted.bytes)) != 0 || std::fseek(notes_.get(), 0, SEEK_END) != 0)
     throw RunError(fmt::format("{}: cannot be written: {}", source, std::strerror(errno)));
+  std::error_code ignored;
+  if (every_ == 0 && kept == 0) std::filesystem::remove(folder.rows(), ignored);  // it lives on without a name
 }
+
+FrameRows FilmLog::whole_rows() const { return {notes_, folder_.rows(), whole_}; }
 
 void FilmLog::add(const Checkpoint& checkpoint) {
   if (!waiting_.empty() && waiting_.back().first >= checkpoint.frames) return;
@@ -44,13 +50,12 @@ void FilmLog::add(const Checkpoint& checkpoint) {
 
 // Counts the next row as whole, after it has been written to the notes.
 void FilmLog::note_row() {
-  if (notes_) {
-    const std::string line = row_line(rows_[whole_]) + '\n';
-    if (std::fwrite(line.data(), 1, line.size(), notes_.get()) != line.size() || std::fflush(notes_.get()) != 0) {
-      broken_ = true;
-      throw RunError(fmt::format("{}: cannot be written: {}", folder_.rows().string(), std::strerror(errno)));
-    }
+  const std::string line = row_line(rows_.front()) + '\n';
+  if (std::fwrite(line.data(), 1, line.size(), notes_.get()) != line.size() || std::fflush(notes_.get()) != 0) {
+    broken_ = true;
+    throw RunError(fmt::format("{}: cannot be written: {}", folder_.rows().string(), std::strerror(errno)));
   }
+  rows_.pop_front();
   ++whole_;
 }
 
@@ -69,14 +74,14 @@ void FilmLog::settle(Pictures* pictures) {
 
 void FilmLog::note_rows(Pictures* pictures) {
   const auto settle_undrawn = [this] {
-    while (whole_ < int(rows_.size()) && !rows_[whole_].draw_ms) note_row();
+    while (!rows_.empty() && !rows_.front().draw_ms) note_row();
   };
   settle_undrawn();
   const auto written = pictures != nullptr ? pictures->take_written() : std::vector<Pictures::Written>();
   for (const Pictures::Written& frame : written) {
-    if (whole_ == int(rows_.size())) break;  // drawn, but its row never came
-    rows_[whole_].render_ms = frame.render_ms;
-    rows_[whole_].compress_ms = frame.compress_ms;
+    if (rows_.empty()) break;  // drawn, but its row never came
+    rows_.front().render_ms = frame.render_ms;
+    rows_.front().compress_ms = frame.compress_ms;
     note_row();
     settle_undrawn();
   }

@@ -1,5 +1,6 @@
-// Keeps the rows of a film's frames, and its checkpoints. Both reach the disk only after all that belongs to the frames
-// before them, so a film can be resumed from any checkpoint on the disk, whenever the run was killed.
+// Notes the rows of a film's frames in a file, and keeps its checkpoints. Both reach the disk only after all that
+// belongs to the frames before them, so a film can be resumed from any checkpoint on the disk, whenever the run was
+// killed. Rows are in memory only while their pictures are being made.
 #pragma once
 
 #include <deque>
@@ -7,26 +8,29 @@
 
 #include "film/checkpoint.h"
 #include "film/pictures.h"
-#include "output/profile.h"
+#include "output/frame_rows.h"
 #include "output/run_folder.h"
 
 namespace supple {
 
-// Holds the rows of a run's first frames, read from the file in which the run noted them, and the number of their bytes
-// there. noted_rows() throws InputError where there are fewer rows.
+// Describes the rows of a run's first frames in the file in which the run noted them: the last of them, and the number
+// of their bytes there. noted_rows() throws InputError where there are fewer rows.
 struct NotedRows {
-  std::vector<FrameRow> rows;
+  FrameRow last;
   std::int64_t bytes = 0;
 };
 NotedRows noted_rows(const std::filesystem::path& file, int frames);
 
 class FilmLog {
  public:
-  // every: frames between checkpoints; 0: none. kept: frames of an earlier run, after which this one resumes the film.
-  // record: a file outside of the folder that checkpoints rest on too; empty: none.
+  // every: frames between checkpoints; 0: none, and the file of the rows has no name. kept: frames of an earlier run,
+  // after which this one resumes the film. record: a file outside of the folder that checkpoints rest on too; empty:
+  // none.
   FilmLog(const RunFolder& folder, int every, std::string identity, int kept, std::filesystem::path record);
 
-  const std::vector<FrameRow>& rows() const { return rows_; }
+  int frames() const { return whole_ + waiting_rows(); }
+  int waiting_rows() const { return int(rows_.size()); }    // rows in memory
+  const FrameRow& last_kept() const { return last_kept_; }  // of the earlier run
   bool keeps_checkpoints() const { return every_ > 0; }
   bool wants_checkpoint(int frames) const { return every_ > 0 && frames % every_ == 0; }
 
@@ -42,10 +46,8 @@ class FilmLog {
 
   // Returns the number of frames that are whole, whatever happens from now on.
   int whole() const { return whole_; }
-  // Drops the rows of all other frames, at the end of a film whose pictures failed.
-  void drop_others() { rows_.resize(whole_); }
-  // Gives the rows away, once the film is over.
-  std::vector<FrameRow> take_rows() { return std::move(rows_); }
+  // Returns the rows of these frames. They can be read while nothing is added, and after this object is gone.
+  FrameRows whole_rows() const;
 
  private:
   void note_rows(Pictures* pictures);
@@ -56,13 +58,11 @@ class FilmLog {
   std::string identity_;
   std::filesystem::path record_;
   std::filesystem::file_time_type synced_ = std::filesystem::file_time_type::min();  // older files are on the disk
-  std::vector<FrameRow> rows_;
+  FrameRow last_kept_;
+  std::deque<FrameRow> rows_;  // after the whole ones
   int whole_ = 0;
-  bool broken_ = false;  // the disk has refused a row
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  std::unique_ptr<std::FILE, Close> notes_;          // rows so far, a line each; only with checkpoints
+  bool broken_ = false;                              // the disk has refused a row
+  std::shared_ptr<std::FILE> notes_;                 // the whole rows, a line each
   std::deque<std::pair<int, std::string>> waiting_;  // checkpoints by frames
 };
 

@@ -155,7 +155,7 @@ void FrameLoop::resume(const Checkpoint& checkpoint) {
     end_last_changes();
   }
   for (std::size_t b = 0; b < filmed_.size(); ++b)
-    filmed_[b]->resume(checkpoint.bodies[b], log_.rows().back().bodies.at(b));
+    filmed_[b]->resume(checkpoint.bodies[b], log_.last_kept().bodies.at(b));
 }
 
 // In the frame of a change, positions move in even parts from the values in `earlier` to the new ones. That frame is
@@ -205,7 +205,7 @@ void FrameLoop::finish(FilmResult& result) {
     result.end = FilmEnd::failed;
     result.message = pictures_->error();
   }
-  const int frames = static_cast<int>(log_.rows().size());
+  const int frames = log_.frames();
   // After a failure the bodies may be in the middle of a frame, so the checkpoint before that frame is kept.
   if (result.end == FilmEnd::failed && before_.frames > first_) log_.add(before_);  // one at first_ is there already
   const bool at_end = result.end != FilmEnd::failed && log_.keeps_checkpoints() && !log_.wants_checkpoint(frames);

@@ -4,9 +4,10 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/read_file.h"
+#include "output/frame_rows.h"
 #include "output/json_text.h"
 #include "output/profile.h"
-#include "output/unsolved.h"
+#include "output/row_tally.h"
 
 namespace supple {
 namespace {
@@ -167,21 +168,21 @@ std::string indented(const std::string& text, int spaces) {
   return result;
 }
 
-Json summary_json(const std::vector<FrameRow>& rows, const std::string& verdict) {
+Json summary_json(const RowTally& tally, const std::string& verdict) {
   Json first, rest;
-  for (const StageSummary& stage : summarize(rows)) {
+  for (const StageSummary& stage : tally.stages()) {
     first[stage.stage + "_ms"] = rounded_ms(stage.first);
     rest[stage.stage + "_ms"] = json_of(stage.rest);
   }
-  Json summary = {{"frames", rows.size()}, {"first_frame", first}, {"without_first_frame", rest}};
-  for (const UnsolvedStep& step : unsolved_steps(rows)) {
+  Json summary = {{"frames", tally.frames()}, {"first_frame", first}, {"without_first_frame", rest}};
+  for (const UnsolvedStep& step : tally.unsolved()) {
     summary["unsolved"].push_back({{"frame", step.frame},
                                    {"body", step.body},
                                    {"error_estimate", step.error_estimate},
                                    {"trials_per_iteration", step.trials}});
   }
   if (!verdict.empty()) summary["verdict"] = verdict;
-  summary["warnings"] = warnings_of(rows);
+  summary["warnings"] = tally.warnings();
   return summary;
 }
 
@@ -203,22 +204,22 @@ std::vector<FrameRow> read_profile(const std::filesystem::path& path) {
   });
 }
 
-void write_profile(const std::vector<FrameRow>& rows, const std::string& verdict, const TakesText& take) {
+void write_profile(const FrameRows& rows, const RowTally& tally, const std::string& verdict, const TakesText& take) {
   // A document of all rows would need many times the memory of the rows, so each frame is written by itself.
   take("{\n \"frames\": [");
   const char* before = "\n";
-  for (const FrameRow& row : rows) {
+  rows.each([&](const FrameRow& row) {
     take(before);
     take(indented(exact_json_text(json_of(row), 1), 2));
     before = ",\n";
-  }
+  });
   take(rows.empty() ? "],\n" : "\n ],\n");
-  take(" \"summary\": " + indented(exact_json_text(summary_json(rows, verdict), 1), 1).substr(1) + "\n}\n");
+  take(" \"summary\": " + indented(exact_json_text(summary_json(tally, verdict), 1), 1).substr(1) + "\n}\n");
 }
 
 std::string profile_json(const std::vector<FrameRow>& rows, const std::string& verdict) {
   std::string text;
-  write_profile(rows, verdict, [&text](std::string_view piece) { text += piece; });
+  write_profile(FrameRows(rows), RowTally(rows), verdict, [&text](std::string_view piece) { text += piece; });
   return text;
 }
 

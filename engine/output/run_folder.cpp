@@ -209,9 +209,9 @@ std::string info_json(const RunInfo& info) {
 
 void RunFolder::write_info(const RunInfo& info) const { write_durable_file(path_ / "run.json", info_json(info)); }
 
-void RunFolder::write_profile(const std::vector<FrameRow>& rows, const std::string& verdict) const {
+void RunFolder::write_profile(const FrameRows& rows, const RowTally& tally, const std::string& verdict) const {
   write_durable_file(path_ / "profile.json",
-                     [&](const TakesText& take) { supple::write_profile(rows, verdict, take); });
+                     [&](const TakesText& take) { supple::write_profile(rows, tally, verdict, take); });
 }
 
 }  // namespace supple

@@ -73,7 +73,7 @@ class RunFolder {
   static std::filesystem::path checkpoint_of(const std::filesystem::path& run) { return run / "checkpoint" / "state"; }
 
   void write_info(const RunInfo& info) const;
-  void write_profile(const std::vector<FrameRow>& rows, const std::string& verdict) const;
+  void write_profile(const FrameRows& rows, const RowTally& tally, const std::string& verdict) const;
 
  private:
   std::filesystem::path path_;

@@ -16,6 +16,9 @@ struct UnsolvedStep {
   double trials;  // of the line search, an iteration
 };
 
+// Tells whether a step with these figures is named: an estimate above 0.1, or more than four trials an iteration.
+bool is_unsolved(double error_estimate, int iterations, int trials);
+
 // Lists the bodies' frames with an estimate above 0.1 or more than four trials an iteration.
 std::vector<UnsolvedStep> unsolved_steps(const std::vector<FrameRow>& rows);
 

@@ -6,6 +6,8 @@
 #include <iterator>
 #include <utility>
 
+#include "output/row_tally.h"
+
 namespace supple {
 namespace {
 
@@ -17,18 +19,7 @@ struct Stage {
 
 }  // namespace
 
-FrameWork work_of(const std::vector<FrameRow>& rows, double encoding) {
-  FrameWork work{0, 0, 0, encoding};
-  const std::size_t first = rows.size() > 1 ? 1 : 0;
-  const auto frames = double(rows.size() - first);
-  for (std::size_t i = first; i < rows.size(); ++i) {
-    const FrameRow& row = rows[i];
-    work.solving += (row.step_ms + row.change_ms.value_or(0)) / frames;
-    work.drawing += (row.draw_ms.value_or(0) + row.render_ms.value_or(0)) / frames;
-    work.compressing += row.compress_ms.value_or(0) / frames;
-  }
-  return work;
-}
+FrameWork work_of(const std::vector<FrameRow>& rows, double encoding) { return RowTally(rows).work(encoding); }
 
 FrameWork work_of(const ZoneProfile& profile) {
   FrameWork work;

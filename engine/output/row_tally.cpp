@@ -1,0 +1,222 @@
+#include "output/row_tally.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "base/text.h"
+
+namespace supple {
+namespace {
+
+constexpr double much_energy = 0.2;       // of what was exchanged
+constexpr double much_skin_excess = 1.5;  // as many times the stretch of the elements
+constexpr double deep = 0.01;             // a depth that a viewer sees, over the body's size
+
+struct Stage {
+  const char* name;
+  std::optional<double> (*get)(const FrameRow&);
+};
+constexpr Stage stage_list[] = {{"step", [](const FrameRow& r) { return std::optional<double>(r.step_ms); }},
+                                {"change", [](const FrameRow& r) { return r.change_ms; }},
+                                {"draw", [](const FrameRow& r) { return r.draw_ms; }},
+                                {"render", [](const FrameRow& r) { return r.render_ms; }},
+                                {"compress", [](const FrameRow& r) { return r.compress_ms; }}};
+enum { step_stage, change_stage, draw_stage, render_stage, compress_stage };
+
+void add_touches(const FrameRow& row, const BodyRow& body, std::vector<TouchTally>& list) {
+  for (const ColliderRow& collider : body.contact->colliders) {
+    auto found = std::find_if(list.begin(), list.end(), [&](const TouchTally& one) {
+      return one.body == body.name && one.collider == collider.name;
+    });
+    if (found == list.end()) found = list.insert(list.end(), {body.name, collider.name});
+    if (collider.penetration > found->deepest) {
+      found->deepest = collider.penetration;
+      found->deepest_frame = row.frame;
+    }
+    found->deep_frames += collider.penetration > deep;
+    found->force_sum += collider.force;
+    found->largest_force = std::max(found->largest_force, collider.force);
+  }
+}
+
+void add_energy(const FrameRow& row, const BalanceRow& balance, BodyTally& tally) {
+  if (balance.from_nothing <= much_energy * balance.exchanged) return;
+  if (tally.first_gain < 0) tally.first_gain = row.frame;
+  if (tally.worst_gain >= 0 && balance.from_nothing <= tally.gained) return;
+  tally.worst_gain = row.frame;
+  tally.gained = balance.from_nothing;
+  tally.exchanged = balance.exchanged;
+}
+
+}  // namespace
+
+void RowTally::add_body(const FrameRow& row, std::size_t number) {
+  const BodyRow& body = row.bodies[number];
+  if (number >= bodies_.size()) bodies_.resize(number + 1);
+  BodyTally& tally = bodies_[number];
+  if (tally.frames++ == 0) tally.name = body.name;
+  tally.step.push_back(body.step_ms);
+  tally.trials += body.line_search;
+  tally.iterations += body.iterations;
+  tally.stretch = std::max(tally.stretch, body.stretch);
+  tally.estimates += body.error_estimate;
+  if (body.jiggle) tally.jiggle = std::max(tally.jiggle.value_or(*body.jiggle), *body.jiggle);
+  if (body.error) tally.errors.push_back(*body.error);
+  measured_ = measured_ || body.error_measured;
+  if (body.contact) {
+    tally.collide.push_back(body.contact->collide_ms);
+    tally.contacts = std::max(tally.contacts, body.contact->contacts);
+    tally.deepest = std::max(tally.deepest, body.contact->penetration);
+    add_touches(row, body, touches_);
+  }
+  if (body.balance) add_energy(row, *body.balance, tally);
+  if (body.skin_excess.value_or(0) > tally.skin_excess) {
+    tally.skin_excess = *body.skin_excess;
+    tally.skin_frame = row.frame;
+  }
+  tally.inverted = body.inverted.value_or(0);
+  tally.collapsed = body.collapsed.value_or(0);
+  if (is_unsolved(body.error_estimate, body.iterations, body.line_search))
+    unsolved_.push_back({row.frame, body.name, body.error_estimate,
+                         body.iterations > 0 ? double(body.line_search) / body.iterations : 0});
+}
+
+void RowTally::add(const FrameRow& row) {
+  const bool first = frames_++ == 0;
+  last_hash_ = row.state_hash;
+  if (first) touching_ = !row.bodies.empty() && row.bodies.front().contact.has_value();
+  for (std::size_t s = 0; s < std::size(stage_list); ++s) {
+    const std::optional<double> value = stage_list[s].get(row);
+    if (first) stages_[s].first = value;
+    if (first || !value) continue;
+    stages_[s].rest.push_back(*value);
+    stages_[s].sum += *value;
+  }
+  for (std::size_t body = 0; body < row.bodies.size(); ++body) add_body(row, body);
+}
+
+std::vector<StageSummary> RowTally::stages() const {
+  std::vector<StageSummary> result;
+  for (std::size_t s = 0; s < std::size(stage_list); ++s) {
+    const StageTally& stage = stages_[s];
+    if (stage.first || !stage.rest.empty())
+      result.push_back({stage_list[s].name, stage.first.value_or(0), distribution_of(stage.rest)});
+  }
+  return result;
+}
+
+FrameWork RowTally::work(double encoding) const {
+  FrameWork work{0, 0, 0, encoding};
+  if (frames_ == 0) return work;
+  const auto mean = [this](int stage) {
+    return frames_ > 1 ? stages_[stage].sum / (frames_ - 1) : stages_[stage].first.value_or(0);
+  };
+  work.solving = mean(step_stage) + mean(change_stage);
+  work.drawing = mean(draw_stage) + mean(render_stage);
+  work.compressing = mean(compress_stage);
+  return work;
+}
+
+std::vector<std::string> RowTally::penetrations() const {
+  std::vector<std::string> list;
+  for (const TouchTally& one : touches_) {
+    if (one.deepest <= deep) continue;
+    list.push_back(fmt::format(
+        "the surface of body '{}' was up to {:.2g} % of its size deep inside collider '{}' (at "
+        "frame {}; above {:g} % in {} of {} frames): a thickness, a finer mesh of the body or "
+        "substeps make that less",
+        one.body, 100 * one.deepest, one.collider, one.deepest_frame, 100 * deep, one.deep_frames, frames_));
+  }
+  return list;
+}
+
+std::vector<std::string> RowTally::warnings() const {
+  std::vector<std::string> list;
+  for (const BodyTally& body : bodies_) {
+    if (body.first_gain >= 0)
+      list.push_back(fmt::format(
+          "body '{}' gained energy from nothing, first in frame {}: up to {:.3g} J in frame {}, {:.0f} % of what it "
+          "exchanged; more solver.iterations or substeps, or a stiffer material",
+          body.name, body.first_gain, body.gained, body.worst_gain, 100 * body.gained / body.exchanged));
+    if (body.skin_excess > much_skin_excess)
+      list.push_back(
+          fmt::format("the skin of body '{}' was stretched {:.1f} times as much as its elements in frame {}; more "
+                      "vertices bring the elements closer to the skin",
+                      body.name, body.skin_excess, body.skin_frame));
+    if (body.inverted > 0)
+      list.push_back(fmt::format("body '{}' has {} turned inside out in its last frame", body.name,
+                                 count_text(body.inverted, "element")));
+    if (body.collapsed > 0)
+      list.push_back(fmt::format("body '{}' has {} without volume in its last frame", body.name,
+                                 count_text(body.collapsed, "element")));
+  }
+  for (std::string& warning : penetrations()) list.push_back(std::move(warning));
+  return list;
+}
+
+std::string RowTally::touch_table() const {
+  std::string text;
+  for (const TouchTally& one : touches_) {
+    if (one.deepest <= 0 && one.largest_force <= 0) continue;
+    if (text.empty())
+      text = fmt::format("\n  {:<14}{:<14}{:>13}{:>10}{:>14}{:>14}\n", "body", "collider", "penetration", "at frame",
+                         "force N, mean", "most");
+    text += fmt::format("  {:<14}{:<14}{:>13.1e}{:>10}{:>14.3g}{:>14.3g}\n", one.body, one.collider, one.deepest,
+                        one.deepest > 0 ? fmt::format("{}", one.deepest_frame) : "-", one.force_sum / frames_,
+                        one.largest_force);
+  }
+  return text;
+}
+
+std::string RowTally::table() const {
+  std::string text = fmt::format("  {:<10}{:>9}{:>9}{:>9}{:>9}{:>11}{:>10}\n", "ms/frame", "p50", "p95", "p99", "max",
+                                 "first", "total s");
+  for (const StageSummary& stage : stages()) {
+    text += fmt::format("  {:<10}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>11.2f}{:>10.1f}\n", stage.stage, stage.rest.p50,
+                        stage.rest.p95, stage.rest.p99, stage.rest.max, stage.first,
+                        (stage.rest.total + stage.first) / 1000);
+  }
+  if (frames_ == 0) return text;
+  text += fmt::format("\n  {:<14}{:>9}{:>9}{:>12}{:>10}{:>10}{:>12}", "body", "step ms", "p95", "trials/it", "stretch",
+                      "jiggle", "error est.");
+  if (touching_) text += fmt::format("{:>12}{:>10}{:>13}", "collide ms", "contacts", "penetration");
+  text += measured_ ? fmt::format("{:>11}{:>10}{:>10}\n", "error mean", "p95", "worst") : "\n";
+  for (const BodyTally& body : bodies_) {
+    const Distribution step = distribution_of(body.step);
+    text += fmt::format("  {:<14}{:>9.2f}{:>9.2f}{:>12.3f}{:>10.3f}{:>10}{:>12.1e}", body.name, step.p50, step.p95,
+                        body.iterations > 0 ? body.trials / body.iterations : 0.0, body.stretch,
+                        body.jiggle ? fmt::format("{:.3f}", *body.jiggle) : "-", body.estimates / body.frames);
+    if (touching_)
+      text += fmt::format("{:>12.2f}{:>10}{:>13.1e}", distribution_of(body.collide).p50, body.contacts, body.deepest);
+    if (measured_) {
+      const Distribution error = distribution_of(body.errors);
+      text += fmt::format("{:>11.1e}{:>10.1e}{:>10.1e}", error.mean, error.p95, error.max);
+    }
+    text += '\n';
+  }
+  return text + touch_table();
+}
+
+std::string RowTally::unsolved_text() const {
+  if (unsolved_.empty()) return "";
+  int frames = 0, last = -1;
+  std::vector<UnsolvedStep> worst;  // of each body
+  for (const UnsolvedStep& step : unsolved_) {
+    frames += step.frame != std::exchange(last, step.frame) ? 1 : 0;
+    const auto at = std::ranges::find(worst, step.body, &UnsolvedStep::body);
+    if (at == worst.end()) {
+      worst.push_back(step);
+    } else if (step.error_estimate > at->error_estimate) {
+      *at = step;
+    }
+  }
+  std::string text = fmt::format("{} of {} frames did not come near their solution:", frames, frames_);
+  for (const UnsolvedStep& step : worst) {
+    text += fmt::format("{} body '{}' worst in frame {}, with an error of about {:.2g} and {:.1f} trials an iteration",
+                        &step == &worst.front() ? "" : ";", step.body, step.frame, step.error_estimate, step.trials);
+  }
+  return text + "; more iterations or substeps help";
+}
+
+}  // namespace supple

@@ -1,0 +1,79 @@
+// Sums up the rows of a run as they pass by, so that no more of them need be in memory than one: distributions of
+// times, what went wrong, and tables for people. Of each frame it keeps the few numbers that percentiles need.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "output/profile.h"
+#include "output/unsolved.h"
+#include "output/verdict.h"
+
+namespace supple {
+
+// Tallies one stage of a frame.
+struct StageTally {
+  std::optional<double> first;  // of the first frame [ms]
+  std::vector<double> rest;     // of the others that have it [ms]
+  double sum = 0;               // of `rest`
+};
+
+// Tallies the figures of one body.
+struct BodyTally {
+  std::string name;
+  std::vector<double> step, collide, errors;
+  double trials = 0, iterations = 0, stretch = 0, deepest = 0, estimates = 0;
+  int contacts = 0, frames = 0;
+  std::optional<double> jiggle;
+  // Energy from nothing: where it first was much, and where most [J].
+  int first_gain = -1, worst_gain = -1;
+  double gained = 0, exchanged = 0;
+  double skin_excess = 0;  // the largest
+  int skin_frame = 0;
+  int inverted = 0, collapsed = 0;  // in the last frame
+};
+
+// Tallies what one collider did to one body.
+struct TouchTally {
+  std::string body, collider;
+  double deepest = 0;  // over the body's size
+  int deepest_frame = 0, deep_frames = 0;
+  double force_sum = 0, largest_force = 0;  // [N]
+};
+
+class RowTally {
+ public:
+  RowTally() = default;
+  explicit RowTally(const std::vector<FrameRow>& rows) {
+    for (const FrameRow& row : rows) add(row);
+  }
+
+  // Rows come in the order of their frames.
+  void add(const FrameRow& row);
+
+  int frames() const { return frames_; }
+  std::uint64_t last_hash() const { return last_hash_; }  // state_hash of the last row
+  const std::vector<UnsolvedStep>& unsolved() const { return unsolved_; }
+
+  // These functions give what those of the same purpose give for rows (profile.h, unsolved.h, verdict.h).
+  std::vector<StageSummary> stages() const;
+  std::vector<std::string> warnings() const;
+  std::vector<std::string> penetrations() const;
+  std::string unsolved_text() const;
+  std::string table() const;
+  FrameWork work(double encoding) const;
+
+ private:
+  void add_body(const FrameRow& row, std::size_t body);
+  std::string touch_table() const;
+
+  int frames_ = 0;
+  bool measured_ = false, touching_ = false;
+  std::uint64_t last_hash_ = 0;
+  StageTally stages_[5];  // in the order of stage_names
+  std::vector<BodyTally> bodies_;
+  std::vector<TouchTally> touches_;
+  std::vector<UnsolvedStep> unsolved_;
+};
+
+}  // namespace supple
