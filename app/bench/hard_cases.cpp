@@ -71,9 +71,11 @@ void add_loads(Cases& list) {
   for (const double rate : {1000.0, 30.0, 10.0, 2.0})
     add(list, fmt::format("steps of 1/{:g} s", rate), rate >= 30 ? StableEnd::whole : StableEnd::bounded,
         {fmt::format("frames = {}\nfps = {:g}\n", std::clamp(int(rate), 20, 100), rate), bar(held_end)});
-  for (const double poisson : {0.45, 0.49, 0.495})
-    add(list, fmt::format("Poisson's ratio {:g}", poisson), StableEnd::whole, {two_seconds, bar(held_end)},
-        fmt::format("{{ model = \"neo-hookean\", young = 3e4, poisson = {:g} }}", poisson));
+  for (const double poisson : {0.0, 0.45, 0.49, 0.495, 0.4999}) {
+    add(list, fmt::format("Poisson's ratio {:g}", poisson), StableEnd::whole, {two_seconds, bar(held_end)});
+    list.back().poisson = poisson;
+    list.back().keeps_volume = poisson > 0.48;
+  }
   for (const int iterations : {1, 2, 3})
     add(list, fmt::format("{} iteration{}", iterations, iterations == 1 ? "" : "s"), StableEnd::bounded,
         {two_seconds, fmt::format("[solver]\niterations = {}\n", iterations), bar(held_end)});
@@ -99,6 +101,37 @@ void add_motions(Cases& list) {
       {two_seconds,
        "[[body]]\nname = \"sheet\"\nbox = { extent = [1, 0.01, 1], cells = [4, 4, 4] }\nmaterial = MATERIAL\n",
        held_end});
+}
+
+// Bodies whose halves differ, that consist of two parts, or that spin; and one case that is turned as a whole.
+void add_unlike_parts(Cases& list) {
+  const auto unlike = [&](const std::string& name, double HardCase::*ratio, double value, std::string_view density) {
+    add(list, name, StableEnd::whole, {two_seconds, bar(joined({density, held_end}))});
+    list.back().*ratio = value;
+  };
+  for (const double ratio : {1e2, 1e4, 1e6}) {
+    unlike(fmt::format("the free half {:.0e} times as stiff", ratio), &HardCase::far_stiffness, ratio, "");
+    unlike(fmt::format("the held half {:.0e} times as stiff", ratio), &HardCase::near_stiffness, ratio, "");
+  }
+  // The heavy half strains the bar by about its length.
+  unlike("the free half 1e4 times as dense", &HardCase::far_density, 1e4, "density = 0.2\n");
+  unlike("the held half 1e4 times as dense", &HardCase::far_density, 1e-4, "density = 1000\n");
+  add(list, "two parts, one held", StableEnd::whole, {two_seconds, bar(held_end)});
+  list.back().has_second_part = true;
+  add(list, "two parts dropped", StableEnd::whole, {two_seconds, cube("position = [0, 0.02, 0]"), ground});
+  list.back().has_second_part = true;
+  for (const double turns : {1.0, 3.0, 10.0, 100.0}) {
+    add(list, fmt::format("{:g} turns a second", turns), turns > 3 ? StableEnd::bounded : StableEnd::whole,
+        {weightless, cube("")});
+    list.back().turns_a_second = turns;
+  }
+  constexpr std::string_view turned = "gravity = GRAVITY\n";
+  add(list, "24 turned copies, hanging", StableEnd::whole,
+      {two_seconds, turned, bar(joined({"turn_deg = TURN\n", held_end}))});
+  list.back().copies = 24;
+  add(list, "24 turned copies, spinning", StableEnd::whole, {weightless, cube("turn_deg = TURN")});
+  list.back().copies = 24;
+  list.back().turns_a_second = 1;
 }
 
 // The meshes of the paper have slivers: elements with volumes of 1e-6 of the mean and dihedral angles below a degree.
@@ -129,6 +162,7 @@ std::vector<HardCase> hard_cases(const std::optional<std::filesystem::path>& pap
   add_starts(list);
   add_loads(list);
   add_motions(list);
+  add_unlike_parts(list);
   if (paper_meshes) add_slivers(list, *paper_meshes);
   return list;
 }

@@ -4,91 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "app/bench/sections.h"
-#include "film/places.h"
-#include "output/profile.h"
-#include "scene/scene_reader.h"
-#include "sim/model/measures.h"
-#include "sim/solver/energies.h"
+#include "app/bench/small_picture.h"
 
 namespace supple {
 namespace {
 
-constexpr double much_energy = 0.2;  // from nothing, over what was exchanged: where a run warns
-// The strain limits have no force up to 1.05, and the polynomial hardly any.
-constexpr double rest_stretch = 1.06;
+constexpr int panel_edge = 104;  // [pixels]
 
-SceneDef scene_of(const std::string& text) {
-  Config config = Config::parse(text, "hard case", assets_folder());
-  SceneDef scene = read_scene(config);
-  config.finish();
-  return scene;
-}
-
-// Names the rule that an outcome breaks; empty: none.
-std::string broken_rule(const StabilityOutcome& outcome, StableEnd end) {
-  if (!outcome.finite) return "not finite";
-  if (outcome.from_nothing > much_energy)
-    return fmt::format("{:.0f} % energy from nothing", 100 * outcome.from_nothing);
-  if (end != StableEnd::bounded && outcome.inverted > 0) return fmt::format("{} inverted", outcome.inverted);
-  if (end != StableEnd::bounded && outcome.collapsed > 0) return fmt::format("{} without volume", outcome.collapsed);
-  if (end == StableEnd::recovered && outcome.stretch > rest_stretch)
-    return fmt::format("stretch {:.2f}", outcome.stretch);
-  return "";
-}
-
-}  // namespace
-
-std::vector<NamedMaterial> stability_materials() {
-  std::vector<NamedMaterial> list;
-  for (const char* name :
-       {"corotated", "st-venant-kirchhoff", "neo-hookean", "mooney-rivlin", "fixed-corotated", "stable-neo-hookean"})
-    list.push_back({name, fmt::format("{{ model = \"{}\", young = 3e4, poisson = 0.35 }}", name)});
-  list.push_back({"as-rigid-as-possible", "{ model = \"as-rigid-as-possible\", mu = 1.5e4 }"});
-  list.push_back({"polynomial", "{ model = \"polynomial\", mu = 1e5 }"});
-  for (const char* preset : {"A", "B"})
-    list.push_back({fmt::format("spline {}", preset),
-                    fmt::format("{{ model = \"spline\", preset = \"{}\", young = 3e4, poisson = 0.35 }}", preset)});
-  list.push_back({"strain-limiting", "{ model = \"strain-limiting\", mu_1 = 1.5e4, low_1 = 0.95, high_1 = 1.05 }"});
-  return list;
-}
-
-namespace {
-
-// Plays the scene of a case that is drawn by one seed.
-StabilityOutcome run_scene(const std::string& text, StableEnd end, Threads& threads) {
-  const SceneDef scene = scene_of(text);
-  Body body = std::move(assemble(scene).front());
-  Model model = build_model(body.description);
-  const CollisionSet set = collision_set(scene);
-  DrivenBody driver(scene, body, model, set, scenes_own_solver(), &threads);
-  driver.workspace().prepare(model, driver.inputs().solver);
-  EnergyBudget budget;
-  budget.start(model, scene.gravity, driver.state(), driver.workspace());
-  StabilityOutcome outcome;
-  Positions before;
-  for (int frame = 0; frame < scene.frames && outcome.finite; ++frame) {
-    driver.prepare_step(frame, 0);
-    budget.before_step(model, driver.inputs(), driver.state(), driver.workspace());
-    before = driver.state().x;
-    const StepReport& report = driver.step();
-    outcome.finite = !report.failed && driver.state().x.allFinite();
-    if (!outcome.finite) break;
-    budget.after_step(model, driver.inputs(), before, driver.state(), driver.workspace());
-    const EnergyBalance& balance = budget.balance();
-    if (balance.exchanged > 0)
-      outcome.from_nothing = std::max(outcome.from_nothing, balance.from_nothing / balance.exchanged);
-    outcome.error_estimate = std::max(outcome.error_estimate, report.error_estimate);
-    outcome.trials += double(report.line_search) / scene.frames;
+const char* rule_name(StableEnd end) {
+  switch (end) {
+    case StableEnd::recovered: return "at rest";
+    case StableEnd::whole: return "whole";
+    case StableEnd::bounded: break;
   }
-  const Deformation shape = deformation(model, driver.state().x);
-  outcome.stretch = shape.stretch;
-  outcome.inverted = shape.inverted;
-  outcome.collapsed = shape.collapsed;
-  outcome.told = !outcome.finite || outcome.from_nothing > much_energy || shape.inverted > 0 || shape.collapsed > 0;
-  outcome.failure = broken_rule(outcome, end);
-  return outcome;
+  return "bounded";
 }
 
 // Describes what the runs of a case ended as, in a cell: the first rule that was broken, or what a run warns of.
@@ -107,64 +39,119 @@ std::string text_of(const std::vector<StabilityOutcome>& outcomes) {
   return collapsed > 0 ? fmt::format("({} without volume)", collapsed) : "";
 }
 
-}  // namespace
-
-std::vector<StabilityOutcome> run_case(const HardCase& hard, const NamedMaterial& material, Threads& threads) {
-  const auto filled = [](std::string text, const std::string& word, const std::string& value) {
-    if (const std::size_t at = text.find(word); at != std::string::npos) text.replace(at, word.size(), value);
-    return text;
-  };
-  const std::string scene = filled(hard.scene, "MATERIAL", hard.only.empty() ? material.table : hard.only);
-  std::vector<StabilityOutcome> outcomes;
-  for (int seed = 1; seed <= hard.seeds; ++seed)
-    outcomes.push_back(run_scene(filled(scene, "SEED", std::to_string(seed)), hard.end, threads));
-  return outcomes;
+std::string cost_text(const std::vector<StabilityOutcome>& outcomes) {
+  double trials = 0, error = 0, apart = 0, volume = 0;
+  for (const StabilityOutcome& outcome : outcomes) {
+    trials += outcome.trials / double(outcomes.size());
+    error = std::max(error, outcome.error_estimate);
+    apart = std::max(apart, outcome.turned_apart);
+    volume = std::max(volume, outcome.volume_change);
+  }
+  std::string text = fmt::format("{:.0f}; {:.1e}", trials, error);
+  if (apart > 0) text += fmt::format("; {:.1e} apart", apart);
+  if (volume > 0) text += fmt::format("; volume {:.1e}", volume);
+  return text;
 }
+
+std::string errors_text(const std::vector<StabilityOutcome>& outcomes) {
+  if (outcomes.empty() || !outcomes.front().errors) return "-";
+  const auto number = [](const std::optional<double>& error) {
+    if (!error) return std::string("-");
+    return *error < 1e-9 ? std::string("0") : fmt::format("{:.0e}", *error);
+  };
+  const TabledErrors& errors = *outcomes.front().errors;
+  std::string text;
+  for (const auto& error : errors.ours) text += number(error) + " ";
+  return text + "| " + number(errors.newton);
+}
+
+// Draws the first run's start, and what it ends as with each material.
+void draw_case(const std::vector<std::vector<StabilityOutcome>>& by_material, const std::filesystem::path& file) {
+  PanelPicture picture(int(by_material.size()) + 1, panel_edge);
+  bool started = false;
+  for (std::size_t m = 0; m < by_material.size(); ++m) {
+    if (by_material[m].empty()) continue;
+    const StabilityOutcome& outcome = by_material[m].front();
+    if (!std::exchange(started, true)) picture.draw(0, outcome.start, outcome.surface, bounds_of(outcome.start));
+    picture.draw(int(m) + 1, outcome.end, outcome.surface, bounds_of(outcome.end));
+  }
+  picture.write(file);
+}
+
+struct Counts {
+  int runs = 0, passed = 0, silent = 0;
+  void add(const std::vector<StabilityOutcome>& outcomes) {
+    for (const StabilityOutcome& outcome : outcomes) {
+      ++runs;
+      passed += outcome.passed() ? 1 : 0;
+      silent += !outcome.passed() && !outcome.told ? 1 : 0;
+    }
+  }
+};
+
+// The three tables of the section, which have the same columns.
+struct Tables {
+  ReportTable ends{"stability", "What each case ends as"};
+  ReportTable errors{"stability-errors", "Error of the worst step after 10, 50 and 200 iterations, and by Newton"};
+  ReportTable work{"stability-work", "Evaluations a frame, and the worst error estimate"};
+};
+
+Tables tables_for(const std::vector<NamedMaterial>& materials) {
+  Tables tables;
+  tables.ends.note =
+      "An empty cell: the rule of the case is kept, and nothing is inverted or without volume at the end. In brackets: "
+      "the rule is kept, and the run warns. Without brackets: the rule that is broken. A dash: not played, because the "
+      "case is about one material, or this one has no such Poisson's ratio. docs/stability.md has the rules.";
+  tables.errors.note =
+      "Equation 12 for the step with the largest error estimate of the case's first run, against the lowest minimum "
+      "that Newton's method finds from any of the four ends. The fourth number is the error of 50 iterations of "
+      "Newton's method. A number that stays large where Newton's is small: ours stalls. Two large ones: there are "
+      "several minima, and Newton's method ends in another one.";
+  tables.work.note =
+      "Of turned copies, how far they are from the first one, turned back, over the body's size; of cases that must "
+      "keep their volume, its largest change.";
+  for (ReportTable* table : {&tables.ends, &tables.errors, &tables.work}) {
+    table->columns = {"case", "rule"};
+    for (const NamedMaterial& material : materials) table->columns.push_back(material.name);
+  }
+  return tables;
+}
+
+}  // namespace
 
 ReportSection bench_stability(const BenchSetting& setting) {
   ReportSection section{"stability", "Hard cases: what every material makes of them"};
   const std::vector<NamedMaterial> materials = stability_materials();
-  ReportTable table{"stability", "What each case ends as"};
-  table.note =
-      "An empty cell: the rule of the case is kept, and nothing is inverted or without volume at the end. In brackets: "
-      "the rule is kept, and the run warns. Without brackets: the rule that is broken; the run warns of all of these "
-      "but "
-      "a remaining stretch. docs/stability.md has the rules.";
-  table.columns = {"case", "rule"};
-  for (const NamedMaterial& material : materials) table.columns.push_back(material.name);
-  ReportTable work{"stability-work", "Evaluations a frame, and the worst error estimate"};
-  work.columns = table.columns;
-  int runs = 0, passed = 0, silent = 0;
+  Tables tables = tables_for(materials);
+  Counts counts;
+  int number = 0;
   for (const HardCase& hard : hard_cases(setting.paper_meshes)) {
     say_doing(setting, hard.name);
-    const char* rule = hard.end == StableEnd::recovered ? "at rest"
-                       : hard.end == StableEnd::whole   ? "whole"
-                                                        : "bounded";
-    std::vector<std::string> cells = {hard.name, rule}, costs = {hard.name, rule};
-    for (std::size_t m = 0; m < materials.size(); ++m) {
-      if (!hard.only.empty() && materials[m].name != "neo-hookean") {
-        cells.emplace_back("-");
-        costs.emplace_back("-");
-        continue;
-      }
-      const std::vector<StabilityOutcome> outcomes = run_case(hard, materials[m], *setting.threads);
-      double trials = 0, error = 0;
-      for (const StabilityOutcome& outcome : outcomes) {
-        ++runs;
-        passed += outcome.passed();
-        silent += !outcome.passed() && !outcome.told;
-        trials += outcome.trials / double(outcomes.size());
-        error = std::max(error, outcome.error_estimate);
-      }
-      cells.push_back(text_of(outcomes));
-      costs.push_back(fmt::format("{:.0f}; {:.1e}", trials, error));
+    std::vector<std::vector<StabilityOutcome>> by_material;
+    for (const NamedMaterial& material : materials) {
+      const bool left_out = !hard.only.empty() && material.name != "neo-hookean";
+      by_material.push_back(left_out ? std::vector<StabilityOutcome>()
+                                     : run_case(hard, material, *setting.threads, true));
+      counts.add(by_material.back());
     }
-    table.rows.push_back(std::move(cells));
-    work.rows.push_back(std::move(costs));
+    const auto add_row = [&](ReportTable& table, const std::function<std::string(std::size_t)>& cell) {
+      table.rows.push_back({hard.name, rule_name(hard.end)});
+      for (std::size_t m = 0; m < materials.size(); ++m)
+        table.rows.back().push_back(by_material[m].empty() ? "-" : cell(m));
+    };
+    add_row(tables.ends, [&](std::size_t m) { return text_of(by_material[m]); });
+    add_row(tables.errors, [&](std::size_t m) { return errors_text(by_material[m]); });
+    add_row(tables.work, [&](std::size_t m) { return cost_text(by_material[m]); });
+    const std::string name = fmt::format("stability-{:02}", ++number);
+    draw_case(by_material, setting.out / (name + ".png"));
+    section.pictures.push_back({name, hard.name});
   }
-  section.text = fmt::format("{} runs: {} keep their rule, {} break it; {} of those without a warning.", runs, passed,
-                             runs - passed, silent);
-  section.tables = {std::move(table), std::move(work)};
+  section.pictures.front().note =
+      "Each row: the start, and the last frame with each material, in the order of the tables and each enlarged to its "
+      "panel. Surfaces seen from inside are red.";
+  section.text = fmt::format("{} runs: {} keep their rule, {} break it; {} of those without a warning.", counts.runs,
+                             counts.passed, counts.runs - counts.passed, counts.silent);
+  section.tables = {std::move(tables.ends), std::move(tables.errors), std::move(tables.work)};
   return section;
 }
 

@@ -2,23 +2,40 @@
 // the rules and what does not pass. This header is for the benchmark and its test.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/bench/hard_cases.h"
 #include "base/threads.h"
+#include "base/types.h"
 
 namespace supple {
+
+// Numbers of iterations after which the error of a case's worst step is measured.
+constexpr std::array<int, 3> tabled_iterations = {10, 50, 200};
+
+// Holds errors (equation 12) of one step against the lowest minimum that Newton's method finds from any of its ends.
+struct TabledErrors {
+  std::array<std::optional<double>, tabled_iterations.size()> ours;  // nothing: there is no error but round-off
+  std::optional<double> newton;                                      // after 50 iterations of Newton's method
+};
 
 struct StabilityOutcome {
   bool finite = true;
   double from_nothing = 0;  // the worst of all frames, over the energy that was exchanged
   double stretch = 1;       // at the end
   int inverted = 0, collapsed = 0;
+  double volume_change = 0;   // the worst of all frames, over the volume at rest
+  double turned_apart = 0;    // from the first copy, turned back: the worst of all frames, over the body's size
   double error_estimate = 0;  // the worst of all frames
   double trials = 0;          // evaluations a frame
   bool told = false;          // whether the run says that something is wrong
   std::string failure = {};   // the rule that was broken; empty: passed
+  std::optional<TabledErrors> errors = {};  // of the step with the worst estimate, where they are asked for
+  Positions start, end;                     // in the order of the mesh [m]
+  Triangles surface;
 
   bool passed() const { return failure.empty(); }
 };
@@ -30,7 +47,13 @@ struct NamedMaterial {
 // The materials with stiffnesses near 3e4 Pa.
 std::vector<NamedMaterial> stability_materials();
 
-// Plays a case for each of its seeds.
-std::vector<StabilityOutcome> run_case(const HardCase& hard, const NamedMaterial& material, Threads& threads);
+// Returns the table of one of them with another stiffness [Pa] and Poisson's ratio, also beyond what `poisson` may be
+// in a scene; nothing where the material has no Poisson's ratio and this one is not the usual.
+std::optional<std::string> material_table(const std::string& name, double young, double poisson);
+
+// Plays a case for each of its seeds, or for each of its turned copies. Gives nothing where the material cannot have
+// the case's Poisson's ratio. with_errors: tables the errors of the first run's worst step.
+std::vector<StabilityOutcome> run_case(const HardCase& hard, const NamedMaterial& material, Threads& threads,
+                                       bool with_errors = false);
 
 }  // namespace supple

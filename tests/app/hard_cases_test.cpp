@@ -17,7 +17,7 @@ class HardCases : public testing::Test {
   // Films a scene without pictures.
   Result film(const std::string& scene, const std::vector<std::string>& more = {}) {
     std::ofstream(folder_.path / "scene.toml") << scene;
-    std::vector<std::string> arguments = {"render", "scene.toml", "--no-images", "--quiet"};
+    std::vector<std::string> arguments = {"render", "scene.toml", "--no-images", "--quiet", "--force"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Result result = test::run(folder_.path, arguments);
     EXPECT_EQ(result.status, 0) << result.err;

@@ -9,7 +9,7 @@
 namespace supple {
 namespace {
 
-StabilityOutcome outcome_of(const std::string& hard, const std::string& material) {
+std::vector<StabilityOutcome> outcomes_of(const std::string& hard, const std::string& material, bool errors = false) {
   const std::vector<HardCase> cases = hard_cases(std::nullopt);
   const std::vector<NamedMaterial> materials = stability_materials();
   const auto one = std::find_if(cases.begin(), cases.end(), [&](const HardCase& c) { return c.name == hard; });
@@ -20,7 +20,12 @@ StabilityOutcome outcome_of(const std::string& hard, const std::string& material
   Threads threads(1);
   HardCase once = *one;
   once.seeds = 1;
-  return run_case(once, *of, threads).front();
+  once.copies = std::min(once.copies, 4);
+  return run_case(once, *of, threads, errors);
+}
+
+StabilityOutcome outcome_of(const std::string& hard, const std::string& material) {
+  return outcomes_of(hard, material).front();
 }
 
 TEST(StabilityMatrix, HasNoTwoCasesOfOneName) {
@@ -37,6 +42,58 @@ TEST(StabilityMatrix, SomeOfTheHardestCasesKeepTheirRules) {
       EXPECT_TRUE(outcome.passed()) << hard << ", " << material << ": " << outcome.failure;
     }
   }
+}
+
+TEST(StabilityMatrix, UnlikeHalvesAndSpinKeepTheirRules) {
+  for (const char* hard :
+       {"Poisson's ratio 0.4999", "the free half 1e+02 times as stiff", "the held half 1e+06 times as stiff",
+        "the free half 1e4 times as dense", "two parts, one held", "10 turns a second"}) {
+    for (const char* material : {"neo-hookean", "stable-neo-hookean"}) {
+      const StabilityOutcome outcome = outcome_of(hard, material);
+      EXPECT_TRUE(outcome.passed()) << hard << ", " << material << ": " << outcome.failure;
+    }
+  }
+}
+
+// Materials of two halves, a second part and a spin are really there.
+TEST(StabilityMatrix, CasesDifferFromTheirScenes) {
+  const double usual = outcome_of("hanging from its end", "corotated").stretch;
+  EXPECT_LT(outcome_of("the held half 1e+06 times as stiff", "corotated").stretch, usual - 0.05);
+  const double light = outcome_of("light as air", "corotated").stretch;
+  EXPECT_GT(outcome_of("the free half 1e4 times as dense", "corotated").stretch, light + 0.2);
+  EXPECT_EQ(outcome_of("two parts, one held", "corotated").end.rows(),
+            2 * outcome_of("hanging from its end", "corotated").end.rows());
+  const StabilityOutcome spun = outcome_of("3 turns a second", "corotated");
+  EXPECT_GT((spun.end - spun.start).rowwise().norm().maxCoeff(), 0.05);
+  EXPECT_TRUE(outcomes_of("Poisson's ratio 0.49", "polynomial").empty());  // it has none
+}
+
+TEST(StabilityMatrix, ACaseThatIsTurnedHasTheSameAnswerTurned) {
+  for (const NamedMaterial& material : stability_materials()) {
+    for (const char* hard : {"24 turned copies, hanging", "24 turned copies, spinning"}) {
+      const std::vector<StabilityOutcome> copies = outcomes_of(hard, material.name);
+      ASSERT_EQ(copies.size(), 4u);
+      EXPECT_EQ(copies[0].turned_apart, 0);
+      for (std::size_t copy = 1; copy < copies.size(); ++copy) {
+        EXPECT_GT(copies[copy].turned_apart, 0) << "it was turned";
+        EXPECT_LT(copies[copy].turned_apart, 1e-5) << hard << ", " << material.name;
+      }
+    }
+  }
+}
+
+TEST(StabilityMatrix, ErrorsOfTheWorstStepFallWithTheIterations) {
+  for (const char* material : {"neo-hookean", "corotated"}) {
+    const std::optional<TabledErrors> errors = outcomes_of("hanging from its end", material, true).front().errors;
+    ASSERT_TRUE(errors);
+    EXPECT_GT(errors->ours[0].value(), 1e-6);
+    EXPECT_LT(errors->ours[0].value(), 1e-2);
+    EXPECT_LT(errors->ours[1].value(), 1e-3 * errors->ours[0].value());
+    EXPECT_LE(errors->ours[2].value(), errors->ours[1].value());
+    EXPECT_LT(errors->newton.value(), 1e-8);
+  }
+  // Nothing is left to gain in free fall, so there is nothing that an error could be a share of.
+  EXPECT_FALSE(outcomes_of("free fall", "neo-hookean", true).front().errors->ours[0]);
 }
 
 // A body that is at rest has nothing to search for: the evaluations of its steps stay below those of a moving one.
