@@ -57,6 +57,7 @@ void add_starts(Cases& list) {
   for (const double turns : {0.5, 2.0, 8.0})
     add(list, fmt::format("twisted {:g} turns", turns), turns < 1 ? StableEnd::recovered : StableEnd::bounded,
         {weightless, bar(fmt::format("start = {{ twist_deg = {:g} }}", 360 * turns))});
+  for (HardCase& hard : list) hard.is_start = true;
 }
 
 void add_loads(Cases& list) {

@@ -30,6 +30,7 @@ struct HardCase {
   double near_stiffness = 1;     // of the other half
   double far_density = 1;        // of the half at the larger x, over the other's
   bool has_second_part = false;  // a copy of the body that shares no vertex with it and that no handle holds
+  bool is_start = false;         // whether it is about a start without gravity, from which a body may come to rest
   double turns_a_second = 0;     // at the start, about the diagonal [1, 1, 1] through the centre of mass
 };
 

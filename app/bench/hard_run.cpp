@@ -19,8 +19,6 @@ namespace {
 
 constexpr double usual_young = 3e4, usual_poisson = 0.35;
 constexpr double much_energy = 0.2;  // from nothing, over what was exchanged: where a run warns
-// The strain limits have no force up to 1.05, and the polynomial hardly any.
-constexpr double rest_stretch = 1.06;
 constexpr double much_volume = 0.05, far_apart = 1e-3;
 
 SceneDef scene_of(const std::string& text) {
@@ -37,6 +35,16 @@ std::string filled(std::string text, const std::string& word, const std::string&
 
 std::string list_text(const Vec3& v) { return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x(), v.y(), v.z()); }
 
+}  // namespace
+
+// The strain limits have no force up to 1.05, and the polynomial hardly any.
+bool StabilityOutcome::is_at_rest() const {
+  constexpr double rest_stretch = 1.06;
+  return finite && inverted == 0 && collapsed == 0 && stretch <= rest_stretch;
+}
+
+namespace {
+
 // Names the rule that an outcome breaks; empty: none.
 std::string broken_rule(const StabilityOutcome& outcome, const HardCase& hard) {
   if (!outcome.finite) return "not finite";
@@ -45,8 +53,7 @@ std::string broken_rule(const StabilityOutcome& outcome, const HardCase& hard) {
   if (hard.end != StableEnd::bounded && outcome.inverted > 0) return fmt::format("{} inverted", outcome.inverted);
   if (hard.end != StableEnd::bounded && outcome.collapsed > 0)
     return fmt::format("{} without volume", outcome.collapsed);
-  if (hard.end == StableEnd::recovered && outcome.stretch > rest_stretch)
-    return fmt::format("stretch {:.2f}", outcome.stretch);
+  if (hard.end == StableEnd::recovered && !outcome.is_at_rest()) return fmt::format("stretch {:.2f}", outcome.stretch);
   if (outcome.volume_change > much_volume)
     return fmt::format("volume changed by {:.0f} %", 100 * outcome.volume_change);
   if (outcome.turned_apart > far_apart) return fmt::format("turned copies {:.1e} apart", outcome.turned_apart);
@@ -206,7 +213,11 @@ StabilityOutcome HardRun::play(std::vector<Positions>* motion, WorstStep* worst)
     const StepReport& report = driver_.step();
     outcome.finite = !report.failed && driver_.state().x.allFinite();
     if (!outcome.finite) break;
-    budget.after_step(model_, driver_.inputs(), before.x, driver_.state(), workspace);
+    if (driver_.untangled()) {
+      budget.after_untangling(model_, driver_.inputs(), driver_.state(), workspace);
+    } else {
+      budget.after_step(model_, driver_.inputs(), before.x, driver_.state(), workspace);
+    }
     const EnergyBalance& balance = budget.balance();
     if (balance.exchanged > 0)
       outcome.from_nothing = std::max(outcome.from_nothing, balance.from_nothing / balance.exchanged);

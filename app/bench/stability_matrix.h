@@ -38,6 +38,7 @@ struct StabilityOutcome {
   Triangles surface;
 
   bool passed() const { return failure.empty(); }
+  bool is_at_rest() const;  // at the end, whatever the rule
 };
 
 struct NamedMaterial {

@@ -90,7 +90,7 @@ std::string FilmedBody::advance(int frame, bool measure_error, BodyRow& row) {
     if (report.failed) return failure_text(frame, row.name, report.failure);
     if (!measured) continue;
     row.error_measured = true;
-    row.error = step_error(before);
+    if (!driver_.untangled()) row.error = step_error(before);  // another energy has another minimum
   }
   measure(frame, row);
   return "";
@@ -108,7 +108,11 @@ const StepReport& FilmedBody::make_step() {
   const StepReport& report = driver_.step();
   if (report.failed) return report;
   const Zone zone("energy budget", driver_.body().def.name);
-  budget_.after_step(model(), driver_.inputs(), start_of_step_, state(), w);
+  if (driver_.untangled()) {
+    budget_.after_untangling(model(), driver_.inputs(), state(), w);
+  } else {
+    budget_.after_step(model(), driver_.inputs(), start_of_step_, state(), w);
+  }
   return report;
 }
 

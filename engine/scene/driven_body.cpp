@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/trace.h"
+#include "sim/model/measures.h"
 #include "sim/solver/step.h"
 
 namespace supple {
@@ -68,7 +69,25 @@ void DrivenBody::prepare_step(int frame, int substep) {
   collider_motions(set_, span, inputs_.collider_motions);
 }
 
-const StepReport& DrivenBody::step() { return supple::step(model_, inputs_, state_, workspace_, *rule_); }
+// Returns the model of the same body with materials whose k (equation 11) is the same and that have no minimum but
+// rest.
+const Model& DrivenBody::rigid_model() {
+  if (rigid_for_ == model_.id) return *rigid_;
+  BodyDescription description = body_.description;
+  for (Material& material : description.materials)
+    material = AsRigidAsPossible{0.5 * system_stiffness(material, description.fit).k};
+  rigid_.emplace(build_model(description));
+  rigid_for_ = model_.id;
+  return *rigid_;
+}
+
+const StepReport& DrivenBody::step() {
+  untangled_ = body_.def.solver.untangle && is_tangled(model_, state_.x);
+  if (!untangled_) return supple::step(model_, inputs_, state_, workspace_, *rule_);
+  StepInputs inputs = inputs_;
+  inputs.solver.matrix = SystemMatrix::constant;
+  return supple::step(rigid_model(), inputs, state_, workspace_);
+}
 
 const StepReport& DrivenBody::make_frame(int frame, const std::function<void(const StepReport&)>& observe) {
   for (int substep = 0; substep < scene_.substeps; ++substep) {

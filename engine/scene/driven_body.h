@@ -51,8 +51,12 @@ class DrivenBody {
   void prepare_step(int frame, int substep);
   // Sets where the prepared step is to end, as an earlier run's budget of time ended it; nothing: where the clock says.
   void repeat(const std::optional<BudgetCuts>& cuts) { inputs_.repeated_cuts = cuts; }
-  // Makes the prepared step. The state changes only if the step succeeds.
+  // Makes the prepared step. The state changes only if the step succeeds. With solver.untangle, where elements are
+  // inverted or without volume at its start, the body's material is as rigid as possible in this step: such a body
+  // comes apart from itself where its own material would keep it folded. A, and with it every direction, stays the
+  // same.
   const StepReport& step();
+  bool untangled() const { return untangled_; }  // whether the last step was such a one
 
   // Makes all steps of a frame and passes each report to `observe`. Returns the last report: either that step failed,
   // or all steps were made.
@@ -63,6 +67,7 @@ class DrivenBody {
   // Makes the description's handles hold as the state says. Returns false when they did so already.
   bool hold_as_state_says();
   void renew_model();
+  const Model& rigid_model();
 
   const SceneDef& scene_;
   Body& body_;
@@ -74,6 +79,9 @@ class DrivenBody {
   std::unique_ptr<SearchRule> rule_;
   Workspace workspace_;
   std::optional<ModelValues> values_;  // once the model has changed
+  std::optional<Model> rigid_;         // as rigid as possible; once it was needed
+  std::uint64_t rigid_for_ = 0;        // id of the model that it was made for
+  bool untangled_ = false;
 };
 
 }  // namespace supple

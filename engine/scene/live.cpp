@@ -28,6 +28,7 @@ constexpr auto patterns = std::to_array<LivePattern>({
     {"solver.history", nothing},
     {"solver.matrix", nothing},
     {"solver.rounds", nothing},
+    {"solver.untangle", nothing},
     {"solver.chebyshev_delay", nothing},
     {"solver.chebyshev_radius", nothing},
     {"solver.line_search", nothing},

@@ -104,7 +104,8 @@ struct SolverDef {
   StretchInterval fit;
   Precision precision = Precision::single_precision;
   Integrator integrator = Integrator::backward_euler;
-  double damping = 0;  // beta [s]
+  double damping = 0;     // beta [s]
+  bool untangle = false;  // makes steps that start tangled those of a body as rigid as possible (driven_body.h)
 };
 
 // Chooses what is done about a body that starts inside a collider.

@@ -136,6 +136,10 @@ SolverDef read_solver(const ConfigTable& table, const SolverDef& defaults) {
   SolverDef solver = defaults;
   solver.method = read_method(table, defaults.method);
   solver.settings = read_settings(table, defaults.settings);
+  solver.untangle = table.boolean({"untangle", "",
+                                   "a step that starts with elements inverted or without volume is made as if the "
+                                   "material were as-rigid-as-possible"},
+                                  defaults.untangle);
   solver.fit.start = table.number({"fit_from", "", "start of the stretch interval of equation 11"}, defaults.fit.start,
                                   Range::between(0.01, 0.999));
   solver.fit.end = table.number({"fit_to", "", "end of the stretch interval of equation 11"}, defaults.fit.end,

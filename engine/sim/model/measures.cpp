@@ -34,6 +34,11 @@ constexpr double without_volume = 1e-3;  // of the rest volume
 
 }  // namespace
 
+bool is_tangled(const Model& model, const Positions& x) {
+  const Deformation shape = deformation(model, x);
+  return shape.inverted + shape.collapsed > 0;
+}
+
 Deformation deformation(const Model& model, const Positions& x) {
   std::vector<std::pair<double, double>> stretches;  // stretch, weight
   std::vector<double> inverted, collapsed;           // their volumes

@@ -70,12 +70,26 @@ void EnergyBudget::after_step(const Model& model, const StepInputs& inputs, cons
   parts_.elastic = elastic_energy(model, w, state.x);
   parts_.springs = spring_energy(model, inputs, state.x);
   parts_.contact = contact_energy(w.current.contacts, state.x);
+  sum_up();
+}
+
+void EnergyBudget::sum_up() {
   balance_.total = parts_.total();
   const double own = balance_.total - balance_.put_in;
   lowest_ = std::min(lowest_, own);
   balance_.from_nothing = own - lowest_;
   most_ = std::max(most_, parts_.kinetic + std::abs(parts_.elastic) + parts_.springs);
   balance_.exchanged = most_ + moved_;
+}
+
+void EnergyBudget::after_untangling(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
+  const double before = parts_.total();
+  set_motion(model, state, inputs.gravity, parts_);
+  parts_.elastic = elastic_energy(model, w, state.x);
+  parts_.springs = spring_energy(model, inputs, state.x);
+  parts_.contact = contact_energy(w.current.contacts, state.x);
+  add_to_budget(parts_.total() - before);
+  sum_up();
 }
 
 }  // namespace supple

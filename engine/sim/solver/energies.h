@@ -39,11 +39,15 @@ class EnergyBudget {
   void after_step(const Model& model, const StepInputs& inputs, const Positions& q, const State& state,
                   Workspace& workspace);
 
+  // Counts a step that was made with another energy: all that it changed came from outside.
+  void after_untangling(const Model& model, const StepInputs& inputs, const State& state, Workspace& workspace);
+
   const EnergyBalance& balance() const { return balance_; }
   const Energies& energies() const { return parts_; }
 
  private:
   void add_to_budget(double work);
+  void sum_up();
 
   Energies parts_;
   EnergyBalance balance_;
