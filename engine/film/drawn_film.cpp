@@ -7,6 +7,7 @@
 #include "film/film_graphs.h"
 #include "film/marked_vertices.h"
 #include "film/picture_words.h"
+#include "render/legend.h"
 
 namespace supple {
 
@@ -35,13 +36,29 @@ DrawnFilm::DrawnFilm(const Script& script, const std::vector<Body>& bodies, std:
   const Stage fine = make_stage(scene, bodies, drawn_, set.obstacles, collider_skins_, font);
   fit_to_cameras(drawn_, bodies, cameras_of(script, fine), scene.output.height);
   stage_ = make_stage(scene, bodies, drawn_, set.obstacles, collider_skins_, font);
-  stage_.first_camera = camera_at(scene, stage_, 0);
   stage_.graphs = graph_looks(scene, 0);
   if (!scene.look.ghost.empty()) add_ghosts(scene, bodies);
-  if (scene.field.quantity == FieldQuantity::none) return;
-  field_.emplace(scene, bodies);
-  stage_.field = field_->look();
-  for (std::size_t b = 0; b < bodies.size(); ++b) stage_.meshes[b].mapped = field_->shown_on(b);
+  if (scene.field.quantity != FieldQuantity::none) field_.emplace(scene, bodies);
+  for (std::size_t b = 0; b < bodies.size() && field_; ++b) stage_.meshes[b].mapped = field_->shown_on(b);
+  show_field();
+}
+
+// Gives the stage the colours and the legend of the field as they are now.
+void DrawnFilm::show_field() {
+  if (field_) stage_.field = field_->look();
+  make_room();
+}
+
+// Keeps the room of the legend free, where the camera frames the bodies by itself.
+void DrawnFilm::make_room() {
+  const int legend = stage_.field ? legend_of(*stage_.field, stage_.font, stage_.height).width() : 0;
+  stage_.kept_free = std::min(0.3, legend > 0 ? (legend + stage_.height / 36.0) / stage_.width : 0);
+  stage_.first_camera = camera_at(start_, stage_, 0);
+}
+
+void DrawnFilm::hide_legend() {
+  stage_.field->title.clear();
+  make_room();
 }
 
 // Adds a half transparent copy of each body, which moves as another run's body does.
@@ -79,7 +96,7 @@ void DrawnFilm::know_times(std::span<const FrameRow> rows) {
 void DrawnFilm::settle_field() {
   if (!field_) return;
   field_->settle();
-  stage_.field = field_->look();
+  show_field();
 }
 
 void DrawnFilm::follow(const std::vector<TimedChange>& changes, const CollisionSet& set,

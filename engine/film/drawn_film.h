@@ -49,13 +49,15 @@ class DrawnFilm {
   // Returns the range of the field, which the scene must have.
   Eigen::Vector2d field_range() const { return field_->range(); }
   // Leaves the legend to the caller. Must be called before the stage is used.
-  void hide_legend() { stage_.field->title.clear(); }
+  void hide_legend();
   // Makes cameras frame this box over the whole film [m]. Must be called before the stage is used.
   void frame_motion(const Bounds& motion);
   // Gives the graph of times its scale, from all rows of the film. Must be called before the stage is used.
   void know_times(std::span<const FrameRow> rows);
 
  private:
+  void show_field();
+  void make_room();
   void add_ghosts(const SceneDef& scene, const std::vector<Body>& bodies);
   void follow_colors(const SceneDef& scene, DrawList& list);
 

@@ -43,7 +43,8 @@ constexpr std::array seen = {"title",
                              "body[].pattern",
                              "body[].pattern_size",
                              "body[].skin_cells",
-                             "collider[].color"};
+                             "collider[].color",
+                             "collider[].visible"};
 
 bool is_seen(const std::string& path) {
   const std::string generic = generic_path(path);
@@ -103,10 +104,11 @@ void check_same_motion(const DrawPlan& plan, const Json& info, const LoadedFilm&
     const bool seen_output =
         difference.path == "output" && (difference.a + difference.b).find("energy") == std::string::npos;
     if (seen_output) continue;
-    problems.push_back({film.info.scene_file, 0, 0,
-                        fmt::format("{} is {} here and was {} in the run: only what is seen may differ (camera, look, "
-                                    "output's width, height and samples, colours, labels, patterns)",
-                                    difference.path, difference.b, difference.a)});
+    problems.push_back(
+        {film.info.scene_file, 0, 0,
+         fmt::format("{} is {} here and was {} in the run: only what is seen may differ (camera, look, "
+                     "output's width, height and samples, colours, labels, patterns, colliders being visible)",
+                     difference.path, difference.b, difference.a)});
   }
   if (simulated_part(member_text(info, "replay")) != simulated_part(film.info.replay_json))
     problems.push_back({film.info.scene_file, 0, 0, "the replay changes other values than it did in the run"});

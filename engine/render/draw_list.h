@@ -100,6 +100,7 @@ struct Stage {
   LightRig light = studio_light();
   std::string font;                // font file; no captions when empty
   std::optional<FieldLook> field;  // that meshes show
+  double kept_free = 0;            // of the width at each side, where framing cameras show no body: for the legend
   std::string note_template;       // a note as long as any below a caption; there are none when empty
   std::string headline_template;   // a line as long as any at the top of the picture; there is none when empty
   std::vector<GraphLook> graphs;

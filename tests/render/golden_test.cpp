@@ -225,6 +225,8 @@ TEST(Golden, AFieldIsShownInColoursWithItsLegend) {
   const Shot stretch = {written_for_tests("field"), {"field.quantity=stretch"}, 0, font};
   expect_golden("field-stretch", stretch,
                 {{{"field.quantity=none"}}, {{"field.legend=false"}}, {{"field.colors=blue-yellow"}}});
+  EXPECT_EQ(draw(picture_of(stretch)).rgb, draw(picture_of(stretch, {"body.bar.pattern=none"})).rgb)
+      << "the lines of the print are seen among the colours";
   const auto with = [&stretch](std::vector<std::string> settings, int frames = 0) {
     Shot shot = stretch;
     shot.settings = std::move(settings);
