@@ -47,6 +47,7 @@ struct Shot {
   int frames = 0;                   // that pass before the picture is taken
   std::string font = {};            // a file; without it there are no captions
   std::vector<FrameRow> rows = {};  // of the run's profile, the last one being the picture's
+  Bounds motion = {};               // of the whole film, for cameras that frame it
 };
 
 // Describes how something that a shot shows is removed: by settings, or on the stage where no setting does it.
@@ -83,6 +84,7 @@ Picture picture_of(const Shot& shot, const Settings& more = {}) {
               motion[b] = in_input_order(film.models[b], to.x);
               forces[b] = contact_forces(film.models[b], w, to.x);
             });
+  if (film.scene.camera.frames == Framed::film) drawn.frame_motion(shot.motion);
   FramePose pose{shot.frames - 1, shot.frames / film.scene.fps, {}, {}};
   for (const Positions& body : motion) pose.motion.push_back(&body);
   for (const Positions& body : before) pose.before.push_back(&body);
@@ -324,6 +326,31 @@ TEST(Golden, SmallGraphsStandInACorner) {
                      rows};
   expect_golden("graphs", shot,
                 {{{"text.error_graph=false"}}, {{"text.time_graph=false"}}, {{"frames=400"}, {}, true}});
+}
+
+// The pictures are taken after three frames, a tenth of a second; without a position, the ball and what is beside it
+// are framed.
+TEST(Golden, EachKindOfCameraStandsWhereItShould) {
+  const test::TemporaryFolder folder;
+  const std::string text = test::read_file(written_for_tests("field"));
+  test::write_text(folder.path / "field.toml", text.substr(0, text.find("[camera]")));
+  const auto with = [&folder](std::vector<std::string> settings) {
+    return Shot{folder.path / "field.toml", std::move(settings), 3};
+  };
+  expect_golden("camera-usual", with({}), {{{"camera.azimuth=45"}}, {{"camera.elevation=25"}}});
+  expect_golden("camera-direction",
+                with({"camera.azimuth=-50", "camera.elevation=35", "camera.distance=3.5", "camera.fov_deg=40"}),
+                {{{"camera.azimuth=30"}}, {{"camera.elevation=14"}}, {{"camera.distance=5"}}, {{"camera.fov_deg=30"}}});
+  expect_golden("camera-place", with({"camera.position=[0.8, 1, 3]"}), {{{"camera.target=[0, 0, 0]"}}});
+  expect_golden("camera-orbit", with({"camera.orbit=600"}), {{{"camera.orbit=0"}}});
+  expect_golden("camera-follow", with({"camera.follow=sheet", "camera.distance=2.5"}), {{{"camera.follow=ball"}}});
+  const std::string keys =
+      "camera.keys=[{ t = 0, azimuth = 0, elevation = 5 }, { t = 0.2, azimuth = 120, distance = 3 }]";
+  expect_golden("camera-keys", with({keys}), {{{"camera.keys=[]"}}, {{"camera.ease=linear", "camera.keys=[]"}}});
+  Shot film = with({"camera.frames=film"});
+  film.motion.include(Vec3(-2, 0, -1));
+  film.motion.include(Vec3(1, 2, 1));
+  expect_golden("camera-film", film, {{{"camera.frames=start"}}});
 }
 
 TEST(Golden, PanelsStandInEveryLayoutWithTheLegendBesideThem) {
