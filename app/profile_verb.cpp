@@ -27,6 +27,7 @@ struct ProfileCommand {
   int repeats = 10;
   std::vector<std::string> compared;  // two files, or none
   bool anyway = false;                // they may be of different settings
+  std::string against;                // another program, which runs in turn with this one; empty: none
 };
 
 ProfiledRun run_of(const FilmRecord& record) {
@@ -89,59 +90,6 @@ int profile_once(const ProfileCommand& request, const std::vector<std::string>& 
   return 0;
 }
 
-// Returns the command line of one repeat.
-std::vector<std::string> one_repeat(const std::vector<std::string>& command, const std::filesystem::path& folder) {
-  std::vector<std::string> words = {std::filesystem::read_symlink("/proc/self/exe").string()};
-  for (std::size_t i = 1; i < command.size(); ++i) {
-    const std::string& word = command[i];
-    if (word == "--repeats" || word == "--out") {
-      ++i;
-    } else if (!word.starts_with("--repeats=") && !word.starts_with("--out=") && word != "--json" &&
-               word != "--quiet") {
-      words.push_back(word);
-    }
-  }
-  words.insert(words.end(), {"--repeats", "1", "--quiet", "--out", folder.string()});
-  return words;
-}
-
-// Profiles repeats, each in a process of its own, because the place of a process's memory changes the time of a zone by
-// more than 10 %, in all of its frames. The repeats before one that fails or is interrupted are reported.
-int profile(const ProfileCommand& request, const std::vector<std::string>& command) {
-  const SceneDef scene =
-      Script::load(scene_file(request.film.plan.scene), assets_folder(), request.film.plan.settings).scene();
-  const std::filesystem::path folder = request.film.plan.out.empty() ? std::filesystem::path("out") / scene.name
-                                                                     : std::filesystem::path(request.film.plan.out);
-  catch_interrupts();
-  std::optional<ZoneProfile> all;
-  int status = 0;
-  for (int repeat = 0; repeat < request.repeats; ++repeat) {
-    if (interrupted()) {
-      status = 130;
-      break;
-    }
-    const Stopwatch watch;
-    const auto end = run_program(one_repeat(command, folder), interrupted);
-    if (!end) throw RunError("the program cannot start itself for a repeat");
-    status = WIFEXITED(end->status) ? WEXITSTATUS(end->status) : interrupted() ? 130 : 1;
-    if (status != 0 && status != 130) say(stderr, end->output);
-    if (!WIFEXITED(end->status) && !interrupted())
-      say(stderr, fmt::format("supple: repeat {} of {} {}; what it left is in {}\n", repeat + 1, request.repeats,
-                              how_it_ended(*end), folder.string()));
-    if (status != 0) break;
-    const ZoneProfile one = read_zones(folder / "zones.json");
-    if (all) add_repeats(one, *all);
-    if (!all) all = one;
-    if (!request.film.plan.quiet)
-      say(stderr, fmt::format("repeat {} of {}: {:.1f} s\n", repeat + 1, request.repeats, watch.elapsed_ms() / 1000));
-  }
-  if (status == 130)
-    say(stderr,
-        fmt::format("supple: interrupted; {} of {} repeats are whole\n", all ? all->repeats : 0, request.repeats));
-  if (all) report(request, *all, folder);
-  return status;
-}
-
 // Returns the path of zones.json: the name itself, or the file in a profile's folder of that name.
 std::string zones_file(const std::string& name) {
   std::error_code error;
@@ -181,10 +129,94 @@ int compare(const ProfileCommand& request) {
   return 0;
 }
 
+// Returns the command line of one repeat.
+std::vector<std::string> one_repeat(const std::string& program, const std::vector<std::string>& command,
+                                    const std::filesystem::path& folder) {
+  std::vector<std::string> words = {program};
+  for (std::size_t i = 1; i < command.size(); ++i) {
+    const std::string& word = command[i];
+    if (word == "--repeats" || word == "--out" || word == "--against") {
+      ++i;
+    } else if (!word.starts_with("--repeats=") && !word.starts_with("--out=") && !word.starts_with("--against=") &&
+               word != "--json" && word != "--quiet" && word != "--anyway") {
+      words.push_back(word);
+    }
+  }
+  words.insert(words.end(), {"--repeats", "1", "--quiet", "--out", folder.string()});
+  return words;
+}
+
+// Holds the repeats of one program.
+struct Profiled {
+  std::string program;  // its file
+  std::filesystem::path folder;
+  std::optional<ZoneProfile> all = {};  // of the repeats so far
+};
+
+// Makes one more repeat. Returns the exit status.
+int add_repeat(const ProfileCommand& request, const std::vector<std::string>& command, int repeat, Profiled& profiled) {
+  const Stopwatch watch;
+  const auto end = run_program(one_repeat(profiled.program, command, profiled.folder), interrupted);
+  if (!end) throw RunError(profiled.program + ": cannot be started for a repeat");
+  const int status = WIFEXITED(end->status) ? WEXITSTATUS(end->status) : interrupted() ? 130 : 1;
+  if (status != 0 && status != 130) say(stderr, end->output);
+  if (!WIFEXITED(end->status) && !interrupted())
+    say(stderr, fmt::format("supple: repeat {} of {} {}; what it left is in {}\n", repeat + 1, request.repeats,
+                            how_it_ended(*end), profiled.folder.string()));
+  if (status != 0) return status;
+  const ZoneProfile one = read_zones(profiled.folder / "zones.json");
+  if (profiled.all) add_repeats(one, *profiled.all);
+  if (!profiled.all) profiled.all = one;
+  if (!request.film.plan.quiet)
+    say(stderr, fmt::format("repeat {} of {}: {:.1f} s{}\n", repeat + 1, request.repeats, watch.elapsed_ms() / 1000,
+                            request.against.empty() ? "" : ", " + profiled.program));
+  return 0;
+}
+
+// Returns the programs whose repeats are made in turn: the other one, if any, before this one.
+std::vector<Profiled> programs_of(const ProfileCommand& request, const std::filesystem::path& folder) {
+  std::vector<Profiled> programs;
+  if (!request.against.empty())
+    programs.push_back({std::filesystem::absolute(request.against).string(), folder.string() + "-against"});
+  programs.push_back({std::filesystem::read_symlink("/proc/self/exe").string(), folder});
+  return programs;
+}
+
+// Profiles repeats, each in a process of its own, because the place of a process's memory changes the time of a zone by
+// more than 10 %, in all of its frames. The repeats before one that fails or is interrupted are reported. Two programs
+// run in turn, so that the noise of a shared machine meets both alike, and are compared.
+int profile(const ProfileCommand& request, const std::vector<std::string>& command) {
+  const SceneDef scene =
+      Script::load(scene_file(request.film.plan.scene), assets_folder(), request.film.plan.settings).scene();
+  const std::filesystem::path folder = request.film.plan.out.empty() ? std::filesystem::path("out") / scene.name
+                                                                     : std::filesystem::path(request.film.plan.out);
+  catch_interrupts();
+  std::vector<Profiled> programs = programs_of(request, folder);
+  int status = 0;
+  for (int repeat = 0; repeat < request.repeats && status == 0; ++repeat) {
+    for (Profiled& one : programs) {
+      if (interrupted()) status = 130;
+      if (status == 0) status = add_repeat(request, command, repeat, one);
+    }
+  }
+  const Profiled& own = programs.back();
+  if (status == 130)
+    say(stderr, fmt::format("supple: interrupted; {} of {} repeats are whole\n", own.all ? own.all->repeats : 0,
+                            request.repeats));
+  for (const Profiled& one : programs) {
+    if (one.all) write_whole_file(one.folder / "zones.json", zones_json(*one.all));
+  }
+  if (request.against.empty() && own.all) report(request, *own.all, folder);
+  if (request.against.empty() || status != 0) return status;
+  ProfileCommand both = request;
+  both.compared = {programs.front().folder.string(), folder.string()};
+  return compare(both);
+}
+
 int run(const ProfileCommand& request, const std::vector<std::string>& command) {
   if (request.compared.empty()) {
     if (request.film.plan.scene.empty()) throw InputError("profile", "needs a SCENE, or --compare with two zones.json");
-    return request.repeats == 1 ? profile_once(request, command) : profile(request, command);
+    return request.repeats == 1 && request.against.empty() ? profile_once(request, command) : profile(request, command);
   }
   return compare(request);
 }
@@ -205,6 +237,7 @@ void add_profile(CommandLine& line) {
   verb.footer(
       "Examples: supple profile squirrel --frames 100 --no-images --out out/before\n"
       "          supple profile --compare out/before/zones.json out/after/zones.json\n"
+      "          supple profile squirrel --no-images --against ../before/build/release/supple\n"
       "Leaves zones.json, frame-times.svg and trace.json (of the last repeat) beside what render leaves, without a "
       "video.");
   verb.option("SCENE|REPLAY", request->film.plan.scene,
@@ -214,8 +247,15 @@ void add_profile(CommandLine& line) {
       .two_values("A B");
   verb.flag("--anyway", request->anyway, "compare profiles of different settings, and say how they differ");
   add_film_options(verb, request->film);
+  verb.option("--against", request->against,
+              "another supple, such as one built before: both run in turn, and are compared (A is the other one)");
   verb.runs([request, verb, words = line.words()] {
     if (!request->compared.empty()) check_compare_options(verb);
+    if (!request->against.empty() && request->repeats < least_repeats_compared)
+      throw InputError("--repeats", fmt::format("a comparison needs {} or more", least_repeats_compared));
+    std::error_code error;
+    if (!request->against.empty() && !std::filesystem::is_regular_file(request->against, error))
+      throw InputError("--against " + request->against, "no such program");
     if (request->film.plan.scene == "-")
       throw InputError("profile", "runs a scene several times, so that it needs a file of it");
     return run(*request, words);

@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "film/places.h"
-#include "scene/scene_reader.h"
+#include "scene/script.h"
 
 namespace supple {
 namespace {
@@ -32,7 +32,7 @@ SweepRequest request_of(const SweepOptions& options) {
   if (options.frames > 0) request.settings.push_back(fmt::format("frames={}", options.frames));
   if (options.seed >= 0) request.settings.push_back(fmt::format("seed={}", options.seed));
   request.sweep = load_sweep(request.file, assets_folder(), request.settings);
-  const SceneDef scene = load_scene(request.file, assets_folder(), request.settings);
+  const SceneDef scene = Script::load(request.file, assets_folder(), request.settings).scene();
   request.name = scene.name;
   request.title = scene.title;
   request.out =

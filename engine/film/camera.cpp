@@ -83,7 +83,11 @@ Camera camera_at(const SceneDef& scene, const Stage& stage, double time,
   const double fov = value_at(def, time, &CameraKey::fov_deg, def.fov_deg);
   const Vec3 direction(std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
                        std::cos(azimuth) * std::cos(elevation));
-  Camera camera = framing(box, direction, fov, def.margin, static_cast<double>(stage.width) / stage.height);
+  // The legend may stand in the air around the bodies; only where that is too narrow they become smaller.
+  constexpr double least_air = 1.05;
+  const double narrower = std::min(1.0, def.margin * (1 - 2 * stage.kept_free) / least_air);
+  const double aspect = narrower * stage.width / stage.height;
+  Camera camera = framing(box, direction, fov, def.margin, aspect);
   const double distance = (camera.eye - camera.target).norm();
   camera.target = value_at<Vec3>(def, time, &CameraKey::target, def.target.value_or(camera.target));
   camera.eye = camera.target + value_at(def, time, &CameraKey::distance, def.distance.value_or(distance)) * direction;

@@ -101,6 +101,7 @@ Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const s
   stage.light = rig_of(scene.look.light);
   stage.font = font;
   stage.note_template = longest_note(scene);
+  stage.headline_template = longest_headline(scene);
   if (scene.look.backdrop == BackdropKind::plain) stage.backdrop = Backdrop::plain;
   if (scene.look.backdrop == BackdropKind::transparent) stage.backdrop = Backdrop::transparent;
   for (std::size_t b = 0; b < bodies.size(); ++b) {

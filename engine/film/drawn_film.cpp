@@ -4,8 +4,10 @@
 #include <utility>
 
 #include "film/camera.h"
+#include "film/film_graphs.h"
 #include "film/marked_vertices.h"
 #include "film/picture_words.h"
+#include "render/legend.h"
 
 namespace supple {
 
@@ -27,18 +29,36 @@ std::vector<Camera> cameras_of(const Script& script, const Stage& stage) {
 
 DrawnFilm::DrawnFilm(const Script& script, const std::vector<Body>& bodies, std::vector<DrawnBody> drawn,
                      const CollisionSet& set, const std::string& font)
-    : bodies_(bodies), drawn_(std::move(drawn)) {
-  const SceneDef& scene = script.scene();
+    : bodies_(bodies), start_(script.scene()), drawn_(std::move(drawn)) {
+  const SceneDef& scene = start_;
   collider_skins_ = collider_skins(set.obstacles, bodies);
   // Cameras frame the bodies' boxes, which do not depend on the skins.
   const Stage fine = make_stage(scene, bodies, drawn_, set.obstacles, collider_skins_, font);
   fit_to_cameras(drawn_, bodies, cameras_of(script, fine), scene.output.height);
   stage_ = make_stage(scene, bodies, drawn_, set.obstacles, collider_skins_, font);
+  stage_.graphs = graph_looks(scene, 0);
   if (!scene.look.ghost.empty()) add_ghosts(scene, bodies);
-  if (scene.field.quantity == FieldQuantity::none) return;
-  field_.emplace(scene, bodies);
-  stage_.field = field_->look();
-  for (std::size_t b = 0; b < bodies.size(); ++b) stage_.meshes[b].mapped = field_->shown_on(b);
+  if (scene.field.quantity != FieldQuantity::none) field_.emplace(scene, bodies);
+  for (std::size_t b = 0; b < bodies.size() && field_; ++b) stage_.meshes[b].mapped = field_->shown_on(b);
+  show_field();
+}
+
+// Gives the stage the colours and the legend of the field as they are now.
+void DrawnFilm::show_field() {
+  if (field_) stage_.field = field_->look();
+  make_room();
+}
+
+// Keeps the room of the legend free, where the camera frames the bodies by itself.
+void DrawnFilm::make_room() {
+  const int legend = stage_.field ? legend_of(*stage_.field, stage_.font, stage_.height).width() : 0;
+  stage_.kept_free = std::min(0.3, legend > 0 ? (legend + stage_.height / 36.0) / stage_.width : 0);
+  stage_.first_camera = camera_at(start_, stage_, 0);
+}
+
+void DrawnFilm::hide_legend() {
+  stage_.field->title.clear();
+  make_room();
 }
 
 // Adds a half transparent copy of each body, which moves as another run's body does.
@@ -63,10 +83,20 @@ void DrawnFilm::include_in_field(const FramePose& pose, const CollisionSet& set,
   if (field_) field_->include(field_->values(pose, set, &threads));
 }
 
+void DrawnFilm::frame_motion(const Bounds& motion) {
+  stage_.motion = motion;
+  stage_.first_camera = camera_at(start_, stage_, 0);
+}
+
+void DrawnFilm::know_times(std::span<const FrameRow> rows) {
+  longest_steps_ = supple::longest_steps(rows);
+  stage_.graphs = graph_looks(start_, longest_steps_);
+}
+
 void DrawnFilm::settle_field() {
   if (!field_) return;
   field_->settle();
-  stage_.field = field_->look();
+  show_field();
 }
 
 void DrawnFilm::follow(const std::vector<TimedChange>& changes, const CollisionSet& set,
@@ -115,6 +145,7 @@ DrawList DrawnFilm::list(const SceneDef& scene, const FramePose& pose, const Col
   for (std::size_t b = 0; b < bodies && scene.look.marks; ++b)
     append_marks(bodies_[b], *pose.motion[b], set, pose.time, &threads, result.marks);
   result.headline = headline_text(scene, pose.time);
+  result.graphs = graph_curves(scene.text, pose.earlier, pose.row, longest_steps_);
   for (std::size_t b = 0; b < bodies && scene.text.notes(); ++b) {
     const BodyRow* row = pose.row != nullptr && b < pose.row->bodies.size() ? &pose.row->bodies[b] : nullptr;
     result.notes.push_back(note_text(scene.text, scene.bodies[b], row));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,8 @@ class DrawnFilm {
 
   // Tells whether a pose must have the positions of the frame before.
   bool needs_before() const { return field_ && field_->needs_before(); }
+  // Tells whether a pose must have the forces of colliders.
+  bool needs_forces() const { return field_ && field_->needs_forces(); }
   // Widens the range of the field to a frame of the film. The colours are those of the whole film once all frames have
   // been included and settle_field() has been called, which must happen before the stage is used.
   void include_in_field(const FramePose& pose, const CollisionSet& set, Threads& threads);
@@ -46,20 +49,26 @@ class DrawnFilm {
   // Returns the range of the field, which the scene must have.
   Eigen::Vector2d field_range() const { return field_->range(); }
   // Leaves the legend to the caller. Must be called before the stage is used.
-  void hide_legend() { stage_.field->title.clear(); }
+  void hide_legend();
   // Makes cameras frame this box over the whole film [m]. Must be called before the stage is used.
-  void frame_motion(const Bounds& motion) { stage_.motion = motion; }
+  void frame_motion(const Bounds& motion);
+  // Gives the graph of times its scale, from all rows of the film. Must be called before the stage is used.
+  void know_times(std::span<const FrameRow> rows);
 
  private:
+  void show_field();
+  void make_room();
   void add_ghosts(const SceneDef& scene, const std::vector<Body>& bodies);
   void follow_colors(const SceneDef& scene, DrawList& list);
 
   const std::vector<Body>& bodies_;
+  SceneDef start_;  // of the film
   std::vector<DrawnBody> drawn_;
   std::vector<Skin> collider_skins_;
   std::optional<ReferenceRun> ghosts_;  // whose bodies are the stage's last meshes
   std::optional<SurfaceField> field_;   // where the scene shows one
   Stage stage_;
+  double longest_steps_ = 0;          // of the film's frames [ms]; 0: not known
   std::vector<std::size_t> renewed_;  // colliders, since the last list
 };
 

@@ -177,6 +177,10 @@ void check_pictures_asked(const FilmPlan& plan, const SceneDef& scene) {
     throw InputError("field.range",
                      "\"film\" is known only once the film has been made: give two numbers here, or draw "
                      "the run again with it (supple draw RUN --set field.range=film)");
+  if (scene.text.time_graph && plan.pictures != FilmPictures::none)
+    throw InputError("text.time_graph",
+                     "the pictures of a run hold no graph of times that are still being measured: draw the run again "
+                     "with it (supple draw RUN --set text.time_graph=true)");
   if (plan.film_only && plan.coding.format == FilmFormat::png)
     throw InputError("--film-only", "leaves a film, and --format png makes none");
   if (plan.film_only && !run_program({"ffmpeg", "-version"}))

@@ -13,6 +13,7 @@
 #include "base/console.h"
 #include "base/error.h"
 #include "film/film_log.h"
+#include "output/force_file.h"
 #include "output/json_difference.h"
 #include "output/json_text.h"
 #include "output/png_file.h"
@@ -119,7 +120,10 @@ void check_rows_and_motion(const std::filesystem::path& run, const std::vector<B
   };
   for (const Body& body : bodies) {
     const std::filesystem::path motion = run / "motion" / (body.def.name + ".pc2");
-    if (!point_cache_has(motion, int(body.description.mesh.rest.rows()), frames)) refuse(motion);
+    const auto vertices = static_cast<int>(body.description.mesh.rest.rows());
+    if (!point_cache_has(motion, vertices, frames)) refuse(motion);
+    const std::filesystem::path forces = run / "motion" / (body.def.name + ".forces");
+    if (colliders > 0 && !force_file_has(forces, vertices, frames)) refuse(forces);
   }
   const std::filesystem::path table = run / "motion" / "colliders.csv";
   if (colliders > 0 && !pose_table_bytes(table, colliders * frames)) refuse(table);

@@ -8,6 +8,7 @@
 #include "film/state_file.h"
 #include "output/obj_file.h"
 #include "sim/model/measures.h"
+#include "sim/solver/fields.h"
 
 namespace supple {
 namespace {
@@ -61,6 +62,7 @@ FilmedBody::FilmedBody(const SceneDef& scene, Body& body, Model& model, const Co
       driver_(scene, body, model, set, solvers.steps, &threads),
       motion_(folder.motion(body.def.name), model.vertices, kept_frames),
       origin_(motion_origin(body.description.mesh.rest)) {
+  if (!set.colliders.empty()) forces_.emplace(folder.forces(body.def.name), model.vertices, kept_frames);
   start_budget({});
   write_obj(folder.surface(body.def.name), body.description.mesh.rest, surface_of(body), origin_);
 }
@@ -157,6 +159,9 @@ void FilmedBody::save_motion() {
   const Positions written = as_cached(in_input_order(model(), state().x).rowwise() - origin_.transpose());
   motion_.add(written);
   saved_motion_ = written.rowwise() + origin_.transpose();
+  if (!forces_) return;
+  saved_forces_ = as_kept_forces(contact_forces(model(), driver_.workspace(), state().x));
+  forces_->add(saved_forces_);
 }
 
 Positions FilmedBody::present_motion() const {

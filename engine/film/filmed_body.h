@@ -4,6 +4,7 @@
 #include "film/field_writer.h"
 #include "film/film_solvers.h"
 #include "film/repeated_cuts.h"
+#include "output/force_file.h"
 #include "output/point_cache.h"
 #include "output/profile.h"
 #include "output/run_folder.h"
@@ -31,10 +32,12 @@ class FilmedBody {
   // Makes one frame's steps. Returns a message when the solver failed.
   std::string advance(int frame, bool measure_error, BodyRow& row);
 
-  // Appends the frame to motion/.
+  // Appends the frame to motion/: the positions, and the forces of colliders where there are any.
   void save_motion();
   // Returns the frame's positions as motion/ holds them, in the order of the input file [m].
   const Positions& saved_motion() const { return saved_motion_; }
+  // Returns the forces of colliders on the vertices in the same way [N]; without rows where there are no colliders.
+  const Positions& saved_forces() const { return saved_forces_; }
   // Returns the present positions as motion/ would hold them.
   Positions present_motion() const;
 
@@ -62,9 +65,11 @@ class FilmedBody {
   std::unique_ptr<ErrorMeter> error_meter_;  // once an error is asked for
   std::uint64_t metered_model_ = 0;          // id of the model's values that the meter holds for
   PointCacheWriter motion_;
-  Vec3 origin_;                        // of the files of motion [m]
-  Positions saved_motion_;             // in the world
-  std::optional<FieldWriter> fields_;  // once fields are asked for
+  std::optional<ForceFileWriter> forces_;  // where there are colliders
+  Vec3 origin_;                            // of the files of motion [m]
+  Positions saved_motion_;                 // in the world
+  Positions saved_forces_;                 // [N]
+  std::optional<FieldWriter> fields_;      // once fields are asked for
 };
 
 }  // namespace supple

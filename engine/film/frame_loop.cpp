@@ -98,7 +98,9 @@ bool FrameLoop::show(int frame, FrameRow& row) {
   FramePose pose{frame, row.time_s, {}, {}};
   for (const auto& body : filmed_) pose.motion.push_back(&body->saved_motion());
   for (const Positions& body : before_motion_) pose.before.push_back(&body);
+  for (const auto& body : filmed_) pose.forces.push_back(&body->saved_forces());
   pose.row = &row;
+  pose.earlier = log_.rows();
   DrawList list = drawn_->list(scene_, pose, set_, threads_);
   keep_motion();
   for (std::size_t b = 0; b < filmed_.size(); ++b)

@@ -16,6 +16,11 @@ std::string headline_text(const SceneDef& scene, double time) {
   return line;
 }
 
+std::string longest_headline(const SceneDef& scene) {
+  // Digits are about equally wide, and the last time has the most of them.
+  return headline_text(scene, scene.frames / scene.fps);
+}
+
 std::string note_text(const TextDef& text, const BodyDef& body, const BodyRow* row) {
   std::string line;
   if (text.method) add(line, std::string(name_of(body.solver.method)));

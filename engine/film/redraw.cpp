@@ -43,7 +43,8 @@ constexpr std::array seen = {"title",
                              "body[].pattern",
                              "body[].pattern_size",
                              "body[].skin_cells",
-                             "collider[].color"};
+                             "collider[].color",
+                             "collider[].visible"};
 
 bool is_seen(const std::string& path) {
   const std::string generic = generic_path(path);
@@ -103,10 +104,11 @@ void check_same_motion(const DrawPlan& plan, const Json& info, const LoadedFilm&
     const bool seen_output =
         difference.path == "output" && (difference.a + difference.b).find("energy") == std::string::npos;
     if (seen_output) continue;
-    problems.push_back({film.info.scene_file, 0, 0,
-                        fmt::format("{} is {} here and was {} in the run: only what is seen may differ (camera, look, "
-                                    "output's width, height and samples, colours, labels, patterns)",
-                                    difference.path, difference.b, difference.a)});
+    problems.push_back(
+        {film.info.scene_file, 0, 0,
+         fmt::format("{} is {} here and was {} in the run: only what is seen may differ (camera, look, "
+                     "output's width, height and samples, colours, labels, patterns, colliders being visible)",
+                     difference.path, difference.b, difference.a)});
   }
   if (simulated_part(member_text(info, "replay")) != simulated_part(film.info.replay_json))
     problems.push_back({film.info.scene_file, 0, 0, "the replay changes other values than it did in the run"});
@@ -132,9 +134,30 @@ std::vector<PointCacheReader> motion_of(const RunRecord& run, const LoadedFilm& 
   return motion;
 }
 
-int frames_with_motion(const std::vector<PointCacheReader>& motion) {
-  int count = motion.front().frames();
-  for (const PointCacheReader& body : motion) count = std::min(count, body.frames());
+// Opens what the run kept of the colliders' forces, where the field shows them.
+std::vector<ForceFileReader> forces_of(const RunRecord& run, const LoadedFilm& film) {
+  std::vector<ForceFileReader> forces;
+  const SceneDef& scene = film.script.scene();
+  if (scene.field.quantity != FieldQuantity::force || scene.colliders.empty()) return forces;
+  for (const Body& body : film.bodies) {
+    const std::filesystem::path file = run.forces(body.def.name);
+    std::error_code error;
+    if (!std::filesystem::exists(file, error))
+      throw InputError(file.string(),
+                       "is missing, so contact forces cannot be shown: an older program made the run; film it again");
+    forces.emplace_back(file);
+    const auto vertices = static_cast<int>(body.description.mesh.rest.rows());
+    if (forces.back().vertices() != vertices)
+      throw InputError(file.string(), fmt::format("has the forces on {} vertices, and the body has {}",
+                                                  forces.back().vertices(), vertices));
+  }
+  return forces;
+}
+
+int frames_with_motion(const LoadedDrawing& drawing) {
+  int count = drawing.motion.front().frames();
+  for (const PointCacheReader& body : drawing.motion) count = std::min(count, body.frames());
+  for (const ForceFileReader& body : drawing.forces) count = std::min(count, body.frames());
   return count;
 }
 
@@ -159,6 +182,7 @@ class Drawing {
         set_(collision_set(scene_)),
         drawn_(drawing.film.script, drawing.film.bodies, drawing.film.drawn, set_, caption_font()),
         threads_(drawing.film.info.threads) {
+    drawn_.know_times(drawing.rows);
     const bool field = scene_.field.quantity != FieldQuantity::none && scene_.field.range_by == FieldRange::film;
     const bool camera = scene_.camera.frames == Framed::film;
     const std::optional<Bounds>& framed = drawing.film.info.framed;
@@ -214,17 +238,22 @@ class Drawing {
   void load(int frame) {
     motion_.clear();
     before_.clear();
+    forces_.clear();
     for (std::size_t b = 0; b < drawing_.motion.size(); ++b) {
       motion_.push_back(motion_at(b, frame));
       if (drawn_.needs_before()) before_.push_back(motion_at(b, frame - 1));
     }
+    for (ForceFileReader& body : drawing_.forces) forces_.push_back(body.frame(frame));
   }
 
   FramePose pose(int frame) const {
     FramePose pose{frame, (frame + 1) / scene_.fps, {}, {}};
     for (const Positions& body : motion_) pose.motion.push_back(&body);
     for (const Positions& body : before_) pose.before.push_back(&body);
-    if (frame < static_cast<int>(drawing_.rows.size())) pose.row = &drawing_.rows[frame];
+    for (const Positions& body : forces_) pose.forces.push_back(&body);
+    const std::span<const FrameRow> rows = drawing_.rows;
+    pose.earlier = rows.first(std::min(rows.size(), std::size_t(frame)));
+    if (std::size_t(frame) < rows.size()) pose.row = &rows[std::size_t(frame)];
     return pose;
   }
 
@@ -250,6 +279,7 @@ class Drawing {
   DrawnFilm drawn_;
   Threads threads_;
   std::vector<Positions> motion_, before_;  // of the frame that was loaded, and of the one before it [m]
+  std::vector<Positions> forces_;           // of colliders, where they are needed [N]
   int followed_ = 0;                        // frames whose changes are in scene_
 };
 
@@ -259,13 +289,14 @@ LoadedDrawing load_drawing(const DrawPlan& plan) {
   const RunRecord run = read_run(plan.run);
   const Json info = parsed_json<Json>(run.info_json);
   const FilmPlan film = plan_of_run(plan, info);
-  LoadedDrawing drawing{load_film(film, {}), {}, {}, 0, {}, 0, {}};
+  LoadedDrawing drawing{load_film(film, {}), {}, {}, {}, 0, {}, 0, {}};
   check_same_motion(plan, info, drawing.film);
   drawing.film.info.framed = framed_in(run.info_json);
   make_skins(film, drawing.film);
   drawing.motion = motion_of(run, drawing.film);
   drawing.rows = run.rows;
-  drawing.frame_count = frames_with_motion(drawing.motion);
+  drawing.forces = forces_of(run, drawing.film);
+  drawing.frame_count = frames_with_motion(drawing);
   drawing.frames = frames_of(plan, drawing.frame_count);
   drawing.rate = plan.rate > 0 ? plan.rate : drawing.film.script.scene().fps / plan.every;
   Json identity = {

@@ -11,6 +11,7 @@
 
 #include "film/film.h"
 #include "film/pictures.h"
+#include "output/force_file.h"
 #include "output/point_cache.h"
 #include "output/profile.h"
 
@@ -33,11 +34,12 @@ struct DrawPlan {
 struct LoadedDrawing {
   LoadedFilm film;  // without models
   std::vector<PointCacheReader> motion;
-  std::vector<FrameRow> rows;  // of the run's profile; empty while it goes on
-  int frame_count = 0;         // of the run
-  std::vector<int> frames;     // of the run, one for each picture
-  double rate = 0;             // frames a second of the film
-  std::string identity;        // JSON: all that the pictures depend on
+  std::vector<ForceFileReader> forces;  // of colliders on each body; empty where the drawing does not need them
+  std::vector<FrameRow> rows;           // of the run's profile; empty while it goes on
+  int frame_count = 0;                  // of the run
+  std::vector<int> frames;              // of the run, one for each picture
+  double rate = 0;                      // frames a second of the film
+  std::string identity;                 // JSON: all that the pictures depend on
 };
 
 // Reads the run, its scene and its meshes. Throws InputError when the folder does not hold a run with all its motion,

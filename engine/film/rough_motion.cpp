@@ -51,7 +51,7 @@ FilmPlan first_pass(const FilmPlan& plan, const std::filesystem::path& folder) {
   return rough;
 }
 
-Bounds rough_motion(const FilmPlan& plan, const FilmSolvers& solvers) {
+Bounds rough_motion(const FilmPlan& plan, const FilmSolvers& solvers, const LoadedFilm& whole) {
   const Zone zone("first pass");
   const ScratchFolder scratch;
   const FilmPlan rough = first_pass(plan, scratch.path);
@@ -72,6 +72,11 @@ Bounds rough_motion(const FilmPlan& plan, const FilmSolvers& solvers) {
     for (int frame = 0; frame < motion.frames(); ++frame)
       include(motion.frame(frame).rowwise() + motion_origin(rest).transpose());
   }
+  // Coarse bodies may lack the tips of ears and tails, which are seen where the bodies start.
+  for (const Body& body : whole.bodies) include(body.description.mesh.rest);
+  for (const DrawnBody& body : whole.drawn) {
+    if (body.skin.rest.points.rows() > 0) include(body.skin.rest.points);
+  }
   const Vec3 more = Vec3::Constant(air * box.diagonal());
   box.include(box.lower - more);
   box.include(box.upper + more);
@@ -84,7 +89,7 @@ void find_framing(const FilmPlan& plan, const FilmStart& start, const FilmSolver
   const bool asked = film.script.scene().camera.frames == Framed::film && plan.pictures != FilmPictures::none;
   if (!asked) return;
   if (start.kept_frames() > 0) film.info.framed = framed_in(read_run(start.place.path).info_json);
-  if (!film.info.framed) film.info.framed = rough_motion(plan, solvers);
+  if (!film.info.framed) film.info.framed = rough_motion(plan, solvers, film);
 }
 
 }  // namespace supple

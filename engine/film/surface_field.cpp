@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "film/marked_vertices.h"
+#include "geometry/cloth.h"
 #include "render/color_map.h"
 #include "sim/solver/fields.h"
 
@@ -33,6 +34,7 @@ QuantityTraits traits_of(FieldQuantity quantity) {
     case FieldQuantity::stress: return {"von Mises stress", "Pa", 0, false};
     case FieldQuantity::speed: return {"speed", "m/s", 0, false};
     case FieldQuantity::depth: return {"depth in colliders", "m", 0, false};
+    case FieldQuantity::force: return {"contact pressure", "Pa", 0, false};
     case FieldQuantity::distance: return {"distance to reference", "m", 0, false};
     case FieldQuantity::none: break;
   }
@@ -57,11 +59,18 @@ bool body_has(FieldQuantity quantity, const Body& body) {
 
 double stiffness_of(const Body& body) { return system_stiffness(body.def.substance.material, body.def.solver.fit).k; }
 
+// Returns the weight of a body, under at least a tenth of the earth's gravity so that it is not zero [N].
+double weight_of(const Body& body, const SceneDef& scene) {
+  double mass = body.description.density * body.volume;
+  for (const double of_vertex : body.description.point_mass) mass += of_vertex;
+  return mass * std::max(scene.gravity.norm(), 1.0);
+}
+
 // Returns how far the usual range of a body reaches from the value at rest. Strains reach to a half or to the double,
-// stress and energy to those of a strain of 0.3, speed to that of a fall over the body's size, and lengths to a share
-// of the body.
+// stress and energy to those of a strain of 0.3, speed to that of a fall over the body's size, contact to a multiple of
+// what the body's weight presses where it rests, and lengths to a share of the body.
 double usual_reach(FieldQuantity quantity, const Body& body, const SceneDef& scene) {
-  constexpr double strain = 0.3, depth_share = 0.01, distance_share = 0.05;
+  constexpr double strain = 0.3, depth_share = 0.01, distance_share = 0.05, weight_share = 0.05;
   const double size = bounds_of(body.description.mesh.rest).diagonal();
   switch (quantity) {
     case FieldQuantity::stretch:
@@ -71,6 +80,7 @@ double usual_reach(FieldQuantity quantity, const Body& body, const SceneDef& sce
     case FieldQuantity::stress: return rounded_up(strain * stiffness_of(body));
     case FieldQuantity::speed: return rounded_up(std::sqrt(2 * std::max(scene.gravity.norm(), 1.0) * size));
     case FieldQuantity::depth: return rounded_up(depth_share * size);
+    case FieldQuantity::force: return rounded_up(weight_of(body, scene) / (weight_share * size * size));
     case FieldQuantity::distance: return rounded_up(distance_share * size);
     case FieldQuantity::none: break;
   }
@@ -112,6 +122,19 @@ std::vector<double> lengths(const Positions& rows, double factor) {
   return result;
 }
 
+// Returns the share of each vertex in the surface of a body at rest; 0 inside [m^2].
+std::vector<double> surface_areas(const Body& body) {
+  const TetMesh& mesh = body.description.mesh;
+  return vertex_areas({mesh.rest, body.def.cloth ? body.cloth.surface.triangles : boundary_faces(mesh.tets)});
+}
+
+// Returns the contact force on each vertex over its area; 0 where it has none.
+std::vector<double> per_area(const Positions& forces, const std::vector<double>& areas) {
+  std::vector<double> result = lengths(forces, 1);
+  for (std::size_t v = 0; v < result.size(); ++v) result[v] = areas[v] > 0 ? result[v] / areas[v] : 0;
+  return result;
+}
+
 }  // namespace
 
 double rounded_up(double value) {
@@ -135,11 +158,13 @@ std::vector<std::pair<double, std::string>> ticks_between(double low, double hig
 SurfaceField::SurfaceField(const SceneDef& scene, const std::vector<Body>& bodies)
     : def_(scene.field), fps_(scene.fps), bodies_(bodies), elements_(bodies.size()) {
   if (def_.quantity == FieldQuantity::distance) reference_.emplace(def_.reference, bodies);
+  areas_.resize(bodies.size());
   double reach = 0;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     shown_.push_back(body_has(def_.quantity, bodies[b]));
     if (!shown_.back()) continue;
     reach = std::max(reach, usual_reach(def_.quantity, bodies[b], scene));
+    if (needs_forces()) areas_[b] = surface_areas(bodies[b]);
     if (element_quantity(def_.quantity) && !bodies[b].def.cloth) elements_[b].emplace(bodies[b].description);
   }
   if (reach == 0)
@@ -160,6 +185,10 @@ std::vector<double> SurfaceField::of_body(std::size_t body, const FramePose& pos
   }
   if (element_quantity(def_.quantity)) return on_cloth(def_.quantity, bodies_[body], x);
   if (def_.quantity == FieldQuantity::depth) return depths_in(x, set, pose.time, 0, threads);
+  if (def_.quantity == FieldQuantity::force) {
+    if (pose.forces.empty() || pose.forces[body]->rows() == 0) return std::vector<double>(areas_[body].size(), 0.0);
+    return per_area(*pose.forces[body], areas_[body]);
+  }
   if (def_.quantity == FieldQuantity::speed) return lengths(x - *pose.before[body], fps_);
   return lengths(x - reference_->at(body, pose.frame), 1);
 }
@@ -179,6 +208,8 @@ void SurfaceField::include(const std::vector<std::vector<double>>& values) {
   std::vector<double> away;
   for (const std::vector<double>& body : values) {
     for (const double value : body) {
+      // Few vertices touch anything, and those that do not say nothing of how hard others are pressed.
+      if (def_.quantity == FieldQuantity::force && value == 0) continue;
       if (!std::isnan(value)) away.push_back(around_mean ? std::abs(value - rest) : value - rest);
     }
   }

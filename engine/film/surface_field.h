@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,11 @@ struct FramePose {
   // These lists have one entry for each body, by vertex of its mesh [m]. `before` is empty where the field does not
   // need it.
   std::vector<const Positions*> motion, before;
-  const FrameRow* row = nullptr;  // of the frame in the run's profile; null where it is not known
+  // The forces of colliders at the end of the frame, in the same form [N]; empty where the field does not need them or
+  // where there are no colliders.
+  std::vector<const Positions*> forces = {};
+  const FrameRow* row = nullptr;           // of the frame in the run's profile; null where it is not known
+  std::span<const FrameRow> earlier = {};  // of all frames before it; empty where they are not known
 };
 
 class SurfaceField {
@@ -34,6 +39,7 @@ class SurfaceField {
   SurfaceField(const SceneDef& scene, const std::vector<Body>& bodies);
 
   bool needs_before() const { return def_.quantity == FieldQuantity::speed; }
+  bool needs_forces() const { return def_.quantity == FieldQuantity::force; }
   // Tells whether a body has the quantity; others keep their own colours.
   bool shown_on(std::size_t body) const { return shown_[body]; }
 
@@ -42,7 +48,7 @@ class SurfaceField {
   std::vector<std::vector<double>> values(const FramePose& pose, const CollisionSet& set, Threads* threads);
 
   // Widens the range of the whole film to these values of one of its frames: so far that a hundredth of the vertices
-  // lies above it. The range begins at the value at rest.
+  // (of contact forces: of those with a force) lies above it. The range begins at the value at rest.
   void include(const std::vector<std::vector<double>>& values);
   // Ends the search for the range of the whole film: rounds it to a number that reads well.
   void settle();
@@ -61,6 +67,7 @@ class SurfaceField {
   const std::vector<Body>& bodies_;
   std::vector<bool> shown_;
   std::vector<std::optional<PoseElements>> elements_;  // of solids, for quantities of elements
+  std::vector<std::vector<double>> areas_;             // of the surface at rest, by vertex, for forces [m^2]
   std::optional<ReferenceRun> reference_;              // to which distances are measured
   Eigen::Vector2d range_ = Eigen::Vector2d(0, 1);
   double furthest_ = 0;  // from the value at rest, over the frames that were included

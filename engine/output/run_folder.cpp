@@ -41,7 +41,8 @@ std::optional<long> frame_of(const std::filesystem::path& file) {
 // These functions tell whether a run writes files of such names in the folder. They are given the name without the
 // suffix of an unfinished file.
 bool is_motion(const std::filesystem::path& file) {
-  return file.extension() == ".pc2" || file.extension() == ".obj" || file == "colliders.csv";
+  return file.extension() == ".pc2" || file.extension() == ".forces" || file.extension() == ".obj" ||
+         file == "colliders.csv";
 }
 bool is_field(const std::filesystem::path& file) { return file.extension() == ".vtu" || file.extension() == ".pvd"; }
 bool is_checkpoint(const std::filesystem::path& file) { return file == "state" || file == "rows.jsonl"; }

@@ -61,6 +61,7 @@ class RunFolder {
   std::filesystem::path frames() const { return path_ / "frames"; }
   std::filesystem::path frame(int index) const { return picture_file(frames(), index); }
   std::filesystem::path motion(const std::string& body) const { return path_ / "motion" / (body + ".pc2"); }
+  std::filesystem::path forces(const std::string& body) const { return path_ / "motion" / (body + ".forces"); }
   std::filesystem::path surface(const std::string& body) const { return path_ / "motion" / (body + ".obj"); }
   std::filesystem::path colliders() const { return path_ / "motion" / "colliders.csv"; }
   std::filesystem::path state(const std::string& body, int frame) const;  // a folder

@@ -16,6 +16,7 @@ struct RunRecord {
   bool has_profile = false;
 
   std::filesystem::path motion(const std::string& body) const { return folder / "motion" / (body + ".pc2"); }
+  std::filesystem::path forces(const std::string& body) const { return folder / "motion" / (body + ".forces"); }
   std::filesystem::path surface(const std::string& body) const { return folder / "motion" / (body + ".obj"); }
   // Tells how the run ended, as run.json says: "done", "interrupted", "running" or the failure.
   std::string ended() const;

@@ -54,12 +54,12 @@ std::string codec_words(const FilmCoding& coding, int threads) {
                      coding.quality == FilmQuality::best ? "medium" : preset, of_quality(28, 18, 12), threads);
 }
 
-// Returns the words for a GIF. The palette follows from all frames, with more weight on what moves; an ordered dither
-// keeps still parts still from frame to frame, which also makes the file small.
+// Returns the words for a GIF. The palette follows from all pixels of all frames, so that a legend, which stands still,
+// has its colours too; an ordered dither keeps still parts still from frame to frame, which also makes the file small.
 std::string gif_words(const FilmCoding& coding) {
   const int colors = coding.quality == FilmQuality::draft ? 64 : 256;
   return fmt::format(
-      "-filter_complex split[a][b];[a]palettegen=max_colors={}:stats_mode=diff[p];[b][p]paletteuse="
+      "-filter_complex split[a][b];[a]palettegen=max_colors={}:stats_mode=full[p];[b][p]paletteuse="
       "dither=bayer:bayer_scale={}:diff_mode=rectangle -loop 0",
       colors, coding.quality == FilmQuality::best ? 3 : 5);
 }

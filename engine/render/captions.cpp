@@ -5,7 +5,7 @@
 
 #include "render/caption.h"
 #include "render/legend.h"
-#include "render/view.h"
+#include "render/projection.h"
 
 namespace supple {
 namespace {
@@ -13,39 +13,6 @@ namespace {
 constexpr double note_size = 0.8;  // of a note's letters, over those of the caption
 
 bool same(const Camera& a, const Camera& b) { return a.eye == b.eye && a.target == b.target && a.fov_deg == b.fov_deg; }
-
-// Maps points of the world to pixels, counted from the upper left corner.
-class Projection {
- public:
-  Projection(const Camera& camera, const Bounds& around, int width, int height)
-      : view_(view_matrix(camera, static_cast<double>(width) / height, around.center(), around.diagonal() + 1)),
-        width_(width),
-        height_(height) {}
-
-  // Returns nothing for points behind the eye.
-  std::optional<Eigen::Vector2d> operator()(const Vec3& point) const {
-    const Eigen::Vector4f clip = view_ * point.homogeneous().cast<float>();
-    if (clip.w() <= 0) return std::nullopt;
-    return Eigen::Vector2d((clip.x() / clip.w() * 0.5 + 0.5) * width_, (0.5 - clip.y() / clip.w() * 0.5) * height_);
-  }
-
-  // Returns the outline of a box; empty when part of it lies behind the eye.
-  Outline outline(const Bounds& box) const {
-    std::vector<Eigen::Vector2d> corners;
-    for (int corner = 0; corner < 8; ++corner) {
-      Vec3 point;
-      for (int k = 0; k < 3; ++k) point[k] = (corner >> k & 1) != 0 ? box.upper[k] : box.lower[k];
-      const std::optional<Eigen::Vector2d> pixel = (*this)(point);
-      if (!pixel) return {};
-      corners.push_back(*pixel);
-    }
-    return hull_of(corners);
-  }
-
- private:
-  Eigen::Matrix4f view_;
-  int width_, height_;
-};
 
 }  // namespace
 
@@ -55,13 +22,9 @@ Captions::Captions(const Stage& stage, std::vector<PixelRect> taken)
       width_(stage.width),
       height_(stage.height),
       ink_(ink_on(stage)),
+      around_(framed_at_start(stage)),
       taken_(std::move(taken)) {
-  for (const DrawMesh& mesh : stage.meshes) {
-    bodies_.push_back({mesh.label, mesh.rest, mesh.kept_clear});
-    if (!mesh.framed) continue;
-    around_.include(mesh.rest.lower);
-    around_.include(mesh.rest.upper);
-  }
+  for (const DrawMesh& mesh : stage.meshes) bodies_.push_back({mesh.label, mesh.rest, mesh.kept_clear});
 }
 
 void Captions::renew(std::size_t mesh, const std::string& label) {

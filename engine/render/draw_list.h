@@ -31,6 +31,19 @@ struct FieldLook {
   std::vector<std::pair<double, std::string>> ticks;  // place from 0 (low) to 1 (high), and the value there
 };
 
+// Describes a small graph of one number a frame over the film, without its curve.
+struct GraphLook {
+  std::string title;                                  // with the unit
+  std::vector<std::pair<double, std::string>> ticks;  // place from 0 (bottom) to 1 (top), and the value there
+  int frames = 1;                                     // of the whole film, over which the graph is as wide as it is
+};
+
+// Describes how far a graph's curve has come.
+struct GraphCurve {
+  // Both lists have one entry for each frame so far, from 0 at the bottom to 1 at the top; NaN where there is nothing.
+  std::vector<double> line, dots;
+};
+
 // This value of a field at a vertex says that there is none.
 constexpr float no_field = -1;
 
@@ -72,6 +85,11 @@ struct StageColors {
   bool operator==(const StageColors&) const = default;
 };
 
+struct Camera {
+  Vec3 eye = Vec3(0, 0, 3), target = Vec3::Zero();  // [m]
+  double fov_deg = 30;                              // vertical field of view
+};
+
 struct Stage {
   Backdrop backdrop = Backdrop::ground;
   std::vector<DrawMesh> meshes;
@@ -82,12 +100,11 @@ struct Stage {
   LightRig light = studio_light();
   std::string font;                // font file; no captions when empty
   std::optional<FieldLook> field;  // that meshes show
+  double kept_free = 0;            // of the width at each side, where framing cameras show no body: for the legend
   std::string note_template;       // a note as long as any below a caption; there are none when empty
-};
-
-struct Camera {
-  Vec3 eye = Vec3(0, 0, 3), target = Vec3::Zero();  // [m]
-  double fov_deg = 30;                              // vertical field of view
+  std::string headline_template;   // a line as long as any at the top of the picture; there is none when empty
+  std::vector<GraphLook> graphs;
+  Camera first_camera;  // at the start of the film; graphs keep clear of what it shows
 };
 
 struct DrawList {
@@ -101,6 +118,7 @@ struct DrawList {
   std::vector<std::array<float, 4>> marks;                    // x y z [m], and 0 for a handle or 1 for a contact
   std::optional<StageColors> colors;                          // that replace the stage's from now on
   std::string headline;                                       // at the top of the picture, in this frame
+  std::vector<GraphCurve> graphs;                             // the curves of the stage's graphs up to this frame
 };
 
 struct Image {

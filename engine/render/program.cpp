@@ -33,7 +33,9 @@ std::string read_source(const std::filesystem::path& path, const std::vector<std
     if (line.starts_with("#version")) {
       for (const std::string& definition : definitions) source += "#define " + definition + '\n';
     }
-    if (included || line.starts_with("#version")) source += fmt::format("#line {} {}\n", read + 1, number);
+    // Where a condition leaves out an include, it leaves out the #line that follows it as well.
+    if (included || line.starts_with("#version") || line.starts_with("#endif"))
+      source += fmt::format("#line {} {}\n", read + 1, number);
   }
   return source;
 }

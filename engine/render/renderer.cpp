@@ -84,7 +84,9 @@ Renderer::Renderer(const Stage& stage, GlChoice choice, const std::filesystem::p
   make_shading_program();
   prepare_field();
   make_surfaces();
-  captions_ = std::make_unique<Captions>(stage_, places_of_overlays());
+  overlays_ = overlay_places(stage_);
+  captions_ = std::make_unique<Captions>(stage_, overlays_.all());
+  graphs_ = std::make_unique<Graphs>(stage_, overlays_.graphs);
   check_gl(gl_, "preparing the stage");
 }
 
@@ -269,20 +271,13 @@ void Renderer::read_coverage(Image& image) const {
   }
 }
 
-// Returns the places of what stands in the same place in all pictures, which captions leave free.
-std::vector<PixelRect> Renderer::places_of_overlays() const {
-  if (legend_.width() == 0) return {};
-  return {legend_place(legend_, stage_.width, stage_.height)};
-}
-
 void Renderer::draw_overlays(const DrawList& list, Image& image) {
   captions_->draw(image, list);
-  const PixelRect legend = legend_place(legend_, stage_.width, stage_.height);
-  legend_.onto(image, legend.x, legend.y);
+  legend_.onto(image, overlays_.legend.x, overlays_.legend.y);
+  graphs_->draw(image, list.graphs);
   if (list.headline.empty() || stage_.font.empty()) return;
   const Sticker headline = headline_of(list.headline, stage_.font, stage_.height, ink_on(stage_));
-  const int margin = std::max(4, stage_.height / 45);
-  headline.onto(image, margin, margin);
+  headline.onto(image, overlays_.headline.x, overlays_.headline.y);
 }
 
 Image Renderer::read_picture() {

@@ -13,9 +13,11 @@
 #include "render/draw_list.h"
 #include "render/gl_context.h"
 #include "render/gl_table.h"
+#include "render/graphs.h"
 #include "render/ground.h"
 #include "render/legend.h"
 #include "render/marks.h"
+#include "render/overlays.h"
 #include "render/program.h"
 #include "render/shadow_map.h"
 #include "render/surface_buffers.h"
@@ -47,7 +49,6 @@ class Renderer {
   void upload(const DrawList& list);
   void find_visible(const Eigen::Matrix4f& view, const StageLight& light, const DrawList& list);
   void shade(const StageLight& light);
-  std::vector<PixelRect> places_of_overlays() const;
   void draw_overlays(const DrawList& list, Image& image);
   void draw_marks(const Eigen::Matrix4f& view, const DrawList& list);
   void clear_picture();
@@ -70,7 +71,9 @@ class Renderer {
   std::unique_ptr<Visibility> visibility_;
   std::unique_ptr<ShadowMap> shadows_;
   std::unique_ptr<Ground> ground_;
+  OverlayPlaces overlays_;
   std::unique_ptr<Captions> captions_;
+  std::unique_ptr<Graphs> graphs_;
   std::unique_ptr<Marks> marks_;  // once there is one to draw
   std::unique_ptr<TileBuffer> tile_buffer_;
   GLuint color_buffer_ = 0, color_texture_ = 0;  // colours of the field; none without a field

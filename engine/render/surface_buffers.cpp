@@ -28,7 +28,9 @@ void append_material(const DrawMesh& mesh, std::vector<float>& out) {
     put(layer + 1, mesh.layers[layer].color, mesh.layers[layer].gloss);
     out[begin + 4 * (layer + 9)] = static_cast<float>(mesh.layers[layer].soft);
   }
-  out[begin + 4 * 17] = mesh.square.empty() ? 0.0f : mesh.printed == Printed::grid ? 1.0f : 2.0f;
+  // A surface that shows a field has no print: its lines would be taken for values of the field, or for shadows.
+  const bool printed = !mesh.square.empty() && !mesh.mapped;
+  out[begin + 4 * 17] = !printed ? 0.0f : mesh.printed == Printed::grid ? 1.0f : 2.0f;
   out[begin + 4 * 17 + 1] = mesh.mapped ? 1.0f : 0.0f;
   out[begin + 4 * 17 + 2] = mesh.wires ? 1.0f : 0.0f;
   out[begin + 4 * 17 + 3] = mesh.surface_colors.empty() ? 0.0f : 1.0f;

@@ -72,11 +72,15 @@ CameraDef read_camera(const ConfigTable& table, CameraDef camera) {
   camera.elevation_deg = table.number(elevation, camera.elevation_deg, elevations);
   camera.distance = table.number_if_given(how_far, Range::positive());
   camera.fov_deg = table.number(fov, camera.fov_deg, fields_of_view);
-  camera.margin = table.number({"margin", "", "air around the bodies; without position and distance all are framed"},
-                               camera.margin, Range::between(0.5, 10));
   camera.frames = table.word<Framed>(
       {"frames", "", "what is in the picture: the bodies as they start, or their whole motion, by a first pass"},
       camera.frames);
+  // Nothing leaves the box of the whole motion, so that less air is enough.
+  if (camera.frames == Framed::film) camera.margin = 1.12;
+  camera.margin = table.number({"margin", "",
+                                "air around the bodies, 1.12 for the whole motion; without position and "
+                                "distance all are framed"},
+                               camera.margin, Range::between(0.5, 10));
   camera.orbit_deg = table.number({"orbit", "degrees/s", "how fast the eye goes round the target"}, camera.orbit_deg,
                                   Range::between(-3600, 3600));
   camera.follow = table.text({"follow", "", "name of a body or collider with which eye and target move along"}, "");

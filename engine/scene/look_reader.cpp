@@ -57,6 +57,13 @@ TextDef read_text(const ConfigTable& root) {
   text.iterations = table->boolean({"iterations", "", "below each body: how many they made"}, text.iterations);
   text.error = table->boolean({"error", "", "below each body: the error where it is measured, otherwise its estimate"},
                               text.error);
+  text.error_graph =
+      table->boolean({"error_graph", "",
+                      "in a corner: the largest error estimate of a body, frame by frame, and measured errors as dots"},
+                     text.error_graph);
+  text.time_graph = table->boolean(
+      {"time_graph", "", "in a corner: what the steps of each frame took; in drawings from saved motion alone"},
+      text.time_graph);
   return text;
 }
 

@@ -265,7 +265,7 @@ struct LookDef {
 };
 
 // Names the field that the surfaces of bodies show.
-enum class FieldQuantity { none, stretch, compression, volume, energy, stress, speed, depth, distance };
+enum class FieldQuantity { none, stretch, compression, volume, energy, stress, speed, depth, force, distance };
 template <>
 struct Names<FieldQuantity> {
   static constexpr std::array table = {Name{FieldQuantity::none, "none"},
@@ -276,6 +276,7 @@ struct Names<FieldQuantity> {
                                        Name{FieldQuantity::stress, "stress"},
                                        Name{FieldQuantity::speed, "speed"},
                                        Name{FieldQuantity::depth, "depth"},
+                                       Name{FieldQuantity::force, "force"},
                                        Name{FieldQuantity::distance, "distance"}};
 };
 
@@ -314,6 +315,8 @@ struct TextDef {
   // These stand below the caption of each body, and tell of its steps in the frame.
   bool method = false, milliseconds = false, iterations = false, error = false;
   bool notes() const { return method || milliseconds || iterations || error; }
+  // These are small graphs over the film so far, in a corner.
+  bool error_graph = false, time_graph = false;
 };
 
 struct OutputDef {

@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "scene/model_scene.h"
+#include "scene/replay_start.h"
 #include "scene/scene_reader.h"
 #include "scene/script_parts.h"
 #include "scene/sweep.h"
@@ -100,19 +101,6 @@ Script::~Script() = default;
 
 namespace {
 
-// Loads the scene that a replay names: the name of one that ships, or a file in the replay's folder.
-Config load_replayed_scene(Config& replay, const std::filesystem::path& assets) {
-  const ConfigTable root = replay.root();
-  const Key key = {"scene", "", "a scene file, or the name of one that ships"};
-  const std::string name = root.text(key, std::nullopt);
-  const std::filesystem::path shipped = assets / "scenes" / (name + ".toml");
-  std::error_code error;
-  if (!name.empty() && std::filesystem::is_regular_file(shipped, error)) return Config::load(shipped, assets);
-  const std::filesystem::path file = root.file(key);
-  if (file.empty()) throw InputError(replay.complaints());
-  return load_document(file, assets);
-}
-
 bool is_whole_number(const Config& scene, const std::string& path) {
   return std::any_of(scene.known().begin(), scene.known().end(),
                      [&](const KnownKey& key) { return key.path == path && key.type == "whole number"; });
@@ -129,27 +117,14 @@ void open_tables(Config& document) {
 }
 
 // Reads the scene that the replay starts with, and the changes.
-void Script::Parts::read_replay(const std::filesystem::path& assets, const std::vector<std::string>& settings) {
-  scene_file = load_replayed_scene(*replay, assets);
+void Script::Parts::read_replay(const std::filesystem::path& assets, const std::vector<std::string>& settings,
+                                std::optional<std::size_t> sweep_point) {
+  scene_file = start_of_replay(*replay, assets, problems,
+                               [this](Config& document, const std::string& path, const ConfigValue& value,
+                                      const Problem& place) { put(document, path, value, place); });
   const ConfigTable root = replay->root();
-  if (const auto title = root.value({"title", "", "for people"}, "the scene's"))
-    scene_file.put("title", *title, root.place("title", ""), {});
-  if (const auto frames = root.value({"frames", "", "length of the film"}, "the scene's"))
-    scene_file.put("frames", *frames, root.place("frames", ""), {});
-  if (const auto set = root.table({"set", "", "values of the scene, by their paths in quotes, from the start on"})) {
-    for (const std::string& path : set->keys())
-      put(scene_file, path, *set->value({path.c_str(), "", ""}), set->place(path.c_str(), ""));
-  }
-  for (const ConfigTable& table : root.tables({"grab", "", "a handle for a body, with the keys of [[body.handles]]"})) {
-    const std::string body = table.text({"body", "", "whose vertices are grabbed"}, std::nullopt);
-    if (body.empty()) continue;
-    try {
-      scene_file.append("body." + body + ".handles", table.all_but("body"), table.place("body", ""));
-    } catch (const InputError& error) {
-      problems.insert(problems.end(), error.problems().begin(), error.problems().end());
-    }
-  }
   for (const std::string& setting : settings) scene_file.set(setting, exclusive_keys());
+  if (sweep_point) put_sweep_point(scene_file, *sweep_point);
   Config plain = scene_file.copy();
   start = read_scene(plain);
   const std::vector<Problem> of_scene = plain.take_problems();
@@ -171,10 +146,9 @@ void Script::Parts::read_replay(const std::filesystem::path& assets, const std::
 Script Script::load(const SceneSource& source, const std::filesystem::path& assets,
                     const std::vector<std::string>& settings, std::optional<std::size_t> sweep_point) {
   auto parts = std::make_unique<Parts>(Parts{std::nullopt, load_document(source, assets), {}, {}, {}});
-  const ConfigTable root = parts->scene_file.root();
-  if (root.has("scene") || root.has("change") || root.has("grab")) {
+  if (supple::is_replay(parts->scene_file)) {
     parts->replay = parts->scene_file.copy();
-    parts->read_replay(assets, settings);
+    parts->read_replay(assets, settings, sweep_point);
     parts->check_changes();
   } else {
     for (const std::string& setting : settings) parts->scene_file.set(setting, exclusive_keys());

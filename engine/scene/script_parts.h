@@ -25,7 +25,8 @@ struct Script::Parts {
   bool at_work(const TimedChange& change, int frame) const;
   SceneDef read(Config& document) const;
   // Throws InputError when the scene cannot be read. Problems of the replay itself are added to `problems`.
-  void read_replay(const std::filesystem::path& assets, const std::vector<std::string>& settings);
+  void read_replay(const std::filesystem::path& assets, const std::vector<std::string>& settings,
+                   std::optional<std::size_t> sweep_point);
 
   // Puts a value of the replay into a document. When its path leads to nothing, returns false and adds to `problems`.
   bool put(Config& document, const std::string& path, const ConfigValue& value, const Problem& place);

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "scene/model_scene.h"
+#include "scene/replay_start.h"
 #include "scene/scene_reader.h"
 
 namespace supple {
@@ -26,9 +27,18 @@ void check_paths(const SweepDef& sweep, Config& config) {
   }
 }
 
+// Returns the document of a scene, or of the scene that a replay starts with, after the settings.
 Config config_of(const SceneSource& source, const std::filesystem::path& assets,
                  const std::vector<std::string>& settings) {
   Config config = load_document(source, assets);
+  if (is_replay(config)) {
+    Config replay = config.copy();
+    std::vector<Problem> problems;
+    config = start_of_replay(replay, assets, problems,
+                             [](Config& document, const std::string& key, const ConfigValue& value,
+                                const Problem& place) { document.put(key, value, place, exclusive_keys()); });
+    if (!problems.empty()) throw InputError(problems);
+  }
   for (const std::string& setting : settings) config.set(setting, exclusive_keys());
   return config;
 }
@@ -118,9 +128,6 @@ SweepDef read_sweep(const ConfigTable& root) {
 SweepDef load_sweep(const SceneSource& source, const std::filesystem::path& assets,
                     const std::vector<std::string>& settings) {
   Config config = config_of(source, assets, settings);
-  if (config.value_at("scene"))
-    throw InputError(source.path.string(),
-                     "is a replay; a sweep is of a scene, where a grab stands as a handle with 'from' and 'until'");
   (void)read_scene(config);
   config.finish();
   const SweepDef sweep = read_sweep(config.root());
@@ -148,7 +155,8 @@ std::string sweep_point_json(const std::filesystem::path& path, const std::files
                              const std::vector<std::string>& settings, const SweepDef& sweep, std::size_t point) {
   Config config = config_of(path, assets, settings);
   set_point(config, sweep, point);
-  return config.as_json();
+  Config document = load_document(path, assets);
+  return is_replay(document) ? config.as_json() + document.as_json() : config.as_json();
 }
 
 void check_sweep_points(const SceneSource& source, const std::filesystem::path& assets,

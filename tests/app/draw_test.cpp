@@ -150,7 +150,7 @@ TEST_F(DrawnRun, ShowsAFieldWithTheRangeOfTheWholeFilm) {
 // The field of the scene itself is drawn in the run, and again with the same bytes: speed needs the frame before, which
 // of the first frame is the start.
 TEST_F(DrawnRun, HasTheBytesOfARunWithAField) {
-  for (const char* field : {"speed", "depth"}) {
+  for (const char* field : {"speed", "depth", "force"}) {
     const std::string name = std::string("run-") + field;
     ASSERT_EQ(run(folder_->path,
                   {"replay", "replay.toml", "--out", name, "--quiet", "--set", std::string("field.quantity=") + field})
@@ -160,6 +160,66 @@ TEST_F(DrawnRun, HasTheBytesOfARunWithAField) {
     for (const int frame : {0, 5, 11}) EXPECT_EQ(picture(name + "-drawn", frame), picture(name, frame)) << frame;
     EXPECT_NE(picture(name, 5), picture("run", 5));
   }
+}
+
+// A run keeps what a drawing needs beyond the positions, whatever its own pictures show.
+TEST_F(DrawnRun, ShowsContactForcesOfAnyRun) {
+  ASSERT_EQ(draw("forces", {"--field", "force"}).status, 0);
+  EXPECT_NE(picture("forces", 11), picture("run", 11));
+  const std::filesystem::path kept = path("run") / "motion" / "bar.forces", aside = path("bar.forces");
+  std::filesystem::rename(kept, aside);
+  const Result missing = draw("without-forces", {"--field", "force"});
+  std::filesystem::rename(aside, kept);
+  EXPECT_EQ(missing.status, 2);
+  EXPECT_NE(missing.err.find("bar.forces: is missing, so contact forces cannot be shown"), std::string::npos)
+      << missing.err;
+}
+
+// A run that goes on after a half of it was made has the graph of all of its frames.
+TEST_F(DrawnRun, HasTheBytesOfARunWithAGraphOfErrors) {
+  const auto film = [](const char* out, std::vector<std::string> more) {
+    std::vector<std::string> words = {"replay",
+                                      "replay.toml",
+                                      "--out",
+                                      out,
+                                      "--quiet",
+                                      "--set",
+                                      "text.error_graph=true",
+                                      "--set",
+                                      "output.width=320",
+                                      "--set",
+                                      "output.height=180",
+                                      "--error-every",
+                                      "5"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(folder_->path, words).status;
+  };
+  ASSERT_EQ(film("graph", {}), 0);
+  ASSERT_EQ(run(folder_->path, {"draw", "graph", "--quiet"}).status, 0);
+  ASSERT_EQ(film("graph-parts", {"--frames", "6"}), 0);
+  ASSERT_EQ(film("graph-parts", {"--resume"}), 0);
+  for (const int frame : {0, 5, 6, 11}) EXPECT_EQ(picture("graph-drawn", frame), picture("graph", frame)) << frame;
+  EXPECT_EQ(picture("graph-parts", 11), picture("graph", 11));
+  ASSERT_EQ(
+      run(folder_->path, {"draw", "graph", "--out", "no-graph", "--quiet", "--set", "text.error_graph=false"}).status,
+      0);
+  EXPECT_NE(picture("no-graph", 11), picture("graph", 11));
+}
+
+// What is measured while the film is made differs from run to run, so that a drawing alone shows it as a graph.
+TEST_F(DrawnRun, ShowsAGraphOfTimesThatNoRunDraws) {
+  const Result refused =
+      run(folder_->path, {"render", "two.toml", "--out", "no-film", "--quiet", "--set", "text.time_graph=true"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("no graph of times that are still being measured"), std::string::npos) << refused.err;
+  EXPECT_FALSE(std::filesystem::exists(path("no-film")));
+  const std::vector<std::string> with = {"--set", "text.time_graph=true", "--set", "output.width=320",
+                                         "--set", "output.height=180"};
+  ASSERT_EQ(draw("times", with).status, 0);
+  ASSERT_EQ(draw("times-again", with).status, 0);
+  ASSERT_EQ(draw("no-times", {with.begin() + 2, with.end()}).status, 0);
+  EXPECT_EQ(picture("times", 11), picture("times-again", 11));
+  EXPECT_NE(picture("times", 11), picture("no-times", 11));
 }
 
 TEST_F(DrawnRun, ShowsTheDistanceToAnotherRun) {

@@ -7,6 +7,7 @@
 
 #include "output/zones.h"
 #include "support/bodies.h"
+#include "support/places.h"
 #include "support/program.h"
 
 namespace supple {
@@ -115,6 +116,25 @@ TEST(Profile, SaysWhichRepeatDiedAndReportsThoseThatAreWhole) {
   EXPECT_TRUE(died.err.ends_with(
       fmt::format("supple: repeat 1 of 2 was ended by signal {}; what it left is in out/bar\n", SIGXFSZ)))
       << died.err;
+}
+
+// A program that runs against itself differs in nothing but noise.
+TEST(Profile, RunsAnotherProgramInTurnAndComparesBoth) {
+  const test::TemporaryFolder folder;
+  write_scene(folder.path / "bar.toml");
+  const auto against = [&](const std::string& program, const std::string& repeats) {
+    return run(folder.path, {"profile", "bar.toml", "--no-images", "--threads", "1", "--repeats", repeats, "--out",
+                             "own", "--against", program});
+  };
+  const Result both = against(test::program_name, "4");
+  EXPECT_EQ(both.status, 0) << both.err;
+  EXPECT_NE(both.out.find("B own"), std::string::npos) << both.out;
+  EXPECT_EQ(read_zones(folder.path / "own" / "zones.json").repeats, 4);
+  EXPECT_EQ(read_zones(folder.path / "own-against" / "zones.json").repeats, 4);
+  EXPECT_EQ(against(test::program_name, "3").status, 2);
+  const Result nowhere = against("nowhere", "4");
+  EXPECT_EQ(nowhere.status, 2);
+  EXPECT_NE(nowhere.err.find("--against nowhere: no such program"), std::string::npos) << nowhere.err;
 }
 
 TEST(Profile, ComparisonsRefuseWhatCannotBeCompared) {

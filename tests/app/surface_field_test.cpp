@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "geometry/cloth.h"
+#include "sim/solver/fields.h"
 #include "support/film.h"
 #include "support/scene_text.h"
 
@@ -86,6 +88,69 @@ TEST(SurfaceField, IsTheDepthBelowTheGround) {
   const auto values = fixture.values(field);
   for (Eigen::Index v = 0; v < fixture.motion[0].rows(); ++v)
     EXPECT_NEAR(values[0][v], std::max(0.0, -fixture.motion[0](v, 1)), 1e-12);
+}
+
+TEST(SurfaceField, IsTheContactForceOverTheAreaOfEachVertex) {
+  Fixture fixture("force");
+  SurfaceField field(fixture.film->scene, fixture.film->bodies);
+  ASSERT_TRUE(field.needs_forces());
+  const auto before = fixture.values(field);
+  for (const double value : before[0]) EXPECT_EQ(value, 0) << "there are no forces yet";
+  std::vector<Positions> forces;
+  for (const Positions& body : fixture.motion) forces.push_back(Positions::Zero(body.rows(), 3));
+  // A third of the area of a sheet's triangles belongs to each corner; a vertex in the middle has that of a cell.
+  const Positions& rest = fixture.film->bodies[1].description.mesh.rest;
+  const Vec3 middle = rest.colwise().mean();
+  Eigen::Index vertex = 0;
+  (rest.rowwise() - middle.transpose()).rowwise().squaredNorm().minCoeff(&vertex);
+  forces[1].row(vertex) << 3, 4, 0;
+  FramePose pose = fixture.pose();
+  for (const Positions& body : forces) pose.forces.push_back(&body);
+  const auto values = field.values(pose, fixture.film->set, nullptr);
+  for (Eigen::Index v = 0; v < rest.rows(); ++v) {
+    if (v != vertex) {
+      EXPECT_EQ(values[1][v], 0);
+    }
+  }
+  double area = 0;
+  for (const double share : vertex_areas({rest, fixture.film->bodies[1].cloth.surface.triangles})) area += share;
+  EXPECT_NEAR(area, 1, 1e-12);
+  EXPECT_NEAR(values[1][vertex], 5 * 16, 5 * 16 * 0.34) << "an inner vertex has 2/3 to 4/3 of a cell";
+}
+
+// What is shown, times the areas, is the weight of a cube that has come to rest.
+TEST(SurfaceField, ContactForcesOfABodyAtRestAddUpToItsWeight) {
+  test::TemporaryFolder folder;
+  const std::filesystem::path path = folder.path / "scene.toml";
+  std::ofstream(path) << R"(field = { quantity = "force" }
+[[body]]
+name = "cube"
+box = { extent = [0.2, 0.2, 0.2], cells = [3, 3, 3] }
+material = { model = "neo-hookean", mu = 5e4, lambda = 1e5 }
+density = 1000
+[solver]
+damping = 0.05
+iterations = 30
+[[collider]]
+name = "ground"
+shape = { half_space = { normal = [0, 1, 0] } }
+)";
+  const test::Film film(path, {});
+  Positions forces, motion;
+  film.play(1, 120, [&](std::size_t, int, const State&, const StepInputs&, const State& to, const Workspace& w) {
+    forces = contact_forces(film.models[0], w, to.x);
+    motion = in_input_order(film.models[0], to.x);
+  });
+  SurfaceField field(film.scene, film.bodies);
+  FramePose pose{119, 4, {&motion}, {}, {&forces}};
+  const std::vector<double> values = field.values(pose, film.set, nullptr)[0];
+  const TetMesh& mesh = film.bodies[0].description.mesh;
+  const std::vector<double> areas = vertex_areas({mesh.rest, boundary_faces(mesh.tets)});
+  double sum = 0;
+  for (std::size_t v = 0; v < values.size(); ++v) sum += values[v] * areas[v];
+  const double weight = 1000 * 0.008 * 9.81;
+  EXPECT_NEAR(sum, weight, 1e-3 * weight);
+  EXPECT_NEAR(forces.col(1).sum(), weight, 1e-3 * weight);
 }
 
 TEST(SurfaceField, LeavesOutBodiesThatDoNotHaveIt) {

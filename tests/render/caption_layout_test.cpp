@@ -8,8 +8,11 @@
 
 #include "film/camera.h"
 #include "film/draw_scene.h"
+#include "film/film_graphs.h"
 #include "film/places.h"
+#include "film/surface_field.h"
 #include "render/captions.h"
+#include "render/overlays.h"
 #include "scene/scene_reader.h"
 #include "support/bodies.h"
 
@@ -75,6 +78,51 @@ TEST_P(CaptionsOfScene, OverlapNeitherEachOtherNorABodyAtAnySize) {
         EXPECT_FALSE(placed[i].place.overlaps(placed[k].place))
             << scene.bodies[placed[i].mesh].label << " and " << scene.bodies[placed[k].mesh].label;
       EXPECT_FALSE(captions.over_a_body(i)) << scene.bodies[placed[i].mesh].label << " at " << size.width;
+    }
+  }
+}
+
+// Expects that the texts lie in the picture and not over each other.
+void expect_apart(const std::vector<PixelRect>& texts, const Size& size) {
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    EXPECT_TRUE(texts[i].x >= 0 && texts[i].y >= 0 && texts[i].right() <= size.width &&
+                texts[i].bottom() <= size.height)
+        << "text " << i << " leaves the picture at " << size.width;
+    for (std::size_t k = 0; k < i; ++k)
+      EXPECT_FALSE(texts[i].overlaps(texts[k])) << "texts " << k << " and " << i << " at " << size.width;
+  }
+}
+
+// Graphs find a place beside all other texts that can be switched on, and cost no body its caption.
+TEST_P(CaptionsOfScene, LeaveAllOtherTextsFree) {
+  const std::string font = caption_font();
+  if (font.empty()) GTEST_SKIP() << "no font is installed";
+  for (const Size size : {Size{640, 360}, Size{1280, 720}, Size{3840, 2160}}) {
+    for (const bool notes : {false, true}) {
+      std::vector<std::string> settings = {"output.width=" + std::to_string(size.width),
+                                           "output.height=" + std::to_string(size.height), "field.quantity=speed"};
+      for (const char* text : {"title", "time", "error_graph", "time_graph"})
+        settings.push_back(std::string("text.") + text + "=true");
+      for (const char* note : {"method", "milliseconds", "iterations", "error"})
+        settings.push_back(std::string("text.") + note + (notes ? "=true" : "=false"));
+      const SceneDef scene = load_scene(test::assets / "scenes" / (GetParam() + ".toml"), test::assets, settings);
+      const std::vector<Body> bodies = assemble(scene);
+      const CollisionSet set = collision_set(scene);
+      Stage stage = make_stage(scene, bodies, std::vector<DrawnBody>(bodies.size()), set.obstacles,
+                               collider_skins(set.obstacles, bodies), font);
+      stage.field = SurfaceField(scene, bodies).look();
+      stage.first_camera = camera_at(scene, stage, 0);
+      stage.graphs = graph_looks(scene, 888);
+      const OverlayPlaces overlays = overlay_places(stage);
+      EXPECT_EQ(overlays.graphs.size(), 2u) << "there is no room for the graphs at " << size.width;
+      std::vector<PixelRect> texts = overlays.all();
+      EXPECT_EQ(texts.size(), 4u);
+      const std::size_t captioned =
+          Captions(stage, {overlays.headline, overlays.legend}).places(stage.first_camera).size();
+      Captions captions(stage, texts);
+      for (const Captions::Placed& caption : captions.places(stage.first_camera)) texts.push_back(caption.place);
+      EXPECT_EQ(texts.size() - 4, captioned) << "the graphs took the place of a caption at " << size.width;
+      expect_apart(texts, size);
     }
   }
 }

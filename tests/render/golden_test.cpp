@@ -7,8 +7,10 @@
 // scene with that thing removed, and expects a difference beyond the tolerance.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <functional>
+#include <span>
 
 #include "film/drawn_film.h"
 #include "film/split_screen.h"
@@ -17,6 +19,7 @@
 #include "output/point_cache.h"
 #include "output/run_folder.h"
 #include "render/renderer.h"
+#include "sim/solver/fields.h"
 #include "support/colored_files.h"
 #include "support/film.h"
 #include "support/places.h"
@@ -41,8 +44,10 @@ using Settings = std::vector<std::string>;
 struct Shot {
   std::filesystem::path scene;
   Settings settings = {};
-  int frames = 0;         // that pass before the picture is taken
-  std::string font = {};  // a file; without it there are no captions
+  int frames = 0;                   // that pass before the picture is taken
+  std::string font = {};            // a file; without it there are no captions
+  std::vector<FrameRow> rows = {};  // of the run's profile, the last one being the picture's
+  Bounds motion = {};               // of the whole film, for cameras that frame it
 };
 
 // Describes how something that a shot shows is removed: by settings, or on the stage where no setting does it.
@@ -69,16 +74,23 @@ Picture picture_of(const Shot& shot, const Settings& more = {}) {
   const Script script = Script::load(shot.scene, test::assets, settings);
   const DrawnAs surface = film.scene.look.wireframe ? DrawnAs::elements : DrawnAs::skin;
   DrawnFilm drawn(script, film.bodies, drawn_bodies(film.bodies, {}, surface), film.set, shot.font);
-  std::vector<Positions> motion, before;
+  drawn.know_times(shot.rows);
+  std::vector<Positions> motion, before, forces(film.bodies.size());
   for (const Body& body : film.bodies) motion.push_back(first_positions(body));
   before = motion;
-  film.play(1, shot.frames, [&](std::size_t b, int, const State& from, const StepInputs&, const State& to) {
-    before[b] = in_input_order(film.models[b], from.x);
-    motion[b] = in_input_order(film.models[b], to.x);
-  });
+  film.play(1, shot.frames,
+            [&](std::size_t b, int, const State& from, const StepInputs&, const State& to, const Workspace& w) {
+              before[b] = in_input_order(film.models[b], from.x);
+              motion[b] = in_input_order(film.models[b], to.x);
+              forces[b] = contact_forces(film.models[b], w, to.x);
+            });
+  if (film.scene.camera.frames == Framed::film) drawn.frame_motion(shot.motion);
   FramePose pose{shot.frames - 1, shot.frames / film.scene.fps, {}, {}};
   for (const Positions& body : motion) pose.motion.push_back(&body);
   for (const Positions& body : before) pose.before.push_back(&body);
+  for (const Positions& body : forces) pose.forces.push_back(&body);
+  if (!shot.rows.empty()) pose.row = &shot.rows.back();
+  if (!shot.rows.empty()) pose.earlier = std::span(shot.rows).first(shot.rows.size() - 1);
   Threads threads(1);
   return {drawn.stage(), drawn.list(film.scene, pose, film.set, threads)};
 }
@@ -215,6 +227,8 @@ TEST(Golden, AFieldIsShownInColoursWithItsLegend) {
   const Shot stretch = {written_for_tests("field"), {"field.quantity=stretch"}, 0, font};
   expect_golden("field-stretch", stretch,
                 {{{"field.quantity=none"}}, {{"field.legend=false"}}, {{"field.colors=blue-yellow"}}});
+  EXPECT_EQ(draw(picture_of(stretch)).rgb, draw(picture_of(stretch, {"body.bar.pattern=none"})).rgb)
+      << "the lines of the print are seen among the colours";
   const auto with = [&stretch](std::vector<std::string> settings, int frames = 0) {
     Shot shot = stretch;
     shot.settings = std::move(settings);
@@ -230,6 +244,11 @@ TEST(Golden, AFieldIsShownInColoursWithItsLegend) {
   expect_golden("field-speed", with({"field.quantity=speed", "field.range=[0, 0.5]"}, 3), {none});
   expect_golden("field-depth",
                 with({"field.quantity=depth", "field.range=[0, 0.15]", "collider.ground.thickness=0.15"}), {none});
+  expect_golden("field-force",
+                with({"field.quantity=force", "field.range=[0, 2e4]", "look.backdrop=plain",
+                      "collider.ground.visible=false", "camera.position=[0.8, -2, 3.4]"},
+                     2),
+                {none, {{"collider.ground.position=[0, -1, 0]"}, {}, true}});
 }
 
 // The reference is a run in which nothing has moved, so that the colours show how far each body was deformed.
@@ -288,6 +307,50 @@ TEST(Golden, WordsTellOfTheFilmAndItsBodies) {
   expect_golden("words",
                 {written_for_tests("captions"), {"text.title=true", "text.time=true", "text.method=true"}, 0, lato},
                 {{{"text.title=false", "text.time=false"}, {}, true}, {{"text.method=false"}, {}, true}});
+}
+
+TEST(Golden, SmallGraphsStandInACorner) {
+  if (!std::filesystem::exists(lato)) GTEST_SKIP() << lato << " is not installed";
+  std::vector<FrameRow> rows(25);
+  for (std::size_t f = 0; f < rows.size(); ++f) {
+    rows[f].step_ms = 12 + 6 * std::sin(0.7 * static_cast<double>(f));
+    rows[f].bodies.resize(1);
+    rows[f].bodies[0].error_estimate = std::pow(10, -2.5 - 1.5 * std::cos(0.3 * static_cast<double>(f)));
+    rows[f].bodies[0].error_measured = f % 6 == 0;
+    rows[f].bodies[0].error = 1e-4;
+  }
+  const Shot shot = {written_for_tests("field"),
+                     {"text.error_graph=true", "text.time_graph=true", "text.title=true", "frames=40"},
+                     0,
+                     lato,
+                     rows};
+  expect_golden("graphs", shot,
+                {{{"text.error_graph=false"}}, {{"text.time_graph=false"}}, {{"frames=400"}, {}, true}});
+}
+
+// The pictures are taken after three frames, a tenth of a second; without a position, the ball and what is beside it
+// are framed.
+TEST(Golden, EachKindOfCameraStandsWhereItShould) {
+  const test::TemporaryFolder folder;
+  const std::string text = test::read_file(written_for_tests("field"));
+  test::write_text(folder.path / "field.toml", text.substr(0, text.find("[camera]")));
+  const auto with = [&folder](std::vector<std::string> settings) {
+    return Shot{folder.path / "field.toml", std::move(settings), 3};
+  };
+  expect_golden("camera-usual", with({}), {{{"camera.azimuth=45"}}, {{"camera.elevation=25"}}});
+  expect_golden("camera-direction",
+                with({"camera.azimuth=-50", "camera.elevation=35", "camera.distance=3.5", "camera.fov_deg=40"}),
+                {{{"camera.azimuth=30"}}, {{"camera.elevation=14"}}, {{"camera.distance=5"}}, {{"camera.fov_deg=30"}}});
+  expect_golden("camera-place", with({"camera.position=[0.8, 1, 3]"}), {{{"camera.target=[0, 0, 0]"}}});
+  expect_golden("camera-orbit", with({"camera.orbit=600"}), {{{"camera.orbit=0"}}});
+  expect_golden("camera-follow", with({"camera.follow=sheet", "camera.distance=2.5"}), {{{"camera.follow=ball"}}});
+  const std::string keys =
+      "camera.keys=[{ t = 0, azimuth = 0, elevation = 5 }, { t = 0.2, azimuth = 120, distance = 3 }]";
+  expect_golden("camera-keys", with({keys}), {{{"camera.keys=[]"}}, {{"camera.ease=linear", "camera.keys=[]"}}});
+  Shot film = with({"camera.frames=film"});
+  film.motion.include(Vec3(-2, 0, -1));
+  film.motion.include(Vec3(1, 2, 1));
+  expect_golden("camera-film", film, {{{"camera.frames=start"}}});
 }
 
 TEST(Golden, PanelsStandInEveryLayoutWithTheLegendBesideThem) {

@@ -39,5 +39,16 @@ TEST(Program, AnErrorNamesTheFileAndItsLine) {
   EXPECT_NE(included.find((folder.path / "part.glsl").string() + ":2"), std::string::npos) << included;
 }
 
+// The lines of a file that is left out are not those of the file that would include it.
+TEST(Program, AnErrorBehindAnIncludeThatIsLeftOutHasItsLine) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path / "plain.vert") << "#version 330 core\nvoid main() { gl_Position = vec4(0.0); }\n";
+  std::ofstream(folder.path / "part.glsl") << "float two() {\n  return 2.0;\n}\n";
+  std::ofstream(folder.path / "broken.frag") << "#version 330 core\n#ifdef ABSENT\n#include \"part.glsl\"\n#endif\n"
+                                                "out vec4 pixel;\nvoid main() {\n  pixel = nothing;\n}\n";
+  const std::string message = message_for(folder);
+  EXPECT_NE(message.find((folder.path / "broken.frag").string() + ":7"), std::string::npos) << message;
+}
+
 }  // namespace
 }  // namespace supple

@@ -157,9 +157,27 @@ TEST_F(Sweep, RefusesPathsAndValuesAtTheirPlaceOnce) {
             "bdoy.bar.material.mu=10000)");
 }
 
+TEST_F(Sweep, VariesTheSceneThatAReplayStartsWith) {
+  const std::filesystem::path scene = write("[sweep.values]\nfps = [10, 20]\n");
+  const std::filesystem::path replay = scene.parent_path() / "replay.toml";
+  const auto replay_to = [&](const std::string& value) {
+    std::ofstream(replay) << "scene = \"scene.toml\"\ntitle = \"turned\"\n[[change]]\nt = 0.1\n"
+                             "path = \"solver.iterations\"\nvalue = "
+                          << value << "\n";
+  };
+  replay_to("7");
+  const SweepDef sweep = load_sweep(replay, test::assets, {});
+  ASSERT_EQ(sweep.points(), 2u);
+  const Script second = Script::load(replay, test::assets, {}, 1);
+  EXPECT_EQ(second.scene().fps, 20);
+  EXPECT_EQ(second.scene().title, "turned");
+  EXPECT_EQ(second.changes().size(), 1u);
+  const std::string before = sweep_point_json(replay, test::assets, {}, sweep, 1);
+  replay_to("8");
+  EXPECT_NE(sweep_point_json(replay, test::assets, {}, sweep, 1), before) << "a point would count as done";
+}
+
 TEST_F(Sweep, RefusesSettingsOfWhatItVariesAndFilesWithoutASweep) {
-  EXPECT_EQ(refusal("", {"scene=squirrel"}),
-            "scene.toml: is a replay; a sweep is of a scene, where a grab stands as a handle with 'from' and 'until'");
   EXPECT_EQ(refusal("[sweep.values]\nfps = [1]\n", {"fps=3"}), "--set fps=3: the sweep varies this");
   EXPECT_EQ(
       refusal(""),

@@ -21,7 +21,7 @@ struct Film {
     for (const Body& body : bodies) models.push_back(build_model(body.description));
   }
 
-  // Calls visit(body, frame, state before, inputs, state after) after each step.
+  // Calls visit(body, frame, state before, inputs, state after) after each step, with the workspace where it takes one.
   template <class Visit>
   void play(int thread_count, int frames, const Visit& visit) const {
     Threads threads(thread_count);
@@ -38,7 +38,12 @@ struct Film {
         const State before = state;
         const StepReport& report = step(models[b], inputs, state, w);
         ASSERT_FALSE(report.failed) << bodies[b].def.name << " step " << number << ": " << report.failure.what;
-        visit(b, number, before, inputs, state);
+        if constexpr (std::is_invocable_v<Visit, std::size_t, int, const State&, const StepInputs&, const State&,
+                                          const Workspace&>) {
+          visit(b, number, before, inputs, state, w);
+        } else {
+          visit(b, number, before, inputs, state);
+        }
       }
     }
   }

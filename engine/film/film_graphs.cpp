@@ -1,0 +1,84 @@
+#include "film/film_graphs.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "film/surface_field.h"
+
+namespace supple {
+namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+// The scale of errors is the same in all films, so that they can be compared, and is known before the film is.
+constexpr double smallest_error = 1e-6, largest_error = 1;
+
+double place_of_error(double error) {
+  if (std::isnan(error)) return nothing;
+  const double place = std::log10(std::max(error, smallest_error) / smallest_error);
+  return std::min(1.0, place / std::log10(largest_error / smallest_error));
+}
+
+// Returns the upper end of the scale of times [ms].
+double time_scale(double longest) { return longest > 0 ? rounded_up(longest) : 1; }
+
+double estimate_of(const FrameRow& row) {
+  double most = 0;
+  for (const BodyRow& body : row.bodies) most = std::max(most, body.error_estimate);
+  return most;
+}
+
+// Returns the largest measured error of a body; NaN where none is measured.
+double measured_of(const FrameRow& row) {
+  double most = nothing;
+  for (const BodyRow& body : row.bodies) {
+    if (body.error_measured) most = std::fmax(most, body.error.value_or(0));
+  }
+  return most;
+}
+
+}  // namespace
+
+double longest_steps(std::span<const FrameRow> rows) {
+  double longest = rows.size() == 1 ? rows.front().step_ms : 0;
+  for (std::size_t f = 1; f < rows.size(); ++f) longest = std::max(longest, rows[f].step_ms);
+  return longest;
+}
+
+std::vector<GraphLook> graph_looks(const SceneDef& scene, double longest) {
+  std::vector<GraphLook> graphs;
+  if (scene.text.time_graph) {
+    const double most = time_scale(longest);
+    graphs.push_back({"ms a frame",
+                      {{0, "0"}, {0.5, fmt::format("{:.6g}", most / 2)}, {1, fmt::format("{:.6g}", most)}},
+                      scene.frames});
+  }
+  if (scene.text.error_graph)
+    graphs.push_back({"error estimate", {{0, "1e-6"}, {1.0 / 3, "1e-4"}, {2.0 / 3, "1e-2"}, {1, "1"}}, scene.frames});
+  return graphs;
+}
+
+std::vector<GraphCurve> graph_curves(const TextDef& text, std::span<const FrameRow> earlier, const FrameRow* row,
+                                     double longest) {
+  std::vector<GraphCurve> curves;
+  const auto by_frame = [&](const auto& value) {
+    std::vector<double> values;
+    if (row == nullptr) return values;
+    for (const FrameRow& one : earlier) values.push_back(value(one));
+    values.push_back(value(*row));
+    return values;
+  };
+  if (text.time_graph) {
+    const double most = time_scale(longest);
+    curves.push_back({by_frame([most](const FrameRow& one) { return std::min(1.0, one.step_ms / most); }), {}});
+  }
+  if (text.error_graph)
+    curves.push_back({by_frame([](const FrameRow& one) { return place_of_error(estimate_of(one)); }),
+                      by_frame([](const FrameRow& one) { return place_of_error(measured_of(one)); })});
+  return curves;
+}
+
+}  // namespace supple

@@ -1,0 +1,25 @@
+// Makes the small graphs that stand in a corner of the pictures, from the rows of the run's profile.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "output/profile.h"
+#include "render/draw_list.h"
+#include "scene/scene_def.h"
+
+namespace supple {
+
+// Returns the largest time of a frame's steps [ms], of which the first one does not count where there are others; 0
+// without rows.
+double longest_steps(std::span<const FrameRow> rows);
+
+// Returns the graphs that a scene asks for. longest: of longest_steps(), which the scale of times spans [ms].
+std::vector<GraphLook> graph_looks(const SceneDef& scene, double longest);
+
+// Returns their curves up to a frame. earlier: the rows of all frames before it; row: that of the frame (null where it
+// is not known, and then there is no curve).
+std::vector<GraphCurve> graph_curves(const TextDef& text, std::span<const FrameRow> earlier, const FrameRow* row,
+                                     double longest);
+
+}  // namespace supple

@@ -1,0 +1,23 @@
+// Finds where the things stand that have one place in all pictures of a film: the line at the top, the legend of a
+// field, and graphs. None lies over another one.
+#pragma once
+
+#include <vector>
+
+#include "render/sticker.h"
+
+namespace supple {
+
+struct OverlayPlaces {
+  PixelRect headline, legend;     // without size where there is none
+  std::vector<PixelRect> graphs;  // of the stage's graphs; empty where there are none, or no room for them
+
+  // Returns the places of all of them.
+  std::vector<PixelRect> all() const;
+};
+
+// Graphs stand side by side in the corner where they overlap neither the line nor the legend, leave the
+// captions where they would be, and cover least of the bodies' boxes at the start of the film.
+OverlayPlaces overlay_places(const Stage& stage);
+
+}  // namespace supple
