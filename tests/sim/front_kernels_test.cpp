@@ -105,15 +105,16 @@ TEST(Kernels, SolveWithDenseFronts) {
       expected.head(pivots) = triangle.solve(x.head(pivots));
       const Eigen::VectorXd taken = lower.bottomLeftCorner(rows, pivots) * expected.head(pivots);
       for (int i = 0; i < rows; ++i) expected[places[i]] -= taken[i];
-      linear_kernels(v).solve_down(front.shape, front.columns.data(), places.data(), x.data(), x.data(),
-                                   scratch.data());
+      linear_kernels(v).front_down_double(front.shape, front.columns.data(), places.data(), x.data(), x.data(),
+                                          scratch.data());
       EXPECT_LT((x - expected).norm(), 1e-12 * expected.norm()) << variant_name(v) << " " << pivots << ", " << rows;
 
       Eigen::VectorXd below(rows);
       for (int i = 0; i < rows; ++i) below[i] = expected[places[i]];
       expected.head(pivots) =
           triangle.transpose().solve(expected.head(pivots) - lower.bottomLeftCorner(rows, pivots).transpose() * below);
-      linear_kernels(v).solve_up(front.shape, front.columns.data(), places.data(), x.data(), x.data(), scratch.data());
+      linear_kernels(v).front_up_double(front.shape, front.columns.data(), places.data(), x.data(), x.data(),
+                                        scratch.data());
       EXPECT_LT((x - expected).norm(), 1e-12 * expected.norm()) << variant_name(v) << " " << pivots << ", " << rows;
     }
   }
