@@ -28,7 +28,8 @@ Renewals count_renewals(Subject& subject, Threads& threads, SystemMatrix matrix,
       result.states.push_back({frame, driver.state(), state_hash(subject.model, driver.state())});
     }
     const StepReport& last = driver.make_frame(frame, [&](const StepReport& report) {
-      (driver.workspace().renewed ? renewing : examining).push_back(report.matrix_ms);
+      const bool first = renewing.empty() && examining.empty();  // made as a body is prepared, like A
+      (driver.workspace().renewed && !first ? renewing : examining).push_back(report.matrix_ms);
     });
     if (last.failed) throw RunError(fmt::format("{}: frame {} failed", subject.choice.scene, frame));
   }

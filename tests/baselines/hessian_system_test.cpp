@@ -155,9 +155,7 @@ TEST(HessianSystem, IsRefusedWherePositionsAreNoNumbers) {
 
 Mat3 rotation_at(const Rotations& rotations, int v) {
   Mat3 result;
-  for (int i = 0; i < 9; ++i)
-    result(i / 3, i % 3) =
-        rotations[std::size_t(v / block_width) * 9 * block_width + i * block_width + v % block_width];
+  for (int i = 0; i < 9; ++i) result(i / 3, i % 3) = rotations[std::size_t(v) * 12 + i / 3 * 4 + i % 3];
   return result;
 }
 
@@ -180,20 +178,24 @@ TEST(VertexRotations, AreThoseOfTheElementsAround) {
   }
 }
 
-TEST(VertexRotations, TurnAndTurnBack) {
+TEST(VertexRotations, TurnMultiplyAndTurnBack) {
   const Model model = build_model(bar(NeoHookean{1e4, 4e4}, Held::hard_end));
   const VertexRotations finder(model);
-  Rotations first, second;
+  Rotations first, back, second;
   finder.find(model.rest * some_turn.transpose(), nullptr, first);
+  transpose(first, back);
   const Positions r = some_forces(model, 1);
-  Positions there(model.free, 3), back(model.free, 3);
-  turn(first, r, there);
+  Positions there(model.free, 3), again(model.free, 3);
+  turn_back(back, r, there);
   EXPECT_LT(distance(there, r * some_turn.transpose()), 1e-12);
-  turn_back(first, there, back);
-  EXPECT_LT(distance(back, r), 1e-12);
-  finder.find(model.rest * (some_turn * some_turn).transpose(), nullptr, second);
-  append_inverse(second, first);
-  for (int v = 0; v < model.free; ++v) EXPECT_LT((rotation_at(second, v) - some_turn).norm(), 1e-12);
+  turn_back(first, there, again);
+  EXPECT_LT(distance(again, r), 1e-12);
+  turn_back(first, there, there);
+  EXPECT_EQ(there, again);
+  const Mat3 other_turn = Eigen::AngleAxisd(0.7, Vec3::UnitY()).toRotationMatrix();
+  finder.find(model.rest * (other_turn * some_turn).transpose(), nullptr, second);
+  multiply(second, back, second);
+  for (int v = 0; v < model.free; ++v) EXPECT_LT((rotation_at(second, v) - other_turn).norm(), 1e-12);
 }
 
 }  // namespace

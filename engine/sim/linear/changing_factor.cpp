@@ -6,6 +6,23 @@
 
 namespace supple {
 
+void invert_triangles(FrontShape front, double* columns) {
+  for (int strip = 0; strip < strips_of(front); ++strip) {
+    double* triangle = columns + strip_begin(front, strip);
+    const int width = strip_width(front, strip);
+    double inverse[block_rows][block_rows] = {};  // by columns
+    for (int j = 0; j < width; ++j) {
+      inverse[j][j] = 1 / triangle[j * block_rows + j];
+      for (int i = j + 1; i < width; ++i) {
+        double sum = 0;
+        for (int k = j; k < i; ++k) sum += triangle[k * block_rows + i] * inverse[j][k];
+        inverse[j][i] = -sum / triangle[i * block_rows + i];
+      }
+    }
+    for (int j = 0; j < width; ++j) std::copy_n(inverse[j], block_rows, triangle + j * block_rows);
+  }
+}
+
 void ChangingFactor::analyze(const Eigen::SparseMatrix<double>& matrix) {
   elimination_ = std::make_unique<Elimination>(Elimination::of(matrix));
   fronts_ = std::make_unique<Multifrontal>(*elimination_);
@@ -30,12 +47,12 @@ void ChangingFactor::analyze(const Eigen::SparseMatrix<double>& matrix) {
 bool ChangingFactor::factorize(const Eigen::SparseMatrix<double>& matrix) {
   fronts_->begin();
   for (const std::int32_t s : elimination_->order) {
-    if (precision_ == Precision::double_precision) {
-      if (fronts_->eliminate(matrix, s, double_.data() + first_number_[s]) >= 0) return false;
-      continue;
-    }
-    if (fronts_->eliminate(matrix, s, front_.data()) >= 0) return false;
-    std::copy_n(front_.data(), column_numbers(elimination_->nodes[s].front()), single_.data() + first_number_[s]);
+    const bool narrow = precision_ == Precision::single_precision;
+    const FrontShape front = elimination_->nodes[s].front();
+    double* columns = narrow ? front_.data() : double_.data() + first_number_[s];
+    if (fronts_->eliminate(matrix, s, columns) >= 0) return false;
+    invert_triangles(front, columns);
+    if (narrow) std::copy_n(columns, column_numbers(front), single_.data() + first_number_[s]);
   }
   return true;
 }

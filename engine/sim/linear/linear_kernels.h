@@ -29,7 +29,8 @@ struct LinearKernels {
   // number one by one in the order of the pivots. Returns the first pivot that is not positive, or -1.
   int (*eliminate)(FrontShape front, double* columns, double* update);
 
-  // These functions solve the part of one front in L x = b, in place, and in L^T x = b. `own`: x at the front's first
+  // These functions solve the part of one front in L x = b, in place, and in L^T x = b. The triangle on the diagonal of
+  // each strip is inverted (invert_triangles in changing_factor.h). `own`: x at the front's first
   // pivot; rows: for each row below the pivots, its index in x. scratch: as many numbers as the front has padded rows,
   // aligned like the columns.
   template <class T>

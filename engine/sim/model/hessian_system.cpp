@@ -47,8 +47,9 @@ struct HessianSystem::Parts {
   ChangingFactor factor;
   StiffnessSample sample;
   VertexRotations rotations;
-  Rotations made, since;  // where the matrix was made; from there to where it is turned to
-  Positions right;        // n_free x 3
+  Rotations made_back;          // from where the matrix was made to rest
+  Rotations since, since_back;  // from where it was made to where it is turned to, and back
+  Positions right;              // n_free x 3
 
   explicit Parts(const Model& of)
       : structure(of.structure),
@@ -93,7 +94,8 @@ bool HessianSystem::make(const Model& model, const Positions& x, Threads* thread
   p.mix_elements(model);
   p.hessian.assemble(model, p.elements);
   p.sample.take(model, x, {});
-  p.rotations.find(x, threads, p.made);
+  p.rotations.find(x, threads, p.since);
+  transpose(p.since, p.made_back);
   if (!p.factor.factorize(p.hessian.matrix())) return false;
   p.model = model.id;
   return true;
@@ -107,7 +109,8 @@ double HessianSystem::departure(const Model& model, const Positions& x) const {
 void HessianSystem::turn_to(const Positions& x, Threads* threads) {
   Parts& p = *parts_;
   p.rotations.find(x, threads, p.since);
-  append_inverse(p.since, p.made);
+  multiply(p.since, p.made_back, p.since);
+  transpose(p.since, p.since_back);
 }
 
 // With P = 1 - 1 1^T M / m, which takes the motion of the centre of mass out of a motion, z = P R H^-1 R^T P^T r and
@@ -121,7 +124,7 @@ void HessianSystem::solve(const Model& model, const Positions& r, Positions& z) 
   }
   turn_back(p.since, p.right, p.right);
   p.factor.solve(p.right.data(), p.right.data());
-  turn(p.since, p.right, z);
+  turn_back(p.since_back, p.right, z);
   if (model.free_floating) restore_translation(model, r, z);
 }
 
