@@ -72,7 +72,8 @@ std::string checkpoint_bytes(const Checkpoint& checkpoint, const std::string& id
                               {"time_s", body.time},
                               {"matrix_vertices", body.matrix.rows()},
                               {"matrix_age", body.matrix_age},
-                              {"matrix_poor", body.matrix_poor}});
+                              {"hessian_progress", body.hessian_progress},
+                              {"constant_progress", body.constant_progress}});
   }
   const std::string text = exact_json_text(head);
   std::string bytes(signature);
@@ -110,7 +111,8 @@ State read_body(const Json& body, Reader& reader) {
   for (Eigen::Index h = 0; h < centers.rows(); ++h) state.anchors.centers.push_back(centers.row(h).transpose());
   state.matrix = reader.rows(body.at("matrix_vertices"));
   state.matrix_age = body.at("matrix_age");
-  state.matrix_poor = body.at("matrix_poor");
+  state.hessian_progress = body.at("hessian_progress");
+  state.constant_progress = body.at("constant_progress");
   for (const Json& held : body.at("holds")) state.anchors.holds.push_back(held.get<bool>());
   return state;
 }

@@ -117,7 +117,8 @@ TEST(MatrixRule, AStateHoldsAllThatTheNextStepDependsOn) {
         EXPECT_EQ(state_hash(again, resumed), state_hash(model, state)) << threads_count << " threads from " << from;
         EXPECT_EQ(resumed.matrix, state.matrix);
         EXPECT_EQ(resumed.matrix_age, state.matrix_age);
-        EXPECT_EQ(resumed.matrix_poor, state.matrix_poor);
+        EXPECT_EQ(resumed.hessian_progress, state.hessian_progress);
+        EXPECT_EQ(resumed.constant_progress, state.constant_progress);
       }
     }
     State back = states[5];  // and in the workspace that has gone further
@@ -225,7 +226,7 @@ TEST(MatrixRule, AHessianThatServesPoorlyWaitsUntilARenewalIsCheapEnough) {
   }
   ASSERT_GT(renewals.size(), 1u);
   EXPECT_EQ(renewals[0], 0);
-  for (std::size_t i = 1; i < renewals.size(); ++i) EXPECT_GT(renewals[i] - renewals[i - 1], 18);
+  for (std::size_t i = 1; i < renewals.size(); ++i) EXPECT_GT(renewals[i] - renewals[i - 1], 9);
   EXPECT_LT(served, 120);
 }
 

@@ -28,7 +28,8 @@ struct State {
   Anchors anchors;     // may stay empty where only steps are made: they do not read them
   Positions matrix;    // where the matrix of directions was made (solver/matrix_rule.h), n x 3; empty: none was [m]
   int matrix_age = 0;  // steps since
-  bool matrix_poor = false;  // the last step that it served had a hard time with it
+  // By which factor an evaluation came nearer in the last steps that the Hessian and A served; 0: not known.
+  double hessian_progress = 0, constant_progress = 0;
 };
 
 // Returns the state of a model that is at rest where it was built.

@@ -12,16 +12,17 @@ namespace {
 constexpr double most_departure = 0.1;
 constexpr TangentShares shares{};
 
-// The Hessian's directions tell more than its departure how good it still is. It is poor where a step tried more than
-// so many points an iteration, or came nearer by less than this factor in each: A does better then. Beyond the
-// departure it is not even tried.
-constexpr double most_trials = 1.25;
-constexpr double least_progress = 0.25;
-constexpr double most_departure_of_hessian = 0.5;
+// The Hessian's directions tell more than its departure how good it still is. It is poor where an evaluation comes
+// nearer by less than from A, and worn where by less than this factor. Beyond the departure it is not even tried.
+constexpr double worn_progress = 0.1;
+constexpr double usual_progress = 0.25;  // of A, where it has not served lately
+constexpr double forgetting = 0.1;       // of what it did, in each step that it does not serve
+constexpr double round_off = 1e-12;
+constexpr double most_departure_of_hessian = 0.2;
 constexpr int longest_age = 1000000;
 
 // Renewals of the Hessian may cost as much as this share of the evaluations of all steps, of ten iterations each.
-constexpr double share_of_renewals = 0.1;
+constexpr double share_of_renewals = 0.2;
 constexpr double evaluations_a_step = 11;
 
 // Makes the matrix in force: the one that the state says, or a new one. False where there is none: then A serves.
@@ -36,11 +37,14 @@ int least_age(const Model& model, const HessianSystem& hessian) {
   return static_cast<int>(std::ceil(hessian.renewal_cost(model) / (share_of_renewals * evaluations_a_step)));
 }
 
-// Likewise; A serves too where the Hessian is not good enough and too young to be renewed.
+// Likewise; A serves too where the Hessian is poor and too young to be renewed.
 bool make_hessian(const Model& model, const State& state, Workspace& w) {
   if (state.matrix.rows() == model.vertices && w.hessian.make(model, state.matrix, w.threads)) {
-    if (!state.matrix_poor && w.hessian.departure(model, w.matrix_place) <= most_departure_of_hessian) return true;
-    if (state.matrix_age < least_age(model, w.hessian)) return false;
+    const double others = state.constant_progress > 0 ? state.constant_progress : usual_progress;
+    const bool poor =
+        state.hessian_progress > others || w.hessian.departure(model, w.matrix_place) > most_departure_of_hessian;
+    const bool worn = poor || state.hessian_progress > worn_progress;
+    if (!worn || state.matrix_age < least_age(model, w.hessian)) return !poor;
   }
   w.renewed = w.hessian.make(model, w.matrix_place, w.threads);
   return w.renewed;
@@ -83,12 +87,19 @@ void choose_hessian(const Model& model, const StepInputs& inputs, const State& s
 
 namespace {
 
-// Tells whether the step that was made had a hard time. `report` is the whole step's.
-bool was_poor(const StepReport& report) {
-  if (report.line_search > most_trials * report.iterations) return true;
-  constexpr double round_off = 1e-12;
-  return report.stop_reason == StopReason::iterations &&
-         report.error_estimate > std::max(round_off, std::pow(least_progress, report.iterations));
+// `report` is the whole step's.
+double progress_of(const StepReport& report) {
+  const double left = std::clamp(report.error_estimate, round_off, 1.0);
+  return std::pow(left, 1.0 / std::max(report.line_search, 1));
+}
+
+void remember_progress(const Workspace& w, State& state) {
+  if (w.hessian_serves) {
+    state.hessian_progress = progress_of(w.report);
+    if (state.constant_progress > 0) state.constant_progress += forgetting * (usual_progress - state.constant_progress);
+  } else if (w.current.contacts.empty()) {
+    state.constant_progress = progress_of(w.report);
+  }
 }
 
 }  // namespace
@@ -104,7 +115,11 @@ void remember_matrix(const Model& model, const SolverSettings& solver, const Wor
     state.matrix.resize(0, 3);
     state.matrix_age = 0;
   }
-  if (w.hessian_serves || !of_hessian) state.matrix_poor = of_hessian && was_poor(w.report);
+  if (of_hessian) {
+    remember_progress(w, state);
+  } else {
+    state.hessian_progress = state.constant_progress = 0;
+  }
 }
 
 }  // namespace supple
