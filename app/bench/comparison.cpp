@@ -52,7 +52,7 @@ std::vector<Outcome> SolverComparison::run(const BenchState& state, const std::v
       State after = state.before;
       workspace_.correction = {};  // no solver may use what another one learned of A^-1
       // The matrix that a film would have at hand here is.
-      if (inputs.solver.matrix == SystemMatrix::tangent) prepare_matrix(subject_.model, state.before, workspace_);
+      prepare_matrix(subject_.model, inputs.solver, state.before, workspace_);
       const StepReport& report = step(subject_.model, inputs, after, workspace_, rule);
       outcome.used_ms += report.step_ms;
       if (repeat > 0) {

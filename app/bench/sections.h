@@ -42,12 +42,14 @@ ReportSection bench_scaling(const BenchSetting& setting);
 // roofline.cpp
 ReportSection bench_roofline(const BenchSetting& setting);
 
-// The renewals of a film that is played with ten iterations a step and the tangent matrix.
+// The renewals of a film that is played with ten iterations a step and a matrix that follows the body.
 struct Renewals {
-  double a_frame = 0;  // how many
-  double ms = 0;       // what they cost in a frame, the examination of whether one is due included
+  double a_frame = 0;                   // how many
+  double ms = 0;                        // what they cost in a frame, the examination of whether one is due included
+  std::vector<BenchState> states = {};  // of the film before some of its frames
 };
-Renewals count_renewals(Subject& subject, Threads& threads);
+// frames: those whose states are wanted, ascending.
+Renewals count_renewals(Subject& subject, Threads& threads, SystemMatrix matrix, const std::vector<int>& frames = {});
 
 constexpr int most_vertices = 4000;  // of subjects that are solved to the end in many states
 

@@ -154,7 +154,7 @@ void add_row(ReportTable& table, ReportTable& by_matrix, const Row& row, const S
                                       {"tangent", Method::quasi_newton, 10},
                                       {"tangent, longer", Method::quasi_newton, 40}};
   entries[2].matrix = entries[3].matrix = SystemMatrix::tangent;
-  const Renewals renewals = count_renewals(subject, *setting.threads);
+  const Renewals renewals = count_renewals(subject, *setting.threads, SystemMatrix::tangent);
   std::vector<double> by_error[4];  // error and time of ten, error of the tangent's ten, its time to the first error
   std::vector<double> errors[2];
   double least[2] = {1e300, 1e300}, median[2] = {0, 0}, overhead = 0, trials = 0;

@@ -42,8 +42,7 @@ void turn(const std::vector<Mat3>& rotation, bool back, Positions& r) {
 HessianMatrix rest_hessian(const Model& model) {
   HessianMatrix hessian(model);
   ElementMatrices elements;
-  Workspace scratch;
-  element_matrices(model, scratch, model.rest, true, elements);
+  element_matrices(model, nullptr, model.rest, true, elements);
   hessian.assemble(model, elements, {}, 0, model.rest);
   return hessian;
 }
@@ -141,8 +140,7 @@ void SystemCgInverse::apply(const Model& model, const StepInputs&, Workspace&, P
 }
 
 HechtInverse::HechtInverse(const Model& model) : hessian_(model) {
-  Workspace scratch;
-  element_matrices(model, scratch, model.rest, true, rest_);
+  element_matrices(model, nullptr, model.rest, true, rest_);
   turned_ = rest_;
   factor_.analyze(hessian_.matrix());
 }

@@ -70,7 +70,10 @@ std::string checkpoint_bytes(const Checkpoint& checkpoint, const std::string& id
                               {"handles", body.anchors.centers.size()},
                               {"holds", holds},
                               {"time_s", body.time},
-                              {"matrix_vertices", body.matrix.rows()}});
+                              {"matrix_vertices", body.matrix.rows()},
+                              {"matrix_age", body.matrix_age},
+                              {"hessian_progress", body.hessian_progress},
+                              {"constant_progress", body.constant_progress}});
   }
   const std::string text = exact_json_text(head);
   std::string bytes(signature);
@@ -107,6 +110,9 @@ State read_body(const Json& body, Reader& reader) {
   const Positions centers = reader.rows(body.at("handles"));
   for (Eigen::Index h = 0; h < centers.rows(); ++h) state.anchors.centers.push_back(centers.row(h).transpose());
   state.matrix = reader.rows(body.at("matrix_vertices"));
+  state.matrix_age = body.at("matrix_age");
+  state.hessian_progress = body.at("hessian_progress");
+  state.constant_progress = body.at("constant_progress");
   for (const Json& held : body.at("holds")) state.anchors.holds.push_back(held.get<bool>());
   return state;
 }

@@ -22,9 +22,8 @@ constexpr TangentShares all_tangent{1, 0, 0};
 
 // A third of the trace of each 3 x 3 block of the Hessian whose element parts are projected, at x.
 Eigen::MatrixXd traces(const Model& model, const Positions& x) {
-  Workspace w;
   ElementMatrices elements;
-  element_matrices(model, w, x, true, elements);
+  element_matrices(model, nullptr, x, true, elements);
   HessianMatrix hessian(model);
   hessian.assemble(model, elements, {}, 0, x);
   const Eigen::MatrixXd all = full(hessian.matrix());

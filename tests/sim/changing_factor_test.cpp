@@ -97,5 +97,23 @@ TEST(ChangingFactor, KnowsWhichMatricesArePositiveDefinite) {
   EXPECT_EQ(solve(factor, b), x);
 }
 
+TEST(ChangingFactor, SolvesInSinglePrecisionToItsRoundOff) {
+  for (const Sparse& matrix : {block_matrix(7, 0.5, 2), random_matrix(300, 3, 3), random_matrix(9, 3, 3)}) {
+    ChangingFactor factor(Precision::single_precision);
+    factor.analyze(matrix);
+    ASSERT_TRUE(factor.factorize(matrix));
+    ChangingFactor exact = factor_of(matrix);
+    // Of forces that single precision alone cannot hold.
+    for (const double scale : {1.0, 1e-60, 1e60}) {
+      const Eigen::VectorXd b = scale * Eigen::VectorXd::Random(matrix.rows());
+      const Eigen::VectorXd x = solve(factor, b), expected = solve(exact, b);
+      EXPECT_LT((x - expected).norm(), 1e-5 * expected.norm());
+      EXPECT_GT((x - expected).norm(), 0);
+    }
+    EXPECT_EQ(factor.stored_numbers(), exact.stored_numbers());
+    EXPECT_EQ(factor.operations(), exact.operations());
+  }
+}
+
 }  // namespace
 }  // namespace supple

@@ -5,6 +5,7 @@
 
 #include "base/aligned.h"
 #include "base/variants.h"
+#include "sim/linear/changing_factor.h"
 #include "sim/linear/front_layout.h"
 #include "sim/linear/linear_kernels.h"
 
@@ -87,34 +88,57 @@ TEST(Kernels, EliminateDenseFronts) {
   }
 }
 
-// Compares both halves of a solve with one front with the dense columns of L.
+// Compares both halves of a solve with one front, in the precision of T, with the dense columns of L.
+template <class T>
+void expect_solves(LinearKernels::FrontStep<T> down, LinearKernels::FrontStep<T> up, int pivots, int rows,
+                   double tolerance) {
+  const int size = pivots + rows;
+  Eigen::MatrixXd lower = Eigen::MatrixXd::Random(size, size);
+  lower.diagonal().array() += 3;
+  StoredFront front(lower, pivots);
+  invert_triangles(front.shape, front.columns.data());
+  const AlignedVector<T> columns(front.columns.begin(), front.columns.end());
+  // The rows of the front are every second unknown after its pivots.
+  std::vector<std::int32_t> places;
+  for (int i = 0; i < rows; ++i) places.push_back(pivots + 2 * i + 1);
+  using Vector = Eigen::Matrix<T, Eigen::Dynamic, 1>;
+  Vector x = Vector::Random(size + rows);
+  Eigen::VectorXd expected = x.template cast<double>();
+  AlignedVector<T> scratch(row_blocks_of(front.shape) * block_rows, T(7));
+  const auto triangle = lower.topLeftCorner(pivots, pivots).triangularView<Eigen::Lower>();
+  expected.head(pivots) = triangle.solve(expected.head(pivots)).eval();
+  const Eigen::VectorXd taken = lower.bottomLeftCorner(rows, pivots) * expected.head(pivots);
+  for (int i = 0; i < rows; ++i) expected[places[i]] -= taken[i];
+  down(front.shape, columns.data(), places.data(), x.data(), x.data(), scratch.data());
+  EXPECT_LT((x.template cast<double>() - expected).norm(), tolerance * expected.norm()) << pivots << ", " << rows;
+
+  Eigen::VectorXd below(rows);
+  for (int i = 0; i < rows; ++i) below[i] = expected[places[i]];
+  expected.head(pivots) =
+      triangle.transpose().solve(expected.head(pivots) - lower.bottomLeftCorner(rows, pivots).transpose() * below);
+  up(front.shape, columns.data(), places.data(), x.data(), x.data(), scratch.data());
+  EXPECT_LT((x.template cast<double>() - expected).norm(), tolerance * expected.norm()) << pivots << ", " << rows;
+}
+
 TEST(Kernels, SolveWithDenseFronts) {
   for (int v = 0; v < runnable_variants(); ++v) {
-    for (const auto& [pivots, rows] :
-         std::vector<std::pair<int, int>>{{1, 0}, {1, 1}, {3, 9}, {8, 8}, {9, 30}, {13, 2}, {24, 17}, {40, 0}}) {
-      const int size = pivots + rows;
-      Eigen::MatrixXd lower = Eigen::MatrixXd::Random(size, size);
-      lower.diagonal().array() += 3;
-      StoredFront front(lower, pivots);
-      // The rows of the front are every second unknown after its pivots.
-      std::vector<std::int32_t> places;
-      for (int i = 0; i < rows; ++i) places.push_back(pivots + 2 * i + 1);
-      Eigen::VectorXd x = Eigen::VectorXd::Random(size + rows), expected = x;
-      AlignedVector<double> scratch(row_blocks_of(front.shape) * block_rows, 7.0);
-      const auto triangle = lower.topLeftCorner(pivots, pivots).triangularView<Eigen::Lower>();
-      expected.head(pivots) = triangle.solve(x.head(pivots));
-      const Eigen::VectorXd taken = lower.bottomLeftCorner(rows, pivots) * expected.head(pivots);
-      for (int i = 0; i < rows; ++i) expected[places[i]] -= taken[i];
-      linear_kernels(v).solve_down(front.shape, front.columns.data(), places.data(), x.data(), x.data(),
-                                   scratch.data());
-      EXPECT_LT((x - expected).norm(), 1e-12 * expected.norm()) << variant_name(v) << " " << pivots << ", " << rows;
-
-      Eigen::VectorXd below(rows);
-      for (int i = 0; i < rows; ++i) below[i] = expected[places[i]];
-      expected.head(pivots) =
-          triangle.transpose().solve(expected.head(pivots) - lower.bottomLeftCorner(rows, pivots).transpose() * below);
-      linear_kernels(v).solve_up(front.shape, front.columns.data(), places.data(), x.data(), x.data(), scratch.data());
-      EXPECT_LT((x - expected).norm(), 1e-12 * expected.norm()) << variant_name(v) << " " << pivots << ", " << rows;
+    const testing::ScopedTrace trace(__FILE__, __LINE__, variant_name(v));
+    const LinearKernels& kernels = linear_kernels(v);
+    for (const auto& [pivots, rows] : std::vector<std::pair<int, int>>{{1, 0},
+                                                                       {1, 1},
+                                                                       {2, 5},
+                                                                       {3, 9},
+                                                                       {4, 4},
+                                                                       {5, 1},
+                                                                       {6, 12},
+                                                                       {7, 3},
+                                                                       {8, 8},
+                                                                       {9, 30},
+                                                                       {13, 2},
+                                                                       {24, 17},
+                                                                       {40, 0}}) {
+      expect_solves<double>(kernels.front_down_double, kernels.front_up_double, pivots, rows, 1e-12);
+      expect_solves<float>(kernels.front_down_float, kernels.front_up_float, pivots, rows, 1e-4);
     }
   }
 }

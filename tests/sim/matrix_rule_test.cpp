@@ -8,6 +8,7 @@
 #include "sim/model/model_values.h"
 #include "sim/solver/lbfgs.h"
 #include "support/bodies.h"
+#include "support/contact_scene.h"
 
 namespace supple {
 namespace {
@@ -91,10 +92,14 @@ TEST(MatrixRule, ABodyThatStiffensRenews) {
 }
 
 TEST(MatrixRule, AStateHoldsAllThatTheNextStepDependsOn) {
-  for (const Material& material : {Material(NeoHookean{1e4, 4e4}), Material(Polynomial{1e5})}) {
+  const std::tuple<Material, SystemMatrix> cases[] = {{NeoHookean{1e4, 4e4}, SystemMatrix::tangent},
+                                                      {Polynomial{1e5}, SystemMatrix::tangent},
+                                                      {NeoHookean{1e4, 4e4}, SystemMatrix::hessian},
+                                                      {Polynomial{1e5}, SystemMatrix::hessian}};
+  for (const auto& [material, matrix] : cases) {
     const BodyDescription body = bar(material, Held::hard_end, Precision::single_precision, 4);
     const Model model = build_model(body), again = build_model(body);
-    const StepInputs inputs = inputs_with(model, SystemMatrix::tangent);
+    const StepInputs inputs = inputs_with(model, matrix);
     State state = rest_state(model);
     Workspace w;
     std::vector<State> states;
@@ -111,6 +116,9 @@ TEST(MatrixRule, AStateHoldsAllThatTheNextStepDependsOn) {
         for (int i = from; i < 16; ++i) step(again, inputs, resumed, other);
         EXPECT_EQ(state_hash(again, resumed), state_hash(model, state)) << threads_count << " threads from " << from;
         EXPECT_EQ(resumed.matrix, state.matrix);
+        EXPECT_EQ(resumed.matrix_age, state.matrix_age);
+        EXPECT_EQ(resumed.hessian_progress, state.hessian_progress);
+        EXPECT_EQ(resumed.constant_progress, state.constant_progress);
       }
     }
     State back = states[5];  // and in the workspace that has gone further
@@ -119,11 +127,15 @@ TEST(MatrixRule, AStateHoldsAllThatTheNextStepDependsOn) {
   }
 }
 
-TEST(MatrixRule, NewValuesOfAModelMakeTheMatrixAnew) {
+class ByMatrix : public testing::TestWithParam<SystemMatrix> {};
+INSTANTIATE_TEST_SUITE_P(MatrixRule, ByMatrix, testing::Values(SystemMatrix::tangent, SystemMatrix::hessian),
+                         [](const auto& matrix) { return std::string(name_of(matrix.param)); });
+
+TEST_P(ByMatrix, NewValuesOfAModelMakeTheMatrixAnew) {
   BodyDescription body = bar(NeoHookean{1e4, 4e4}, Held::hard_end, Precision::single_precision, 2);
   Model model = build_model(body);
   ModelValues values(model, body);
-  const StepInputs inputs = inputs_with(model, SystemMatrix::tangent);
+  const StepInputs inputs = inputs_with(model, GetParam());
   State state = rest_state(model);
   Workspace w;
   for (int i = 0; i < 4; ++i) step(model, inputs, state, w);
@@ -139,39 +151,117 @@ TEST(MatrixRule, NewValuesOfAModelMakeTheMatrixAnew) {
   }
 }
 
-TEST(MatrixRule, TheConstantMatrixForgetsAndTheTangentBeginsAnew) {
+TEST_P(ByMatrix, IsForgottenByTheConstantMatrixAndBeginsAnew) {
   const Model model = build_model(bar(NeoHookean{1e4, 4e4}, Held::hard_end, Precision::single_precision, 2));
-  State state = test::moving_state(model, inputs_with(model, SystemMatrix::tangent), 3);
+  State state = test::moving_state(model, inputs_with(model, GetParam()), 3);
   EXPECT_EQ(state.matrix.rows(), model.vertices);
   Workspace w;
   step(model, inputs_with(model, SystemMatrix::constant), state, w);
   EXPECT_EQ(state.matrix.rows(), 0);
-  step(model, inputs_with(model, SystemMatrix::tangent), state, w);
+  step(model, inputs_with(model, GetParam()), state, w);
   EXPECT_TRUE(w.renewed);
 }
 
-TEST(MatrixRule, ImplicitMidpointKeepsTheConstantMatrix) {
+TEST_P(ByMatrix, ImplicitMidpointKeepsTheConstantMatrix) {
   BodyDescription body = bar(NeoHookean{1e4, 4e4}, Held::nothing, Precision::single_precision);
   body.integrator = Integrator::implicit_midpoint;
   const Model model = build_model(body);
   State state = rest_state(model), constant = state;
   Workspace w;
   for (int i = 0; i < 3; ++i) {
-    step(model, inputs_with(model, SystemMatrix::tangent), state, w);
+    step(model, inputs_with(model, GetParam()), state, w);
     EXPECT_EQ(w.system, &model);
+    EXPECT_FALSE(w.hessian_serves);
     step(model, inputs_with(model, SystemMatrix::constant), constant, w);
     EXPECT_EQ(state_hash(model, state), state_hash(model, constant));
   }
 }
 
-TEST(MatrixRule, WhereNoTangentCanBeMadeTheConstantMatrixServes) {
+TEST_P(ByMatrix, WhereNoneCanBeMadeTheConstantMatrixServes) {
   const Model model = build_model(bar(Polynomial{1e5}, Held::nothing, Precision::single_precision));
   State state = rest_state(model);
   state.v = test::shaken(Positions::Zero(model.vertices, 3), 1e170, 3);
   Workspace w;
-  const StepReport& report = step(model, inputs_with(model, SystemMatrix::tangent), state, w);
+  const StepReport& report = step(model, inputs_with(model, GetParam()), state, w);
   EXPECT_TRUE(report.failed);
   EXPECT_EQ(w.system, &model);
+  EXPECT_FALSE(w.hessian_serves);
+}
+
+TEST(MatrixRule, TheHessianComesMuchNearerInTheSameIterations) {
+  // A bar that swings far: bent and turned, with little stretch.
+  const std::pair<Material, double> cases[] = {{NeoHookean{1e5, 4e5}, 1e-3}, {Corotated{1e5, 1e5}, 1e-3}};
+  for (const auto& [material, most] : cases) {
+    const Model model = build_model(bar(material, Held::hard_end, Precision::single_precision, 3));
+    const State before = test::moving_state(model, inputs_with(model, SystemMatrix::hessian), 8);
+    ASSERT_EQ(before.matrix_age, 7);  // the matrix is that of the first step
+    double error[2];
+    Reference reference(model);
+    Workspace w, scratch;
+    for (const SystemMatrix matrix : {SystemMatrix::constant, SystemMatrix::hessian}) {
+      StepInputs inputs = inputs_with(model, matrix);
+      inputs.solver.iterations = 5;
+      State after = before;
+      ASSERT_FALSE(step(model, inputs, after, w).failed);
+      EXPECT_EQ(w.hessian_serves, matrix == SystemMatrix::hessian);
+      error[matrix == SystemMatrix::hessian] = reference.step_error(model, inputs, before, after, scratch).value();
+    }
+    EXPECT_LT(error[1], most * error[0]) << name_of(material);
+  }
+}
+
+TEST(MatrixRule, AHessianThatServesPoorlyWaitsUntilARenewalIsCheapEnough) {
+  // Without stiffness at rest, and with more of it in each step.
+  const Model model = build_model(bar(Polynomial{1e6}, Held::hard_end, Precision::single_precision, 2));
+  const StepInputs inputs = inputs_with(model, SystemMatrix::hessian);
+  State state = rest_state(model);
+  Workspace w;
+  std::vector<int> renewals;
+  int served = 0;
+  for (int i = 0; i < 120; ++i) {
+    step(model, inputs, state, w);
+    if (w.renewed) renewals.push_back(i);
+    served += w.hessian_serves;
+    EXPECT_EQ(w.system, &model);
+  }
+  ASSERT_GT(renewals.size(), 1u);
+  EXPECT_EQ(renewals[0], 0);
+  for (std::size_t i = 1; i < renewals.size(); ++i) EXPECT_GT(renewals[i] - renewals[i - 1], 9);
+  EXPECT_LT(served, 120);
+}
+
+TEST(MatrixRule, TheHessianServesOnlyWhatTouchesNothing) {
+  const BodyDescription body = bar(NeoHookean{1e4, 4e4}, Held::nothing, Precision::single_precision, 2);
+  test::ContactScene scene(body, {{"ground", test::shape_of(HalfSpace{Vec3::UnitY(), 0}), 0, 0.3}}, Vec3(0, 0.3, 0));
+  scene.inputs.solver.matrix = SystemMatrix::hessian;
+  State state = scene.state;
+  Workspace w;
+  std::vector<State> states;
+  int in_the_air = 0, touching = 0;
+  for (int i = 0; i < 24; ++i) {
+    states.push_back(state);
+    ASSERT_FALSE(step(scene.model, scene.inputs, state, w).failed);
+    (w.hessian_serves ? in_the_air : touching) += 1;
+  }
+  EXPECT_GT(in_the_air, 4);
+  EXPECT_GT(touching, 4);
+  for (const int from : {2, 9, 12, 15, 20}) {  // resumed in the air, and where it touches
+    Workspace other;
+    State resumed = states[from];
+    for (int i = from; i < 24; ++i) step(scene.model, scene.inputs, resumed, other);
+    EXPECT_EQ(state_hash(scene.model, resumed), state_hash(scene.model, state)) << from;
+    EXPECT_EQ(resumed.matrix, state.matrix);
+    EXPECT_EQ(resumed.matrix_age, state.matrix_age);
+  }
+}
+
+TEST(MatrixRule, SpringsAloneKeepTheConstantMatrix) {
+  const Model model = build_model(test::spring_net(4));
+  State state = rest_state(model);
+  Workspace w;
+  step(model, inputs_with(model, SystemMatrix::hessian), state, w);
+  EXPECT_FALSE(w.hessian_serves);
+  EXPECT_EQ(state.matrix.rows(), 0);
 }
 
 }  // namespace

@@ -134,9 +134,20 @@ void stretches(const ElementChunk& chunk, const double* x, double* largest, doub
   });
 }
 
+void rotations(double* matrices, int blocks) {
+  for (double* block = matrices; block < matrices + long(blocks) * 9 * block_width; block += 9 * block_width) {
+    for (int lane = 0; lane < block_width; lane += lanes) {
+      Matrix3<Lanes> f;
+      for (int i = 0; i < 9; ++i) f.m[i] = Lanes::load_aligned(block + i * block_width + lane);
+      const Matrix3<Lanes> r = polar_rotation(f);
+      for (int i = 0; i < 9; ++i) r.m[i].store_aligned(block + i * block_width + lane);
+    }
+  }
+}
+
 }  // namespace
 
 extern const ElementKernels SUPPLE_TABLE(element);
-const ElementKernels SUPPLE_TABLE(element) = {elements, stiffness, scalar_stiffness, stretches};
+const ElementKernels SUPPLE_TABLE(element) = {elements, stiffness, scalar_stiffness, stretches, rotations};
 
 }  // namespace supple

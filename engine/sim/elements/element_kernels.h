@@ -46,6 +46,10 @@ struct ElementKernels {
   // Writes for each lane the largest stretch, and the volume over the rest volume, which is negative where an element
   // is inverted.
   void (*stretches)(const ElementChunk& chunk, const double* x, double* largest, double* volume);
+
+  // Replaces matrices by the rotations of their polar decompositions (polar_rotation.h). They are stored in blocks of
+  // block_width: nine entries by rows, one matrix in each lane.
+  void (*rotations)(double* matrices, int blocks);
 };
 
 constexpr int stiffness_numbers(ElementKind kind) { return kind == ElementKind::tetrahedron ? 45 : 6; }

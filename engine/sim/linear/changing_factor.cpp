@@ -5,6 +5,24 @@
 #include "sim/linear/linear_kernels.h"
 
 namespace supple {
+
+void invert_triangles(FrontShape front, double* columns) {
+  for (int strip = 0; strip < strips_of(front); ++strip) {
+    double* triangle = columns + strip_begin(front, strip);
+    const int width = strip_width(front, strip);
+    double inverse[block_rows][block_rows] = {};  // by columns
+    for (int j = 0; j < width; ++j) {
+      inverse[j][j] = 1 / triangle[j * block_rows + j];
+      for (int i = j + 1; i < width; ++i) {
+        double sum = 0;
+        for (int k = j; k < i; ++k) sum += triangle[k * block_rows + i] * inverse[j][k];
+        inverse[j][i] = -sum / triangle[i * block_rows + i];
+      }
+    }
+    for (int j = 0; j < width; ++j) std::copy_n(inverse[j], block_rows, triangle + j * block_rows);
+  }
+}
+
 void ChangingFactor::analyze(const Eigen::SparseMatrix<double>& matrix) {
   elimination_ = std::make_unique<Elimination>(Elimination::of(matrix));
   fronts_ = std::make_unique<Multifrontal>(*elimination_);
@@ -15,30 +33,67 @@ void ChangingFactor::analyze(const Eigen::SparseMatrix<double>& matrix) {
     count += column_numbers(node.front());
     most_rows = std::max<std::int64_t>(most_rows, row_blocks_of(node.front()) * block_rows);
   }
-  columns_.resize(count);
-  scratch_.resize(most_rows);
+  if (precision_ == Precision::double_precision) {
+    double_.resize(count);
+    scratch_.resize(most_rows);
+    return;
+  }
+  single_.resize(count);
+  front_.resize(elimination_->most_column_numbers);
+  narrow_.resize(most_rows);
+  x_.resize(elimination_->size);
 }
 
 bool ChangingFactor::factorize(const Eigen::SparseMatrix<double>& matrix) {
   fronts_->begin();
   for (const std::int32_t s : elimination_->order) {
-    if (fronts_->eliminate(matrix, s, columns_.data() + first_number_[s]) >= 0) return false;
+    const bool narrow = precision_ == Precision::single_precision;
+    const FrontShape front = elimination_->nodes[s].front();
+    double* columns = narrow ? front_.data() : double_.data() + first_number_[s];
+    if (fronts_->eliminate(matrix, s, columns) >= 0) return false;
+    invert_triangles(front, columns);
+    if (narrow) std::copy_n(columns, column_numbers(front), single_.data() + first_number_[s]);
   }
   return true;
 }
 
-void ChangingFactor::solve(const double* b, double* x) {
+double ChangingFactor::operations() const {
+  double count = 0;
+  for (const Supernode& node : elimination_->nodes) {
+    for (double rows = node.row_count + node.width(); rows > node.row_count; --rows) count += rows * rows;
+  }
+  return count;
+}
+
+template <class T>
+void ChangingFactor::solve_in_place(const AlignedVector<T>& columns, T* x, T* scratch) const {
   const Elimination& all = *elimination_;
-  if (x != b) std::copy_n(b, all.size, x);
-  const LinearKernels& kernels = linear_kernels();
   const auto each = [&](const auto& step, int s) {
     const Supernode& node = all.nodes[s];
-    step(node.front(), columns_.data() + first_number_[s], all.rows.data() + node.first_row, x + node.first, x,
-         scratch_.data());
+    step(node.front(), columns.data() + first_number_[s], all.rows.data() + node.first_row, x + node.first, x, scratch);
   };
-  const int count = static_cast<int>(all.nodes.size());
-  for (int s = 0; s < count; ++s) each(kernels.solve_down, s);
-  for (int s = count - 1; s >= 0; --s) each(kernels.solve_up, s);
+  const auto count = static_cast<int>(all.nodes.size());
+  const LinearKernels& kernels = linear_kernels();
+  if constexpr (std::is_same_v<T, float>) {
+    for (int s = 0; s < count; ++s) each(kernels.front_down_float, s);
+    for (int s = count - 1; s >= 0; --s) each(kernels.front_up_float, s);
+  } else {
+    for (int s = 0; s < count; ++s) each(kernels.front_down_double, s);
+    for (int s = count - 1; s >= 0; --s) each(kernels.front_up_double, s);
+  }
+}
+
+void ChangingFactor::solve(const double* b, double* x) {
+  const int size = elimination_->size;
+  if (precision_ == Precision::double_precision) {
+    if (x != b) std::copy_n(b, size, x);
+    solve_in_place(double_, x, scratch_.data());
+    return;
+  }
+  const double scale = solve_scale(b, size), back = 1 / scale;
+  for (int i = 0; i < size; ++i) x_[i] = static_cast<float>(scale * b[i]);
+  solve_in_place(single_, x_.data(), narrow_.data());
+  for (int i = 0; i < size; ++i) x[i] = back * x_[i];
 }
 
 }  // namespace supple

@@ -1,6 +1,6 @@
-// Computes a sparse Cholesky factor again for each matrix of one pattern, in double precision and for one right-hand
-// side at a time: for Newton's method and others whose matrix changes. It uses fronts of our own (multifrontal.h), like
-// CholeskyFactor, which serves three right-hand sides at once and many solves.
+// Computes a sparse Cholesky factor again for each matrix of one pattern, for one right-hand side at a time: for
+// matrices that couple coordinates and change. It uses fronts of our own (multifrontal.h), like CholeskyFactor, which
+// serves three right-hand sides at once.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,19 @@
 #include <Eigen/SparseCore>
 
 #include "base/aligned.h"
-#include "sim/linear/elimination.h"
+#include "sim/linear/cholesky.h"
 #include "sim/linear/multifrontal.h"
 
 namespace supple {
 
+// Inverts the triangles on the diagonals of a front's strips in its columns of L: a solve then multiplies with them.
+void invert_triangles(FrontShape front, double* columns);
+
 class ChangingFactor {
  public:
+  // The precision is that of the solves; factors are always computed in double precision.
+  explicit ChangingFactor(Precision precision = Precision::double_precision) : precision_(precision) {}
+
   // Takes the lower triangle; entries above the diagonal are ignored. The unknowns must already be in an order with
   // little fill.
   void analyze(const Eigen::SparseMatrix<double>& matrix);
@@ -28,14 +34,26 @@ class ChangingFactor {
   void solve(const double* b, double* x);
 
   // Counts the numbers of the factor's columns, including the zeros that merging and padding store.
-  std::int64_t stored_numbers() const { return static_cast<std::int64_t>(columns_.size()); }
+  std::int64_t stored_numbers() const { return static_cast<std::int64_t>(single_.size() + double_.size()); }
+  Precision precision() const { return precision_; }
+  // Counts the multiplications and additions of one factorisation.
+  double operations() const;
 
  private:
+  template <class T>
+  void solve_in_place(const AlignedVector<T>& columns, T* x, T* scratch) const;
+
+  Precision precision_;
   std::unique_ptr<Elimination> elimination_;  // where the fronts can go on seeing it when this is moved
   std::unique_ptr<Multifrontal> fronts_;
-  std::vector<std::int64_t> first_number_;  // by node, into columns_
-  AlignedVector<double> columns_;           // of L, node after node (front_layout.h)
-  AlignedVector<double> scratch_;           // padded rows of the largest front
+  std::vector<std::int64_t> first_number_;  // by node, into the columns
+  // Columns of L, node after node (front_layout.h), in the precision of the solves.
+  AlignedVector<float> single_;
+  AlignedVector<double> double_;
+  AlignedVector<double> front_;    // columns of one front; only in single precision
+  AlignedVector<float> x_;         // the unknowns in single precision
+  AlignedVector<float> narrow_;    // padded rows of the largest front
+  AlignedVector<double> scratch_;  // the same in double precision
 };
 
 }  // namespace supple

@@ -5,6 +5,7 @@
 
 #include "base/lanes.h"
 #include "base/variants.h"
+#include "sim/linear/front_solve.h"
 
 #if defined(__FMA__) || defined(__AVX__)
 #include <immintrin.h>
@@ -176,75 +177,6 @@ int eliminate(FrontShape front, double* columns, double* update) {
   return -1;
 }
 
-// Subtracts a strip times its part of x from the rows below its triangle.
-template <int width>
-void strip_down(const double* triangle, int blocks, double* x) {
-  double own[width];
-  for (int j = 0; j < width; ++j) {
-    own[j] = x[j];
-    for (int k = 0; k < j; ++k) own[j] -= triangle[k * block_rows + j] * own[k];
-    x[j] = own[j] /= triangle[j * block_rows + j];
-  }
-  const double* numbers = triangle + block_rows * width;
-  Lanes known[width];
-  for (int j = 0; j < width; ++j) known[j] = Lanes(own[j]);
-  for (int b = 1; b < blocks; ++b, numbers += block_rows * width) {
-    for (int i = 0; i < block_rows; i += lanes) {
-      Lanes sum = Lanes::load_aligned(x + b * block_rows + i);
-      for (int j = 0; j < width; ++j) sum = fnma(known[j], Lanes::load_aligned(numbers + j * block_rows + i), sum);
-      sum.store_aligned(x + b * block_rows + i);
-    }
-  }
-}
-
-template <int width>
-void strip_up(const double* triangle, int blocks, double* x) {
-  const double* numbers = triangle + block_rows * width;
-  Lanes sum[width];
-  for (int j = 0; j < width; ++j) sum[j] = Lanes(0.0);
-  for (int b = 1; b < blocks; ++b, numbers += block_rows * width) {
-    for (int i = 0; i < block_rows; i += lanes) {
-      const Lanes known = Lanes::load_aligned(x + b * block_rows + i);
-      for (int j = 0; j < width; ++j) sum[j] = fma(known, Lanes::load_aligned(numbers + j * block_rows + i), sum[j]);
-    }
-  }
-  for (int j = width - 1; j >= 0; --j) {
-    double own = x[j] - sum_in_order(sum[j]);
-    for (int k = j + 1; k < width; ++k) own -= triangle[j * block_rows + k] * x[k];
-    x[j] = own / triangle[j * block_rows + j];
-  }
-}
-
-using StripStep = void (*)(const double*, int, double*);
-
-void solve_down(FrontShape front, const double* columns, const std::int32_t* rows, double* own, double* x,
-                double* scratch) {
-  static constexpr StripStep step[block_rows] = {strip_down<1>, strip_down<2>, strip_down<3>, strip_down<4>,
-                                                 strip_down<5>, strip_down<6>, strip_down<7>, strip_down<8>};
-  const int strips = strips_of(front), blocks = row_blocks_of(front);
-  for (int i = 0; i < blocks * block_rows; ++i) scratch[i] = i < front.pivots ? own[i] : 0.0;
-  for (int strip = 0; strip < strips; ++strip)
-    step[strip_width(front, strip) - 1](columns + strip_begin(front, strip), blocks - strip,
-                                        scratch + strip * block_rows);
-  for (int i = 0; i < front.pivots; ++i) own[i] = scratch[i];
-  const double* taken = scratch + strips * block_rows;
-  for (int i = 0; i < front.rows; ++i) x[rows[i]] += taken[i];
-}
-
-void solve_up(FrontShape front, const double* columns, const std::int32_t* rows, double* own, double* x,
-              double* scratch) {
-  static constexpr StripStep step[block_rows] = {strip_up<1>, strip_up<2>, strip_up<3>, strip_up<4>,
-                                                 strip_up<5>, strip_up<6>, strip_up<7>, strip_up<8>};
-  const int strips = strips_of(front), blocks = row_blocks_of(front);
-  for (int i = 0; i < strips * block_rows; ++i) scratch[i] = i < front.pivots ? own[i] : 0.0;
-  double* known = scratch + strips * block_rows;
-  for (int i = 0; i < (blocks - strips) * block_rows; ++i) known[i] = i < front.rows ? x[rows[i]] : 0.0;
-  for (int strip = strips - 1; strip >= 0; --strip)
-    step[strip_width(front, strip) - 1](columns + strip_begin(front, strip), blocks - strip,
-                                        scratch + strip * block_rows);
-  for (int i = 0; i < front.pivots; ++i) own[i] = scratch[i];
-}
-
 // Holds four right-hand sides side by side: x, y, z and an unused one that completes the register.
 template <class T>
 struct Four {
@@ -390,7 +322,9 @@ void add_scaled(const double* const* a, const double* c, int count, double* r, l
 }  // namespace
 
 extern const LinearKernels SUPPLE_TABLE(linear);
-const LinearKernels SUPPLE_TABLE(linear) = {eliminate,    solve_down, solve_up, down<float>, up<float>,
-                                            down<double>, up<double>, dots,     dot_float,   add_scaled};
+const LinearKernels SUPPLE_TABLE(linear) = {
+    eliminate,   solve_down<float>, solve_up<float>, solve_down<double>, solve_up<double>,
+    down<float>, up<float>,         down<double>,    up<double>,         dots,
+    dot_float,   add_scaled};
 
 }  // namespace supple

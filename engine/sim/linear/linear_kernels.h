@@ -29,12 +29,14 @@ struct LinearKernels {
   // number one by one in the order of the pivots. Returns the first pivot that is not positive, or -1.
   int (*eliminate)(FrontShape front, double* columns, double* update);
 
-  // These functions solve the part of one front in L x = b, in place, and in L^T x = b. `own`: x at the front's first
-  // pivot; rows: for each row below the pivots, its index in x. scratch: as many numbers as the front has padded rows.
-  void (*solve_down)(FrontShape front, const double* columns, const std::int32_t* rows, double* own, double* x,
-                     double* scratch);
-  void (*solve_up)(FrontShape front, const double* columns, const std::int32_t* rows, double* own, double* x,
-                   double* scratch);
+  // These functions solve the part of one front in L x = b, in place, and in L^T x = b. The triangle on the diagonal of
+  // each strip is inverted (invert_triangles in changing_factor.h). `own`: x at the front's first
+  // pivot; rows: for each row below the pivots, its index in x. scratch: as many numbers as the front has padded rows,
+  // aligned like the columns.
+  template <class T>
+  using FrontStep = void (*)(FrontShape front, const T* columns, const std::int32_t* rows, T* own, T* x, T* scratch);
+  FrontStep<float> front_down_float, front_up_float;
+  FrontStep<double> front_down_double, front_up_double;
 
   // Solves L x = b (down) or L^T x = b (up) in place for four interleaved right-hand sides (n x 4), by panels of up to
   // panel_width columns: those of an ascending list, or all of them (null). Numbers that belong to other panels are

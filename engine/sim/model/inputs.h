@@ -80,12 +80,13 @@ struct ContactSettings {
 // The matrix that quasi-Newton directions start from.
 enum class SystemMatrix {
   constant,  // A = M/h^2 + L: the paper's
-  tangent,   // one that follows the body (model/tangent_system.h)
+  tangent,   // one for all coordinates that follows the body (model/tangent_system.h)
+  hessian,   // one over all coordinates that turns with the body (model/hessian_system.h)
 };
 template <>
 struct Names<SystemMatrix> {
-  static constexpr std::array table = {Name{SystemMatrix::constant, "constant"},
-                                       Name{SystemMatrix::tangent, "tangent"}};
+  static constexpr std::array table = {Name{SystemMatrix::constant, "constant"}, Name{SystemMatrix::tangent, "tangent"},
+                                       Name{SystemMatrix::hessian, "hessian"}};
 };
 
 enum class LineSearch { armijo, wolfe, none };

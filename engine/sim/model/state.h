@@ -19,14 +19,17 @@ struct Anchors {
 };
 
 // All that a body's future depends on, unless its SearchRule remembers earlier steps (solver/step.h). A copy is a
-// snapshot. step() changes x, v, time and matrix; DrivenBody changes the anchors, and replaces the whole when it
-// restores one.
+// snapshot. step() changes x, v, time, and what is said of its matrix; DrivenBody changes the anchors, and replaces the
+// whole when it restores one.
 struct State {
-  Positions x;       // positions, n x 3, in the model's order [m]
-  Positions v;       // velocities, n x 3 [m/s]
-  double time = 0;   // [s]
-  Anchors anchors;   // may stay empty where only steps are made: they do not read them
-  Positions matrix;  // where the matrix of directions was made (solver/matrix_rule.h), n x 3; empty: A is in force [m]
+  Positions x;         // positions, n x 3, in the model's order [m]
+  Positions v;         // velocities, n x 3 [m/s]
+  double time = 0;     // [s]
+  Anchors anchors;     // may stay empty where only steps are made: they do not read them
+  Positions matrix;    // where the matrix of directions was made (solver/matrix_rule.h), n x 3; empty: none was [m]
+  int matrix_age = 0;  // steps since
+  // By which factor an evaluation came nearer in the last steps that the Hessian and A served; 0: not known.
+  double hessian_progress = 0, constant_progress = 0;
 };
 
 // Returns the state of a model that is at rest where it was built.

@@ -13,7 +13,6 @@ namespace supple {
 namespace {
 
 constexpr std::uint64_t tangent_ids = std::uint64_t(1) << 63;               // tells them from those of models
-constexpr std::size_t sampled_chunks = 8;                                   // one in so many
 constexpr std::int32_t nowhere = std::numeric_limits<std::int32_t>::min();  // two vertices that are held, or padding
 
 // Pairs of corners (a, b), b <= a.
@@ -31,8 +30,7 @@ struct TangentSystem::Parts : System {
   std::vector<std::int32_t> place;
   std::vector<std::size_t> first_place, first_number;  // by chunk
   AlignedVector<double> numbers;                       // of the elements (element_kernels.h)
-  AlignedVector<double> sample;                        // room for those of one chunk
-  double sampled = 0;                                  // sum of the matrix' numbers over the sampled elements [N/m]
+  StiffnessSample sample;
 
   CholeskyFactor::Room room;
 
@@ -40,17 +38,15 @@ struct TangentSystem::Parts : System {
   std::int32_t place_of(const Model& of, std::int32_t a, std::int32_t b) const;
   void add_elements(const Model& of);
   void add_vertices(const Model& of);
-  void sum_sampled(const Model& of);
 };
 
-TangentSystem::Parts::Parts(const Model& of) : System(of), structure(of.structure) {
+TangentSystem::Parts::Parts(const Model& of) : System(of), structure(of.structure), sample(of) {
   for (const Model::ChunkRange& range : of.chunks) {
     first_place.push_back(place.size());
     first_number.push_back(numbers.size());
     const std::size_t lanes_of_chunk = std::size_t(range.blocks) * block_width;
     place.resize(place.size() + lanes_of_chunk * pairs_of(corners_of(range.kind)), nowhere);
     numbers.resize(numbers.size() + lanes_of_chunk * scalar_numbers(range.kind));
-    sample.resize(std::max(sample.size(), lanes_of_chunk * scalar_numbers(range.kind)));
     for_each_element(of, range, [&](const ElementView& element) {
       const int corners = corners_of(element.kind);
       std::int32_t* to =
@@ -133,28 +129,6 @@ void TangentSystem::Parts::add_vertices(const Model& of) {
   }
 }
 
-// Sums the entries of the sampled chunks' elements in the matrix, the share of A included, without corner 0.
-void TangentSystem::Parts::sum_sampled(const Model& of) {
-  sampled = 0;
-  for (std::size_t c = 0; c < of.chunks.size(); c += sampled_chunks) {
-    const Model::ChunkRange& range = of.chunks[c];
-    const int inner = corners_of(range.kind) - 1, count = scalar_numbers(range.kind);
-    for_each_element(of, range, [&](const ElementView& element) {
-      const SystemTerm term = unit_term(element);
-      const double k = element.kind == ElementKind::tetrahedron ? of.stiffness[element.region].k : element.field[1];
-      const double* own =
-          &numbers[first_number[c] + std::size_t(element.lane - range.first_block * block_width) * count];
-      for (int a = 1, at = 0; a <= inner; ++a) {
-        for (int b = 1; b <= a; ++b, ++at) {
-          double product = 0;
-          for (int i = 0; i < 3; ++i) product += term.row[a][i] * term.row[b][i];
-          sampled += std::abs(shares.tangent * own[at] + shares.constant * k * term.weight * product);
-        }
-      }
-    });
-  }
-}
-
 TangentSystem::TangentSystem() = default;
 TangentSystem::~TangentSystem() = default;
 TangentSystem::TangentSystem(TangentSystem&&) noexcept = default;
@@ -182,24 +156,15 @@ bool TangentSystem::make(const Model& model, const Positions& x, const TangentSh
     p.couplings[i].value = shares.constant * model.couplings[i].value;
   p.add_elements(model);
   p.add_vertices(model);
-  p.sum_sampled(model);
+  p.sample.take(model, x, shares);
   if (!p.factor.renew(p.matrix, p.room)) return false;
   p.model = model.id;
   return true;
 }
 
 double TangentSystem::departure(const Model& model, const Positions& x) const {
-  Parts& p = *parts_;
-  SUPPLE_CHECK(p.model, ==, model.id);
-  double change = 0;
-  for (std::size_t c = 0; c < model.chunks.size(); c += sampled_chunks) {
-    const Model::ChunkRange& range = model.chunks[c];
-    element_kernels().scalar_stiffness(model.chunk(static_cast<int>(c)), x.data(), p.shares.axial, p.sample.data());
-    const double* made = &p.numbers[p.first_number[c]];
-    const int count = range.blocks * block_width * scalar_numbers(range.kind);
-    for (int i = 0; i < count; ++i) change += p.shares.tangent * std::abs(p.sample[i] - made[i]);
-  }
-  return change / p.sampled;
+  SUPPLE_CHECK(parts_->model, ==, model.id);
+  return parts_->sample.departure(model, x);
 }
 
 const System& TangentSystem::system() const { return *parts_; }

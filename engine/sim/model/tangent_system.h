@@ -9,17 +9,9 @@
 
 #include "base/threads.h"
 #include "sim/model/model.h"
+#include "sim/model/stiffness_sample.h"
 
 namespace supple {
-
-// The shares of S and A in the matrix. A tangent looks at a point, but a step needs an interval: A, whose stiffness is
-// fitted over one, keeps directions short where a material has next to no stiffness as it is but stiffens as it goes.
-struct TangentShares {
-  double tangent = 0.9;
-  double constant = 0.1;
-  double axial = 0.7;  // of what a stretch along one axis meets: S has no less there
-  bool operator==(const TangentShares&) const = default;
-};
 
 class TangentSystem {
  public:
@@ -33,8 +25,7 @@ class TangentSystem {
   // is not positive definite, as where positions or stiffnesses are too large for numbers; there is none then.
   bool make(const Model& model, const Positions& x, const TangentShares& shares, Threads* threads);
 
-  // How far the elements' stiffness at x is from that where the matrix was made: the sum of its changes over the sum
-  // of what is in the matrix, over a sample of the elements, those of every eighth chunk. 0 where all but turned.
+  // How far the elements' stiffness at x is from that where the matrix was made (stiffness_sample.h).
   double departure(const Model& model, const Positions& x) const;
 
   const System& system() const;

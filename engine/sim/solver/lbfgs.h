@@ -80,6 +80,7 @@ class LbfgsRule : public SearchRule {
 class SystemInverse final : public InitialInverse {
  public:
   void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override {
+    if (workspace.hessian_serves && workspace.current.contacts.empty()) return workspace.hessian.solve(model, r, z);
     apply_inverse(model, inputs.solver.contact, workspace.correction, workspace.solve_scratch, r, z);
   }
   bool looks_beyond() const override { return true; }

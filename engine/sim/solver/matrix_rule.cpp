@@ -1,5 +1,8 @@
 #include "sim/solver/matrix_rule.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "sim/contact/contact_direction.h"
 
 namespace supple {
@@ -9,37 +12,113 @@ namespace {
 constexpr double most_departure = 0.1;
 constexpr TangentShares shares{};
 
+// The Hessian's directions tell more than its departure how good it still is. It is poor where an evaluation comes
+// nearer by less than from A, and worn where by less than this factor. Beyond the departure it is not even tried.
+constexpr double worn_progress = 0.1;
+constexpr double usual_progress = 0.25;  // of A, where it has not served lately
+constexpr double forgetting = 0.1;       // of what it did, in each step that it does not serve
+constexpr double round_off = 1e-12;
+constexpr double most_departure_of_hessian = 0.2;
+constexpr int longest_age = 1000000;
+
+// Renewals of the Hessian may cost as much as this share of the evaluations of all steps, of ten iterations each.
+constexpr double share_of_renewals = 0.2;
+constexpr double evaluations_a_step = 11;
+
 // Makes the matrix in force: the one that the state says, or a new one. False where there is none: then A serves.
-bool make_matrix(const Model& model, const State& state, Workspace& w) {
-  w.matrix_place = state.x + model.time_step * state.v;
+bool make_tangent(const Model& model, const State& state, Workspace& w) {
   const bool known = state.matrix.rows() == model.vertices && w.tangent.make(model, state.matrix, shares, w.threads);
   if (known && w.tangent.departure(model, w.matrix_place) <= most_departure) return true;
   w.renewed = w.tangent.make(model, w.matrix_place, shares, w.threads);
   return w.renewed;
 }
 
+int least_age(const Model& model, const HessianSystem& hessian) {
+  return static_cast<int>(std::ceil(hessian.renewal_cost(model) / (share_of_renewals * evaluations_a_step)));
+}
+
+// Likewise; A serves too where the Hessian is poor and too young to be renewed.
+bool make_hessian(const Model& model, const State& state, Workspace& w) {
+  if (state.matrix.rows() == model.vertices && w.hessian.make(model, state.matrix, w.threads)) {
+    const double others = state.constant_progress > 0 ? state.constant_progress : usual_progress;
+    const bool poor =
+        state.hessian_progress > others || w.hessian.departure(model, w.matrix_place) > most_departure_of_hessian;
+    const bool worn = poor || state.hessian_progress > worn_progress;
+    if (!worn || state.matrix_age < least_age(model, w.hessian)) return !poor;
+  }
+  w.renewed = w.hessian.make(model, w.matrix_place, w.threads);
+  return w.renewed;
+}
+
+bool has_tetrahedra(const Model& model) {
+  return std::any_of(model.chunks.begin(), model.chunks.end(),
+                     [](const Model::ChunkRange& c) { return c.kind == ElementKind::tetrahedron; });
+}
+
 }  // namespace
 
-void prepare_matrix(const Model& model, const State& state, Workspace& w) {
-  if (state.matrix.rows() == model.vertices) w.tangent.make(model, state.matrix, shares, w.threads);
+void prepare_matrix(const Model& model, const SolverSettings& solver, const State& state, Workspace& w) {
+  if (state.matrix.rows() != model.vertices) return;
+  if (solver.matrix == SystemMatrix::tangent) w.tangent.make(model, state.matrix, shares, w.threads);
+  if (solver.matrix == SystemMatrix::hessian) w.hessian.make(model, state.matrix, w.threads);
 }
 
 void choose_matrix(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
   w.renewed = false;
   // Implicit midpoint damps nothing: what ten iterations leave unsolved comes back, and velocities of a body that is
   // torn say little of where it is heading. Free bars of tests/sim/step_test.cpp flew apart with the tangent.
-  if (inputs.solver.matrix == SystemMatrix::constant || model.integrator != Integrator::backward_euler) return;
+  if (inputs.solver.matrix != SystemMatrix::tangent || model.integrator != Integrator::backward_euler) return;
   const TimedPhase timed(w.clock, Phase::matrix, "matrix");
-  if (!make_matrix(model, state, w)) return;
+  w.matrix_place = state.x + model.time_step * state.v;
+  if (!make_tangent(model, state, w)) return;
   w.system = w.correction.matrix = &w.tangent.system();
   if (has_colliders(inputs)) begin_corrections(model, w.correction);
 }
 
-void remember_matrix(const Model& model, const Workspace& w, State& state) {
-  if (w.system == static_cast<const System*>(&model)) {
-    state.matrix.resize(0, 3);
-  } else if (w.renewed) {
+// A body without tetrahedra has A: springs alone do not tell how far it has turned.
+void choose_hessian(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
+  if (inputs.solver.matrix != SystemMatrix::hessian || model.integrator != Integrator::backward_euler) return;
+  if (!w.current.contacts.empty() || !has_tetrahedra(model)) return;
+  const TimedPhase timed(w.clock, Phase::matrix, "matrix");
+  w.matrix_place = state.x + model.time_step * state.v;
+  w.hessian_serves = make_hessian(model, state, w);
+  if (w.hessian_serves) w.hessian.turn_to(w.current.x, w.threads);
+}
+
+namespace {
+
+// `report` is the whole step's.
+double progress_of(const StepReport& report) {
+  const double left = std::clamp(report.error_estimate, round_off, 1.0);
+  return std::pow(left, 1.0 / std::max(report.line_search, 1));
+}
+
+void remember_progress(const Workspace& w, State& state) {
+  if (w.hessian_serves) {
+    state.hessian_progress = progress_of(w.report);
+    if (state.constant_progress > 0) state.constant_progress += forgetting * (usual_progress - state.constant_progress);
+  } else if (w.current.contacts.empty()) {
+    state.constant_progress = progress_of(w.report);
+  }
+}
+
+}  // namespace
+
+void remember_matrix(const Model& model, const SolverSettings& solver, const Workspace& w, State& state) {
+  const bool of_hessian = solver.matrix == SystemMatrix::hessian;
+  if (w.renewed) {
     state.matrix = w.matrix_place;
+    state.matrix_age = 0;
+  } else if (of_hessian) {
+    state.matrix_age = std::min(state.matrix_age + 1, longest_age);
+  } else if (w.system == static_cast<const System*>(&model)) {
+    state.matrix.resize(0, 3);
+    state.matrix_age = 0;
+  }
+  if (of_hessian) {
+    remember_progress(w, state);
+  } else {
+    state.hessian_progress = state.constant_progress = 0;
   }
 }
 

@@ -359,6 +359,7 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   choose_matrix(model, inputs, state, w);
   zone.next("first iterate");
   const double above_start = set_first_iterate(model, inputs, state, w);
+  choose_hessian(model, inputs, state, w);
   report.start_ms = w.clock.elapsed_ms();
   zone.next("iterate");
   TimeBudget budget(inputs, w, TimeBudget::from_first_iterate);
@@ -371,7 +372,7 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   const Positions& x = w.current.x;
   if (!report.failed && !x.allFinite()) fail(model, w, "step", std::numeric_limits<double>::quiet_NaN());
   if (!report.failed) {
-    remember_matrix(model, w, state);
+    remember_matrix(model, inputs.solver, w, state);
     set_velocity(model, x, state);
     state.x = x;
     state.time += model.time_step;

@@ -5,6 +5,7 @@
 #include "base/threads.h"
 #include "sim/contact/contact_direction.h"
 #include "sim/contact/find_contacts.h"
+#include "sim/model/hessian_system.h"
 #include "sim/model/report.h"
 #include "sim/model/tangent_system.h"
 #include "sim/solver/iterate.h"
@@ -29,10 +30,13 @@ struct Workspace {
   Iterate current, trial;
   Positions direction;  // from the current iterate, n_free x 3 [m]
 
-  // The matrix that directions start from, of the step in hand: the model's own A, or the one that follows the body.
+  // The matrix that directions start from, of the step in hand: the model's own A, or the one that follows the body. In
+  // its place the Hessian serves directions from iterates without contacts, where hessian_serves.
   const System* system = nullptr;
   TangentSystem tangent;
-  Positions matrix_place;  // q + h v, where the step in hand makes the tangent matrix if it does, n x 3 [m]
+  HessianSystem hessian;
+  bool hessian_serves = false;
+  Positions matrix_place;  // q + h v, where the step in hand makes such a matrix if it does, n x 3 [m]
   bool renewed = false;    // it did
 
   // The pairs of L-BFGS are stored in a ring.

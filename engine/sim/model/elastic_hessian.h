@@ -1,0 +1,55 @@
+// Assembles the Hessian of a step's objective over the free vertices without contacts, 3n x 3n: pattern and places are
+// found once for each model. Not here: contacts (baselines/hessian.h), and when it is made (solver/matrix_rule.h).
+#pragma once
+
+#include <Eigen/SparseCore>
+
+#include "base/threads.h"
+#include "sim/model/model.h"
+
+namespace supple {
+
+// Holds the element matrices, chunk after chunk: for each lane the packed lower triangle (element_kernels.h).
+struct ElementMatrices {
+  AlignedVector<double> numbers;
+  std::vector<std::size_t> first;  // by chunk
+};
+
+// Finds the second derivatives of the elements' energies at x, or the nearest positive semi-definite ones [N/m].
+// threads: may be null.
+void element_matrices(const Model& model, Threads* threads, const Positions& x, bool project, ElementMatrices& out);
+
+class ElasticHessian {
+ public:
+  explicit ElasticHessian(const Model& model);
+
+  // Returns the lower triangle, entries 3 i + c.
+  const Eigen::SparseMatrix<double>& matrix() const { return matrix_; }
+
+  // Sums up w M/h^2, the springs of handles, damping and the element matrices as given.
+  void assemble(const Model& model, const ElementMatrices& elements);
+
+  // Adds to the 3 x 3 block of two free vertices that an element or a triangle of the surface joins; row >= column.
+  void add(std::int32_t row, std::int32_t column, const Mat3& part);
+
+  // result = H v, both of 3 n_free numbers.
+  void multiply(const double* v, double* result) const;
+
+  // Adds an amount to the diagonal [N/m].
+  void shift(double amount);
+
+ private:
+  double* block(std::int32_t row, std::int32_t column);  // 3 x 3 by columns of stride_[column]
+
+  Eigen::SparseMatrix<double> matrix_;
+  std::vector<std::int32_t> block_begin_, block_row_;  // by block column
+  struct Place {
+    std::int32_t row, column;  // corners of the element; row >= column in the matrix after `swapped`
+    std::int64_t at;           // of the block's first number; -1: a corner is held
+    bool swapped;
+  };
+  std::vector<Place> places_;             // pairs of corners of each lane, in the order of pairs
+  std::vector<std::size_t> first_place_;  // by chunk
+};
+
+}  // namespace supple

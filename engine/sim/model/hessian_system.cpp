@@ -1,0 +1,139 @@
+#include "sim/model/hessian_system.h"
+
+#include "base/error.h"
+#include "base/trace.h"
+#include "sim/linear/changing_factor.h"
+#include "sim/model/elastic_hessian.h"
+#include "sim/model/element_view.h"
+#include "sim/model/stiffness_sample.h"
+#include "sim/model/system_solve.h"
+#include "sim/model/vertex_rotations.h"
+
+namespace supple {
+namespace {
+
+// The share of A in the matrix. It keeps the matrix positive definite and directions bounded where a material has no
+// stiffness as it is; more of it slows convergence (docs/method.md).
+constexpr double share_of_constant = 0.02;
+
+// A strain limit has no stiffness until it acts, and then all of it at once: there the Hessian tells nothing of what a
+// step will meet, and A serves.
+double share_in(const Material& material) {
+  return std::holds_alternative<StrainLimiting>(material) ? 1.0 : share_of_constant;
+}
+
+// Mixes k V G^T G, which is the same for x, y and z, into an element's packed matrix (element_kernels.h).
+void mix(double* packed, const SystemTerm& term, int corners, double k, double share) {
+  for (int i = 0; i < 3 * (corners - 1); ++i) {
+    double* row = packed + i * (i + 1) / 2;
+    for (int j = 0; j <= i; ++j) {
+      row[j] *= 1 - share;
+      if (i % 3 != j % 3) continue;
+      const auto &a = term.row[1 + i / 3], &b = term.row[1 + j / 3];
+      row[j] += share * k * term.weight * (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+    }
+  }
+}
+
+}  // namespace
+
+struct HessianSystem::Parts {
+  // What the numbers were made for.
+  std::uint64_t structure = 0, model = 0;
+  Positions x;
+
+  ElementMatrices elements;
+  ElasticHessian hessian;
+  ChangingFactor factor;
+  StiffnessSample sample;
+  VertexRotations rotations;
+  Rotations made_back;          // from where the matrix was made to rest
+  Rotations since, since_back;  // from where it was made to where it is turned to, and back
+  Positions right;              // n_free x 3
+
+  explicit Parts(const Model& of)
+      : structure(of.structure),
+        hessian(of),
+        factor(of.factor.precision()),
+        sample(of),
+        rotations(of),
+        right(of.free, 3) {
+    factor.analyze(hessian.matrix());
+  }
+  void mix_elements(const Model& of);
+};
+
+void HessianSystem::Parts::mix_elements(const Model& of) {
+  for (std::size_t c = 0; c < of.chunks.size(); ++c) {
+    const Model::ChunkRange& range = of.chunks[c];
+    const bool solid = range.kind == ElementKind::tetrahedron;
+    const double share = solid ? share_in(of.materials[range.region]) : share_of_constant;
+    for_each_element(of, range, [&](const ElementView& element) {
+      const std::size_t lane = std::size_t(element.lane) - std::size_t(range.first_block) * block_width;
+      mix(&elements.numbers[elements.first[c] + lane * stiffness_numbers(range.kind)], unit_term(element),
+          corners_of(range.kind), solid ? of.stiffness[range.region].k : element.field[1], share);
+    });
+  }
+}
+
+HessianSystem::HessianSystem() = default;
+HessianSystem::~HessianSystem() = default;
+HessianSystem::HessianSystem(HessianSystem&&) noexcept = default;
+HessianSystem& HessianSystem::operator=(HessianSystem&&) noexcept = default;
+
+bool HessianSystem::make(const Model& model, const Positions& x, Threads* threads) {
+  SUPPLE_CHECK(x.rows(), ==, model.vertices);
+  if (parts_ && parts_->model == model.id && parts_->x == x) return true;
+  const Zone zone("renew matrix");
+  if (!parts_ || parts_->structure != model.structure || parts_->factor.precision() != model.factor.precision())
+    parts_ = std::make_unique<Parts>(model);
+  Parts& p = *parts_;
+  p.model = 0;  // until it is done
+  p.x = x;
+  element_matrices(model, threads, x, true, p.elements);
+  p.mix_elements(model);
+  p.hessian.assemble(model, p.elements);
+  p.sample.take(model, x, {});
+  p.rotations.find(x, threads, p.since);
+  transpose(p.since, p.made_back);
+  if (!p.factor.factorize(p.hessian.matrix())) return false;
+  p.model = model.id;
+  return true;
+}
+
+double HessianSystem::departure(const Model& model, const Positions& x) const {
+  SUPPLE_CHECK(parts_->model, ==, model.id);
+  return parts_->sample.departure(model, x);
+}
+
+void HessianSystem::turn_to(const Positions& x, Threads* threads) {
+  Parts& p = *parts_;
+  p.rotations.find(x, threads, p.since);
+  multiply(p.since, p.made_back, p.since);
+  transpose(p.since, p.since_back);
+}
+
+// With P = 1 - 1 1^T M / m, which takes the motion of the centre of mass out of a motion, z = P R H^-1 R^T P^T r and
+// the motion that r gives to the centre of mass: symmetric, as L-BFGS needs it. [m: total mass]
+void HessianSystem::solve(const Model& model, const Positions& r, Positions& z) {
+  Parts& p = *parts_;
+  p.right = r;
+  if (model.free_floating) {
+    const Eigen::RowVector3d mean = r.colwise().sum() / model.total_mass;
+    for (int v = 0; v < model.free; ++v) p.right.row(v) -= model.mass[v] * mean;
+  }
+  turn_back(p.since, p.right, p.right);
+  p.factor.solve(p.right.data(), p.right.data());
+  turn_back(p.since_back, p.right, z);
+  if (model.free_floating) restore_translation(model, r, z);
+}
+
+// An evaluation has about 450 operations an element (`supple bench roofline`), and the second derivatives with their
+// sums take as long as 20 evaluations.
+double HessianSystem::renewal_cost(const Model& model) const {
+  return 20 + parts_->factor.operations() / (450.0 * model.elements);
+}
+
+std::int64_t HessianSystem::stored_numbers() const { return parts_ ? parts_->factor.stored_numbers() : 0; }
+
+}  // namespace supple

@@ -1,0 +1,49 @@
+// A matrix for search directions that couples coordinates, 3n x 3n: the Hessian of g in some pose of the body, with
+// each element's part projected, which turns with the body. Where the body moves on, only its stiffness gets old, and
+// where it but turns and bends, that does not change. The first iteration of Newton's method would solve with the same
+// matrix; here it is factored once for many frames. docs/method.md ("A matrix that follows the body") says what it
+// gains. Not here: when it is renewed (solver/matrix_rule.h); contacts, which it does not contain.
+#pragma once
+
+#include <memory>
+
+#include "base/threads.h"
+#include "sim/model/model.h"
+
+namespace supple {
+
+class HessianSystem {
+ public:
+  HessianSystem();
+  ~HessianSystem();
+  HessianSystem(HessianSystem&&) noexcept;
+  HessianSystem& operator=(HessianSystem&&) noexcept;
+
+  // Makes the matrix at x (n x 3 in the model's order) and factors it, in the precision of the model's factor; does
+  // nothing where that is done already. The bits do not depend on threads (may be null). Allocates only for another
+  // structure than last time. Returns false when the matrix is not positive definite, as where positions or stiffnesses
+  // are too large for numbers; there is none then.
+  bool make(const Model& model, const Positions& x, Threads* threads);
+
+  // How far the elements' stiffness at x is from that where the matrix was made (stiffness_sample.h).
+  double departure(const Model& model, const Positions& x) const;
+
+  // Turns the matrix at each vertex by what the elements around it have turned between where it was made and x.
+  void turn_to(const Positions& x, Threads* threads);
+
+  // Computes z = H^-1 r for the turned matrix, both n_free x 3 [m], [N]. Where nothing holds the body, its centre of
+  // mass moves as Newton's law says.
+  void solve(const Model& model, const Positions& r, Positions& z);
+
+  // Returns about how many evaluations of the body's elements a renewal costs, by counts alone.
+  double renewal_cost(const Model& model) const;
+
+  // Counts the numbers of the factor.
+  std::int64_t stored_numbers() const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace supple
