@@ -25,22 +25,16 @@ double place_of_error(double error) {
 // Returns the upper end of the scale of times [ms].
 double time_scale(double longest) { return longest > 0 ? rounded_up(longest) : 1; }
 
-double estimate_of(const FrameRow& row) {
-  double most = 0;
-  for (const BodyRow& body : row.bodies) most = std::max(most, body.error_estimate);
-  return most;
-}
-
-// Returns the largest measured error of a body; NaN where none is measured.
-double measured_of(const FrameRow& row) {
-  double most = nothing;
-  for (const BodyRow& body : row.bodies) {
-    if (body.error_measured) most = std::fmax(most, body.error.value_or(0));
-  }
-  return most;
-}
-
 }  // namespace
+
+GraphPoint graph_point(const FrameRow& row) {
+  GraphPoint point{row.step_ms, 0, nothing};
+  for (const BodyRow& body : row.bodies) {
+    point.estimate = std::max(point.estimate, body.error_estimate);
+    if (body.error_measured) point.measured = std::fmax(point.measured, body.error.value_or(0));
+  }
+  return point;
+}
 
 double longest_steps(std::span<const FrameRow> rows) {
   double longest = rows.size() == 1 ? rows.front().step_ms : 0;
@@ -61,23 +55,23 @@ std::vector<GraphLook> graph_looks(const SceneDef& scene, double longest) {
   return graphs;
 }
 
-std::vector<GraphCurve> graph_curves(const TextDef& text, std::span<const FrameRow> earlier, const FrameRow* row,
+std::vector<GraphCurve> graph_curves(const TextDef& text, std::span<const GraphPoint> earlier, const FrameRow* row,
                                      double longest) {
   std::vector<GraphCurve> curves;
   const auto by_frame = [&](const auto& value) {
     std::vector<double> values;
     if (row == nullptr) return values;
-    for (const FrameRow& one : earlier) values.push_back(value(one));
-    values.push_back(value(*row));
+    for (const GraphPoint& one : earlier) values.push_back(value(one));
+    values.push_back(value(graph_point(*row)));
     return values;
   };
   if (text.time_graph) {
     const double most = time_scale(longest);
-    curves.push_back({by_frame([most](const FrameRow& one) { return std::min(1.0, one.step_ms / most); }), {}});
+    curves.push_back({by_frame([most](const GraphPoint& one) { return std::min(1.0, one.step_ms / most); }), {}});
   }
   if (text.error_graph)
-    curves.push_back({by_frame([](const FrameRow& one) { return place_of_error(estimate_of(one)); }),
-                      by_frame([](const FrameRow& one) { return place_of_error(measured_of(one)); })});
+    curves.push_back({by_frame([](const GraphPoint& one) { return place_of_error(one.estimate); }),
+                      by_frame([](const GraphPoint& one) { return place_of_error(one.measured); })});
   return curves;
 }
 

@@ -10,6 +10,14 @@
 
 namespace supple {
 
+// What the graphs show of a frame.
+struct GraphPoint {
+  double step_ms;   // of all bodies' steps [ms]
+  double estimate;  // the largest of the bodies' error estimates
+  double measured;  // the largest of their measured errors; NaN where none is measured
+};
+GraphPoint graph_point(const FrameRow& row);
+
 // Returns the largest time of a frame's steps [ms], of which the first one does not count where there are others; 0
 // without rows.
 double longest_steps(std::span<const FrameRow> rows);
@@ -17,9 +25,9 @@ double longest_steps(std::span<const FrameRow> rows);
 // Returns the graphs that a scene asks for. longest: of longest_steps(), which the scale of times spans [ms].
 std::vector<GraphLook> graph_looks(const SceneDef& scene, double longest);
 
-// Returns their curves up to a frame. earlier: the rows of all frames before it; row: that of the frame (null where it
-// is not known, and then there is no curve).
-std::vector<GraphCurve> graph_curves(const TextDef& text, std::span<const FrameRow> earlier, const FrameRow* row,
+// Returns their curves up to a frame. earlier: the points of all frames before it; row: that of the frame (null where
+// it is not known, and then there is no curve).
+std::vector<GraphCurve> graph_curves(const TextDef& text, std::span<const GraphPoint> earlier, const FrameRow* row,
                                      double longest);
 
 }  // namespace supple

@@ -23,6 +23,7 @@ FilmEnd FrameLoop::run(Progress& progress, std::string& message) {
     if (!message.empty()) return FilmEnd::failed;
     save_outputs(frame, row);
     if (!show(frame, row)) return FilmEnd::failed;  // finish() takes the message from the pictures
+    if (graphs_) graphed_.push_back(graph_point(row));
     log_.add(std::move(row));
     if (log_.wants_checkpoint(frame + 1)) add_checkpoint(frame + 1);
     log_.settle(pictures());
@@ -100,7 +101,7 @@ bool FrameLoop::show(int frame, FrameRow& row) {
   for (const Positions& body : before_motion_) pose.before.push_back(&body);
   for (const auto& body : filmed_) pose.forces.push_back(&body->saved_forces());
   pose.row = &row;
-  pose.earlier = log_.rows();
+  pose.earlier = graphed_;
   DrawList list = drawn_->list(scene_, pose, set_, threads_);
   keep_motion();
   for (std::size_t b = 0; b < filmed_.size(); ++b)
@@ -128,6 +129,7 @@ FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
       threads_(film.info.threads),
       first_(start.kept_frames()),
       log_(log),
+      graphs_(plan.pictures != FilmPictures::none && (scene_.text.error_graph || scene_.text.time_graph)),
       verifier_(start.verifier ? &*start.verifier : nullptr) {
   if (plan.pictures != FilmPictures::none) {
     drawn_.emplace(script_, bodies_, std::move(film.drawn), set_, caption_font());
@@ -135,6 +137,7 @@ FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
     pictures_.emplace(drawn_->stage(), plan.gl, shaders_folder(),
                       PictureTargets{folder.frames(), !plan.film_only, video, first_});
   }
+  if (graphs_) log_.whole_rows().each([&](const FrameRow& row) { graphed_.push_back(graph_point(row)); });
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     filmed_.push_back(
         std::make_unique<FilmedBody>(scene_, bodies_[b], film.models[b], set_, folder, solvers, threads_, first_));

@@ -57,6 +57,8 @@ class FrameLoop {
   Threads threads_;
   int first_;  // the first frame that this run makes; those before it are an earlier run's
   FilmLog& log_;
+  bool graphs_;                           // the pictures have some
+  std::vector<GraphPoint> graphed_;       // of the frames so far, where they do
   StateVerifier* verifier_;               // of --verify; null without it
   Checkpoint before_;                     // taken before the frame in progress; empty when the film keeps none
   std::optional<DrawnFilm> drawn_;        // only with pictures

@@ -183,6 +183,7 @@ class Drawing {
         drawn_(drawing.film.script, drawing.film.bodies, drawing.film.drawn, set_, caption_font()),
         threads_(drawing.film.info.threads) {
     drawn_.know_times(drawing.rows);
+    for (const FrameRow& row : drawing.rows) graphed_.push_back(graph_point(row));
     const bool field = scene_.field.quantity != FieldQuantity::none && scene_.field.range_by == FieldRange::film;
     const bool camera = scene_.camera.frames == Framed::film;
     const std::optional<Bounds>& framed = drawing.film.info.framed;
@@ -251,8 +252,8 @@ class Drawing {
     for (const Positions& body : motion_) pose.motion.push_back(&body);
     for (const Positions& body : before_) pose.before.push_back(&body);
     for (const Positions& body : forces_) pose.forces.push_back(&body);
-    const std::span<const FrameRow> rows = drawing_.rows;
-    pose.earlier = rows.first(std::min(rows.size(), std::size_t(frame)));
+    const std::vector<FrameRow>& rows = drawing_.rows;
+    pose.earlier = std::span(graphed_).first(std::min(graphed_.size(), std::size_t(frame)));
     if (std::size_t(frame) < rows.size()) pose.row = &rows[std::size_t(frame)];
     return pose;
   }
@@ -280,6 +281,7 @@ class Drawing {
   Threads threads_;
   std::vector<Positions> motion_, before_;  // of the frame that was loaded, and of the one before it [m]
   std::vector<Positions> forces_;           // of colliders, where they are needed [N]
+  std::vector<GraphPoint> graphed_;         // of all frames
   int followed_ = 0;                        // frames whose changes are in scene_
 };
 

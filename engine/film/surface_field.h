@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/threads.h"
+#include "film/film_graphs.h"
 #include "film/reference_run.h"
 #include "output/profile.h"
 #include "render/draw_list.h"
@@ -28,8 +29,8 @@ struct FramePose {
   // The forces of colliders at the end of the frame, in the same form [N]; empty where the field does not need them or
   // where there are no colliders.
   std::vector<const Positions*> forces = {};
-  const FrameRow* row = nullptr;           // of the frame in the run's profile; null where it is not known
-  std::span<const FrameRow> earlier = {};  // of all frames before it; empty where they are not known
+  const FrameRow* row = nullptr;             // of the frame in the run's profile; null where it is not known
+  std::span<const GraphPoint> earlier = {};  // of all frames before it; empty where the pictures have no graphs
 };
 
 class SurfaceField {

@@ -90,7 +90,9 @@ Picture picture_of(const Shot& shot, const Settings& more = {}) {
   for (const Positions& body : before) pose.before.push_back(&body);
   for (const Positions& body : forces) pose.forces.push_back(&body);
   if (!shot.rows.empty()) pose.row = &shot.rows.back();
-  if (!shot.rows.empty()) pose.earlier = std::span(shot.rows).first(shot.rows.size() - 1);
+  std::vector<GraphPoint> earlier;
+  for (std::size_t f = 0; f + 1 < shot.rows.size(); ++f) earlier.push_back(graph_point(shot.rows[f]));
+  pose.earlier = earlier;
   Threads threads(1);
   return {drawn.stage(), drawn.list(film.scene, pose, film.set, threads)};
 }
