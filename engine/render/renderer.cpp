@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/trace.h"
 #include "render/color.h"
+#include "render/projection.h"
 #include "render/view.h"
 
 namespace supple {
@@ -16,13 +17,8 @@ namespace {
 
 // Includes the ground below bodies that hang in the air, because their shadows fall there.
 Bounds stage_bounds(const Stage& stage) {
-  Bounds box;
-  for (const DrawMesh& mesh : stage.meshes) {
-    if (!mesh.framed) continue;
-    box.include(mesh.rest.lower);
-    box.include(mesh.rest.upper);
-    box.include(Vec3(mesh.rest.lower.x(), std::min(0.0, mesh.rest.lower.y()), mesh.rest.lower.z()));
-  }
+  Bounds box = framed_at_start(stage);
+  if (!box.empty()) box.lower.y() = std::min(0.0, box.lower.y());
   return box;
 }
 
