@@ -19,6 +19,7 @@
 #include "film/places.h"
 #include "film/preview.h"
 #include "film/progress.h"
+#include "film/reference_run.h"
 #include "output/child_program.h"
 #include "output/chrome_trace.h"
 #include "output/json_text.h"
@@ -170,7 +171,9 @@ std::filesystem::path asked_folder(const FilmPlan& plan, const SceneDef& scene) 
 }
 
 // Refuses what a film cannot know before it has been made, and ways to film that contradict each other.
-void check_pictures_asked(const FilmPlan& plan, const SceneDef& scene) {
+void check_pictures_asked(const FilmPlan& plan, const LoadedFilm& film) {
+  const SceneDef& scene = film.script.scene();
+  if (plan.pictures != FilmPictures::none) check_references(scene, film.bodies, scene.frames - 1);
   const bool asks_for_whole_film =
       scene.field.quantity != FieldQuantity::none && scene.field.range_by == FieldRange::film;
   if (asks_for_whole_film && plan.pictures != FilmPictures::none)
@@ -197,7 +200,7 @@ FilmStart check_film(const FilmPlan& plan, const LoadedFilm& film) {
   start.identity = identity_of(film.info, film.script, film.bodies, plan);
   start.checkpoint_every = remembers_steps(film.script) || plan.film_only || plan.preview ? 0 : plan.checkpoint_every;
   start.record_head = record_head(film.info, film.bodies);
-  check_pictures_asked(plan, scene);
+  check_pictures_asked(plan, film);
   std::error_code ignored;
   if (!plan.folder_is_locked && std::filesystem::is_directory(start.place.path, ignored))
     start.lock = std::make_unique<FolderLock>(start.place.path);

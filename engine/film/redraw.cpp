@@ -14,6 +14,7 @@
 #include "film/drawn_film.h"
 #include "film/film_identity.h"
 #include "film/places.h"
+#include "film/reference_run.h"
 #include "output/json_difference.h"
 #include "output/json_text.h"
 #include "output/obj_file.h"
@@ -300,6 +301,7 @@ LoadedDrawing load_drawing(const DrawPlan& plan) {
   drawing.forces = forces_of(run, drawing.film);
   drawing.frame_count = frames_with_motion(drawing);
   drawing.frames = frames_of(plan, drawing.frame_count);
+  check_references(drawing.film.script.scene(), drawing.film.bodies, drawing.frames.back());
   drawing.rate = plan.rate > 0 ? plan.rate : drawing.film.script.scene().fps / plan.every;
   Json identity = {
       {"program", program_version()},

@@ -28,4 +28,14 @@ Positions ReferenceRun::at(std::size_t body, int frame) {
   return motion_[body].frame(frame).rowwise() + origin_[body].transpose();
 }
 
+void check_references(const SceneDef& scene, const std::vector<Body>& bodies, int last_frame) {
+  const auto check = [&](const std::filesystem::path& folder) {
+    if (folder.empty()) return;
+    ReferenceRun run(folder, bodies);
+    for (std::size_t b = 0; b < bodies.size(); ++b) run.at(b, last_frame);
+  };
+  if (scene.field.quantity == FieldQuantity::distance) check(scene.field.reference);
+  check(scene.look.ghost);
+}
+
 }  // namespace supple

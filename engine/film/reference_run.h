@@ -24,4 +24,8 @@ class ReferenceRun {
   std::vector<Vec3> origin_;              // of the files of motion [m]
 };
 
+// Opens the runs to which a scene's pictures up to a frame compare, so that one that cannot be read or is too short is
+// refused before anything is written. Throws InputError as ReferenceRun does.
+void check_references(const SceneDef& scene, const std::vector<Body>& bodies, int last_frame);
+
 }  // namespace supple

@@ -235,6 +235,18 @@ TEST_F(DrawnRun, ShowsTheDistanceToAnotherRun) {
   EXPECT_NE(missing.err.find("distance needs a reference"), std::string::npos) << missing.err;
   const Result nowhere = draw("none", {"--field", "distance", "--reference", "nowhere"});
   EXPECT_EQ(nowhere.status, 2);
+  EXPECT_FALSE(std::filesystem::exists(path("none")));
+}
+
+TEST_F(DrawnRun, KeepsAFilmWhoseNewReferenceDoesNotExist) {
+  ASSERT_EQ(run(folder_->path, {"render", "two.toml", "--out", "kept", "--quiet"}).status, 0);
+  const std::string before = test::read_file(path("kept") / "profile.json");
+  const Result result =
+      run(folder_->path, {"render", "two.toml", "--out", "kept", "--force", "--quiet", "--set", "look.ghost=nowhere"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("nowhere: no such folder"), std::string::npos) << result.err;
+  EXPECT_EQ(test::read_file(path("kept") / "profile.json"), before);
+  EXPECT_TRUE(std::filesystem::exists(path("kept") / "poster.png"));
 }
 
 TEST_F(DrawnRun, KnowsTheRangeOfTheFilmOnlyOnceItIsMade) {
@@ -358,7 +370,7 @@ TEST_F(DrawnRun, ShowsTheGhostOfAnotherRun) {
       0);
   const Result short_of = draw("none", {"--set", "look.ghost=short-run"});
   EXPECT_EQ(short_of.status, 2);
-  EXPECT_NE(short_of.err.find("has 8 frames, and frame 8 is needed"), std::string::npos) << short_of.err;
+  EXPECT_NE(short_of.err.find("has 8 frames, and frame 11 is needed"), std::string::npos) << short_of.err;
 }
 
 TEST_F(DrawnRun, RefusesWhatWouldHaveMovedOtherwise) {
