@@ -320,14 +320,29 @@ Positions saved_positions(LoadedDrawing& drawing, std::size_t body, int frame) {
   return drawing.motion[body].frame(frame).rowwise() + origin.transpose();
 }
 
+namespace {
+
+// Tells whether a folder holds nothing, or no more than what another process leaves while it begins a drawing there.
+bool is_new(const std::filesystem::path& folder) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (!entry.path().filename().string().starts_with("draw.json")) return false;
+  }
+  return !error;
+}
+
+}  // namespace
+
+// The record comes before all else: several processes that draw parts may begin at one time.
 void open_drawing(const std::filesystem::path& folder, const LoadedDrawing& drawing, bool keep) {
   std::error_code error;
   const std::filesystem::path record = folder / "draw.json";
   const std::string source = "--out " + folder.string();
-  const bool known = std::filesystem::exists(record, error);
   if (std::filesystem::exists(folder, error) && !std::filesystem::is_directory(folder, error))
     throw InputError(source, "exists and is not a folder");
-  if (!known && std::filesystem::exists(folder, error) && !std::filesystem::is_empty(folder, error))
+  const bool fresh = !std::filesystem::exists(folder, error) || is_new(folder);
+  const bool known = std::filesystem::exists(record, error);
+  if (!known && !fresh)
     throw InputError(source, "holds files that no drawing left there (no draw.json); choose another folder");
   if (known && keep) {
     std::ifstream file(record);
@@ -336,15 +351,18 @@ void open_drawing(const std::filesystem::path& folder, const LoadedDrawing& draw
     if (!differences.empty())
       throw InputError(source,
                        "holds another drawing, which differs in " + fmt::format("{}", fmt::join(differences, "; ")));
-    return;
   }
-  std::filesystem::create_directories(folder / "frames", error);
-  if (error) throw RunError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
-  if (known) {
+  const auto make = [&](const std::filesystem::path& made) {
+    std::filesystem::create_directories(made, error);
+    if (error) throw RunError(fmt::format("{}: cannot be made: {}", made.string(), error.message()));
+  };
+  make(folder);
+  if (!known || !keep) write_whole_file_together(record, drawing.identity);
+  make(folder / "frames");
+  if (known && !keep) {
     remove_film(folder);
     remove_pictures(folder / "frames", 0);
   }
-  write_whole_file(record, drawing.identity);
 }
 
 PictureRange part_of(const LoadedDrawing& drawing, int index, int count) {

@@ -94,7 +94,7 @@ std::string figures_of(const std::vector<FrameRow>& rows, int frame) {
       error = std::max(error, body.error.value_or(0));
     }
   }
-  return fmt::format("{:.1f} ms, {} iterations, {} {:.1e}", row.step_ms, iterations,
+  return fmt::format("{:.1f} ms, {} iteration{}, {} {:.1e}", row.step_ms, iterations, iterations == 1 ? "" : "s",
                      measured ? "error" : "estimated error", measured ? error : estimate);
 }
 

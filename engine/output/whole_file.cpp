@@ -20,7 +20,8 @@ namespace {
 // Represents a file that is written under a temporary name, which is removed unless the file is finished.
 class PartFile {
  public:
-  explicit PartFile(const std::filesystem::path& path) : path_(path), temporary_(path.string() + ".part") {
+  explicit PartFile(const std::filesystem::path& path, const std::string& suffix = ".part")
+      : path_(path), temporary_(path.string() + suffix) {
     file_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (file_ < 0) fail("be created");
   }
@@ -75,6 +76,14 @@ std::span<const std::uint8_t> bytes_of(std::string_view text) {
 void write_whole_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
   PartFile file(path);
   file.add(bytes);
+  file.finish();
+}
+
+void write_whole_file_together(const std::filesystem::path& path, std::string_view text) {
+  char host[256] = {};
+  ::gethostname(host, sizeof host - 1);
+  PartFile file(path, fmt::format(".{}-{}.part", host, ::getpid()));
+  file.add(bytes_of(text));
   file.finish();
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <future>
 
 #include "output/png_file.h"
 #include "output/run_folder.h"
@@ -236,6 +237,24 @@ TEST_F(DrawnRun, ShowsTheDistanceToAnotherRun) {
   const Result nowhere = draw("none", {"--field", "distance", "--reference", "nowhere"});
   EXPECT_EQ(nowhere.status, 2);
   EXPECT_FALSE(std::filesystem::exists(path("none")));
+}
+
+TEST_F(DrawnRun, IsBegunByManyProcessesAtOneTime) {
+  constexpr int count = 8;
+  for (int round = 0; round < 5; ++round) {
+    const std::string out = "together-" + std::to_string(round);
+    std::vector<std::future<Result>> results;
+    for (int i = 0; i < count; ++i)
+      results.push_back(std::async(std::launch::async, [&out, i] {
+        return draw(out, {"--index", std::to_string(i), "--of", std::to_string(count), "--set", "output.width=32",
+                          "--set", "output.height=18"});
+      }));
+    for (std::future<Result>& result : results) {
+      const Result one = result.get();
+      EXPECT_EQ(one.status, 0) << one.err;
+    }
+    EXPECT_EQ(pictures(out), 12);
+  }
 }
 
 TEST_F(DrawnRun, KeepsAFilmWhoseNewReferenceDoesNotExist) {
