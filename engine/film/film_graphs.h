@@ -10,7 +10,7 @@
 
 namespace supple {
 
-// What the graphs show of a frame.
+// Holds what the graphs show of a frame.
 struct GraphPoint {
   double step_ms;   // of all bodies' steps [ms]
   double estimate;  // the largest of the bodies' error estimates

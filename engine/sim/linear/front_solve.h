@@ -10,7 +10,7 @@
 namespace supple {
 namespace {
 
-// Registers whose lanes divide a block of rows.
+// These registers have lanes that divide a block of rows.
 constexpr int float_lanes = 2 * lanes < block_rows ? 2 * lanes : block_rows;
 template <class T>
 using Row = std::conditional_t<std::is_same_v<T, float>, xsimd::make_sized_batch_t<float, float_lanes>, Lanes>;

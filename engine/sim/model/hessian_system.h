@@ -1,7 +1,7 @@
-// A matrix for search directions that couples coordinates, 3n x 3n: the Hessian of g in some pose of the body, with
-// each element's part projected, which turns with the body. Where the body moves on, only its stiffness gets old, and
-// where it but turns and bends, that does not change. The first iteration of Newton's method would solve with the same
-// matrix; here it is factored once for many frames. docs/method.md ("A matrix that follows the body") says what it
+// Defines a matrix for search directions that couples coordinates, 3n x 3n: the Hessian of g in some pose of the body,
+// with each element's part projected, which turns with the body. Where the body moves on, only its stiffness gets old,
+// and where it but turns and bends, that does not change. The first iteration of Newton's method would solve with the
+// same matrix; here it is factored once for many frames. docs/method.md ("A matrix that follows the body") says what it
 // gains. Not here: when it is renewed (solver/matrix_rule.h); contacts, which it does not contain.
 #pragma once
 

@@ -1,4 +1,4 @@
-// How far the elements' stiffness is from where a matrix was made of it: what tells when to make a matrix anew.
+// Tells how far the elements' stiffness is from where a matrix was made of it, and so when to make a matrix anew.
 #pragma once
 
 #include "base/aligned.h"

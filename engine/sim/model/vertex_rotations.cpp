@@ -12,7 +12,7 @@ constexpr int entries = 9;
 constexpr int row_numbers = 4, rotation_numbers = 3 * row_numbers;
 constexpr int blocks_a_chunk = 16;
 
-// A row in a register: the compiler splits it where registers are narrower.
+// Holds a row in a register, which the compiler splits where registers are narrower.
 typedef double RowOfFour __attribute__((vector_size(row_numbers * sizeof(double))));
 
 RowOfFour load(const double* from) {

@@ -1,5 +1,5 @@
-// The rotation of a body at each of its vertices, for what was made of the body in another pose and has to turn with
-// it.
+// Finds the rotation of a body at each of its vertices, for what was made of the body in another pose and has to turn
+// with it.
 #pragma once
 
 #include "base/aligned.h"
@@ -8,7 +8,7 @@
 
 namespace supple {
 
-// One matrix for each free vertex: three rows of four numbers, of which the last is 0.
+// Holds a matrix for each free vertex: three rows of four numbers, of which the last is 0.
 using Rotations = AlignedVector<double>;
 
 class VertexRotations {
