@@ -80,7 +80,7 @@ struct Means {
   int bodies = 0;
 };
 
-// What is compared with the constant matrix: a matrix, and what it achieved in scenes without and with colliders.
+// Holds a matrix that is compared with the constant one, and what it achieved in scenes without and with colliders.
 struct Candidate {
   SystemMatrix matrix;
   ReportTable tables[2];

@@ -118,7 +118,7 @@ TEST(SurfaceField, IsTheContactForceOverTheAreaOfEachVertex) {
   EXPECT_NEAR(values[1][vertex], 5 * 16, 5 * 16 * 0.34) << "an inner vertex has 2/3 to 4/3 of a cell";
 }
 
-// What is shown, times the areas, is the weight of a cube that has come to rest.
+// The pressures that are shown, multiplied by their areas, add up to the weight of a cube that has come to rest.
 TEST(SurfaceField, ContactForcesOfABodyAtRestAddUpToItsWeight) {
   test::TemporaryFolder folder;
   const std::filesystem::path path = folder.path / "scene.toml";

@@ -1,6 +1,11 @@
-// Solves with the columns of fronts (front_layout.h) for one right-hand side, in single or double precision. Like
-// lanes.h it is only for files that are compiled once for each instruction set.
+// Solves with the columns of fronts (front_layout.h) for one right-hand side, in single or double precision. The
+// triangles on the diagonals of strips are inverted beforehand (changing_factor.h), so that no unknown waits for
+// another one. Like lanes.h it is only for files that are compiled once for each instruction set.
 #pragma once
+
+#if defined(__AVX512F__)
+#include <immintrin.h>
+#endif
 
 #include <type_traits>
 
@@ -17,7 +22,7 @@ using Row = std::conditional_t<std::is_same_v<T, float>, xsimd::make_sized_batch
 template <class T>
 constexpr int row_lanes = std::is_same_v<T, float> ? float_lanes : lanes;
 
-// x = T^-1 x, with the inverse of the triangle by columns.
+// Computes x = T^-1 x with the inverse of the triangle T by columns. `own` gets x, padded with zeros.
 template <class T, int width>
 void solve_triangle(const T* inverse, T* x, T (&own)[block_rows]) {
   for (int i = 0; i < block_rows; i += row_lanes<T>) {
@@ -28,7 +33,7 @@ void solve_triangle(const T* inverse, T* x, T (&own)[block_rows]) {
   for (int j = 0; j < width; ++j) x[j] = own[j];
 }
 
-// x = T^-T (x - taken)
+// Computes x = T^-T (x - taken).
 template <class T, int width>
 void solve_triangle_up(const T* inverse, const T (&taken)[block_rows], T* x) {
   T left[width];

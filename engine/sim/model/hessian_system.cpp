@@ -38,7 +38,7 @@ void mix(double* packed, const SystemTerm& term, int corners, double k, double s
 }  // namespace
 
 struct HessianSystem::Parts {
-  // What the numbers were made for.
+  // These tell what the numbers were made for.
   std::uint64_t structure = 0, model = 0;
   Positions x;
 

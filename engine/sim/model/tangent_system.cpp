@@ -21,7 +21,7 @@ constexpr int pairs_of(int corners) { return corners * (corners + 1) / 2; }
 }  // namespace
 
 struct TangentSystem::Parts : System {
-  // What the numbers were made for.
+  // These tell what the numbers were made for.
   std::uint64_t structure = 0, model = 0;
   TangentShares shares{};
   Positions x;
