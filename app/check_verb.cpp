@@ -31,11 +31,19 @@ int check(const std::string& name, const std::vector<std::string>& settings, boo
   for (const Body& body : bodies) {
     for (const std::string& note : body.notes) say(stdout, fmt::format("note: {}: {}\n", body.source, note));
   }
+  for (const Body& body : bodies) {
+    const std::string advice = untangle_advice(body);
+    if (!advice.empty()) say(stdout, fmt::format("note: body '{}': {}\n", body.def.name, advice));
+  }
   for (const ColliderDef& collider : scene.colliders) {
     for (const std::string& note : collider.shape.notes)
       say(stdout, fmt::format("note: collider '{}': {}\n", collider.name, note));
   }
   std::vector<Problem> list = all_warnings(script, bodies);
+  for (Problem& later : known_after_film(scene)) {
+    later.message = "supple render refuses this: " + later.message;
+    list.push_back(std::move(later));
+  }
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (auto warning = skin_warning(bodies[b], drawn[b])) list.push_back(std::move(*warning));
   }

@@ -51,8 +51,7 @@ void DrawnFilm::show_field() {
 
 // Keeps the room of the legend free, where the camera frames the bodies by itself.
 void DrawnFilm::make_room() {
-  const int legend = stage_.field ? legend_of(*stage_.field, stage_.font, stage_.height).width() : 0;
-  stage_.kept_free = std::min(0.3, legend > 0 ? (legend + stage_.height / 36.0) / stage_.width : 0);
+  stage_.kept_free = legend_room(stage_);
   stage_.first_camera = camera_at(start_, stage_, 0);
 }
 

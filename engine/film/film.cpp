@@ -28,6 +28,7 @@
 #include "output/video.h"
 #include "output/whole_file.h"
 #include "scene/script_trial.h"
+#include "scene/warnings.h"
 
 namespace supple {
 
@@ -174,16 +175,8 @@ std::filesystem::path asked_folder(const FilmPlan& plan, const SceneDef& scene) 
 void check_pictures_asked(const FilmPlan& plan, const LoadedFilm& film) {
   const SceneDef& scene = film.script.scene();
   if (plan.pictures != FilmPictures::none) check_references(scene, film.bodies, scene.frames - 1);
-  const bool asks_for_whole_film =
-      scene.field.quantity != FieldQuantity::none && scene.field.range_by == FieldRange::film;
-  if (asks_for_whole_film && plan.pictures != FilmPictures::none)
-    throw InputError("field.range",
-                     "\"film\" is known only once the film has been made: give two numbers here, or draw "
-                     "the run again with it (supple draw RUN --set field.range=film)");
-  if (scene.text.time_graph && plan.pictures != FilmPictures::none)
-    throw InputError("text.time_graph",
-                     "the pictures of a run hold no graph of times that are still being measured: draw the run again "
-                     "with it (supple draw RUN --set text.time_graph=true)");
+  std::vector<Problem> later = known_after_film(scene);
+  if (!later.empty() && plan.pictures != FilmPictures::none) throw InputError(std::move(later));
   if (plan.film_only && plan.coding.format == FilmFormat::png)
     throw InputError("--film-only", "leaves a film, and --format png makes none");
   if (plan.film_only && !run_program({"ffmpeg", "-version"}))
@@ -206,6 +199,7 @@ FilmStart check_film(const FilmPlan& plan, const LoadedFilm& film) {
     start.lock = std::make_unique<FolderLock>(start.place.path);
   if (plan.resume) start.checkpoint = checkpoint_in(start.place.path, start.identity, scene.frames, film.info);
   check_folder(plan, film, start);
+  if (plan.pictures != FilmPictures::none) note_other_graphs(scene, start.place.path, start.kept_frames());
   check_records(plan, start);
   if (!plan.verify.empty()) start.verifier.emplace(plan.verify, start.record_head, plan.tolerance, start.kept_frames());
   if (!plan.repeat.empty()) start.repeated = repeated_cuts(plan.repeat, names_of(film.bodies), scene.frames);

@@ -138,6 +138,18 @@ void check_pictures(const std::filesystem::path& frames, int count) {
   }
 }
 
+void note_other_graphs(const SceneDef& scene, const std::filesystem::path& run, int kept_frames) {
+  if (kept_frames == 0 || !scene.text.error_graph) return;
+  std::ifstream stream(run / "run.json");
+  const Json before = json_if_valid<Json>(stream);
+  if (!before.is_object() || !before.contains("scene") || !before["scene"].is_object()) return;
+  const Json then = before["scene"].value("frames", Json(SceneDef{}.frames));
+  if (then == scene.frames) return;
+  say(stderr, fmt::format("note: the graphs in the first {} pictures are {} frames long, as the film was then, and in "
+                          "the others {}; supple draw {} makes all alike\n",
+                          kept_frames, then.dump(), scene.frames, run.string()));
+}
+
 namespace {
 
 // Returns the path without links, without "..", and without a slash at the end.

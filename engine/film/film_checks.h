@@ -29,6 +29,10 @@ void check_rows_and_motion(const std::filesystem::path& run, const std::vector<B
 // Checks the pictures of frames that are not made again.
 void check_pictures(const std::filesystem::path& frames, int count);
 
+// Prints a note where pictures that are not made again have graphs of another length: those of a film that was begun
+// with another number of frames.
+void note_other_graphs(const SceneDef& scene, const std::filesystem::path& run, int kept_frames);
+
 // Checks the file for --record. It must be writable, and nothing of value may be overwritten: it must not be one of the
 // run's own files, an existing file must be a record, and that record must begin with the frames that are kept.
 void check_record(const std::filesystem::path& record, const std::filesystem::path& run, const RecordHead& head,

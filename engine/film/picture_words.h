@@ -11,11 +11,11 @@ namespace supple {
 // Returns the line at the top; empty where the scene asks for none. time: of the film [s].
 std::string headline_text(const SceneDef& scene, double time);
 
-// Returns the note below a body; empty where the scene asks for none. row: of the body's steps in the frame; null where
-// they are not known, and then only the method is.
 // Returns a headline as wide as any of the film.
 std::string longest_headline(const SceneDef& scene);
 
+// Returns the note below a body; empty where the scene asks for none. row: of the body's steps in the frame; null where
+// they are not known, and then only the method is.
 std::string note_text(const TextDef& text, const BodyDef& body, const BodyRow* row);
 
 // Returns a note that is as long as any of the scene's, so that captions can keep room for it.

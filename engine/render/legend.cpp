@@ -56,9 +56,12 @@ Sticker legend_of(const FieldLook& field, const std::string& font, int height) {
   return legend;
 }
 
-PixelRect legend_place(const Sticker& legend, int width, int height) {
-  const int margin = height / 36;
-  return {width - margin - legend.width(), (height - legend.height()) / 2, legend.width(), legend.height()};
+int legend_margin(const Stage& stage) { return stage.height / 36; }
+
+double legend_room(const Stage& stage) {
+  constexpr double most = 0.3;
+  const int width = stage.field ? legend_of(*stage.field, stage.font, stage.height).width() : 0;
+  return width > 0 ? std::min(most, double(width + legend_margin(stage)) / stage.width) : 0;
 }
 
 Vec3 ink_on(const Stage& stage) {

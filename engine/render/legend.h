@@ -9,8 +9,11 @@ namespace supple {
 // Makes the legend for a picture of this height [pixels]; it is empty when the field has no title or there is no font.
 Sticker legend_of(const FieldLook& field, const std::string& font, int height);
 
-// Returns where the legend stands in a picture: at the right edge, in the middle of the height.
-PixelRect legend_place(const Sticker& legend, int width, int height);
+// Returns how far a legend stays away from the picture's edges [pixels].
+int legend_margin(const Stage& stage);
+
+// Returns the share of the picture's width that the legend of the stage's field takes with its margin; 0 without one.
+double legend_room(const Stage& stage);
 
 // Makes the line that stands in the upper left corner.
 Sticker headline_of(const std::string& text, const std::string& font, int height, const Vec3& color);

@@ -107,7 +107,8 @@ OverlayPlaces overlay_places(const Stage& stage) {
   }
   if (stage.field) {
     const Sticker legend = legend_of(*stage.field, stage.font, stage.height);
-    if (legend.width() > 0) places.legend = legend_place(legend, stage.width, stage.height);
+    const int x = stage.width - legend_margin(stage) - legend.width(), y = (stage.height - legend.height()) / 2;
+    if (legend.width() > 0) places.legend = {x, y, legend.width(), legend.height()};
   }
   places.graphs = graph_places(stage, places);
   return places;

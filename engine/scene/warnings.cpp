@@ -1,5 +1,6 @@
 #include "scene/warnings.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -97,6 +98,14 @@ void warn_of_substance(const Body& body, std::vector<Problem>& list) {
                                        body.def.name)));
   }
 }
+
+// Tells whether all trial bodies of a material came back from folded starts by themselves (docs/stability.md).
+bool comes_back_from_folds(const Material& material) {
+  return std::holds_alternative<AsRigidAsPossible>(material) || std::holds_alternative<Corotated>(material) ||
+         std::holds_alternative<StrainLimiting>(material);
+}
+
+constexpr double without_volume = 1e-3;  // of the rest volume, as solver.untangle takes it
 
 // Tells whether a collider may stop what falls down a shaft of this width and depth, at any time.
 bool may_stop_a_fall(const Obstacle& obstacle, const Bounds& shaft) {
@@ -211,6 +220,35 @@ std::vector<Problem> warnings(const SceneDef& scene, const std::vector<Body>& bo
     }
     boxes.push_back(box);
   }
+  return list;
+}
+
+std::string untangle_advice(const Body& body) {
+  if (body.def.cloth || body.def.solver.untangle ||
+      std::ranges::all_of(body.description.materials, comes_back_from_folds))
+    return {};
+  const TetMesh& rest = body.description.mesh;
+  const TetMesh start{first_positions(body), rest.tets, {}};
+  int tangled = 0;
+  for (Eigen::Index e = 0; e < rest.tets.rows(); ++e)
+    tangled += tet_volume(start, e) <= without_volume * tet_volume(rest, e) ? 1 : 0;
+  if (tangled == 0) return {};
+  return fmt::format(
+      "{} of its {} elements start inverted or flat, and '{}' may stay folded from there: "
+      "solver.untangle = true unfolds nearly all such starts",
+      tangled, rest.tets.rows(), name_of(body.description.materials.front()));
+}
+
+std::vector<Problem> known_after_film(const SceneDef& scene) {
+  std::vector<Problem> list;
+  if (scene.field.quantity != FieldQuantity::none && scene.field.range_by == FieldRange::film)
+    list.push_back({"field.range", 0, 0,
+                    "\"film\" is known only once the film has been made: give two numbers here, or draw the run again "
+                    "with it (supple draw RUN --set field.range=film)"});
+  if (scene.text.time_graph)
+    list.push_back({"text.time_graph", 0, 0,
+                    "the pictures of a run hold no graph of times that are still being measured: draw the run again "
+                    "with it (supple draw RUN --set text.time_graph=true)"});
   return list;
 }
 

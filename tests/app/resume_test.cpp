@@ -56,6 +56,19 @@ TEST_F(ResumedFilm, GoesOnAfterAnInterruptAndMayBecomeLonger) {
   EXPECT_EQ(run(folder_.path, film({"--out", "cut", "--resume", "--frames", "20"})).status, 2);
 }
 
+TEST_F(ResumedFilm, SaysWhereGraphsOfALongerFilmHaveAnotherLength) {
+  const auto longer = [&](const char* frames, bool resumed) {
+    std::vector<std::string> arguments = film({"--out", "a", "--frames", frames, "--set", "text.error_graph=true"});
+    if (resumed) arguments.push_back("--resume");
+    const Result result = run(folder_.path, arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return result.err;
+  };
+  EXPECT_EQ(longer("6", false).find("graphs"), std::string::npos);
+  EXPECT_EQ(longer("6", true).find("graphs"), std::string::npos);
+  EXPECT_NE(longer("9", true).find("the graphs in the first 6 pictures are 6 frames long"), std::string::npos);
+}
+
 TEST_F(ResumedFilm, RefusesTheCheckpointOfAnotherFilm) {
   ASSERT_EQ(run(folder_.path, film({"--out", "a", "--no-images"})).status, 0);
   const auto refused = [&](std::vector<std::string> more) {

@@ -12,6 +12,7 @@
 #include "film/places.h"
 #include "film/surface_field.h"
 #include "render/captions.h"
+#include "render/legend.h"
 #include "render/overlays.h"
 #include "scene/scene_reader.h"
 #include "support/bodies.h"
@@ -122,6 +123,42 @@ TEST_P(CaptionsOfScene, LeaveAllOtherTextsFree) {
       Captions captions(stage, texts);
       for (const Captions::Placed& caption : captions.places(stage.first_camera)) texts.push_back(caption.place);
       EXPECT_EQ(texts.size() - 4, captioned) << "the graphs took the place of a caption at " << size.width;
+      expect_apart(texts, size);
+    }
+  }
+}
+
+// Returns the places of a scene's legend and captions, with a legend that shows speeds.
+std::vector<PixelRect> texts_with_legend(const SceneDef& scene, const std::vector<Body>& bodies, Stage& stage) {
+  const CollisionSet set = collision_set(scene);
+  stage = make_stage(scene, bodies, std::vector<DrawnBody>(bodies.size()), set.obstacles,
+                     collider_skins(set.obstacles, bodies), caption_font());
+  stage.field = SurfaceField(scene, bodies).look();
+  stage.kept_free = legend_room(stage);
+  stage.first_camera = camera_at(scene, stage, 0);
+  std::vector<PixelRect> texts = overlay_places(stage).all();
+  Captions captions(stage, texts);
+  for (const Captions::Placed& caption : captions.places(stage.first_camera)) texts.push_back(caption.place);
+  return texts;
+}
+
+// A legend costs no body its caption: cameras that frame the bodies leave room for it. Only where eleven captions with
+// notes stand side by side, 640 pixels are too few for them.
+TEST_P(CaptionsOfScene, AllStayBesideALegend) {
+  if (caption_font().empty()) GTEST_SKIP() << "no font is installed";
+  const std::filesystem::path file = test::assets / "scenes" / (GetParam() + ".toml");
+  const std::vector<Body> bodies = assemble(load_scene(file, test::assets, {}));
+  for (const Size size : {Size{640, 360}, Size{1280, 720}, Size{3840, 2160}}) {
+    for (const bool notes : {false, true}) {
+      if (notes && size.width == 640 && bodies.size() > 10) continue;
+      std::vector<std::string> settings = {"output.width=" + std::to_string(size.width),
+                                           "output.height=" + std::to_string(size.height), "field.quantity=speed"};
+      for (const char* note : {"method", "milliseconds", "iterations", "error"})
+        settings.push_back(std::string("text.") + note + (notes ? "=true" : "=false"));
+      Stage stage;
+      const std::vector<PixelRect> texts = texts_with_legend(load_scene(file, test::assets, settings), bodies, stage);
+      EXPECT_EQ(texts.size(), 1 + Captions(stage).places(stage.first_camera).size())
+          << "the legend took the place of a caption at " << size.width << " with notes: " << notes;
       expect_apart(texts, size);
     }
   }

@@ -138,6 +138,19 @@ TEST(Substances, SoftenedFitsAndBodiesThatStayFlatAreWarnedOf) {
   EXPECT_EQ(warning("material = { model = \"corotated\", mu = 1e4 }\nstart = { flatten = \"line\" }\n"), "nothing");
 }
 
+TEST(Substances, UntanglingIsAdvisedWhereABodyStartsFoldedAndMayStaySo) {
+  const auto advice = [](const std::string& text) {
+    return untangle_advice(assemble(scene_of("gravity = [0, 0, 0]\n" + box_body(text))).front());
+  };
+  const std::string soft = "material = { model = \"neo-hookean\", young = 3e4, poisson = 0.3 }\n";
+  EXPECT_NE(advice(soft + "start = { stretch = [-1, 1, 1] }\n").find("untangle = true"), std::string::npos);
+  EXPECT_NE(advice(soft + "start = { flatten = \"plane\" }\n").find("inverted or flat"), std::string::npos);
+  EXPECT_EQ(advice(soft + "start = { stretch = [0.1, 1, 1] }\n"), "") << "only squashed";
+  EXPECT_EQ(advice(soft), "");
+  EXPECT_EQ(advice(soft + "start = { stretch = [-1, 1, 1] }\nsolver.untangle = true\n"), "");
+  EXPECT_EQ(advice("material = { model = \"corotated\", mu = 1e4 }\nstart = { stretch = [-1, 1, 1] }\n"), "");
+}
+
 TEST(Fibres, TurnWithTheirBodyAndDifferByRegion) {
   const SceneDef scene = scene_of(R"([[body]]
 shape = "shapes/squirrel.toml"
