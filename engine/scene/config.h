@@ -91,7 +91,7 @@ class ConfigValue {
   std::string whole_text() const;  // all of it, as people read it: words without quotes
   bool is_list_or_number() const;
   // Tells whether a ramp can lead from one value to the other: both must be numbers, or lists (of lists, ...) of
-  // numbers with the same structure.
+  // numbers with the same structure; a colour "#rrggbb" counts as the list of its channels.
   bool joins(const ConfigValue& other) const;
   bool all_positive() const;
   // Reads a default in the form that KnownKey has. Returns nothing when the default is a description in words.

@@ -286,15 +286,14 @@ namespace {
 
 constexpr const char* color_forms = "three numbers, each 0 to 1, or \"#rrggbb\"";
 
-// Reads "#rrggbb"; nothing where the text is something else.
+}  // namespace
+
 std::optional<Vec3> hex_color(const std::string& text) {
   if (text.size() != 7 || text[0] != '#' || text.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
     return std::nullopt;
   const auto channel = [&text](std::size_t at) { return std::stoi(text.substr(at, 2), nullptr, 16) / 255.0; };
   return Vec3(channel(1), channel(3), channel(5));
 }
-
-}  // namespace
 
 Vec3 ConfigTable::color_at(const Key& key, const toml::node* node, const Vec3& fallback) const {
   if (node == nullptr) return fallback;

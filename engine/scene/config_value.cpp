@@ -13,8 +13,17 @@ std::optional<double> number_of(const toml::node& node) {
   return node.is_number() ? node.value<double>() : std::nullopt;
 }
 
+// Returns the channels of a colour that is written in hexadecimal digits, which ramps take for a list of numbers.
+std::optional<toml::array> channels_of(const toml::node& node) {
+  const std::optional<Vec3> color = node.is_string() ? hex_color(node.as_string()->get()) : std::nullopt;
+  if (!color) return std::nullopt;
+  return toml::array{color->x(), color->y(), color->z()};
+}
+
 bool of_one_form(const toml::node& a, const toml::node& b) {
   if (a.is_number() && b.is_number()) return true;
+  if (const auto color = channels_of(a)) return of_one_form(*color, b);
+  if (const auto color = channels_of(b)) return of_one_form(a, *color);
   const toml::array *first = a.as_array(), *second = b.as_array();
   if (first == nullptr || second == nullptr || first->size() != second->size()) return false;
   for (std::size_t i = 0; i < first->size(); ++i) {
@@ -25,6 +34,7 @@ bool of_one_form(const toml::node& a, const toml::node& b) {
 
 bool only_positive(const toml::node& node) {
   if (const auto number = number_of(node)) return *number > 0;
+  if (const auto color = channels_of(node)) return only_positive(*color);
   if (!node.is_array()) return false;
   for (const toml::node& element : *node.as_array()) {
     if (!only_positive(element)) return false;
@@ -33,6 +43,8 @@ bool only_positive(const toml::node& node) {
 }
 
 void append_between(const toml::node& a, const toml::node& b, double s, RampRule by, bool whole, toml::array& out) {
+  if (const auto color = channels_of(a)) return append_between(*color, b, s, by, whole, out);
+  if (const auto color = channels_of(b)) return append_between(a, *color, s, by, whole, out);
   if (const toml::array* first = a.as_array()) {
     toml::array list;
     for (std::size_t i = 0; i < first->size(); ++i) append_between((*first)[i], (*b.as_array())[i], s, by, whole, list);

@@ -94,6 +94,9 @@ void walk(const toml::node& node, const Visit& visit) {
 toml::table parsed_toml(std::string_view text, const std::string& name);
 inline constexpr std::size_t most_words = 32;
 
+// Reads a colour that is written as "#rrggbb" [sRGB, 0 to 1]; nothing where the text is something else.
+std::optional<Vec3> hex_color(const std::string& text);
+
 // Writes a value as messages show it.
 std::string shown(const toml::node& node);
 

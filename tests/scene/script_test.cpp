@@ -107,6 +107,20 @@ TEST_F(Replay, WholeNumbersStayWholeAndListsGoNumberByNumber) {
   EXPECT_NEAR(spline.a.points()[2].value, 30, 1e-9);
 }
 
+TEST_F(Replay, ColorsInHexadecimalDigitsGoChannelByChannel) {
+  const std::string half = "[[change]]\nt = 1\nover = 1\nease = 'linear'\npath = 'body.bar.color'\n";
+  for (const char* ends : {"from = '#003366'\nvalue = '#ff3300'\n", "from = [0, 0.2, 0.4]\nvalue = '#ff3300'\n",
+                           "from = '#003366'\nvalue = [1, 0.2, 0]\n"}) {
+    const Vec3 color = script(half + ends).scene_at(44).bodies[0].color.value();
+    EXPECT_TRUE(color.isApprox(Vec3(0.5, 0.2, 0.2), 1e-9)) << ends << color.transpose();
+  }
+  EXPECT_EQ(refused(half + "from = '#00336'\nvalue = '#ff3300'\n"),
+            "r.toml:8:9: a ramp leads through numbers, or lists of them of one form; not from '#00336' to '#ff3300'. "
+            "Words and tables jump: leave out 'over' or 'frames'");
+  EXPECT_EQ(refused(half + "from = '#003366'\nvalue = [1, 0.2]\n"),
+            "r.toml:8:9: a ramp leads through numbers, or lists of them of one form; not from '#003366' to [1, 0.2]");
+}
+
 TEST_F(Replay, LaterChangesBeginWhereEarlierOnesAre) {
   const Script chain = script(
       "[[change]]\nt = 1.5\nover = 0.3\nease = 'linear'\npath = 'body.bar.material.mu'\nvalue = 10000\n"
