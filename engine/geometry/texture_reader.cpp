@@ -63,21 +63,21 @@ struct JpegErrors {
 
 void count_warning(j_common_ptr jpeg, int level) { jpeg->err->num_warnings += level < 0 ? 1 : 0; }
 
-// Decodes rows into `result`, whose memory outlives a jump back into this function.
-bool decode(jpeg_decompress_struct& jpeg, JpegErrors& errors, const std::uint8_t* bytes, std::size_t count,
-            std::int64_t most_pixels, ReadTexture& result) {
-  if (setjmp(errors.back) != 0) return false;
+// Decodes rows into `result`. A call of libjpeg may leave this function by a jump: nothing with a destructor lives
+// then, and the function stays one of its own, so that the jump finds no variable of it changed.
+[[gnu::noinline]] void decode_rows(jpeg_decompress_struct& jpeg, const std::uint8_t* bytes, std::size_t count,
+                                   std::int64_t most_pixels, ReadTexture& result) {
   jpeg_create_decompress(&jpeg);
   jpeg_mem_src(&jpeg, bytes, static_cast<unsigned long>(count));
   jpeg_read_header(&jpeg, TRUE);
   const std::int64_t pixels = std::int64_t(jpeg.image_width) * std::int64_t(jpeg.image_height);
   if (pixels == 0 || pixels > most_pixels) {
     result.refusal = too_large(jpeg.image_width, jpeg.image_height);
-    return true;
+    return;
   }
   if (jpeg.num_components > 3) {
     result.refusal = "is a JPEG with four inks, and only red, green and blue can be read";
-    return true;
+    return;
   }
   jpeg.out_color_space = JCS_RGB;
   jpeg_start_decompress(&jpeg);
@@ -89,6 +89,13 @@ bool decode(jpeg_decompress_struct& jpeg, JpegErrors& errors, const std::uint8_t
     jpeg_read_scanlines(&jpeg, &row, 1);
   }
   jpeg_finish_decompress(&jpeg);
+}
+
+// Returns false where libjpeg reported an error.
+bool decode(jpeg_decompress_struct& jpeg, JpegErrors& errors, const std::uint8_t* bytes, std::size_t count,
+            std::int64_t most_pixels, ReadTexture& result) {
+  if (setjmp(errors.back) != 0) return false;
+  decode_rows(jpeg, bytes, count, most_pixels, result);
   return true;
 }
 
