@@ -138,9 +138,15 @@ std::string film_html(const RunRecord& run) {
       file_as_base64(picture_of(run.rows.size() - 1)));
 }
 
-constexpr std::array slowest_heads = {"solving [ms]", "evaluating",  "linear solves", "contacts", "changes",
-                                      "drawing",      "compressing", "iterations",    "trials"};
-constexpr std::size_t first_count = 7;  // of the heads: those before it are milliseconds
+constexpr std::array slowest_heads = {"all stages [ms]", "solving", "of it evaluating", "of it linear solves",
+                                      "of it contacts",  "changes", "drawing",          "compressing",
+                                      "iterations",      "trials"};
+constexpr std::size_t first_count = 8;  // of the heads: those before it are milliseconds
+
+double of_all_stages(const FrameRow& row) {
+  return row.step_ms + row.change_ms.value_or(0) + row.draw_ms.value_or(0) + row.render_ms.value_or(0) +
+         row.compress_ms.value_or(0);
+}
 
 // Returns the values of a frame below those heads.
 std::vector<std::optional<double>> slowest_cells(const FrameRow& row) {
@@ -155,16 +161,15 @@ std::vector<std::optional<double>> slowest_cells(const FrameRow& row) {
     if (body.contact) colliding = colliding.value_or(0) + body.contact->collide_ms;
   }
   if (row.render_ms) drawing = row.draw_ms.value_or(0) + *row.render_ms;
-  return {row.step_ms, evaluating, solving, colliding, row.change_ms, drawing, row.compress_ms, iterations, trials};
+  return {of_all_stages(row), row.step_ms, evaluating,      solving,    colliding,
+          row.change_ms,      drawing,     row.compress_ms, iterations, trials};
 }
 
 std::string slowest_html(const std::vector<FrameRow>& rows) {
-  const auto total = [](const FrameRow& row) {
-    return row.step_ms + row.change_ms.value_or(0) + row.draw_ms.value_or(0) + row.render_ms.value_or(0);
-  };
   std::vector<const FrameRow*> slowest;
   for (const FrameRow& row : rows) slowest.push_back(&row);
-  std::ranges::stable_sort(slowest, [&](const FrameRow* a, const FrameRow* b) { return total(*a) > total(*b); });
+  std::ranges::stable_sort(slowest,
+                           [](const FrameRow* a, const FrameRow* b) { return of_all_stages(*a) > of_all_stages(*b); });
   slowest.resize(std::min<std::size_t>(slowest.size(), 10));
   std::vector<std::vector<std::optional<double>>> values;
   for (const FrameRow* row : slowest) values.push_back(slowest_cells(*row));
@@ -179,7 +184,7 @@ std::string slowest_html(const std::vector<FrameRow>& rows) {
   for (std::size_t r = 0; r < slowest.size(); ++r) {
     html += fmt::format("<tr data-frame=\"{0}\"><td>{0}</td>", slowest[r]->frame);
     for (const std::size_t c : columns) {
-      const int digits = c < first_count ? 2 : 0;
+      const int digits = c < first_count ? 1 : 0;
       html += values[r][c] ? fmt::format("<td>{:.{}f}</td>", *values[r][c], digits) : std::string("<td>–</td>");
     }
     html += "</tr>\n";

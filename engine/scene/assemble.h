@@ -17,6 +17,7 @@ struct Body {
   struct Overlap {
     std::string collider;
     double depth;
+    bool between;  // only places between the body's vertices are inside
   };
 
   BodyDef def;

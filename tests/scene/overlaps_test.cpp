@@ -134,6 +134,26 @@ TEST(Overlaps, EndWithTheBodyOutsideWholeAndWithNoMoreEnergyThanLiftingItOutCost
   }
 }
 
+// A cube of 0.2 m with cells of 0.05 m, and posts of 0.02 m that come in by one of its faces or cut it through.
+TEST(Overlaps, BetweenVerticesAreNamedAndMovedOutOfOrSaidToStay) {
+  const auto text_with = [](const std::string& extent, const std::string& place, const std::string& body = "") {
+    const Start start{"", "[0, 0, 0]",
+                      collider("post", "box = { extent = " + extent + " }", "position = " + place + "\n"), true};
+    const Body made = assemble(test::scene_of(scene_text(start, body))).front();
+    return overlap_text(made);
+  };
+  const std::string post = "[0.02, 0.1, 0.02]", plate = "[1, 0.02, 1]";
+  const std::string by_post = text_with(post, "[0.025, -0.03, 0.025]");
+  EXPECT_NE(by_post.find(", between its vertices): it is moved out by (0, 0.0"), std::string::npos) << by_post;
+  EXPECT_EQ(text_with(post, "[0.05, -0.03, 0.05]").find("between"), std::string::npos) << "a vertex is in it";
+  EXPECT_NE(text_with(plate, "[0, 0.125, 0]").find("leaves it there; solver.contact.points = \"surface\" does"),
+            std::string::npos)
+      << text_with(plate, "[0, 0.125, 0]");
+  EXPECT_NE(text_with(plate, "[0, 0.125, 0]", "solver.contact.points = \"surface\"\n").find("it is pushed out"),
+            std::string::npos);
+  EXPECT_EQ(text_with(post, "[0.025, -0.051, 0.025]"), "") << "it stands a millimetre below";
+}
+
 TEST(Overlaps, AreRefusedWhenTheSceneSaysSo) {
   const SceneDef scene = test::scene_of(scene_text(twelve_starts()[3], "start_inside = \"error\"\n"));
   try {

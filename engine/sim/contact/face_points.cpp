@@ -212,7 +212,7 @@ void choose_pieces(const Model& model, const Collider& collider, const Positions
   double longest = -1;
   for (ShapePiece& shape : pieces_of(collider.shape)) {
     if (std::isinf(shape.bulge)) continue;
-    const double slack = usual_depth(model, collider, shape.half_thickness);
+    const double slack = usual_depth(model.size, collider, shape.half_thickness);
     FacePoints::Piece piece{std::move(shape), slack};
     if (longest < 0) longest = longest_edge_squared(model, q);
     if (is_finer(piece, collider.thickness, longest)) faces.pieces.push_back(std::move(piece));

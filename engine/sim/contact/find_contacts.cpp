@@ -26,8 +26,8 @@ double push_out_of(const Model& model, const StepInputs& inputs) {
 // Returns k_c over m / h^2 for a collider. The depth of a vertex is inversely proportional to it.
 double stiffness_of(const Model& model, const StepInputs& inputs, const ContactWork& work, std::size_t collider) {
   constexpr double most = 1000;  // times as stiff as for a thick one
-  const double share =
-      usual_depth(model, (*inputs.colliders)[collider], work.traits[collider].half_thickness) / usual_depth(model);
+  const double share = usual_depth(model.size, (*inputs.colliders)[collider], work.traits[collider].half_thickness) /
+                       usual_depth(model.size);
   return inputs.solver.contact.stiffness * std::min(1 / share, most);
 }
 

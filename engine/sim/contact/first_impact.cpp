@@ -35,7 +35,8 @@ Impact first_impact(const Model& model, const StepInputs& inputs, const Position
   for (std::size_t c = 0; c < inputs.colliders->size(); ++c) {
     const VertexSearch search{model, inputs, x, work};
     const ColliderView view = search.view(c);
-    const double here = std::min(allowed, usual_depth(model, (*inputs.colliders)[c], work.traits[c].half_thickness));
+    const double here =
+        std::min(allowed, usual_depth(model.size, (*inputs.colliders)[c], work.traits[c].half_thickness));
     for (int group = 0; group < vertex_groups(model); ++group) {
       search.near(c, view, group, [&](int v, const Way& way, double field, double) {
         const double share = share_to_impact(view, way, field, here, first.share, search.memory(c, v));

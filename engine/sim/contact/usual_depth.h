@@ -5,18 +5,17 @@
 #include <algorithm>
 
 #include "sim/model/inputs.h"
-#include "sim/model/model.h"
 
 namespace supple {
 
-// Returns the depth in a collider that is thick beside the body [m].
-inline double usual_depth(const Model& model) { return 0.004 * model.size; }
+// Returns the depth in a collider that is thick beside the body [m]. size: of the body [m].
+inline double usual_depth(double size) { return 0.004 * size; }
 
 // Returns the depth in any collider, whose thin ones allow a quarter of half their thickness [m]. half_thickness: of
 // its shape [m]; 0 where it is not known.
-inline double usual_depth(const Model& model, const Collider& collider, double half_thickness) {
-  if (half_thickness <= 0) return usual_depth(model);
-  return std::min(usual_depth(model), 0.25 * (half_thickness + collider.thickness));
+inline double usual_depth(double size, const Collider& collider, double half_thickness) {
+  if (half_thickness <= 0) return usual_depth(size);
+  return std::min(usual_depth(size), 0.25 * (half_thickness + collider.thickness));
 }
 
 }  // namespace supple

@@ -104,17 +104,18 @@ bool certainly_no_deeper(const ShapeProbe& probe, const Vec3& a, const Vec3& b, 
   return clear(ab, bc, ca) && clear(a, ab, ca) && clear(ab, b, bc) && clear(ca, bc, c);
 }
 
-// Returns the largest depth in one shape, or `known` where none is larger. Depth is looked for in each piece of a
-// union, and measured in the whole.
-double deepest_in(const Shape& shape, const Eigen::Isometry3d& pose, const Positions& x, const Triangles& triangles,
-                  double known) {
+// Calls visit(corners, descent, depth_at) for the triangles that may be deeper in a shape than `known`, in the shape's
+// own frame. Depth is looked for in each piece of a union, and depth_at(point) measures it in the whole.
+template <class Visit>
+void visit_deep_triangles(const Shape& shape, const Eigen::Isometry3d& pose, const Positions& x,
+                          const Triangles& triangles, const double& known, const Visit& visit) {
   const Eigen::Isometry3d to_local = pose.inverse();
   const ShapeProbe probe(shape);
   const std::vector<ShapePiece> pieces = pieces_of(shape);
   std::vector<ShapeProbe> probes;
   for (const ShapePiece& piece : pieces) probes.emplace_back(piece.shape);
   std::vector<QueryMemory> near(pieces.size() + 1);
-  double deepest = known;
+  const auto depth_at = [&](const Vec3& p) { return -probe.closest(p, near.back()).distance; };
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
     TriangleCorners corner;
     for (int k = 0; k < 3; ++k) corner[k] = to_local * Vec3(x.row(triangles(t, k)));
@@ -122,18 +123,27 @@ double deepest_in(const Shape& shape, const Eigen::Isometry3d& pose, const Posit
     double reach = 0;
     for (const Vec3& p : corner) reach = std::max(reach, (p - center).norm());
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      if (probes[i].is_exact() ? certainly_no_deeper(probes[i], corner[0], corner[1], corner[2], deepest, 2, near[i])
+      if (probes[i].is_exact() ? certainly_no_deeper(probes[i], corner[0], corner[1], corner[2], known, 2, near[i])
                                : pieces[i].shape.certainty() * probes[i].distance(center, near[i]) > reach)
         continue;
-      const TriangleInShape::Descent least =
-          TriangleInShape(probes[i], pieces[i].half_thickness, corner, near[i]).descend();
-      const auto look = [&](const Vec3& p, double distance) {
-        if (distance < -deepest) deepest = std::max(deepest, -probe.closest(p, near.back()).distance);
-      };
-      for (int k = 0; k < least.count; ++k) look(least.places[k].point, least.places[k].surface.distance);
-      for (int k = 0; k < 3; ++k) look(corner[k], least.at_corners);
+      visit(corner, TriangleInShape(probes[i], pieces[i].half_thickness, corner, near[i]).descend(), depth_at);
     }
   }
+}
+
+// Returns the largest depth in one shape, or `known` where none is larger.
+double deepest_in(const Shape& shape, const Eigen::Isometry3d& pose, const Positions& x, const Triangles& triangles,
+                  double known) {
+  double deepest = known;
+  visit_deep_triangles(shape, pose, x, triangles, deepest,
+                       [&](const TriangleCorners& corner, const TriangleInShape::Descent& least, const auto& depth_at) {
+                         const auto look = [&](const Vec3& p, double distance) {
+                           if (distance < -deepest) deepest = std::max(deepest, depth_at(p));
+                         };
+                         for (int k = 0; k < least.count; ++k)
+                           look(least.places[k].point, least.places[k].surface.distance);
+                         for (int k = 0; k < 3; ++k) look(corner[k], least.at_corners);
+                       });
   return deepest;
 }
 
@@ -153,6 +163,20 @@ double penetration(const std::vector<Collider>& colliders, const std::vector<Col
   for (std::size_t c = 0; c < colliders.size(); ++c)
     deepest = deepest_in(colliders[c].shape, motions[c].end, x, triangles, deepest);
   return deepest;
+}
+
+std::vector<Vec3> deep_places(const Collider& collider, const Eigen::Isometry3d& pose, const Positions& x,
+                              const Triangles& triangles, double depth) {
+  std::vector<Vec3> places;
+  visit_deep_triangles(collider.shape, pose, x, triangles, depth,
+                       [&](const TriangleCorners&, const TriangleInShape::Descent& least, const auto& depth_at) {
+                         for (int k = 0; k < least.count; ++k) {
+                           const TrianglePlace& place = least.places[k];
+                           const bool deeper = place.surface.distance < std::min(-depth, least.at_corners);
+                           if (deeper && depth_at(place.point) > depth) places.push_back(pose * place.point);
+                         }
+                       });
+  return places;
 }
 
 }  // namespace supple

@@ -28,6 +28,11 @@ std::vector<double> penetrations(const std::vector<Collider>& colliders, const s
 double penetration(const std::vector<Collider>& colliders, const std::vector<ColliderMotion>& motions,
                    const Positions& x, const Triangles& triangles);
 
+// Returns the places on a surface that lie deeper than `depth` in a collider and deeper than the corners of their
+// triangle.
+std::vector<Vec3> deep_places(const Collider& collider, const Eigen::Isometry3d& pose, const Positions& x,
+                              const Triangles& triangles, double depth);
+
 // Returns the largest distance between a position and the rest position under `motion` (the handle's), over the body's
 // size.
 double jiggle(const Model& model, const Positions& x, const Eigen::Isometry3d& motion);
