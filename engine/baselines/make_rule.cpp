@@ -106,7 +106,10 @@ std::unique_ptr<SearchRule> make_rule(const Method& method, const Model& model) 
 
 SolverSettings settings_of(const Method& method, SolverSettings settings) {
   if (method.acceleration != Acceleration::lbfgs) settings.history = 0;
-  if (method != Method::quasi_newton) settings.matrix = SystemMatrix::constant;
+  if (method != Method::quasi_newton) {
+    settings.matrix = SystemMatrix::constant;
+    settings.carry = false;
+  }
   if (method.matrix == StartMatrix::hecht || method.matrix == StartMatrix::vertex_blocks ||
       method.acceleration == Acceleration::admm)
     settings.line_search = LineSearch::none;

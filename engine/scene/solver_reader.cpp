@@ -105,6 +105,10 @@ SolverSettings read_settings(const ConfigTable& table, SolverSettings s) {
                     s.iterations, Range::between(1, 10000));
   s.history =
       table.integer({"history", "", "window m of L-BFGS; 0 is plain quasi-Newton"}, s.history, Range::between(0, 100));
+  s.carry = table.boolean({"carry", "",
+                           "L-BFGS of quasi-newton begins with one pair that sums up the step before, unless such a "
+                           "pair has misled it lately"},
+                          s.carry);
   s.matrix = table.word<SystemMatrix>(
       {"matrix", "",
        "what directions of quasi-newton start from: a matrix that follows the body, or the paper's M/h^2 + L"},

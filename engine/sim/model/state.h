@@ -18,9 +18,18 @@ struct Anchors {
   std::vector<char> holds;    // whether each handle holds its vertices; one that has let go does not pull
 };
 
+// The curvature of g that a step found, for the next one to begin with (solver/carried_pair.h).
+struct CarriedPair {
+  Positions step;            // s: the sum of the steps of its iterations, n_free x 3; empty: there is none [m]
+  Positions gradient;        // t: of the changes of the gradient, without normal forces of contacts, n_free x 3 [N]
+  std::uint64_t system = 0;  // hash of the A that the body had
+  int misses = 0;            // how many times in a row such a pair misled the step that began with it
+  int wait = 0;              // so many steps begin without
+};
+
 // All that a body's future depends on, unless its SearchRule remembers earlier steps (solver/step.h). A copy is a
-// snapshot. step() changes x, v, time, and what is said of its matrix; DrivenBody changes the anchors, and replaces the
-// whole when it restores one.
+// snapshot. step() changes x, v, time, and what is said of its matrix and its pair; DrivenBody changes the anchors, and
+// replaces the whole when it restores one.
 struct State {
   Positions x;         // positions, n x 3, in the model's order [m]
   Positions v;         // velocities, n x 3 [m/s]
@@ -30,6 +39,7 @@ struct State {
   int matrix_age = 0;  // steps since
   // By which factor an evaluation came nearer in the last steps that the Hessian and A served; 0: not known.
   double hessian_progress = 0, constant_progress = 0;
+  CarriedPair carried;
 };
 
 // Returns the state of a model that is at rest where it was built.

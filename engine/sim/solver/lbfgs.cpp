@@ -159,6 +159,8 @@ double search_direction(const Model& model, const StepInputs& inputs, Workspace&
   return slope;
 }
 
+bool is_safely_positive(double st, double ss, double tt) { return st > 1e-10 * std::sqrt(ss * tt); }
+
 void remember_pair(const Model& model, const ContactSettings& contact, Workspace& workspace, PairHistory& history) {
   if (history.window == 0) return;
   const int next = (history.newest + 1) % history.window;
@@ -173,14 +175,19 @@ void remember_pair(const Model& model, const ContactSettings& contact, Workspace
     add_normal_forces(from.contacts, from.x, -1, t);
   }
 
+  CarryingWork& carrying = workspace.carrying;
+  if (carrying.wanted) {
+    carrying.step += s;
+    carrying.gradient += t;
+    carrying.whole &= contact.history == ContactHistory::current || from.contacts.empty();
+  }
+
   Pointers other{s.data(), t.data()};
   double of_t[2];  // s.t and t.t
   dot_all(model, workspace, other, 2, t.data(), of_t);
   double of_s = 0;
   dot_all(model, workspace, other, 1, s.data(), &of_s);
-  // Curvature along s that is negative or lost in round-off would spoil the matrix: Nocedal and Wright 2006,
-  // section 7.2, skip such pairs.
-  if (!(of_t[0] > 1e-10 * std::sqrt(of_s * of_t[1]))) {
+  if (!is_safely_positive(of_t[0], of_s, of_t[1])) {
     // The slot that was overwritten held the oldest pair of a full window.
     if (history.count == history.window) --history.count;
     return;
@@ -196,6 +203,41 @@ void remember_pair(const Model& model, const ContactSettings& contact, Workspace
   for (int i = 0; i < history.count; ++i) all[i] = workspace.gradient_pairs[history.place(i)].data();
   dot_all(model, workspace, all, history.count, s.data(), with.data());
   for (int i = 0; i < history.count; ++i) workspace.products[next * history.window + history.place(i)] = with[i];
+}
+
+void begin_with_carried_pair(const Model& model, Workspace& w, PairHistory& history) {
+  CarryingWork& work = w.carrying;
+  if (!work.wanted) return;
+  work.step.setZero(model.free, 3);
+  work.gradient.setZero(model.free, 3);
+  work.whole = true;
+  if (work.from == nullptr) return;
+  w.step_pairs[0] = work.from->step;
+  w.gradient_pairs[0] = work.from->gradient;
+  Pointers step{w.step_pairs[0].data()};
+  dot_all(model, w, step, 1, w.gradient_pairs[0].data(), &w.products[0]);
+  history.newest = 0;
+  history.count = 1;
+  history.begins_carried = work.used = true;
+  work.misled = true;  // until an iteration shows otherwise
+}
+
+// Along d, the model that gave the direction has the curvature d.B d = -tr(grad^T d), and g was found to have s.t.
+// Where the two agree the pair helps a good deal, and elsewhere it does not or does harm (docs/method.md). What normal
+// forces of contacts add to the curvature is in d.B d alone: so a pair is dropped where contacts resist the step, too.
+void judge_carried_pair(Workspace& w, PairHistory& history) {
+  constexpr double least = 0.8, most = 1.25;
+  const bool remembered = history.count > 1 || (history.window == 1 && history.count == 1);
+  const double found = remembered ? w.products[history.newest * history.window + history.newest] : 0;
+  const double agreement = found / -w.report.slope;
+  history.begins_carried = false;
+  w.carrying.misled = !(w.report.line_search == 1 && agreement > least && agreement < most);
+  if (!w.carrying.misled) return;
+  if (!remembered) {
+    history.clear();
+  } else if (history.window > 1) {
+    --history.count;  // the oldest
+  }
 }
 
 }  // namespace supple

@@ -11,14 +11,18 @@ struct PairHistory {
   int window = 0;
   int count = 0;
   int newest = -1;
+  bool begins_carried = false;  // the oldest pair is the step before's, and no iteration has tried it yet
 
   // Returns the slot of the i-th newest pair in the ring.
   int place(int i) const { return (newest - i + 2 * window) % window; }
-  void clear() { count = 0; }
+  void clear() {
+    count = 0;
+    begins_carried = false;
+  }
   // Returns false when there was nothing to forget.
   bool forget() {
     const bool some = count > 0;
-    count = 0;
+    clear();
     return some;
   }
 };
@@ -48,13 +52,24 @@ double search_direction(const Model& model, const StepInputs& inputs, Workspace&
 // positive.
 void remember_pair(const Model& model, const ContactSettings& contact, Workspace& workspace, PairHistory& history);
 
+// Tells whether s.t, of a pair with these s.s and t.t, is more than round-off. Curvature along s that is negative or
+// lost in round-off would spoil the matrix: Nocedal and Wright 2006, section 7.2, skip such pairs.
+bool is_safely_positive(double st, double ss, double tt);
+
+// Begins a search with the pair of the step before as the only one, where the workspace has one for it.
+void begin_with_carried_pair(const Model& model, Workspace& workspace, PairHistory& history);
+
+// Drops that pair after the first iteration where it misled its direction.
+void judge_carried_pair(Workspace& workspace, PairHistory& history);
+
 // Implements L-BFGS from any initial Hessian, which must outlive this object. The settings contain the window.
 class LbfgsRule : public SearchRule {
  public:
   explicit LbfgsRule(InitialInverse& initial) : initial_(initial) {}
 
   void begin(const Model& model, const StepInputs& inputs, Workspace& workspace) override {
-    history_ = {inputs.solver.history, 0, -1};
+    history_ = {inputs.solver.history};
+    begin_with_carried_pair(model, workspace, history_);
     initial_.begin(model, inputs, workspace);
   }
   double direction(const Model& model, const StepInputs& inputs, Workspace& workspace) override {
@@ -63,6 +78,7 @@ class LbfgsRule : public SearchRule {
   void accepted(const Model& model, const StepInputs& inputs, Workspace& workspace) override {
     initial_.accepted(model, inputs, workspace);
     remember_pair(model, inputs.solver.contact, workspace, history_);
+    if (history_.begins_carried) judge_carried_pair(workspace, history_);
   }
   void contacts_changed(const StepInputs& inputs) override {
     if (inputs.solver.contact.history == ContactHistory::dropped) history_.clear();

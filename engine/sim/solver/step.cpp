@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/trace.h"
+#include "sim/solver/carried_pair.h"
 #include "sim/solver/energy_gain.h"
 #include "sim/solver/error_estimate.h"
 #include "sim/solver/lbfgs.h"
@@ -357,6 +358,7 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   clear(report);
   begin_step(model, inputs, state, w);
   choose_matrix(model, inputs, state, w);
+  choose_carried_pair(model, inputs.solver, state, w);
   zone.next("first iterate");
   const double above_start = set_first_iterate(model, inputs, state, w);
   choose_hessian(model, inputs, state, w);
@@ -365,6 +367,7 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   TimeBudget budget(inputs, w, TimeBudget::from_first_iterate);
   const Origin origin{state, above_start};
   run_iterations(model, inputs, w, rule, 0, &budget, &origin);
+  w.carrying.from = nullptr;  // a search from where the body was has nothing to do with it
   zone.next("end step");
   if (!report.failed && inputs.solver.line_search != LineSearch::none)
     descend_from_staying(model, inputs, origin, w, rule);
@@ -373,6 +376,7 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   if (!report.failed && !x.allFinite()) fail(model, w, "step", std::numeric_limits<double>::quiet_NaN());
   if (!report.failed) {
     remember_matrix(model, inputs.solver, w, state);
+    remember_carried_pair(w, state);
     set_velocity(model, x, state);
     state.x = x;
     state.time += model.time_step;

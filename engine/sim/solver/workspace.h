@@ -8,6 +8,7 @@
 #include "sim/model/hessian_system.h"
 #include "sim/model/report.h"
 #include "sim/model/tangent_system.h"
+#include "sim/solver/carrying_work.h"
 #include "sim/solver/iterate.h"
 #include "sim/solver/step_clock.h"
 
@@ -42,6 +43,8 @@ struct Workspace {
   // The pairs of L-BFGS are stored in a ring.
   std::vector<Positions> step_pairs, gradient_pairs;  // s [m] and t [N]
   std::vector<double> products;                       // s_i . t_j, window x window [J]
+
+  CarryingWork carrying;
 
   ContactWork contact;
   ContactCorrection correction;

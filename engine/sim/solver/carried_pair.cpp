@@ -1,0 +1,62 @@
+#include "sim/solver/carried_pair.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/hash.h"
+
+namespace supple {
+namespace {
+
+// After so many misses in a row, steps between two attempts are no more.
+constexpr int most_misses = 5;
+
+// Tells by its numbers whether A is the same: masses, materials, the time step and what handles hold are in it.
+std::uint64_t system_of(const Model& model, CarryingWork& work) {
+  if (work.system_for != model.id) {
+    const auto bytes = sizeof(double) * static_cast<std::size_t>(model.matrix.nonZeros());
+    work.system = hash_bytes(model.matrix.valuePtr(), bytes);
+    work.system_for = model.id;
+  }
+  return work.system;
+}
+
+}  // namespace
+
+void choose_carried_pair(const Model& model, const SolverSettings& solver, const State& state, Workspace& w) {
+  CarryingWork& work = w.carrying;
+  work.wanted = solver.carry && solver.history > 0;
+  work.used = work.misled = work.whole = false;
+  work.from = nullptr;
+  if (!work.wanted) return;
+  const CarriedPair& pair = state.carried;
+  const bool of_this_body = system_of(model, work) == pair.system && pair.step.rows() == model.free;
+  if (of_this_body && pair.wait == 0) work.from = &pair;
+}
+
+void remember_carried_pair(Workspace& w, State& state) {
+  CarryingWork& work = w.carrying;
+  if (!work.wanted) {
+    state.carried = {};
+    return;
+  }
+  CarriedPair& pair = state.carried;
+  if (pair.system != work.system) pair = {};
+  pair.system = work.system;
+  if (pair.wait > 0) {
+    --pair.wait;
+  } else if (work.used && w.report.iterations > 0) {
+    pair.misses = work.misled ? std::min(pair.misses + 1, most_misses) : 0;
+    pair.wait = (1 << pair.misses) - 1;
+  }
+  const double curvature = work.whole ? work.step.cwiseProduct(work.gradient).sum() : 0;
+  if (is_safely_positive(curvature, work.step.squaredNorm(), work.gradient.squaredNorm())) {
+    pair.step = work.step;
+    pair.gradient = work.gradient;
+  } else {
+    pair.step.resize(0, 3);
+    pair.gradient.resize(0, 3);
+  }
+}
+
+}  // namespace supple
