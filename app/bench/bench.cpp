@@ -70,6 +70,7 @@ const std::vector<Benchmark>& benchmarks() {
       {"ablation", "from the published settings to ours", 0.3, bench_ablation},
       {"contact", "contact three ways", 0.5, bench_contact},
       {"matrix", "a matrix that follows the body", 4, bench_matrix},
+      {"carry", "a pair that is carried over", 4, bench_carry},
       {"scaling", "milliseconds and bytes against vertices", 3, bench_scaling},
       {"roofline", "bytes and operations by stage", 0.5, bench_roofline},
   };

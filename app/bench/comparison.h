@@ -19,6 +19,7 @@ struct SolverEntry {
   LineSearch line_search = LineSearch::armijo;
   ChebyshevSettings chebyshev = {};
   SystemMatrix matrix = SystemMatrix::constant;  // of quasi-Newton: the paper's
+  bool carry = false;                            // of quasi-Newton: the paper does not
 };
 
 // Holds the result of one solver on one state. Lists go by iteration, with the first iterate first.

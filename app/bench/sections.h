@@ -37,6 +37,8 @@ ReportSection bench_ablation(const BenchSetting& setting);
 ReportSection bench_contact(const BenchSetting& setting);
 // matrix.cpp
 ReportSection bench_matrix(const BenchSetting& setting);
+// carry.cpp
+ReportSection bench_carry(const BenchSetting& setting);
 // scaling.cpp
 ReportSection bench_scaling(const BenchSetting& setting);
 // roofline.cpp

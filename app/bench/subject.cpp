@@ -62,6 +62,7 @@ Solvers solver_instead(Method method, int iterations, SystemMatrix matrix) {
             SolverSettings settings = solver.settings;
             settings.iterations = iterations;
             settings.matrix = matrix;
+            settings.carry = false;
             return settings_of(method, settings);
           }};
 }
