@@ -10,8 +10,6 @@
 #include "scene/scene_reader.h"
 
 namespace supple {
-namespace {}  // namespace
-
 std::vector<SubjectChoice> all_subjects() {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(assets_folder() / "scenes"))

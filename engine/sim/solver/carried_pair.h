@@ -1,9 +1,9 @@
 // Carries curvature from one step to the next: one pair of L-BFGS, the sum of all pairs of the step before, with which
 // the next one begins (Morales and Nocedal 2000 begin with pairs of the problem before; "Automatic preconditioning by
 // limited memory quasi-Newton updating"). It is what the whole step corrected, and bodies correct much the same in the
-// next. Where they do not, it misleads the first direction, which shows at once, and the pair is dropped.
-// docs/method.md
-// ("A pair that is carried over") has the numbers. All rules count steps and compare numbers of the state.
+// next. Where they do not, it misleads the first direction, which shows at once, and the pair is dropped
+// (docs/method.md, "A pair that is carried over", has the numbers). All rules count steps and compare numbers of the
+// state.
 #pragma once
 
 #include "sim/solver/lbfgs.h"
