@@ -10,6 +10,7 @@
 #include "sim/model/model_values.h"
 #include "support/bodies.h"
 #include "support/contact_scene.h"
+#include "support/snapshots.h"
 
 namespace supple {
 namespace {
@@ -223,29 +224,9 @@ TEST(CarriedPair, AWindowOfOneIsEnoughAndWithoutAWindowThereIsNone) {
 TEST(CarriedPair, AStateHoldsAllThatTheNextStepDependsOn) {
   for (const SystemMatrix matrix : {SystemMatrix::constant, SystemMatrix::tangent, SystemMatrix::hessian}) {
     const BodyDescription body = bar(Polynomial{1e5}, Held::hard_end, Precision::single_precision, 4);
-    const Model model = build_model(body), again = build_model(body);
-    const StepInputs inputs = carrying_inputs(model, matrix);
-    State state = rest_state(model);
-    Workspace w;
-    std::vector<State> states;
-    for (int i = 0; i < 16; ++i) {
-      states.push_back(state);
-      step(model, inputs, state, w);
-    }
-    for (const int threads_count : {1, 2, 4}) {
-      for (const int from : {3, 8, 13}) {  // as if resumed there, by another model of the same body
-        Threads threads(threads_count);
-        Workspace other;
-        other.threads = &threads;
-        State resumed = states[from];
-        for (int i = from; i < 16; ++i) step(again, inputs, resumed, other);
-        EXPECT_EQ(state_hash(again, resumed), state_hash(model, state)) << threads_count << " threads from " << from;
-        EXPECT_TRUE(same(resumed.carried, state.carried));
-      }
-    }
-    State back = states[5];  // and in the workspace that has gone further
-    step(model, inputs, back, w);
-    EXPECT_EQ(state_hash(model, back), state_hash(model, states[6]));
+    const StepInputs inputs = carrying_inputs(build_model(body), matrix);
+    test::expect_states_to_hold_all(
+        body, inputs, [](const State& one, const State& other) { EXPECT_TRUE(same(one.carried, other.carried)); });
   }
 }
 
