@@ -14,7 +14,7 @@ const std::vector<int> sampled_frames = {18, 30, 42, 54, 65};
 constexpr int most_iterations = 40;
 constexpr double tolerances[] = {1e-4, 1e-6};
 
-// A film in which each step begins with the pair of the one before, by solver.carry.
+// Holds what was counted in a film in which each step begins with the pair of the one before, by solver.carry.
 struct CarryingFilm {
   std::vector<BenchState> states;
   int steps = 0, used = 0, misled = 0;
@@ -45,7 +45,7 @@ CarryingFilm film_of(Subject& subject, Threads& threads, SystemMatrix matrix) {
   return film;
 }
 
-// Sums over a body's states, of a solver without the pair and of one with it.
+// Holds sums over a body's states, of a solver without the pair and of one with it.
 struct Score {
   double log_five = 0, log_ten = 0, trials = 0, iterations = 0;
   double log_ms[std::size(tolerances)] = {}, log_iterations[std::size(tolerances)] = {};

@@ -8,6 +8,7 @@
 #include "geometry/cloth.h"
 #include "scene/obstacle.h"
 #include "scene/overlaps.h"
+#include "sim/model/measures.h"
 
 namespace supple {
 namespace {
@@ -104,8 +105,6 @@ bool comes_back_from_folds(const Material& material) {
   return std::holds_alternative<AsRigidAsPossible>(material) || std::holds_alternative<Corotated>(material) ||
          std::holds_alternative<StrainLimiting>(material);
 }
-
-constexpr double without_volume = 1e-3;  // of the rest volume, as solver.untangle takes it
 
 // Tells whether a collider may stop what falls down a shaft of this width and depth, at any time.
 bool may_stop_a_fall(const Obstacle& obstacle, const Bounds& shaft) {

@@ -30,8 +30,6 @@ double weighted_top(std::vector<std::pair<double, double>>& pairs, double weight
   }
 }
 
-constexpr double without_volume = 1e-3;  // of the rest volume
-
 }  // namespace
 
 bool is_tangled(const Model& model, const Positions& x) {

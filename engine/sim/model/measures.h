@@ -9,11 +9,13 @@
 
 namespace supple {
 
+inline constexpr double without_volume = 1e-3;  // volume below which an element has collapsed, of that at rest
+
 struct Deformation {
   double stretch = 1;  // 99.9th percentile over elements of the largest stretch, weighted by rest volume; of
                        // springs, of current over rest length, weighted by rest length
   int inverted = 0;    // tetrahedra with det F < 0 whose rest volume is above 1e-6 of the mean
-  int collapsed = 0;   // such tetrahedra with |det F| < 1e-3
+  int collapsed = 0;   // such tetrahedra with |det F| < without_volume
 };
 Deformation deformation(const Model& model, const Positions& x);
 

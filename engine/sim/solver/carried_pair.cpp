@@ -8,7 +8,7 @@
 namespace supple {
 namespace {
 
-// After so many misses in a row, steps between two attempts are no more.
+// After so many misses in a row, the wait between two attempts grows no further.
 constexpr int most_misses = 5;
 
 // Tells by its numbers whether A is the same: masses, materials, the time step and what handles hold are in it.
