@@ -18,7 +18,7 @@ struct Anchors {
   std::vector<char> holds;    // whether each handle holds its vertices; one that has let go does not pull
 };
 
-// The curvature of g that a step found, for the next one to begin with (solver/carried_pair.h).
+// Holds the curvature of g that a step found, with which the next one begins (solver/carried_pair.h).
 struct CarriedPair {
   Positions step;            // s: the sum of the steps of its iterations, n_free x 3; empty: there is none [m]
   Positions gradient;        // t: of the changes of the gradient, without normal forces of contacts, n_free x 3 [N]

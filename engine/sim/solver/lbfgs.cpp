@@ -222,9 +222,9 @@ void begin_with_carried_pair(const Model& model, Workspace& w, PairHistory& hist
   work.misled = true;  // until an iteration shows otherwise
 }
 
-// Along d, the model that gave the direction has the curvature d.B d = -tr(grad^T d), and g was found to have s.t.
-// Where the two agree the pair helps a good deal, and elsewhere it does not or does harm (docs/method.md). What normal
-// forces of contacts add to the curvature is in d.B d alone: so a pair is dropped where contacts resist the step, too.
+// The matrix B that gave the direction d foresees the curvature d.B d = -tr(grad^T d), and s.t is what g turned out to
+// have. The pair helps where the two agree; where they differ, it gains nothing or harms (docs/method.md). Normal
+// forces of contacts are in d.B d and not in s.t, so that a pair is also dropped where contacts resist the step.
 void judge_carried_pair(Workspace& w, PairHistory& history) {
   constexpr double least = 0.8, most = 1.25;
   const bool remembered = history.count > 1 || (history.window == 1 && history.count == 1);
