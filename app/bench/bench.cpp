@@ -69,8 +69,7 @@ const std::vector<Benchmark>& benchmarks() {
       {"hanging", "the tip of a hanging bar by method", 0.5, bench_hanging},
       {"ablation", "from the published settings to ours", 0.3, bench_ablation},
       {"contact", "contact three ways", 0.5, bench_contact},
-      {"matrix", "a matrix that follows the body", 4, bench_matrix},
-      {"carry", "a pair that is carried over", 4, bench_carry},
+      {"matrix", "what directions start from, beside the paper's", 8, bench_matrix},
       {"scaling", "milliseconds and bytes against vertices", 3, bench_scaling},
       {"roofline", "bytes and operations by stage", 0.5, bench_roofline},
   };

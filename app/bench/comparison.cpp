@@ -108,8 +108,8 @@ StepInputs SolverComparison::inputs_of(const BenchState& state, const SolverEntr
   inputs.solver.history = entry.history;
   inputs.solver.line_search = entry.line_search;
   inputs.solver.chebyshev = entry.chebyshev;
-  inputs.solver.matrix = entry.matrix;
-  inputs.solver.carry = entry.carry;
+  inputs.solver.matrix = entry.start.matrix;
+  inputs.solver.carry = entry.start.carry;
   inputs.solver = settings_of(entry.method, inputs.solver);
   return inputs;
 }

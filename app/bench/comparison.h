@@ -18,8 +18,7 @@ struct SolverEntry {
   int history = 5;
   LineSearch line_search = LineSearch::armijo;
   ChebyshevSettings chebyshev = {};
-  SystemMatrix matrix = SystemMatrix::constant;  // of quasi-Newton: the paper's
-  bool carry = false;                            // of quasi-Newton: the paper does not
+  DirectionStart start = {};  // of quasi-Newton
 };
 
 // Holds the result of one solver on one state. Lists go by iteration, with the first iterate first.

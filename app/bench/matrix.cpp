@@ -9,27 +9,34 @@
 namespace supple {
 namespace {
 
-constexpr int film_frames = 66;  // of which the renewals are counted
+constexpr int film_frames = 66;  // of which renewals and carried pairs are counted
 const std::vector<int> sampled_frames = {18, 30, 42, 54, 65};
 constexpr int most_iterations = 60;
 constexpr double tolerances[] = {1e-4, 1e-6};
 
+double share(int part, int whole) { return whole == 0 ? 0 : static_cast<double>(part) / whole; }
+
 }  // namespace
 
 // Medians, of examinations and of renewals each for itself: what else the machine did in a frame does not count.
-Renewals count_renewals(Subject& subject, Threads& threads, SystemMatrix matrix, const std::vector<int>& frames) {
-  Renewals result;
+PlayedFilm play_film(Subject& subject, Threads& threads, DirectionStart start, const std::vector<int>& frames) {
+  PlayedFilm film;
   std::vector<double> renewing, examining;
+  int began_carried = 0, misled = 0, steps = 0;
   DrivenBody driver(subject.scene, subject.body, subject.model, subject.set,
-                    solver_instead(Method::quasi_newton, 10, matrix), &threads);
+                    solver_instead(Method::quasi_newton, 10, start), &threads);
   for (int frame = 0; frame < film_frames; ++frame) {
     if (std::binary_search(frames.begin(), frames.end(), frame)) {
       driver.prepare_step(frame, 0);
-      result.states.push_back({frame, driver.state(), state_hash(subject.model, driver.state())});
+      film.states.push_back({frame, driver.state(), state_hash(subject.model, driver.state())});
     }
     const StepReport& last = driver.make_frame(frame, [&](const StepReport& report) {
       const bool first = renewing.empty() && examining.empty();  // made as a body is prepared, like A
       (driver.workspace().renewed && !first ? renewing : examining).push_back(report.matrix_ms);
+      const CarryingWork& carrying = driver.workspace().carrying;
+      ++steps;
+      began_carried += carrying.used;
+      misled += carrying.used && carrying.misled;
     });
     if (last.failed) throw RunError(fmt::format("{}: frame {} failed", subject.choice.scene, frame));
   }
@@ -38,34 +45,39 @@ Renewals count_renewals(Subject& subject, Threads& threads, SystemMatrix matrix,
     std::sort(ms.begin(), ms.end());
     return static_cast<double>(ms.size()) * ms[ms.size() / 2];
   };
-  result.a_frame = static_cast<double>(renewing.size()) / film_frames;
-  result.ms = (sum_of_medians(renewing) + sum_of_medians(examining)) / film_frames;
-  return result;
+  film.renewals = static_cast<double>(renewing.size()) / film_frames;
+  if (start.matrix != SystemMatrix::constant)
+    film.renewal_ms = (sum_of_medians(renewing) + sum_of_medians(examining)) / film_frames;
+  film.began_carried = share(began_carried, steps);
+  film.misled = share(misled, began_carried);
+  return film;
 }
 
 namespace {
 
-// Collects what one matrix achieved on a body's states.
+// Collects what one start of directions achieved on a body's states.
 struct Score {
-  double log_error = 0, trials = 0, iterations = 0;
-  double log_ms[std::size(tolerances)] = {};  // without renewals
-  bool missed[std::size(tolerances)] = {};    // some state was not solved to it
+  double log_error[2] = {};  // after five iterations and after ten
+  double trials = 0, iterations = 0;
+  double log_iterations[std::size(tolerances)] = {};  // to each tolerance
+  double log_ms[std::size(tolerances)] = {};          // likewise, with the film's mean of renewals
+  bool missed[std::size(tolerances)] = {};            // some state was not solved to it
 };
 
-// Compares the estimates with the errors, as factors.
-struct Estimates {
-  std::vector<double> ratios = {};
-};
-
-void add(Score& score, const Outcome& whole_run, const Outcome& ten, double lowest, const Renewals& renewals) {
-  const std::vector<double> errors = errors_of(ten, lowest);
-  score.log_error += std::log(std::max(errors.back(), 1e-15));
+void add(Score& score, const Outcome& whole_run, const Outcome& ten, double lowest, double renewal_ms) {
+  const std::vector<double> errors = errors_of(ten, lowest), all_errors = errors_of(whole_run, lowest);
+  const auto logarithm = [](double error) { return std::log(std::max(error, 1e-15)); };
+  score.log_error[0] += logarithm(errors[std::min<std::size_t>(5, errors.size() - 1)]);
+  score.log_error[1] += logarithm(errors.back());
   score.trials += ten.trials;
   score.iterations += ten.iterations;
   for (std::size_t t = 0; t < std::size(tolerances); ++t) {
     const double ms = time_to(whole_run, lowest, tolerances[t]);
     score.missed[t] |= !std::isfinite(ms);
-    score.log_ms[t] += std::log((std::isfinite(ms) ? ms : whole_run.ms.back()) + renewals.ms);
+    score.log_ms[t] += std::log((std::isfinite(ms) ? ms : whole_run.ms.back()) + renewal_ms);
+    const auto near = [&](double error) { return error <= tolerances[t]; };
+    const auto place = std::find_if(all_errors.begin(), all_errors.end(), near) - all_errors.begin();
+    score.log_iterations[t] += std::log(1.0 + static_cast<double>(place));
   }
 }
 
@@ -76,143 +88,157 @@ void take_out_renewal(Outcome& outcome) {
 }
 
 struct Means {
-  double error = 0, to[std::size(tolerances)] = {};
+  double nearer[2] = {}, ms[std::size(tolerances)] = {}, iterations[std::size(tolerances)] = {};
   int bodies = 0;
 };
 
-// Holds a matrix that is compared with the constant one, and what it achieved in scenes without and with colliders.
+// Holds a start of directions that is compared with the paper's, and what it achieved in scenes without and with
+// colliders.
 struct Candidate {
-  SystemMatrix matrix;
+  DirectionStart start;
   ReportTable tables[2];
-  Means means[2];
-  Estimates estimates = {};
+  Means means[2] = {};
+  std::vector<double> estimates = {};  // of the error after ten iterations, over the error
 };
 
-Candidate candidate_of(SystemMatrix matrix) {
-  const std::string name(name_of(matrix));
-  Candidate candidate{matrix,
-                      {{"matrix-" + name, "Scenes without colliders: " + name},
-                       {"matrix-" + name + "-colliders", "Scenes with colliders: " + name}},
-                      {}};
+Candidate candidate_of(DirectionStart start) {
+  const std::string text = text_of(start);
+  const std::string name = std::string(name_of(start.matrix)) + (start.carry ? "-carried" : "");
+  Candidate candidate{start,
+                      {{"matrix-" + name, "Scenes without colliders: " + text},
+                       {"matrix-" + name + "-colliders", "Scenes with colliders: " + text}}};
   for (ReportTable& table : candidate.tables)
     table.columns = {"scene",
                      "body",
                      "vertices",
-                     "error after 10, constant",
-                     "error after 10, " + name,
+                     "error after 5, paper's",
+                     "error after 5",
+                     "error after 10, paper's",
+                     "error after 10",
                      "times nearer",
-                     "trials an iteration, constant",
-                     "trials an iteration, " + name,
-                     "to 1e-4, constant [ms]",
-                     "to 1e-4, " + name + " [ms]",
+                     "trials an iteration, paper's",
+                     "trials an iteration",
+                     "iterations to 1e-4, ratio",
+                     "to 1e-4, paper's [ms]",
+                     "to 1e-4 [ms]",
                      "to 1e-4, ratio",
-                     "to 1e-6, constant [ms]",
-                     "to 1e-6, " + name + " [ms]",
+                     "iterations to 1e-6, ratio",
+                     "to 1e-6, paper's [ms]",
+                     "to 1e-6 [ms]",
                      "to 1e-6, ratio",
                      "renewals a frame",
-                     "their time a frame [ms]"};
+                     "their time a frame [ms]",
+                     "steps that began with a carried pair",
+                     "of these, misled"};
   return candidate;
 }
 
-void add_row(Candidate& candidate, const Subject& subject, const Score (&scores)[2], const Renewals& renewals,
-             double n) {
+void add_row(Candidate& candidate, const Subject& subject, const Score& papers, const Score& score,
+             const PlayedFilm& film, double n) {
   const int group = subject.set.colliders.empty() ? 0 : 1;
   Means& means = candidate.means[group];
-  const auto mean = [n](double sum) { return std::exp(sum / n); };
+  const auto mean = [n](double sum) { return number_text(std::exp(sum / n)); };
   const auto text = [&](const Score& s, std::size_t t) {
-    return number_text(mean(s.log_ms[t])) + (s.missed[t] ? " (not all)" : "");
+    return mean(s.log_ms[t]) + (s.missed[t] ? " (not all)" : "");
   };
-  std::vector<std::string> row = {subject.choice.scene,
-                                  subject.choice.body,
-                                  std::to_string(subject.model.vertices),
-                                  number_text(mean(scores[0].log_error)),
-                                  number_text(mean(scores[1].log_error)),
-                                  number_text(mean(scores[0].log_error - scores[1].log_error)),
-                                  number_text(scores[0].trials / scores[0].iterations),
-                                  number_text(scores[1].trials / scores[1].iterations)};
-  for (std::size_t t = 0; t < std::size(tolerances); ++t) {
-    row.push_back(text(scores[0], t));
-    row.push_back(text(scores[1], t));
-    row.push_back(number_text(mean(scores[1].log_ms[t] - scores[0].log_ms[t])));
-    means.to[t] += (scores[1].log_ms[t] - scores[0].log_ms[t]) / n;
+  std::vector<std::string> row = {subject.choice.scene, subject.choice.body, std::to_string(subject.model.vertices)};
+  for (int i = 0; i < 2; ++i) {
+    row.push_back(mean(papers.log_error[i]));
+    row.push_back(mean(score.log_error[i]));
+    means.nearer[i] += (papers.log_error[i] - score.log_error[i]) / n;
   }
-  means.error += (scores[0].log_error - scores[1].log_error) / n;
+  row.push_back(mean(papers.log_error[1] - score.log_error[1]));
+  row.push_back(number_text(papers.trials / papers.iterations));
+  row.push_back(number_text(score.trials / score.iterations));
+  for (std::size_t t = 0; t < std::size(tolerances); ++t) {
+    row.push_back(mean(score.log_iterations[t] - papers.log_iterations[t]));
+    row.push_back(text(papers, t));
+    row.push_back(text(score, t));
+    row.push_back(mean(score.log_ms[t] - papers.log_ms[t]));
+    means.ms[t] += (score.log_ms[t] - papers.log_ms[t]) / n;
+    means.iterations[t] += (score.log_iterations[t] - papers.log_iterations[t]) / n;
+  }
   ++means.bodies;
-  row.push_back(number_text(renewals.a_frame));
-  row.push_back(number_text(renewals.ms));
+  for (const double number : {film.renewals, film.renewal_ms, film.began_carried, film.misled})
+    row.push_back(number_text(number));
   candidate.tables[group].rows.push_back(std::move(row));
 }
 
 std::string text_of(const Means& means) {
   const double n = means.bodies;
   return fmt::format(
-      "the error after ten iterations is {:.1f} times smaller, the time to 1e-4 {:.2f} and to 1e-6 {:.2f} "
-      "times that of the constant matrix (geometric means over {} bodies)",
-      std::exp(means.error / n), std::exp(means.to[0] / n), std::exp(means.to[1] / n), means.bodies);
+      "the error is {:.1f} times smaller after five iterations and {:.1f} times after ten; iterations to 1e-4 and 1e-6 "
+      "are {:.2f} and {:.2f}, times {:.2f} and {:.2f} of the paper's (geometric means over {} bodies)",
+      std::exp(means.nearer[0] / n), std::exp(means.nearer[1] / n), std::exp(means.iterations[0] / n),
+      std::exp(means.iterations[1] / n), std::exp(means.ms[0] / n), std::exp(means.ms[1] / n), means.bodies);
 }
 
-std::string text_of(const Estimates& estimates, std::string_view label) {
-  double within = 0, too_small = 0;
-  for (const double ratio : estimates.ratios) {
-    within += ratio >= 1.0 / 3 && ratio <= 3;
-    too_small += ratio < 0.1;
-  }
-  const auto n = static_cast<double>(estimates.ratios.size());
+std::string text_of_estimates(const std::vector<double>& ratios, const std::string& label) {
+  const auto percent = [&](const auto& rule) {
+    const auto count = static_cast<double>(std::count_if(ratios.begin(), ratios.end(), rule));
+    return ratios.empty() ? 0 : 100 * count / static_cast<double>(ratios.size());
+  };
   return fmt::format("{}: within a factor of 3 on {:.0f} % of {} states, more than ten times too small on {:.0f} %",
-                     label, 100 * within / n, estimates.ratios.size(), 100 * too_small / n);
+                     label, percent([](double ratio) { return ratio >= 1.0 / 3 && ratio <= 3; }), ratios.size(),
+                     percent([](double ratio) { return ratio < 0.1; }));
 }
 
-// Compares on states of the candidate's own film, which say how old its matrix is.
-void compare(Candidate& candidate, Subject& subject, Estimates& of_constant, const BenchSetting& setting) {
-  const Renewals renewals = count_renewals(subject, *setting.threads, candidate.matrix, sampled_frames);
+// Compares on states of the candidate's own film, which say how old its matrix is and what it carries.
+void compare(Candidate& candidate, Subject& subject, std::vector<double>& papers_estimates,
+             const BenchSetting& setting) {
+  const PlayedFilm film = play_film(subject, *setting.threads, candidate.start, sampled_frames);
   SolverComparison comparison(subject, *setting.threads);
-  Score scores[2];
+  Score papers, score;
   int states = 0;
-  for (const BenchState& state : renewals.states) {
-    std::vector<SolverEntry> entries = {{"constant", Method::quasi_newton, most_iterations},
-                                        {"constant, ten", Method::quasi_newton, 10},
+  for (const BenchState& state : film.states) {
+    std::vector<SolverEntry> entries = {{"paper's", Method::quasi_newton, most_iterations},
+                                        {"paper's, ten", Method::quasi_newton, 10},
                                         {"candidate", Method::quasi_newton, most_iterations},
                                         {"candidate, ten", Method::quasi_newton, 10}};
-    entries[2].matrix = entries[3].matrix = candidate.matrix;
+    entries[2].start = entries[3].start = candidate.start;
     std::vector<Outcome> outcomes = comparison.run(state, entries, 3, 1000);
     const Minimum lowest = comparison.reference(state, outcomes);
     const double scale = subject.model.total_mass * std::pow(subject.model.size / subject.model.time_step, 2);
     if (!(lowest.below_y > 1e-12 * scale)) continue;  // at rest: nothing to solve
     ++states;
-    for (int m = 0; m < 2; ++m) {
-      take_out_renewal(outcomes[2 * m]);
-      add(scores[m], outcomes[2 * m], outcomes[2 * m + 1], lowest.below_y, m == 1 ? renewals : Renewals{});
-      const double error = last_error(outcomes[2 * m + 1], lowest.below_y);
+    take_out_renewal(outcomes[2]);
+    add(papers, outcomes[0], outcomes[1], lowest.below_y, 0);
+    add(score, outcomes[2], outcomes[3], lowest.below_y, film.renewal_ms);
+    for (const int ten : {1, 3}) {
+      const double error = last_error(outcomes[ten], lowest.below_y);
       if (error > 1e-13)
-        (m == 0 ? of_constant : candidate.estimates).ratios.push_back(outcomes[2 * m + 1].error_estimate / error);
+        (ten == 1 ? papers_estimates : candidate.estimates).push_back(outcomes[ten].error_estimate / error);
     }
   }
-  if (states > 0) add_row(candidate, subject, scores, renewals, states);
+  if (states > 0) add_row(candidate, subject, papers, score, film, states);
 }
 
 }  // namespace
 
 ReportSection bench_matrix(const BenchSetting& setting) {
-  Candidate candidates[] = {candidate_of(SystemMatrix::tangent), candidate_of(SystemMatrix::hessian)};
-  Estimates of_constant;
+  Candidate candidates[] = {candidate_of({SystemMatrix::constant, true}), candidate_of({SystemMatrix::tangent, false}),
+                            candidate_of({SystemMatrix::tangent, true}), candidate_of({SystemMatrix::hessian, false}),
+                            candidate_of({SystemMatrix::hessian, true})};
+  std::vector<double> papers_estimates;
   for (const SubjectChoice& choice : all_subjects()) {
     Subject subject(choice);
     if (subject.model.vertices > most_vertices || subject.body.def.solver.method != Method::quasi_newton) continue;
     say_doing(setting, fmt::format("{}, {} ({})", choice.scene, choice.body, subject.size_text()));
-    for (Candidate& candidate : candidates) compare(candidate, subject, of_constant, setting);
+    for (Candidate& candidate : candidates) compare(candidate, subject, papers_estimates, setting);
   }
-  ReportSection section{"matrix", "Matrices that follow the body"};
+  ReportSection section{"matrix", "What directions start from"};
   section.text = fmt::format(
-      "Matrices that follow the body beside the constant one, M/h^2 + L, on states of all bodies of up to {} vertices, "
-      "geometric means over their frames. Times contain the renewals that the matrix' film had, on average over {} "
-      "frames.",
+      "Matrices that follow the body, solver.matrix, and a pair that is carried over from the step before, "
+      "solver.carry, beside the paper's constant matrix, M/h^2 + L, with nothing carried, on states of all bodies of "
+      "up to {} vertices, geometric means over their frames. Times contain the renewals that the matrix' film had, on "
+      "average over {} frames.",
       most_vertices, film_frames);
   for (const Candidate& candidate : candidates)
-    section.text += fmt::format(" {}, without colliders: {}; with colliders: {}.", name_of(candidate.matrix),
+    section.text += fmt::format(" {}, without colliders: {}; with colliders: {}.", text_of(candidate.start),
                                 text_of(candidate.means[0]), text_of(candidate.means[1]));
-  section.text += " Estimates of the error after ten iterations, " + text_of(of_constant, "constant");
+  section.text += " Estimates of the error after ten iterations, " + text_of_estimates(papers_estimates, "the paper's");
   for (const Candidate& candidate : candidates)
-    section.text += "; " + text_of(candidate.estimates, name_of(candidate.matrix));
+    section.text += "; " + text_of_estimates(candidate.estimates, text_of(candidate.start));
   section.text += ".";
   for (Candidate& candidate : candidates) {
     for (ReportTable& table : candidate.tables) section.tables.push_back(std::move(table));

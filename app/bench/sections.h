@@ -37,21 +37,21 @@ ReportSection bench_ablation(const BenchSetting& setting);
 ReportSection bench_contact(const BenchSetting& setting);
 // matrix.cpp
 ReportSection bench_matrix(const BenchSetting& setting);
-// carry.cpp
-ReportSection bench_carry(const BenchSetting& setting);
 // scaling.cpp
 ReportSection bench_scaling(const BenchSetting& setting);
 // roofline.cpp
 ReportSection bench_roofline(const BenchSetting& setting);
 
-// The renewals of a film that is played with ten iterations a step and a matrix that follows the body.
-struct Renewals {
-  double a_frame = 0;                   // how many
-  double ms = 0;                        // what they cost in a frame, the examination of whether one is due included
+// Holds what was counted in a film that is played with ten iterations a step.
+struct PlayedFilm {
+  double renewals = 0;                  // of the matrix, by frame
+  double renewal_ms = 0;                // what they cost by frame, with the examination of whether one is due
+  double began_carried = 0;             // share of the steps that began with a carried pair
+  double misled = 0;                    // share of these that were misled
   std::vector<BenchState> states = {};  // of the film before some of its frames
 };
 // frames: those whose states are wanted, ascending.
-Renewals count_renewals(Subject& subject, Threads& threads, SystemMatrix matrix, const std::vector<int>& frames = {});
+PlayedFilm play_film(Subject& subject, Threads& threads, DirectionStart start, const std::vector<int>& frames = {});
 
 constexpr int most_vertices = 4000;  // of subjects that are solved to the end in many states
 

@@ -56,13 +56,17 @@ Solvers scenes_own_solver() {
           [](const SolverDef& solver) { return settings_of(solver.method, solver.settings); }};
 }
 
-Solvers solver_instead(Method method, int iterations, SystemMatrix matrix) {
+std::string text_of(const DirectionStart& start) {
+  return std::string(name_of(start.matrix)) + (start.carry ? ", carried" : "");
+}
+
+Solvers solver_instead(Method method, int iterations, DirectionStart start) {
   return {[method](const SolverDef&, const Model& model) { return make_rule(method, model); },
-          [method, iterations, matrix](const SolverDef& solver) {
+          [method, iterations, start](const SolverDef& solver) {
             SolverSettings settings = solver.settings;
             settings.iterations = iterations;
-            settings.matrix = matrix;
-            settings.carry = false;
+            settings.matrix = start.matrix;
+            settings.carry = start.carry;
             return settings_of(method, settings);
           }};
 }

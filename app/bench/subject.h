@@ -18,9 +18,16 @@ struct SubjectChoice {
   std::vector<std::string> settings = {};
 };
 
+// Says what directions of quasi-Newton start from. The default is the paper's.
+struct DirectionStart {
+  SystemMatrix matrix = SystemMatrix::constant;
+  bool carry = false;
+};
+std::string text_of(const DirectionStart& start);  // "tangent, carried"
+
 // These functions return the solver that a scene names, or another solver in its place.
 Solvers scenes_own_solver();
-Solvers solver_instead(Method method, int iterations, SystemMatrix matrix = SystemMatrix::constant);
+Solvers solver_instead(Method method, int iterations, DirectionStart start = {});
 
 // Describes one step to be made.
 struct BenchState {

@@ -106,8 +106,8 @@ SolverSettings read_settings(const ConfigTable& table, SolverSettings s) {
   s.history =
       table.integer({"history", "", "window m of L-BFGS; 0 is plain quasi-Newton"}, s.history, Range::between(0, 100));
   s.carry = table.boolean({"carry", "",
-                           "L-BFGS of quasi-newton begins with one pair that sums up the step before, unless such a "
-                           "pair has misled it lately"},
+                           "the first direction of quasi-newton learns from the step before, in which the paper's "
+                           "begins with nothing"},
                           s.carry);
   s.matrix = table.word<SystemMatrix>(
       {"matrix", "",

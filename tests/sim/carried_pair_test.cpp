@@ -171,7 +171,7 @@ TEST(CarriedPair, IsNotUsedWhenTheBodysValuesHaveChanged) {
     step(model, inputs, without, other);
     EXPECT_EQ(state_hash(model, state), state_hash(model, without));
     EXPECT_TRUE(same(state.carried, without.carried));
-    step(model, inputs, state, w);
+    for (int i = 0; i < 3; ++i) step(model, inputs, state, w);
     EXPECT_TRUE(w.carrying.used);  // the new values have a pair of their own
   }
 }
@@ -197,6 +197,39 @@ TEST(CarriedPair, ThatMisleadsIsDroppedAndAttemptsBecomeRare) {
   EXPECT_FALSE(w.carrying.misled);
   EXPECT_EQ(state.carried.misses, 0);
   EXPECT_EQ(state.carried.wait, 0);
+}
+
+TEST(CarriedPair, OfAStepThatEndsUnsolvedIsNotKept) {
+  const Model model = build_model(bar(NeoHookean{1e4, 4e4}, Held::hard_end));
+  StepInputs inputs = carrying_inputs(model);
+  for (const int iterations : {1, 10}) {
+    inputs.solver.iterations = iterations;
+    State state = rest_state(model);
+    Workspace w;
+    const StepReport& report = step(model, inputs, state, w);
+    EXPECT_EQ(report.error_estimate > 1e-3, iterations == 1);
+    EXPECT_EQ(state.carried.step.rows(), iterations == 1 ? 0 : model.free);
+  }
+}
+
+TEST(CarriedPair, IsNeitherTakenNorLeftByAStepThatTouches) {
+  // A cube that wobbles as it falls 0.2 m.
+  const Shape block = test::shape_of(Box{Vec3(1, 0.5, 1), 0});
+  test::ContactScene scene(test::cube(3), {{"block", block, 0, 0.4}}, Vec3(0, 0.8, 0));
+  scene.state.v.col(0) = 5 * scene.state.x.col(0);
+  int in_the_air = 0, touching = 0;
+  for (int i = 0; i < 16; ++i) {
+    ASSERT_FALSE(scene.step().failed);
+    const bool touches = !scene.w.current.contacts.empty();
+    if (touches) {
+      EXPECT_EQ(scene.state.carried.step.rows(), 0) << i;
+      EXPECT_FALSE(scene.w.carrying.used && touching > 0) << i;
+    }
+    in_the_air += scene.w.carrying.used;
+    touching += touches;
+  }
+  EXPECT_GT(in_the_air, 2);
+  EXPECT_GT(touching, 4);
 }
 
 TEST(CarriedPair, OfCurvatureThatIsNotPositiveIsNotKept) {

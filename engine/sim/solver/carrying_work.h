@@ -12,8 +12,9 @@ struct CarryingWork {
   bool wanted = false;                // SolverSettings::carry, in a step that keeps pairs
   const CarriedPair* from = nullptr;  // the state's, for the search that begins the step; null: none is to be used
   bool used = false, misled = false;  // by the step in hand
-  Positions step, gradient;           // sums over the iterations of the search in hand, n_free x 3 [m], [N]
-  bool whole = false;                 // these sums are without normal forces of contacts, as they ought to be
+  Positions step, gradient;           // sums over the iterations of the step's first search, n_free x 3 [m], [N]
+  int searches = 0;                   // that the step has begun; a second one starts from where the body was
+  bool touches = false;               // some iterate of the first search touches something
 
   std::uint64_t system = 0;      // hash of the model's A
   std::uint64_t system_for = 0;  // Model::id for which that was computed

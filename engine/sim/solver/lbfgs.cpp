@@ -176,10 +176,10 @@ void remember_pair(const Model& model, const ContactSettings& contact, Workspace
   }
 
   CarryingWork& carrying = workspace.carrying;
-  if (carrying.wanted) {
+  if (carrying.wanted && carrying.searches == 1) {
     carrying.step += s;
     carrying.gradient += t;
-    carrying.whole &= contact.history == ContactHistory::current || from.contacts.empty();
+    carrying.touches |= !to.contacts.empty();
   }
 
   Pointers other{s.data(), t.data()};
@@ -207,11 +207,11 @@ void remember_pair(const Model& model, const ContactSettings& contact, Workspace
 
 void begin_with_carried_pair(const Model& model, Workspace& w, PairHistory& history) {
   CarryingWork& work = w.carrying;
-  if (!work.wanted) return;
+  if (!work.wanted || ++work.searches > 1) return;
   work.step.setZero(model.free, 3);
   work.gradient.setZero(model.free, 3);
-  work.whole = true;
-  if (work.from == nullptr) return;
+  work.touches = !w.current.contacts.empty();
+  if (work.from == nullptr || work.touches) return;
   w.step_pairs[0] = work.from->step;
   w.gradient_pairs[0] = work.from->gradient;
   Pointers step{w.step_pairs[0].data()};
@@ -223,16 +223,14 @@ void begin_with_carried_pair(const Model& model, Workspace& w, PairHistory& hist
 }
 
 // The matrix B that gave the direction d foresees the curvature d.B d = -tr(grad^T d), and s.t is what g turned out to
-// have. The pair helps where the two agree; where they differ, it gains nothing or harms (docs/method.md). Normal
-// forces of contacts are in d.B d and not in s.t, so that a pair is also dropped where contacts resist the step.
-void judge_carried_pair(Workspace& w, PairHistory& history) {
+// have. The pair helps where the two agree; where they differ, it gains nothing or harms (docs/method.md).
+void end_carried_pair(Workspace& w, PairHistory& history) {
   constexpr double least = 0.8, most = 1.25;
   const bool remembered = history.count > 1 || (history.window == 1 && history.count == 1);
   const double found = remembered ? w.products[history.newest * history.window + history.newest] : 0;
   const double agreement = found / -w.report.slope;
-  history.begins_carried = false;
   w.carrying.misled = !(w.report.line_search == 1 && agreement > least && agreement < most);
-  if (!w.carrying.misled) return;
+  history.begins_carried = false;
   if (!remembered) {
     history.clear();
   } else if (history.window > 1) {

@@ -59,8 +59,8 @@ bool is_safely_positive(double st, double ss, double tt);
 // Begins a search with the pair of the step before as the only one, where the workspace has one for it.
 void begin_with_carried_pair(const Model& model, Workspace& workspace, PairHistory& history);
 
-// Drops that pair after the first iteration where it misled its direction.
-void judge_carried_pair(Workspace& workspace, PairHistory& history);
+// Drops that pair after the iteration whose direction it served, and notes whether it misled it.
+void end_carried_pair(Workspace& workspace, PairHistory& history);
 
 // Implements L-BFGS from any initial Hessian, which must outlive this object. The settings contain the window.
 class LbfgsRule : public SearchRule {
@@ -78,7 +78,7 @@ class LbfgsRule : public SearchRule {
   void accepted(const Model& model, const StepInputs& inputs, Workspace& workspace) override {
     initial_.accepted(model, inputs, workspace);
     remember_pair(model, inputs.solver.contact, workspace, history_);
-    if (history_.begins_carried) judge_carried_pair(workspace, history_);
+    if (history_.begins_carried) end_carried_pair(workspace, history_);
   }
   void contacts_changed(const StepInputs& inputs) override {
     if (inputs.solver.contact.history == ContactHistory::dropped) history_.clear();

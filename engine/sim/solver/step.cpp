@@ -367,7 +367,6 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   TimeBudget budget(inputs, w, TimeBudget::from_first_iterate);
   const Origin origin{state, above_start};
   run_iterations(model, inputs, w, rule, 0, &budget, &origin);
-  w.carrying.from = nullptr;  // a search from where the body was has nothing to do with it
   zone.next("end step");
   if (!report.failed && inputs.solver.line_search != LineSearch::none)
     descend_from_staying(model, inputs, origin, w, rule);
