@@ -20,11 +20,11 @@ struct Anchors {
 
 // Holds the curvature of g that a step found, with which the next one begins (solver/carried_pair.h).
 struct CarriedPair {
-  Positions step;            // s: the sum of the steps of its iterations, n_free x 3; empty: there is none [m]
-  Positions gradient;        // t: of the changes of the gradient, without normal forces of contacts, n_free x 3 [N]
+  Positions step;            // s: the sum of the steps of its iterations, n_free x 3; empty: there was none yet [m]
+  Positions gradient;        // t: of the changes of the gradient, n_free x 3 [N]
   std::uint64_t system = 0;  // hash of the A that the body had
   int misses = 0;            // how many times in a row such a pair misled the step that began with it
-  int wait = 0;              // so many steps begin without
+  int wait = 0;              // so many steps begin without: the pair misled one, or there is none
 };
 
 // All that a body's future depends on, unless its SearchRule remembers earlier steps (solver/step.h). A copy is a

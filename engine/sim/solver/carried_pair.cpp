@@ -59,10 +59,12 @@ void remember_carried_pair(Workspace& w, State& state) {
   if (is_safely_positive(curvature, work.step.squaredNorm(), work.gradient.squaredNorm())) {
     pair.step = work.step;
     pair.gradient = work.gradient;
-  } else {
-    pair.step.resize(0, 3);
-    pair.gradient.resize(0, 3);
+    return;
   }
+  pair.wait = std::max(pair.wait, 1);  // what stays there is memory for a later pair, and does not serve
+  if (pair.step.rows() == work.step.rows()) return;
+  pair.step.setZero(work.step.rows(), 3);
+  pair.gradient.setZero(work.step.rows(), 3);
 }
 
 }  // namespace supple

@@ -198,11 +198,22 @@ bool stop_at_impact(const Model& model, const StepInputs& inputs, const State& s
   return true;
 }
 
+// Tells whether a body moves so little that what acts on it must be balanced: it hangs still, or lies.
+bool is_still(const Model& model, const State& state, const Workspace& w) {
+  constexpr double little = 0.01;  // of the energy of what the step would have it do freely
+  double way = 0, free_way = 0;
+  for (int v = 0; v < model.free; ++v) {
+    way += model.mass[v] * state.v.row(v).squaredNorm();
+    free_way += model.mass[v] * (w.y.row(v) - state.x.row(v)).squaredNorm();
+  }
+  return model.time_step * model.time_step * way < little * free_way;
+}
+
 // Starts from q + h v where that is better. y contains the fall of the step, which leaves a body that rests on
-// something, or slides along it, g h^2 deep in its colliders. This costs an evaluation, and only where something
-// touches. Friction is treated as in descend_from_staying().
+// something, or slides along it, g h^2 deep in its colliders, and one that hangs still that far from where it stays: a
+// soft one comes no nearer in its iterations than it was, and needs as many again. This costs an evaluation, and only
+// where something touches or hardly moves. Friction is treated as in descend_from_staying().
 void start_where_better(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
-  if (!has_colliders(inputs) || w.contact.counts.touching == 0) return;
   const TimedPhase timed(w.clock, Phase::evaluate, "start where better");
   const double stick = w.contact.stick_length;
   const double given = w.current.g - friction_energy(w.current.contacts, stick, w.current.x);
@@ -213,6 +224,8 @@ void start_where_better(const Model& model, const StepInputs& inputs, const Stat
   if (!(w.trial.g - rubbed < given)) return;
   std::swap(w.current, w.trial);
   w.report.objective.back() = w.current.g;
+  w.carrying.searches = 1;  // the pair is of steps that begin at y
+  if (!has_colliders(inputs)) return;
   forget_counts(w.contact);
   count_contacts(w.trial.contacts, w.current.contacts, w.contact);
 }
@@ -224,8 +237,12 @@ double set_first_iterate(const Model& model, const StepInputs& inputs, const Sta
   const bool stopped = stop_at_impact(model, inputs, state, w);
   if (stopped) forget_start(w);
   if (stopped || !at_y) evaluate_start(model, inputs, w);
-  start_where_better(model, inputs, state, w);
-  return at_y && !stopped ? *at_y - w.report.objective.back() : 0;
+  const bool touches = has_colliders(inputs) && w.contact.counts.touching > 0;
+  const double from = at_y ? *at_y : w.current.g;
+  const bool has_pair = w.carrying.from != nullptr;  // which takes a body that hangs still back at once
+  if (touches || (!has_pair && is_still(model, state, w))) start_where_better(model, inputs, state, w);
+  const bool known = at_y || !touches;
+  return known && !stopped ? from - w.report.objective.back() : 0;
 }
 
 }  // namespace supple
