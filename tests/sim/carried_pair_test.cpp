@@ -279,7 +279,7 @@ TEST(CarriedPair, LandsWithABodyThatFalls) {
       const bool rests = touched && !w.current.contacts.empty();
       touched = !w.current.contacts.empty();
       if (history != ContactHistory::current && rests) {
-        EXPECT_EQ(state.carried.step.rows(), 0);  // its gradients contain the ground
+        EXPECT_GT(state.carried.wait, 0);  // its gradients contain the ground
       }
     }
     for (const int from : {2, 12, 20}) {  // resumed in the air, and where it touches

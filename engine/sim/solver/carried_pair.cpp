@@ -34,6 +34,8 @@ void choose_carried_pair(const Model& model, const SolverSettings& solver, const
   work.searches = 0;
   work.from = nullptr;
   if (!work.wanted) return;
+  work.step.resize(model.free, 3);
+  work.gradient.resize(model.free, 3);
   const CarriedPair& pair = state.carried;
   const bool of_this_body = system_of(model, work) == pair.system && pair.step.rows() == model.free;
   if (of_this_body && pair.wait == 0) work.from = &pair;

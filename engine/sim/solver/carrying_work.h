@@ -13,7 +13,7 @@ struct CarryingWork {
   const CarriedPair* from = nullptr;  // the state's, for the search that begins the step; null: none is to be used
   bool used = false, misled = false;  // by the step in hand
   Positions step, gradient;           // sums over the iterations of the step's first search, n_free x 3 [m], [N]
-  int searches = 0;                   // that the step has begun; a second one starts from where the body was
+  int searches = 0;                   // so far; the pair has to do with the first alone, and only where it starts at y
   bool touches = false;               // some iterate of the first search touches something
 
   std::uint64_t system = 0;      // hash of the model's A

@@ -208,8 +208,8 @@ void remember_pair(const Model& model, const ContactSettings& contact, Workspace
 void begin_with_carried_pair(const Model& model, Workspace& w, PairHistory& history) {
   CarryingWork& work = w.carrying;
   if (!work.wanted || ++work.searches > 1) return;
-  work.step.setZero(model.free, 3);
-  work.gradient.setZero(model.free, 3);
+  work.step.setZero();
+  work.gradient.setZero();
   work.touches = !w.current.contacts.empty();
   if (work.from == nullptr || work.touches) return;
   w.step_pairs[0] = work.from->step;
