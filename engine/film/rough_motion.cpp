@@ -12,7 +12,7 @@
 namespace supple {
 namespace {
 
-constexpr double air = 0.03;  // around the box, because finer bodies move a little differently; by its diagonal
+constexpr double air = 0.02;  // around the box, because finer bodies move a little differently; by its diagonal
 
 class ScratchFolder {
  public:

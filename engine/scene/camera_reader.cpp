@@ -75,10 +75,10 @@ CameraDef read_camera(const ConfigTable& table, CameraDef camera) {
   camera.frames = table.word<Framed>(
       {"frames", "", "what is in the picture: the bodies as they start, or their whole motion, by a first pass"},
       camera.frames);
-  // Nothing leaves the box of the whole motion, so that less air is enough.
-  if (camera.frames == Framed::film) camera.margin = 1.12;
+  // The box of the whole motion is larger than what is seen of it, so that less air is enough.
+  if (camera.frames == Framed::film) camera.margin = 1.05;
   camera.margin = table.number({"margin", "",
-                                "air around the bodies, 1.12 for the whole motion; without position and "
+                                "air around the bodies, 1.05 for the whole motion; without position and "
                                 "distance all are framed"},
                                camera.margin, Range::between(0.5, 10));
   camera.orbit_deg = table.number({"orbit", "degrees/s", "how fast the eye goes round the target"}, camera.orbit_deg,
