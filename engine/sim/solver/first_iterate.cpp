@@ -239,7 +239,7 @@ double set_first_iterate(const Model& model, const StepInputs& inputs, const Sta
   if (stopped || !at_y) evaluate_start(model, inputs, w);
   const bool touches = has_colliders(inputs) && w.contact.counts.touching > 0;
   const double from = at_y ? *at_y : w.current.g;
-  const bool has_pair = w.carrying.from != nullptr;  // which takes a body that hangs still back at once
+  const bool has_pair = w.carrying.from != nullptr;  // from y, it leads a body that hangs still back in one direction
   if (touches || (!has_pair && is_still(model, state, w))) start_where_better(model, inputs, state, w);
   const bool known = at_y || !touches;
   return known && !stopped ? from - w.report.objective.back() : 0;
