@@ -23,7 +23,7 @@ namespace {
 // Adds one timed run of a solver to its outcome.
 void add_times(Outcome& outcome, const StepReport& report) {
   std::vector<double> ms = {report.start_ms};
-  for (const IterationRecord& record : report.history) ms.push_back(record.elapsed_ms);
+  for (const IterationRecord& record : report.records) ms.push_back(record.elapsed_ms);
   outcome.steps.push_back(report.step_ms);
   outcome.overheads.push_back(report.lbfgs_ms);
   outcome.matrix_ms = outcome.ms.empty() ? report.matrix_ms : std::min(outcome.matrix_ms, report.matrix_ms);
@@ -65,14 +65,14 @@ std::vector<Outcome> SolverComparison::run(const BenchState& state, const std::v
       outcome.iterations = report.iterations;
       outcome.trials = report.line_search;
       outcome.error_estimate = report.error_estimate;
-      outcome.history = report.history;
+      outcome.records = report.records;
       outcome.x = after.x;
       if (report.failed) continue;
       // The sum runs from the last iterate backwards, so that gains near the minimum keep their last digits.
       double left = gained(subject_.model, inputs, state.before, outcome.x, reference_workspace_);
-      outcome.gained.assign(outcome.history.size() + 1, left);
-      for (std::size_t k = outcome.history.size(); k-- > 0;) {
-        left -= outcome.history[k].decrease;
+      outcome.gained.assign(outcome.records.size() + 1, left);
+      for (std::size_t k = outcome.records.size(); k-- > 0;) {
+        left -= outcome.records[k].decrease;
         outcome.gained[k] = left;
       }
     }

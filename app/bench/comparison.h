@@ -26,7 +26,7 @@ struct Outcome {
   std::string label;
   std::vector<double> gained;  // g(y) - g(x_k) [J]
   std::vector<double> ms;      // since the step was entered, the least of all timed runs
-  std::vector<IterationRecord> history;
+  std::vector<IterationRecord> records;
   double step_ms = 0, median_ms = 0;  // of the whole step, least and median
   double overhead_ms = 0;             // of L-BFGS without its solve
   double matrix_ms = 0;               // of making the matrix, least: in all of `ms`

@@ -214,8 +214,8 @@ ReportSection bench_figure14(const BenchSetting& setting) {
       int full = 0, decreases = 0, both = 0;
       PlotSeries points{outcome.label};
       points.thick = outcome.label == "Armijo";
-      for (std::size_t k = 0; k < outcome.history.size(); ++k) {
-        const IterationRecord& record = outcome.history[k];
+      for (std::size_t k = 0; k < outcome.records.size(); ++k) {
+        const IterationRecord& record = outcome.records[k];
         if (record.alpha == 0) continue;  // a new start
         full += record.alpha == 1;
         decreases += record.full.decreases;
@@ -223,7 +223,7 @@ ReportSection bench_figure14(const BenchSetting& setting) {
         points.x.push_back(static_cast<double>(k + 1));
         points.y.push_back(record.alpha);
       }
-      const double share = 100.0 / std::max<double>(1, static_cast<double>(outcome.history.size()));
+      const double share = 100.0 / std::max<double>(1, static_cast<double>(outcome.records.size()));
       const std::vector<double> errors = errors_of(outcome, lowest.below_y);
       table.rows.push_back(
           {std::to_string(state.frame), outcome.label, std::to_string(outcome.iterations), number_text(share * full),

@@ -20,12 +20,17 @@ std::string joined(const std::vector<Problem>& problems) {
 
 }  // namespace
 
+std::string FilePlace::text() const {
+  std::string all = source;
+  if (line > 0) all += fmt::format(":{}", line);
+  if (line > 0 && column > 0) all += fmt::format(":{}", column);
+  return all;
+}
+
 std::string Problem::text() const {
-  std::string place = source;
-  if (line > 0) place += fmt::format(":{}", line);
-  if (line > 0 && column > 0) place += fmt::format(":{}", column);
+  const std::string where = place.text();
   std::string shown;
-  std::istringstream lines(place.empty() ? message : place + ": " + message);
+  std::istringstream lines(where.empty() ? message : where + ": " + message);
   for (std::string words; std::getline(lines, words);) shown += (shown.empty() ? "" : "\n") + printable(words);
   return shown;
 }

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include <compare>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -12,11 +13,20 @@
 
 namespace supple {
 
-// Describes one thing that is wrong with an input. Lines and columns count from 1; 0 means "the file as a whole".
-struct Problem {
+// Names a place in an input. Lines and columns count from 1; 0 means "the file as a whole".
+struct FilePlace {
   std::string source;  // file name, or the command-line option that set the value
   int line = 0;
   int column = 0;
+
+  std::string text() const;  // source:line:column
+
+  auto operator<=>(const FilePlace&) const = default;
+};
+
+// Describes one thing that is wrong with an input.
+struct Problem {
+  FilePlace place;
   std::string message;  // what is wrong and what is allowed
 
   std::string text() const;
@@ -27,7 +37,7 @@ class InputError : public std::runtime_error {
  public:
   explicit InputError(std::vector<Problem> problems);
   InputError(std::string source, std::string message)
-      : InputError({Problem{std::move(source), 0, 0, std::move(message)}}) {}
+      : InputError({Problem{{std::move(source)}, std::move(message)}}) {}
   const std::vector<Problem>& problems() const { return problems_; }
 
  private:

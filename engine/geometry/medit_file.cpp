@@ -121,7 +121,7 @@ void check_triangles(const Sections& read, const std::string& name) {
     const auto row = static_cast<std::size_t>(t);
     const auto corner = [&](int k) -> Vec3 { return read.raw.mesh.rest.row(read.triangles(t, k)); };
     if (!((corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() > 1e-14 * edge * edge))
-      throw InputError({Problem{name, read.triangle_lines[row], 0, "the triangle has no area"}});
+      throw InputError({Problem{{name, read.triangle_lines[row]}, "the triangle has no area"}});
     std::array<std::int32_t, 3> key{read.triangles(t, 0), read.triangles(t, 1), read.triangles(t, 2)};
     std::sort(key.begin(), key.end());
     keys.emplace_back(key, row);
@@ -130,7 +130,7 @@ void check_triangles(const Sections& read, const std::string& name) {
   for (std::size_t i = 1; i < keys.size(); ++i) {
     if (keys[i].first != keys[i - 1].first) continue;
     throw InputError(
-        {Problem{name, read.triangle_lines[keys[i].second], 0,
+        {Problem{{name, read.triangle_lines[keys[i].second]},
                  fmt::format("the triangle repeats the one at line {}", read.triangle_lines[keys[i - 1].second])}});
   }
 }

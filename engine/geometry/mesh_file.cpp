@@ -18,7 +18,7 @@ namespace {
 [[noreturn]] void refuse(Eigen::Index element, const std::vector<int>& lines, const std::string& name,
                          const std::string& message) {
   if (lines.empty()) throw InputError(name, fmt::format("element {}: {}", element + 1, message));
-  throw InputError({Problem{name, lines[static_cast<std::size_t>(element)], 0, message}});
+  throw InputError({Problem{{name, lines[static_cast<std::size_t>(element)]}, message}});
 }
 
 void check_duplicates(const TetMesh& mesh, const std::vector<int>& lines, const std::string& name) {

@@ -37,7 +37,7 @@ class Words {
   std::size_t bytes_left() const { return text_.size() - at_; }
   int line() const { return line_; }
 
-  [[noreturn]] void refuse(const std::string& message) const { throw InputError({Problem{name_, line_, 0, message}}); }
+  [[noreturn]] void refuse(const std::string& message) const { throw InputError({Problem{{name_, line_}, message}}); }
 
   template <class Number>
   Number number(std::string_view what) {

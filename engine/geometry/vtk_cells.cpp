@@ -11,7 +11,7 @@ constexpr long long tetrahedron = 10, quadratic_tetrahedron = 24;  // VTK's numb
 
 [[noreturn]] void refuse(const VtkCells& cells, std::size_t cell, const std::string& name, const std::string& message) {
   if (cells.lines.empty()) throw InputError(name, fmt::format("cell {}: {}", cell + 1, message));
-  throw InputError({Problem{name, cells.lines[cell], 0, message}});
+  throw InputError({Problem{{name, cells.lines[cell]}, message}});
 }
 
 void check_counts(const VtkCells& cells, const std::string& name) {

@@ -54,7 +54,7 @@ class CsvReader {
 
   int line() const { return line_; }
   [[noreturn]] void refuse(int line, int column, const std::string& message) const {
-    throw InputError({Problem{name_, line, column, message}});
+    throw InputError({Problem{{name_, line, column}, message}});
   }
 
  private:

@@ -63,9 +63,7 @@ std::vector<std::int32_t> selected(const Selection& s, const TetMesh& mesh, cons
   return result;
 }
 
-Problem at(const Problem& place, std::string message) {
-  return {place.source, place.line, place.column, std::move(message)};
-}
+Problem at(const FilePlace& place, std::string message) { return {place, std::move(message)}; }
 
 // Near 1e16 sizes from the origin no number distinguishes the vertices of a body; elements lose digits long before
 // that.

@@ -32,7 +32,7 @@ namespace {
 
 Selection read_selection(const ConfigTable& handle) {
   Selection s;
-  s.place = handle.place("select", "");
+  s.place = handle.place("select");
   const auto table =
       handle.table({"select", "", "which vertices, by exactly one of region, box, sphere, plane"}, "required");
   if (!table) {
@@ -181,7 +181,7 @@ void read_substances(const ConfigTable& table, BodyDef& body) {
   if (!regions) return;
   for (const std::string& name : regions->keys()) {
     const auto region = regions->table({name.c_str(), "", "a tagged part"});
-    if (region) body.regions.push_back({name, read_substance(*region), regions->place(name.c_str(), "")});
+    if (region) body.regions.push_back({name, read_substance(*region), regions->place(name.c_str())});
   }
 }
 
@@ -203,7 +203,7 @@ void check_name(const ConfigTable& table, const std::string& name) {
 
 BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
   BodyDef body;
-  body.place = table.place(nullptr, "");
+  body.place = table.place(nullptr);
   body.name = table.text({"name", "", "addresses the body in --set and in reports"}, "body");
   check_name(table, body.name);
   body.label = table.text({"label", "", "caption in the film; the default is the name"}, body.name);

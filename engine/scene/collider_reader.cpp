@@ -31,7 +31,7 @@ Shape read_collider_shape(const ConfigTable& table) {
 
 ColliderDef read_collider(const ConfigTable& table) {
   ColliderDef collider;
-  collider.place = table.place(nullptr, "");
+  collider.place = table.place(nullptr);
   collider.name = table.text({"name", "", "addresses the collider in --set and in reports"}, "collider");
   if (collider.name.empty() || collider.name.find_first_of("./\\ ,\"") != std::string::npos ||
       printable(collider.name) != collider.name)

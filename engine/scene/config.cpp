@@ -21,8 +21,8 @@ std::vector<std::string> words_of(const std::string& path) {
   return result;
 }
 
-[[noreturn]] void fail(const Problem& place, std::string message) {
-  throw InputError({Problem{place.source, place.line, place.column, std::move(message)}});
+[[noreturn]] void fail(const FilePlace& place, std::string message) {
+  throw InputError({Problem{place, std::move(message)}});
 }
 
 // Tells whether a path has reached a list of tables whose elements are addressed by their names: bodies, colliders and
@@ -33,7 +33,7 @@ bool is_named_list(const std::vector<std::string>& path, std::size_t depth) {
 
 std::string one_of(const std::string& list) { return list == "handles" ? "handle" : list; }
 
-[[noreturn]] void fail_unnamed(const Problem& place, const std::string& list, const std::string& wanted,
+[[noreturn]] void fail_unnamed(const FilePlace& place, const std::string& list, const std::string& wanted,
                                const std::vector<std::string>& names) {
   fail(place, fmt::format("there is no {} named '{}' (there is {})", one_of(list), wanted,
                           names.empty() ? "none" : word_list(names)));
@@ -43,7 +43,8 @@ using Places = std::map<const toml::node*, toml::source_region>;
 
 // Finds the table that contains the last word of a path. Missing tables along the path are created; elements of lists
 // are found by their names.
-toml::table& enter(toml::table& document, Places& places, const std::vector<std::string>& path, const Problem& place) {
+toml::table& enter(toml::table& document, Places& places, const std::vector<std::string>& path,
+                   const FilePlace& place) {
   if (path.size() > most_words)
     fail(place, fmt::format("the path has {} words; {} are the most", path.size(), most_words));
   toml::table* table = &document;
@@ -83,8 +84,9 @@ toml::table& enter(toml::table& document, Places& places, const std::vector<std:
 }
 
 // Returns the value in its new place.
-toml::node& put_node(toml::table& document, Places& places, const std::vector<std::string>& path, const Problem& place,
-                     const std::vector<std::set<std::string>>& exclusive, const toml::node& value) {
+toml::node& put_node(toml::table& document, Places& places, const std::vector<std::string>& path,
+                     const FilePlace& place, const std::vector<std::set<std::string>>& exclusive,
+                     const toml::node& value) {
   toml::table& table = enter(document, places, path, place);
   for (const std::set<std::string>& group : exclusive) {
     if (!group.contains(path.back())) continue;
@@ -158,17 +160,17 @@ void Config::set(const std::string& assignment, const std::vector<std::set<std::
   }
 
   const toml::node& put =
-      put_node(content_->document, content_->moved, path, {source, 0, 0, ""}, exclusive, *parsed.get("value"));
+      put_node(content_->document, content_->moved, path, {source}, exclusive, *parsed.get("value"));
   content_->settle(put, content_->value_of(*parsed.get("value")));
 }
 
-void Config::put(const std::string& path, const ConfigValue& value, const Problem& place,
+void Config::put(const std::string& path, const ConfigValue& value, const FilePlace& place,
                  const std::vector<std::set<std::string>>& exclusive) {
   content_->settle(
       put_node(content_->document, content_->moved, words_of(path), place, exclusive, *value.content_->node), value);
 }
 
-void Config::append(const std::string& list_path, const ConfigValue& table, const Problem& place) {
+void Config::append(const std::string& list_path, const ConfigValue& table, const FilePlace& place) {
   const std::vector<std::string> path = words_of(list_path);
   toml::table& parent = enter(content_->document, content_->moved, path, place);
   if (!parent.contains(path.back())) parent.insert(path.back(), toml::array{});
@@ -211,7 +213,7 @@ Config Config::copy() const {
 ConfigTable Config::root() { return ConfigTable(this, &content_->document, "", ""); }
 
 void Config::complain(const toml::node* where, const std::string& message) {
-  content_->problems.push_back(content_->place(where, message));
+  content_->problems.push_back({content_->place(where), message});
 }
 
 void Config::complain(Problem problem) { content_->problems.push_back(std::move(problem)); }
@@ -223,23 +225,22 @@ std::vector<Problem> Config::take_problems() {
       if (std::find(asked.begin(), asked.end(), key.str()) != asked.end()) continue;
       const std::string nearest = nearest_word(key.str(), asked);
       const toml::source_region& region = key.source();
-      Problem problem = content_->place(&node, "");
-      if (problem.line > 0 && region.begin.line > 0) {
-        problem.line = int(region.begin.line);
-        problem.column = int(region.begin.column);
+      FilePlace place = content_->place(&node);
+      if (place.line > 0 && region.begin.line > 0) {
+        place.line = int(region.begin.line);
+        place.column = int(region.begin.column);
       }
       std::vector<std::string> sorted = asked;
       std::sort(sorted.begin(), sorted.end());
       sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-      problem.message =
+      const std::string message =
           nearest.empty() ? fmt::format("unknown key '{}'; allowed here: {}", std::string(key.str()), word_list(sorted))
                           : fmt::format("unknown key '{}'; did you mean '{}'?", std::string(key.str()), nearest);
-      problems.push_back(std::move(problem));
+      problems.push_back({std::move(place), message});
     }
   }
-  std::stable_sort(problems.begin(), problems.end(), [](const Problem& a, const Problem& b) {
-    return std::tie(a.source, a.line, a.column) < std::tie(b.source, b.line, b.column);
-  });
+  std::stable_sort(problems.begin(), problems.end(),
+                   [](const Problem& a, const Problem& b) { return a.place < b.place; });
   return problems;
 }
 

@@ -111,14 +111,14 @@ class ConfigValue {
 struct ListedValue {
   ConfigValue value;
   std::string text;  // whole, as people read it: words without quotes
-  Problem place;     // where it stands
+  FilePlace place;   // where it stands
 };
 
 // Holds a path with a list of values: "a.b" = [...] or a.b = [...].
 struct PathList {
   std::string path;
   std::vector<ListedValue> values;
-  Problem place;
+  FilePlace place;
 };
 
 class ConfigTable;
@@ -142,12 +142,12 @@ class Config {
   void set(const std::string& assignment, const std::vector<std::set<std::string>>& exclusive);
 
   // Does the same with a value of another file. Messages about the path point to `place`.
-  void put(const std::string& path, const ConfigValue& value, const Problem& place,
+  void put(const std::string& path, const ConfigValue& value, const FilePlace& place,
            const std::vector<std::set<std::string>>& exclusive);
   // Returns nothing when no value has this path.
   std::optional<ConfigValue> value_at(const std::string& path) const;
   // Appends a table of another file to a list of tables, which is created when it does not exist.
-  void append(const std::string& list_path, const ConfigValue& table, const Problem& place);
+  void append(const std::string& list_path, const ConfigValue& table, const FilePlace& place);
   // Removes a key of the root table if it exists.
   void remove(const char* key);
   // Copies the document, but neither the problems nor the record of the keys that readers asked for.
@@ -245,8 +245,8 @@ class ConfigTable {
   // Records a problem at a key's value, or at this table.
   void complain(const char* key, const std::string& message) const;
   void complain(const std::string& message) const;
-  // Returns the place of a key (or of this table), for messages that are written later.
-  Problem place(const char* key, std::string message) const;
+  // Returns the place of a key, or of this table for nullptr, for messages that are written later.
+  FilePlace place(const char* key) const;
   Config& config() const { return *config_; }
 
  private:

@@ -104,16 +104,16 @@ const toml::node* ConfigTable::find(const Key& key, const char* type, std::strin
   return node;
 }
 
-Problem ConfigTable::place(const char* key, std::string message) const {
+FilePlace ConfigTable::place(const char* key) const {
   const toml::node* node = key != nullptr ? table_->get(key) : nullptr;
-  return config_->content_->place(node != nullptr ? node : table_, std::move(message));
+  return config_->content_->place(node != nullptr ? node : table_);
 }
 
 void ConfigTable::complain(const char* key, const std::string& message) const {
-  config_->complain(place(key, message));
+  config_->complain({place(key), message});
 }
 
-void ConfigTable::complain(const std::string& message) const { config_->complain(place(nullptr, message)); }
+void ConfigTable::complain(const std::string& message) const { config_->complain({place(nullptr), message}); }
 
 void ConfigTable::wrong(const Key& key, const toml::node& node, const std::string& allowed) const {
   config_->complain(&node, fmt::format("{} = {}: must be {}", key.name, shown(node), allowed));

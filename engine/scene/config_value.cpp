@@ -167,7 +167,7 @@ std::vector<PathList> ConfigTable::path_lists() const {
   });
   std::vector<PathList> lists;
   for (const FoundList& one : found) {
-    PathList list{one.path, {}, content.place(one.node, "")};
+    PathList list{one.path, {}, content.place(one.node)};
     const toml::array* values = one.node->as_array();
     if (values == nullptr || values->empty()) {
       config_->complain(one.node,
@@ -175,7 +175,7 @@ std::vector<PathList> ConfigTable::path_lists() const {
       continue;
     }
     for (const toml::node& value : *values)
-      list.values.push_back({content.value_of(value), people_form(value), content.place(&value, "")});
+      list.values.push_back({content.value_of(value), people_form(value), content.place(&value)});
     lists.push_back(std::move(list));
   }
   return lists;

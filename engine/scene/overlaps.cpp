@@ -110,7 +110,7 @@ void find_overlaps(const SceneDef& scene, std::vector<Body>& bodies, std::vector
     body.overlaps = overlaps_of(set, obstacles, points, vertices.rows(), tolerated * size);
     if (body.overlaps.empty()) continue;
     if (body.def.start_inside == StartInside::error) {
-      problems.push_back({body.def.place.source, body.def.place.line, body.def.place.column, overlap_text(body)});
+      problems.push_back({body.def.place, overlap_text(body)});
     } else if (body.def.start_inside == StartInside::move && !is_held(body)) {
       const std::optional<Vec3> move = small_way_out(set, obstacles, body, vertices, points, small_move * size);
       if (move) body.start_move = *move;

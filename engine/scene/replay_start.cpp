@@ -31,18 +31,18 @@ Config start_of_replay(Config& replay, const std::filesystem::path& assets, std:
   Config scene_file = load_replayed_scene(replay, assets);
   const ConfigTable root = replay.root();
   if (const auto title = root.value({"title", "", "for people"}, "the scene's"))
-    scene_file.put("title", *title, root.place("title", ""), {});
+    scene_file.put("title", *title, root.place("title"), {});
   if (const auto frames = root.value({"frames", "", "length of the film"}, "the scene's"))
-    scene_file.put("frames", *frames, root.place("frames", ""), {});
+    scene_file.put("frames", *frames, root.place("frames"), {});
   if (const auto set = root.table({"set", "", "values of the scene, by their paths in quotes, from the start on"})) {
     for (const std::string& path : set->keys())
-      put(scene_file, path, *set->value({path.c_str(), "", ""}), set->place(path.c_str(), ""));
+      put(scene_file, path, *set->value({path.c_str(), "", ""}), set->place(path.c_str()));
   }
   for (const ConfigTable& table : root.tables({"grab", "", "a handle for a body, with the keys of [[body.handles]]"})) {
     const std::string body = table.text({"body", "", "whose vertices are grabbed"}, std::nullopt);
     if (body.empty()) continue;
     try {
-      scene_file.append("body." + body + ".handles", table.all_but("body"), table.place("body", ""));
+      scene_file.append("body." + body + ".handles", table.all_but("body"), table.place("body"));
     } catch (const InputError& error) {
       problems.insert(problems.end(), error.problems().begin(), error.problems().end());
     }

@@ -17,7 +17,7 @@ bool is_replay(Config& document);
 // Problems of the replay are added to `problems`; `put` puts a value of [set] in its place, and tells of problems by
 // itself. Throws InputError when the scene cannot be read.
 using PutsValue =
-    std::function<void(Config& document, const std::string& path, const ConfigValue& value, const Problem& place)>;
+    std::function<void(Config& document, const std::string& path, const ConfigValue& value, const FilePlace& place)>;
 Config start_of_replay(Config& replay, const std::filesystem::path& assets, std::vector<Problem>& problems,
                        const PutsValue& put);
 

@@ -31,7 +31,7 @@ struct Selection {
   Vec3 center = Vec3(0, 0, 0);                        // sphere; a point of the plane
   double radius = 0;                                  // sphere; relative to the longest side
   Vec3 normal = Vec3(0, 1, 0);                        // plane: picks the side that it points to
-  Problem place;                                      // in the file, for messages once the mesh is known
+  FilePlace place;                                    // in the file, for messages once the mesh is known
 };
 
 template <>
@@ -78,7 +78,7 @@ struct SubstanceDef {
 struct RegionDef {
   std::string name;
   SubstanceDef substance;
-  Problem place;
+  FilePlace place;
 };
 
 // Describes a box that is cut into equal cells.
@@ -179,7 +179,7 @@ struct BodyDef {
   ColorSource colors = ColorSource::usual;
   std::optional<double> gloss;  // of the uncovered surface
   double skin_cells = 0;        // cells of the drawn skin along the longest side
-  Problem place;
+  FilePlace place;
 
   bool takes_colors_of_file() const { return colors == ColorSource::usual ? !color : colors == ColorSource::file; }
   double body_density() const { return density.value_or(substance.usual_density.value_or(cloth ? 0.2 : 1000)); }
@@ -197,7 +197,7 @@ struct ColliderDef {
   std::vector<MotionKey> keys;
   bool visible = true;
   std::optional<Vec3> color;  // [sRGB]
-  Problem place;
+  FilePlace place;
 };
 
 // A place of the camera on its way. Values that a key does not have come from the keys before and after it.

@@ -54,7 +54,7 @@ std::optional<TimedChange> read_change(const ConfigTable& table, double fps) {
     return std::nullopt;
   }
   if (from && over <= 0) table.complain("from", "from: of ramps, which have an 'over' or 'frames'");
-  return TimedChange{path, object_of(path), at, over, ease, by, false, *cost, from, *to, table.place("value", "")};
+  return TimedChange{path, object_of(path), at, over, ease, by, false, *cost, from, *to, table.place("value")};
 }
 
 }  // namespace
@@ -121,7 +121,7 @@ void Script::Parts::read_replay(const std::filesystem::path& assets, const std::
                                 std::optional<std::size_t> sweep_point) {
   scene_file = start_of_replay(*replay, assets, problems,
                                [this](Config& document, const std::string& path, const ConfigValue& value,
-                                      const Problem& place) { put(document, path, value, place); });
+                                      const FilePlace& place) { put(document, path, value, place); });
   const ConfigTable root = replay->root();
   for (const std::string& setting : settings) scene_file.set(setting, exclusive_keys());
   if (sweep_point) put_sweep_point(scene_file, *sweep_point);
@@ -200,7 +200,7 @@ void warn_of_broken_ramps(const std::vector<TimedChange>& changes, std::vector<P
       const TimedChange& later = changes[j];
       if (!replaces(later.path, ramp.path)) continue;
       list.push_back(
-          {later.place.source, later.place.line, later.place.column,
+          {later.place,
            fmt::format("from {:g} s on this change sets {}; the ramp of line {} ({:g} to {:g} s) ends there, "
                        "unfinished",
                        later.at, ramp.path, ramp.place.line, ramp.at, ramp.at + ramp.over)});
@@ -214,8 +214,8 @@ void warn_of_broken_ramps(const std::vector<TimedChange>& changes, std::vector<P
 std::vector<Problem> Script::warnings() const {
   std::vector<Problem> list;
   const double end = parts_->start.frames / parts_->start.fps;
-  const auto warn = [&list](const Problem& place, std::string message) {
-    list.push_back({place.source, place.line, place.column, std::move(message)});
+  const auto warn = [&list](const FilePlace& place, std::string message) {
+    list.push_back({place, std::move(message)});
   };
   for (const TimedChange& change : parts_->changes) {
     if (change.at > end - time_tolerance) {

@@ -20,7 +20,7 @@ struct TimedChange {
   ChangeCost cost;
   std::optional<ConfigValue> from;  // where a ramp begins
   ConfigValue to;
-  Problem place;
+  FilePlace place;
 
   // Returns the share of the change that is done at a time [s], 0 to 1, or nothing before the change begins.
   std::optional<double> done_at(double time) const;

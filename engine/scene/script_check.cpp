@@ -1,7 +1,6 @@
 // Checks the changes of a replay. All problems are found at once, and each message points to a line of the replay.
 #include <algorithm>
 #include <iterator>
-#include <tuple>
 
 #include "scene/material_reader.h"
 #include "scene/scene_reader.h"
@@ -28,19 +27,13 @@ std::vector<Problem> beyond(const std::vector<Problem>& list, const std::vector<
   return rest;
 }
 
-std::string place_text(const Problem& problem) {
-  return problem.line > 0 ? fmt::format("{}:{}:{}", problem.source, problem.line, problem.column) : problem.source;
-}
-
 // Returns the table that a path leads into; empty at the top.
 std::string table_of(const std::string& path) {
   const std::size_t dot = path.rfind('.');
   return dot == std::string::npos ? "" : path.substr(0, dot);
 }
 
-Problem at(const TimedChange& change, std::string message) {
-  return {change.place.source, change.place.line, change.place.column, std::move(message)};
-}
+Problem at(const TimedChange& change, std::string message) { return {change.place, std::move(message)}; }
 
 // Returns the problems that a change causes, as messages that point into the replay. A problem that appears at another
 // place, in a file that the change does not touch, is reported at the change.
@@ -48,8 +41,8 @@ std::vector<Problem> as_caused_by(const TimedChange& change, const std::vector<P
   std::vector<Problem> own;
   std::string elsewhere;
   for (const Problem& problem : made) {
-    if (problem.source == change.place.source) own.push_back(problem);
-    elsewhere += fmt::format("{}{} ({})", elsewhere.empty() ? "" : "; ", problem.message, place_text(problem));
+    if (problem.place.source == change.place.source) own.push_back(problem);
+    elsewhere += fmt::format("{}{} ({})", elsewhere.empty() ? "" : "; ", problem.message, problem.place.text());
   }
   if (!own.empty()) return own;
   const std::string table = table_of(change.path);
@@ -67,12 +60,12 @@ void Script::Parts::add_problems(std::vector<Problem> more) {
 }
 
 void Script::Parts::report(Problem problem, const std::string& when, Reported& reported) {
-  if (!reported.places.insert(place_text(problem)).second) return;
+  if (!reported.places.insert(problem.place.text()).second) return;
   problem.message += when;
   problems.push_back(std::move(problem));
 }
 
-bool Script::Parts::put(Config& document, const std::string& path, const ConfigValue& value, const Problem& place) {
+bool Script::Parts::put(Config& document, const std::string& path, const ConfigValue& value, const FilePlace& place) {
   try {
     document.put(path, value, place, exclusive_keys());
     return true;
@@ -84,10 +77,9 @@ bool Script::Parts::put(Config& document, const std::string& path, const ConfigV
       add_problems(error.problems());
     } else {
       problems.push_back(
-          {place.source, place.line, place.column,
-           fmt::format("{} is the preset '{}' here, and a preset has no '{}'; write in its place what it "
-                       "stands for: {}",
-                       table, stands->whole_text(), path.substr(table.size() + 1), preset)});
+          {place, fmt::format("{} is the preset '{}' here, and a preset has no '{}'; write in its place what it "
+                              "stands for: {}",
+                              table, stands->whole_text(), path.substr(table.size() + 1), preset)});
     }
     return false;
   }
@@ -149,7 +141,7 @@ void Script::Parts::prepare_ramps() {
 void Script::Parts::check_at(double time, const std::string& when, Reported& reported) {
   std::vector<Problem> found = problems_of(document_at(time, changes.size()));
   std::erase_if(found, [&](const Problem& problem) {
-    return reported.places.contains(place_text(problem)) || reported.texts.contains(problem.text());
+    return reported.places.contains(problem.place.text()) || reported.texts.contains(problem.text());
   });
   for (std::size_t i = changes.size(); i-- > 0 && !found.empty();) {
     if (!changes[i].done_at(time)) continue;
@@ -197,9 +189,8 @@ void Script::Parts::check_changes() {
     if (problems.empty()) throw;
   }
   if (problems.empty()) return;
-  std::stable_sort(problems.begin(), problems.end(), [](const Problem& a, const Problem& b) {
-    return std::tie(a.source, a.line, a.column) < std::tie(b.source, b.line, b.column);
-  });
+  std::stable_sort(problems.begin(), problems.end(),
+                   [](const Problem& a, const Problem& b) { return a.place < b.place; });
   throw InputError(std::move(problems));
 }
 

@@ -29,7 +29,7 @@ struct Script::Parts {
                    std::optional<std::size_t> sweep_point);
 
   // Puts a value of the replay into a document. When its path leads to nothing, returns false and adds to `problems`.
-  bool put(Config& document, const std::string& path, const ConfigValue& value, const Problem& place);
+  bool put(Config& document, const std::string& path, const ConfigValue& value, const FilePlace& place);
 
   // Finds all problems of the changes, the values at which ramps begin, and the scene at the start. A change that has a
   // problem is removed, so that the others can still be checked. Throws InputError with all problems, earlier ones too.

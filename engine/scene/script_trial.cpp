@@ -36,10 +36,8 @@ void try_changes(const Script& script, std::vector<Body> bodies) {
         update_body(bodies[b], scene, scene.bodies[b]);
       } catch (const InputError& error) {
         const TimedChange* change = only_change(at_work, scene.bodies[b].name);
-        for (const Problem& problem : error.problems()) {
-          const Problem& place = change != nullptr ? change->place : problem;
-          tell({place.source, place.line, place.column, problem.message});
-        }
+        for (const Problem& problem : error.problems())
+          tell({change != nullptr ? change->place : problem.place, problem.message});
         bodies[b].def = scene.bodies[b];  // so that later changes answer for themselves alone
       }
     }

@@ -35,7 +35,7 @@ std::optional<Problem> skin_warning(const Body& body, const DrawnBody& drawn) {
       "element's "
       "edge: what is there follows and does not bend; more vertices (now {}) fill it",
       body.def.name, outside.furthest, at.x(), at.y(), at.z(), edges, body.def.vertices);
-  return Problem{body.def.place.source, body.def.place.line, body.def.place.column, std::move(message)};
+  return Problem{body.def.place, std::move(message)};
 }
 
 }  // namespace supple

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <set>
-#include <tuple>
+#include <utility>
 
 #include "scene/model_scene.h"
 #include "scene/replay_start.h"
@@ -14,9 +14,7 @@ namespace {
 void check_paths(const SweepDef& sweep, Config& config) {
   std::set<std::string> seen;
   const auto complain = [&](const PathList& axis, const std::string& message) {
-    Problem problem = axis.place;
-    problem.message = message;
-    config.complain(problem);
+    config.complain({axis.place, message});
   };
   for (const PathList& axis : sweep.axes) {
     if (!seen.insert(axis.path).second) complain(axis, fmt::format("'{}' is listed twice", axis.path));
@@ -36,7 +34,7 @@ Config config_of(const SceneSource& source, const std::filesystem::path& assets,
     std::vector<Problem> problems;
     config = start_of_replay(replay, assets, problems,
                              [](Config& document, const std::string& key, const ConfigValue& value,
-                                const Problem& place) { document.put(key, value, place, exclusive_keys()); });
+                                const FilePlace& place) { document.put(key, value, place, exclusive_keys()); });
     if (!problems.empty()) throw InputError(problems);
   }
   for (const std::string& setting : settings) config.set(setting, exclusive_keys());
@@ -163,10 +161,10 @@ void check_sweep_points(const SceneSource& source, const std::filesystem::path& 
                         const std::vector<std::string>& settings, const SweepDef& sweep) {
   const Config base = config_of(source, assets, settings);
   std::vector<Problem> all;
-  std::set<std::tuple<std::string, int, int, std::string>> seen;
+  std::set<std::pair<FilePlace, std::string>> seen;
   for (std::size_t point = 0; point < sweep.points(); ++point) {
     for (Problem& problem : problems_of_point(base, sweep, point)) {
-      if (!seen.insert({problem.source, problem.line, problem.column, problem.message}).second) continue;
+      if (!seen.insert({problem.place, problem.message}).second) continue;
       problem.message =
           fmt::format("{} (first in point {} of the sweep: {})", problem.message, point, point_text(sweep, point));
       all.push_back(std::move(problem));

@@ -16,7 +16,7 @@ namespace {
   const auto column = std::count_if(before.begin() + std::ptrdiff_t(line_begin), before.end(),
                                     [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; });
   const auto line = std::count(before.begin(), before.end(), '\n');
-  throw InputError({Problem{name, int(line) + 1, int(column) + 1, "not TOML: " + message}});
+  throw InputError({Problem{{name, int(line) + 1, int(column) + 1}, "not TOML: " + message}});
 }
 
 // Returns where a string that begins at `at` ends, or the text's end. One that is not closed ends with its line; the
@@ -87,7 +87,7 @@ toml::table parsed_toml(std::string_view text, const std::string& name) {
     return toml::parse(text, name);
   } catch (const toml::parse_error& error) {
     const auto& at = error.source().begin;
-    throw InputError({Problem{name, int(at.line), int(at.column), fmt::format("not TOML: {}", error.description())}});
+    throw InputError({Problem{{name, int(at.line), int(at.column)}, fmt::format("not TOML: {}", error.description())}});
   } catch (const TomlAssertion&) {
     const std::size_t at = place_of_assertion(text);
     const std::string_view found = text.substr(at, 1);

@@ -2,6 +2,8 @@
 // implement them include this header.
 #pragma once
 
+#include <cstdint>  // the parser uses it and does not include it
+
 // The parser takes its assertions for a part of handling malformed files, and without them promises the compiler that
 // they hold. They stay in any build, and throw: parsed_toml() reports what they find as an error of syntax. None of
 // those that a file can reach stands in a function or a destructor that must not throw.
@@ -62,13 +64,12 @@ struct Config::Content {
   // Records the places of a value after a copy of it has been put into the document.
   void settle(const toml::node& copy, const ConfigValue& value);
 
-  Problem place(const toml::node* node, std::string message) const {
-    if (node == nullptr) return {name, 0, 0, std::move(message)};
+  FilePlace place(const toml::node* node) const {
+    if (node == nullptr) return {name};
     const toml::source_region& region = source_of(*node);
     const std::string source = region.path ? *region.path : name;
     const bool from_option = source.starts_with(set_option);
-    return {source, from_option ? 0 : int(region.begin.line), from_option ? 0 : int(region.begin.column),
-            std::move(message)};
+    return {source, from_option ? 0 : int(region.begin.line), from_option ? 0 : int(region.begin.column)};
   }
 };
 

@@ -13,9 +13,7 @@
 namespace supple {
 namespace {
 
-Problem at(const Problem& place, std::string message) {
-  return {place.source, place.line, place.column, std::move(message)};
-}
+Problem at(const FilePlace& place, std::string message) { return {place, std::move(message)}; }
 
 // Tells whether a body starts as a line or a point and has a material whose forces cannot restore it: laws in F alone
 // and springs have no force across a body that is flat in two directions.

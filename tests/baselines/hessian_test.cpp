@@ -355,7 +355,7 @@ TEST(LineSearch, WolfeStepsSatisfyBothConditions) {
   const StepReport& report = step(model, inputs, state, w);
   ASSERT_GT(report.iterations, 5);
   for (std::size_t k = 1; k < report.objective.size(); ++k) EXPECT_LT(report.objective[k], report.objective[k - 1]);
-  for (const IterationRecord& record : report.history) {
+  for (const IterationRecord& record : report.records) {
     if (record.alpha == 0) continue;  // the step began again from the body's last position
     EXPECT_GT(record.alpha, 0);
     const bool full_step_does = record.full.decreases && std::abs(record.full.slope_ratio) <= 0.9;

@@ -107,7 +107,7 @@ void run(const Start& s, Variant& variant, int round, Workspace& scratch) {
   LbfgsRule rule(variant.bends ? static_cast<InitialInverse&>(bending) : straight);
   const StepReport report = step(s.model, inputs, after, *variant.workspace, rule);
   std::vector<double> ms = {report.start_ms};
-  for (const IterationRecord& record : report.history) ms.push_back(record.elapsed_ms);
+  for (const IterationRecord& record : report.records) ms.push_back(record.elapsed_ms);
   if (round > 0) {
     for (std::size_t k = 0; k < ms.size(); ++k)
       variant.least_ms[k] = round == 1 ? ms[k] : std::min(variant.least_ms[k], ms[k]);
@@ -121,7 +121,7 @@ void run(const Start& s, Variant& variant, int round, Workspace& scratch) {
   double left = gained(s.model, inputs, s.before, after.x, scratch);
   variant.gained.assign(ms.size(), left);
   for (std::size_t k = ms.size() - 1; k-- > 0;) {
-    left -= report.history[k].decrease;
+    left -= report.records[k].decrease;
     variant.gained[k] = left;
   }
   // The trials and the overlap are those of the usual number of iterations.

@@ -55,7 +55,7 @@ struct StepReport {
   int iterations = 0;
   int line_search = 0;                   // trial evaluations
   std::vector<double> objective;         // g by iteration, the start first; reserved by the workspace [J]
-  std::vector<IterationRecord> history;  // by iteration
+  std::vector<IterationRecord> records;  // by iteration
   double decrease = 0;                   // g(start) - g(end), summed without cancellation [J]
   double remaining_estimate = 0;         // g(end) - g*, from the decrement or from how decreases shrank [J]
   double error_estimate = 0;             // of equation 12, from that

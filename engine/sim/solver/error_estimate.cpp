@@ -38,7 +38,7 @@ double error_at_end(const Model& model, const Workspace& w, double gained) {
   if (left <= noise_of(model, w.current.g, extent_of(model, w))) return 0;
   // A contact that is found on the way raises g, which takes nothing from what the searches gained.
   double searched = 0;
-  for (const IterationRecord& iteration : w.report.history) searched += std::max(0.0, iteration.decrease);
+  for (const IterationRecord& iteration : w.report.records) searched += std::max(0.0, iteration.decrease);
   return error_of(left, std::max(gained, searched));
 }
 

@@ -109,7 +109,7 @@ void accept(const Model& model, const StepInputs& inputs, Workspace& w, SearchRu
   w.report.decrease -= change.value;
   record.decrease = -change.value;
   record.elapsed_ms = w.clock.elapsed_ms();
-  w.report.history.push_back(record);
+  w.report.records.push_back(record);
 }
 
 // Tells what a step began with.
@@ -237,14 +237,14 @@ namespace {
 
 void clear(StepReport& report) {
   report.objective.clear();
-  report.history.clear();
+  report.records.clear();
   std::vector<double> objective = std::move(report.objective);
-  std::vector<IterationRecord> history = std::move(report.history);
+  std::vector<IterationRecord> records = std::move(report.records);
   std::vector<Vec3> forces = std::move(report.collider_forces);
   forces.clear();
   report = StepReport{};
   report.objective = std::move(objective);
-  report.history = std::move(history);
+  report.records = std::move(records);
   report.collider_forces = std::move(forces);
 }
 
@@ -296,7 +296,7 @@ void descend_from_staying(const Model& model, const StepInputs& inputs, const Or
   std::swap(w.current, w.trial);
   const double gained = reached + friction_reached - staying - friction_staying;
   report.decrease += gained;
-  report.history.push_back({w.clock.elapsed_ms(), gained, 0, {}});
+  report.records.push_back({w.clock.elapsed_ms(), gained, 0, {}});
   const int iterations = report.iterations;
   evaluate_start(model, inputs, w);
   TimeBudget budget(inputs, w, TimeBudget::from_staying);
