@@ -1,50 +1,41 @@
+#include "app/bench_verb.h"
+
 #include <fmt/core.h>
+#include <unistd.h>
 
-#include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <memory>
+#include <stdexcept>
 
-#include "app/bench/bench.h"
-#include "app/verbs.h"
+#include "app/bench/names.h"
+#include "base/companion_program.h"
 #include "base/error.h"
-#include "base/interrupts.h"
 
 namespace supple {
 namespace {
 
-struct BenchOptions {
-  std::string name;
-  std::string out = "out/bench";
-  std::string paper_meshes;
-  int threads = 1;
-  bool fresh = false, quiet = false;
-};
-
-int bench(const BenchOptions& options) {
-  std::vector<std::string> names;
-  for (const Benchmark& b : benchmarks()) {
-    if (options.name == "all" || options.name == b.name) names.push_back(b.name);
-  }
-  Threads threads(options.threads);
-  BenchSetting setting{options.out, std::nullopt, &threads, options.quiet};
-  if (!options.paper_meshes.empty()) {
-    std::error_code error;
-    if (!std::filesystem::exists(std::filesystem::path(options.paper_meshes) / "longbar2.mesh", error))
-      throw InputError(options.paper_meshes, "no longbar2.mesh here: this is not the folder of the paper's meshes");
-    setting.paper_meshes = options.paper_meshes;
-  }
-  catch_interrupts();
-  return run_benchmarks(names, setting, options.fresh);
+// Starts supple-bench with the words of this line, in the place of this process.
+int become_bench_program(const std::vector<std::string>& words) {
+  const std::optional<std::filesystem::path> program = companion_program("supple-bench");
+  if (!program)
+    throw InputError("supple bench", "its program, supple-bench, has not been built: cmake --build build/release");
+  std::vector<char*> arguments;
+  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  ::execv(program->c_str(), arguments.data());
+  throw std::runtime_error(fmt::format("{}: {}", program->string(), std::strerror(errno)));
 }
 
 }  // namespace
 
-void add_bench(CommandLine& line) {
+void describe_bench(CommandLine& line, std::function<int(const BenchOptions&)> bench) {
   auto options = std::make_shared<BenchOptions>();
   Verb verb = line.verb("bench", "Solvers compared on the same states: the paper's tables and figures.");
   std::vector<std::string> names = {"all"};
   std::string list = "Benchmarks:\n  all          every one\n";
-  for (const Benchmark& b : benchmarks()) {
-    names.push_back(b.name);
+  for (const BenchmarkName& b : benchmark_names) {
+    names.emplace_back(b.name);
     list += fmt::format("  {:12} {}\n", b.name, b.meaning);
   }
   verb.option("NAME", options->name, "one of the benchmarks below, or all").required().one_of(names);
@@ -56,7 +47,11 @@ void add_bench(CommandLine& line) {
   verb.footer(list +
               "\nExample: supple bench figure7\nLeaves index.html with CSV, JSON and SVG beside it; bench all goes on "
               "where it stopped.");
-  verb.runs([options] { return bench(*options); });
+  verb.runs([options, bench] { return bench(*options); });
+}
+
+void add_bench(CommandLine& line) {
+  describe_bench(line, [&line](const BenchOptions&) { return become_bench_program(line.words()); });
 }
 
 }  // namespace supple

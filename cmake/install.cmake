@@ -1,7 +1,7 @@
 # What `cmake --install` puts where, in two components: the program, of which the Debian package is made, and the libraries
 # for other programs (docs/library.md).
 install(TARGETS supple COMPONENT program)
-install(TARGETS supple-read-surface DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/supple COMPONENT program)
+install(TARGETS supple-read-surface supple-bench DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/supple COMPONENT program)
 install(FILES assets/completion/supple.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
         RENAME supple COMPONENT program)
 install(DIRECTORY assets shaders DESTINATION ${CMAKE_INSTALL_DATADIR}/supple COMPONENT program)

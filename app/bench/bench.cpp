@@ -3,10 +3,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <thread>
 
+#include "app/bench/names.h"
 #include "app/bench/section_file.h"
 #include "base/console.h"
 #include "base/error.h"
@@ -47,36 +50,25 @@ Summary summary_of(std::vector<double> values) {
   return summary;
 }
 
-const std::vector<Benchmark>& benchmarks() {
-  static const std::vector<Benchmark> list = {
-      {"table1", "time and error by scene, beside the paper's", 3, bench_table1},
-      {"table2", "condition numbers and figure 9, a cube in two poses", 0.3, bench_table2},
-      {"figure7", "L-BFGS, Chebyshev, Newton", 0.3, bench_figure7},
-      {"figure8", "initial Hessians", 0.3, bench_figure8},
-      {"figure10", "a bar shaken hard", 0.5, bench_figure10},
-      {"stability", "hard cases for every material, each with a rule", 2, bench_stability},
-      {"figure13", "window of L-BFGS", 0.3, bench_figure13},
-      {"figure14", "step lengths of two line searches", 0.2, bench_figure14},
-      {"figure15", "the interval of equation 11", 0.3, bench_figure15},
-      {"figure16", "direct solves and conjugate gradients", 0.4, bench_figure16},
-      {"figure17", "preconditioners", 0.3, bench_figure17},
-      {"rivals", "methods of other papers on the same state", 0.5, bench_rivals},
-      {"scenes", "error against milliseconds, scene by scene", 1.5, bench_scenes},
-      {"profiles", "performance profiles of all methods on all states", 8, bench_profiles},
-      {"minima", "whether converged solvers agree", 1, bench_minima},
-      {"sweeps", "stiffness, Poisson's ratio, resolution", 1.5, bench_sweeps},
-      {"substeps", "substeps instead of iterations", 1, bench_substeps},
-      {"hanging", "the tip of a hanging bar by method", 0.5, bench_hanging},
-      {"ablation", "from the published settings to ours", 0.3, bench_ablation},
-      {"contact", "contact three ways", 0.5, bench_contact},
-      {"matrix", "what directions start from, beside the paper's", 8, bench_matrix},
-      {"scaling", "milliseconds and bytes against vertices", 3, bench_scaling},
-      {"roofline", "bytes and operations by stage", 0.5, bench_roofline},
-  };
-  return list;
-}
-
 namespace {
+
+// Pairs each name with the function that makes its section.
+struct NamedSection {
+  std::string_view name;
+  ReportSection (*run)(const BenchSetting& setting);
+};
+constexpr auto sections_by_name = std::to_array<NamedSection>({
+    {"table1", bench_table1},     {"table2", bench_table2},     {"figure7", bench_figure7},
+    {"figure8", bench_figure8},   {"figure10", bench_figure10}, {"stability", bench_stability},
+    {"figure13", bench_figure13}, {"figure14", bench_figure14}, {"figure15", bench_figure15},
+    {"figure16", bench_figure16}, {"figure17", bench_figure17}, {"rivals", bench_rivals},
+    {"scenes", bench_scenes},     {"profiles", bench_profiles}, {"minima", bench_minima},
+    {"sweeps", bench_sweeps},     {"substeps", bench_substeps}, {"hanging", bench_hanging},
+    {"ablation", bench_ablation}, {"contact", bench_contact},   {"matrix", bench_matrix},
+    {"scaling", bench_scaling},   {"roofline", bench_roofline},
+});
+static_assert(std::ranges::equal(sections_by_name, benchmark_names, {}, &NamedSection::name, &BenchmarkName::name),
+              "every benchmark that is offered has a section, in the same order");
 
 // Returns all that a finished section depends on. A section that was made with other values is made again.
 std::string fingerprint(const BenchSetting& setting) {
@@ -115,11 +107,14 @@ int run_benchmarks(const std::vector<std::string>& names, const BenchSetting& se
   const std::string made_with = fingerprint(setting);
   std::vector<ReportSection> sections;
   double left = 0, expected = 0, spent = 0;
-  const auto wanted = [&](const Benchmark& b) { return std::find(names.begin(), names.end(), b.name) != names.end(); };
-  for (const Benchmark& b : benchmarks()) left += wanted(b) ? b.minutes : 0;
+  const auto wanted = [&](const BenchmarkName& b) {
+    return std::find(names.begin(), names.end(), b.name) != names.end();
+  };
+  for (const BenchmarkName& b : benchmark_names) left += wanted(b) ? b.minutes : 0;
   std::size_t number = 0;
-  for (const Benchmark& b : benchmarks()) {
-    const std::filesystem::path file = setting.out / "sections" / (b.name + ".json");
+  for (std::size_t i = 0; i < benchmark_names.size(); ++i) {
+    const BenchmarkName& b = benchmark_names[i];
+    const std::filesystem::path file = setting.out / "sections" / fmt::format("{}.json", b.name);
     std::optional<ReportSection> section;
     if (!fresh || !wanted(b)) section = read_section(file, made_with);
     if (!wanted(b)) {
@@ -136,7 +131,7 @@ int run_benchmarks(const std::vector<std::string>& names, const BenchSetting& se
                                 duration_text(60 * left * pace)));
       const Stopwatch watch;
       try {
-        section = b.run(setting);
+        section = sections_by_name[i].run(setting);
       } catch (const BenchInterrupted&) {
         if (!quiet) say(stderr, "interrupted; what is finished is kept\n");
         return 130;

@@ -1,5 +1,5 @@
-// Declares the benchmarks of `supple bench`. Each makes one section of the report page. This is the only header of
-// app/bench that the rest of the program includes.
+// Runs the benchmarks of `supple bench`. Each makes one section of the report page. This is the only header of
+// app/bench that the program supple-bench includes; what is offered on the command line is in app/bench/names.h.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "base/threads.h"
-#include "output/report_page.h"
 
 namespace supple {
 
@@ -19,15 +18,6 @@ struct BenchSetting {
   Threads* threads = nullptr;                         // of the solvers
   bool quiet = true;                                  // says nothing of what is being measured
 };
-
-struct Benchmark {
-  std::string name;
-  std::string meaning;  // one line
-  double minutes;       // about, on two cores of 2023, to tell how much is left
-  ReportSection (*run)(const BenchSetting& setting);
-};
-
-const std::vector<Benchmark>& benchmarks();
 
 // Runs the named benchmarks in order, writes the page after each, and skips those that an earlier call with the same
 // program and options has finished. Returns the exit status.

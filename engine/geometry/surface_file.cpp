@@ -6,6 +6,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "base/companion_program.h"
 #include "base/error.h"
 #include "geometry/announced_counts.h"
 #include "geometry/reader_process.h"
@@ -117,12 +118,10 @@ ColoredSurface decode(const std::string& bytes, const std::string& name) {
 }  // namespace
 
 std::filesystem::path surface_reader_program() {
+  if (const auto beside = companion_program("supple-read-surface")) return *beside;
   std::error_code error;
-  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-  for (const std::filesystem::path& place :
-       {folder / "supple-read-surface", folder / SUPPLE_LIBEXEC_FROM_BIN / "supple-read-surface",
-        std::filesystem::path(SUPPLE_SURFACE_READER)})
-    if (std::filesystem::is_regular_file(place, error)) return place;
+  const std::filesystem::path built = SUPPLE_SURFACE_READER;  // of tests, which lie elsewhere in the build's folder
+  if (std::filesystem::is_regular_file(built, error)) return built;
   return SUPPLE_INSTALLED_READER;  // of a program elsewhere that uses the library
 }
 

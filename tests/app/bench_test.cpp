@@ -2,12 +2,16 @@
 #include "app/bench/sections.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <limits>
 
 #include "app/bench/section_file.h"
 #include "support/bodies.h"
+#include "support/places.h"
 #include "support/program.h"
 
 namespace supple {
@@ -142,6 +146,16 @@ TEST(BenchProgram, RefusesWhatItCannotRun) {
   const test::Result meshes = test::run(folder.path, {"bench", "table2", "--paper-meshes", "/nowhere"});
   EXPECT_EQ(meshes.status, 2);
   EXPECT_NE(meshes.err.find("/nowhere"), std::string::npos);
+}
+
+// ./run demo builds the program of films alone.
+TEST(BenchProgram, SaysWhatToBuildWhereItIsMissing) {
+  const TemporaryFolder folder;
+  std::filesystem::copy_file(test::program_name, folder.path / "supple");
+  const std::string command = "cd '" + folder.path.string() + "' && ./supple bench table2 2> said.txt";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 2);
+  EXPECT_EQ(test::read_file(folder.path / "said.txt"),
+            "supple bench: its program, supple-bench, has not been built: cmake --build build/release\n");
 }
 
 }  // namespace

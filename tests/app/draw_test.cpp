@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <future>
+#include <nlohmann/json.hpp>
 
 #include "output/png_file.h"
 #include "output/run_folder.h"

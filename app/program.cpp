@@ -1,0 +1,52 @@
+#include "app/program.h"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <new>
+
+#include "base/console.h"
+#include "base/error.h"
+
+namespace supple {
+namespace {
+
+int run(int argc, char** argv, const std::function<void(CommandLine&)>& add_verbs) {
+  CommandLine line(argc, argv);
+  add_verbs(line);
+  if (const std::optional<int> status = line.read()) return *status;
+  const int status = line.run();
+  const bool said = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  return status == 0 && !said ? 1 : status;
+}
+
+// A file that is opened while a standard stream is closed would get the stream's number, and the stream's text would go
+// into the file. A user who closes a stream wants no output from it, so such a stream leads to /dev/null.
+void open_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0) (void)::open("/dev/null", O_RDWR);  // the lowest that is free: this one
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv, const std::function<void(CommandLine&)>& add_verbs) {
+  open_standard_streams();
+  std::signal(SIGPIPE, SIG_IGN);  // a run continues when its listener has gone
+  try {
+    return run(argc, argv, add_verbs);
+  } catch (const InputError& error) {
+    say(stderr, fmt::format("{}\n", error.what()));
+    return 2;
+  } catch (const std::bad_alloc&) {
+    say(stderr, fmt::format("supple: out of memory\n"));
+    return 1;
+  } catch (const std::exception& error) {
+    say(stderr, fmt::format("supple: {}\n", error.what()));
+    return 1;
+  }
+}
+
+}  // namespace supple

@@ -1,0 +1,13 @@
+#include "base/companion_program.h"
+
+namespace supple {
+
+std::optional<std::filesystem::path> companion_program(const std::string& name) {
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  for (const std::filesystem::path& place : {folder / name, folder / SUPPLE_LIBEXEC_FROM_BIN / name})
+    if (std::filesystem::is_regular_file(place, error)) return place;
+  return std::nullopt;
+}
+
+}  // namespace supple
