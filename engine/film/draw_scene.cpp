@@ -14,6 +14,10 @@ namespace {
 
 constexpr double collider_gloss = 0.35;
 
+// No edge of a skin, of which a part lies outside all elements, is stretched more than this, over the largest stretch
+// of the elements (1 where none is stretched).
+constexpr double most_skin_stretch = 1.4;
+
 Vec3 collider_color(const ColliderDef& def) {
   const bool painted = !def.shape.paint.empty() || def.shape.color != Shape{}.color;
   return def.color.value_or(painted ? def.shape.color : Vec3(0.56, 0.64, 0.71));
@@ -152,23 +156,35 @@ void fit_to_cameras(std::vector<DrawnBody>& drawn, const std::vector<Body>& bodi
     for (const Camera& camera : cameras) pixel = std::min(pixel, pixel_on(bounds_of(mesh.rest), camera, height));
     fit_to_pixels(drawn[b], mesh, pixel);
   }
+  limit_stretch(drawn);
 }
 
-std::vector<float> skin_positions(const DrawnBody& drawn, const Positions& mesh, Threads* threads) {
+void limit_stretch(std::vector<DrawnBody>& drawn) {
+  for (DrawnBody& body : drawn)
+    if (body.vertex_of.empty()) body.limit = skin_limit(body.skin.rest, body.embedding);
+}
+
+Positions skin_places(const DrawnBody& drawn, const TetMesh& mesh, const Positions& now, Threads* threads) {
   const bool carried = drawn.vertex_of.empty();
   const Embedding& embedding = drawn.embedding;
   const Eigen::Index count = carried ? embedding.points() : Eigen::Index(drawn.vertex_of.size());
-  std::vector<float> result(3 * std::size_t(count));
-  const std::vector<Mat3> frames = carried ? frames_at(embedding.frames, mesh, threads) : std::vector<Mat3>();
+  Positions result(count, 3);
+  const std::vector<Mat3> frames = carried ? frames_at(embedding.frames, now, threads) : std::vector<Mat3>();
   constexpr Eigen::Index chunk = 4096;
   run_chunks(threads, static_cast<int>((count + chunk - 1) / chunk), 12 * count, [&](int number) {
     const Eigen::Index end = std::min(count, (number + 1) * chunk);
-    for (Eigen::Index v = number * chunk; v < end; ++v) {
-      const Vec3 point = carried ? embedded_point(embedding, v, mesh, frames) : Vec3(mesh.row(drawn.vertex_of[v]));
-      for (int k = 0; k < 3; ++k) result[3 * std::size_t(v) + std::size_t(k)] = static_cast<float>(point[k]);
-    }
+    for (Eigen::Index v = number * chunk; v < end; ++v)
+      result.row(v) = carried ? embedded_point(embedding, v, now, frames) : Vec3(now.row(drawn.vertex_of[v]));
   });
+  if (drawn.limit && drawn.limit->largest_stretch(result) > most_skin_stretch) {
+    const double most = most_skin_stretch * std::max(1.0, largest_element_stretch(mesh, now));
+    if (drawn.limit->largest_stretch(result) > most) drawn.limit->apply(most, result);
+  }
   return result;
+}
+
+std::vector<float> skin_positions(const DrawnBody& drawn, const TetMesh& mesh, const Positions& now, Threads* threads) {
+  return as_floats(skin_places(drawn, mesh, now, threads));
 }
 
 std::optional<double> skin_excess(const DrawnBody& drawn, const std::vector<float>& skin, const TetMesh& mesh,

@@ -38,8 +38,14 @@ void fit_to_cameras(std::vector<DrawnBody>& drawn, const std::vector<Body>& bodi
 std::optional<double> skin_excess(const DrawnBody& drawn, const std::vector<float>& skin, const TetMesh& mesh,
                                   const Positions& now);
 
-// Returns x y z by skin vertex. mesh: the positions of the body's mesh vertices, in the order of the input file [m].
-// threads: null where the calling thread does it all.
-std::vector<float> skin_positions(const DrawnBody& drawn, const Positions& mesh, Threads* threads = nullptr);
+// Finds the edges of skins that may not stretch more than their elements, for skins that are as they will be drawn.
+void limit_stretch(std::vector<DrawnBody>& drawn);
+
+// Returns the places of the skin's vertices, n x 3 [m]. now: the positions of the mesh [m], in the order of the input
+// file. threads: null where the calling thread does it all.
+Positions skin_places(const DrawnBody& drawn, const TetMesh& mesh, const Positions& now, Threads* threads = nullptr);
+// Returns the same as x y z by skin vertex.
+std::vector<float> skin_positions(const DrawnBody& drawn, const TetMesh& mesh, const Positions& now,
+                                  Threads* threads = nullptr);
 
 }  // namespace supple

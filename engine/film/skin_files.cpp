@@ -25,13 +25,6 @@ Vec3 write_rest(const std::filesystem::path& file, const DrawnBody& drawn) {
   return origin;
 }
 
-Positions skin_at(const DrawnBody& drawn, const Positions& mesh) {
-  if (drawn.vertex_of.empty()) return embedded_points(drawn.embedding, mesh);
-  Positions points(Eigen::Index(drawn.vertex_of.size()), 3);
-  for (Eigen::Index v = 0; v < points.rows(); ++v) points.row(v) = mesh.row(drawn.vertex_of[std::size_t(v)]);
-  return points;
-}
-
 }  // namespace
 
 void open_skins(const std::filesystem::path& folder, const LoadedDrawing& drawing) {
@@ -51,6 +44,7 @@ void open_skins(const std::filesystem::path& folder, const LoadedDrawing& drawin
 
 int write_skins(LoadedDrawing& drawing, const std::filesystem::path& folder, const std::function<void(int)>& told) {
   const std::vector<Body>& bodies = drawing.film.bodies;
+  limit_stretch(drawing.film.drawn);
   std::vector<PointCacheWriter> caches;
   std::vector<Vec3> origins;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -63,8 +57,9 @@ int write_skins(LoadedDrawing& drawing, const std::filesystem::path& folder, con
   for (const int frame : drawing.frames) {
     if (interrupted()) break;
     for (std::size_t b = 0; b < bodies.size(); ++b) {
-      const Positions mesh = saved_positions(drawing, b, frame);
-      caches[b].add(skin_at(drawing.film.drawn[b], mesh).rowwise() - origins[b].transpose());
+      const Positions now = saved_positions(drawing, b, frame);
+      const Positions skin = skin_places(drawing.film.drawn[b], bodies[b].description.mesh, now);
+      caches[b].add(skin.rowwise() - origins[b].transpose());
     }
     told(++done);
   }

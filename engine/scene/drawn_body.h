@@ -3,6 +3,7 @@
 
 #include "geometry/embedding.h"
 #include "geometry/skin.h"
+#include "geometry/skin_limit.h"
 #include "geometry/surface_colors.h"
 #include "scene/assemble.h"
 
@@ -13,6 +14,7 @@ struct DrawnBody {
   Skin skin;
   Triangles casters;                    // of the skin, that cast its shadow; empty: all of them
   Embedding embedding;                  // when the skin is finer than the mesh
+  std::optional<SkinLimit> limit;       // of the skin's stretch, once limit_stretch() has been called
   std::vector<std::int32_t> vertex_of;  // when it is the boundary: mesh vertex by skin vertex
   bool two_sided = false;
   Vec3 color;

@@ -44,14 +44,14 @@ TEST(SkinReport, MeasuresHowMuchMoreASkinStretchesThanItsElements) {
   const std::vector<Body> ball = bodies_of(folder.path, "shape = \"shapes/sphere.toml\"\nvertices = 300");
   const DrawnBody drawn = drawn_bodies(ball).front();
   const TetMesh& mesh = ball[0].description.mesh;
-  std::vector<float> skin = skin_positions(drawn, mesh.rest);
+  std::vector<float> skin = skin_positions(drawn, mesh, mesh.rest);
   EXPECT_FALSE(skin_excess(drawn, skin, mesh, mesh.rest));
   const float lowest = skin[1];
   skin[1] -= 0.4f;  // one vertex is torn out
   EXPECT_GT(skin_excess(drawn, skin, mesh, mesh.rest).value_or(0), 10);
   skin[1] = lowest;
   const Positions twice = 2 * mesh.rest;
-  EXPECT_NEAR(skin_excess(drawn, skin_positions(drawn, twice), mesh, twice).value_or(0), 1, 0.3);
+  EXPECT_NEAR(skin_excess(drawn, skin_positions(drawn, mesh, twice), mesh, twice).value_or(0), 1, 0.3);
 }
 
 }  // namespace

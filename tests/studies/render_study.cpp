@@ -65,7 +65,8 @@ Take simulate(const std::filesystem::path& path, int frames, const std::vector<s
     DrawList list;
     list.camera = camera;
     for (std::size_t b = 0; b < bodies.size(); ++b)
-      list.positions.push_back(skin_positions(drawn[b], in_input_order(models[b], driven[b]->state().x)));
+      list.positions.push_back(
+          skin_positions(drawn[b], bodies[b].description.mesh, in_input_order(models[b], driven[b]->state().x)));
     add_colliders(set.obstacles, colliders, (frame + 1) / scene.fps, list);
     take.lists.push_back(std::move(list));
   }
