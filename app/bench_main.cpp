@@ -1,5 +1,9 @@
 // The program supple-bench does the work of `supple bench`, which starts it.
-#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <vector>
 
 #include "app/bench/bench.h"
 #include "app/bench/names.h"
@@ -7,6 +11,7 @@
 #include "app/program.h"
 #include "base/error.h"
 #include "base/interrupts.h"
+#include "base/threads.h"
 
 namespace supple {
 namespace {
@@ -32,6 +37,6 @@ int bench(const BenchOptions& options) {
 }  // namespace supple
 
 int main(int argc, char** argv) {
-  return supple::run_program(argc, argv,
-                             [](supple::CommandLine& line) { supple::describe_bench(line, supple::bench); });
+  return supple::run_command_line(argc, argv,
+                                  [](supple::CommandLine& line) { supple::describe_bench(line, supple::bench); });
 }

@@ -5,8 +5,11 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <memory>
-#include <stdexcept>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "app/bench/names.h"
 #include "base/companion_program.h"
@@ -18,13 +21,12 @@ namespace {
 // Starts supple-bench with the words of this line, in the place of this process.
 int become_bench_program(const std::vector<std::string>& words) {
   const std::optional<std::filesystem::path> program = companion_program("supple-bench");
-  if (!program)
-    throw InputError("supple bench", "its program, supple-bench, has not been built: cmake --build build/release");
+  if (!program) throw RunError("bench: its program, supple-bench, has not been built: cmake --build build/release");
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   ::execv(program->c_str(), arguments.data());
-  throw std::runtime_error(fmt::format("{}: {}", program->string(), std::strerror(errno)));
+  throw RunError(fmt::format("{}: cannot be started: {}", program->string(), std::strerror(errno)));
 }
 
 }  // namespace

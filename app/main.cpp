@@ -26,4 +26,4 @@ void add_verbs(CommandLine& line) {
 }  // namespace
 }  // namespace supple
 
-int main(int argc, char** argv) { return supple::run_program(argc, argv, supple::add_verbs); }
+int main(int argc, char** argv) { return supple::run_command_line(argc, argv, supple::add_verbs); }

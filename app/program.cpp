@@ -6,7 +6,9 @@
 
 #include <csignal>
 #include <cstdio>
+#include <exception>
 #include <new>
+#include <optional>
 
 #include "base/console.h"
 #include "base/error.h"
@@ -32,7 +34,7 @@ void open_standard_streams() {
 
 }  // namespace
 
-int run_program(int argc, char** argv, const std::function<void(CommandLine&)>& add_verbs) {
+int run_command_line(int argc, char** argv, const std::function<void(CommandLine&)>& add_verbs) {
   open_standard_streams();
   std::signal(SIGPIPE, SIG_IGN);  // a run continues when its listener has gone
   try {

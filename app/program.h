@@ -9,6 +9,6 @@ namespace supple {
 
 // Returns the exit status: 0 when it is done, 1 when the run failed, 2 when the input is wrong, and 130 when it was
 // interrupted.
-int run_program(int argc, char** argv, const std::function<void(CommandLine&)>& add_verbs);
+int run_command_line(int argc, char** argv, const std::function<void(CommandLine&)>& add_verbs);
 
 }  // namespace supple

@@ -1,5 +1,5 @@
-// Runs the benchmarks of `supple bench`. Each makes one section of the report page. This is the only header of
-// app/bench that the program supple-bench includes; what is offered on the command line is in app/bench/names.h.
+// Runs the benchmarks of `supple bench`, each of which makes one section of the report page. app/bench_main.cpp
+// includes this header and names.h, and nothing else of app/bench.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,7 @@
 #include "base/companion_program.h"
 
+#include <system_error>
+
 namespace supple {
 
 std::optional<std::filesystem::path> companion_program(const std::string& name) {

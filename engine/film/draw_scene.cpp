@@ -14,8 +14,8 @@ namespace {
 
 constexpr double collider_gloss = 0.35;
 
-// No edge of a skin, of which a part lies outside all elements, is stretched more than this, over the largest stretch
-// of the elements (1 where none is stretched).
+// Edges of a skin of which a part lies outside all elements are drawn together when they are stretched more than this
+// many times the largest stretch of the elements (at least 1).
 constexpr double most_skin_stretch = 1.4;
 
 Vec3 collider_color(const ColliderDef& def) {
@@ -176,9 +176,10 @@ Positions skin_places(const DrawnBody& drawn, const TetMesh& mesh, const Positio
     for (Eigen::Index v = number * chunk; v < end; ++v)
       result.row(v) = carried ? embedded_point(embedding, v, now, frames) : Vec3(now.row(drawn.vertex_of[v]));
   });
-  if (drawn.limit && drawn.limit->largest_stretch(result) > most_skin_stretch) {
+  const double stretch = drawn.limit ? drawn.limit->largest_stretch(result) : 0;
+  if (stretch > most_skin_stretch) {
     const double most = most_skin_stretch * std::max(1.0, largest_element_stretch(mesh, now));
-    if (drawn.limit->largest_stretch(result) > most) drawn.limit->apply(most, result);
+    if (stretch > most) drawn.limit->apply(most, result);
   }
   return result;
 }

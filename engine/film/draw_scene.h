@@ -27,8 +27,8 @@ Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const s
 // Adds the positions of the colliders at a time to a list that already holds those of the bodies.
 void add_colliders(const std::vector<Obstacle>& obstacles, const std::vector<Skin>& skins, double time, DrawList& list);
 
-// Removes the triangles of skins that no camera could show in a picture of this height [pixels]. Skins that are a
-// mesh's own surface are left as they are.
+// Removes the triangles of skins that no camera could show in a picture of this height [pixels], and calls
+// limit_stretch(). Skins that are a mesh's own surface are left as they are.
 void fit_to_cameras(std::vector<DrawnBody>& drawn, const std::vector<Body>& bodies, const std::vector<Camera>& cameras,
                     int height);
 
@@ -38,10 +38,11 @@ void fit_to_cameras(std::vector<DrawnBody>& drawn, const std::vector<Body>& bodi
 std::optional<double> skin_excess(const DrawnBody& drawn, const std::vector<float>& skin, const TetMesh& mesh,
                                   const Positions& now);
 
-// Finds the edges of skins that may not stretch more than their elements, for skins that are as they will be drawn.
+// Prepares skins, which are as they will be drawn, for the limit of their stretch (geometry/skin_limit.h).
 void limit_stretch(std::vector<DrawnBody>& drawn);
 
-// Returns the places of the skin's vertices, n x 3 [m]. now: the positions of the mesh [m], in the order of the input
+// Returns the places of the skin's vertices, n x 3 [m]; after limit_stretch(), with edges that are drawn together where
+// they are stretched much more than the elements. now: the positions of the mesh [m], in the order of the input
 // file. threads: null where the calling thread does it all.
 Positions skin_places(const DrawnBody& drawn, const TetMesh& mesh, const Positions& now, Threads* threads = nullptr);
 // Returns the same as x y z by skin vertex.

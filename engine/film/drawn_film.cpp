@@ -139,7 +139,8 @@ DrawList DrawnFilm::list(const SceneDef& scene, const FramePose& pose, const Col
   }
   add_colliders(set.obstacles, collider_skins_, pose.time, result);
   for (std::size_t b = 0; b < bodies && ghosts_; ++b)
-    result.positions.push_back(skin_positions(drawn_[b], bodies_[b].description.mesh, ghosts_->at(b, pose.frame), &threads));
+    result.positions.push_back(
+        skin_positions(drawn_[b], bodies_[b].description.mesh, ghosts_->at(b, pose.frame), &threads));
   result.camera = camera_at(scene, stage_, pose.time, result.positions);
   for (std::size_t b = 0; b < bodies && scene.look.marks; ++b)
     append_marks(bodies_[b], *pose.motion[b], set, pose.time, &threads, result.marks);

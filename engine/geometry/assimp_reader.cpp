@@ -42,8 +42,8 @@ rlim_t seconds_for(const char* path) {
 }
 
 void limit_this_process(const char* path) {
-  // The address sanitizer reserves terabytes of address space, so its builds have no limit here.
-#ifndef __SANITIZE_ADDRESS__
+  // These sanitizers reserve terabytes of address space, so their builds have no limit here.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
   limit(RLIMIT_AS, rlim_t(2) << 30, rlim_t(2) << 30);
 #endif
   rlimit now{RLIM_INFINITY, RLIM_INFINITY};

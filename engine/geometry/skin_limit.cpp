@@ -21,37 +21,43 @@ double SkinLimit::largest_stretch(const Positions& skin) const {
 void SkinLimit::apply(double factor, Positions& skin) const {
   constexpr int most_rounds = 200, patience = 50;
   constexpr double enough = 1 + 1e-3;
-  std::vector<Vec3> at(movable.size(), Vec3::Zero()), sum(movable.size(), Vec3::Zero());
-  for (std::size_t node = 0; node < at.size(); ++node)
-    if (begin[node] < begin[node + 1]) at[node] = skin.row(copies[std::size_t(begin[node])]);
+  std::vector<Vec3> at(movable.size()), sum(movable.size(), Vec3::Zero());
+  for (std::size_t node = 0; node < at.size(); ++node) at[node] = skin.row(copies[std::size_t(begin[node])]);
   std::vector<int> count(at.size(), 0);  // of the edges in `sum`
-  std::vector<char> moves = movable, moved(at.size(), 0);
-  std::vector<std::size_t> pulled;  // nodes
+  std::vector<char> may_move = movable, has_moved(at.size(), 0);
+  std::vector<const Edge*> too_long;
   for (int round = 0; round < most_rounds; ++round) {
+    too_long.clear();
     for (const Edge& edge : edges) {
+      const double most = factor * edge.length * enough;
       const auto a = std::size_t(edge.from), b = std::size_t(edge.to);
+      if ((at[b] - at[a]).squaredNorm() > most * most) too_long.push_back(&edge);
+    }
+    if (too_long.empty()) break;
+    for (const Edge* edge : too_long) {
+      const auto a = std::size_t(edge->from), b = std::size_t(edge->to);
+      if (round >= patience || (may_move[a] == 0 && may_move[b] == 0)) may_move[a] = may_move[b] = 1;
+    }
+    for (const Edge* edge : too_long) {
+      const auto a = std::size_t(edge->from), b = std::size_t(edge->to);
       const Vec3 way = at[b] - at[a];
-      const double square = way.squaredNorm(), most = factor * edge.length;
-      if (!(square > most * most * enough * enough)) continue;
-      if (round >= patience || (moves[a] == 0 && moves[b] == 0)) moves[a] = moves[b] = 1;
-      const Vec3 step = way * ((1 - most / std::sqrt(square)) / (int(moves[a]) + int(moves[b])));
+      const Vec3 step = way * ((1 - factor * edge->length / way.norm()) / (int(may_move[a]) + int(may_move[b])));
       for (const auto& [end, sign] : {std::pair(a, 1.0), std::pair(b, -1.0)}) {
-        if (moves[end] == 0) continue;
-        if (count[end]++ == 0) pulled.push_back(end);
+        if (may_move[end] == 0) continue;
         sum[end] += sign * step;
+        ++count[end];
       }
     }
-    if (pulled.empty()) break;
-    for (const std::size_t node : pulled) {
+    for (std::size_t node = 0; node < at.size(); ++node) {
+      if (count[node] == 0) continue;
       at[node] += sum[node] / count[node];
       sum[node].setZero();
       count[node] = 0;
-      moved[node] = 1;
+      has_moved[node] = 1;
     }
-    pulled.clear();
   }
   for (std::size_t node = 0; node < at.size(); ++node) {
-    if (moved[node] == 0) continue;
+    if (has_moved[node] == 0) continue;
     for (std::int32_t i = begin[node]; i < begin[node + 1]; ++i) skin.row(copies[std::size_t(i)]) = at[node];
   }
 }

@@ -2,7 +2,9 @@
 // them; where these go apart, and no element is between them, its edges would become long shards.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "geometry/embedding.h"
 

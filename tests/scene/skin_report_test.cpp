@@ -54,5 +54,31 @@ TEST(SkinReport, MeasuresHowMuchMoreASkinStretchesThanItsElements) {
   EXPECT_NEAR(skin_excess(drawn, skin_positions(drawn, mesh, twice), mesh, twice).value_or(0), 1, 0.3);
 }
 
+// Shards are made by moving points that lie outside away from what they follow.
+TEST(DrawnSkin, IsStretchedHardlyMoreThanItsElements) {
+  const test::TemporaryFolder folder;
+  const std::vector<Body> ball = bodies_of(folder.path, "shape = \"shapes/sphere.toml\"\nvertices = 300");
+  const TetMesh& mesh = ball[0].description.mesh;
+  std::vector<DrawnBody> drawn = {drawn_bodies(ball).front()};
+  const std::vector<float> whole = skin_positions(drawn[0], mesh, mesh.rest);
+  limit_stretch(drawn);
+  EXPECT_EQ(skin_positions(drawn[0], mesh, mesh.rest), whole) << "nothing is too long";
+
+  std::vector<DrawnBody> torn = {drawn_bodies(ball).front()};
+  for (Eigen::Index v = 0; v < torn[0].embedding.points(); ++v)
+    if (v % 97 == 0 && torn[0].embedding.outside(v)) torn[0].embedding.offset.row(v) *= 8;
+  const std::vector<DrawnBody> as_torn = torn;
+  const auto excess = [&mesh](const DrawnBody& body) {
+    return skin_excess(body, skin_positions(body, mesh, mesh.rest), mesh, mesh.rest).value_or(1);
+  };
+  EXPECT_GT(excess(torn[0]), 3);
+  limit_stretch(torn);
+  EXPECT_LT(excess(torn[0]), 1.5);
+  std::vector<DrawnBody> fitted = as_torn;
+  fit_to_cameras(fitted, ball, {Camera{}}, 720);
+  ASSERT_TRUE(fitted[0].limit);
+  EXPECT_LT(excess(fitted[0]), 1.5);
+}
+
 }  // namespace
 }  // namespace supple
