@@ -10,8 +10,7 @@
 
 namespace supple {
 
-// Lists the edges of a skin. Skin vertices at one place, as along a crease,
-// are one node and move as one.
+// Lists the edges of a skin. Skin vertices at one place, as along a crease, are one node and move as one.
 struct SkinLimit {
   struct Edge {
     std::int32_t from, to;  // nodes
