@@ -11,7 +11,7 @@ namespace {
 std::filesystem::path shared_folder() {
   std::error_code error;
   const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-  // Of supple itself, and of a program that it starts.
+  // The first way leads there from supple itself, the second from a program that it starts.
   for (const char* way : {SUPPLE_SHARE_FROM_BIN, SUPPLE_SHARE_FROM_LIBEXEC}) {
     const std::filesystem::path installed = (folder / way).lexically_normal();
     if (std::filesystem::is_directory(installed / "shaders", error)) return installed;
