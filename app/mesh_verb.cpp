@@ -9,8 +9,7 @@
 #include "film/places.h"
 #include "film/progress.h"
 #include "geometry/mesh_file.h"
-#include "geometry/tetrahedralize.h"
-#include "scene/shape_reader.h"
+#include "scene/body_mesh.h"
 
 namespace supple {
 namespace {
@@ -27,22 +26,26 @@ int make_mesh(const std::string& input, const std::string& output, int vertices,
   check_writable(output);
   const std::filesystem::path path = shape_file(input);
   TetMesh mesh;
+  std::vector<std::string> notes;
   MakingLine line(false);
-  const auto heard = [&](int attempt, double share) {
-    line.show(fmt::format("meshing {}: attempt {}, {:.0f} %", path.string(), attempt, 100 * share));
-  };
   if (is_mesh_file(path)) {
     MeshFile file = read_mesh(path);
-    for (const std::string& note : file.notes) say(stdout, fmt::format("note: {}\n", note));
     mesh = std::move(file.mesh);
-  } else if (path.extension() == ".toml") {
-    mesh = tetrahedralize(load_shape(path, assets_folder()), vertices, path.string(), heard);
+    notes = std::move(file.notes);
   } else {
-    const Shape shape = load_surface(path, options);
-    for (const std::string& note : shape.notes) say(stdout, fmt::format("note: {}\n", note));
-    mesh = tetrahedralize(shape, vertices, path.string(), heard);
+    SceneDef scene;
+    scene.assets = assets_folder();
+    BodyDef body;
+    body.vertices = vertices;
+    body.surface_options = options;
+    (path.extension() == ".toml" ? body.shape : body.surface) = path;
+    MeshCache meshes({{}, [&](const std::string& what) { line.show(what); }});
+    const Loaded& made = meshes.get(scene, body);
+    mesh = made.mesh;
+    notes = made.notes;
   }
   line.end();
+  for (const std::string& note : notes) say(stdout, fmt::format("note: {}\n", note));
   write_mesh(output, mesh);
   say(stdout, mesh_summary(mesh));
   say(stdout, fmt::format("written         {} ({:.2f} s)\n", output, watch.elapsed_ms() / 1000));

@@ -1,6 +1,7 @@
 #include "geometry/mesh.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -106,6 +107,31 @@ Triangles boundary_faces(const Tetrahedra& tets) {
     for (int k = 0; k < 3; ++k) faces(f, k) = tets(use.element, opposite_face[use.face][k]);
   }
   return faces;
+}
+
+std::vector<char> inside_elements(const TetMesh& mesh, const Positions& points) {
+  std::vector<Eigen::Index> by_x(static_cast<std::size_t>(points.rows()));
+  std::iota(by_x.begin(), by_x.end(), 0);
+  std::sort(by_x.begin(), by_x.end(), [&](Eigen::Index a, Eigen::Index b) { return points(a, 0) < points(b, 0); });
+  std::vector<char> inside(by_x.size(), 0);
+  for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
+    Vec3 corners[4];
+    for (int k = 0; k < 4; ++k) corners[k] = mesh.rest.row(mesh.tets(e, k)).transpose();
+    const Vec3 low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]).cwiseMin(corners[3]);
+    const Vec3 high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]).cwiseMax(corners[3]);
+    Mat3 edges;
+    for (int k = 0; k < 3; ++k) edges.col(k) = corners[k + 1] - corners[0];
+    const Mat3 to_weights = edges.inverse();
+    auto at = std::lower_bound(by_x.begin(), by_x.end(), low.x(),
+                               [&](Eigen::Index point, double x) { return points(point, 0) < x; });
+    for (; at != by_x.end() && points(*at, 0) <= high.x(); ++at) {
+      const Vec3 p = points.row(*at).transpose();
+      if ((p.array() < low.array()).any() || (p.array() > high.array()).any()) continue;
+      const Vec3 weights = to_weights * (p - corners[0]);
+      if (weights.minCoeff() >= 0 && weights.sum() <= 1) inside[static_cast<std::size_t>(*at)] = 1;
+    }
+  }
+  return inside;
 }
 
 std::vector<int> face_connected_pieces(const Tetrahedra& tets) {

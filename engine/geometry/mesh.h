@@ -46,6 +46,9 @@ Manifoldness manifoldness(const TetMesh& mesh);
 // dropped.
 TetMesh submesh(const TetMesh& mesh, const std::vector<char>& keep);
 
+// Tells which points lie inside an element.
+std::vector<char> inside_elements(const TetMesh& mesh, const Positions& points);
+
 // Labels each element with its face-connected piece; pieces are counted from 0 in the order of their first elements.
 std::vector<int> face_connected_pieces(const Tetrahedra& tets);
 

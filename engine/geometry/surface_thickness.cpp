@@ -15,8 +15,7 @@ double area_of(const TriMesh& mesh) {
   return area;
 }
 
-std::vector<ThicknessSample> sampled_thickness(const TriMesh& boundary) {
-  constexpr int count = 2000;
+std::vector<ThicknessSample> sampled_thickness(const TriMesh& boundary, int count) {
   const TriangleSoup soup(boundary);
   const double step = area_of(boundary) / count, size = bounds_of(boundary.points).diagonal();
   std::vector<ThicknessSample> samples;
@@ -31,7 +30,7 @@ std::vector<ThicknessSample> sampled_thickness(const TriMesh& boundary) {
       const Vec3 place = corner(boundary, t, 0) + std::sqrt(share) * (middle - corner(boundary, t, 0));
       const Vec3 inward = -soup.normals().row(t).transpose();
       const auto hit = soup.first_hit(place + 1e-7 * size * inward, inward, t);
-      if (hit) samples.push_back({*hit, place});
+      if (hit) samples.push_back({*hit, place, inward});
     }
   }
   std::stable_sort(samples.begin(), samples.end(),

@@ -10,10 +10,16 @@ namespace supple {
 struct ThicknessSample {
   double thickness;  // along the inward normal to where the surface is met again [m]
   Vec3 place;        // on the surface [m]
+  Vec3 inward;       // direction in which it was measured
+
+  Vec3 middle() const { return place + 0.5 * thickness * inward; }
 };
 
+// A lattice of this spacing has no place inside some parts of this thickness.
+inline bool is_thin(double thickness, double spacing) { return thickness < 0.7 * spacing; }
+
 // Samples the surface evenly by area; the thinnest place comes first. The surface must be closed and face outward.
-std::vector<ThicknessSample> sampled_thickness(const TriMesh& boundary);
+std::vector<ThicknessSample> sampled_thickness(const TriMesh& boundary, int count = 2000);
 
 // Returns the spacing of the lattice that makes about this many vertices of a body, from its volume [m^3] and the area
 // of its surface [m^2], and the reverse. Two lattice points stand for each cell and one for each face of a cell on the

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/threads.h"
+#include "geometry/graded_stuffing.h"
 #include "geometry/lattice_probe.h"
 #include "geometry/stuffed_lattice.h"
 
@@ -15,9 +16,8 @@ namespace supple {
 namespace {
 
 // Estimates the volume that the shape fills in its bounding box, from a coarse grid of samples. swell: as for
-// stuffed_lattice; a shape that needs it is thin, and so are the cells of its grid.
-double sampled_volume(const Shape& shape, double swell, Threads& threads) {
-  const int samples = swell > 0 ? 48 : 24;  // along each side
+// stuffed_lattice. samples: along each side.
+double sampled_volume(const Shape& shape, double swell, int samples, Threads& threads) {
   Bounds box = shape.bounds();
   box.lower.array() -= swell;
   box.upper.array() += swell;
@@ -41,6 +41,9 @@ double sampled_volume(const Shape& shape, double swell, Threads& threads) {
   const int count = std::accumulate(inside.begin(), inside.end(), 0);
   return count * box.extent().prod() / (samples * samples * samples);
 }
+
+// Samples for a shape that may be thick everywhere, and for one that is thin somewhere.
+constexpr int coarse = 24, fine = 48;
 
 bool has_tags(const ShapeGroup& group) {
   return std::any_of(group.parts.begin(), group.parts.end(), [](const ShapePart& part) {
@@ -73,63 +76,111 @@ Threads all_cores() { return Threads(static_cast<int>(std::max(1u, std::thread::
           100 * share));
 }
 
-}  // namespace
-
-TetMesh tetrahedralize(const Shape& shape, int vertices, const std::string& source, const MeshingProgress& heard,
-                       double swell) {
+void check_bounds(const Shape& shape, const std::string& source) {
   const Bounds box = shape.bounds();
   if (box.empty()) throw InputError(source, "the shape is empty: add a part such as sphere = { radius = 0.1 }");
-  if (box.extent().maxCoeff() > 1e6) {
+  if (box.extent().maxCoeff() > 1e6)
     throw InputError(source, "the shape is unbounded: a half space can cut or intersect a body, but not be one");
-  }
-  Threads threads = all_cores();
-  // The first guess of the spacing counts two lattice points for each cell; a small body has about as many again on its
-  // surface, which the iteration corrects. The volume of a swollen shape follows from the spacing: some rounds find
-  // both.
-  double spacing = box.diagonal() / std::cbrt(vertices), volume = 0;
-  for (int round = 0; round < (swell > 0 ? 3 : 1); ++round) {
-    volume = sampled_volume(shape, swell * spacing, threads);
-    if (volume <= 0)
-      throw InputError(source, "the shape has no inside: its parts cut each other away, or are too thin to mesh");
-    spacing = std::cbrt(2 * volume / vertices);
-  }
+}
+
+// A search for the spacing that gives the wanted number of vertices.
+struct Search {
+  double spacing;  // the first guess [m]
+  double volume;   // of the body, about [m^3]
+  int attempts;    // at most
+  bool is_graded;
+  double near;  // relative difference from the wanted number that is accepted at last
+};
+
+// Makes meshes until one has about the wanted number. make: of a spacing and a shift, see stuffed_lattice.h. Returns an
+// empty mesh where none is made; the search's spacing is that of the last.
+TetMesh nearest_mesh(Search& search, int vertices, const std::string& source, const MeshingListener& listener,
+                     const std::function<TetMesh(double, const Vec3&, const std::function<void(double)>&)>& make) {
   // A lattice much finer than that has more points than are wanted in the volume alone: what keeps most of them out of
   // the mesh is too thin also for the next.
-  const double finest = 0.4 * spacing;
+  const double finest = 0.4 * search.spacing;
   TetMesh best;
   const auto miss = [&](const TetMesh& mesh) { return std::abs(static_cast<double>(mesh.rest.rows()) / vertices - 1); };
+  double last_spacing = 0, last_count = 0;
   int in_pieces = 0;  // attempts
-  for (int attempt = 0; attempt < 24; ++attempt) {
+  for (int attempt = 0; attempt < search.attempts; ++attempt) {
     // After six attempts at the same alignment the lattice itself is shifted, because small bodies gain and lose whole
     // layers of vertices at once.
     const Vec3 shift = Vec3(0.31, 0.17, 0.43) * (attempt < 6 ? 0.0 : 0.37 * attempt);
     const auto told = [&](double share) {
-      if (heard) heard(attempt + 1, share);
+      if (listener.progress) listener.progress(attempt + 1, share);
     };
-    TetMesh mesh = stuffed_lattice(shape, spacing, shift - Vec3(shift.array().floor()), swell * spacing, told, threads);
+    TetMesh mesh = make(search.spacing, shift - Vec3(shift.array().floor()), told);
     const double count = std::max<double>(static_cast<double>(mesh.rest.rows()), 1.0);
     // More attempts do not join what three of about the right size have left apart.
-    const double held = quality(mesh).volume / volume;
+    const double held = quality(mesh).volume / search.volume;
     in_pieces += miss(mesh) < 0.1 && held < 0.75 ? 1 : 0;
     if (in_pieces == 3) refuse_pieces(source, held);
+    if (listener.judge && miss(mesh) < 0.1) listener.judge(mesh);
     if (best.rest.rows() == 0 || miss(mesh) < miss(best)) best = std::move(mesh);
     if (miss(best) < 0.01 || (attempt >= 8 && miss(best) < 0.03)) break;
-    spacing *= std::clamp(std::cbrt(count / vertices), 0.5, 2.0);
-    if (spacing < finest) break;
+    double power = 3;  // the number is about the inverse of this power of the spacing
+    if (search.is_graded && attempt > 0 && count != last_count)
+      power = std::clamp(std::log(count / last_count) / std::log(last_spacing / search.spacing), 1.0, 4.0);
+    last_spacing = search.spacing;
+    last_count = count;
+    search.spacing *= std::clamp(std::pow(count / vertices, 1 / power), 0.5, 2.0);
+    if (search.spacing < finest) break;
   }
-  if (miss(best) > (swell > 0 ? 0.1 : 0.03)) {
-    const auto found = best.rest.rows();
-    throw InputError(source,
-                     fmt::format("cannot be meshed with {} vertices{}{}", vertices,
-                                 found == 0 || found > vertices ? ": its thinnest part needs more of them" : "",
-                                 found == 0 ? "" : fmt::format("; {} is the nearest number that gives a mesh", found)));
-  }
-  // With a volume far below the sampled one (whose own error is a few per cent), whole parts are missing.
-  if (swell > 0) volume = sampled_volume(shape, swell * spacing, threads);
-  const double share = quality(best).volume / volume;
+  if (miss(best) <= search.near) return best;
+  const auto found = best.rest.rows();
+  throw InputError(source,
+                   fmt::format("cannot be meshed with {} vertices{}{}", vertices,
+                               found == 0 || found > vertices ? ": its thinnest part needs more of them" : "",
+                               found == 0 ? "" : fmt::format("; {} is the nearest number that gives a mesh", found)));
+}
+
+// With a volume far below the sampled one (whose own error is a few per cent), whole parts are missing.
+void check_whole(const TetMesh& mesh, double volume, const std::string& source) {
+  const double share = quality(mesh).volume / volume;
   if (share < 0.85) refuse_pieces(source, share);
-  name_regions(shape, best, threads);
-  return best;
+}
+
+}  // namespace
+
+TetMesh tetrahedralize(const Shape& shape, int vertices, const std::string& source, const MeshingListener& listener,
+                       double swell) {
+  check_bounds(shape, source);
+  Threads threads = all_cores();
+  // The first guess of the spacing counts two lattice points for each cell; a small body has about as many again on its
+  // surface, which the iteration corrects. The volume of a swollen shape follows from the spacing: some rounds find
+  // both.
+  Search search{shape.bounds().diagonal() / std::cbrt(vertices), 0, 24, false, swell > 0 ? 0.1 : 0.03};
+  for (int round = 0; round < (swell > 0 ? 3 : 1); ++round) {
+    search.volume = sampled_volume(shape, swell * search.spacing, swell > 0 ? fine : coarse, threads);
+    if (search.volume <= 0)
+      throw InputError(source, "the shape has no inside: its parts cut each other away, or are too thin to mesh");
+    search.spacing = std::cbrt(2 * search.volume / vertices);
+  }
+  TetMesh mesh =
+      nearest_mesh(search, vertices, source, listener, [&](double spacing, const Vec3& shift, const auto& told) {
+        return stuffed_lattice(shape, spacing, shift, swell * spacing, told, threads);
+      });
+  if (swell > 0) search.volume = sampled_volume(shape, swell * search.spacing, swell > 0 ? fine : coarse, threads);
+  check_whole(mesh, search.volume, source);
+  name_regions(shape, mesh, threads);
+  return mesh;
+}
+
+TetMesh graded_tetrahedralize(const Shape& shape, int vertices, const std::string& source,
+                              const std::vector<ThicknessSample>& thickness, double swollen_to,
+                              const MeshingListener& listener) {
+  check_bounds(shape, source);
+  Threads threads = all_cores();
+  Search search{0, sampled_volume(shape, 0, fine, threads), 12, true, 0.1};
+  search.spacing = 1.2 * std::cbrt(2 * search.volume / vertices);  // thin parts take some of the vertices
+  TetMesh mesh =
+      nearest_mesh(search, vertices, source, listener, [&](double spacing, const Vec3& shift, const auto& told) {
+        return graded_stuffing(shape, spacing, shift, thickness, swollen_to, told, threads);
+      });
+  check_whole(mesh, search.volume, source);
+  name_regions(shape, mesh, threads);
+  return mesh;
 }
 
 }  // namespace supple

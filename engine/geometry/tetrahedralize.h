@@ -7,18 +7,31 @@
 
 #include "geometry/mesh.h"
 #include "geometry/shape.h"
+#include "geometry/surface_thickness.h"
 
 namespace supple {
 
+// Who hears of a mesh that is made in several attempts, and judges it.
+struct MeshingListener {
+  // The number of the attempt, the first of them 1, and the share of it that is done, 0 to 1. Empty: nobody hears.
+  std::function<void(int attempt, double share)> progress;
+  // Sees each mesh of about the right size, and may throw to end the search. Empty: nobody looks.
+  std::function<void(const TetMesh&)> judge;
+};
+
 // Makes one connected manifold body with about `vertices` vertices (within 3 %, or 10 % where it is swollen); its
 // regions follow the shape's tags. Throws InputError (naming `source`) if the shape is unbounded or empty, or too thin
-// for that many vertices. A mesh is found in several attempts, the first of them 1; `heard` hears the share of an
-// attempt that is done, 0 to 1. swell: how far the body reaches beyond a closed surface, in spacings of the lattice:
-// with 1/2 each part of the surface is held by elements, however thin it is, and parts that are nearer to each other
-// than a spacing hang together.
-using MeshingProgress = std::function<void(int attempt, double share)>;
-TetMesh tetrahedralize(const Shape& shape, int vertices, const std::string& source, const MeshingProgress& heard = {},
-                       double swell = 0);
+// for that many vertices. swell: how far the body reaches beyond a closed surface, in spacings of the lattice: with 1/2
+// each part of the surface is held by elements, however thin it is, and parts that are nearer to each other than a
+// spacing hang together.
+TetMesh tetrahedralize(const Shape& shape, int vertices, const std::string& source,
+                       const MeshingListener& listener = {}, double swell = 0);
+
+// The same, within 10 %, with smaller elements where the shape is thin, and more of it there than there is
+// (graded_stuffing.h, which has the last two before the listener).
+TetMesh graded_tetrahedralize(const Shape& shape, int vertices, const std::string& source,
+                              const std::vector<ThicknessSample>& thickness, double swollen_to,
+                              const MeshingListener& listener = {});
 
 // Makes a box from the origin to `extent` with `cells` cells along each axis. Each cell is cut into six tetrahedra
 // around one diagonal, mirrored from cell to cell so that no direction is preferred.

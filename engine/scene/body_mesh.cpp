@@ -8,10 +8,10 @@
 #include "base/hash.h"
 #include "geometry/mesh_bytes.h"
 #include "geometry/mesh_file.h"
-#include "geometry/surface_thickness.h"
 #include "geometry/tetrahedralize.h"
 #include "scene/body_pieces.h"
 #include "scene/shape_reader.h"
+#include "scene/surface_tetrahedra.h"
 
 namespace supple {
 namespace {
@@ -35,107 +35,8 @@ Loaded loaded_box(const BoxDef& def) {
   return loaded;
 }
 
-TetMesh tetrahedra(const Shape& shape, int vertices, const std::string& source, const Making& making,
-                   double swell = 0) {
-  const auto heard = [&](int attempt, double share) {
-    if (making.tell)
-      making.tell(
-          fmt::format("meshing {} with {} vertices: attempt {}, {:.0f} %", source, vertices, attempt, 100 * share));
-  };
-  return tetrahedralize(shape, vertices, source, heard, swell);
-}
-
-std::string kept_name(const Loaded& loaded, int vertices) {
-  return fmt::format("mesh of {} vertices from {}", vertices, content_name(loaded.files));
-}
-
-// Joins parts that touch without an overlap by what lies between them: their fields melt into each other there.
-std::optional<Shape> bridged(const TriMesh& boundary, double gap) {
-  constexpr std::size_t most_parts = 64;  // every part is asked for every distance
-  Shape shape;
-  for (TriMesh& mesh : closed_parts(boundary)) {
-    if (!(enclosed_volume(mesh) > 0)) return std::nullopt;
-    ShapePart part;
-    part.primitive = ClosedSurface{std::make_shared<TriangleSolid>(std::move(mesh))};
-    part.blend = shape.root.parts.empty() ? 0 : gap;
-    shape.root.parts.push_back(std::move(part));
-  }
-  if (shape.root.parts.size() < 2 || shape.root.parts.size() > most_parts) return std::nullopt;
-  return shape;
-}
-
-std::string count_text(double vertices) {
-  return vertices > 500000 ? "more than 500000" : fmt::format("about {:.0f}", std::ceil(vertices / 100) * 100);
-}
-
-// Tells what of a surface is thinner than an element, before tetrahedra are made of it.
-struct Thinness {
-  double spacing = 0;
-  double wanted = 0;      // vertices
-  std::string note;       // empty where nothing is
-  bool hopeless = false;  // most of it is, so that no lattice inside it holds together
-};
-
-Thinness thinness_of(const TriMesh& boundary, int vertices) {
-  const double volume = enclosed_volume(boundary), area = area_of(boundary);
-  if (!(volume > 0)) return {};
-  Thinness result{spacing_for(volume, area, vertices), 0, ""};
-  // The tree for the rays of more triangles takes longer than a reader of the note would wait.
-  constexpr Eigen::Index most_triangles = 200000;
-  if (boundary.triangles.rows() > most_triangles) return result;
-  const std::vector<ThicknessSample> samples = sampled_thickness(boundary);
-  result.wanted = vertices_wanted(samples, volume, area);
-  const auto thin = std::count_if(samples.begin(), samples.end(),
-                                  [&](const ThicknessSample& s) { return s.thickness < 0.7 * result.spacing; });
-  const double share = double(thin) / std::max<double>(1, double(samples.size()));
-  if (share < 0.05) return result;
-  result.hopeless = share > 0.5;
-  const Vec3& place = samples.front().place;
-  result.note = fmt::format(
-      "{:.1f} % of the surface belongs to parts thinner than an element of {} vertices ({:.2g}), the thinnest at "
-      "({:.3g}, "
-      "{:.3g}, {:.3g}), in the file's units: {} vertices resolve them",
-      100 * share, vertices, result.spacing, place.x(), place.y(), place.z(), count_text(result.wanted));
-  return result;
-}
-
-// Makes the body of what is near the surface, where that is too thin or hangs together too loosely for a body inside
-// it. reason: why there is none inside.
-TetMesh swollen_tetrahedra(const TriMesh& boundary, const BodyDef& def, const Loaded& loaded, const Thinness& thinness,
-                           const std::string& reason, const Making& making) {
-  const Shape shape = shape_of(boundary);
-  for (const double swell : {0.5, 1.0}) {
-    try {
-      return tetrahedra(shape, def.vertices, loaded.source, making, swell);
-    } catch (const InputError&) {  // the reason is that of the body inside
-    }
-  }
-  throw InputError(
-      loaded.source,
-      fmt::format("{}{}{}; more vertices (now {}) may help, or pieces = \"largest\", or thicken = 0.01 [m], "
-                  "which gives sheets a thickness",
-                  reason, thinness.note.empty() ? "" : "; ", thinness.note, def.vertices));
-}
-
-// touching: whether parts are near each other without an overlap, and so may fall apart.
-TetMesh surface_tetrahedra(const SolidSurface& solid, bool touching, const BodyDef& def, const Loaded& loaded,
-                           const Thinness& thinness, const Making& making) {
-  const TriMesh& boundary = solid.boundary;
-  std::string reason = "is too thin for its elements";
-  if (!thinness.hopeless) {
-    try {
-      return tetrahedra(shape_of(boundary), def.vertices, loaded.source, making);
-    } catch (const InputError& error) {
-      reason = error.problems().front().message;
-    }
-    try {
-      const auto joined = touching ? bridged(boundary, 3 * thinness.spacing) : std::nullopt;
-      if (joined) return tetrahedra(*joined, def.vertices, loaded.source, making);
-    } catch (const InputError& error) {
-      reason = error.problems().front().message;
-    }
-  }
-  return swollen_tetrahedra(boundary, def, loaded, thinness, reason, making);
+std::string kept_name(const std::string& what, const Loaded& loaded, const BodyDef& def) {
+  return fmt::format("{} of {} vertices from {}", what, def.vertices, content_name(loaded.files));
 }
 
 // Returns how far elements reach beyond the box of a surface.
@@ -157,9 +58,11 @@ Loaded loaded_surface(const BodyDef& def, const Making& making) {
   if (read.pieces.size() > 1) loaded.whole = read.whole;
   loaded.regions = Shape{}.regions;
   const Thinness thinness = thinness_of(solid.boundary, def.vertices);
-  if (!thinness.note.empty()) loaded.notes.push_back(thinness.note);
-  loaded.mesh = kept_or_made(making.cache, kept_name(loaded, def.vertices), tet_mesh_from,
-                             [&] { return surface_tetrahedra(solid, read.touching, def, loaded, thinness, making); });
+  const SurfaceBody body{solid, read.touching, def.vertices, loaded.source};
+  loaded.mesh = kept_or_made(making.cache, kept_name("held mesh", loaded, def), tet_mesh_from,
+                             [&] { return surface_tetrahedra(body, thinness, making); });
+  const std::string note = thinness_note(thinness, loaded.mesh, def.vertices);
+  if (!note.empty()) loaded.notes.push_back(note);
   const double beyond = reach_beyond(loaded.mesh, solid.boundary);
   if (beyond > 0.1 * thinness.spacing) {
     loaded.notes.push_back(fmt::format(
@@ -182,8 +85,8 @@ Loaded loaded_shape(const SceneDef& scene, const BodyDef& def, const Making& mak
   loaded.regions = loaded.shape.regions;
   loaded.notes = loaded.shape.notes;
   loaded.files = loaded.shape.files;
-  loaded.mesh = kept_or_made(making.cache, kept_name(loaded, def.vertices), tet_mesh_from,
-                             [&] { return tetrahedra(loaded.shape, def.vertices, loaded.source, making); });
+  loaded.mesh = kept_or_made(making.cache, kept_name("mesh", loaded, def), tet_mesh_from,
+                             [&] { return shape_tetrahedra(loaded.shape, def.vertices, loaded.source, making); });
   return loaded;
 }
 

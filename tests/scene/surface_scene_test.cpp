@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "geometry/tetrahedralize.h"
 #include "scene/assemble.h"
 #include "scene/body_mesh.h"
 #include "scene/body_pieces.h"
@@ -113,6 +114,24 @@ TEST_F(SurfaceScene, WhatIsThinnerThanAnElementIsHeldByElementsAroundIt) {
   EXPECT_NE(loaded.notes[0].find("thinner than an element of 600 vertices"), std::string::npos) << loaded.notes[0];
   EXPECT_EQ(loaded.notes[1].find(fmt::format("the elements reach {:.2g} beyond the surface", beyond.maxCoeff())), 0u)
       << loaded.notes[1];
+}
+
+// A ball with an arm of half an element's thickness: a lattice inside it would hold the ball alone.
+TEST_F(SurfaceScene, ThinPartsAreHeldBySmallerElementsThatReachALittleBeyondThem) {
+  Shape shape;
+  shape.root.parts.emplace_back().primitive = Sphere{0.5};
+  shape.root.parts.emplace_back().primitive = Capsule{Vec3::Zero(), Vec3(1.3, 0.2, 0.3), 0.03};
+  const TetMesh fine = tetrahedralize(shape, 60000, "arm");
+  const TriMesh surface{fine.rest, boundary_faces(fine.tets)};
+  write("arm.obj", obj_text(surface));
+  const SceneDef scene = scene_of("surface = \"arm.obj\"\n");
+  MeshCache meshes;
+  const Loaded& loaded = meshes.get(scene, scene.bodies.at(0));
+  const Bounds body = bounds_of(loaded.mesh.rest), skin = bounds_of(surface.points);
+  EXPECT_NEAR(body.upper.x(), skin.upper.x(), 0.05);
+  EXPECT_NEAR(body.lower.x(), skin.lower.x(), 0.03);
+  ASSERT_EQ(loaded.notes.size(), 1u) << "less than a twentieth of the surface is thin";
+  EXPECT_EQ(loaded.notes[0].find("the elements reach 0.0"), 0u) << loaded.notes[0];
 }
 
 TEST_F(SurfaceScene, SheetsGetTheirThicknessInMetres) {

@@ -1,0 +1,31 @@
+// A lattice of tetrahedra that are as small as each place asks for. Where neighbours are equally large it is
+// body-centred cubic; between two sizes elements are bisected at their longest edges until no edge has a vertex of
+// another element in its middle. This gives the four shapes of elements of Labelle and Shewchuk 2007, section 3, whose
+// smallest dihedral angle is 45 degrees.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "base/types.h"
+
+namespace supple {
+
+struct BisectedLattice {
+  std::vector<Eigen::Vector3i> sites;    // in units of the smallest half spacing
+  std::vector<std::array<int, 4>> tets;  // of sites, in no particular orientation
+  std::vector<double> shortest;          // edge at each site, in the same units
+};
+
+// Asks about a part of space: its middle, and a length, in the units of sites.
+using LatticeQuestion = std::function<bool(const Vec3& middle, double length)>;
+
+// cells: the number of cubic cells along each axis. halvings: how often a cell's spacing, 2^(halvings + 1) units, may
+// be halved. is_needed: whether anything of a cell may belong to the body, by its middle and half diagonal.
+// is_too_large: whether an element there may not have this spacing. Elements of a cell have a twelfth of its volume,
+// and those of the same volume the same spacing.
+BisectedLattice bisected_lattice(const Eigen::Vector3i& cells, int halvings, const LatticeQuestion& is_needed,
+                                 const LatticeQuestion& is_too_large);
+
+}  // namespace supple

@@ -1,0 +1,164 @@
+#include "scene/surface_tetrahedra.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+
+#include "base/error.h"
+#include "geometry/surface_pieces.h"
+#include "geometry/tetrahedralize.h"
+#include "scene/shape_reader.h"
+
+namespace supple {
+namespace {
+
+// More of the surface without an element inside is a part that is lost.
+constexpr double most_unheld = 0.01;
+
+MeshingListener listener_of(const std::string& source, int vertices, const Making& making) {
+  return {[&, vertices](int attempt, double share) {
+            if (making.tell)
+              making.tell(fmt::format("meshing {} with {} vertices: attempt {}, {:.0f} %", source, vertices, attempt,
+                                      100 * share));
+          },
+          {}};
+}
+
+// Joins parts that touch without an overlap by what lies between them: their fields melt into each other there.
+std::optional<Shape> bridged(const TriMesh& boundary, double gap) {
+  constexpr std::size_t most_parts = 64;  // every part is asked for every distance
+  Shape shape;
+  for (TriMesh& mesh : closed_parts(boundary)) {
+    if (!(enclosed_volume(mesh) > 0)) return std::nullopt;
+    ShapePart part;
+    part.primitive = ClosedSurface{std::make_shared<TriangleSolid>(std::move(mesh))};
+    part.blend = shape.root.parts.empty() ? 0 : gap;
+    shape.root.parts.push_back(std::move(part));
+  }
+  if (shape.root.parts.size() < 2 || shape.root.parts.size() > most_parts) return std::nullopt;
+  return shape;
+}
+
+std::string count_text(double vertices) {
+  return vertices > 500000 ? "more than 500000" : fmt::format("about {:.0f}", std::ceil(vertices / 100) * 100);
+}
+
+// Tells which samples belong to parts without an element inside.
+std::vector<char> held_samples(const std::vector<ThicknessSample>& samples, const TetMesh& mesh) {
+  Positions middles(static_cast<Eigen::Index>(samples.size()), 3);
+  for (std::size_t s = 0; s < samples.size(); ++s)
+    middles.row(static_cast<Eigen::Index>(s)) = samples[s].middle().transpose();
+  return inside_elements(mesh, middles);
+}
+
+double unheld_share(const std::vector<char>& held) {
+  if (held.empty()) return 0;
+  return double(std::count(held.begin(), held.end(), 0)) / double(held.size());
+}
+
+}  // namespace
+
+Thinness thinness_of(const TriMesh& boundary, int vertices) {
+  const double volume = enclosed_volume(boundary), area = area_of(boundary);
+  if (!(volume > 0)) return {};
+  Thinness result;
+  result.spacing = spacing_for(volume, area, vertices);
+  // The tree for the rays of more triangles takes longer than a reader of the note would wait.
+  constexpr Eigen::Index most_triangles = 200000;
+  if (boundary.triangles.rows() > most_triangles) return result;
+  constexpr double per_square = 4;  // samples on the square of a spacing
+  result.samples = sampled_thickness(boundary, std::max(2000, int(per_square * area / std::pow(result.spacing, 2))));
+  result.wanted = vertices_wanted(result.samples, volume, area);
+  const auto thin = std::count_if(result.samples.begin(), result.samples.end(), [&](const ThicknessSample& sample) {
+    return is_thin(sample.thickness, result.spacing);
+  });
+  result.thin_share = double(thin) / std::max<double>(1, double(result.samples.size()));
+  return result;
+}
+
+std::string thinness_note(const Thinness& thinness, const TetMesh& mesh, int vertices) {
+  const std::vector<char> held = held_samples(thinness.samples, mesh);
+  const double unheld = unheld_share(held);
+  const bool is_lost = unheld > most_unheld;
+  if (thinness.thin_share < 0.05 && !is_lost) return "";
+  const std::string note =
+      fmt::format("{:.1f} % of the surface belongs to parts thinner than an element of {} vertices ({:.2g})",
+                  100 * thinness.thin_share, vertices, thinness.spacing);
+  if (!is_lost) return note + "; they have elements inside nevertheless";
+  const auto first = static_cast<std::size_t>(std::find(held.begin(), held.end(), 0) - held.begin());
+  const Vec3& place = thinness.samples[first].place;
+  return note + fmt::format(
+                    "; {:.1f} % has none inside, first at ({:.3g}, {:.3g}, {:.3g}), in the file's units: {} vertices "
+                    "resolve them",
+                    100 * unheld, place.x(), place.y(), place.z(), count_text(thinness.wanted));
+}
+
+TetMesh shape_tetrahedra(const Shape& shape, int vertices, const std::string& source, const Making& making,
+                         double swell) {
+  return tetrahedralize(shape, vertices, source, listener_of(source, vertices, making), swell);
+}
+
+TetMesh surface_tetrahedra(const SurfaceBody& body, const Thinness& thinness, const Making& making) {
+  const TriMesh& boundary = body.solid.boundary;
+  const Shape shape = shape_of(boundary);
+  const MeshingListener listener = listener_of(body.source, body.vertices, making);
+  std::string reason = "is too thin for its elements";
+  TetMesh best;
+  double least = 1;  // of the surface without an element inside
+  // Makes a mesh, and tells whether it holds all of the surface. Keeps it where it holds more than those before it.
+  const auto holds_all = [&](const std::function<TetMesh()>& make) {
+    try {
+      TetMesh mesh = make();
+      const double unheld = unheld_share(held_samples(thinness.samples, mesh));
+      if (unheld < least) best = std::move(mesh);
+      least = std::min(least, unheld);
+      return unheld <= most_unheld;
+    } catch (const InputError& error) {
+      reason = error.problems().front().message;
+      return false;
+    }
+  };
+  const auto uniform = [&](const Shape& inside) {
+    // The first mesh of about the right size tells whether parts are lost: others of that size lose them too.
+    MeshingListener judging = listener;
+    judging.judge = [&](const TetMesh& mesh) {
+      if (unheld_share(held_samples(thinness.samples, mesh)) > most_unheld)
+        throw InputError(body.source, "loses parts that are thinner than its elements");
+    };
+    return tetrahedralize(inside, body.vertices, body.source, judging);
+  };
+  const auto graded = [&](double swollen_to) {
+    return graded_tetrahedralize(shape, body.vertices, body.source, thinness.samples, swollen_to, listener);
+  };
+  // Where most of the surface is thin, no lattice inside it holds together, and there are no vertices to spare.
+  if (thinness.thin_share < 0.5) {
+    if (holds_all([&] { return uniform(shape); })) return best;
+    if (!thinness.samples.empty() &&
+        (holds_all([&] { return graded(1.25); }) || holds_all([&] { return graded(1.5); })))
+      return best;
+    const auto joined = body.touching ? bridged(boundary, 3 * thinness.spacing) : std::nullopt;
+    if (joined && holds_all([&] { return uniform(*joined); })) return best;
+  }
+  // The last resort is a body of all that is near the surface. It is much thicker than the surface, so that it has to
+  // hold much that would be lost.
+  constexpr double bearable = 0.05;
+  if (least < bearable) return best;
+  const bool is_held = holds_all([&] {
+    for (const double swell : {0.5, 1.0}) {
+      try {
+        return shape_tetrahedra(shape, body.vertices, body.source, making, swell);
+      } catch (const InputError&) {  // the reason is that of the body inside
+      }
+    }
+    throw InputError(body.source, reason);
+  });
+  if (is_held || best.rest.rows() > 0) return best;
+  const std::string wanted =
+      thinness.wanted > 0 ? fmt::format("; {} resolve nearly all of it", count_text(thinness.wanted)) : "";
+  throw InputError(body.source, fmt::format("{}; more vertices (now {}{}) may help, or pieces = \"largest\", or "
+                                            "thicken = 0.01 [m], which gives sheets a thickness",
+                                            reason, body.vertices, wanted));
+}
+
+}  // namespace supple
