@@ -5,7 +5,8 @@
 #   blender -b -P load_run.py -- RUN_DIR --frame 20 --render picture.png
 #
 # RUN_DIR is what `supple render` left, or `supple draw --skins`: motion/BODY.obj is the surface at rest and motion/BODY.pc2 where its vertices
-# go, in the same order. Each body becomes an object with a Mesh Cache modifier that reads the cache from where it lies.
+# go, in the same order. Each body becomes an object with a Mesh Cache modifier that reads the cache from where it lies,
+# and with the colours and textures that its files name.
 # supple's y is up, Blender's z: the objects are turned by 90 degrees about x, their vertices are not touched. Frame 0
 # of the film is frame 0 of the scene. Colliders are not loaded; their poses are in motion/colliders.csv.
 import argparse
@@ -18,6 +19,7 @@ import sys
 import bpy
 from mathutils import Matrix, Vector
 
+COLORS = "vertex colours"  # a layer that is called "color" is black in Cycles
 TO_BLENDER = Matrix.Rotation(math.pi / 2, 4, "X")
 
 
@@ -31,19 +33,100 @@ def read_arguments():
     return parser.parse_args(words)
 
 
-def read_surface(path):
-    """Points and faces, and the origin that both files of a body far from the world's origin are relative to."""
-    points, faces, origin = [], [], (0.0, 0.0, 0.0)
+class Surface:
+    """What an OBJ file of supple says: by vertex its place, its colour (or nothing) and its place in the texture, by
+    face its vertices and the name of its material; and the origin that both files of a body far from the world's origin
+    are relative to."""
+
+    def __init__(self, path):
+        self.points, self.colors, self.places, self.faces, self.materials = [], [], [], [], []
+        self.origin, self.library, material = Vector(), None, None
+        with open(path) as file:
+            for line in file:
+                word, *rest = line.split()
+                if word == "#" and rest[0] == "origin":
+                    self.origin = Vector([float(number.rstrip(":")) for number in rest[1:4]])
+                elif word == "mtllib":
+                    self.library = os.path.join(os.path.dirname(path), rest[0])
+                elif word == "usemtl":
+                    material = rest[0]
+                elif word == "v":
+                    numbers = [float(number) for number in rest]
+                    self.points.append(tuple(numbers[:3]))
+                    if len(numbers) == 6:
+                        self.colors.append(numbers[3:])
+                elif word == "vt":
+                    self.places.append([float(number) for number in rest[:2]])
+                elif word == "f":
+                    self.faces.append([int(corner.split("/")[0]) - 1 for corner in rest])
+                    self.materials.append(material)
+
+
+def read_materials(path):
+    """The texture's file, or None, of each material."""
+    textures, name = {}, None
     with open(path) as file:
         for line in file:
-            word, *numbers = line.split()
-            if word == "#" and numbers[0] == "origin":
-                origin = tuple(float(number.rstrip(":")) for number in numbers[1:4])
-            elif word == "v":
-                points.append(tuple(map(float, numbers[:3])))  # a colour may follow
-            elif word == "f":
-                faces.append(tuple(int(number.split("/")[0]) - 1 for number in numbers))
-    return points, faces, Vector(origin)
+            word, *rest = line.split() or [""]
+            if word == "newmtl":
+                name = rest[0]
+                textures[name] = None
+            elif word == "map_Kd":
+                textures[name] = os.path.join(os.path.dirname(path), " ".join(rest))
+    return textures
+
+
+def new_material(name, texture, has_colors):
+    """The colours of the vertices, multiplied with the texture, where there are any."""
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    base = nodes["Principled BSDF"].inputs["Base Color"]
+    sources = []
+    if has_colors:
+        colors = nodes.new("ShaderNodeVertexColor")
+        colors.layer_name = COLORS
+        sources.append(colors.outputs["Color"])
+    if texture:
+        image = nodes.new("ShaderNodeTexImage")
+        image.image = bpy.data.images.load(os.path.abspath(texture))
+        sources.append(image.outputs["Color"])
+    if len(sources) == 2:
+        product = nodes.new("ShaderNodeMixRGB")
+        product.blend_type = "MULTIPLY"
+        product.inputs["Fac"].default_value = 1
+        for source, factor in zip(sources, ("Color1", "Color2")):
+            links.new(source, product.inputs[factor])
+        sources = [product.outputs["Color"]]
+    if sources:
+        links.new(sources[0], base)
+    return material
+
+
+def linear(level):
+    """A colour's level in sRGB as light."""
+    return level / 12.92 if level <= 0.04045 else ((level + 0.055) / 1.055) ** 2.4
+
+
+def add_colors(mesh, surface):
+    """Gives the mesh what the surface says of colours. Corners of faces have the texture's places of their vertices."""
+    has_colors = len(surface.colors) == len(surface.points) > 0
+    if has_colors:
+        layer = mesh.color_attributes.new(COLORS, "FLOAT_COLOR", "POINT")
+        layer.data.foreach_set("color", [v for c in surface.colors for v in (*map(linear, c), 1.0)])
+    if len(surface.places) == len(surface.points):
+        layer = mesh.uv_layers.new(name="texture")
+        corners = [None] * len(mesh.loops)
+        mesh.loops.foreach_get("vertex_index", corners)
+        layer.data.foreach_set("uv", [v for vertex in corners for v in surface.places[vertex]])
+    textures = read_materials(surface.library) if surface.library else {}
+    if not textures and not has_colors:
+        return
+    names = list(textures) or ["colors"]
+    for name in names:
+        mesh.materials.append(new_material(name, textures.get(name), has_colors))
+    of_face = [names.index(name) if name in textures else 0 for name in surface.materials]
+    mesh.polygons.foreach_set("material_index", of_face)
 
 
 def cache_size(path):
@@ -57,21 +140,22 @@ def cache_size(path):
 
 def load_body(name, surface, cache):
     """Returns the points at rest, in supple's axes, and the number of frames."""
-    points, faces, origin = read_surface(surface)
+    rest = Surface(surface)
     cached, frames = cache_size(cache)
-    if cached != len(points):
-        sys.exit(f"{cache}: {cached} points, and {surface} has {len(points)}")
+    if cached != len(rest.points):
+        sys.exit(f"{cache}: {cached} points, and {surface} has {len(rest.points)}")
     mesh = bpy.data.meshes.new(name)
-    mesh.from_pydata(points, [], faces)
+    mesh.from_pydata(rest.points, [], rest.faces)
+    add_colors(mesh, rest)
     mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
     body = bpy.data.objects.new(name, mesh)
-    body.matrix_world = TO_BLENDER @ Matrix.Translation(origin)
+    body.matrix_world = TO_BLENDER @ Matrix.Translation(rest.origin)
     bpy.context.scene.collection.objects.link(body)
     motion = body.modifiers.new("motion", "MESH_CACHE")
     motion.cache_format = "PC2"
     motion.filepath = os.path.abspath(cache)
     motion.frame_start = 0
-    return [tuple(Vector(point) + origin) for point in points], frames
+    return [tuple(Vector(point) + rest.origin) for point in rest.points], frames
 
 
 def film_camera(scene, points):
