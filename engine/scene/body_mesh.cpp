@@ -35,14 +35,8 @@ Loaded loaded_box(const BoxDef& def) {
   return loaded;
 }
 
-std::string kept_name(const std::string& what, const Loaded& loaded, const BodyDef& def) {
-  return fmt::format("{} of {} vertices from {}", what, def.vertices, content_name(loaded.files));
-}
-
-// Returns how far elements reach beyond the box of a surface.
-double reach_beyond(const TetMesh& mesh, const TriMesh& boundary) {
-  const Bounds own = bounds_of(mesh.rest), box = bounds_of(boundary.points);
-  return std::max((box.lower - own.lower).maxCoeff(), (own.upper - box.upper).maxCoeff());
+std::string kept_name(const Loaded& loaded, const BodyDef& def) {
+  return fmt::format("mesh of {} vertices from {}", def.vertices, content_name(loaded.files));
 }
 
 Loaded loaded_surface(const BodyDef& def, const Making& making) {
@@ -57,19 +51,11 @@ Loaded loaded_surface(const BodyDef& def, const Making& making) {
   loaded.files = {read.sources[def.piece]};
   if (read.pieces.size() > 1) loaded.whole = read.whole;
   loaded.regions = Shape{}.regions;
-  const Thinness thinness = thinness_of(solid.boundary, def.vertices);
   const SurfaceBody body{solid, read.touching, def.vertices, loaded.source};
-  loaded.mesh = kept_or_made(making.cache, kept_name("held mesh", loaded, def), tet_mesh_from,
-                             [&] { return surface_tetrahedra(body, thinness, making); });
-  const std::string note = thinness_note(thinness, loaded.mesh, def.vertices);
-  if (!note.empty()) loaded.notes.push_back(note);
-  const double beyond = reach_beyond(loaded.mesh, solid.boundary);
-  if (beyond > 0.1 * thinness.spacing) {
-    loaded.notes.push_back(fmt::format(
-        "the elements reach {:.2g} beyond the surface, in the file's units, so that they hold its thin or loose parts: "
-        "it bends as what is that much thicker does, and colliders touch the elements",
-        beyond));
-  }
+  SurfaceMesh made = kept_or_made(making.cache, kept_name(loaded, def), surface_mesh_from,
+                                  [&] { return surface_tetrahedra(body, making); });
+  loaded.mesh = std::move(made.mesh);
+  loaded.notes.insert(loaded.notes.end(), made.notes.begin(), made.notes.end());
   if (def.takes_colors_of_file()) loaded.colors = read.colors[def.piece];
   // What is drawn depends on the colours, the tetrahedra above do not.
   if (loaded.colors) loaded.files.push_back({def.surface, loaded.colors->hash});
@@ -85,7 +71,7 @@ Loaded loaded_shape(const SceneDef& scene, const BodyDef& def, const Making& mak
   loaded.regions = loaded.shape.regions;
   loaded.notes = loaded.shape.notes;
   loaded.files = loaded.shape.files;
-  loaded.mesh = kept_or_made(making.cache, kept_name("mesh", loaded, def), tet_mesh_from,
+  loaded.mesh = kept_or_made(making.cache, kept_name(loaded, def), tet_mesh_from,
                              [&] { return shape_tetrahedra(loaded.shape, def.vertices, loaded.source, making); });
   return loaded;
 }

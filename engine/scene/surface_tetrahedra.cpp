@@ -6,7 +6,9 @@
 #include <optional>
 
 #include "base/error.h"
+#include "geometry/mesh_bytes.h"
 #include "geometry/surface_pieces.h"
+#include "geometry/surface_thickness.h"
 #include "geometry/tetrahedralize.h"
 #include "scene/shape_reader.h"
 
@@ -57,18 +59,22 @@ double unheld_share(const std::vector<char>& held) {
   return double(std::count(held.begin(), held.end(), 0)) / double(held.size());
 }
 
-}  // namespace
+// Tells what of a surface is thinner than an element of a uniform mesh.
+struct Thinness {
+  double spacing = 0;                    // of the uniform lattice with the wanted number of vertices
+  double wanted = 0;                     // vertices that resolve nearly all
+  double thin_share = 0;                 // of the surface
+  std::vector<ThicknessSample> samples;  // the thinnest first
+};
 
 Thinness thinness_of(const TriMesh& boundary, int vertices) {
   const double volume = enclosed_volume(boundary), area = area_of(boundary);
   if (!(volume > 0)) return {};
   Thinness result;
   result.spacing = spacing_for(volume, area, vertices);
-  // The tree for the rays of more triangles takes longer than a reader of the note would wait.
-  constexpr Eigen::Index most_triangles = 200000;
-  if (boundary.triangles.rows() > most_triangles) return result;
   constexpr double per_square = 4;  // samples on the square of a spacing
-  result.samples = sampled_thickness(boundary, std::max(2000, int(per_square * area / std::pow(result.spacing, 2))));
+  const double wanted = per_square * area / std::pow(result.spacing, 2);
+  result.samples = sampled_thickness(boundary, int(std::clamp(wanted, 2000.0, 200000.0)));
   result.wanted = vertices_wanted(result.samples, volume, area);
   const auto thin = std::count_if(result.samples.begin(), result.samples.end(), [&](const ThicknessSample& sample) {
     return is_thin(sample.thickness, result.spacing);
@@ -77,6 +83,8 @@ Thinness thinness_of(const TriMesh& boundary, int vertices) {
   return result;
 }
 
+// Says which share of the surface is thinner than an element, and which has none inside nevertheless. Returns an empty
+// text where neither is worth a word.
 std::string thinness_note(const Thinness& thinness, const TetMesh& mesh, int vertices) {
   const std::vector<char> held = held_samples(thinness.samples, mesh);
   const double unheld = unheld_share(held);
@@ -94,12 +102,13 @@ std::string thinness_note(const Thinness& thinness, const TetMesh& mesh, int ver
                     100 * unheld, place.x(), place.y(), place.z(), count_text(thinness.wanted));
 }
 
-TetMesh shape_tetrahedra(const Shape& shape, int vertices, const std::string& source, const Making& making,
-                         double swell) {
-  return tetrahedralize(shape, vertices, source, listener_of(source, vertices, making), swell);
+// Returns how far elements reach beyond the box of a surface.
+double reach_beyond(const TetMesh& mesh, const TriMesh& boundary) {
+  const Bounds own = bounds_of(mesh.rest), box = bounds_of(boundary.points);
+  return std::max((box.lower - own.lower).maxCoeff(), (own.upper - box.upper).maxCoeff());
 }
 
-TetMesh surface_tetrahedra(const SurfaceBody& body, const Thinness& thinness, const Making& making) {
+TetMesh tetrahedra_of(const SurfaceBody& body, const Thinness& thinness, const Making& making) {
   const TriMesh& boundary = body.solid.boundary;
   const Shape shape = shape_of(boundary);
   const MeshingListener listener = listener_of(body.source, body.vertices, making);
@@ -147,7 +156,7 @@ TetMesh surface_tetrahedra(const SurfaceBody& body, const Thinness& thinness, co
   const bool is_held = holds_all([&] {
     for (const double swell : {0.5, 1.0}) {
       try {
-        return shape_tetrahedra(shape, body.vertices, body.source, making, swell);
+        return tetrahedralize(shape, body.vertices, body.source, listener, swell);
       } catch (const InputError&) {  // the reason is that of the body inside
       }
     }
@@ -159,6 +168,47 @@ TetMesh surface_tetrahedra(const SurfaceBody& body, const Thinness& thinness, co
   throw InputError(body.source, fmt::format("{}; more vertices (now {}{}) may help, or pieces = \"largest\", or "
                                             "thicken = 0.01 [m], which gives sheets a thickness",
                                             reason, body.vertices, wanted));
+}
+
+}  // namespace
+
+TetMesh shape_tetrahedra(const Shape& shape, int vertices, const std::string& source, const Making& making) {
+  return tetrahedralize(shape, vertices, source, listener_of(source, vertices, making));
+}
+
+SurfaceMesh surface_tetrahedra(const SurfaceBody& body, const Making& making) {
+  const Thinness thinness = thinness_of(body.solid.boundary, body.vertices);
+  SurfaceMesh made{tetrahedra_of(body, thinness, making), {}};
+  const std::string note = thinness_note(thinness, made.mesh, body.vertices);
+  if (!note.empty()) made.notes.push_back(note);
+  const double beyond = reach_beyond(made.mesh, body.solid.boundary);
+  if (beyond > 0.1 * thinness.spacing) {
+    made.notes.push_back(fmt::format(
+        "the elements reach {:.2g} beyond the surface, in the file's units, so that they hold its thin or loose parts: "
+        "it bends as what is that much thicker does, and colliders touch the elements",
+        beyond));
+  }
+  return made;
+}
+
+std::string bytes_of(const SurfaceMesh& made) {
+  std::string bytes;
+  for (const std::string& note : made.notes) bytes += note + '\n';
+  return bytes + '\0' + bytes_of(made.mesh);
+}
+
+std::optional<SurfaceMesh> surface_mesh_from(std::string_view bytes) {
+  const std::size_t end = bytes.find('\0');
+  if (end == std::string_view::npos) return std::nullopt;
+  auto mesh = tet_mesh_from(bytes.substr(end + 1));
+  if (!mesh) return std::nullopt;
+  SurfaceMesh made{std::move(*mesh), {}};
+  for (std::size_t at = 0; at < end;) {
+    const std::size_t line = bytes.find('\n', at);
+    made.notes.emplace_back(bytes.substr(at, line - at));
+    at = line + 1;
+  }
+  return made;
 }
 
 }  // namespace supple

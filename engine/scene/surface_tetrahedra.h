@@ -2,29 +2,16 @@
 // thin, or around it where it is too thin or too loose.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "geometry/shape.h"
 #include "geometry/solid_surface.h"
-#include "geometry/surface_thickness.h"
 #include "scene/making.h"
 
 namespace supple {
-
-// Tells what of a surface is thinner than an element of a uniform mesh.
-struct Thinness {
-  double spacing = 0;                    // of the uniform lattice with the wanted number of vertices
-  double wanted = 0;                     // vertices that resolve nearly all
-  double thin_share = 0;                 // of the surface
-  std::vector<ThicknessSample> samples;  // the thinnest first; none where the surface has too many triangles for a look
-};
-
-Thinness thinness_of(const TriMesh& boundary, int vertices);
-
-// Says which share of the surface is thinner than an element, and which has none inside nevertheless. Returns an empty
-// text where neither is worth a word.
-std::string thinness_note(const Thinness& thinness, const TetMesh& mesh, int vertices);
 
 struct SurfaceBody {
   const SolidSurface& solid;
@@ -33,11 +20,19 @@ struct SurfaceBody {
   std::string source;  // its name in messages
 };
 
-// Throws InputError.
-TetMesh surface_tetrahedra(const SurfaceBody& body, const Thinness& thinness, const Making& making);
+struct SurfaceMesh {
+  TetMesh mesh;
+  std::vector<std::string> notes;  // a line each: what is thin, and how far elements reach beyond the surface
+};
 
-// Makes tetrahedra of a shape, and tells of the progress. swell: as for tetrahedralize. Throws InputError.
-TetMesh shape_tetrahedra(const Shape& shape, int vertices, const std::string& source, const Making& making,
-                         double swell = 0);
+// Throws InputError.
+SurfaceMesh surface_tetrahedra(const SurfaceBody& body, const Making& making);
+
+// For kept_or_made.
+std::string bytes_of(const SurfaceMesh& made);
+std::optional<SurfaceMesh> surface_mesh_from(std::string_view bytes);
+
+// Makes tetrahedra of a shape, and tells of the progress. Throws InputError.
+TetMesh shape_tetrahedra(const Shape& shape, int vertices, const std::string& source, const Making& making);
 
 }  // namespace supple

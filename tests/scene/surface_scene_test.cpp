@@ -11,6 +11,7 @@
 #include "scene/model_scene.h"
 #include "scene/obstacle.h"
 #include "scene/scene_reader.h"
+#include "scene/surface_tetrahedra.h"
 #include "support/bodies.h"
 #include "support/scene_text.h"
 #include "support/surfaces.h"
@@ -132,6 +133,18 @@ TEST_F(SurfaceScene, ThinPartsAreHeldBySmallerElementsThatReachALittleBeyondThem
   EXPECT_NEAR(body.lower.x(), skin.lower.x(), 0.03);
   ASSERT_EQ(loaded.notes.size(), 1u) << "less than a twentieth of the surface is thin";
   EXPECT_EQ(loaded.notes[0].find("the elements reach 0.0"), 0u) << loaded.notes[0];
+}
+
+TEST(SurfaceMesh, IsTheSameFromItsBytesWithItsNotes) {
+  const SurfaceMesh made{box_mesh(Vec3(1, 2, 3), {1, 2, 1}), {"first", "second"}};
+  const auto again = surface_mesh_from(bytes_of(made));
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->mesh.rest, made.mesh.rest);
+  EXPECT_EQ(again->mesh.tets, made.mesh.tets);
+  EXPECT_EQ(again->notes, made.notes);
+  EXPECT_TRUE(surface_mesh_from(bytes_of(SurfaceMesh{made.mesh, {}}))->notes.empty());
+  EXPECT_FALSE(surface_mesh_from("neither"));
+  EXPECT_FALSE(surface_mesh_from(bytes_of(made).substr(0, 40)));
 }
 
 TEST_F(SurfaceScene, SheetsGetTheirThicknessInMetres) {
