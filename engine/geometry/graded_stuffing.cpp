@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "geometry/bisected_lattice.h"
+#include "geometry/cut_elements.h"
 #include "geometry/lattice_probe.h"
 #include "geometry/mesh_repair.h"
 
@@ -117,16 +118,7 @@ class GradedStuffing {
     find_cuts();
     snap();
     for (const auto& tet : lattice_.tets) emit(tet);
-    TetMesh mesh;
-    mesh.rest.resize(static_cast<Eigen::Index>(vertices_.size()), 3);
-    for (std::size_t v = 0; v < vertices_.size(); ++v) mesh.rest.row(static_cast<Eigen::Index>(v)) = vertices_[v];
-    mesh.tets.resize(static_cast<Eigen::Index>(tets_.size()), 4);
-    for (std::size_t e = 0; e < tets_.size(); ++e) {
-      for (int k = 0; k < 4; ++k) mesh.tets(static_cast<Eigen::Index>(e), k) = tets_[e][static_cast<std::size_t>(k)];
-      if (tet_volume(mesh, static_cast<Eigen::Index>(e)) < 0)
-        std::swap(mesh.tets(static_cast<Eigen::Index>(e), 2), mesh.tets(static_cast<Eigen::Index>(e), 3));
-    }
-    return mesh;
+    return oriented_mesh(vertices_, tets_);
   }
 
  private:
@@ -322,17 +314,8 @@ class GradedStuffing {
   }
 
   void emit(const Corners& corners) {
-    std::array<int, 4> in{}, out{}, on{};
-    std::size_t ins = 0, outs = 0, ons = 0;
-    for (const int s : corners) {
-      const double value = field_[std::size_t(s)];
-      if (value < 0)
-        in[ins++] = s;
-      else if (value > 0)
-        out[outs++] = s;
-      else
-        on[ons++] = s;
-    }
+    const CornersBySide sides(corners, [&](int s) { return field_[std::size_t(s)]; });
+    const auto& [in, out, on, ins, outs, ons] = sides;
     if (ins == 0) return;
     if (outs == 0) {
       add(vertex(corners[0]), vertex(corners[1]), vertex(corners[2]), vertex(corners[3]));

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "geometry/cut_elements.h"
 #include "geometry/lattice_probe.h"
 #include "geometry/mesh_repair.h"
 
@@ -51,17 +52,7 @@ class IsosurfaceStuffing {
     find_cuts();
     snap();
     emit_all();
-    TetMesh mesh;
-    mesh.rest.resize(static_cast<Eigen::Index>(vertices_.size()), 3);
-    for (std::size_t v = 0; v < vertices_.size(); ++v) mesh.rest.row(static_cast<Eigen::Index>(v)) = vertices_[v];
-    mesh.tets.resize(static_cast<Eigen::Index>(tets_.size()), 4);
-    for (std::size_t e = 0; e < tets_.size(); ++e) {
-      for (int k = 0; k < 4; ++k) mesh.tets(static_cast<Eigen::Index>(e), k) = tets_[e][static_cast<std::size_t>(k)];
-      if (tet_volume(mesh, static_cast<Eigen::Index>(e)) < 0) {
-        std::swap(mesh.tets(static_cast<Eigen::Index>(e), 2), mesh.tets(static_cast<Eigen::Index>(e), 3));
-      }
-    }
-    return mesh;
+    return oriented_mesh(vertices_, tets_);
   }
 
  private:
@@ -336,17 +327,8 @@ class IsosurfaceStuffing {
   }
 
   void emit(const std::array<Site, 4>& corners) {
-    std::array<Site, 4> in, out, on;
-    std::size_t ins = 0, outs = 0, ons = 0;
-    for (const Site& s : corners) {
-      const double value = field_[id(s)];
-      if (value < 0)
-        in[ins++] = s;
-      else if (value > 0)
-        out[outs++] = s;
-      else
-        on[ons++] = s;
-    }
+    const CornersBySide sides(corners, [&](const Site& s) { return field_[id(s)]; });
+    const auto& [in, out, on, ins, outs, ons] = sides;
     if (ins == 0) return;
     if (outs == 0) {
       add(vertex(corners[0]), vertex(corners[1]), vertex(corners[2]), vertex(corners[3]));
