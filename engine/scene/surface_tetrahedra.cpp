@@ -128,12 +128,13 @@ TetMesh tetrahedra_of(const SurfaceBody& body, const Thinness& thinness, const M
       return false;
     }
   };
+  bool loses_parts = false;
   const auto uniform = [&](const Shape& inside) {
     // The first mesh of about the right size tells whether parts are lost: others of that size lose them too.
     MeshingListener judging = listener;
     judging.judge = [&](const TetMesh& mesh) {
-      if (unheld_share(held_samples(thinness.samples, mesh)) > most_unheld)
-        throw InputError(body.source, "loses parts that are thinner than its elements");
+      loses_parts = unheld_share(held_samples(thinness.samples, mesh)) > most_unheld;
+      if (loses_parts) throw InputError(body.source, "loses parts that are thinner than its elements");
     };
     return tetrahedralize(inside, body.vertices, body.source, judging);
   };
@@ -149,8 +150,8 @@ TetMesh tetrahedra_of(const SurfaceBody& body, const Thinness& thinness, const M
     const auto joined = body.touching ? bridged(boundary, 3 * thinness.spacing) : std::nullopt;
     if (joined && holds_all([&] { return uniform(*joined); })) return best;
   }
-  // The last resort is a body of all that is near the surface. It is much thicker than the surface, so that it has to
-  // hold much that would be lost.
+  // The last resort is a body of all that is near the surface. It is much thicker, so that it must hold much that would
+  // be lost otherwise.
   constexpr double bearable = 0.05;
   if (least < bearable) return best;
   const bool is_held = holds_all([&] {
@@ -163,6 +164,8 @@ TetMesh tetrahedra_of(const SurfaceBody& body, const Thinness& thinness, const M
     throw InputError(body.source, reason);
   });
   if (is_held || best.rest.rows() > 0) return best;
+  // A body without its thin parts, of which a note tells, is better than none.
+  if (loses_parts) return tetrahedralize(shape, body.vertices, body.source, listener);
   const std::string wanted =
       thinness.wanted > 0 ? fmt::format("; {} resolve nearly all of it", count_text(thinness.wanted)) : "";
   throw InputError(body.source, fmt::format("{}; more vertices (now {}{}) may help, or pieces = \"largest\", or "
