@@ -47,7 +47,7 @@ class Surface:
                 if word == "#" and rest[0] == "origin":
                     self.origin = Vector([float(number.rstrip(":")) for number in rest[1:4]])
                 elif word == "mtllib":
-                    self.library = os.path.join(os.path.dirname(path), rest[0])
+                    self.library = os.path.join(os.path.dirname(path), " ".join(rest))
                 elif word == "usemtl":
                     material = rest[0]
                 elif word == "v":

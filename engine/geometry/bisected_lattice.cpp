@@ -21,7 +21,7 @@ class LatticeBuilder {
  public:
   LatticeBuilder(const Eigen::Vector3i& cells, int halvings, const LatticeQuestion& is_too_large)
       : cells_(cells), spacing_(2 << halvings), is_too_large_(is_too_large) {
-    corner_.assign(static_cast<std::size_t>((cells + Eigen::Vector3i::Ones()).prod()), -1);
+    corner_.assign((cells + Eigen::Vector3i::Ones()).cast<std::size_t>().prod(), -1);
   }
 
   // Cuts a cell into twelve elements, two on each of its faces, with its centre as their common corner. Both cells at a
@@ -93,7 +93,8 @@ class LatticeBuilder {
   }
 
   int corner(const Eigen::Vector3i& at) {
-    int& name = corner_[static_cast<std::size_t>((at.z() * (cells_.y() + 1) + at.y()) * (cells_.x() + 1) + at.x())];
+    const auto [x, y, z] = std::array{std::size_t(at.x()), std::size_t(at.y()), std::size_t(at.z())};
+    int& name = corner_[(z * std::size_t(cells_.y() + 1) + y) * std::size_t(cells_.x() + 1) + x];
     if (name < 0) name = add_site(at * spacing_);
     return name;
   }
@@ -120,7 +121,9 @@ class LatticeBuilder {
     const double sixfold = std::abs(double(a.dot(b.cross(c))));
     Vec3 middle = Vec3::Zero();
     for (const int s : tet) middle += 0.25 * site(s).cast<double>();
-    return is_too_large_(middle, std::cbrt(2 * sixfold));
+    constexpr double smallest = 2;
+    const double spacing = std::cbrt(2 * sixfold);
+    return spacing > 1.01 * smallest && is_too_large_(middle, spacing);
   }
 
   void add(const Corners& corners) {

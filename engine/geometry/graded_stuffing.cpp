@@ -21,9 +21,13 @@ constexpr int halvings = 1;
 // and the rest coarse; less swells more.
 constexpr double spacings_across = 1.1;
 
-// A thin place matters to an element whose middle is as near to it as this share of its spacing, and half of the
-// thickness; and the shape is swollen fully as near as that share of the spacing there.
-constexpr double refined_around = 0.8, swollen_around = 0.7;
+// A thin place makes an element too large whose middle is nearer to it than this share of the element's spacing and
+// half of the thickness.
+constexpr double refined_around = 0.8;
+
+// The shape is swollen fully where a thin place is nearer than this share of the spacing there and half of the
+// thickness, and less and less up to twice as far.
+constexpr double swollen_around = 0.7;
 
 // A cut point that is nearer to a lattice point than this share of the point's shortest edge pulls it onto the surface.
 // Of 0.25 to 0.45, on eight models, it gives the best angles (8 to 162 degrees).
@@ -52,7 +56,8 @@ class ThinPlaces {
   bool are_too_thin(const Vec3& p, double spacing) const {
     const auto near = cells_.find(cell_of(p));
     if (near == cells_.end()) return false;
-    return std::any_of(near->second.begin(), near->second.end(), [&](const Place& place) {
+    return std::any_of(near->second.begin(), near->second.end(), [&](std::uint32_t number) {
+      const Place& place = places_[number];
       return place.thickness < spacings_across * spacing &&
              (p - place.middle).squaredNorm() < std::pow(refined_around * spacing + 0.5 * place.thickness, 2);
     });
@@ -63,7 +68,8 @@ class ThinPlaces {
     const auto near = cells_.find(cell_of(p));
     if (near == cells_.end()) return 0;
     double most = 0;
-    for (const Place& place : near->second) {
+    for (const std::uint32_t number : near->second) {
+      const Place& place = places_[number];
       const double away = (p - place.middle).norm() / place.reach;
       if (away < 2) most = std::max(most, place.swell * std::min(1.0, 2 - away));
     }
@@ -83,19 +89,22 @@ class ThinPlaces {
   Eigen::Vector3i cell_at(const Vec3& p) const { return ((p - origin_) / cell_).array().floor().cast<int>(); }
   std::uint64_t cell_of(const Vec3& p) const { return key(cell_at(p)); }
 
-  // Puts the place into all cubes of a grid in which it can matter.
+  // Names the place in all cubes of a grid in which it can matter.
   void add(const Place& place) {
+    const auto number = static_cast<std::uint32_t>(places_.size());
+    places_.push_back(place);
     const double reach = std::max(2 * place.reach, refined_around * cell_ + 0.5 * place.thickness);
     const Eigen::Vector3i low = cell_at(place.middle.array() - reach), high = cell_at(place.middle.array() + reach);
     for (int k = low.z(); k <= high.z(); ++k)
       for (int j = low.y(); j <= high.y(); ++j)
-        for (int i = low.x(); i <= high.x(); ++i) cells_[key({i, j, k})].push_back(place);
+        for (int i = low.x(); i <= high.x(); ++i) cells_[key({i, j, k})].push_back(number);
   }
 
   const Vec3 origin_;
   const double cell_;  // edge [m]
   double most_swell_ = 0;
-  std::unordered_map<std::uint64_t, std::vector<Place>> cells_;
+  std::vector<Place> places_;
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;  // numbers of places by cube
 };
 
 class GradedStuffing {
@@ -109,8 +118,10 @@ class GradedStuffing {
         threads_(threads) {
     const Bounds box = shape.bounds();
     origin_ = box.lower - (1.5 * Vec3::Ones() + shift) * spacing;
-    const Eigen::Vector3i cells = (box.extent() / spacing + Vec3::Constant(4)).array().ceil().cast<int>();
-    lattice_ = bisected_lattice(cells, halvings, needed(), too_large());
+    const Vec3 cells = (box.extent() / spacing + Vec3::Constant(4)).array().ceil();
+    constexpr double most_cells = 2e7;  // of a body that fills next to nothing of its box
+    if (cells.prod() > most_cells) return;
+    lattice_ = bisected_lattice(cells.cast<int>(), halvings, needed(), too_large());
   }
 
   TetMesh run() {
@@ -136,7 +147,7 @@ class GradedStuffing {
 
   Vec3 lattice_position(int site) const { return origin_ + unit_ * lattice_.sites[std::size_t(site)].cast<double>(); }
 
-  // Tells that nothing of a ball around a cell is inside.
+  // Tells whether anything of a ball around a cell may be inside.
   LatticeQuestion needed() {
     return [this, near = probe_.memory()](const Vec3& middle, double radius) mutable {
       const double distance = probe_.distance(origin_ + unit_ * middle, near);
@@ -146,8 +157,7 @@ class GradedStuffing {
 
   LatticeQuestion too_large() const {
     return [this](const Vec3& middle, double spacing) {
-      constexpr double smallest = 2;  // in units
-      return spacing > 1.01 * smallest && thin_places_.are_too_thin(origin_ + unit_ * middle, unit_ * spacing);
+      return thin_places_.are_too_thin(origin_ + unit_ * middle, unit_ * spacing);
     };
   }
 

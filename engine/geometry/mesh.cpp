@@ -110,10 +110,14 @@ Triangles boundary_faces(const Tetrahedra& tets) {
 }
 
 std::vector<char> inside_elements(const TetMesh& mesh, const Positions& points) {
-  std::vector<Eigen::Index> by_x(static_cast<std::size_t>(points.rows()));
-  std::iota(by_x.begin(), by_x.end(), 0);
-  std::sort(by_x.begin(), by_x.end(), [&](Eigen::Index a, Eigen::Index b) { return points(a, 0) < points(b, 0); });
-  std::vector<char> inside(by_x.size(), 0);
+  std::vector<char> inside(static_cast<std::size_t>(points.rows()), 0);
+  if (inside.empty()) return inside;
+  int axis = 0;  // along which the points are spread most, so that few lie beside each element
+  bounds_of(points).extent().maxCoeff(&axis);
+  std::vector<Eigen::Index> sorted(inside.size());
+  std::iota(sorted.begin(), sorted.end(), 0);
+  std::sort(sorted.begin(), sorted.end(),
+            [&](Eigen::Index a, Eigen::Index b) { return points(a, axis) < points(b, axis); });
   for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
     Vec3 corners[4];
     for (int k = 0; k < 4; ++k) corners[k] = mesh.rest.row(mesh.tets(e, k)).transpose();
@@ -122,9 +126,9 @@ std::vector<char> inside_elements(const TetMesh& mesh, const Positions& points) 
     Mat3 edges;
     for (int k = 0; k < 3; ++k) edges.col(k) = corners[k + 1] - corners[0];
     const Mat3 to_weights = edges.inverse();
-    auto at = std::lower_bound(by_x.begin(), by_x.end(), low.x(),
-                               [&](Eigen::Index point, double x) { return points(point, 0) < x; });
-    for (; at != by_x.end() && points(*at, 0) <= high.x(); ++at) {
+    auto at = std::lower_bound(sorted.begin(), sorted.end(), low[axis],
+                               [&](Eigen::Index point, double value) { return points(point, axis) < value; });
+    for (; at != sorted.end() && points(*at, axis) <= high[axis]; ++at) {
       const Vec3 p = points.row(*at).transpose();
       if ((p.array() < low.array()).any() || (p.array() > high.array()).any()) continue;
       const Vec3 weights = to_weights * (p - corners[0]);

@@ -15,7 +15,7 @@ struct ThicknessSample {
   Vec3 middle() const { return place + 0.5 * thickness * inward; }
 };
 
-// A lattice of this spacing has no place inside some parts of this thickness.
+// Tells whether parts of this thickness can lie between the points of a lattice of this spacing.
 inline bool is_thin(double thickness, double spacing) { return thickness < 0.7 * spacing; }
 
 // Samples the surface evenly by area; the thinnest place comes first. The surface must be closed and face outward.

@@ -83,6 +83,11 @@ void check_bounds(const Shape& shape, const std::string& source) {
     throw InputError(source, "the shape is unbounded: a half space can cut or intersect a body, but not be one");
 }
 
+void check_inside(double volume, const std::string& source) {
+  if (volume <= 0)
+    throw InputError(source, "the shape has no inside: its parts cut each other away, or are too thin to mesh");
+}
+
 // A search for the spacing that gives the wanted number of vertices.
 struct Search {
   double spacing;  // the first guess [m]
@@ -92,8 +97,8 @@ struct Search {
   double near;  // relative difference from the wanted number that is accepted at last
 };
 
-// Makes meshes until one has about the wanted number. make: of a spacing and a shift, see stuffed_lattice.h. Returns an
-// empty mesh where none is made; the search's spacing is that of the last.
+// Makes meshes until one has about the wanted number, and leaves the spacing of the mesh that it returns in the search.
+// make: of a spacing and a shift, see stuffed_lattice.h. Throws InputError where no mesh comes near enough.
 TetMesh nearest_mesh(Search& search, int vertices, const std::string& source, const MeshingListener& listener,
                      const std::function<TetMesh(double, const Vec3&, const std::function<void(double)>&)>& make) {
   // A lattice much finer than that has more points than are wanted in the volume alone: what keeps most of them out of
@@ -101,7 +106,7 @@ TetMesh nearest_mesh(Search& search, int vertices, const std::string& source, co
   const double finest = 0.4 * search.spacing;
   TetMesh best;
   const auto miss = [&](const TetMesh& mesh) { return std::abs(static_cast<double>(mesh.rest.rows()) / vertices - 1); };
-  double last_spacing = 0, last_count = 0;
+  double last_spacing = 0, last_count = 0, best_spacing = search.spacing;
   int in_pieces = 0;  // attempts
   for (int attempt = 0; attempt < search.attempts; ++attempt) {
     // After six attempts at the same alignment the lattice itself is shifted, because small bodies gain and lose whole
@@ -117,7 +122,10 @@ TetMesh nearest_mesh(Search& search, int vertices, const std::string& source, co
     in_pieces += miss(mesh) < 0.1 && held < 0.75 ? 1 : 0;
     if (in_pieces == 3) refuse_pieces(source, held);
     if (listener.judge && miss(mesh) < 0.1) listener.judge(mesh);
-    if (best.rest.rows() == 0 || miss(mesh) < miss(best)) best = std::move(mesh);
+    if (best.rest.rows() == 0 || miss(mesh) < miss(best)) {
+      best = std::move(mesh);
+      best_spacing = search.spacing;
+    }
     if (miss(best) < 0.01 || (attempt >= 8 && miss(best) < 0.03)) break;
     double power = 3;  // the number is about the inverse of this power of the spacing
     if (search.is_graded && attempt > 0 && count != last_count)
@@ -127,6 +135,7 @@ TetMesh nearest_mesh(Search& search, int vertices, const std::string& source, co
     search.spacing *= std::clamp(std::pow(count / vertices, 1 / power), 0.5, 2.0);
     if (search.spacing < finest) break;
   }
+  search.spacing = best_spacing;
   if (miss(best) <= search.near) return best;
   const auto found = best.rest.rows();
   throw InputError(source,
@@ -153,15 +162,14 @@ TetMesh tetrahedralize(const Shape& shape, int vertices, const std::string& sour
   Search search{shape.bounds().diagonal() / std::cbrt(vertices), 0, 24, false, swell > 0 ? 0.1 : 0.03};
   for (int round = 0; round < (swell > 0 ? 3 : 1); ++round) {
     search.volume = sampled_volume(shape, swell * search.spacing, swell > 0 ? fine : coarse, threads);
-    if (search.volume <= 0)
-      throw InputError(source, "the shape has no inside: its parts cut each other away, or are too thin to mesh");
+    check_inside(search.volume, source);
     search.spacing = std::cbrt(2 * search.volume / vertices);
   }
   TetMesh mesh =
       nearest_mesh(search, vertices, source, listener, [&](double spacing, const Vec3& shift, const auto& told) {
         return stuffed_lattice(shape, spacing, shift, swell * spacing, told, threads);
       });
-  if (swell > 0) search.volume = sampled_volume(shape, swell * search.spacing, swell > 0 ? fine : coarse, threads);
+  if (swell > 0) search.volume = sampled_volume(shape, swell * search.spacing, fine, threads);
   check_whole(mesh, search.volume, source);
   name_regions(shape, mesh, threads);
   return mesh;
@@ -173,6 +181,7 @@ TetMesh graded_tetrahedralize(const Shape& shape, int vertices, const std::strin
   check_bounds(shape, source);
   Threads threads = all_cores();
   Search search{0, sampled_volume(shape, 0, fine, threads), 12, true, 0.1};
+  check_inside(search.volume, source);
   search.spacing = 1.2 * std::cbrt(2 * search.volume / vertices);  // thin parts take some of the vertices
   TetMesh mesh =
       nearest_mesh(search, vertices, source, listener, [&](double spacing, const Vec3& shift, const auto& told) {

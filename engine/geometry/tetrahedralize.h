@@ -27,8 +27,8 @@ struct MeshingListener {
 TetMesh tetrahedralize(const Shape& shape, int vertices, const std::string& source,
                        const MeshingListener& listener = {}, double swell = 0);
 
-// The same, within 10 %, with smaller elements where the shape is thin, and more of it there than there is
-// (graded_stuffing.h, which has the last two before the listener).
+// The same within 10 %, with smaller elements where the shape is thin, and swollen there. thickness, swollen_to: see
+// graded_stuffing.h.
 TetMesh graded_tetrahedralize(const Shape& shape, int vertices, const std::string& source,
                               const std::vector<ThicknessSample>& thickness, double swollen_to,
                               const MeshingListener& listener = {});

@@ -1,9 +1,5 @@
 #include "scene/body_mesh.h"
 
-#include <algorithm>
-#include <cmath>
-#include <optional>
-
 #include "base/error.h"
 #include "base/hash.h"
 #include "geometry/mesh_bytes.h"

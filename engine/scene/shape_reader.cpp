@@ -215,16 +215,6 @@ Shape shape_of(TriMesh closed_surface) {
   return shape;
 }
 
-Shape load_surface(const std::filesystem::path& path, const SurfaceOptions& options) {
-  std::vector<std::string> notes;
-  SolidSurface solid = read_solid_surface(path, options, &notes);
-  const SourceFile source = source_of(path, solid);
-  Shape shape = shape_of(std::move(solid.boundary));
-  shape.notes = std::move(notes);
-  shape.files.push_back(source);
-  return shape;
-}
-
 Shape load_shape(const std::filesystem::path& path, const std::filesystem::path& assets, Config* user) {
   Config config = Config::load(path, assets);
   if (user != nullptr) config.surfaces() = known_surfaces(*user);

@@ -16,9 +16,6 @@ Shape read_single_part(const ConfigTable& table);
 // The solid inside a closed surface.
 Shape shape_of(TriMesh closed_surface);
 
-// Reads a file with a surface (OBJ, PLY, STL, glTF, OFF); the shape is the solid inside. Throws InputError.
-Shape load_surface(const std::filesystem::path& path, const SurfaceOptions& options = {});
-
 // Loads and reads a shape file. Throws InputError with all problems. Closed surfaces that `user` has read already are
 // not read again.
 Shape load_shape(const std::filesystem::path& path, const std::filesystem::path& assets, Config* user = nullptr);

@@ -15,7 +15,7 @@
 namespace supple {
 namespace {
 
-// More of the surface without an element inside is a part that is lost.
+// Where a larger share of the surface has no element inside, a part is lost.
 constexpr double most_unheld = 0.01;
 
 MeshingListener listener_of(const std::string& source, int vertices, const Making& making) {
@@ -46,7 +46,7 @@ std::string count_text(double vertices) {
   return vertices > 500000 ? "more than 500000" : fmt::format("about {:.0f}", std::ceil(vertices / 100) * 100);
 }
 
-// Tells which samples belong to parts without an element inside.
+// Tells which samples have their middle inside an element.
 std::vector<char> held_samples(const std::vector<ThicknessSample>& samples, const TetMesh& mesh) {
   Positions middles(static_cast<Eigen::Index>(samples.size()), 3);
   for (std::size_t s = 0; s < samples.size(); ++s)
@@ -74,6 +74,7 @@ Thinness thinness_of(const TriMesh& boundary, int vertices) {
   result.spacing = spacing_for(volume, area, vertices);
   constexpr double per_square = 4;  // samples on the square of a spacing
   const double wanted = per_square * area / std::pow(result.spacing, 2);
+  if (!std::isfinite(wanted)) return {};
   result.samples = sampled_thickness(boundary, int(std::clamp(wanted, 2000.0, 200000.0)));
   result.wanted = vertices_wanted(result.samples, volume, area);
   const auto thin = std::count_if(result.samples.begin(), result.samples.end(), [&](const ThicknessSample& sample) {
@@ -102,10 +103,13 @@ std::string thinness_note(const Thinness& thinness, const TetMesh& mesh, int ver
                     100 * unheld, place.x(), place.y(), place.z(), count_text(thinness.wanted));
 }
 
-// Returns how far elements reach beyond the box of a surface.
+// Returns how far elements reach beyond a surface.
 double reach_beyond(const TetMesh& mesh, const TriMesh& boundary) {
-  const Bounds own = bounds_of(mesh.rest), box = bounds_of(boundary.points);
-  return std::max((box.lower - own.lower).maxCoeff(), (own.upper - box.upper).maxCoeff());
+  const Shape shape = shape_of(boundary);
+  double most = 0;
+  for (Eigen::Index v = 0; v < mesh.rest.rows(); ++v)
+    most = std::max(most, shape.distance(mesh.rest.row(v).transpose()));
+  return most;
 }
 
 TetMesh tetrahedra_of(const SurfaceBody& body, const Thinness& thinness, const Making& making) {
@@ -114,7 +118,7 @@ TetMesh tetrahedra_of(const SurfaceBody& body, const Thinness& thinness, const M
   const MeshingListener listener = listener_of(body.source, body.vertices, making);
   std::string reason = "is too thin for its elements";
   TetMesh best;
-  double least = 1;  // of the surface without an element inside
+  double least = 1.1;  // share of the surface without an element inside; more than there can be: there is no mesh
   // Makes a mesh, and tells whether it holds all of the surface. Keeps it where it holds more than those before it.
   const auto holds_all = [&](const std::function<TetMesh()>& make) {
     try {
@@ -128,33 +132,35 @@ TetMesh tetrahedra_of(const SurfaceBody& body, const Thinness& thinness, const M
       return false;
     }
   };
-  bool loses_parts = false;
-  const auto uniform = [&](const Shape& inside) {
+  double uniform_loss = 0;  // of the surface, by a uniform lattice inside it
+  const auto uniform = [&](const Shape& inside, double& loss) {
     // The first mesh of about the right size tells whether parts are lost: others of that size lose them too.
     MeshingListener judging = listener;
     judging.judge = [&](const TetMesh& mesh) {
-      loses_parts = unheld_share(held_samples(thinness.samples, mesh)) > most_unheld;
-      if (loses_parts) throw InputError(body.source, "loses parts that are thinner than its elements");
+      loss = unheld_share(held_samples(thinness.samples, mesh));
+      if (loss > most_unheld) throw InputError(body.source, "loses parts that are thinner than its elements");
     };
     return tetrahedralize(inside, body.vertices, body.source, judging);
   };
+  const auto lossy = [&] { return tetrahedralize(shape, body.vertices, body.source, listener); };
   const auto graded = [&](double swollen_to) {
     return graded_tetrahedralize(shape, body.vertices, body.source, thinness.samples, swollen_to, listener);
   };
+  // The last resort is much thicker than the surface, so that it must hold much that would be lost otherwise.
+  constexpr double bearable = 0.05;
   // Where most of the surface is thin, no lattice inside it holds together, and there are no vertices to spare.
   if (thinness.thin_share < 0.5) {
-    if (holds_all([&] { return uniform(shape); })) return best;
+    if (holds_all([&] { return uniform(shape, uniform_loss); })) return best;
     if (!thinness.samples.empty() &&
         (holds_all([&] { return graded(1.25); }) || holds_all([&] { return graded(1.5); })))
       return best;
+    double loss = 0;
     const auto joined = body.touching ? bridged(boundary, 3 * thinness.spacing) : std::nullopt;
-    if (joined && holds_all([&] { return uniform(*joined); })) return best;
+    if (joined && holds_all([&] { return uniform(*joined, loss); })) return best;
+    if (least >= bearable && uniform_loss > most_unheld && uniform_loss < bearable) holds_all(lossy);
+    if (least < bearable) return best;
   }
-  // The last resort is a body of all that is near the surface. It is much thicker, so that it must hold much that would
-  // be lost otherwise.
-  constexpr double bearable = 0.05;
-  if (least < bearable) return best;
-  const bool is_held = holds_all([&] {
+  holds_all([&] {
     for (const double swell : {0.5, 1.0}) {
       try {
         return tetrahedralize(shape, body.vertices, body.source, listener, swell);
@@ -163,9 +169,9 @@ TetMesh tetrahedra_of(const SurfaceBody& body, const Thinness& thinness, const M
     }
     throw InputError(body.source, reason);
   });
-  if (is_held || best.rest.rows() > 0) return best;
   // A body without its thin parts, of which a note tells, is better than none.
-  if (loses_parts) return tetrahedralize(shape, body.vertices, body.source, listener);
+  if (best.rest.rows() == 0 && uniform_loss > most_unheld) holds_all(lossy);
+  if (best.rest.rows() > 0) return best;
   const std::string wanted =
       thinness.wanted > 0 ? fmt::format("; {} resolve nearly all of it", count_text(thinness.wanted)) : "";
   throw InputError(body.source, fmt::format("{}; more vertices (now {}{}) may help, or pieces = \"largest\", or "
@@ -208,6 +214,7 @@ std::optional<SurfaceMesh> surface_mesh_from(std::string_view bytes) {
   SurfaceMesh made{std::move(*mesh), {}};
   for (std::size_t at = 0; at < end;) {
     const std::size_t line = bytes.find('\n', at);
+    if (line > end) return std::nullopt;
     made.notes.emplace_back(bytes.substr(at, line - at));
     at = line + 1;
   }

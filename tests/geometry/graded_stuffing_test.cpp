@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "base/error.h"
 #include "geometry/bisected_lattice.h"
 #include "geometry/surface_thickness.h"
 #include "geometry/tetrahedralize.h"
@@ -145,6 +146,25 @@ TEST(GradedStuffing, IsTheUniformLatticeWhereNothingIsThin) {
   EXPECT_NEAR(double(mesh.rest.rows()), 1500, 150);
   EXPECT_NEAR(quality(mesh).volume / (4.0 / 3 * M_PI), 1, 0.02);
   EXPECT_GT(quality(mesh).smallest_dihedral, 8);
+  // Elements away from the surface are all equal.
+  double smallest = 1e9, largest = 0;
+  for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
+    double furthest = 0;
+    for (int k = 0; k < 4; ++k) furthest = std::max(furthest, mesh.rest.row(mesh.tets(e, k)).norm());
+    if (furthest > 0.7) continue;
+    smallest = std::min(smallest, tet_volume(mesh, e));
+    largest = std::max(largest, tet_volume(mesh, e));
+  }
+  EXPECT_GT(largest, 0);
+  EXPECT_NEAR(smallest / largest, 1, 1e-6);
+}
+
+// None of the samples of the volume meets the bar.
+TEST(GradedStuffing, RefusesWhatIsTooSlenderForItsSamples) {
+  const TriMesh bar = lollipop(0.05);
+  Shape shape;
+  shape.root.parts.emplace_back().primitive = Capsule{Vec3(-1, -1, -1), Vec3(1, 1, 1.1), 1e-4};
+  EXPECT_THROW(graded_tetrahedralize(shape, 500, "hair", sampled_thickness(bar), 1.5), InputError);
 }
 
 }  // namespace

@@ -144,6 +144,7 @@ TEST(SurfaceMesh, IsTheSameFromItsBytesWithItsNotes) {
   EXPECT_EQ(again->notes, made.notes);
   EXPECT_TRUE(surface_mesh_from(bytes_of(SurfaceMesh{made.mesh, {}}))->notes.empty());
   EXPECT_FALSE(surface_mesh_from("neither"));
+  EXPECT_FALSE(surface_mesh_from(std::string("a note without an end") + std::string(25, '\0')));
   EXPECT_FALSE(surface_mesh_from(bytes_of(made).substr(0, 40)));
 }
 
