@@ -103,18 +103,16 @@ std::string thinness_note(const Thinness& thinness, const TetMesh& mesh, int ver
                     100 * unheld, place.x(), place.y(), place.z(), count_text(thinness.wanted));
 }
 
-// Returns how far elements reach beyond a surface.
-double reach_beyond(const TetMesh& mesh, const TriMesh& boundary) {
-  const Shape shape = shape_of(boundary);
+// Returns how far elements reach beyond a surface. solid: inside it.
+double reach_beyond(const TetMesh& mesh, const Shape& solid) {
   double most = 0;
   for (Eigen::Index v = 0; v < mesh.rest.rows(); ++v)
-    most = std::max(most, shape.distance(mesh.rest.row(v).transpose()));
+    most = std::max(most, solid.distance(mesh.rest.row(v).transpose()));
   return most;
 }
 
-TetMesh tetrahedra_of(const SurfaceBody& body, const Thinness& thinness, const Making& making) {
-  const TriMesh& boundary = body.solid.boundary;
-  const Shape shape = shape_of(boundary);
+// shape: inside the body's surface. Throws InputError.
+TetMesh tetrahedra_of(const SurfaceBody& body, const Shape& shape, const Thinness& thinness, const Making& making) {
   const MeshingListener listener = listener_of(body.source, body.vertices, making);
   std::string reason = "is too thin for its elements";
   TetMesh best;
@@ -155,7 +153,7 @@ TetMesh tetrahedra_of(const SurfaceBody& body, const Thinness& thinness, const M
         (holds_all([&] { return graded(1.25); }) || holds_all([&] { return graded(1.5); })))
       return best;
     double loss = 0;
-    const auto joined = body.touching ? bridged(boundary, 3 * thinness.spacing) : std::nullopt;
+    const auto joined = body.touching ? bridged(body.solid.boundary, 3 * thinness.spacing) : std::nullopt;
     if (joined && holds_all([&] { return uniform(*joined, loss); })) return best;
     if (least >= bearable && uniform_loss > most_unheld && uniform_loss < bearable) holds_all(lossy);
     if (least < bearable) return best;
@@ -187,10 +185,11 @@ TetMesh shape_tetrahedra(const Shape& shape, int vertices, const std::string& so
 
 SurfaceMesh surface_tetrahedra(const SurfaceBody& body, const Making& making) {
   const Thinness thinness = thinness_of(body.solid.boundary, body.vertices);
-  SurfaceMesh made{tetrahedra_of(body, thinness, making), {}};
+  const Shape shape = shape_of(body.solid.boundary);
+  SurfaceMesh made{tetrahedra_of(body, shape, thinness, making), {}};
   const std::string note = thinness_note(thinness, made.mesh, body.vertices);
   if (!note.empty()) made.notes.push_back(note);
-  const double beyond = reach_beyond(made.mesh, body.solid.boundary);
+  const double beyond = reach_beyond(made.mesh, shape);
   if (beyond > 0.1 * thinness.spacing) {
     made.notes.push_back(fmt::format(
         "the elements reach {:.2g} beyond the surface, in the file's units, so that they hold its thin or loose parts: "
