@@ -1,7 +1,7 @@
 // A lattice of tetrahedra that are as small as each place asks for. Where neighbours are equally large it is
 // body-centred cubic; between two sizes elements are bisected at their longest edges until no edge has a vertex of
-// another element in its middle. This gives the four shapes of elements of Labelle and Shewchuk 2007, section 3, whose
-// smallest dihedral angle is 45 degrees.
+// another element in its middle. Elements have one of four shapes, with dihedral angles of 45 to 120 degrees, which are
+// those of the graded lattice of Labelle and Shewchuk 2007, "Isosurface stuffing".
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace supple {
 struct BisectedLattice {
   std::vector<Eigen::Vector3i> sites;    // in units of the smallest half spacing
   std::vector<std::array<int, 4>> tets;  // of sites, in no particular orientation
-  std::vector<double> shortest;          // edge at each site, in the same units
+  std::vector<double> shortest;          // length of the shortest edge at each site, in the same units
 };
 
 // Asks about a part of space: its middle, and a length, in the units of sites.

@@ -119,7 +119,7 @@ class GradedStuffing {
     const Bounds box = shape.bounds();
     origin_ = box.lower - (1.5 * Vec3::Ones() + shift) * spacing;
     const Vec3 cells = (box.extent() / spacing + Vec3::Constant(4)).array().ceil();
-    constexpr double most_cells = 2e7;  // of a body that fills next to nothing of its box
+    constexpr double most_cells = 2e7;  // a body with more fills next to nothing of its box
     if (cells.prod() > most_cells) return;
     lattice_ = bisected_lattice(cells.cast<int>(), halvings, needed(), too_large());
   }
@@ -140,7 +140,7 @@ class GradedStuffing {
     int from, to;         // sites, from < to
     double fraction = 0;  // of the way
     int vertex = -1;
-    bool is_cut = true;  // not any more when one of its ends is on the surface
+    bool is_cut = true;  // false once one of its ends was moved onto the surface
     bool operator<(const CutEdge& other) const { return from != other.from ? from < other.from : to < other.to; }
     bool operator==(const CutEdge& other) const { return from == other.from && to == other.to; }
   };
@@ -200,8 +200,8 @@ class GradedStuffing {
                [&](std::size_t c, LatticeProbe::Memory& near) { cuts_[c].fraction = find_cut(cuts_[c], near); });
   }
 
-  // Finds the surface on an edge by false position, where the value of an end that stays twice is halved (Dowell and
-  // Jarratt 1971, the Illinois algorithm).
+  // Finds the surface on an edge by false position, where the value at an end that stays for two steps is halved
+  // (Dowell and Jarratt 1971, the Illinois algorithm).
   double find_cut(const CutEdge& edge, LatticeProbe::Memory& near) const {
     const Vec3 from = lattice_position(edge.from), way = lattice_position(edge.to) - from;
     const double length = way.norm();
@@ -349,7 +349,7 @@ class GradedStuffing {
 
   const LatticeProbe probe_;
   const ThinPlaces thin_places_;
-  const double unit_;  // length of one of the lattice's [m]
+  const double unit_;  // the lattice's unit of length [m]
   const std::function<void(double)>& heard_;
   Threads& threads_;
   Vec3 origin_;

@@ -28,7 +28,7 @@ struct SurfaceMesh {
 // Throws InputError.
 SurfaceMesh surface_tetrahedra(const SurfaceBody& body, const Making& making);
 
-// For kept_or_made.
+// What kept_or_made needs (making.h); nothing where the bytes are not those of a mesh with notes.
 std::string bytes_of(const SurfaceMesh& made);
 std::optional<SurfaceMesh> surface_mesh_from(std::string_view bytes);
 
