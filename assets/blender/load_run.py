@@ -40,14 +40,14 @@ class Surface:
 
     def __init__(self, path):
         self.points, self.colors, self.places, self.faces, self.materials = [], [], [], [], []
-        self.origin, self.library, material = Vector(), None, None
+        self.origin, self.material_file, material = Vector(), None, None
         with open(path) as file:
             for line in file:
                 word, *rest = line.split()
                 if word == "#" and rest[0] == "origin":
                     self.origin = Vector([float(number.rstrip(":")) for number in rest[1:4]])
                 elif word == "mtllib":
-                    self.library = os.path.join(os.path.dirname(path), " ".join(rest))
+                    self.material_file = os.path.join(os.path.dirname(path), " ".join(rest))
                 elif word == "usemtl":
                     material = rest[0]
                 elif word == "v":
@@ -119,7 +119,7 @@ def add_colors(mesh, surface):
         corners = [None] * len(mesh.loops)
         mesh.loops.foreach_get("vertex_index", corners)
         layer.data.foreach_set("uv", [v for vertex in corners for v in surface.places[vertex]])
-    textures = read_materials(surface.library) if surface.library else {}
+    textures = read_materials(surface.material_file) if surface.material_file else {}
     if not textures and not has_colors:
         return
     names = list(textures) or ["colors"]

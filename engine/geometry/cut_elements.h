@@ -1,5 +1,5 @@
-// What isosurface stuffing on both lattices has in common: the sides of the surface on which the corners of an element
-// lie, and the mesh of the elements that are kept.
+// Both kinds of isosurface stuffing (stuffed_lattice.h, graded_stuffing.h) use these two: one sorts the corners of an
+// element by their side of the surface, the other makes a mesh of the elements that are kept.
 #pragma once
 
 #include <array>

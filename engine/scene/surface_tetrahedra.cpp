@@ -15,7 +15,7 @@
 namespace supple {
 namespace {
 
-// Where a larger share of the surface has no element inside, a part is lost.
+// A mesh has lost a part of the body when a larger share of the surface than this has no element inside.
 constexpr double most_unheld = 0.01;
 
 MeshingListener listener_of(const std::string& source, int vertices, const Making& making) {
