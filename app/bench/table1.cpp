@@ -221,9 +221,8 @@ void add_row(ReportTable& table, ReportTable& by_start, const Row& row, const Su
                         number_text(row.newton_ms / row.ours_ms)});
 }
 
-}  // namespace
-
-ReportSection bench_table1(const BenchSetting& setting) {
+// Returns table I without rows.
+ReportTable empty_table() {
   ReportTable table;
   table.name = "table1";
   table.title = "10 iterations of ours against 1 of Newton's method";
@@ -274,18 +273,30 @@ ReportSection bench_table1(const BenchSetting& setting) {
       "the paper; motions and most stiffnesses are not given there, so errors compare in kind, not digit for digit. "
       "'Faster and nearer': whether ten iterations of ours take less time than one of Newton's and end with a smaller "
       "mean error. 'Least' is the least of all runs on all states, 'median' the mean over states of their medians.";
-  ReportTable by_start{"table1-start", "Time at which other starts of directions reach the error of ten iterations"};
-  by_start.columns = {"model",
-                      "mesh",
-                      "directions start from",
-                      "error, the paper's",
-                      "ten iterations, the paper's [ms]",
-                      "error after ten",
-                      "to the paper's error [ms]",
-                      "ratio",
-                      "renewals a frame",
-                      "their time a frame [ms]"};
-  by_start.note = "Means over the states. Times contain the renewals that a film with that start has, on average.";
+  return table;
+}
+
+// Returns the table of other starts of directions without rows.
+ReportTable empty_table_by_start() {
+  ReportTable table{"table1-start", "Time at which other starts of directions reach the error of ten iterations"};
+  table.columns = {"model",
+                   "mesh",
+                   "directions start from",
+                   "error, the paper's",
+                   "ten iterations, the paper's [ms]",
+                   "error after ten",
+                   "to the paper's error [ms]",
+                   "ratio",
+                   "renewals a frame",
+                   "their time a frame [ms]"};
+  table.note = "Means over the states. Times contain the renewals that a film with that start has, on average.";
+  return table;
+}
+
+}  // namespace
+
+ReportSection bench_table1(const BenchSetting& setting) {
+  ReportTable table = empty_table(), by_start = empty_table_by_start();
   for (const Row& row : rows()) {
     add_row(table, by_start, row, row.choice, false, setting);
     if (row.mesh.empty()) continue;
