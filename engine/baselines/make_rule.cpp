@@ -45,7 +45,7 @@ class LbfgsFrom final : public SearchRule {
     rule_.accepted(model, inputs, w);
   }
   void contacts_changed(const StepInputs& inputs) override { rule_.contacts_changed(inputs); }
-  bool looks_beyond() const override { return rule_.looks_beyond(); }
+  bool measures_last_iterate() const override { return rule_.measures_last_iterate(); }
   bool forget() override { return rule_.forget(); }
 
  private:

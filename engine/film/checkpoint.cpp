@@ -70,7 +70,7 @@ std::string checkpoint_bytes(const Checkpoint& checkpoint, const std::string& id
                               {"handles", body.anchors.centers.size()},
                               {"holds", holds},
                               {"time_s", body.time},
-                              {"matrix_vertices", body.matrix.rows()},
+                              {"matrix_vertices", body.matrix_made_at.rows()},
                               {"matrix_age", body.matrix_age},
                               {"hessian_progress", body.hessian_progress},
                               {"constant_progress", body.constant_progress},
@@ -88,7 +88,7 @@ std::string checkpoint_bytes(const Checkpoint& checkpoint, const std::string& id
     append(bytes, body.v);
     append(bytes, body.anchors.points);
     for (const Vec3& center : body.anchors.centers) append(bytes, center.transpose());
-    append(bytes, body.matrix);
+    append(bytes, body.matrix_made_at);
     append(bytes, body.carried.step);
     append(bytes, body.carried.gradient);
   }
@@ -115,7 +115,7 @@ State read_body(const Json& body, Reader& reader) {
   state.anchors.points = reader.rows(body.at("handled"));
   const Positions centers = reader.rows(body.at("handles"));
   for (Eigen::Index h = 0; h < centers.rows(); ++h) state.anchors.centers.push_back(centers.row(h).transpose());
-  state.matrix = reader.rows(body.at("matrix_vertices"));
+  state.matrix_made_at = reader.rows(body.at("matrix_vertices"));
   state.matrix_age = body.at("matrix_age");
   state.hessian_progress = body.at("hessian_progress");
   state.constant_progress = body.at("constant_progress");

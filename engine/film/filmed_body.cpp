@@ -33,7 +33,9 @@ void add_up(BodyRow& row, const StepReport& report) {
   row.contact->cycles += report.contacts.cycles;
 }
 
-bool has_budget(const StepInputs& inputs) { return inputs.solver.budget_ms > 0 || inputs.repeated_cuts.has_value(); }
+bool has_time_budget(const StepInputs& inputs) {
+  return inputs.solver.budget_ms > 0 || inputs.repeated_cuts.has_value();
+}
 
 // Returns no cuts for a step that had no budget in the earlier run.
 BudgetCuts cuts_at(const CutsByFrame& cuts, int frame, int substep) {
@@ -63,19 +65,19 @@ FilmedBody::FilmedBody(const SceneDef& scene, Body& body, Model& model, const Co
       motion_(folder.motion(body.def.name), model.vertices, kept_frames),
       origin_(motion_origin(body.description.mesh.rest)) {
   if (!set.colliders.empty()) forces_.emplace(folder.forces(body.def.name), model.vertices, kept_frames);
-  start_budget({});
+  start_energy_balance({});
   write_obj(folder.surface(body.def.name), body.description.mesh.rest, surface_of(body), origin_);
 }
 
-void FilmedBody::start_budget(const EnergyBalance& balance) {
+void FilmedBody::start_energy_balance(const EnergyBalance& balance) {
   driver_.workspace().prepare(model(), driver_.inputs().solver);
-  budget_.start(model(), scene_.gravity, state(), driver_.workspace(), balance);
+  energy_budget_.start(model(), scene_.gravity, state(), driver_.workspace(), balance);
 }
 
 void FilmedBody::resume(const State& state, const BodyRow& row) {
   driver_.restore(state);
   const BalanceRow before = row.balance.value_or(BalanceRow{});
-  start_budget({before.total, before.put_in, before.from_nothing, before.exchanged});
+  start_energy_balance({before.total, before.put_in, before.from_nothing, before.exchanged});
 }
 
 std::string FilmedBody::advance(int frame, bool measure_error, BodyRow& row) {
@@ -88,7 +90,7 @@ std::string FilmedBody::advance(int frame, bool measure_error, BodyRow& row) {
     const State before = measured ? state() : State{};
     const StepReport& report = make_step();
     add_up(row, report);
-    if (has_budget(driver_.inputs())) row.budget_cuts.push_back(report.cuts.after);
+    if (has_time_budget(driver_.inputs())) row.budget_cuts.push_back(report.cuts.after);
     if (report.failed) return failure_text(frame, row.name, report.failure);
     if (!measured) continue;
     row.error_measured = true;
@@ -104,16 +106,16 @@ const StepReport& FilmedBody::make_step() {
   {
     const Zone zone("energy budget", driver_.body().def.name);
     w.prepare(model(), driver_.inputs().solver);
-    budget_.before_step(model(), driver_.inputs(), state(), w);
+    energy_budget_.before_step(model(), driver_.inputs(), state(), w);
     start_of_step_ = state().x;
   }
   const StepReport& report = driver_.step();
   if (report.failed) return report;
   const Zone zone("energy budget", driver_.body().def.name);
   if (driver_.untangled()) {
-    budget_.after_untangling(model(), driver_.inputs(), state(), w);
+    energy_budget_.after_untangling(model(), driver_.inputs(), state(), w);
   } else {
-    budget_.after_step(model(), driver_.inputs(), start_of_step_, state(), w);
+    energy_budget_.after_step(model(), driver_.inputs(), start_of_step_, state(), w);
   }
   return report;
 }
@@ -142,10 +144,10 @@ void FilmedBody::measure(int frame, BodyRow& row) {
       row.contact->penetration = std::max(row.contact->penetration, depths[c] / model().size);
     }
   }
-  const EnergyBalance& balance = budget_.balance();
+  const EnergyBalance& balance = energy_budget_.balance();
   row.balance = {balance.total, balance.put_in, balance.from_nothing, balance.exchanged};
   if (scene_.output.energy) {
-    const Energies& energy = budget_.energies();
+    const Energies& energy = energy_budget_.energies();
     row.energy = {energy.kinetic, energy.elastic, energy.gravitational, energy.springs, energy.contact};
   }
   if (!body.motions.empty() && !body.def.handles.front().grabs) {

@@ -49,7 +49,7 @@ class FilmedBody {
   void save_fields(int frame);
 
  private:
-  void start_budget(const EnergyBalance& balance);
+  void start_energy_balance(const EnergyBalance& balance);
   const StepReport& make_step();
   void measure(int frame, BodyRow& row);
   std::optional<double> step_error(const State& before);
@@ -60,7 +60,7 @@ class FilmedBody {
   Threads& threads_;
   DrivenBody driver_;
   const CutsByFrame* repeated_ = nullptr;  // null: the clock ends the steps that have a budget
-  EnergyBudget budget_;
+  EnergyBudget energy_budget_;
   Positions start_of_step_;                  // q [m]
   std::unique_ptr<ErrorMeter> error_meter_;  // once an error is asked for
   std::uint64_t metered_model_ = 0;          // id of the model's values that the meter holds for

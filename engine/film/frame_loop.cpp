@@ -82,7 +82,8 @@ void FrameLoop::save_outputs(int frame, const FrameRow& row) {
   if (plan_.fields_every > 0 && frame % plan_.fields_every == 0) {
     for (const auto& body : filmed_) body->save_fields(frame);
   }
-  for (const Obstacle& obstacle : set_.obstacles) poses_->add(frame, obstacle.def.name, obstacle.pose(row.time_s));
+  for (const Obstacle& obstacle : colliders_.obstacles)
+    poses_->add(frame, obstacle.def.name, obstacle.pose(row.time_s));
 }
 
 // Hands the frame to the pictures. Returns false when they have failed.
@@ -98,11 +99,11 @@ bool FrameLoop::show(int frame, FrameRow& row) {
   const Stopwatch watch;
   FramePose pose{frame, row.time_s, {}, {}};
   for (const auto& body : filmed_) pose.motion.push_back(&body->saved_motion());
-  for (const Positions& body : before_motion_) pose.before.push_back(&body);
+  for (const Positions& body : last_motion_) pose.before.push_back(&body);
   for (const auto& body : filmed_) pose.forces.push_back(&body->saved_forces());
   pose.row = &row;
   pose.earlier = graphed_;
-  DrawList list = drawn_->list(scene_, pose, set_, threads_);
+  DrawList list = drawn_->list(scene_, pose, colliders_, threads_);
   keep_motion();
   for (std::size_t b = 0; b < filmed_.size(); ++b)
     row.bodies[b].skin_excess = drawn_->skin_excess_of(b, list, bodies_[b].description.mesh, *pose.motion[b]);
@@ -114,8 +115,8 @@ bool FrameLoop::show(int frame, FrameRow& row) {
 // Keeps the frame's positions for the next one, where the pictures need them.
 void FrameLoop::keep_motion() {
   if (!drawn_->needs_before()) return;
-  before_motion_.clear();
-  for (const auto& body : filmed_) before_motion_.push_back(body->saved_motion());
+  last_motion_.clear();
+  for (const auto& body : filmed_) last_motion_.push_back(body->saved_motion());
 }
 
 FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const RunFolder& folder,
@@ -125,28 +126,28 @@ FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
       bodies_(film.bodies),
       folder_(folder),
       scene_(film.script.scene()),
-      set_(collision_set(scene_)),
+      colliders_(collision_set(scene_)),
       threads_(film.info.threads),
       first_(start.kept_frames()),
       log_(log),
       graphs_(plan.pictures != FilmPictures::none && (scene_.text.error_graph || scene_.text.time_graph)),
       verifier_(start.verifier ? &*start.verifier : nullptr) {
   if (plan.pictures != FilmPictures::none) {
-    drawn_.emplace(script_, bodies_, std::move(film.drawn), set_, caption_font());
+    drawn_.emplace(script_, bodies_, std::move(film.drawn), colliders_, caption_font());
     if (film.info.framed) drawn_->frame_motion(*film.info.framed);
     pictures_.emplace(drawn_->stage(), plan.gl, shaders_folder(),
                       PictureTargets{folder.frames(), !plan.film_only, video, first_});
   }
   if (graphs_) log_.whole_rows().each([&](const FrameRow& row) { graphed_.push_back(graph_point(row)); });
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    filmed_.push_back(
-        std::make_unique<FilmedBody>(scene_, bodies_[b], film.models[b], set_, folder, solvers, threads_, first_));
+    filmed_.push_back(std::make_unique<FilmedBody>(scene_, bodies_[b], film.models[b], colliders_, folder, solvers,
+                                                   threads_, first_));
     if (!start.repeated.empty()) filmed_.back()->repeat(start.repeated[b]);
   }
-  if (!set_.obstacles.empty()) poses_.emplace(folder.colliders(), first_ * int(set_.obstacles.size()));
+  if (!colliders_.obstacles.empty()) poses_.emplace(folder.colliders(), first_ * int(colliders_.obstacles.size()));
   if (start.checkpoint) resume(*start.checkpoint);
   if (drawn_ && drawn_->needs_before()) {
-    for (const auto& body : filmed_) before_motion_.push_back(body->present_motion());
+    for (const auto& body : filmed_) last_motion_.push_back(body->present_motion());
   }
   if (!plan.record.empty()) recorder_.emplace(plan.record, start.record_head, first_);
 }
@@ -163,10 +164,10 @@ void FrameLoop::resume(const Checkpoint& checkpoint) {
     filmed_[b]->resume(checkpoint.bodies[b], log_.last_kept().bodies.at(b));
 }
 
-// In the frame of a change, positions move in even parts from the values in `earlier` to the new ones. That frame is
-// over, so only the new ones count.
+// In the frame of a change, positions are interpolated over the substeps, from the values in `earlier` to the new ones.
+// When that frame is over, only the new ones count.
 void FrameLoop::end_last_changes() {
-  set_.earlier.clear();
+  colliders_.earlier.clear();
   for (Body& body : bodies_) body.earlier.clear();
 }
 
@@ -177,9 +178,9 @@ void FrameLoop::apply(SceneDef scene, const std::vector<TimedChange>& changes) {
     filmed_[b]->driver().apply(cost_for(bodies_[b].def.name, changes));
   }
   CollisionSet now = collision_set(scene_);
-  now.earlier = std::move(set_.obstacles);
-  set_ = std::move(now);
-  if (drawn_) drawn_->follow(changes, set_, bodies_);
+  now.earlier = std::move(colliders_.obstacles);
+  colliders_ = std::move(now);
+  if (drawn_) drawn_->follow(changes, colliders_, bodies_);
 }
 
 Checkpoint FrameLoop::checkpoint_after(int frames) const {
@@ -190,7 +191,7 @@ Checkpoint FrameLoop::checkpoint_after(int frames) const {
 
 void FrameLoop::keep_checkpoint_before(int frame) {
   const Zone zone("checkpoint");
-  before_ = checkpoint_after(frame);
+  checkpoint_before_ = checkpoint_after(frame);
 }
 
 void FrameLoop::add_checkpoint(int frames) {
@@ -212,7 +213,8 @@ void FrameLoop::finish(FilmResult& result) {
   }
   const int frames = log_.frames();
   // After a failure the bodies may be in the middle of a frame, so the checkpoint before that frame is kept.
-  if (result.end == FilmEnd::failed && before_.frames > first_) log_.add(before_);  // one at first_ is there already
+  if (result.end == FilmEnd::failed && checkpoint_before_.frames > first_)
+    log_.add(checkpoint_before_);  // one at first_ is there already
   const bool at_end = result.end != FilmEnd::failed && log_.keeps_checkpoints() && !log_.wants_checkpoint(frames);
   if (at_end) add_checkpoint(frames);
   log_.settle(pictures());

@@ -52,17 +52,17 @@ class FrameLoop {
   const Script& script_;
   std::vector<Body>& bodies_;
   const RunFolder& folder_;
-  SceneDef scene_;    // of the frame in progress
-  CollisionSet set_;  // the colliders of the frame in progress
+  SceneDef scene_;          // of the frame in progress
+  CollisionSet colliders_;  // the colliders of the frame in progress
   Threads threads_;
   int first_;  // the first frame that this run makes; those before it are an earlier run's
   FilmLog& log_;
-  bool graphs_;                           // the pictures have some
-  std::vector<GraphPoint> graphed_;       // of the frames so far, where they do
-  StateVerifier* verifier_;               // of --verify; null without it
-  Checkpoint before_;                     // taken before the frame in progress; empty when the film keeps none
-  std::optional<DrawnFilm> drawn_;        // only with pictures
-  std::vector<Positions> before_motion_;  // of the bodies at the end of the last frame, where the pictures need it [m]
+  bool graphs_;                         // whether the pictures have graphs
+  std::vector<GraphPoint> graphed_;     // of the frames so far, where the pictures have graphs
+  StateVerifier* verifier_;             // compares states for --verify; null without it
+  Checkpoint checkpoint_before_;        // taken before the frame in progress; empty when the film keeps none
+  std::optional<DrawnFilm> drawn_;      // only with pictures
+  std::vector<Positions> last_motion_;  // of the bodies at the end of the last frame, where the pictures need it [m]
   std::vector<std::unique_ptr<FilmedBody>> filmed_;
   std::optional<PoseTableWriter> poses_;  // only with colliders
   std::optional<StateRecorder> recorder_;

@@ -51,10 +51,10 @@ class DrivenBody {
   void prepare_step(int frame, int substep);
   // Sets where the prepared step is to end, as an earlier run's budget of time ended it; nothing: where the clock says.
   void repeat(const std::optional<BudgetCuts>& cuts) { inputs_.repeated_cuts = cuts; }
-  // Makes the prepared step. The state changes only if the step succeeds. With solver.untangle, where elements are
-  // inverted or without volume at its start, the body's material is as rigid as possible in this step: such a body
-  // comes apart from itself where its own material would keep it folded. A, and with it every direction, stays the
-  // same.
+  // Makes the prepared step. The state changes only if the step succeeds. With solver.untangle, and where
+  // elements are inverted or without volume at its start, the step is made with the as-rigid-as-possible material
+  // (materials/as_rigid_as_possible.h), which unfolds elements that the body's own material would keep folded. A, and
+  // with it every direction, stays the same.
   const StepReport& step();
   bool untangled() const { return untangled_; }  // whether the last step was such a one
 

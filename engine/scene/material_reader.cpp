@@ -147,7 +147,7 @@ Material material_of(const ConfigTable& table, std::string_view model, std::inde
 void read_preset(const ConfigTable& owner, SubstanceDef& substance) {
   std::vector<std::string> names;
   for (const MaterialPreset& preset : material_presets) names.emplace_back(preset.name);
-  const std::string name = owner.choice({"material", "", "what the body is made of: a preset"}, names.front(), {names});
+  const std::string name = owner.choice({"material", "", "what the body is made of: a preset"}, std::nullopt, {names});
   for (const MaterialPreset& preset : material_presets) {
     if (name != preset.name) continue;
     substance.material = preset.material();

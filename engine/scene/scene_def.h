@@ -1,5 +1,6 @@
 // Defines a scene as its file describes it: plain nested structs with defaults, in SI units, with angles in degrees
-// where the name says so. The defaults here are those of the file format. Nothing is built yet (assemble.h), and
+// where the name says so. The defaults here are those of the file format, but where a file must
+// give a value, or its default depends on other keys: the readers set those. Nothing is built yet (assemble.h), and
 // nothing here depends on scene files or TOML (scene_reader.h).
 #pragma once
 
@@ -96,8 +97,9 @@ struct ClothDef {
 };
 
 // Describes how the steps of a body are solved: the table [solver]. `settings` are part of every step's inputs and cost
-// nothing to change. The other members are built into the model (fit, precision, integrator, damping: assemble.cpp) or
-// select the rule for directions (method); live.cpp defines what a change of each costs.
+// nothing to change. The other members are built into the model (fit, precision, integrator, damping: assemble.cpp),
+// select the rule for directions (method), or are read by the body's driver (untangle). live.cpp defines what a change
+// of each costs.
 struct SolverDef {
   Method method = Method::quasi_newton;
   SolverSettings settings;

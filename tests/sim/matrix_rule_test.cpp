@@ -43,7 +43,7 @@ TEST(MatrixRule, TheConstantMatrixIsThePapersToTheLastBit) {
       step(model, inputs, state, w);
       step(model, inputs, plain, other, rule);
       EXPECT_EQ(state_hash(model, state), state_hash(model, plain)) << "step " << i;
-      EXPECT_EQ(state.matrix.rows(), 0);
+      EXPECT_EQ(state.matrix_made_at.rows(), 0);
     }
   }
 }
@@ -76,7 +76,7 @@ TEST(MatrixRule, ABodyThatHardlyMovesRenewsNothing) {
   for (int i = 0; i < 10; ++i) {
     step(model, inputs, state, w);
     EXPECT_EQ(w.renewed, i == 0) << "step " << i;
-    EXPECT_EQ(state.matrix, model.rest);
+    EXPECT_EQ(state.matrix_made_at, model.rest);
   }
 }
 
@@ -102,7 +102,7 @@ TEST(MatrixRule, AStateHoldsAllThatTheNextStepDependsOn) {
     const BodyDescription body = bar(material, Held::hard_end, Precision::single_precision, 4);
     const StepInputs inputs = inputs_with(build_model(body), matrix);
     test::expect_states_to_hold_all(body, inputs, [](const State& one, const State& other) {
-      EXPECT_EQ(one.matrix, other.matrix);
+      EXPECT_EQ(one.matrix_made_at, other.matrix_made_at);
       EXPECT_EQ(one.matrix_age, other.matrix_age);
       EXPECT_EQ(one.hessian_progress, other.hessian_progress);
       EXPECT_EQ(one.constant_progress, other.constant_progress);
@@ -137,10 +137,10 @@ TEST_P(ByMatrix, NewValuesOfAModelMakeTheMatrixAnew) {
 TEST_P(ByMatrix, IsForgottenByTheConstantMatrixAndBeginsAnew) {
   const Model model = build_model(bar(NeoHookean{1e4, 4e4}, Held::hard_end, Precision::single_precision, 2));
   State state = test::moving_state(model, inputs_with(model, GetParam()), 3);
-  EXPECT_EQ(state.matrix.rows(), model.vertices);
+  EXPECT_EQ(state.matrix_made_at.rows(), model.vertices);
   Workspace w;
   step(model, inputs_with(model, SystemMatrix::constant), state, w);
-  EXPECT_EQ(state.matrix.rows(), 0);
+  EXPECT_EQ(state.matrix_made_at.rows(), 0);
   step(model, inputs_with(model, GetParam()), state, w);
   EXPECT_TRUE(w.renewed);
 }
@@ -233,7 +233,7 @@ TEST(MatrixRule, TheHessianServesOnlyWhatTouchesNothing) {
     State resumed = states[from];
     for (int i = from; i < 24; ++i) step(scene.model, scene.inputs, resumed, other);
     EXPECT_EQ(state_hash(scene.model, resumed), state_hash(scene.model, state)) << from;
-    EXPECT_EQ(resumed.matrix, state.matrix);
+    EXPECT_EQ(resumed.matrix_made_at, state.matrix_made_at);
     EXPECT_EQ(resumed.matrix_age, state.matrix_age);
   }
 }
@@ -244,7 +244,7 @@ TEST(MatrixRule, SpringsAloneKeepTheConstantMatrix) {
   Workspace w;
   step(model, inputs_with(model, SystemMatrix::hessian), state, w);
   EXPECT_FALSE(w.hessian_serves);
-  EXPECT_EQ(state.matrix.rows(), 0);
+  EXPECT_EQ(state.matrix_made_at.rows(), 0);
 }
 
 }  // namespace

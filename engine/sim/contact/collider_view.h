@@ -1,6 +1,6 @@
-// One collider over one step, seen from its own frame, where it stands still: the ways of points of the world through
-// that frame, and the surfaces that they meet. A collider that turns far in a step bends these ways into arcs; between
-// the two poses of a step it moves evenly. Not here: which vertices are looked at (find_contacts.h).
+// Shows one collider over one step from its own frame of reference, where it stands still: the paths of points of the
+// world through that frame, and the surfaces that they meet. A collider that turns far in a step bends these ways into
+// arcs; between the two poses of a step it moves evenly. Not here: which vertices are looked at (find_contacts.h).
 #pragma once
 
 #include <optional>
@@ -55,8 +55,9 @@ class ColliderView {
   double distance(const Vec3& p, QueryMemory& near) const { return shape_.distance(p, near) - collider_.thickness; }
   // Returns the closest point of that layer's surface.
   SurfacePoint closest(const Vec3& p, QueryMemory& near) const;
-  // Tells whether a search within a bound costs less than one without, and its failure shows that the sign of the
-  // distance is the same all around. A surface with holes has places where the sign changes without triangles.
+  // Tells whether closest_within() may serve to decide that the surface is further away than a bound: it is cheaper
+  // than closest(), and when it finds nothing, the sign of the distance is the same within the bound. Surfaces with
+  // holes do not have this: the sign changes there without a triangle nearby.
   bool knows_bounds() const { return shape_.is_exact(); }
   // Does the same as closest(), but returns nothing where it is certainly further away than `most`, outside or inside.
   std::optional<SurfacePoint> closest_within(const Vec3& p, double most, QueryMemory& near) const;

@@ -1,4 +1,4 @@
-// How deep a point of a body may be in a collider, during a step and where contact presses it. Beyond half the
+// Limits how deep a point of a body may be in a collider, during a step and where contact presses it. Beyond half the
 // thickness of a plate, it would belong to the other side from the next step on, and hang there for ever.
 #pragma once
 

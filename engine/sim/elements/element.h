@@ -1,6 +1,7 @@
 // Defines the closed set of element kinds. A new kind needs a header in elements/ (corners, fields, energy with its
 // derivative), an entry here, its case in dispatch() of element_kernels.cpp, its records and rows of L in
-// element_records.cpp, and its weight in measures.cpp.
+// element_records.cpp, and an answer wherever the kind is asked for: `grep -rn ElementKind engine` lists these places,
+// which are measures, second derivatives, stretches, model values and the methods of engine/baselines/.
 #pragma once
 
 #include "sim/elements/spring.h"

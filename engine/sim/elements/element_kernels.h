@@ -39,8 +39,8 @@ struct ElementKernels {
   void (*stiffness)(const ElementChunk& chunk, const double* x, bool project, double* out);
 
   // Writes a third of the trace of each 3 x 3 block of the projected second derivatives: by lane, the packed lower
-  // triangle over all corners but the first (scalar_numbers of them). The stiffness of a tetrahedron along a principal
-  // axis is not less than `axial` of what a stretch along it alone meets. [N/m]
+  // triangle over all corners but the first (scalar_numbers of them). The stiffness of a tetrahedron along each
+  // principal axis is at least `axial` times the secant stiffness of a stretch along that axis alone. [N/m]
   void (*scalar_stiffness)(const ElementChunk& chunk, const double* x, double axial, double* out);
 
   // Writes for each lane the largest stretch, and the volume over the rest volume, which is negative where an element

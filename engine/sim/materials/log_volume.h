@@ -1,4 +1,4 @@
-// The volume term that Neo-Hookean and Mooney-Rivlin share: c(J) = -linear log J + lambda/2 log^2 J (Liu et al. 2017,
+// Neo-Hookean and Mooney-Rivlin share this volume term: c(J) = -linear log J + lambda/2 log^2 J (Liu et al. 2017,
 // equation 14). Below J = 0.1 the whole of c continues as its second-order Taylor polynomial there: value, slope and
 // curvature are continuous, and with the stress written by the cofactor of F everything stays finite for flat and
 // inverted elements. States above 0.1 are unaffected. What is returned is c(J) + linear (J - 1), which vanishes at rest

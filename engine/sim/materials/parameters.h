@@ -1,9 +1,9 @@
 // Every material has a name, needs, parameters(), density() and axial_stress(s). The last is f = a' + 2 b' + c' of
-// equation 10: the stress along the axis of a sample at F = diag(s, 1, 1), whose sides are held.
+// equation 10: the stress along the axis of a sample at F = diag(s, 1, 1), whose sides are held. Because it declares
+// these itself, scene files, stiffness fits and kernels use a new one without further changes. For tests and pages,
+// docs/adding-a-material.md lists the places that must name it.
 //
-// Every material declares the following about itself, so that scene files, stiffness fits and kernels use a new one
-// without further changes. For tests and pages, docs/adding-a-material.md lists the places that must name it. The
-// optional members of a material, each of which is used where it exists, are:
+// A material may also have these members, each of which is used where it exists:
 //   static M from(const Lame&)          from Young's modulus and Poisson's ratio
 //   const char* problem() const         what is wrong with parameters that are each in range, or null
 //   std::vector<double> seams() const   stretches where the axial stress changes its formula

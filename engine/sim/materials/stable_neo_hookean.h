@@ -1,4 +1,5 @@
-// Stable Neo-Hookean material (Smith, de Goes, Kim 2018, "Stable Neo-Hookean flesh simulation", equation 14):
+// This is the stable Neo-Hookean material (Smith, de Goes, Kim 2018, "Stable Neo-Hookean flesh simulation", equation
+// 14):
 //   Psi = mu/2 (I_C - 3) + lambda/2 (J - alpha)^2 - mu/2 log(I_C + 1),   alpha = 1 + 3 mu / (4 lambda),
 // less its value at rest. The last term keeps elements from collapsing to a point: without it F = 0 is a local minimum.
 // It is defined for every F, so nothing has to be continued.

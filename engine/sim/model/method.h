@@ -19,7 +19,7 @@ enum class StartMatrix {
   identity,             // (t.t / s.t) I of the last L-BFGS pair (equation 13)
   rest_hessian,         // M/h^2 + the Hessian of the rest pose
   warped_rest_hessian,  // the same, turned at each vertex by its rotation (Mueller et al. 2002)
-  frame_hessian,        // the projected Hessian at the first iterate of each step
+  frame_hessian,        // the projected Hessian at the first iterate of each search
   hessian,              // the Hessian at each iterate: Newton's method
   hecht,                // a warped Hessian that is renewed every other step (Hecht et al. 2012)
   contact,              // A with the stiffness of contacts on its diagonal, factored anew when they change

@@ -61,7 +61,7 @@ struct BodyDescription {
 
 // As a System it is A = w M/h^2 + (e theta^2 + beta/h) L + springs of handles.
 struct Model : System {
-  std::uint64_t structure = 0;  // tells models apart that were built from different descriptions; values leave it
+  std::uint64_t structure = 0;  // names the description that the model was built from; new values keep it
   std::string name;
   int vertices = 0;  // n
   int free = 0;      // vertices that the solver moves: 0 .. free-1

@@ -12,8 +12,8 @@ namespace supple {
 
 // Counts contacts and their changes.
 struct ContactCounts {
-  int touching = 0;  // pairs of vertex and collider, at the end
-  int changes = 0;   // pairs that came or went, over all iterations
+  int touching = 0;  // points that touch a collider, counted by collider, at the end
+  int changes = 0;   // of these that came or went, over all iterations
   int cycles = 0;    // iterations that came back to the set of the one before last
 };
 

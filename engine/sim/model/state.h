@@ -31,13 +31,15 @@ struct CarriedPair {
 // snapshot. step() changes x, v, time, and what is said of its matrix and its pair; DrivenBody changes the anchors, and
 // replaces the whole when it restores one.
 struct State {
-  Positions x;         // positions, n x 3, in the model's order [m]
-  Positions v;         // velocities, n x 3 [m/s]
-  double time = 0;     // [s]
-  Anchors anchors;     // may stay empty where only steps are made: they do not read them
-  Positions matrix;    // where the matrix of directions was made (solver/matrix_rule.h), n x 3; empty: none was [m]
+  Positions x;      // positions, n x 3, in the model's order [m]
+  Positions v;      // velocities, n x 3 [m/s]
+  double time = 0;  // [s]
+  Anchors anchors;  // may stay empty where only steps are made: they do not read them
+  Positions
+      matrix_made_at;  // where the matrix of directions was made (solver/matrix_rule.h), n x 3; empty: none was [m]
   int matrix_age = 0;  // steps since
-  // By which factor an evaluation came nearer in the last steps that the Hessian and A served; 0: not known.
+  // The factor by which one evaluation reduced the error (its estimate to the power of one over their number) in the
+  // last step that started directions from the Hessian, and in the last that started them from A; 0: not known.
   double hessian_progress = 0, constant_progress = 0;
   CarriedPair carried;
 };

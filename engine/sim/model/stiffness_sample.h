@@ -11,7 +11,7 @@ namespace supple {
 struct TangentShares {
   double tangent = 0.9;
   double constant = 0.1;
-  double axial = 0.7;  // of what a stretch along one axis meets: S has no less there
+  double axial = 0.7;  // S is along each principal axis at least this share of the secant stiffness there
   bool operator==(const TangentShares&) const = default;
 };
 

@@ -1,5 +1,5 @@
-// A matrix that search directions start from, over the free vertices of a body, with its factor: A = M/h^2 + L of a
-// model (model.h), or one that follows the body (tangent_system.h). It couples vertices, not coordinates: one n x n
+// Holds a matrix that search directions start from, over the free vertices of a body, with its factor: A = M/h^2 + L of
+// a model (model.h), or one that follows the body (tangent_system.h). It couples vertices, not coordinates: one n x n
 // factor serves x, y and z.
 #pragma once
 

@@ -1,7 +1,7 @@
-// A matrix for search directions that follows the body, where A = M/h^2 + L has one stiffness for each material. S
-// takes from the Hessian of g at given positions what is the same for x, y and z: S_ij = tr(H_ij) / 3 over the
-// projected Hessian's blocks (elements/tetrahedron_scalar_stiffness.h). It has A's pattern, so that it is factored and
-// solved like A, and it does not change when the body turns. docs/method.md ("A matrix that follows the body") says
+// Makes a matrix for search directions that follows the body, where A = M/h^2 + L has one stiffness for each material.
+// Its part S takes from the Hessian of g at given positions what is the same for x, y and z: S_ij = tr(H_ij) / 3 over
+// the projected Hessian's blocks (elements/tetrahedron_scalar_stiffness.h). It has A's pattern, so that it is factored
+// and solved like A, and it does not change when the body turns. docs/method.md ("A matrix that follows the body") says
 // what it gains. Not here: when it is renewed (solver/matrix_rule.h).
 #pragma once
 

@@ -1,5 +1,5 @@
-// The energies of a body at a state, for reports, and a budget of them over a film. Outside the step, so not in its
-// time.
+// Computes the energies of a body at a state, for reports, and keeps a balance of them over a film. step() does none of
+// this, so its times do not contain it.
 #pragma once
 
 #include "sim/model/state.h"
@@ -13,7 +13,7 @@ struct Energies {
   double contact = 0;                                  // of overlaps with colliders; not in the total [J]
   double total() const { return kinetic + elastic + gravitational + springs; }
 };
-// Springs and contact are not counted. Evaluates all elements; the workspace must be prepared for the model.
+// Soft handles and contact are not counted. Evaluates all elements; the workspace must be prepared for the model.
 Energies energies(const Model& model, const State& state, const Vec3& gravity, Workspace& workspace);
 
 // Holds what a body has, and what it was given, since its film began [J].

@@ -1,7 +1,7 @@
-// What handles and contacts put into a body, and whether a step has gained energy from nothing. An exact minimiser of
-// backward Euler's objective cannot where the elastic energy is convex between q and x: M (x - q - h v) / h^2 = m g -
-// grad E(x) gives K' - K + E(x) - E(q) - m g . (x - q) <= the work of what is moved from outside. A step that was left
-// far from its minimum can, again and again, without bound.
+// Computes what handles and contacts put into a body, and tells whether a step has gained energy from nothing. An exact
+// minimiser of backward Euler's objective cannot where the elastic energy is convex between q and x: M (x - q - h v) /
+// h^2 = m g - grad E(x) gives K' - K + E(x) - E(q) - m g . (x - q) <= the work of what is moved from outside. A step
+// that was left far from its minimum can, again and again, without bound.
 #pragma once
 
 #include "sim/model/state.h"

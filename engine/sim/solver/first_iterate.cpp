@@ -5,13 +5,9 @@
 #include <utility>
 
 #include "base/error.h"
+#include "sim/contact/usual_depth.h"
 
 namespace supple {
-namespace {
-
-constexpr double deepest_start = 0.004;  // the overlap that a first iterate may have, over the body's size
-
-}  // namespace
 
 void find_contacts_of(const Model& model, const StepInputs& inputs, Workspace& w, Iterate& iterate) {
   if (!has_colliders(inputs)) return;
@@ -23,7 +19,7 @@ void set_trial(const Model& model, Workspace& w, double alpha) {
   w.trial.x.topRows(model.free) = w.current.x.topRows(model.free) + alpha * w.direction;
 }
 
-void carry(const Model& model, const Eigen::Isometry3d& motion, Positions& x) {
+void move_rigidly(const Model& model, const Eigen::Isometry3d& motion, Positions& x) {
   for (int v = 0; v < model.free; ++v) x.row(v) = (motion * Vec3(x.row(v))).transpose();
 }
 
@@ -184,14 +180,14 @@ bool stop_at_impact(const Model& model, const StepInputs& inputs, const State& s
   if (!has_colliders(inputs)) return false;
   const TimedPhase timed(w.clock, Phase::collide, "stop at impact");
   Positions& x = w.current.x;
-  const Impact impact = first_impact(model, inputs, x, deepest_start * model.size, w.contact);
+  const Impact impact = first_impact(model, inputs, x, usual_depth(model.size), w.contact);
   if (impact.collider < 0) return false;
   x.topRows(model.free) = state.x.topRows(model.free) + impact.share * (x - state.x).topRows(model.free);
   if (!inputs.collider_motions[impact.collider].moves()) return true;
   find_contacts_of(model, inputs, w, w.current);
   evaluate(model, w, w.current, Wanted::value);
   w.trial.x.topRows(model.free) = x.topRows(model.free);
-  carry(model, motion_after(inputs, impact.collider, impact.share), w.trial.x);
+  move_rigidly(model, motion_after(inputs, impact.collider, impact.share), w.trial.x);
   find_contacts_of(model, inputs, w, w.trial);
   evaluate(model, w, w.trial, Wanted::value);
   if (w.trial.g < w.current.g) std::swap(w.current, w.trial);

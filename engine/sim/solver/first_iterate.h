@@ -25,7 +25,7 @@ void evaluate_start(const Model& model, const StepInputs& inputs, Workspace& wor
 void find_contacts_of(const Model& model, const StepInputs& inputs, Workspace& workspace, Iterate& iterate);
 
 // Moves the free vertices by a rigid motion.
-void carry(const Model& model, const Eigen::Isometry3d& motion, Positions& x);
+void move_rigidly(const Model& model, const Eigen::Isometry3d& motion, Positions& x);
 
 // Sets workspace.trial.x = x + alpha d for the free vertices; handled ones stay at their targets.
 void set_trial(const Model& model, Workspace& workspace, double alpha);

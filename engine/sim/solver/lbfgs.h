@@ -37,9 +37,10 @@ class InitialInverse {
   // Computes z = A0^-1 r for the free vertices; overwrites r.
   virtual void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r,
                      Positions& z) = 0;
-  // As SearchRule::looks_beyond.
-  virtual bool looks_beyond() const { return false; }
-  // This function is called after the recursion. It may bend workspace.direction and then returns true.
+  // As SearchRule::measures_last_iterate.
+  virtual bool measures_last_iterate() const { return false; }
+  // This is called after the recursion. It may correct workspace.direction for contacts that it would cross, and
+  // returns whether it did.
   virtual bool bend(const Model&, const StepInputs&, Workspace&) { return false; }
 };
 
@@ -83,7 +84,7 @@ class LbfgsRule : public SearchRule {
   void contacts_changed(const StepInputs& inputs) override {
     if (inputs.solver.contact.history == ContactHistory::dropped) history_.clear();
   }
-  bool looks_beyond() const override { return initial_.looks_beyond(); }
+  bool measures_last_iterate() const override { return initial_.measures_last_iterate(); }
   bool forget() override { return history_.forget(); }
 
  private:
@@ -91,15 +92,15 @@ class LbfgsRule : public SearchRule {
   PairHistory history_;
 };
 
-// The matrix in force, Workspace::system, by its factor, with contacts as in contact_direction.h: the paper's
-// A = M/h^2 + L, or one that follows the body (matrix_rule.h).
+// Starts directions from the matrix in force, Workspace::system, by its factor, with contacts as in
+// contact_direction.h: the paper's A = M/h^2 + L, or one that follows the body (matrix_rule.h).
 class SystemInverse final : public InitialInverse {
  public:
   void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override {
     if (workspace.hessian_serves && workspace.current.contacts.empty()) return workspace.hessian.solve(model, r, z);
     apply_inverse(model, inputs.solver.contact, workspace.correction, workspace.solve_scratch, r, z);
   }
-  bool looks_beyond() const override { return true; }
+  bool measures_last_iterate() const override { return true; }
   bool bend(const Model& model, const StepInputs& inputs, Workspace& workspace) override {
     return foresee_contacts(model, inputs.solver.contact, workspace.current.contacts, workspace.current.x,
                             workspace.correction, workspace.direction);

@@ -27,9 +27,10 @@ constexpr double evaluations_a_step = 11;
 
 // Makes the matrix in force: the one that the state says, or a new one. False where there is none: then A serves.
 bool make_tangent(const Model& model, const State& state, Workspace& w) {
-  const bool known = state.matrix.rows() == model.vertices && w.tangent.make(model, state.matrix, shares, w.threads);
-  if (known && w.tangent.departure(model, w.matrix_place) <= most_departure) return true;
-  w.renewed = w.tangent.make(model, w.matrix_place, shares, w.threads);
+  const bool known =
+      state.matrix_made_at.rows() == model.vertices && w.tangent.make(model, state.matrix_made_at, shares, w.threads);
+  if (known && w.tangent.departure(model, w.next_matrix_at) <= most_departure) return true;
+  w.renewed = w.tangent.make(model, w.next_matrix_at, shares, w.threads);
   return w.renewed;
 }
 
@@ -39,14 +40,14 @@ int least_age(const Model& model, const HessianSystem& hessian) {
 
 // Likewise; A serves too where the Hessian is poor and too young to be renewed.
 bool make_hessian(const Model& model, const State& state, Workspace& w) {
-  if (state.matrix.rows() == model.vertices && w.hessian.make(model, state.matrix, w.threads)) {
+  if (state.matrix_made_at.rows() == model.vertices && w.hessian.make(model, state.matrix_made_at, w.threads)) {
     const double others = state.constant_progress > 0 ? state.constant_progress : usual_progress;
     const bool poor =
-        state.hessian_progress > others || w.hessian.departure(model, w.matrix_place) > most_departure_of_hessian;
+        state.hessian_progress > others || w.hessian.departure(model, w.next_matrix_at) > most_departure_of_hessian;
     const bool worn = poor || state.hessian_progress > worn_progress;
     if (!worn || state.matrix_age < least_age(model, w.hessian)) return !poor;
   }
-  w.renewed = w.hessian.make(model, w.matrix_place, w.threads);
+  w.renewed = w.hessian.make(model, w.next_matrix_at, w.threads);
   return w.renewed;
 }
 
@@ -58,9 +59,9 @@ bool has_tetrahedra(const Model& model) {
 }  // namespace
 
 void prepare_matrix(const Model& model, const SolverSettings& solver, const State& state, Workspace& w) {
-  if (state.matrix.rows() != model.vertices) return;
-  if (solver.matrix == SystemMatrix::tangent) w.tangent.make(model, state.matrix, shares, w.threads);
-  if (solver.matrix == SystemMatrix::hessian) w.hessian.make(model, state.matrix, w.threads);
+  if (state.matrix_made_at.rows() != model.vertices) return;
+  if (solver.matrix == SystemMatrix::tangent) w.tangent.make(model, state.matrix_made_at, shares, w.threads);
+  if (solver.matrix == SystemMatrix::hessian) w.hessian.make(model, state.matrix_made_at, w.threads);
 }
 
 void choose_matrix(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
@@ -69,7 +70,7 @@ void choose_matrix(const Model& model, const StepInputs& inputs, const State& st
   // torn say little of where it is heading. Free bars of tests/sim/step_test.cpp flew apart with the tangent.
   if (inputs.solver.matrix != SystemMatrix::tangent || model.integrator != Integrator::backward_euler) return;
   const TimedPhase timed(w.clock, Phase::matrix, "matrix");
-  w.matrix_place = state.x + model.time_step * state.v;
+  w.next_matrix_at = state.x + model.time_step * state.v;
   if (!make_tangent(model, state, w)) return;
   w.system = w.correction.matrix = &w.tangent.system();
   if (has_colliders(inputs)) begin_corrections(model, w.correction);
@@ -80,7 +81,7 @@ void choose_hessian(const Model& model, const StepInputs& inputs, const State& s
   if (inputs.solver.matrix != SystemMatrix::hessian || model.integrator != Integrator::backward_euler) return;
   if (!w.current.contacts.empty() || !has_tetrahedra(model)) return;
   const TimedPhase timed(w.clock, Phase::matrix, "matrix");
-  w.matrix_place = state.x + model.time_step * state.v;
+  w.next_matrix_at = state.x + model.time_step * state.v;
   w.hessian_serves = make_hessian(model, state, w);
   if (w.hessian_serves) w.hessian.turn_to(w.current.x, w.threads);
 }
@@ -107,12 +108,12 @@ void remember_progress(const Workspace& w, State& state) {
 void remember_matrix(const Model& model, const SolverSettings& solver, const Workspace& w, State& state) {
   const bool of_hessian = solver.matrix == SystemMatrix::hessian;
   if (w.renewed) {
-    state.matrix = w.matrix_place;
+    state.matrix_made_at = w.next_matrix_at;
     state.matrix_age = 0;
   } else if (of_hessian) {
     state.matrix_age = std::min(state.matrix_age + 1, longest_age);
   } else if (w.system == static_cast<const System*>(&model)) {
-    state.matrix.resize(0, 3);
+    state.matrix_made_at.resize(0, 3);
     state.matrix_age = 0;
   }
   if (of_hessian) {

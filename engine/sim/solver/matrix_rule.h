@@ -1,7 +1,8 @@
-// When the matrix that directions start from is renewed: where the elements' stiffness has departed from that where the
-// matrix was made by more than a limit; the Hessian, whose renewals are dear, also only now and then. The rule goes by
-// the state alone, never by measured time, and State::matrix and its age hold all that it remembers: a step from a copy
-// of a state has the same bits, whatever was computed in between, and on any number of threads.
+// Decides when the matrix that directions start from is made again: when the elements' stiffness has departed by more
+// than a limit from what it was where the matrix was made. The Hessian, whose renewals are dear, is made again more
+// rarely. The rule goes by the state alone, never by measured time, and State::matrix_made_at and the age hold all that
+// it remembers: a step from a copy of a state has the same bits, whatever was computed in between, and on any number of
+// threads.
 #pragma once
 
 #include "sim/model/inputs.h"
@@ -10,7 +11,7 @@
 
 namespace supple {
 
-// Has the matrix at hand that the state says, where it says one, so that the next step need not make it.
+// Makes the matrix that the state names, if it names one, so that the next step need not make it.
 void prepare_matrix(const Model& model, const SolverSettings& solver, const State& state, Workspace& workspace);
 
 // Sets workspace.system for a step from `state`: A, or a matrix that follows the body. To be called after begin_step().

@@ -12,7 +12,8 @@ class SearchRule {
  public:
   virtual ~SearchRule() = default;
 
-  // This is called once in each step, when workspace.current is the first iterate with its gradient and energies.
+  // This is called at the start of each search, when workspace.current is the first iterate with its gradient and
+  // energies. A step makes a second search when it starts again from where the body was.
   virtual void begin(const Model&, const StepInputs&, Workspace&) {}
 
   // Sets workspace.direction at workspace.current; returns tr(grad^T d).
@@ -25,8 +26,9 @@ class SearchRule {
   // This is called when the contacts of the new iterate are not those of the last.
   virtual void contacts_changed(const StepInputs&) {}
 
-  // Tells whether a direction costs so little that one more is worth what it tells of the last iterate.
-  virtual bool looks_beyond() const { return false; }
+  // Tells whether one more direction is computed after the last iteration, to estimate the error there by Newton's
+  // decrement.
+  virtual bool measures_last_iterate() const { return false; }
 
   // Tells whether the rule reads the gradients of iterates. Where it does not and no line search is made, they are not
   // computed.

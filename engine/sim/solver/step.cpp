@@ -1,3 +1,8 @@
+// Makes a step in this order, which step() at the end of this file shows: the prediction y and the targets of handles
+// (begin_step), the matrix of directions, the pair of the step before, the first iterate, the iterations, the
+// comparison with staying, the estimate of what is left, and the new state. The iterations are one search; a step makes
+// a second search where the first ended above staying. The report's iterations and decrease are sums over both
+// searches; its stop reason, slope and decrement are those of the last one.
 #include "sim/solver/step.h"
 
 #include <algorithm>
@@ -186,11 +191,11 @@ void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
       most += solver.iterations;
       spent = false;
     }
-    if (spent && !rule.looks_beyond()) break;
+    if (spent && !rule.measures_last_iterate()) break;
     const Descent descent = next_direction(model, inputs, w, rule);
     if (!std::isfinite(descent.slope)) return fail(model, w, "solve", descent.slope);
     report.decrement = descent.done ? 0 : -0.5 * descent.slope;
-    if (rule.looks_beyond()) report.remaining_estimate = left_by_decrement(report.decrement);
+    if (rule.measures_last_iterate()) report.remaining_estimate = left_by_decrement(report.decrement);
     if (descent.done || -descent.slope <= enough) {
       report.stop_reason = StopReason::round_off;
       break;
@@ -211,7 +216,7 @@ void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
     }
     accept(model, inputs, w, rule, change, record);
     if (absurd(model, w.current.g, start)) return fail(model, w, "line search", w.current.g);
-    if (rule.looks_beyond()) continue;
+    if (rule.measures_last_iterate()) continue;
     report.remaining_estimate = left_by_decreases(report.objective, first);
     if (is_near_enough(report, solver)) {
       report.stop_reason = StopReason::target_error;
@@ -256,7 +261,8 @@ void set_staying(const Model& model, const StepInputs& inputs, const State& stat
   x.topRows(model.free) = state.x.topRows(model.free);
   if (has_colliders(inputs)) {
     const int collider = most_touched(w.current.contacts, inputs.colliders->size());
-    if (collider >= 0 && inputs.collider_motions[collider].moves()) carry(model, motion_after(inputs, collider, 0), x);
+    if (collider >= 0 && inputs.collider_motions[collider].moves())
+      move_rigidly(model, motion_after(inputs, collider, 0), x);
     return;
   }
   if (!model.free_floating) return;

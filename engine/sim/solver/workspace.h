@@ -37,8 +37,8 @@ struct Workspace {
   TangentSystem tangent;
   HessianSystem hessian;
   bool hessian_serves = false;
-  Positions matrix_place;  // q + h v, where the step in hand makes such a matrix if it does, n x 3 [m]
-  bool renewed = false;    // it did
+  Positions next_matrix_at;  // q + h v, where a matrix is made if this step makes one, n x 3 [m]
+  bool renewed = false;      // it did
 
   // The pairs of L-BFGS are stored in a ring.
   std::vector<Positions> step_pairs, gradient_pairs;  // s [m] and t [N]
