@@ -1,6 +1,6 @@
 // Measures what the choices of docs/contact.md cost and gain in equal time, on the same states: it runs a scene with
 // the defaults, and makes one step with each variant from each chosen state, in turns. It prints markdown.
-// Usage: supple_contact_study ASSETS SCENE BODY EVERY FRAMES [PATH=VALUE...]
+// Usage: supple_contact_study ASSETS SCENE BODY EVERY FRAMES [PATH=VALUE...], where SCENE is a file and BODY a name
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,9 +9,11 @@
 #include <limits>
 #include <memory>
 
+#include "app/bench/subject.h"
 #include "baselines/reference.h"
 #include "output/profile.h"
 #include "scene/assemble.h"
+#include "scene/driven_body.h"
 #include "scene/obstacle.h"
 #include "scene/scene_reader.h"
 #include "sim/model/measures.h"
@@ -213,30 +215,36 @@ void compare(const Start& start, std::vector<Variant>& list, Reference& lowest, 
 int main(int count, char** arguments) {
   if (count < 6) return 2;
   const SceneDef scene = load_scene(arguments[2], arguments[1], {arguments + 6, arguments + count});
-  const std::vector<Body> bodies = assemble(scene);
-  const Body& body =
-      *std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.def.name == arguments[3]; });
-  const Model model = build_model(body.description);
+  std::vector<Body> bodies = assemble(scene);
+  const auto found =
+      std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.def.name == arguments[3]; });
+  if (found == bodies.end()) {
+    fmt::print(stderr, "{} has no body '{}'\n", arguments[2], arguments[3]);
+    return 2;
+  }
+  Model model = build_model(found->description);
   const CollisionSet set = collision_set(scene);
-  Triangles surface = body.def.cloth ? body.cloth.surface.triangles : boundary_faces(body.description.mesh.tets);
+  Triangles surface = found->def.cloth ? found->cloth.surface.triangles : boundary_faces(found->description.mesh.tets);
   for (Eigen::Index i = 0; i < surface.size(); ++i) surface.data()[i] = model.internal_of[surface.data()[i]];
-  StepInputs inputs{scene.gravity, {}, {}, body.def.solver.settings, &set.colliders};
-  std::vector<Variant> list = variants(inputs.solver);
-  State state = start_state(model, body);
   Threads threads(2);
-  Workspace usual, scratch;
-  for (Workspace* w : {&usual, &scratch}) w->threads = &threads;
+  DrivenBody driver(scene, *found, model, set, scenes_own_solver(), &threads);
+  std::vector<Variant> list = variants(found->def.solver.settings);
+  Workspace scratch;
+  scratch.threads = &threads;
   for (Variant& variant : list) variant.workspace->threads = &threads;
   Reference lowest(model);
+  const int every = std::max(1, std::atoi(arguments[4]));
   for (int frame = 0; frame < std::atoi(arguments[5]); ++frame) {
-    const double h = scene.time_step();
-    handle_targets(model, body, (frame + 1) * h, inputs.targets);
-    collider_motions(set, {frame * h, (frame + 1) * h}, inputs.collider_motions);
-    const State before = state;
-    const StepReport& report = step(model, inputs, state, usual);
+    driver.prepare_step(frame, 0);
+    const State before = driver.state();
+    const StepReport& report = driver.make_frame(frame, [](const StepReport&) {});
     if (report.failed) return 1;
-    if (frame % std::atoi(arguments[4]) == 0 && report.contacts.touching > 0)
-      compare({model, inputs, before, surface}, list, lowest, scratch);
+    if (frame % every != 0 || report.contacts.touching == 0) continue;
+    const State after = driver.state();
+    driver.restore(before);
+    driver.prepare_step(frame, 0);
+    compare({model, driver.inputs(), before, surface}, list, lowest, scratch);
+    driver.restore(after);
   }
   fmt::print("{}: {} vertices, {} states in contact\n\n", scene.name, model.vertices, list.front().error.size());
   if (!list.front().error.empty()) print(list);
