@@ -1,4 +1,5 @@
-// How meshes and skins are made that take long: where they are kept from run to run, and who hears of the progress.
+// Holds what making a mesh or a skin needs, which takes long: where it is kept from run to run, and who hears of the
+// progress.
 #pragma once
 
 #include <functional>

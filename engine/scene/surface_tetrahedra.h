@@ -28,7 +28,8 @@ struct SurfaceMesh {
 // Throws InputError.
 SurfaceMesh surface_tetrahedra(const SurfaceBody& body, const Making& making);
 
-// What kept_or_made needs (making.h); nothing where the bytes are not those of a mesh with notes.
+// These two convert a mesh with its notes to bytes and back; kept_or_made (making.h) calls them to keep meshes on the
+// disk. The second returns nothing when the bytes are not those of a mesh with notes.
 std::string bytes_of(const SurfaceMesh& made);
 std::optional<SurfaceMesh> surface_mesh_from(std::string_view bytes);
 
