@@ -60,12 +60,12 @@ Run run_once(Subject& subject, const StepInputs& given, const State& before, con
   run.trials = report->line_search;
   run.decrement = report->decrement;
   run.x = after.x;
-  const std::vector<IterationRecord> history = report->history;
+  const std::vector<IterationRecord> records = report->records;
   Workspace scratch;
   double left = gained(subject.model, inputs, before, run.x, scratch);
-  run.gained.assign(history.size() + 1, left);
-  for (std::size_t k = history.size(); k-- > 0;) {
-    left -= history[k].decrease;
+  run.gained.assign(records.size() + 1, left);
+  for (std::size_t k = records.size(); k-- > 0;) {
+    left -= records[k].decrease;
     run.gained[k] = left;
   }
   return run;
