@@ -3,15 +3,30 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/contact/contact.h"
+#include "sim/solver/first_iterate.h"
 #include "sim/solver/line_search.h"
 
 namespace supple {
 
-// The factor would be 1 if the matrix of d, corrected by L-BFGS, were the Hessian. docs/method.md says how it was
-// found.
-double left_by_decrement(double decrement) {
-  constexpr double share_of_decrement = 2;
-  return share_of_decrement * decrement;
+void Decrements::add(double decrement, double gained) {
+  for (int i = most - 1; i > 0; --i) before_[i] = before_[i - 1];
+  before_[0] = {decrement, std::max(gained, 0.0)};
+  count_ = std::min(count_ + 1, most);
+}
+
+// No direction's matrix is the Hessian, so what is left is an unknown number of decrements. If that number is the same
+// at both ends of some iterations, it cancels: what is left is to what they gained as the last decrement is to the
+// difference of the two. A ratio above `slowest` tells that decrements do not shrink, not what is left.
+double Decrements::left(double decrement) const {
+  constexpr double slowest = 0.85;
+  double gained = 0, logarithms = 0;
+  for (int i = 0; i < count_; ++i) {
+    gained += before_[i].gained;
+    const double ratio = std::min(slowest, decrement / before_[i].decrement);
+    logarithms += std::log(gained * ratio / (1 - ratio));
+  }
+  return count_ == 0 ? decrement : std::max(decrement, std::exp(logarithms / count_));
 }
 
 // Decreases of quasi-Newton iterations shrink unevenly, so the ratio is averaged over the last three. Where there are
@@ -29,17 +44,32 @@ double left_by_decreases(const std::vector<double>& g, std::size_t first) {
 
 double error_of(double left, double gained) { return left > 0 ? left / (std::max(gained, 0.0) + left) : 0; }
 
-bool is_near_enough(const StepReport& report, const SolverSettings& solver) {
-  return solver.target_error > 0 && error_of(report.remaining_estimate, report.decrease) < solver.target_error;
+bool is_near_enough(const StepReport& report, const SolverSettings& solver, double above_start) {
+  const double gained = report.decrease + above_start;
+  return solver.target_error > 0 && error_of(report.remaining_estimate, gained) < solver.target_error;
 }
 
-double error_at_end(const Model& model, const Workspace& w, double gained) {
+namespace {
+
+// Finds how far the contacts' energy alone is above g of the last iterate, if the body had gone to y [J]. An impact
+// ends the first iterate before y, where g is not evaluated; but y lies deep in the collider, and equation 12 counts
+// from there. What elements have there is left out.
+double below_prediction(const Model& model, const StepInputs& inputs, Workspace& w) {
+  if (!has_colliders(inputs) || w.report.failed) return 0;
+  w.trial.x.topRows(model.free) = w.y.topRows(model.free);
+  find_contacts_of(model, inputs, w, w.trial);
+  return contact_energy(w.trial.contacts, w.trial.x) - w.current.g;
+}
+
+}  // namespace
+
+double error_at_end(const Model& model, const StepInputs& inputs, Workspace& w, double gained) {
   const double left = w.report.remaining_estimate;
   if (left <= noise_of(model, w.current.g, extent_of(model, w))) return 0;
   // A contact that is found on the way raises g, which takes nothing from what the searches gained.
   double searched = 0;
   for (const IterationRecord& iteration : w.report.records) searched += std::max(0.0, iteration.decrease);
-  return error_of(left, std::max(gained, searched));
+  return error_of(left, std::max({gained, searched, below_prediction(model, inputs, w)}));
 }
 
 }  // namespace supple

@@ -3,12 +3,30 @@
 // is true.
 #pragma once
 
+#include <array>
+
 #include "sim/solver/workspace.h"
 
 namespace supple {
 
-// Estimates what is left to gain from Newton's decrement |tr(grad^T d)|/2 at the last iterate [J].
-double left_by_decrement(double decrement);
+// Follows the decrements |tr(grad^T d)| of a search's iterates, and estimates from them what is left to gain. All in J.
+class Decrements {
+ public:
+  // Adds an iteration: the decrement where it began, and by how much it lowered g.
+  void add(double decrement, double gained);
+
+  // Estimates what is left at an iterate with this decrement: the geometric mean of what it foretells beside each of
+  // the last four, at least the decrement itself. Before the first iteration, it is the decrement.
+  double left(double decrement) const;
+
+ private:
+  struct Iteration {
+    double decrement, gained;
+  };
+  static constexpr int most = 4;
+  std::array<Iteration, most> before_ = {};  // the newest first
+  int count_ = 0;
+};
 
 // Estimates it from how the decreases since objective[first] shrank, for rules that do not look beyond the last iterate
 // [J].
@@ -17,11 +35,13 @@ double left_by_decreases(const std::vector<double>& objective, std::size_t first
 // Returns the share of what is left in the whole possible gain; both in J.
 double error_of(double left, double gained);
 
-// Tells whether the estimate has reached the target error of the settings.
-bool is_near_enough(const StepReport& report, const SolverSettings& solver);
+// Tells whether the estimate has reached the target error of the settings. above_start: g(y) - g of the first iterate,
+// which equation 12 counts as gained [J].
+bool is_near_enough(const StepReport& report, const SolverSettings& solver, double above_start);
 
 // Estimates the error at the end of a step that has gained so much [J]. A body at rest has next to nothing to gain;
-// what is left is then no error, however much of it that is, where it is lost in the round-off of g.
-double error_at_end(const Model& model, const Workspace& workspace, double gained);
+// what is left is then no error, however much of it that is, where it is lost in the round-off of g. Overwrites the
+// trial iterate.
+double error_at_end(const Model& model, const StepInputs& inputs, Workspace& workspace, double gained);
 
 }  // namespace supple

@@ -182,6 +182,8 @@ void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
   report.stop_reason = StopReason::iterations;
   report.decrement = 0;
   report.iterations = 0;
+  const double above_start = origin != nullptr ? origin->above_start : 0;
+  Decrements decrements;
   for (int most = solver.iterations;;) {
     const bool late = budget != nullptr && budget->is_spent(report.iterations);
     bool spent = late || report.iterations >= most;
@@ -195,13 +197,13 @@ void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
     const Descent descent = next_direction(model, inputs, w, rule);
     if (!std::isfinite(descent.slope)) return fail(model, w, "solve", descent.slope);
     report.decrement = descent.done ? 0 : -0.5 * descent.slope;
-    if (rule.measures_last_iterate()) report.remaining_estimate = left_by_decrement(report.decrement);
+    if (rule.measures_last_iterate()) report.remaining_estimate = decrements.left(2 * report.decrement);
     if (descent.done || -descent.slope <= enough) {
       report.stop_reason = StopReason::round_off;
       break;
     }
     if (spent) break;
-    if (is_near_enough(report, solver)) {
+    if (is_near_enough(report, solver, above_start)) {
       report.stop_reason = StopReason::target_error;
       break;
     }
@@ -215,10 +217,11 @@ void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
       break;
     }
     accept(model, inputs, w, rule, change, record);
+    decrements.add(-descent.slope, record.decrease);
     if (absurd(model, w.current.g, start)) return fail(model, w, "line search", w.current.g);
     if (rule.measures_last_iterate()) continue;
     report.remaining_estimate = left_by_decreases(report.objective, first);
-    if (is_near_enough(report, solver)) {
+    if (is_near_enough(report, solver, above_start)) {
       report.stop_reason = StopReason::target_error;
       break;
     }
@@ -376,7 +379,7 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   zone.next("end step");
   if (!report.failed && inputs.solver.line_search != LineSearch::none)
     descend_from_staying(model, inputs, origin, w, rule);
-  report.error_estimate = error_at_end(model, w, report.decrease + above_start);
+  report.error_estimate = error_at_end(model, inputs, w, report.decrease + above_start);
   const Positions& x = w.current.x;
   if (!report.failed && !x.allFinite()) fail(model, w, "step", std::numeric_limits<double>::quiet_NaN());
   if (!report.failed) {

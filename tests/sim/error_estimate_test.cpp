@@ -1,0 +1,104 @@
+// Estimates of what a step leaves, on sequences of which it is known.
+#include "sim/solver/error_estimate.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "baselines/reference.h"
+#include "support/contact_scene.h"
+
+namespace supple {
+namespace {
+
+// Follows iterations after each of which what is left, `over` times the decrement, is `ratio` of what was left before.
+Decrements even_iterations(int count, double decrement, double over, double ratio) {
+  Decrements decrements;
+  for (int k = 0; k < count; ++k, decrement *= ratio) decrements.add(decrement, over * decrement * (1 - ratio));
+  return decrements;
+}
+
+TEST(ErrorEstimate, IsExactWhereIterationsGainEvenly) {
+  for (const double ratio : {1e-6, 0.1, 0.5, 0.84}) {
+    for (const double over : {1.0, 3.0, 40.0}) {
+      for (const int count : {1, 2, 4, 9}) {
+        const double decrement = 5 * std::pow(ratio, count);
+        EXPECT_NEAR(even_iterations(count, 5, over, ratio).left(decrement) / (over * decrement), 1, 1e-9)
+            << ratio << ", " << over << ", " << count;
+      }
+    }
+  }
+}
+
+TEST(ErrorEstimate, IsTheDecrementBeforeTheFirstIterationAndNeverLess) {
+  EXPECT_EQ(Decrements().left(7), 7);
+  EXPECT_EQ(even_iterations(5, 1e-3, 0.1, 0.5).left(7), 7);
+  EXPECT_EQ(even_iterations(5, 1, 0, 0.5).left(0.03), 0.03) << "nothing was gained";
+  EXPECT_EQ(even_iterations(5, 1, 3, 0.5).left(0), 0) << "the direction was too short to matter";
+}
+
+TEST(ErrorEstimate, ForgetsWhatIsFourIterationsOld) {
+  Decrements decrements = even_iterations(20, 1e6, 1e3, 0.8);
+  double decrement = 5;
+  for (int k = 0; k < 4; ++k, decrement *= 0.25) decrements.add(decrement, 2 * decrement * 0.75);
+  EXPECT_NEAR(decrements.left(decrement) / (2 * decrement), 1, 1e-9);
+}
+
+TEST(ErrorEstimate, StaysBoundedWhereDecrementsGrow) {
+  Decrements decrements;
+  for (const double decrement : {1.0, 2.0, 4.0}) decrements.add(decrement, 1);
+  EXPECT_LE(decrements.left(8), 17) << "17/3 times what was gained since";
+  EXPECT_GE(decrements.left(8), 17 / 3.0);
+}
+
+// Most of what such a step gains, it gains before its iterations, when the handle's motion is spread into the body.
+TEST(ErrorEstimate, EndsAStepAsSoonAsItIsBelowTheTarget) {
+  const Model model = build_model(test::bar(NeoHookean{2e4, 8e4}, test::Held::hard_end));
+  StepInputs inputs = test::still_inputs(model);
+  inputs.targets.col(0).array() += 0.02;
+  inputs.solver.rounds = 1;
+  const auto stepped = [&](double target, int iterations) {
+    inputs.solver.target_error = target;
+    inputs.solver.iterations = iterations;
+    State state = rest_state(model);
+    Workspace w;
+    return step(model, inputs, state, w);
+  };
+  for (const double target : {1e-3, 1e-5, 1e-7}) {
+    const StepReport report = stepped(target, 100);
+    EXPECT_EQ(report.stop_reason, StopReason::target_error);
+    EXPECT_LT(report.error_estimate, target);
+    ASSERT_GT(report.iterations, 0);
+    EXPECT_GE(stepped(0, report.iterations - 1).error_estimate, target) << target;
+  }
+}
+
+// The step of a body that lands or lies ends far above where it would have gone freely, deep in the ground. Equation 12
+// counts from there.
+TEST(ErrorEstimate, CountsFromThePredictionInContactToo) {
+  test::ContactScene scene(test::cube(3), {{"ground", test::shape_of(HalfSpace{Vec3::UnitY(), 0})}}, Vec3(0, 0.13, 0));
+  scene.state.v.rowwise() = Eigen::RowVector3d(0.2, -1, 0.1);
+  scene.inputs.solver.iterations = 4;
+  Reference reference(scene.model);
+  Workspace scratch;
+  int count = 0;
+  double sum = 0;
+  for (int frame = 0; frame < 20; ++frame) {
+    const State before = scene.state;
+    const StepReport& report = scene.step();
+    ASSERT_FALSE(report.failed);
+    if (report.contacts.touching == 0) continue;
+    const auto error = reference.step_error(scene.model, scene.inputs, before, scene.state, scratch);
+    if (!error || *error < 1e-12 || report.error_estimate <= 0) continue;
+    const double ratio = std::log10(report.error_estimate / *error);
+    EXPECT_LT(ratio, 1.5) << "frame " << frame << ", error " << *error;
+    sum += ratio;
+    ++count;
+  }
+  ASSERT_GT(count, 4);
+  EXPECT_LT(std::abs(sum / count), 0.7);
+}
+
+}  // namespace
+}  // namespace supple
