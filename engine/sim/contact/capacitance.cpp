@@ -61,33 +61,36 @@ void Capacitance::begin_step(const System& system) {
   if (entries_.stored_numbers() > system.factor.stored_numbers()) entries_.clear();
 }
 
-bool Capacitance::set(const System& system, const std::vector<StiffDirection>& wanted) {
+bool Capacitance::set(const System& system, const std::vector<StiffDirection>& wanted, Threads* threads) {
   if (alike(directions_, wanted)) return true;
   clear();
-  return append(system, wanted);
+  return append(system, wanted, threads);
 }
 
 // A list that has grown at its end keeps its factor; where lists were merged, all are factored again.
-bool Capacitance::append(const System& system, const std::vector<StiffDirection>& more) {
+bool Capacitance::append(const System& system, const std::vector<StiffDirection>& more, Threads* threads) {
   const std::size_t lists_before = lists_.size();
   std::vector<Eigen::Index> sizes;
   for (const CoupledDirections& list : lists_) sizes.push_back(static_cast<Eigen::Index>(list.members.size()));
   bool merged = false;
-  std::vector<std::int32_t> touched;
   for (const StiffDirection& direction : more) {
-    for (int k = 0; k < direction.point.free; ++k) touched.push_back(direction.point.vertex[k]);
     const std::size_t count = lists_.size();
     couple(direction, static_cast<Eigen::Index>(directions_.size()), lists_);
     merged |= lists_.size() < count;
     directions_.push_back(direction);
   }
+  std::vector<std::int32_t> touched;
+  for (const StiffDirection& direction : directions_) {
+    const auto first = direction.point.vertex.begin();
+    touched.insert(touched.end(), first, first + direction.point.free);
+  }
   if (entries_of_ != system.id) entries_.clear();
   entries_of_ = system.id;
-  entries_.learn(system.factor, touched);
+  entries_.learn(system.factor, touched, threads);
   factors_.resize(std::max(factors_.size(), lists_.size()));
   for (std::size_t i = 0; i < lists_.size(); ++i) {
     factors_[i].factored = merged || i >= lists_before ? 0 : sizes[i];
-    if (extend(system, lists_[i], factors_[i])) continue;
+    if (extend(lists_[i], factors_[i])) continue;
     clear();
     return false;
   }
@@ -95,31 +98,30 @@ bool Capacitance::append(const System& system, const std::vector<StiffDirection>
 }
 
 // Returns the entry of A^-1 between two points: the mean of those among their vertices, by both points' weights.
-float Capacitance::entry(const System& system, const ContactPoint& a, const ContactPoint& b) {
-  if (a.is_vertex() && b.is_vertex()) return entries_.entry(system.factor, a.vertex[0], b.vertex[0]);
+float Capacitance::entry(const ContactPoint& a, const ContactPoint& b) const {
+  if (a.is_vertex() && b.is_vertex()) return entries_.entry(a.vertex[0], b.vertex[0]);
   double sum = 0;
   for (int i = 0; i < a.free; ++i) {
-    for (int j = 0; j < b.free; ++j)
-      sum += a.weight[i] * b.weight[j] * entries_.entry(system.factor, a.vertex[i], b.vertex[j]);
+    for (int j = 0; j < b.free; ++j) sum += a.weight[i] * b.weight[j] * entries_.entry(a.vertex[i], b.vertex[j]);
   }
   return static_cast<float>(sum);
 }
 
 // Consecutive directions of one point share an entry.
-void Capacitance::fill_row(const System& system, const CoupledDirections& list, Eigen::Index row, float* values) {
+void Capacitance::fill_row(const CoupledDirections& list, Eigen::Index row, float* values) const {
   const StiffDirection& own = directions_[list.members[row]];
   const ContactPoint* other = nullptr;
   float between = 0;
   for (Eigen::Index j = 0; j <= row; ++j) {
     const StiffDirection& s = directions_[list.members[j]];
-    if (other == nullptr || !(s.point == *other)) between = entry(system, own.point, s.point);
+    if (other == nullptr || !(s.point == *other)) between = entry(own.point, s.point);
     other = &s.point;
     values[j] = static_cast<float>(own.axis.dot(s.axis)) * between;
   }
   values[row] += static_cast<float>(1 / own.stiffness);
 }
 
-bool Capacitance::extend(const System& system, const CoupledDirections& list, Factor& factor) {
+bool Capacitance::extend(const CoupledDirections& list, Factor& factor) {
   const auto n = static_cast<Eigen::Index>(list.members.size()), first = factor.factored, more = n - first;
   if (more == 0) return true;
   RowMatrix& lower = factor.lower;
@@ -128,7 +130,7 @@ bool Capacitance::extend(const System& system, const CoupledDirections& list, Fa
     larger.topLeftCorner(first, first) = lower.topLeftCorner(first, first);
     lower.swap(larger);
   }
-  for (Eigen::Index i = first; i < n; ++i) fill_row(system, list, i, lower.row(i).data());
+  for (Eigen::Index i = first; i < n; ++i) fill_row(list, i, lower.row(i).data());
   auto below = lower.block(first, 0, more, first);
   auto corner = lower.block(first, first, more, more);
   if (first > 0) {

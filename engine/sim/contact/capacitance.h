@@ -47,9 +47,10 @@ class Capacitance {
   void begin_step(const System& system);
 
   // Builds the system of these directions; does nothing when the present system is nearly the same, because a
-  // correction need not be exact. Returns false when the system is not positive definite.
-  bool set(const System& system, const std::vector<StiffDirection>& wanted);
-  bool append(const System& system, const std::vector<StiffDirection>& more);
+  // correction need not be exact. Returns false when the system is not positive definite. threads: null for the calling
+  // one alone.
+  bool set(const System& system, const std::vector<StiffDirection>& wanted, Threads* threads);
+  bool append(const System& system, const std::vector<StiffDirection>& more, Threads* threads);
 
   // Solves in place; the numbers are ordered by direction.
   void solve(Eigen::VectorXf& answer) const;
@@ -63,9 +64,9 @@ class Capacitance {
     RowMatrix lower;            // Cholesky factor, in its top left corner
     Eigen::Index factored = 0;  // members that it holds already
   };
-  bool extend(const System& system, const CoupledDirections& list, Factor& factor);
-  void fill_row(const System& system, const CoupledDirections& list, Eigen::Index row, float* values);
-  float entry(const System& system, const ContactPoint& a, const ContactPoint& b);
+  bool extend(const CoupledDirections& list, Factor& factor);
+  void fill_row(const CoupledDirections& list, Eigen::Index row, float* values) const;
+  float entry(const ContactPoint& a, const ContactPoint& b) const;
 
   std::vector<StiffDirection> directions_;
   std::vector<CoupledDirections> lists_;

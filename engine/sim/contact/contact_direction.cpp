@@ -172,7 +172,7 @@ void apply_inverse(const Model& model, const ContactSettings& settings, ContactC
   }
   if (settings.direction == ContactDirection::diagonal) return apply_diagonal(model, c, scratch, r, z);
   split(c, affordable(model, c.wanted));
-  if (!c.system.set(system_of(model, c), c.together)) c.rest = c.wanted;
+  if (!c.system.set(system_of(model, c), c.together, c.threads)) c.rest = c.wanted;
   c.part = part_of(system_of(model, c), c.system.directions());
   for (const StiffDirection& s : c.rest) scale_rest(system_of(model, c), s, r);
   if (c.system.directions().empty()) {
@@ -195,7 +195,7 @@ double gap_after(const Contact& contact, const Positions& x, const Positions& di
 void bend(const Model& model, const std::vector<StiffDirection>& ahead, const std::vector<float>& gaps,
           ContactCorrection& c, Positions& direction) {
   const auto before = static_cast<Eigen::Index>(c.system.directions().size());
-  if (!c.system.append(system_of(model, c), ahead)) return;
+  if (!c.system.append(system_of(model, c), ahead, c.threads)) return;
   c.answer = Eigen::VectorXf::Zero(static_cast<Eigen::Index>(c.system.directions().size()));
   std::copy(gaps.begin(), gaps.end(), c.answer.data() + before);
   c.system.solve(c.answer);

@@ -24,6 +24,7 @@ namespace supple {
 // Holds the scratch memory of the corrections; it is empty until a contact occurs.
 struct ContactCorrection {
   const System* matrix = nullptr;              // A here: the matrix in force, of the step; null: the model's own
+  Threads* threads = nullptr;                  // null: the calling one alone
   std::vector<StiffDirection> wanted;          // those of the contacts in force: normals, then tangents
   std::size_t normals = 0;                     // how many of these are normals
   std::vector<StiffDirection> together, rest;  // how they are treated

@@ -111,8 +111,18 @@ void CholeskyFactor::analyze(const Eigen::SparseMatrix<double>& matrix) {
       first_row_.push_back(static_cast<std::int64_t>(rows_.size()));
     }
     first_panel_.push_back(static_cast<std::int32_t>(width_.size()));
+    node_of_.insert(node_of_.end(), parts, static_cast<std::int32_t>(first_panel_.size()) - 2);
   }
   first_value_.push_back(value_count);
+}
+
+// The panels of a supernode follow each other on a path, and those of a later one are closer to the root.
+std::int32_t CholeskyFactor::meeting_of(std::int32_t a, std::int32_t b) const {
+  while (a >= 0 && b >= 0 && node_of_[a] != node_of_[b]) {
+    std::int32_t& earlier = a < b ? a : b;
+    earlier = parent_of(first_panel_[node_of_[earlier] + 1] - 1);
+  }
+  return a >= 0 && b >= 0 ? std::max(a, b) : -1;
 }
 
 void CholeskyFactor::factorize(const Eigen::SparseMatrix<double>& matrix, Precision precision) {

@@ -79,6 +79,8 @@ class CholeskyFactor {
   std::int32_t parent_of(int panel) const {
     return first_row_[panel] < first_row_[panel + 1] ? panel_of_[rows_[first_row_[panel]]] : -1;
   }
+  // Returns the first panel that the paths of two panels to the root have in common; -1: none.
+  std::int32_t meeting_of(std::int32_t a, std::int32_t b) const;
 
  private:
   bool has_pattern_of(const Eigen::SparseMatrix<double>& matrix) const;
@@ -93,6 +95,7 @@ class CholeskyFactor {
   std::vector<std::int32_t> first_panel_;  // by supernode; one more entry than supernodes
   std::vector<std::int32_t> first_column_, width_, rows_;
   std::vector<std::int32_t> panel_of_;  // by unknown
+  std::vector<std::int32_t> node_of_;   // by panel: its supernode
   std::vector<std::int64_t> first_row_, first_value_;
   AlignedVector<float> single_;
   AlignedVector<double> double_;

@@ -7,6 +7,11 @@
 #include "sim/linear/parted_solve.h"
 
 namespace supple {
+namespace {
+
+constexpr std::size_t line = 64 / sizeof(float);  // numbers of a cache line
+
+}  // namespace
 
 void InverseEntries::prepare(const CholeskyFactor& factor) {
   if (!to_root_.empty()) return;
@@ -19,69 +24,117 @@ void InverseEntries::prepare(const CholeskyFactor& factor) {
   }
 }
 
-void InverseEntries::learn(const CholeskyFactor& factor, const std::vector<std::int32_t>& unknowns) {
+void InverseEntries::learn(const CholeskyFactor& factor, const std::vector<std::int32_t>& unknowns, Threads* threads) {
   prepare(factor);
-  std::vector<std::int32_t> fresh;
+  fresh_.clear();
   for (const std::int32_t unknown : unknowns) {
-    if (slot_of_[unknown] < 0) fresh.push_back(unknown);
+    if (slot_of_[unknown] < 0) fresh_.push_back(unknown);
   }
-  std::sort(fresh.begin(), fresh.end());
-  fresh.erase(std::unique(fresh.begin(), fresh.end()), fresh.end());
-  for (std::size_t at = 0; at < fresh.size(); at += 4) {
-    const int count = static_cast<int>(std::min<std::size_t>(4, fresh.size() - at));
-    factor.precision() == Precision::single_precision ? learn_four<float>(factor, &fresh[at], count)
-                                                      : learn_four<double>(factor, &fresh[at], count);
+  std::sort(fresh_.begin(), fresh_.end());
+  fresh_.erase(std::unique(fresh_.begin(), fresh_.end()), fresh_.end());
+  learn_columns(factor, threads);
+  asked_.clear();
+  for (const std::int32_t unknown : unknowns) asked_.push_back(slot_of_[unknown]);
+  std::sort(asked_.begin(), asked_.end());
+  asked_.erase(std::unique(asked_.begin(), asked_.end()), asked_.end());
+  if (std::includes(slots_.begin(), slots_.end(), asked_.begin(), asked_.end())) return;
+  slots_.swap(asked_);
+  learn_products(factor, threads);
+}
+
+void InverseEntries::learn_columns(const CholeskyFactor& factor, Threads* threads) {
+  if (fresh_.empty()) return;
+  const std::size_t before = columns_.size();
+  columns_.resize(before + fresh_.size());
+  for (std::size_t k = 0; k < fresh_.size(); ++k) {
+    slot_of_[fresh_[k]] = static_cast<std::int32_t>(before + k);
+    columns_[before + k].panel = factor.panel_of(fresh_[k]);
+    stored_ += columns_[before + k].size = to_root_[columns_[before + k].panel];
   }
-  products_.resize(columns_.size() * (columns_.size() + 1) / 2, std::numeric_limits<float>::quiet_NaN());
+  products_.resize(first_product(static_cast<std::int32_t>(columns_.size())), std::numeric_limits<float>::quiet_NaN());
+  const bool single = factor.precision() == Precision::single_precision;
+  const int batches = static_cast<int>((fresh_.size() + columns_together - 1) / columns_together);
+  const int at_once = std::min(batches, threads != nullptr ? threads->count() : 1);
+  rooms_.resize(at_once);
+  for (AlignedVector<double>& room : rooms_)
+    room.resize(columns_together * std::size_t(factor.size()) / (single ? 2 : 1));
+  for (int batch = 0; batch < batches; batch += at_once) {
+    const auto learn_batch = [&](int k) {
+      const int first = (batch + k) * columns_together;
+      const int count = std::min(columns_together, static_cast<int>(fresh_.size()) - first);
+      single ? learn_together<float>(factor, first, count, rooms_[k].data())
+             : learn_together<double>(factor, first, count, rooms_[k].data());
+    };
+    const int now = std::min(at_once, batches - batch);
+    now > 1 ? threads->run(now, learn_batch) : learn_batch(0);
+  }
 }
 
 template <class T>
-void InverseEntries::learn_four(const CholeskyFactor& factor, const std::int32_t* unknowns, int count) {
+void InverseEntries::learn_together(const CholeskyFactor& factor, int first, int count, void* room) {
   const PanelsView view = factor.view();
-  room_.resize(4 * std::size_t(factor.size()));
-  T* x = reinterpret_cast<T*>(room_.data());
+  T* x = static_cast<T*>(room);
+  const std::int32_t* unknowns = fresh_.data() + first;
   const FactorPart part = paths_to_root(factor, {unknowns, unknowns + count});
   for (const std::int32_t panel : part)
-    std::fill_n(x + 4 * long(view.first_column[panel]), 4 * view.width[panel], T(0));
-  for (int k = 0; k < count; ++k) x[4 * long(unknowns[k]) + k] = 1;
+    std::fill_n(x + columns_together * long(view.first_column[panel]), columns_together * view.width[panel], T(0));
+  for (int k = 0; k < count; ++k) x[columns_together * long(unknowns[k]) + k] = 1;
   const int panels = static_cast<int>(part.size());
-  if constexpr (sizeof(T) == 4) {
-    linear_kernels().down_float(view, part.data(), panels, x);
+  if constexpr (sizeof(T) == sizeof(float)) {
+    linear_kernels().down_many_float(view, part.data(), panels, x);
   } else {
-    linear_kernels().down_double(view, part.data(), panels, x);
+    linear_kernels().down_many_double(view, part.data(), panels, x);
   }
   for (int k = 0; k < count; ++k) {
-    slot_of_[unknowns[k]] = static_cast<std::int32_t>(columns_.size());
-    AlignedVector<float>& column = columns_.emplace_back();
-    column.reserve(to_root_[factor.panel_of(unknowns[k])]);
-    for (std::int32_t panel = factor.panel_of(unknowns[k]); panel >= 0; panel = factor.parent_of(panel)) {
-      const long first = view.first_column[panel];
-      for (long i = first; i < first + view.width[panel]; ++i) column.push_back(static_cast<float>(x[4 * i + k]));
+    Column& column = columns_[slot_of_[unknowns[k]]];
+    column.numbers.resize((std::size_t(column.size) + line - 1) / line * line);
+    float* to = column.numbers.data() + column.numbers.size() - column.size;
+    for (std::int32_t panel = column.panel; panel >= 0; panel = factor.parent_of(panel)) {
+      const T* from = x + columns_together * long(view.first_column[panel]) + k;
+      for (int i = 0; i < view.width[panel]; ++i) *to++ = static_cast<float>(from[columns_together * i]);
     }
-    stored_ += static_cast<std::int64_t>(column.size());
   }
 }
 
-float InverseEntries::entry(const CholeskyFactor& factor, std::int32_t a, std::int32_t b) {
-  const auto [low, high] = std::minmax(slot_of_[a], slot_of_[b]);
-  float& known = products_[std::size_t(high) * (high + 1) / 2 + low];
-  if (std::isnan(known)) known = product(factor, a, b);
-  return known;
+void InverseEntries::learn_products(const CholeskyFactor& factor, Threads* threads) {
+  const int tiles = (static_cast<int>(slots_.size()) + product_tile - 1) / product_tile;
+  run_chunks(threads, tiles, long(tiles) * tiles * 100, [&](int row) {
+    for (int column = 0; column <= row; ++column) learn_tile(factor, row, column);
+  });
 }
 
-float InverseEntries::product(const CholeskyFactor& factor, std::int32_t a, std::int32_t b) const {
-  std::int32_t p = factor.panel_of(a), q = factor.panel_of(b);
-  while (p != q && p >= 0 && q >= 0) {
-    if (p < q) {
-      p = factor.parent_of(p);
-    } else {
-      q = factor.parent_of(q);
+// Computes the products between the slots of two tiles, unless they are known.
+void InverseEntries::learn_tile(const CholeskyFactor& factor, int row, int column) {
+  const auto slot = [&](int tile, int i) -> const std::int32_t& {
+    return slots_[std::min<std::size_t>(std::size_t(tile) * product_tile + i, slots_.size() - 1)];
+  };
+  bool known = true;
+  for (int i = 0; i < product_tile; ++i) {
+    for (int j = 0; j < product_tile; ++j) {
+      const auto [low, high] = std::minmax(slot(row, i), slot(column, j));
+      known = known && !std::isnan(products_[first_product(high) + low]);
     }
   }
-  if (p < 0 || q < 0) return 0;  // two parts of the body that do not hold together
-  const long count = to_root_[p];
-  const AlignedVector<float>&u = columns_[slot_of_[a]], &v = columns_[slot_of_[b]];
-  return linear_kernels().dot_float(u.data() + u.size() - count, v.data() + v.size() - count, count);
+  if (known) return;
+  const float *a[product_tile], *b[product_tile];
+  std::int32_t count[product_tile * product_tile];
+  float products[product_tile * product_tile];
+  for (int i = 0; i < product_tile; ++i) {
+    const Column& own = columns_[slot(row, i)];
+    a[i] = own.end();
+    b[i] = columns_[slot(column, i)].end();
+    for (int j = 0; j < product_tile; ++j) {
+      const std::int32_t meeting = factor.meeting_of(own.panel, columns_[slot(column, j)].panel);
+      count[i * product_tile + j] = meeting >= 0 ? to_root_[meeting] : 0;
+    }
+  }
+  linear_kernels().end_products(a, b, count, products);
+  for (int i = 0; i < product_tile; ++i) {
+    for (int j = 0; j < product_tile; ++j) {
+      const auto [low, high] = std::minmax(slot(row, i), slot(column, j));
+      products_[first_product(high) + low] = products[i * product_tile + j];
+    }
+  }
 }
 
 }  // namespace supple

@@ -5,6 +5,7 @@
 
 #include "base/lanes.h"
 #include "base/variants.h"
+#include "sim/linear/column_kernels.h"
 #include "sim/linear/front_solve.h"
 
 #if defined(__FMA__) || defined(__AVX__)
@@ -288,25 +289,6 @@ void dots(const double* const* a, int count, const double* b, long begin, long e
   }
 }
 
-float dot_float(const float* a, const float* b, long count) {
-  typedef float Many __attribute__((vector_size(64)));
-  Many sum[2] = {};
-  long at = 0;
-  for (; at + 32 <= count; at += 32) {
-    for (int k = 0; k < 2; ++k) {
-      Many u, v;
-      __builtin_memcpy(&u, a + at + 16 * k, sizeof u);
-      __builtin_memcpy(&v, b + at + 16 * k, sizeof v);
-      sum[k] += u * v;
-    }
-  }
-  sum[0] += sum[1];
-  float all = 0;
-  for (int i = 0; i < 16; ++i) all += sum[0][i];
-  for (; at < count; ++at) all += a[at] * b[at];
-  return all;
-}
-
 void add_scaled(const double* const* a, const double* c, int count, double* r, long begin, long end) {
   long at = begin;
   for (; at + lanes <= end; at += lanes) {
@@ -323,8 +305,7 @@ void add_scaled(const double* const* a, const double* c, int count, double* r, l
 
 extern const LinearKernels SUPPLE_TABLE(linear);
 const LinearKernels SUPPLE_TABLE(linear) = {
-    eliminate,   solve_down<float>, solve_up<float>, solve_down<double>, solve_up<double>,
-    down<float>, up<float>,         down<double>,    up<double>,         dots,
-    dot_float,   add_scaled};
+    eliminate,    solve_down<float>, solve_up<float>,  solve_down<double>, solve_up<double>, down<float>, up<float>,
+    down<double>, up<double>,        down_many<float>, down_many<double>,  end_products,     dots,        add_scaled};
 
 }  // namespace supple

@@ -9,6 +9,8 @@
 namespace supple {
 
 constexpr int panel_width = 8;
+constexpr int columns_together = 16;  // right-hand sides of down_many_float
+constexpr int product_tile = 4;       // vectors on either side of end_products
 
 // Describes a Cholesky factor that is cut into panels of adjacent columns with one row pattern. It is row-major: each
 // row of a panel holds its `width` values.
@@ -46,10 +48,18 @@ struct LinearKernels {
   void (*down_double)(const PanelsView& panels, const std::int32_t* list, int count, double* x);
   void (*up_double)(const PanelsView& panels, const std::int32_t* list, int count, double* x);
 
+  // The same as down_float for columns_together interleaved right-hand sides, on a list of panels. x is aligned to
+  // cache lines.
+  void (*down_many_float)(const PanelsView& panels, const std::int32_t* list, int count, float* x);
+  void (*down_many_double)(const PanelsView& panels, const std::int32_t* list, int count, double* x);
+
+  // products[i * product_tile + j] = a_i . b_j over the last count[i * product_tile + j] numbers of both. Vectors are
+  // given by their ends, which are aligned to cache lines. A product does not depend on the others.
+  void (*end_products)(const float* const* a_end, const float* const* b_end, const std::int32_t* count,
+                       float* products);
+
   // dots[i] = a_i . b over [begin, end)
   void (*dots)(const double* const* a, int count, const double* b, long begin, long end, double* dots);
-  // a . b in single precision
-  float (*dot_float)(const float* a, const float* b, long count);
   // r += sum_i c_i a_i over [begin, end)
   void (*add_scaled)(const double* const* a, const double* c, int count, double* r, long begin, long end);
 };

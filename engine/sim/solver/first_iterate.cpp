@@ -56,6 +56,7 @@ void begin_step(const Model& model, const StepInputs& inputs, const State& state
   inertial_prediction(model, inputs, state, w.y);
   w.start_positions = &state.x;
   w.system = w.correction.matrix = &model;
+  w.correction.threads = w.threads;
   w.hessian_serves = false;
   if (needs_start(model)) w.start_copy = state.x;
   w.current.contacts.clear();

@@ -1,0 +1,93 @@
+// Computes columns of L^-1 many at a time, and products of such columns, for entries of the inverse
+// (inverse_entries.h). Every number depends on its own columns alone, in one order of sums, not on the columns that are
+// processed together with it. Like lanes.h it is only for files that are compiled once for each instruction set.
+#pragma once
+
+#include "base/lanes.h"
+#include "sim/linear/linear_kernels.h"
+
+namespace supple {
+namespace {
+
+// Solves L x = b with one panel for columns_together right-hand sides, as many at a time as a register holds.
+template <class T, int width>
+void forward_many(const PanelsView& view, int panel, T* x) {
+  using Part = xsimd::batch<T>;
+  const T* triangle = static_cast<const T*>(view.values) + view.first_value[panel];
+  const std::int32_t* rows = view.rows + view.first_row[panel];
+  const long count = view.first_row[panel + 1] - view.first_row[panel];
+  for (int slice = 0; slice < columns_together; slice += static_cast<int>(Part::size)) {
+    T* top = x + columns_together * long(view.first_column[panel]) + slice;
+    Part known[width];
+    for (int j = 0; j < width; ++j) {
+      Part sum = Part::load_aligned(top + columns_together * j);
+      for (int k = 0; k < j; ++k) sum = fnma(Part(triangle[j * width + k]), known[k], sum);
+      known[j] = sum * Part(triangle[j * width + j]);
+      known[j].store_aligned(top + columns_together * j);
+    }
+    const T* value = triangle + width * width;
+    for (long i = 0; i < count; ++i, value += width) {
+      T* target = x + columns_together * long(rows[i]) + slice;
+      Part sum = Part::load_aligned(target);
+      for (int k = 0; k < width; ++k) sum = fnma(Part(value[k]), known[k], sum);
+      sum.store_aligned(target);
+    }
+  }
+}
+
+template <class T>
+void down_many(const PanelsView& view, const std::int32_t* list, int count, T* x) {
+  using Step = void (*)(const PanelsView&, int, T*);
+  static constexpr Step step[panel_width] = {forward_many<T, 1>, forward_many<T, 2>, forward_many<T, 3>,
+                                             forward_many<T, 4>, forward_many<T, 5>, forward_many<T, 6>,
+                                             forward_many<T, 7>, forward_many<T, 8>};
+  for (int i = 0; i < count; ++i) step[view.width[list[i]] - 1](view, list[i], x);
+}
+
+using Floats = xsimd::batch<float>;
+constexpr long floats = static_cast<long>(Floats::size);
+
+// The last `count` numbers of two vectors are multiplied a register at a time from their ends on, and the sums of the
+// lanes are added in order.
+struct EndProduct {
+  Floats sum = Floats(0.0f);
+  long done = 0;
+
+  void go_on(const float* a_end, const float* b_end, long count) {
+    for (; done + floats <= count; done += floats)
+      sum = fma(Floats::load_aligned(a_end - done - floats), Floats::load_aligned(b_end - done - floats), sum);
+  }
+  float finish(const float* a_end, const float* b_end, long count) {
+    go_on(a_end, b_end, count);
+    alignas(64) float part[floats];
+    sum.store_aligned(part);
+    for (long i = 0; i < count - done; ++i) part[i] += a_end[i - count] * b_end[i - count];
+    float all = part[0];
+    for (long i = 1; i < floats; ++i) all += part[i];
+    return all;
+  }
+};
+
+void end_products(const float* const* a_end, const float* const* b_end, const std::int32_t* count, float* products) {
+  long common = count[0];
+  for (int i = 1; i < product_tile * product_tile; ++i) common = std::min<long>(common, count[i]);
+  EndProduct pair[product_tile][product_tile];
+  const long together = common / floats * floats;
+  for (long done = 0; done < together; done += floats) {
+    Floats b[product_tile];
+    for (int j = 0; j < product_tile; ++j) b[j] = Floats::load_aligned(b_end[j] - done - floats);
+    for (int i = 0; i < product_tile; ++i) {
+      const Floats a = Floats::load_aligned(a_end[i] - done - floats);
+      for (int j = 0; j < product_tile; ++j) pair[i][j].sum = fma(a, b[j], pair[i][j].sum);
+    }
+  }
+  for (int i = 0; i < product_tile; ++i) {
+    for (int j = 0; j < product_tile; ++j) {
+      pair[i][j].done = together;
+      products[i * product_tile + j] = pair[i][j].finish(a_end[i], b_end[j], count[i * product_tile + j]);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace supple
