@@ -73,6 +73,37 @@ TEST(Contact, LowRankDirectionsSolveTheSystemWithContacts) {
   }
 }
 
+// What stays of a system keeps its factor; directions must be those of a system that is made anew.
+TEST(Contact, DirectionsAreThoseOfANewSystemAfterContactsHaveComeAndGone) {
+  const std::pair<Collider, double> places[] = {{{"ground", ground, 0, 0.5}, 0.001},
+                                                {{"ball", shape_of(Sphere{2}), 0, 0.5}, 1.99}};
+  for (const auto& [collider, height] : places) {
+    ContactScene scene(bar(Corotated{1e4, 3e4}, Held::hard_end), {collider}, Vec3(0, height, 0));
+    scene.state.v.rowwise() = Eigen::RowVector3d(0.3, -0.5, 0);
+    prepare_direction(scene);
+    const std::vector<StiffDirection> all = scene.w.correction.wanted;
+    ASSERT_GT(all.size(), 8u);
+    const auto applied = [&](ContactCorrection& correction, std::size_t left_out, double stiffer) {
+      correction.wanted.clear();
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        if (left_out > 0 && i % left_out == 1) continue;
+        correction.wanted.push_back(all[i]);
+        if (i == all.size() / 2) correction.wanted.back().stiffness *= stiffer;
+      }
+      Positions r = shaken(Positions::Zero(scene.model.free, 3), 1, 2), z(scene.model.free, 3);
+      apply_inverse(scene.model, {}, correction, scene.w.solve_scratch, r, z);
+      return z;
+    };
+    for (const auto& [left_out, stiffer] :
+         std::vector<std::pair<std::size_t, double>>{{0, 1}, {5, 1}, {3, 1}, {0, 1}, {0, 0.01}, {4, 0.01}, {0, 1}}) {
+      ContactCorrection anew;
+      const Positions wanted = applied(anew, left_out, stiffer);
+      EXPECT_LT((applied(scene.w.correction, left_out, stiffer) - wanted).norm(), 1e-4 * wanted.norm())
+          << collider.name << " " << left_out << " " << stiffer;
+    }
+  }
+}
+
 // The body is a bar above the ground, and a direction downwards would lead some vertices through the ground.
 TEST(Contact, DirectionsBendAsTheQuadraticModelWithThePlanesAheadDoes) {
   for (const double height : {0.05, 0.046}) {  // nothing touches yet, or some vertices do

@@ -10,13 +10,29 @@ namespace {
 constexpr std::size_t most_axes = 8;  // of a list, before all directions count as coupled with it
 constexpr double right_angle = 1e-7;  // cosine below which directions are uncoupled in single precision
 
-// Tells whether two lists of directions are equal or nearly equal.
-bool alike(const std::vector<StiffDirection>& a, const std::vector<StiffDirection>& b) {
-  const auto close = [](const StiffDirection& s, const StiffDirection& t) {
-    return s.point == t.point && s.axis.dot(t.axis) >= 0.999 &&
-           std::abs(s.stiffness - t.stiffness) <= 0.1 * s.stiffness;
-  };
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), close);
+// Compares points, of which most are vertices.
+bool same(const ContactPoint& a, const ContactPoint& b) {
+  return a.is_vertex() && b.is_vertex() ? a.vertex[0] == b.vertex[0] : a == b;
+}
+
+// Tells whether two directions are equal, or so nearly that a correction may take one for the other.
+bool alike(const StiffDirection& s, const StiffDirection& t) {
+  return same(s.point, t.point) && s.axis.dot(t.axis) >= 0.999 &&
+         std::abs(s.stiffness - t.stiffness) <= 0.1 * s.stiffness;
+}
+
+// Takes from `left`, which is sorted by first vertex, the direction that is like another one. Returns whether there is
+// one; those that were taken are marked.
+bool take_alike(const std::vector<StiffDirection>& left, const StiffDirection& wanted, std::vector<bool>& taken) {
+  const std::int32_t first = wanted.point.vertex[0];
+  auto at = std::lower_bound(left.begin(), left.end(), first,
+                             [](const StiffDirection& s, std::int32_t vertex) { return s.point.vertex[0] < vertex; });
+  for (; at != left.end() && at->point.vertex[0] == first; ++at) {
+    const auto number = static_cast<std::size_t>(at - left.begin());
+    if (taken[number] || !alike(wanted, *at)) continue;
+    return taken[number] = true;
+  }
+  return false;
 }
 
 bool coupled(const CoupledDirections& list, const Vec3& axis) {
@@ -61,23 +77,48 @@ void Capacitance::begin_step(const System& system) {
   if (entries_.stored_numbers() > system.factor.stored_numbers()) entries_.clear();
 }
 
+// Directions that the system has already stay where they are, and new ones are added at the end: what is before the
+// first one that has gone keeps its factor. The contacts for which the last direction was bent are such new ones.
 bool Capacitance::set(const System& system, const std::vector<StiffDirection>& wanted, Threads* threads) {
-  if (alike(directions_, wanted)) return true;
-  clear();
-  return append(system, wanted, threads);
+  std::vector<StiffDirection> before, ordered;
+  std::vector<CoupledDirections> lists_before;
+  before.swap(directions_);
+  lists_before.swap(lists_);
+  if (entries_of_ != system.id) before.clear();
+  std::vector<bool> taken(wanted.size(), false);
+  std::vector<Eigen::Index> place;  // where the earlier directions are now; -1: gone
+  for (const StiffDirection& direction : before) {
+    const bool stays = take_alike(wanted, direction, taken);
+    place.push_back(stays ? static_cast<Eigen::Index>(ordered.size()) : -1);
+    if (stays) ordered.push_back(direction);
+  }
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (!taken[i]) ordered.push_back(wanted[i]);
+  }
+  for (std::size_t i = 0; i < ordered.size(); ++i) couple(ordered[i], static_cast<Eigen::Index>(i), lists_);
+  directions_.swap(ordered);
+  factors_.resize(std::max(factors_.size(), lists_.size()));
+  for (std::size_t i = 0; i < lists_.size(); ++i) {
+    Eigen::Index& kept = factors_[i].factored = 0;
+    if (place.empty() || i >= lists_before.size()) continue;
+    const std::vector<Eigen::Index>&was = lists_before[i].members, &is = lists_[i].members;
+    const std::size_t most = std::min(was.size(), is.size());
+    while (std::size_t(kept) < most && place[was[kept]] == is[kept]) ++kept;
+  }
+  return append(system, {}, threads);
 }
 
 // A list that has grown at its end keeps its factor; where lists were merged, all are factored again.
 bool Capacitance::append(const System& system, const std::vector<StiffDirection>& more, Threads* threads) {
-  const std::size_t lists_before = lists_.size();
-  std::vector<Eigen::Index> sizes;
-  for (const CoupledDirections& list : lists_) sizes.push_back(static_cast<Eigen::Index>(list.members.size()));
-  bool merged = false;
   for (const StiffDirection& direction : more) {
     const std::size_t count = lists_.size();
-    couple(direction, static_cast<Eigen::Index>(directions_.size()), lists_);
-    merged |= lists_.size() < count;
+    const std::size_t home = couple(direction, static_cast<Eigen::Index>(directions_.size()), lists_);
     directions_.push_back(direction);
+    factors_.resize(std::max(factors_.size(), lists_.size()));
+    if (lists_.size() > count) factors_[home].factored = 0;
+    if (lists_.size() < count) {
+      for (Factor& factor : factors_) factor.factored = 0;
+    }
   }
   std::vector<std::int32_t> touched;
   for (const StiffDirection& direction : directions_) {
@@ -87,14 +128,16 @@ bool Capacitance::append(const System& system, const std::vector<StiffDirection>
   if (entries_of_ != system.id) entries_.clear();
   entries_of_ = system.id;
   entries_.learn(system.factor, touched, threads);
-  factors_.resize(std::max(factors_.size(), lists_.size()));
+  long work = 0;
   for (std::size_t i = 0; i < lists_.size(); ++i) {
-    factors_[i].factored = merged || i >= lists_before ? 0 : sizes[i];
-    if (extend(lists_[i], factors_[i])) continue;
-    clear();
-    return false;
+    const auto size = static_cast<long>(lists_[i].members.size());
+    work += size * size * (size - factors_[i].factored) / 16;
   }
-  return true;
+  std::vector<char> done(lists_.size());
+  run_chunks(threads, static_cast<int>(lists_.size()), work, [&](int i) { done[i] = extend(lists_[i], factors_[i]); });
+  if (std::find(done.begin(), done.end(), 0) == done.end()) return true;
+  clear();
+  return false;
 }
 
 // Returns the entry of A^-1 between two points: the mean of those among their vertices, by both points' weights.
@@ -114,7 +157,7 @@ void Capacitance::fill_row(const CoupledDirections& list, Eigen::Index row, floa
   float between = 0;
   for (Eigen::Index j = 0; j <= row; ++j) {
     const StiffDirection& s = directions_[list.members[j]];
-    if (other == nullptr || !(s.point == *other)) between = entry(own.point, s.point);
+    if (other == nullptr || !same(s.point, *other)) between = entry(own.point, s.point);
     other = &s.point;
     values[j] = static_cast<float>(own.axis.dot(s.axis)) * between;
   }
@@ -138,6 +181,7 @@ bool Capacitance::extend(const CoupledDirections& list, Factor& factor) {
     corner.selfadjointView<Eigen::Lower>().rankUpdate(below, -1);
   }
   const Eigen::LLT<Eigen::Ref<RowMatrix>> done(corner);
+  factor.factored = n;
   return done.info() == Eigen::Success;
 }
 

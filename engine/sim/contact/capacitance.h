@@ -38,6 +38,7 @@ std::size_t couple(const StiffDirection& direction, Eigen::Index number, std::ve
 
 class Capacitance {
  public:
+  // Returns the directions in the order of their numbers, which is not that in which they were set.
   const std::vector<StiffDirection>& directions() const { return directions_; }
 
   // Leaves a system without directions. The same remains of a system that is not positive definite.
@@ -46,9 +47,9 @@ class Capacitance {
   // Makes a step independent of earlier ones, except for entries that would be computed again with the same result.
   void begin_step(const System& system);
 
-  // Builds the system of these directions; does nothing when the present system is nearly the same, because a
-  // correction need not be exact. Returns false when the system is not positive definite. threads: null for the calling
-  // one alone.
+  // Builds the system of these directions, which must be sorted by their points' first vertices. What the present
+  // system has of them, or nearly so, stays as it is, because a correction need not be exact. Returns false when the
+  // system is not positive definite. threads: null for the calling one alone.
   bool set(const System& system, const std::vector<StiffDirection>& wanted, Threads* threads);
   bool append(const System& system, const std::vector<StiffDirection>& more, Threads* threads);
 
