@@ -41,6 +41,16 @@ struct VertexSearch {
            (is_outside && view.knows_bounds() && !view.closest_within(p, most, near));
   }
 
+  // Tells whether a vertex whose distance at the start is known is so far away that its way need not be followed
+  // through the collider's frame. collider_move: of the collider's own points near it.
+  bool is_clear_from_afar(const ColliderView& view, std::size_t c, int v, double collider_move) const {
+    const double field = work.clearance[c * model.free + v];
+    if (std::isnan(field)) return false;
+    const double moved = (x.row(v) - work.start.row(v)).norm() + collider_move;
+    const double freely = (work.prediction->row(v) - work.start.row(v)).norm() + collider_move;
+    return moved + reach_of(moved, freely) < view.clear(field);
+  }
+
   // Returns the signed distance of vertex v at the start of the step, which is computed once.
   double start_field(const ColliderView& view, std::size_t c, int v, const Vec3& a) const {
     double& known = work.clearance[c * model.free + v];
@@ -71,6 +81,7 @@ struct VertexSearch {
     if (moved + reach_of(moved, freely) < view.clear(work.group_distance[at])) return;
     const int end = std::min(model.free, (group + 1) * vertices_a_group);
     for (int v = group * vertices_a_group; v < end; ++v) {
+      if (is_clear_from_afar(view, c, v, work.collider_move[at])) continue;
       const Way way = view.way(work.start.row(v), x.row(v));
       const double reach = reach_of(way.length, view.length_to(work.prediction->row(v), way));
       const bool asked = !std::isnan(work.clearance[c * model.free + v]);
