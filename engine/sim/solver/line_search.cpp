@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "sim/solver/first_iterate.h"
+#include "sim/solver/unforeseen_contacts.h"
 
 namespace supple {
 namespace {
@@ -28,13 +29,14 @@ bool decreases_by_slope(const Change& change, double slope, double armijo, doubl
 bool contacts_accept(const Model& model, const StepInputs& inputs, Workspace& w, double change, double noise) {
   if (!has_colliders(inputs)) return true;
   find_contacts_of(model, inputs, w, w.trial);
+  keep_sides(model, inputs, w);
   const double jump = contact_energy(w.trial.contacts, w.trial.x) - contact_energy(w.current.contacts, w.trial.x);
   return jump <= 0 || change + jump <= noise;
 }
 
 // Tries alpha = 1, 1/2, ...
-Search backtrack(const Model& model, const StepInputs& inputs, Workspace& w, double slope, Change& change,
-                 IterationRecord& record) {
+Search backtrack(const Model& model, const StepInputs& inputs, Workspace& w, double slope, bool may_learn,
+                 Change& change, IterationRecord& record) {
   const SolverSettings& solver = inputs.solver;
   const double noise = noise_of(model, w.current.g, extent_of(model, w));
   double alpha = 1;
@@ -58,10 +60,11 @@ Search backtrack(const Model& model, const StepInputs& inputs, Workspace& w, dou
       continue;
     }
     if (!with_gradient) change = evaluate_trial(model, w, Wanted::gradient);
-    // A shorter step helps against contacts that the planes did not foresee, but not where the energy itself jumps (a
-    // vertex that passes an edge).
-    if (!contacts_accept(model, inputs, w, change.value, noise) && ++refused < most_refusals) continue;
-    return Search::found;
+    if (contacts_accept(model, inputs, w, change.value, noise)) return Search::found;
+    if (refused == 0 && may_learn && learn_contacts(model, inputs, w)) return Search::unforeseen;
+    // A shorter step helps against contacts of which the current iterate can't learn, but not where the energy itself
+    // jumps (a vertex that passes an edge).
+    if (++refused == most_refusals) return Search::found;
   }
   return Search::failed;
 }
@@ -170,12 +173,12 @@ bool below_resolution(const Model& model, const Workspace& w) {
   return w.direction.cwiseAbs().maxCoeff() <= 4 * round_off * std::max(extent, model.size);
 }
 
-Search search_line(const Model& model, const StepInputs& inputs, Workspace& w, double slope, Change& change,
-                   IterationRecord& record) {
+Search search_line(const Model& model, const StepInputs& inputs, Workspace& w, double slope, bool may_learn,
+                   Change& change, IterationRecord& record) {
   const double noise = noise_of(model, w.current.g, extent_of(model, w));
   if (inputs.solver.line_search == LineSearch::wolfe && -slope > noise / inputs.solver.armijo)
     return WolfeSearch(model, inputs, w, slope, change, record).run();
-  return backtrack(model, inputs, w, slope, change, record);
+  return backtrack(model, inputs, w, slope, may_learn, change, record);
 }
 
 }  // namespace supple

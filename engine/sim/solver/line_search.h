@@ -9,14 +9,17 @@ namespace supple {
 enum class Search {
   found,
   failed,
+  unforeseen,  // contacts lay on the way, which the current iterate knows now: another direction is needed
   exhausted,  // what the direction promises is below what the gradient's own round-off decides
 };
 
 // Searches from the current iterate along workspace.direction (with this slope [J]) as the settings require. Leaves the
 // accepted point in workspace.trial, with gradient and energies by the contacts of the current iterate and, in its
-// contacts, those found there. `record` gets the step length and the results of the full step.
-Search search_line(const Model& model, const StepInputs& inputs, Workspace& workspace, double slope, Change& change,
-                   IterationRecord& record);
+// contacts, those found there. may_learn: whether the search may end as `unforeseen` (learn_contacts()); otherwise, and
+// with the strong Wolfe conditions, steps become shorter. `record` gets the step length and the results of the full
+// step.
+Search search_line(const Model& model, const StepInputs& inputs, Workspace& workspace, double slope, bool may_learn,
+                   Change& change, IterationRecord& record);
 
 // Tells whether a direction is too short to change more than the positions' last bits, so that nothing is left to gain.
 // This is also true for the round-off of a body at rest, which must not be integrated into a drift.

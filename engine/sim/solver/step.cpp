@@ -67,8 +67,10 @@ Descent next_direction(const Model& model, const StepInputs& inputs, Workspace& 
   }
 }
 
-// Searches along the direction for the next iterate, and leaves it in the trial iterate. A search that fails is
-// repeated once along the direction of a rule that has forgotten what it learned.
+// Searches along the direction for the next iterate, and leaves it in the trial iterate. A search that meets contacts
+// which it did not foresee is repeated, a few times, along a direction that knows them: adding constraints where an
+// iterate violates them, and solving again, is the exchange method of semi-infinite programs (Hettich and Kortanek
+// 1993). A search that fails is repeated once along the direction of a rule that has forgotten what it learned.
 Search find_next(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, double slope,
                  Change& change, IterationRecord& record) {
   const TimedPhase timed(w.clock, Phase::evaluate, "line search");
@@ -79,10 +81,15 @@ Search find_next(const Model& model, const StepInputs& inputs, Workspace& w, Sea
     find_contacts_of(model, inputs, w, w.trial);
     return Search::found;
   }
-  const Search search = search_line(model, inputs, w, slope, change, record);
-  if (search != Search::failed || !rule.forget()) return search;
-  const Descent plain = next_direction(model, inputs, w, rule);
-  return plain.done ? Search::exhausted : search_line(model, inputs, w, plain.slope, change, record);
+  constexpr int most_lessons = 3;
+  for (int lessons = 0;; ++lessons) {
+    const Search search = search_line(model, inputs, w, slope, lessons < most_lessons, change, record);
+    if (search == Search::failed ? !rule.forget() : search != Search::unforeseen) return search;
+    if (search == Search::failed) lessons = most_lessons;
+    const Descent again = next_direction(model, inputs, w, rule);
+    if (again.done) return Search::exhausted;
+    slope = again.slope;
+  }
 }
 
 // Replaces the contacts that the search used with those found at the trial point. Corrects the trial's gradient;

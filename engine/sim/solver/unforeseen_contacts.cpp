@@ -1,0 +1,61 @@
+#include "sim/solver/unforeseen_contacts.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "sim/contact/usual_depth.h"
+#include "sim/solver/first_iterate.h"
+
+namespace supple {
+namespace {
+
+// Lists of contacts are sorted so.
+bool is_before(const Contact& a, const Contact& b) {
+  return a.collider != b.collider ? a.collider < b.collider : a.number < b.number;
+}
+
+// Returns the contact of the same point with the same collider; null: there is none.
+const Contact* find_same(const std::vector<Contact>& list, const Contact& contact) {
+  const auto at = std::lower_bound(list.begin(), list.end(), contact, is_before);
+  return at != list.end() && !is_before(contact, *at) ? &*at : nullptr;
+}
+
+}  // namespace
+
+void keep_sides(const Model& model, const StepInputs& inputs, Workspace& w) {
+  constexpr double hardly = 0.1;  // of the usual depth
+  for (Contact& contact : w.trial.contacts) {
+    if (!contact.point.is_vertex() || contact.depth <= 0) continue;
+    const Collider& collider = (*inputs.colliders)[contact.collider];
+    const double usual = usual_depth(model.size, collider, w.contact.traits[contact.collider].half_thickness);
+    if (-gap(contact, w.current.x) < usual) continue;
+    const Contact* known = find_same(w.current.contacts, contact);
+    if (known == nullptr || known->depth >= hardly * usual) continue;
+    contact = *known;
+    contact.depth = std::max(0.0, -gap(contact, w.trial.x));
+  }
+}
+
+bool learn_contacts(const Model& model, const StepInputs& inputs, Workspace& w) {
+  Iterate& at = w.current;
+  const std::vector<Contact> before = at.contacts;
+  find_contacts_of(model, inputs, w, at);
+  std::vector<Contact> more;
+  for (const Contact& contact : at.contacts) {
+    if (!contact.point.is_vertex() && find_same(before, contact) == nullptr) more.push_back(contact);
+  }
+  for (Contact ahead : w.trial.contacts) {
+    if (gap(ahead, at.x) < 0 || find_same(before, ahead) != nullptr || find_same(more, ahead) != nullptr) continue;
+    ahead.depth = ahead.friction = 0;
+    more.insert(std::upper_bound(more.begin(), more.end(), ahead, is_before), ahead);
+  }
+  at.contacts.clear();
+  std::merge(before.begin(), before.end(), more.begin(), more.end(), std::back_inserter(at.contacts), is_before);
+  const double rise = add_contacts(more, w.contact.stick_length, at.x, nullptr, w.direction, &at.gradient).value;
+  at.g += rise;
+  w.report.objective.back() = at.g;
+  w.report.decrease -= rise;
+  return !more.empty();
+}
+
+}  // namespace supple

@@ -1,0 +1,89 @@
+// Tests what a step does about contacts that a search along a direction did not foresee.
+#include "sim/solver/unforeseen_contacts.h"
+
+#include <gtest/gtest.h>
+
+#include "support/contact_scene.h"
+
+namespace supple {
+namespace {
+
+using test::cube;
+using test::shape_of;
+
+// Begins a step from the scene's state, and moves all free vertices of an iterate from where they start.
+void begin(test::ContactScene& scene) {
+  scene.w.prepare(scene.model, scene.inputs.solver);
+  begin_step(scene.model, scene.inputs, scene.state, scene.w);
+}
+void place(test::ContactScene& scene, Iterate& iterate, const Vec3& moved) {
+  iterate.x = scene.state.x;
+  iterate.x.topRows(scene.model.free).rowwise() += moved.transpose();
+  find_contacts_of(scene.model, scene.inputs, scene.w, iterate);
+}
+
+// What is learned belongs to the objective of the current iterate and to its gradient, as if it had been found there.
+TEST(UnforeseenContacts, AreLearnedByTheCurrentIterate) {
+  const Collider post{"post", shape_of(Capsule{Vec3(0.012, -1, 0.021), Vec3(0.012, -0.004, 0.021), 0.004}), 0, 0.4};
+  const Collider ground{"ground", shape_of(HalfSpace{Vec3::UnitY(), -0.05}), 0, 0.4};
+  for (const auto& [before, ahead] : {std::pair{-0.05, -0.11}, std::pair{-0.04, -0.09}}) {
+    test::ContactScene scene(cube(3), {post, ground}, Vec3(0, 0.15, 0));
+    scene.inputs.solver.contact.points = ContactPoints::surface;
+    scene.state.v.col(1).setConstant(-6);
+    begin(scene);
+    place(scene, scene.w.current, Vec3(0, before, 0));
+    scene.w.current.contacts.clear();  // as if nothing had been near
+    evaluate(scene.model, scene.w, scene.w.current, Wanted::gradient);
+    scene.w.report.objective = {scene.w.current.g};
+    scene.w.report.decrease = 0;
+    const double unknowing = scene.w.current.g;
+    place(scene, scene.w.trial, Vec3(0, ahead, 0));
+    ASSERT_FALSE(scene.w.trial.contacts.empty());
+
+    ASSERT_TRUE(learn_contacts(scene.model, scene.inputs, scene.w));
+    const Iterate learned = scene.w.current;
+    EXPECT_FALSE(learned.contacts.empty());
+    EXPECT_EQ(scene.w.report.objective.back(), learned.g);
+    EXPECT_EQ(scene.w.report.decrease, unknowing - learned.g);
+    for (const Contact& contact : learned.contacts) {
+      const bool ahead = gap(contact, learned.x) >= 0;
+      EXPECT_TRUE(ahead || !contact.point.is_vertex()) << "the iterate knew of vertices";
+    }
+    evaluate(scene.model, scene.w, scene.w.current, Wanted::gradient);
+    EXPECT_NEAR(scene.w.current.g, learned.g, 1e-12 * learned.g);
+    EXPECT_LT((scene.w.current.gradient - learned.gradient).norm(), 1e-9 * learned.gradient.norm());
+    EXPECT_FALSE(learn_contacts(scene.model, scene.inputs, scene.w)) << "there was nothing left to learn";
+    EXPECT_EQ(scene.w.current.contacts.size(), learned.contacts.size());
+  }
+}
+
+// Places a corner of a cube, which starts above a bar, beside the bar and then below it.
+Contact plane_below(double overlap_beside, bool keep) {
+  test::ContactScene scene(cube(1), {{"bar", shape_of(Box{Vec3(0.05, 0.02, 1), 0}), 0, 0}}, Vec3(0.12, 0.13, 0));
+  begin(scene);
+  int corner = 0;
+  for (int v = 0; v < scene.model.vertices; ++v) {
+    if ((scene.state.x.row(v) - Eigen::RowVector3d(0.02, 0.03, 0.1)).norm() < 1e-9) corner = v;
+  }
+  place(scene, scene.w.current, Vec3(0.03 - overlap_beside, -0.0485, 0));
+  place(scene, scene.w.trial, Vec3(0.0298 - overlap_beside, -0.0505, 0));
+  if (keep) keep_sides(scene.model, scene.inputs, scene.w);
+  for (const Contact& contact : scene.w.trial.contacts) {
+    if (contact.number == corner) return contact;
+  }
+  ADD_FAILURE() << "the corner touches nothing";
+  return {};
+}
+
+TEST(UnforeseenContacts, AVertexThatSlidesOffASideDoesNotBelongToTheTop) {
+  const Contact straight = plane_below(1e-5, false), kept = plane_below(1e-5, true);
+  EXPECT_NEAR(straight.normal.y(), 1, 1e-9) << "the straight way leads through the top";
+  EXPECT_NEAR(straight.depth, 0.0405, 1e-9);
+  EXPECT_NEAR(kept.normal.x(), 1, 1e-9);
+  EXPECT_NEAR(kept.depth, 2.1e-4, 1e-9);
+  // One that is pressed into the side has not come to its place yet.
+  EXPECT_NEAR(plane_below(1e-3, true).normal.y(), 1, 1e-9);
+}
+
+}  // namespace
+}  // namespace supple
