@@ -10,7 +10,7 @@ enum class Search {
   found,
   failed,
   unforeseen,  // contacts lay on the way, which the current iterate knows now: another direction is needed
-  exhausted,  // what the direction promises is below what the gradient's own round-off decides
+  exhausted,   // what the direction promises is below what the gradient's own round-off decides
 };
 
 // Searches from the current iterate along workspace.direction (with this slope [J]) as the settings require. Leaves the
