@@ -65,16 +65,17 @@ class ChebyshevRule final : public SearchRule {
     find_stiff_directions(model, w.current.contacts, w.current.x, w.contact.stick_length, w.correction);
     apply_inverse(model, inputs.solver.contact, w.correction, w.solve_scratch, w.scratch, w.direction);
     w.direction = -w.direction;
-    omega_ = chebyshev_weight(inputs.solver.chebyshev, iteration_, omega_);
+    tried_ = chebyshev_weight(inputs.solver.chebyshev, iteration_, omega_);
     // omega (x_{k+1} - x_{k-1}) + x_{k-1} - x_k with x_{k+1} = x_k + q
     if (iteration_ > 0)
       w.direction =
-          omega_ * w.direction + (omega_ - 1) * (w.current.x.topRows(model.free) - before_.topRows(model.free));
+          tried_ * w.direction + (tried_ - 1) * (w.current.x.topRows(model.free) - before_.topRows(model.free));
     return (w.current.gradient.array() * w.direction.array()).sum();
   }
 
   void accepted(const Model&, const StepInputs&, Workspace& w) override {
     before_ = w.current.x;
+    omega_ = tried_;
     ++iteration_;
   }
 
@@ -82,7 +83,7 @@ class ChebyshevRule final : public SearchRule {
 
  private:
   int iteration_ = 0;
-  double omega_ = 1;
+  double omega_ = 1, tried_ = 1;  // weights of the last iteration, and of the last direction
   Positions before_;
 };
 

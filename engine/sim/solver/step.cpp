@@ -86,6 +86,7 @@ Search find_next(const Model& model, const StepInputs& inputs, Workspace& w, Sea
     const Search search = search_line(model, inputs, w, slope, lessons < most_lessons, change, record);
     if (search == Search::failed ? !rule.forget() : search != Search::unforeseen) return search;
     if (search == Search::failed) lessons = most_lessons;
+    if (search == Search::unforeseen) rule.contacts_changed(inputs);
     const Descent again = next_direction(model, inputs, w, rule);
     if (again.done) return Search::exhausted;
     slope = again.slope;
@@ -104,8 +105,8 @@ double take_contacts(Workspace& w) {
   return jump;
 }
 
-// Makes the trial iterate the current one.
-void accept(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, Change change,
+// Makes the trial iterate the current one. before: g where the iteration began, without contacts learned since [J].
+void accept(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, double before, Change change,
             IterationRecord& record) {
   const TimedPhase timed(w.clock, Phase::lbfgs, "accept");
   rule.accepted(model, inputs, w);
@@ -114,12 +115,13 @@ void accept(const Model& model, const StepInputs& inputs, Workspace& w, SearchRu
     change.value += take_contacts(w);
     if (w.contact.counts.changes != changes) rule.contacts_changed(inputs);
   }
+  const double learned = w.current.g - before;
   w.trial.g = w.current.g + change.value;
   std::swap(w.current, w.trial);
   ++w.report.iterations;
   w.report.objective.push_back(w.current.g);
   w.report.decrease -= change.value;
-  record.decrease = -change.value;
+  record.decrease = -change.value - learned;
   record.elapsed_ms = w.clock.elapsed_ms();
   w.report.records.push_back(record);
 }
@@ -216,6 +218,7 @@ void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
     }
     Change change{};
     IterationRecord record;
+    const double before = w.current.g;
     const Search search = find_next(model, inputs, w, rule, descent.slope, change, record);
     if (search != Search::found) {
       // A first search that finds nothing above round-off leaves nothing to gain, and nothing to compare it with.
@@ -223,7 +226,7 @@ void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
       report.stop_reason = search == Search::exhausted ? StopReason::round_off : StopReason::line_search_failed;
       break;
     }
-    accept(model, inputs, w, rule, change, record);
+    accept(model, inputs, w, rule, before, change, record);
     decrements.add(-descent.slope, record.decrease);
     if (absurd(model, w.current.g, start)) return fail(model, w, "line search", w.current.g);
     if (rule.measures_last_iterate()) continue;
