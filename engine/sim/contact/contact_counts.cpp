@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "base/hash.h"
+#include "sim/contact/contact_order.h"
 #include "sim/contact/find_contacts.h"
 
 namespace supple {
@@ -18,10 +19,6 @@ std::uint64_t set_of(const std::vector<Contact>& contacts) {
   return hash;
 }
 
-bool before(const Contact& a, const Contact& b) {
-  return a.collider != b.collider ? a.collider < b.collider : a.number < b.number;
-}
-
 // Counts the pairs that touch in one list and not in the other; both lists are sorted.
 int changes_between(const std::vector<Contact>& a, const std::vector<Contact>& b) {
   int changes = 0;
@@ -33,10 +30,10 @@ int changes_between(const std::vector<Contact>& a, const std::vector<Contact>& b
     skip(a, i);
     skip(b, j);
     if (i == a.size() && j == b.size()) return changes;
-    if (j == b.size() || (i < a.size() && before(a[i], b[j]))) {
+    if (j == b.size() || (i < a.size() && comes_before(a[i], b[j]))) {
       ++changes;
       ++i;
-    } else if (i == a.size() || before(b[j], a[i])) {
+    } else if (i == a.size() || comes_before(b[j], a[i])) {
       ++changes;
       ++j;
     } else {

@@ -3,21 +3,17 @@
 #include <algorithm>
 #include <iterator>
 
+#include "sim/contact/contact_order.h"
 #include "sim/contact/usual_depth.h"
 #include "sim/solver/first_iterate.h"
 
 namespace supple {
 namespace {
 
-// Lists of contacts are sorted so.
-bool is_before(const Contact& a, const Contact& b) {
-  return a.collider != b.collider ? a.collider < b.collider : a.number < b.number;
-}
-
 // Returns the contact of the same point with the same collider; null: there is none.
 const Contact* find_same(const std::vector<Contact>& list, const Contact& contact) {
-  const auto at = std::lower_bound(list.begin(), list.end(), contact, is_before);
-  return at != list.end() && !is_before(contact, *at) ? &*at : nullptr;
+  const auto at = std::lower_bound(list.begin(), list.end(), contact, comes_before);
+  return at != list.end() && !comes_before(contact, *at) ? &*at : nullptr;
 }
 
 }  // namespace
@@ -47,10 +43,10 @@ bool learn_contacts(const Model& model, const StepInputs& inputs, Workspace& w) 
   for (Contact ahead : w.trial.contacts) {
     if (gap(ahead, at.x) < 0 || find_same(before, ahead) != nullptr || find_same(more, ahead) != nullptr) continue;
     ahead.depth = ahead.friction = 0;
-    more.insert(std::upper_bound(more.begin(), more.end(), ahead, is_before), ahead);
+    more.insert(std::upper_bound(more.begin(), more.end(), ahead, comes_before), ahead);
   }
   at.contacts.clear();
-  std::merge(before.begin(), before.end(), more.begin(), more.end(), std::back_inserter(at.contacts), is_before);
+  std::merge(before.begin(), before.end(), more.begin(), more.end(), std::back_inserter(at.contacts), comes_before);
   const double rise = add_contacts(more, w.contact.stick_length, at.x, nullptr, w.direction, &at.gradient).value;
   at.g += rise;
   w.report.objective.back() = at.g;

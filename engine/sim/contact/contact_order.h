@@ -1,0 +1,12 @@
+// The order of contacts in a list: by collider, then by number of the point.
+#pragma once
+
+#include "sim/contact/contact.h"
+
+namespace supple {
+
+inline bool comes_before(const Contact& a, const Contact& b) {
+  return a.collider != b.collider ? a.collider < b.collider : a.number < b.number;
+}
+
+}  // namespace supple
