@@ -57,33 +57,5 @@ TEST(UnforeseenContacts, AreLearnedByTheCurrentIterate) {
   }
 }
 
-// Places a corner of a cube, which starts above a bar, beside the bar and then below it.
-Contact plane_below(double overlap_beside, bool keep) {
-  test::ContactScene scene(cube(1), {{"bar", shape_of(Box{Vec3(0.05, 0.02, 1), 0}), 0, 0}}, Vec3(0.12, 0.13, 0));
-  begin(scene);
-  int corner = 0;
-  for (int v = 0; v < scene.model.vertices; ++v) {
-    if ((scene.state.x.row(v) - Eigen::RowVector3d(0.02, 0.03, 0.1)).norm() < 1e-9) corner = v;
-  }
-  place(scene, scene.w.current, Vec3(0.03 - overlap_beside, -0.0485, 0));
-  place(scene, scene.w.trial, Vec3(0.0298 - overlap_beside, -0.0505, 0));
-  if (keep) keep_sides(scene.model, scene.inputs, scene.w);
-  for (const Contact& contact : scene.w.trial.contacts) {
-    if (contact.number == corner) return contact;
-  }
-  ADD_FAILURE() << "the corner touches nothing";
-  return {};
-}
-
-TEST(UnforeseenContacts, AVertexThatSlidesOffASideDoesNotBelongToTheTop) {
-  const Contact straight = plane_below(1e-5, false), kept = plane_below(1e-5, true);
-  EXPECT_NEAR(straight.normal.y(), 1, 1e-9) << "the straight way leads through the top";
-  EXPECT_NEAR(straight.depth, 0.0405, 1e-9);
-  EXPECT_NEAR(kept.normal.x(), 1, 1e-9);
-  EXPECT_NEAR(kept.depth, 2.1e-4, 1e-9);
-  // One that is pressed into the side has not come to its place yet.
-  EXPECT_NEAR(plane_below(1e-3, true).normal.y(), 1, 1e-9);
-}
-
 }  // namespace
 }  // namespace supple

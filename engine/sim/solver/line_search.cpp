@@ -29,7 +29,6 @@ bool decreases_by_slope(const Change& change, double slope, double armijo, doubl
 bool contacts_accept(const Model& model, const StepInputs& inputs, Workspace& w, double change, double noise) {
   if (!has_colliders(inputs)) return true;
   find_contacts_of(model, inputs, w, w.trial);
-  keep_sides(model, inputs, w);
   const double jump = contact_energy(w.trial.contacts, w.trial.x) - contact_energy(w.current.contacts, w.trial.x);
   return jump <= 0 || change + jump <= noise;
 }

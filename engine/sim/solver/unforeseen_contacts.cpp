@@ -4,7 +4,6 @@
 #include <iterator>
 
 #include "sim/contact/contact_order.h"
-#include "sim/contact/usual_depth.h"
 #include "sim/solver/first_iterate.h"
 
 namespace supple {
@@ -17,20 +16,6 @@ const Contact* find_same(const std::vector<Contact>& list, const Contact& contac
 }
 
 }  // namespace
-
-void keep_sides(const Model& model, const StepInputs& inputs, Workspace& w) {
-  constexpr double hardly = 0.1;  // of the usual depth
-  for (Contact& contact : w.trial.contacts) {
-    if (!contact.point.is_vertex() || contact.depth <= 0) continue;
-    const Collider& collider = (*inputs.colliders)[contact.collider];
-    const double usual = usual_depth(model.size, collider, w.contact.traits[contact.collider].half_thickness);
-    if (-gap(contact, w.current.x) < usual) continue;
-    const Contact* known = find_same(w.current.contacts, contact);
-    if (known == nullptr || known->depth >= hardly * usual) continue;
-    contact = *known;
-    contact.depth = std::max(0.0, -gap(contact, w.trial.x));
-  }
-}
 
 bool learn_contacts(const Model& model, const StepInputs& inputs, Workspace& w) {
   Iterate& at = w.current;
