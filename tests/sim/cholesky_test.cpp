@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <chrono>
 #include <csignal>
 #include <random>
 #include <thread>
 
 #include "base/error.h"
+#include "support/bodies.h"
 #include "support/sparse_matrices.h"
 
 namespace supple {
@@ -179,6 +181,41 @@ TEST(CholeskyFactor, NamesTheUnknownWhosePivotIsNotPositive) {
   EXPECT_THROW(factor.factorize(matrix, Precision::double_precision), RunError);
   factor.factorize(sound, Precision::double_precision);
   EXPECT_LT(residual(sound, factor), 1e-13);
+}
+
+TEST(Cholesky, SolvesTheSystemOfABodyInBothPrecisions) {
+  const BodyDescription body = test::bar(Corotated{1e5, 2e5}, test::Held::nothing, Precision::double_precision, 3);
+  const Model exact = build_model(body);
+  BodyDescription rough = body;
+  rough.precision = Precision::single_precision;
+  const Model single = build_model(rough);
+  const Positions b = test::shaken(Positions::Zero(exact.free, 3), 1, 9);
+  Positions x(exact.free, 3), y(exact.free, 3);
+  AlignedVector<double> scratch(4 * exact.free);
+  exact.factor.solve(b.data(), x.data(), scratch.data());
+  single.factor.solve(b.data(), y.data(), scratch.data());
+  EXPECT_LT((x - y).norm(), 1e-4 * x.norm());
+
+  // Solves A x = b, with A applied as the second derivative of the quadratic part: M/h^2 x + L x, element by element.
+  Positions product(exact.free, 3);
+  for (int v = 0; v < exact.free; ++v) product.row(v) = exact.mass[v] / (exact.time_step * exact.time_step) * x.row(v);
+  for (Eigen::Index e = 0; e < body.mesh.tets.rows(); ++e) {
+    Mat3 edges;
+    for (int k = 0; k < 3; ++k)
+      edges.col(k) =
+          (body.mesh.rest.row(body.mesh.tets(e, k + 1)) - body.mesh.rest.row(body.mesh.tets(e, 0))).transpose();
+    Eigen::Matrix<double, 4, 3> g;
+    g.bottomRows<3>() = edges.inverse();
+    g.row(0) = -g.bottomRows<3>().colwise().sum();
+    const double weight = edges.determinant() / 6 * exact.stiffness[0].k;
+    for (int a = 0; a < 4; ++a) {
+      for (int c = 0; c < 4; ++c) {
+        product.row(exact.internal_of[body.mesh.tets(e, a)]) +=
+            weight * g.row(a).dot(g.row(c)) * x.row(exact.internal_of[body.mesh.tets(e, c)]);
+      }
+    }
+  }
+  EXPECT_LT((product - b).norm(), 1e-10 * b.norm());
 }
 
 }  // namespace

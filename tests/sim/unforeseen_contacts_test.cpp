@@ -11,18 +11,14 @@ namespace {
 using test::cube;
 using test::shape_of;
 
-// Begins a step from the scene's state, and moves all free vertices of an iterate from where they start.
-void begin(test::ContactScene& scene) {
-  scene.w.prepare(scene.model, scene.inputs.solver);
-  begin_step(scene.model, scene.inputs, scene.state, scene.w);
-}
+// Moves all free vertices of an iterate from where the step began, and finds the contacts there.
 void place(test::ContactScene& scene, Iterate& iterate, const Vec3& moved) {
   iterate.x = scene.state.x;
   iterate.x.topRows(scene.model.free).rowwise() += moved.transpose();
   find_contacts_of(scene.model, scene.inputs, scene.w, iterate);
 }
 
-// What is learned belongs to the objective of the current iterate and to its gradient, as if it had been found there.
+// The contacts that the current iterate learns count in its objective and gradient as if they had been found there.
 TEST(UnforeseenContacts, AreLearnedByTheCurrentIterate) {
   const Collider post{"post", shape_of(Capsule{Vec3(0.012, -1, 0.021), Vec3(0.012, -0.004, 0.021), 0.004}), 0, 0.4};
   const Collider ground{"ground", shape_of(HalfSpace{Vec3::UnitY(), -0.05}), 0, 0.4};
@@ -30,7 +26,8 @@ TEST(UnforeseenContacts, AreLearnedByTheCurrentIterate) {
     test::ContactScene scene(cube(3), {post, ground}, Vec3(0, 0.15, 0));
     scene.inputs.solver.contact.points = ContactPoints::surface;
     scene.state.v.col(1).setConstant(-6);
-    begin(scene);
+    scene.w.prepare(scene.model, scene.inputs.solver);
+    begin_step(scene.model, scene.inputs, scene.state, scene.w);
     place(scene, scene.w.current, Vec3(0, before, 0));
     scene.w.current.contacts.clear();  // as if nothing had been near
     evaluate(scene.model, scene.w, scene.w.current, Wanted::gradient);

@@ -1,4 +1,4 @@
-// The order of contacts in a list: by collider, then by number of the point.
+// Defines the order of contacts in a list: by collider, then by number of the point.
 #pragma once
 
 #include "sim/contact/contact.h"

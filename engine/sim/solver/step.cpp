@@ -82,11 +82,17 @@ Search find_next(const Model& model, const StepInputs& inputs, Workspace& w, Sea
     return Search::found;
   }
   constexpr int most_lessons = 3;
-  for (int lessons = 0;; ++lessons) {
+  int lessons = 0;
+  for (;;) {
     const Search search = search_line(model, inputs, w, slope, lessons < most_lessons, change, record);
-    if (search == Search::failed ? !rule.forget() : search != Search::unforeseen) return search;
-    if (search == Search::failed) lessons = most_lessons;
-    if (search == Search::unforeseen) rule.contacts_changed(inputs);
+    if (search == Search::unforeseen) {
+      ++lessons;
+      rule.contacts_changed(inputs);
+    } else if (search == Search::failed && rule.forget()) {
+      lessons = most_lessons;
+    } else {
+      return search;
+    }
     const Descent again = next_direction(model, inputs, w, rule);
     if (again.done) return Search::exhausted;
     slope = again.slope;
