@@ -105,6 +105,7 @@ const StepInputs& SolverComparison::put(const BenchState& state) {
 StepInputs SolverComparison::inputs_of(const BenchState& state, const SolverEntry& entry) {
   StepInputs inputs = put(state);
   inputs.solver.iterations = entry.iterations;
+  inputs.solver.rounds = 1;
   inputs.solver.history = entry.history;
   inputs.solver.line_search = entry.line_search;
   inputs.solver.chebyshev = entry.chebyshev;

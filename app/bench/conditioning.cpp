@@ -7,8 +7,9 @@
 #include <cmath>
 
 #include "app/bench/sections.h"
-#include "baselines/hessian.h"
+#include "baselines/system_matrix.h"
 #include "film/places.h"
+#include "sim/solver/hessian_matrix.h"
 
 namespace supple {
 namespace {

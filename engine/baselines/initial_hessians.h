@@ -5,8 +5,9 @@
 #include <Eigen/IterativeLinearSolvers>
 
 #include "baselines/conjugate_gradients.h"
-#include "baselines/hessian.h"
+#include "baselines/system_matrix.h"
 #include "sim/model/method.h"
+#include "sim/solver/hessian_matrix.h"
 #include "sim/solver/lbfgs.h"
 
 namespace supple {

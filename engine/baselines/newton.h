@@ -2,8 +2,8 @@
 #pragma once
 
 #include "baselines/conjugate_gradients.h"
-#include "baselines/hessian.h"
 #include "sim/model/method.h"
+#include "sim/solver/hessian_matrix.h"
 #include "sim/solver/search_rule.h"
 
 namespace supple {

@@ -21,6 +21,7 @@ void add_up(BodyRow& row, const StepReport& report) {
   row.matrix_ms += report.matrix_ms;
   row.other_ms += report.other_ms;
   row.iterations += report.iterations;
+  row.newton_iterations += report.newton_iterations;
   row.line_search += report.line_search;
   row.objective_start = report.objective.empty() ? 0 : report.objective.front();
   row.objective_end = report.objective.empty() ? 0 : report.objective.back();

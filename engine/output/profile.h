@@ -38,8 +38,8 @@ struct BalanceRow {
 struct BodyRow {
   std::string name;
   double step_ms = 0, evaluate_ms = 0, solve_ms = 0, lbfgs_ms = 0, matrix_ms = 0, other_ms = 0;
-  int iterations = 0, line_search = 0;
-  double objective_start = 0, objective_end = 0;  // [J]
+  int iterations = 0, newton_iterations = 0, line_search = 0;  // the second: of these, those that finished hard steps
+  double objective_start = 0, objective_end = 0;               // [J]
   double error_estimate = 0;
   bool error_measured = false;
   std::optional<double> error;                  // equation 12; null where the start is already the minimum to round-off

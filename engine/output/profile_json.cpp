@@ -26,6 +26,7 @@ Json json_of(const BodyRow& body) {
               {"matrix_ms", rounded_ms(body.matrix_ms)},
               {"other_ms", rounded_ms(body.other_ms)},
               {"iterations", body.iterations},
+              {"newton_iterations", body.newton_iterations},
               {"line_search", body.line_search},
               {"objective_start", body.objective_start},
               {"objective_end", body.objective_end},
@@ -96,6 +97,7 @@ BodyRow body_row(const Json& json) {
   row.matrix_ms = json.value("matrix_ms", 0.0);  // earlier programs did not write it
   json.at("other_ms").get_to(row.other_ms);
   json.at("iterations").get_to(row.iterations);
+  row.newton_iterations = json.value("newton_iterations", 0);  // likewise
   json.at("line_search").get_to(row.line_search);
   json.at("objective_start").get_to(row.objective_start);
   json.at("objective_end").get_to(row.objective_end);

@@ -16,10 +16,8 @@ struct UnsolvedStep {
   double trials;  // of the line search, an iteration
 };
 
-// Tells whether a step with these figures is named: an estimate above 0.1, or more than four trials an iteration.
-bool is_unsolved(double error_estimate, int iterations, int trials);
-
-// Lists the bodies' frames with an estimate above 0.1 or more than four trials an iteration.
+// Lists the bodies' frames that are unsolved (base/unsolved_step.h). Of steps that Newton's method finished, the
+// estimate alone counts: their trials tell how hard the iterations before had it.
 std::vector<UnsolvedStep> unsolved_steps(const std::vector<FrameRow>& rows);
 
 // "3 of 400 frames were not solved: ...", with the worst of each body; empty where there are none.

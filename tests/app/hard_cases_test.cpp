@@ -57,9 +57,7 @@ select = { box = [[0, 0.999, 0], [1, 1, 1]] }
 )";
 
 TEST_F(HardCases, AnOverloadedBodyGainsNoEnergy) {
-  const std::string said = film(overloaded).err;  // ten iterations leave frames unsolved, and that is said
-  EXPECT_NE(said.find("frames did not come near their solution"), std::string::npos) << said;
-  EXPECT_EQ(said.find("energy"), std::string::npos) << said;
+  EXPECT_EQ(film(overloaded).err, "");
   EXPECT_LT(from_nothing(), 0.05);
   EXPECT_LT(largest("stretch"), 30);
   EXPECT_TRUE(profile_["summary"]["warnings"].empty());

@@ -6,8 +6,8 @@
 
 #include <Eigen/Dense>
 
-#include "baselines/hessian.h"
 #include "sim/model/vertex_rotations.h"
+#include "sim/solver/hessian_matrix.h"
 #include "support/bodies.h"
 
 namespace supple {

@@ -1,6 +1,6 @@
 // Tests second derivatives: elements and the assembled matrix against differences of the gradient, projections against
 // a dense eigenvalue clamp, and the directions that are computed from them.
-#include "baselines/hessian.h"
+#include "sim/solver/hessian_matrix.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "baselines/make_rule.h"
 #include "baselines/newton.h"
+#include "baselines/system_matrix.h"
 #include "sim/model/element_view.h"
 #include "sim/solver/first_iterate.h"
 #include "support/bodies.h"

@@ -7,11 +7,11 @@
 
 #include "baselines/element_corner.h"
 #include "baselines/element_proximal.h"
-#include "baselines/hessian.h"
 #include "baselines/make_rule.h"
 #include "baselines/vertex_blocks.h"
 #include "sim/model/element_view.h"
 #include "sim/solver/first_iterate.h"
+#include "sim/solver/hessian_matrix.h"
 #include "sim/solver/objective.h"
 #include "sim/solver/step.h"
 #include "support/bodies.h"

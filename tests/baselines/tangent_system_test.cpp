@@ -6,7 +6,7 @@
 
 #include <Eigen/Dense>
 
-#include "baselines/hessian.h"
+#include "sim/solver/hessian_matrix.h"
 #include "support/bodies.h"
 
 namespace supple {

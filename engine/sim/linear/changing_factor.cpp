@@ -57,13 +57,7 @@ bool ChangingFactor::factorize(const Eigen::SparseMatrix<double>& matrix) {
   return true;
 }
 
-double ChangingFactor::operations() const {
-  double count = 0;
-  for (const Supernode& node : elimination_->nodes) {
-    for (double rows = node.row_count + node.width(); rows > node.row_count; --rows) count += rows * rows;
-  }
-  return count;
-}
+double ChangingFactor::operations() const { return elimination_->operations(); }
 
 template <class T>
 void ChangingFactor::solve_in_place(const AlignedVector<T>& columns, T* x, T* scratch) const {

@@ -67,6 +67,9 @@ class CholeskyFactor {
   int size() const { return size_; }
   std::int64_t stored_numbers() const { return static_cast<std::int64_t>(single_.size() + double_.size()); }
 
+  // Counts the multiplications and additions of one factorisation.
+  double operations() const { return elimination_.operations(); }
+
   // x = A^-1 b for b and x with `size` rows, interleaved. scratch: 4 * size doubles.
   void solve(const double* b, double* x, double* scratch) const;
 

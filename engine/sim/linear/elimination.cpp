@@ -134,4 +134,12 @@ Elimination Elimination::of(const Eigen::SparseMatrix<double>& matrix) {
   return out;
 }
 
+double Elimination::operations() const {
+  double count = 0;
+  for (const Supernode& node : nodes) {
+    for (double left = node.row_count + node.width(); left > node.row_count; --left) count += left * left;
+  }
+  return count;
+}
+
 }  // namespace supple

@@ -36,6 +36,9 @@ struct Elimination {
   std::int64_t most_column_numbers = 0;    // of one front
   std::int64_t deepest_stack[2] = {0, 0};  // numbers of update matrices that wait at one time, of even and odd levels
 
+  // Counts the multiplications and additions that it takes.
+  double operations() const;
+
   // Takes the pattern of the lower triangle, whose unknowns are eliminated in their order; ignores what is above it.
   static Elimination of(const Eigen::SparseMatrix<double>& matrix);
 };

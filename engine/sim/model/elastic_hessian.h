@@ -1,5 +1,5 @@
 // Assembles the Hessian of a step's objective over the free vertices without contacts, 3n x 3n: pattern and places are
-// found once for each model. Not here: contacts (baselines/hessian.h), and when it is made (solver/matrix_rule.h).
+// found once for each model. Not here: contacts (solver/hessian_matrix.h), and when it is made (solver/matrix_rule.h).
 #pragma once
 
 #include <Eigen/SparseCore>

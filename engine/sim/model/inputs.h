@@ -113,7 +113,8 @@ struct SolverSettings {
   double armijo = 0.3;      // gamma
   double target_error = 0;  // stop when the error estimate falls below; 0: do all iterations
   double budget_ms = 0;     // of one step: no iteration begins that would probably end later; 0: no bound
-  int rounds = 5;           // of `iterations`, at most, where the answer so far gains energy from nothing
+  int rounds = 5;           // of `iterations`, at most, where the answer so far is far from the minimum
+  bool newton = true;       // rounds after the first are Newton's (solver/newton_finish.h)
   ContactSettings contact;
   ChebyshevSettings chebyshev;
 };

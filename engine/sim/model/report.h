@@ -53,6 +53,7 @@ struct StepReport {
   double other_ms = 0;     // the rest; the six add up to step_ms
   double start_ms = 0;     // until the first iterate was evaluated
   int iterations = 0;
+  int newton_iterations = 0;             // of these, those that finished a hard step
   int line_search = 0;                   // trial evaluations
   std::vector<double> objective;         // g by iteration, the start first; reserved by the workspace [J]
   std::vector<IterationRecord> records;  // by iteration

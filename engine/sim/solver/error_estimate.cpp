@@ -63,13 +63,17 @@ double below_prediction(const Model& model, const StepInputs& inputs, Workspace&
 
 }  // namespace
 
+// A contact that is found on the way raises g, which takes nothing from what the searches gained.
+double gained_in_all(const Model& model, const StepInputs& inputs, Workspace& w, double gained) {
+  double searched = 0;
+  for (const IterationRecord& iteration : w.report.records) searched += std::max(0.0, iteration.decrease);
+  return std::max({gained, searched, below_prediction(model, inputs, w)});
+}
+
 double error_at_end(const Model& model, const StepInputs& inputs, Workspace& w, double gained) {
   const double left = w.report.remaining_estimate;
   if (left <= noise_of(model, w.current.g, extent_of(model, w))) return 0;
-  // A contact that is found on the way raises g, which takes nothing from what the searches gained.
-  double searched = 0;
-  for (const IterationRecord& iteration : w.report.records) searched += std::max(0.0, iteration.decrease);
-  return error_of(left, std::max({gained, searched, below_prediction(model, inputs, w)}));
+  return error_of(left, gained_in_all(model, inputs, w, gained));
 }
 
 }  // namespace supple

@@ -39,6 +39,10 @@ double error_of(double left, double gained);
 // which equation 12 counts as gained [J].
 bool is_near_enough(const StepReport& report, const SolverSettings& solver, double above_start);
 
+// Returns what the step to the current iterate gained since y. gained: the decrease of g over its iterations, with what
+// is known to have been gained before. All in J. Overwrites the trial iterate.
+double gained_in_all(const Model& model, const StepInputs& inputs, Workspace& workspace, double gained);
+
 // Estimates the error at the end of a step that has gained so much [J]. A body at rest has next to nothing to gain;
 // what is left is then no error, however much of it that is, where it is lost in the round-off of g. Overwrites the
 // trial iterate.

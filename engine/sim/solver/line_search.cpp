@@ -63,7 +63,7 @@ Search backtrack(const Model& model, const StepInputs& inputs, Workspace& w, dou
     if (refused == 0 && may_learn && learn_contacts(model, inputs, w)) return Search::unforeseen;
     // A shorter step helps against contacts of which the current iterate can't learn, but not where the energy itself
     // jumps (a vertex that passes an edge).
-    if (++refused == most_refusals) return Search::found;
+    if (++refused == most_refusals) return Search::worse;
   }
   return Search::failed;
 }

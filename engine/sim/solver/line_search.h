@@ -8,6 +8,7 @@ namespace supple {
 
 enum class Search {
   found,
+  worse,  // found, but the contacts there, which the current iterate could not learn, make it worse
   failed,
   unforeseen,  // contacts lay on the way, which the current iterate knows now: another direction is needed
   exhausted,   // what the direction promises is below what the gradient's own round-off decides

@@ -90,6 +90,7 @@ namespace {
 
 // `report` is the whole step's.
 double progress_of(const StepReport& report) {
+  if (report.newton_iterations > 0) return 1;
   const double left = std::clamp(report.error_estimate, round_off, 1.0);
   return std::pow(left, 1.0 / std::max(report.line_search, 1));
 }

@@ -11,12 +11,14 @@
 #include <utility>
 
 #include "base/trace.h"
+#include "base/unsolved_step.h"
 #include "sim/solver/carried_pair.h"
 #include "sim/solver/energy_gain.h"
 #include "sim/solver/error_estimate.h"
 #include "sim/solver/lbfgs.h"
 #include "sim/solver/line_search.h"
 #include "sim/solver/matrix_rule.h"
+#include "sim/solver/newton_finish.h"
 
 namespace supple {
 namespace {
@@ -135,7 +137,8 @@ void accept(const Model& model, const StepInputs& inputs, Workspace& w, SearchRu
 // Tells what a step began with.
 struct Origin {
   const State& state;
-  double above_start;  // g(y) - g of its first iterate, where that is known [J]
+  double above_start;   // g(y) - g of its first iterate, where that is known [J]
+  bool newton_follows;  // where the iterations come to nothing
 };
 
 // Tells whether the step, left as it is, would gain energy from nothing. This costs an evaluation, so only steps are
@@ -182,10 +185,20 @@ class TimeBudget {
   std::optional<int> repeated_;  // -1 where the earlier run's search was not ended
 };
 
-// Runs the iterations of algorithm 1 from the current iterate, which has been evaluated. With the origin of a step,
-// goes on for some rounds where the answer gains energy from nothing. budget: null where time has no bound.
-void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, double enough,
-                    TimeBudget* budget = nullptr, const Origin* origin = nullptr) {
+// Tells where a search ends at the latest.
+struct Limits {
+  int iterations;
+  int iterations_of_rounds;      // where the answer so far gains energy from nothing
+  double enough = 0;             // a direction that promises less ends the search, -tr(grad^T d) [J]
+  TimeBudget* budget = nullptr;  // null: time has no bound
+  bool newton_follows = false;   // the search ends where it tries too many points: Newton's method does better there
+  bool finishing = false;        // it makes one iteration at least, and ends where contacts make the next iterate worse
+};
+
+// Runs the iterations of algorithm 1 from the current iterate, which has been evaluated. origin: of the step that the
+// search begins; null for other searches, which make no more rounds.
+void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, const Limits& limits,
+                    const Origin* origin = nullptr) {
   const SolverSettings& solver = inputs.solver;
   StepReport& report = w.report;
   const std::size_t first = report.objective.size() - 1;
@@ -199,11 +212,12 @@ void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
   report.iterations = 0;
   const double above_start = origin != nullptr ? origin->above_start : 0;
   Decrements decrements;
-  for (int most = solver.iterations;;) {
-    const bool late = budget != nullptr && budget->is_spent(report.iterations);
-    bool spent = late || report.iterations >= most;
+  for (int most = limits.iterations;;) {
+    const bool late = limits.budget != nullptr && limits.budget->is_spent(report.iterations);
+    const bool hopeless = limits.newton_follows && is_unsolved(0, limits.iterations, report.line_search);
+    bool spent = late || hopeless || report.iterations >= most;
     if (late) report.stop_reason = StopReason::budget;
-    if (spent && !late && origin != nullptr && most < solver.rounds * solver.iterations &&
+    if (spent && !late && !hopeless && origin != nullptr && most < limits.iterations_of_rounds &&
         gains_energy(model, inputs, *origin, w, rule.needs_gradient())) {
       most += solver.iterations;
       spent = false;
@@ -213,7 +227,8 @@ void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
     if (!std::isfinite(descent.slope)) return fail(model, w, "solve", descent.slope);
     report.decrement = descent.done ? 0 : -0.5 * descent.slope;
     if (rule.measures_last_iterate()) report.remaining_estimate = decrements.left(2 * report.decrement);
-    if (descent.done || -descent.slope <= enough) {
+    const bool has_enough = -descent.slope <= limits.enough && !(limits.finishing && report.iterations == 0);
+    if (descent.done || has_enough) {
       report.stop_reason = StopReason::round_off;
       break;
     }
@@ -226,7 +241,7 @@ void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
     IterationRecord record;
     const double before = w.current.g;
     const Search search = find_next(model, inputs, w, rule, descent.slope, change, record);
-    if (search != Search::found) {
+    if (search != Search::found && (search != Search::worse || limits.finishing)) {
       // A first search that finds nothing above round-off leaves nothing to gain, and nothing to compare it with.
       if (search == Search::exhausted && report.iterations == 0) report.remaining_estimate = 0;
       report.stop_reason = search == Search::exhausted ? StopReason::round_off : StopReason::line_search_failed;
@@ -254,7 +269,7 @@ void minimize(const Model& model, const StepInputs& inputs, Workspace& w, double
 
 void minimize(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, double enough) {
   evaluate_start(model, inputs, w);
-  run_iterations(model, inputs, w, rule, enough);
+  run_iterations(model, inputs, w, rule, {inputs.solver.iterations, 0, enough});
 }
 
 namespace {
@@ -326,8 +341,34 @@ void descend_from_staying(const Model& model, const StepInputs& inputs, const Or
   evaluate_start(model, inputs, w);
   TimeBudget budget(inputs, w, TimeBudget::from_staying);
   const double enough = small_share * std::max(0.0, report.decrease + origin.above_start);
-  run_iterations(model, inputs, w, rule, enough, &budget);
+  run_iterations(model, inputs, w, rule, {inputs.solver.iterations, 0, enough, &budget, origin.newton_follows});
   report.iterations += iterations;
+}
+
+// Goes on by Newton's method where a step that has made its iterations is far from its minimum, or gained energy from
+// nothing, until a direction promises next to nothing of what the step has gained, but never uphill.
+void finish_by_newton(const Model& model, const StepInputs& inputs, const Origin& origin, Workspace& w) {
+  constexpr double small_share = 1e-4, smaller_share = 1e-8;  // energy from nothing needs few of them
+  StepReport& report = w.report;
+  const bool gains = gains_energy(model, inputs, origin, w, true);
+  if (!gains && !is_unsolved(report.error_estimate, report.iterations, report.line_search)) return;
+  const double gained = gained_in_all(model, inputs, w, report.decrease + origin.above_start);
+  const double left = report.remaining_estimate;
+  const int iterations = report.iterations;
+  ++w.carrying.searches;
+  NewtonFinish newton;
+  Limits limits{(inputs.solver.rounds - 1) * inputs.solver.iterations, 0,
+                (gains ? smaller_share : small_share) * gained};
+  limits.finishing = true;
+  run_iterations(model, inputs, w, newton, limits);
+  report.newton_iterations = report.iterations;
+  report.iterations += iterations;
+  if (w.direction.isZero(0)) {
+    report.remaining_estimate = left;  // there was no direction
+  } else if (report.stop_reason != StopReason::iterations) {
+    report.remaining_estimate = report.decrement;
+  }
+  report.error_estimate = error_at_end(model, inputs, w, report.decrease + origin.above_start);
 }
 
 // Sets the new velocity. For backward Euler it is v = (x - q)/h. For midpoint it is the velocity whose mean with the
@@ -390,12 +431,16 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   report.start_ms = w.clock.elapsed_ms();
   zone.next("iterate");
   TimeBudget budget(inputs, w, TimeBudget::from_first_iterate);
-  const Origin origin{state, above_start};
-  run_iterations(model, inputs, w, rule, 0, &budget, &origin);
+  const Origin origin{state, above_start, may_finish_by_newton(model, inputs)};
+  run_iterations(
+      model, inputs, w, rule,
+      {inputs.solver.iterations, inputs.solver.rounds * inputs.solver.iterations, 0, &budget, origin.newton_follows},
+      &origin);
   zone.next("end step");
   if (!report.failed && inputs.solver.line_search != LineSearch::none)
     descend_from_staying(model, inputs, origin, w, rule);
   report.error_estimate = error_at_end(model, inputs, w, report.decrease + above_start);
+  if (origin.newton_follows && !report.failed) finish_by_newton(model, inputs, origin, w);
   const Positions& x = w.current.x;
   if (!report.failed && !x.allFinite()) fail(model, w, "step", std::numeric_limits<double>::quiet_NaN());
   if (!report.failed) {

@@ -10,6 +10,7 @@
 #include "sim/model/tangent_system.h"
 #include "sim/solver/carrying_work.h"
 #include "sim/solver/iterate.h"
+#include "sim/solver/newton_system.h"
 #include "sim/solver/step_clock.h"
 
 namespace supple {
@@ -39,6 +40,8 @@ struct Workspace {
   bool hessian_serves = false;
   Positions next_matrix_at;  // q + h v, where a matrix is made if this step makes one, n x 3 [m]
   bool renewed = false;      // it did
+
+  NewtonSystem newton;  // empty until a step is finished by it
 
   // The pairs of L-BFGS are stored in a ring.
   std::vector<Positions> step_pairs, gradient_pairs;  // s [m] and t [N]

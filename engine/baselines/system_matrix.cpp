@@ -1,43 +1,10 @@
-#include "baselines/hessian.h"
+#include "baselines/system_matrix.h"
 
 #include <algorithm>
 
-#include "base/error.h"
 #include "sim/model/element_view.h"
 
 namespace supple {
-
-void HessianMatrix::assemble(const Model& model, const ElementMatrices& elements, const std::vector<Contact>& contacts,
-                             double stick_length, const Positions& x) {
-  ElasticHessian::assemble(model, elements);
-  for (const Contact& contact : contacts) {
-    const Mat3 along = contact.normal * contact.normal.transpose();
-    Mat3 part = Mat3::Zero();
-    if (gap(contact, x) < 0) part += 2 * contact.stiffness * along;
-    if (contact.friction > 0) part += friction_stiffness(contact, x, stick_length) * (Mat3::Identity() - along);
-    const ContactPoint& point = contact.point;
-    for (int i = 0; i < point.free; ++i) {
-      for (int j = 0; j <= i; ++j) add(point.vertex[i], point.vertex[j], point.weight[i] * point.weight[j] * part);
-    }
-  }
-}
-
-void HessianMatrix::assemble(const Model& model, Workspace& workspace, bool project) {
-  const Positions& x = workspace.current.x;
-  const double theta = model.scheme.theta;
-  if (theta < 1) workspace.middle = theta * x + (1 - theta) * workspace.start_copy;
-  element_matrices(model, workspace.threads, theta < 1 ? workspace.middle : x, project, scratch_);
-  assemble(model, scratch_, workspace.current.contacts, workspace.contact.stick_length, x);
-}
-
-void factorize_projected(HessianMatrix& hessian, ChangingFactor& factor) {
-  double shift = 1e-10 * hessian.matrix().diagonal().mean();
-  for (int tries = 0; !factor.factorize(hessian.matrix()); ++tries) {
-    if (tries == 12) throw RunError("a projected Hessian has no Cholesky factor: its numbers are not finite");
-    hessian.shift(shift);
-    shift *= 100;
-  }
-}
 
 SparseMatrix system_matrix_of(const Model& model) {
   const double scale = model.scheme.energy * model.scheme.theta * model.scheme.theta;

@@ -1,0 +1,50 @@
+#include "sim/solver/hessian_matrix.h"
+
+#include "base/error.h"
+
+namespace supple {
+
+Mat3 stiffness_of(const Contact& contact, const Positions& x, double stick_length) {
+  const Mat3 along = contact.normal * contact.normal.transpose();
+  Mat3 stiffness = Mat3::Zero();
+  if (gap(contact, x) < 0) stiffness += 2 * contact.stiffness * along;
+  if (contact.friction > 0) stiffness += friction_stiffness(contact, x, stick_length) * (Mat3::Identity() - along);
+  return stiffness;
+}
+
+void HessianMatrix::assemble(const Model& model, const ElementMatrices& elements, const std::vector<Contact>& contacts,
+                             double stick_length, const Positions& x) {
+  ElasticHessian::assemble(model, elements);
+  for (const Contact& contact : contacts) add_stiffness(contact.point, stiffness_of(contact, x, stick_length));
+}
+
+void HessianMatrix::add_stiffness(const ContactPoint& point, const Mat3& stiffness) {
+  for (int i = 0; i < point.free; ++i) {
+    for (int j = 0; j <= i; ++j) add(point.vertex[i], point.vertex[j], point.weight[i] * point.weight[j] * stiffness);
+  }
+}
+
+void HessianMatrix::assemble(const Model& model, Workspace& workspace, bool project) {
+  const Positions& x = workspace.current.x;
+  const double theta = model.scheme.theta;
+  if (theta < 1) workspace.middle = theta * x + (1 - theta) * workspace.start_copy;
+  element_matrices(model, workspace.threads, theta < 1 ? workspace.middle : x, project, scratch_);
+  assemble(model, scratch_, workspace.current.contacts, workspace.contact.stick_length, x);
+}
+
+bool try_factorize_projected(HessianMatrix& hessian, ChangingFactor& factor) {
+  double shift = 1e-10 * hessian.matrix().diagonal().mean();
+  for (int tries = 0; !factor.factorize(hessian.matrix()); ++tries) {
+    if (tries == 12) return false;
+    hessian.shift(shift);
+    shift *= 100;
+  }
+  return true;
+}
+
+void factorize_projected(HessianMatrix& hessian, ChangingFactor& factor) {
+  if (!try_factorize_projected(hessian, factor))
+    throw RunError("a projected Hessian has no Cholesky factor: its numbers are not finite");
+}
+
+}  // namespace supple

@@ -1,0 +1,42 @@
+// Assembles the Hessian of g with its contacts over the free vertices, 3n x 3n, which Newton's method and several
+// initial Hessians use.
+#pragma once
+
+#include "sim/contact/contact.h"
+#include "sim/linear/changing_factor.h"
+#include "sim/model/elastic_hessian.h"
+#include "sim/solver/workspace.h"
+
+namespace supple {
+
+// Returns the stiffness of a contact in force at x, with friction by the stiffness of its secant [N/m]. `stick_length`:
+// above this slip, friction has its full strength [m].
+Mat3 stiffness_of(const Contact& contact, const Positions& x, double stick_length);
+
+class HessianMatrix : public ElasticHessian {
+ public:
+  using ElasticHessian::ElasticHessian;
+
+  // Sums up what ElasticHessian does, and stiffness_of() the contacts.
+  void assemble(const Model& model, const ElementMatrices& elements, const std::vector<Contact>& contacts,
+                double stick_length, const Positions& x);
+
+  // Assembles d^2 g at workspace.current with the contacts found there; with `project` each element's Hessian is
+  // projected first.
+  void assemble(const Model& model, Workspace& workspace, bool project);
+
+  // Adds a stiffness against motions of a point between vertices [N/m].
+  void add_stiffness(const ContactPoint& point, const Mat3& stiffness);
+
+ private:
+  ElementMatrices scratch_;
+};
+
+// Factors a sum of projected matrices, which is positive definite up to round-off. Where round-off makes it indefinite,
+// a shift of that size corrects it. Returns false when no such shift is enough.
+bool try_factorize_projected(HessianMatrix& hessian, ChangingFactor& factor);
+
+// The same, but throws RunError.
+void factorize_projected(HessianMatrix& hessian, ChangingFactor& factor);
+
+}  // namespace supple

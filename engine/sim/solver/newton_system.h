@@ -1,0 +1,35 @@
+// Computes directions of Newton's method: from the Hessian of g at the current iterate, contacts included, with each
+// element's part projected to be positive semi-definite. It is factored anew for each direction, which costs as much as
+// 50 to 250 evaluations, so only steps that come to nothing otherwise use it (newton_finish.h).
+#pragma once
+
+#include <memory>
+
+#include "sim/model/inputs.h"
+#include "sim/model/model.h"
+
+namespace supple {
+
+struct Workspace;
+
+class NewtonSystem {
+ public:
+  NewtonSystem();
+  ~NewtonSystem();
+  NewtonSystem(NewtonSystem&&) noexcept;
+  NewtonSystem& operator=(NewtonSystem&&) noexcept;
+
+  // Sets workspace.direction at workspace.current; returns tr(grad^T d) [J]. Planes that are near and that the
+  // direction would lead through hold it, as foresee_contacts does (contact_direction.h). Allocates only for another
+  // structure than last time. Where the numbers are too large for a factor, the direction is zero.
+  double direction(const Model& model, const StepInputs& inputs, Workspace& workspace);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+// Returns about how many evaluations of the body's elements one such direction costs, by counts alone.
+double newton_cost(const Model& model);
+
+}  // namespace supple
