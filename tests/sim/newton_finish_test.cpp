@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 
 #include "base/threads.h"
+#include "baselines/make_rule.h"
 #include "baselines/reference.h"
 #include "sim/solver/first_iterate.h"
 #include "sim/solver/hessian_matrix.h"
@@ -74,6 +75,28 @@ TEST(NewtonFinish, LeavesEasyStepsAlone) {
     without.step();
     ASSERT_EQ(scene.state.x, without.state.x) << step;
   }
+}
+
+// A rule that does not estimate what is left before its first iteration had been taken to be at the minimum there.
+TEST(NewtonFinish, IsNotEndedByATargetErrorBeforeItHasBegun) {
+  Impact impact(6);
+  impact.scene.inputs.solver.target_error = 1e-5;
+  int hard = 0;
+  for (int step = 0; step < 20; ++step) {
+    impact.move();
+    const StepReport& report = impact.scene.step();
+    hard += report.newton_iterations;
+    EXPECT_LT(report.error_estimate, 0.1) << step;
+  }
+  EXPECT_GT(hard, 0);
+
+  const Model model = build_model(test::bar(NeoHookean{1e4, 4e4}, test::Held::hard_end));
+  StepInputs inputs = test::still_inputs(model);
+  inputs.solver.target_error = 1e-5;
+  State state = rest_state(model);
+  Workspace w;
+  const auto newton = make_rule(Method::newton, model);
+  EXPECT_GT(step(model, inputs, state, w, *newton).iterations, 1);
 }
 
 TEST(NewtonFinish, HasTheSameBitsForAnyNumberOfThreads) {

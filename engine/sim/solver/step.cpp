@@ -233,7 +233,7 @@ void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
       break;
     }
     if (spent) break;
-    if (is_near_enough(report, solver, above_start)) {
+    if (rule.measures_last_iterate() && is_near_enough(report, solver, above_start)) {
       report.stop_reason = StopReason::target_error;
       break;
     }
