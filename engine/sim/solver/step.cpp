@@ -196,15 +196,18 @@ struct Limits {
 };
 
 // Runs the iterations of algorithm 1 from the current iterate, which has been evaluated. origin: of the step that the
-// search begins; null for other searches, which make no more rounds.
-void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, const Limits& limits,
+// search begins; null for other searches, which make no more rounds. Returns whether it gave up because of its trials.
+bool run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, const Limits& limits,
                     const Origin* origin = nullptr) {
   const SolverSettings& solver = inputs.solver;
   StepReport& report = w.report;
   const std::size_t first = report.objective.size() - 1;
   const double start = w.current.g;
   report.remaining_estimate = 0;
-  if (!std::isfinite(start)) return fail(model, w, "evaluate", start);
+  if (!std::isfinite(start)) {
+    fail(model, w, "evaluate", start);
+    return false;
+  }
   rule.begin(model, inputs, w);
 
   report.stop_reason = StopReason::iterations;
@@ -212,9 +215,11 @@ void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
   report.iterations = 0;
   const double above_start = origin != nullptr ? origin->above_start : 0;
   Decrements decrements;
+  const int tried = report.line_search;
+  bool hopeless = false;
   for (int most = limits.iterations;;) {
     const bool late = limits.budget != nullptr && limits.budget->is_spent(report.iterations);
-    const bool hopeless = limits.newton_follows && is_unsolved(0, limits.iterations, report.line_search);
+    hopeless = limits.newton_follows && is_unsolved(0, most, report.line_search - tried);
     bool spent = late || hopeless || report.iterations >= most;
     if (late) report.stop_reason = StopReason::budget;
     if (spent && !late && !hopeless && origin != nullptr && most < limits.iterations_of_rounds &&
@@ -224,7 +229,10 @@ void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
     }
     if (spent && !rule.measures_last_iterate()) break;
     const Descent descent = next_direction(model, inputs, w, rule);
-    if (!std::isfinite(descent.slope)) return fail(model, w, "solve", descent.slope);
+    if (!std::isfinite(descent.slope)) {
+      fail(model, w, "solve", descent.slope);
+      break;
+    }
     report.decrement = descent.done ? 0 : -0.5 * descent.slope;
     if (rule.measures_last_iterate()) report.remaining_estimate = decrements.left(2 * report.decrement);
     const bool has_enough = -descent.slope <= limits.enough && !(limits.finishing && report.iterations == 0);
@@ -249,7 +257,10 @@ void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
     }
     accept(model, inputs, w, rule, before, change, record);
     decrements.add(-descent.slope, record.decrease);
-    if (absurd(model, w.current.g, start)) return fail(model, w, "line search", w.current.g);
+    if (absurd(model, w.current.g, start)) {
+      fail(model, w, "line search", w.current.g);
+      break;
+    }
     if (rule.measures_last_iterate()) continue;
     report.remaining_estimate = left_by_decreases(report.objective, first);
     if (is_near_enough(report, solver, above_start)) {
@@ -257,6 +268,7 @@ void run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
       break;
     }
   }
+  return hopeless;
 }
 
 }  // namespace
@@ -310,11 +322,11 @@ void set_staying(const Model& model, const StepInputs& inputs, const State& stat
 // that of midpoint, where the velocity of a body that stays is reversed. Where the iterations ended higher (because a
 // violent step inverted elements), descends from there instead. This costs an evaluation only when the inertia of
 // staying cannot decide it, or when the elastic energy may be negative. Friction only takes energy, so its potential is
-// left out on both sides.
+// left out on both sides. Returns whether these iterations gave up.
 //
 // A body at rest is nearer to its minimum where it stays than ten iterations come from y. It ends there, unless more
 // than a small share of what the step has gained is left: without that it would pay for twice the iterations.
-void descend_from_staying(const Model& model, const StepInputs& inputs, const Origin& origin, Workspace& w,
+bool descend_from_staying(const Model& model, const StepInputs& inputs, const Origin& origin, Workspace& w,
                           SearchRule& rule) {
   constexpr double small_share = 1e-7;
   const TimedPhase timed(w.clock, Phase::evaluate, "check staying");
@@ -327,12 +339,12 @@ void descend_from_staying(const Model& model, const StepInputs& inputs, const Or
   double inertia = 0;
   for (int v = 0; v < model.free; ++v)
     inertia += 0.5 * inverse_h2 * model.mass[v] * (w.trial.x.row(v) - w.y.row(v)).squaredNorm();
-  if (reached <= inertia && !model.energy_may_be_negative) return;
+  if (reached <= inertia && !model.energy_may_be_negative) return false;
   find_contacts_of(model, inputs, w, w.trial);
   evaluate(model, w, w.trial, Wanted::value);
   const double friction_staying = friction_energy(w.trial.contacts, stick, w.trial.x);
   const double staying = w.trial.g - friction_staying;
-  if (!(staying < reached - noise_of(model, reached, extent_of(model, w)))) return;
+  if (!(staying < reached - noise_of(model, reached, extent_of(model, w)))) return false;
   std::swap(w.current, w.trial);
   const double gained = reached + friction_reached - staying - friction_staying;
   report.decrease += gained;
@@ -341,17 +353,19 @@ void descend_from_staying(const Model& model, const StepInputs& inputs, const Or
   evaluate_start(model, inputs, w);
   TimeBudget budget(inputs, w, TimeBudget::from_staying);
   const double enough = small_share * std::max(0.0, report.decrease + origin.above_start);
-  run_iterations(model, inputs, w, rule, {inputs.solver.iterations, 0, enough, &budget, origin.newton_follows});
+  const bool hopeless =
+      run_iterations(model, inputs, w, rule, {inputs.solver.iterations, 0, enough, &budget, origin.newton_follows});
   report.iterations += iterations;
+  return hopeless;
 }
 
-// Goes on by Newton's method where a step that has made its iterations is far from its minimum, or gained energy from
-// nothing, until a direction promises next to nothing of what the step has gained, but never uphill.
-void finish_by_newton(const Model& model, const StepInputs& inputs, const Origin& origin, Workspace& w) {
+// Goes on by Newton's method where the iterations of a step gave up (hopeless), left it far from its minimum, or gained
+// energy from nothing, until a direction promises next to nothing of what the step has gained, but never uphill.
+void finish_by_newton(const Model& model, const StepInputs& inputs, const Origin& origin, Workspace& w, bool hopeless) {
   constexpr double small_share = 1e-4, smaller_share = 1e-8;  // energy from nothing needs few of them
   StepReport& report = w.report;
   const bool gains = gains_energy(model, inputs, origin, w, true);
-  if (!gains && !is_unsolved(report.error_estimate, report.iterations, report.line_search)) return;
+  if (!gains && !hopeless && !is_unsolved(report.error_estimate, report.iterations, report.line_search)) return;
   const double gained = gained_in_all(model, inputs, w, report.decrease + origin.above_start);
   const double left = report.remaining_estimate;
   const int iterations = report.iterations;
@@ -432,15 +446,15 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   zone.next("iterate");
   TimeBudget budget(inputs, w, TimeBudget::from_first_iterate);
   const Origin origin{state, above_start, may_finish_by_newton(model, inputs)};
-  run_iterations(
+  bool hopeless = run_iterations(
       model, inputs, w, rule,
       {inputs.solver.iterations, inputs.solver.rounds * inputs.solver.iterations, 0, &budget, origin.newton_follows},
       &origin);
   zone.next("end step");
   if (!report.failed && inputs.solver.line_search != LineSearch::none)
-    descend_from_staying(model, inputs, origin, w, rule);
+    hopeless |= descend_from_staying(model, inputs, origin, w, rule);
   report.error_estimate = error_at_end(model, inputs, w, report.decrease + above_start);
-  if (origin.newton_follows && !report.failed) finish_by_newton(model, inputs, origin, w);
+  if (origin.newton_follows && !report.failed) finish_by_newton(model, inputs, origin, w, hopeless);
   const Positions& x = w.current.x;
   if (!report.failed && !x.allFinite()) fail(model, w, "step", std::numeric_limits<double>::quiet_NaN());
   if (!report.failed) {
