@@ -8,7 +8,7 @@ namespace supple {
 inline bool is_unsolved(double error_estimate, int iterations, int trials) {
   constexpr double worst_estimate = 0.1;
   constexpr int most_trials = 4;
-  return error_estimate > worst_estimate || trials > most_trials * iterations;
+  return error_estimate > worst_estimate || (iterations > 0 && trials > most_trials * iterations);
 }
 
 }  // namespace supple

@@ -41,7 +41,7 @@ TEST(Unsolved, NamesTheWorstFrameOfEachBody) {
 }
 
 TEST(Unsolved, SaysNothingOfAFilmThatIsSolved) {
-  const std::vector<FrameRow> rows = {row_of(0, 1e-5, 10, 10), row_of(1, 0, 0, 0)};
+  const std::vector<FrameRow> rows = {row_of(0, 1e-5, 10, 10), row_of(1, 0, 0, 0), row_of(2, 0, 0, 1)};
   EXPECT_EQ(unsolved_text(rows), "");
   EXPECT_EQ(unsolved_text({}), "");
   EXPECT_FALSE(nlohmann::json::parse(profile_json(rows))["summary"].contains("unsolved"));

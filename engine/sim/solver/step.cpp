@@ -377,9 +377,11 @@ void finish_by_newton(const Model& model, const StepInputs& inputs, const Origin
   run_iterations(model, inputs, w, newton, limits);
   report.newton_iterations = report.iterations;
   report.iterations += iterations;
-  if (w.direction.isZero(0)) {
-    report.remaining_estimate = left;  // there was no direction
-  } else if (report.stop_reason != StopReason::iterations) {
+  if (!(report.slope < 0)) {
+    report.remaining_estimate = left;  // there was no direction downhill
+  } else if (report.stop_reason == StopReason::iterations) {
+    report.remaining_estimate = std::max(report.remaining_estimate, report.decrement);
+  } else if (report.stop_reason != StopReason::target_error) {
     report.remaining_estimate = report.decrement;
   }
   report.error_estimate = error_at_end(model, inputs, w, report.decrease + origin.above_start);
