@@ -114,7 +114,7 @@ struct SolverSettings {
   double target_error = 0;  // stop when the error estimate falls below; 0: do all iterations
   double budget_ms = 0;     // of one step: no iteration begins that would probably end later; 0: no bound
   int rounds = 5;           // of `iterations`, at most, where the answer so far is far from the minimum
-  bool newton = true;       // rounds after the first are Newton's (solver/newton_finish.h)
+  bool newton = true;       // Newton's method may finish what they leave (solver/newton_finish.h)
   ContactSettings contact;
   ChebyshevSettings chebyshev;
 };

@@ -55,7 +55,8 @@ bool NewtonSystem::Parts::take_planes_ahead(const Iterate& at, const Positions& 
   return some;
 }
 
-// Where nothing holds the body, its centre of mass moves as Newton's law says, whatever the precision of the factor.
+// Solves for the direction. A body that nothing holds then gets its translation as Newton's law says, because a factor
+// in single precision does not keep momentum to round-off.
 bool NewtonSystem::Parts::solve(const Model& model, const std::vector<Contact>& contacts, Positions& direction) {
   if (!try_factorize_projected(hessian, factor)) {
     direction.setZero();

@@ -1,6 +1,6 @@
 // Computes directions of Newton's method: from the Hessian of g at the current iterate, contacts included, with each
 // element's part projected to be positive semi-definite. It is factored anew for each direction, which costs as much as
-// 50 to 250 evaluations, so only steps that come to nothing otherwise use it (newton_finish.h).
+// 20 to 200 evaluations, so only steps that come to nothing otherwise use it (newton_finish.h).
 #pragma once
 
 #include <memory>

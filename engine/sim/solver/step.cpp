@@ -1,8 +1,9 @@
 // Makes a step in this order, which step() at the end of this file shows: the prediction y and the targets of handles
 // (begin_step), the matrix of directions, the pair of the step before, the first iterate, the iterations, the
-// comparison with staying, the estimate of what is left, and the new state. The iterations are one search; a step makes
-// a second search where the first ended above staying. The report's iterations and decrease are sums over both
-// searches; its stop reason, slope and decrement are those of the last one.
+// comparison with staying, the estimate of what is left, Newton's method where the step is hard, and the new state. The
+// iterations are one search; a step makes a second search where the first ended above staying, and Newton's method is
+// one more. The report's iterations and decrease are sums over all searches; its stop reason, slope and decrement are
+// those of the last one.
 #include "sim/solver/step.h"
 
 #include <algorithm>

@@ -7,9 +7,9 @@
 namespace supple {
 
 // Advances `state` by model.time_step. The state changes only if the step succeeds; the report (workspace.report)
-// describes the result. Allocates nothing once the workspace has been prepared for the model. Unless the line search is
-// off, g at the new x, without friction's potential, is up to round-off no larger than where the body stays: at the old
-// x, moved along with the collider or the free fall that carries the body.
+// describes the result. Allocates nothing once the workspace has been prepared for the model, but for Newton's method.
+// Unless the line search is off, g at the new x, without friction's potential, is up to round-off no larger than where
+// the body stays: at the old x, moved along with the collider or the free fall that carries the body.
 const StepReport& step(const Model& model, const StepInputs& inputs, State& state, Workspace& workspace);
 
 // Does the same with another rule for directions. A rule belongs to one body and may keep memory from step to step.

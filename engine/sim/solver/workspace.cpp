@@ -8,8 +8,8 @@
 namespace supple {
 
 void Workspace::prepare(const Model& model, const SolverSettings& solver) {
-  // A step may go on for several rounds, and may descend once more.
-  const std::size_t most_values = (std::size_t(solver.rounds) + 1) * (std::size_t(solver.iterations) + 1);
+  // A step may go on for several rounds, may descend once more, and may be finished by as many of Newton's iterations.
+  const std::size_t most_values = 2 * (std::size_t(solver.rounds) + 1) * (std::size_t(solver.iterations) + 1);
   if (report.objective.capacity() < most_values) report.objective.reserve(most_values);
   if (report.records.capacity() < most_values) report.records.reserve(most_values);
   if (prepared_for_ == model.id && window_ >= solver.history) return;
