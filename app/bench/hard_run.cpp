@@ -7,7 +7,6 @@
 
 #include "app/bench/comparison.h"
 #include "app/bench/stability_matrix.h"
-#include "base/unsolved_step.h"
 #include "film/places.h"
 #include "scene/rotation.h"
 #include "scene/scene_reader.h"
@@ -224,8 +223,7 @@ StabilityOutcome HardRun::play(std::vector<Positions>* motion, WorstStep* worst)
     if (worst != nullptr && (frame == 0 || report.error_estimate > outcome.error_estimate)) *worst = {frame, before};
     outcome.error_estimate = std::max(outcome.error_estimate, report.error_estimate);
     outcome.trials += double(report.line_search) / scene_.frames;
-    unsolved = unsolved || is_unsolved(report.error_estimate, report.iterations,
-                                       report.newton_iterations > 0 ? 0 : report.line_search);
+    unsolved = unsolved || is_unsolved(report);
     if (keeps_volume_)
       outcome.volume_change = std::max(
           outcome.volume_change, std::abs(volume_of(in_input_order(model_, driver_.state().x), tets) / volume - 1));

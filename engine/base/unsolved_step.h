@@ -4,7 +4,7 @@
 namespace supple {
 
 // Tells whether the minimum is far: an estimate of the error above 0.1, or iterations that tried more than four points
-// each. The sums of several steps, and the worst of their estimates, may be given as well.
+// each.
 inline bool is_unsolved(double error_estimate, int iterations, int trials) {
   constexpr double worst_estimate = 0.1;
   constexpr int most_trials = 4;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "baselines/newton.h"
+#include "sim/solver/iterations.h"
 
 namespace supple {
 namespace {

@@ -26,6 +26,7 @@ void add_up(BodyRow& row, const StepReport& report) {
   row.objective_start = report.objective.empty() ? 0 : report.objective.front();
   row.objective_end = report.objective.empty() ? 0 : report.objective.back();
   row.error_estimate = std::max(row.error_estimate, report.error_estimate);  // of the worst step of the frame
+  row.unsolved = row.unsolved || is_unsolved(report);
   row.stop_reason = name_of(report.stop_reason);
   if (!row.contact) return;
   row.contact->collide_ms += report.collide_ms;
@@ -38,10 +39,11 @@ bool has_time_budget(const StepInputs& inputs) {
   return inputs.solver.budget_ms > 0 || inputs.repeated_cuts.has_value();
 }
 
-// Returns no cuts for a step that had no budget in the earlier run.
-BudgetCuts cuts_at(const CutsByFrame& cuts, int frame, int substep) {
+// Returns nothing for a step that had no budget in the earlier run.
+std::optional<BudgetCuts> cuts_at(const CutsByFrame& cuts, int frame, int substep) {
   const std::vector<BudgetCuts>& of_frame = cuts.at(std::size_t(frame));
-  return substep < std::ssize(of_frame) ? of_frame[std::size_t(substep)] : BudgetCuts{};
+  if (substep >= std::ssize(of_frame)) return std::nullopt;
+  return of_frame[std::size_t(substep)];
 }
 
 std::string failure_text(int frame, const std::string& body, const StepFailure& failure) {

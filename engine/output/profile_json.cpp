@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/read_file.h"
+#include "base/unsolved_step.h"
 #include "output/frame_rows.h"
 #include "output/json_text.h"
 #include "output/profile.h"
@@ -30,7 +31,8 @@ Json json_of(const BodyRow& body) {
               {"line_search", body.line_search},
               {"objective_start", body.objective_start},
               {"objective_end", body.objective_end},
-              {"error_estimate", body.error_estimate}};
+              {"error_estimate", body.error_estimate},
+              {"unsolved", body.unsolved}};
   if (body.error_measured) row["error"] = body.error ? Json(*body.error) : Json(nullptr);
   if (body.contact) {
     row["collide_ms"] = rounded_ms(body.contact->collide_ms);
@@ -102,6 +104,8 @@ BodyRow body_row(const Json& json) {
   json.at("objective_start").get_to(row.objective_start);
   json.at("objective_end").get_to(row.objective_end);
   json.at("error_estimate").get_to(row.error_estimate);
+  row.unsolved = json.contains("unsolved") ? json.at("unsolved").get<bool>()  // likewise
+                                           : is_unsolved(row.error_estimate, row.iterations, row.line_search);
   row.error_measured = json.contains("error");
   if (row.error_measured && !json.at("error").is_null()) row.error = json.at("error").get<double>();
   if (json.contains("collide_ms")) {

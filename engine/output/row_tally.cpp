@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/text.h"
-#include "base/unsolved_step.h"
 
 namespace supple {
 namespace {
@@ -79,7 +78,7 @@ void RowTally::add_body(const FrameRow& row, std::size_t number) {
   }
   tally.inverted = body.inverted.value_or(0);
   tally.collapsed = body.collapsed.value_or(0);
-  if (is_unsolved(body.error_estimate, body.iterations, body.newton_iterations > 0 ? 0 : body.line_search))
+  if (body.unsolved)
     unsolved_.push_back({row.frame, body.name, body.error_estimate,
                          body.iterations > 0 ? double(body.line_search) / body.iterations : 0});
 }

@@ -16,8 +16,7 @@ struct UnsolvedStep {
   double trials;  // of the line search, an iteration
 };
 
-// Lists the bodies' frames that are unsolved (base/unsolved_step.h). Of steps that Newton's method finished, the
-// estimate alone counts: their trials tell how hard the iterations before had it.
+// Lists the bodies' frames of which a step is unsolved.
 std::vector<UnsolvedStep> unsolved_steps(const std::vector<FrameRow>& rows);
 
 // "3 of 400 frames were not solved: ...", with the worst of each body; empty where there are none.

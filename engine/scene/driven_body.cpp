@@ -69,6 +69,11 @@ void DrivenBody::prepare_step(int frame, int substep) {
   collider_motions(set_, span, inputs_.collider_motions);
 }
 
+void DrivenBody::repeat(const std::optional<BudgetCuts>& cuts) {
+  inputs_.repeated_cuts = cuts;
+  inputs_.solver.budget_ms = 0;
+}
+
 // Returns the model of the same body with materials whose k (equation 11) is the same and that have no minimum but
 // rest.
 const Model& DrivenBody::rigid_model() {

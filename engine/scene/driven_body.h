@@ -49,8 +49,9 @@ class DrivenBody {
   // Computes the inputs of a step, and lets handles grab and release when their time has come. A second call changes
   // nothing.
   void prepare_step(int frame, int substep);
-  // Sets where the prepared step is to end, as an earlier run's budget of time ended it; nothing: where the clock says.
-  void repeat(const std::optional<BudgetCuts>& cuts) { inputs_.repeated_cuts = cuts; }
+  // Makes the prepared step end where an earlier run's budget of time ended it, whatever budget this run has. Nothing:
+  // the earlier run had none for this step.
+  void repeat(const std::optional<BudgetCuts>& cuts);
   // Makes the prepared step. The state changes only if the step succeeds. With solver.untangle, and where
   // elements are inverted or without volume at its start, the step is made with the as-rigid-as-possible material
   // (materials/as_rigid_as_possible.h), which unfolds elements that the body's own material would keep folded. A, and

@@ -128,8 +128,9 @@ SolverSettings read_settings(const ConfigTable& table, SolverSettings s) {
                               "then differ, unless --repeat takes their numbers from an earlier run; 0: no bound"},
                              s.budget_ms, Range::at_least(0));
   s.rounds = table.integer({"rounds", "",
-                            "a step whose answer gains energy from nothing or is far from its minimum goes on, for so "
-                            "many times `iterations` in all, at last by Newton's method; 1 never does"},
+                            "a step whose answer gains energy from nothing goes on, for so many times `iterations` in "
+                            "all; one that still does, or is far from its minimum, is finished by Newton's method; 1: "
+                            "neither"},
                            s.rounds, Range::between(1, 100));
   return s;
 }

@@ -75,6 +75,30 @@ TEST_F(FilmWithBudget, IsRepeatedToTheBitWhateverTheClockSays) {
   ASSERT_EQ(film("twice", {"--repeat", "again", "--frames", "3"}).status, 0) << "a repeated run can be repeated";
 }
 
+// A body that is pressed nearly flat is finished by Newton's method, unless its steps have a budget of time.
+TEST_F(FilmWithBudget, IsRepeatedToTheBitWhereOnlyOneBodyHasABudget) {
+  std::ofstream(folder_.path / "bar.toml") << R"(frames = 3
+[[body]]
+name = "bar"
+box = { extent = [0.4, 0.1, 0.1], cells = [8, 2, 2] }
+material = "jelly"
+solver = { budget_ms = 1e-6 }
+[[body.handles]]
+name = "end"
+select = { box = [[0, 0, 0], [0.1, 1, 1]] }
+[[body]]
+name = "tangled"
+box = { extent = [0.4, 0.1, 0.1], cells = [8, 2, 2] }
+material = { model = "neo-hookean", young = 1e5, poisson = 0.4 }
+start = { random = [0.4, 0.1, 0.1] }
+)";
+  ASSERT_EQ(film("first", {}).status, 0);
+  ASSERT_GT(rows("first").front().bodies.back().newton_iterations, 0);
+  ASSERT_EQ(film("again", {"--repeat", "first"}).status, 0);
+  EXPECT_EQ(hashes(rows("again")), hashes(rows("first")));
+  EXPECT_TRUE(rows("again").front().bodies.back().budget_cuts.empty());
+}
+
 TEST_F(FilmWithBudget, RefusesToRepeatARunThatHasNoCutsOrTooFewFrames) {
   ASSERT_EQ(film("free", {}).status, 0);
   const Result without = film("again", {"--repeat", "free"});

@@ -23,6 +23,7 @@ FrameRow row_of(int frame) {
     body.name = "a body with a name that does not fit into a short string";
     body.stop_reason = "iterations";
     body.error_estimate = frame == 17 ? 0.5 : 1e-3;
+    body.unsolved = frame == 17;
     body.iterations = body.line_search = 10;
     body.balance = BalanceRow{1, 2, frame == 30 ? 8.0 : 0.0, 10};
   }

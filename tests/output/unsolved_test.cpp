@@ -20,6 +20,7 @@ FrameRow row_of(int frame, double estimate, int iterations, int trials) {
   body.error_estimate = estimate;
   body.iterations = iterations;
   body.line_search = trials;
+  body.unsolved = is_unsolved(estimate, iterations, trials);
   row.bodies = {body};
   return row;
 }
@@ -30,7 +31,7 @@ TEST(Unsolved, NamesTheWorstFrameOfEachBody) {
   EXPECT_EQ(unsolved_text(rows),
             "2 of 4 frames did not come near their solution: body 'bar' worst in frame 2, with an error of about 0.63 "
             "and 1.5 trials an iteration; more iterations or substeps help");
-  rows[3].bodies[0].line_search = 41;
+  rows[3].bodies[0].unsolved = true;
   ASSERT_EQ(unsolved_steps(rows).size(), 3u);
   EXPECT_EQ(unsolved_steps(rows)[2].frame, 3);
   const auto json = nlohmann::json::parse(profile_json(rows));

@@ -17,6 +17,7 @@
 #include "scene/obstacle.h"
 #include "scene/scene_reader.h"
 #include "sim/model/measures.h"
+#include "sim/solver/iterations.h"
 #include "sim/solver/lbfgs.h"
 #include "sim/solver/step.h"
 

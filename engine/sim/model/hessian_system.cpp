@@ -128,10 +128,14 @@ void HessianSystem::solve(const Model& model, const Positions& r, Positions& z) 
   if (model.free_floating) restore_translation(model, r, z);
 }
 
+double HessianSystem::renewal_cost(const Model& model) const {
+  return cost_of_hessian(model, parts_->factor.operations());
+}
+
 // An evaluation has about 450 operations an element (`supple bench roofline`), and the second derivatives with their
 // sums take as long as 20 evaluations.
-double HessianSystem::renewal_cost(const Model& model) const {
-  return 20 + parts_->factor.operations() / (450.0 * model.elements);
+double cost_of_hessian(const Model& model, double factor_operations) {
+  return 20 + factor_operations / (450.0 * model.elements);
 }
 
 std::int64_t HessianSystem::stored_numbers() const { return parts_ ? parts_->factor.stored_numbers() : 0; }

@@ -46,4 +46,8 @@ class HessianSystem {
   std::unique_ptr<Parts> parts_;
 };
 
+// Returns about how many evaluations of the body's elements it costs to compute the elements' Hessians and to factor
+// their sum with so many operations, by counts alone.
+double cost_of_hessian(const Model& model, double factor_operations);
+
 }  // namespace supple

@@ -6,6 +6,7 @@
 
 #include "base/names.h"
 #include "base/types.h"
+#include "base/unsolved_step.h"
 #include "sim/model/budget_cuts.h"
 
 namespace supple {
@@ -70,5 +71,11 @@ struct StepReport {
   bool failed = false;
   StepFailure failure;
 };
+
+// Tells whether a step did not come near its minimum. Where Newton's method finished it, the estimate alone counts: the
+// trials tell how hard the iterations before had it.
+inline bool is_unsolved(const StepReport& report) {
+  return is_unsolved(report.error_estimate, report.iterations, report.newton_iterations > 0 ? 0 : report.line_search);
+}
 
 }  // namespace supple

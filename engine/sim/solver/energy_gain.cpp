@@ -54,6 +54,11 @@ double work_from_outside(const Model& model, const Positions& q, Workspace& w) {
          (w.current.contacts.empty() ? 0 : work_of_contacts(q, w));
 }
 
+namespace {
+
+// Tells whether a step may have gained more than this share of the energies that it moves, by a bound that evaluates
+// nothing. Where E is convex between q and x, the energy from nothing is at most r . (x - q) - 1/2 |v' - v|^2_M, where
+// r is what is left of the gradient of g at x: the current iterate's, which must be there.
 bool may_gain_energy(const Model& model, const StepInputs& inputs, const State& state, const Workspace& w,
                      double share) {
   if (model.integrator != Integrator::backward_euler) return false;
@@ -68,6 +73,8 @@ bool may_gain_energy(const Model& model, const StepInputs& inputs, const State& 
   return bound > share * (kinetic + std::abs(fallen));
 }
 
+// Returns the energy that the step to the current iterate gained from nothing, over the energies that it exchanged;
+// zero or less where it gained none, and for integrators other than backward Euler. Evaluates all elements at q.
 double share_from_nothing(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
   if (model.integrator != Integrator::backward_euler) return 0;
   double kinetic = 0, before = 0, fallen = 0;
@@ -86,6 +93,19 @@ double share_from_nothing(const Model& model, const StepInputs& inputs, const St
   w.trial.x.bottomRows(model.vertices - model.free) = w.current.x.bottomRows(model.vertices - model.free);
   const double gained = kinetic - before + change - fallen - work;
   return gained / (kinetic + before + std::abs(change) + std::abs(fallen) + std::abs(work));
+}
+
+}  // namespace
+
+bool gains_energy(const Model& model, const StepInputs& inputs, const State& state, double above_start, Workspace& w,
+                  bool has_gradient) {
+  constexpr double much = 0.01;  // of the energies that were exchanged
+  const StepReport& report = w.report;
+  const bool hard = report.line_search > 2 * report.iterations;
+  const bool unsolved = -report.slope > 1e-4 * (report.decrease + above_start);  // of the last direction
+  if (!hard && !(unsolved && has_gradient && may_gain_energy(model, inputs, state, w, much))) return false;
+  const TimedPhase timed(w.clock, Phase::evaluate, "check energy");
+  return share_from_nothing(model, inputs, state, w) > much;
 }
 
 }  // namespace supple

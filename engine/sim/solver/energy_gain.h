@@ -14,15 +14,11 @@ namespace supple {
 // trial energies and forces.
 double work_from_outside(const Model& model, const Positions& q, Workspace& workspace);
 
-// Tells whether such a step may have gained more than this share of the energies that it moves, by a bound that
-// evaluates nothing. Where E is convex between q and x, the energy from nothing is at most r . (x - q) - 1/2 |v' -
-// v|^2_M, where r is what is left of the gradient of g at x: the current iterate's, which must be there.
-bool may_gain_energy(const Model& model, const StepInputs& inputs, const State& state, const Workspace& workspace,
-                     double share);
-
-// Returns the energy that the step to the current iterate gained from nothing, over the energies that it exchanged: a
-// hundredth is much. Zero or less where it gained none, and for integrators other than backward Euler. Evaluates all
-// elements at q.
-double share_from_nothing(const Model& model, const StepInputs& inputs, const State& state, Workspace& workspace);
+// Tells whether the step, left at the current iterate, would gain more than a hundredth of the energies that it
+// exchanges from nothing. That costs an evaluation at q, so only steps are examined whose iterations had a hard time,
+// or whose gradient leaves it possible while there was still much to gain. state: where the step began; above_start:
+// g(y) - g of its first iterate, where that is known [J]; has_gradient: whether the current iterate has one.
+bool gains_energy(const Model& model, const StepInputs& inputs, const State& state, double above_start,
+                  Workspace& workspace, bool has_gradient);
 
 }  // namespace supple

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "sim/solver/energy_gain.h"
+#include "sim/solver/error_estimate.h"
+
 namespace supple {
 
 bool may_finish_by_newton(const Model& model, const StepInputs& inputs) {
@@ -12,6 +15,43 @@ bool may_finish_by_newton(const Model& model, const StepInputs& inputs) {
   const bool solid = std::any_of(model.chunks.begin(), model.chunks.end(),
                                  [](const Model::ChunkRange& chunk) { return chunk.kind == ElementKind::tetrahedron; });
   return solid && newton_cost(model) <= most_cost;
+}
+
+namespace {
+
+class NewtonDirections final : public SearchRule {
+ public:
+  double direction(const Model& model, const StepInputs& inputs, Workspace& workspace) override {
+    return workspace.newton.direction(model, inputs, workspace);
+  }
+};
+
+}  // namespace
+
+void finish_by_newton(const Model& model, const StepInputs& inputs, const Origin& origin, Workspace& w, bool hopeless) {
+  constexpr double small_share = 1e-4, smaller_share = 1e-8;  // energy from nothing needs few of them
+  StepReport& report = w.report;
+  const bool gains = gains_energy(model, inputs, origin.state, origin.above_start, w, true);
+  if (!gains && !hopeless && !is_unsolved(report.error_estimate, report.iterations, report.line_search)) return;
+  const double gained = gained_in_all(model, inputs, w, report.decrease + origin.above_start);
+  const double left = report.remaining_estimate;
+  const int iterations = report.iterations;
+  ++w.carrying.searches;
+  NewtonDirections newton;
+  Limits limits{(inputs.solver.rounds - 1) * inputs.solver.iterations, 0,
+                (gains ? smaller_share : small_share) * gained};
+  limits.finishing = true;
+  run_iterations(model, inputs, w, newton, limits);
+  report.newton_iterations = report.iterations;
+  report.iterations += iterations;
+  if (!(report.slope < 0)) {
+    report.remaining_estimate = left;  // there was no direction downhill
+  } else if (report.stop_reason == StopReason::iterations) {
+    report.remaining_estimate = std::max(report.remaining_estimate, report.decrement);
+  } else if (report.stop_reason != StopReason::target_error) {
+    report.remaining_estimate = report.decrement;
+  }
+  report.error_estimate = error_at_end(model, inputs, w, report.decrease + origin.above_start);
 }
 
 }  // namespace supple

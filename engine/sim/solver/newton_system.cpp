@@ -1,8 +1,10 @@
 #include "sim/solver/newton_system.h"
 
+#include <cmath>
 #include <vector>
 
 #include "sim/linear/changing_factor.h"
+#include "sim/model/hessian_system.h"
 #include "sim/model/system_solve.h"
 #include "sim/solver/hessian_matrix.h"
 #include "sim/solver/workspace.h"
@@ -84,6 +86,10 @@ double NewtonSystem::direction(const Model& model, const StepInputs& inputs, Wor
   p.assemble(model, w);
   if (!p.solve(model, at.contacts, w.direction)) return 0;
   double slope = slope_of();
+  if (!std::isfinite(slope)) {
+    w.direction.setZero();
+    return 0;
+  }
   if (inputs.solver.contact.direction != ContactDirection::low_rank) return slope;
   for (int i = 0; i < most_corrections && p.take_planes_ahead(at, w.direction); ++i) {
     w.correction.unbent = w.direction;
@@ -96,8 +102,7 @@ double NewtonSystem::direction(const Model& model, const StepInputs& inputs, Wor
   return slope;
 }
 
-// An evaluation has about 450 operations an element (`supple bench roofline`), and the second derivatives with their
-// sums take as long as 20 evaluations. The factor is that of A with 3 x 3 blocks in place of numbers.
-double newton_cost(const Model& model) { return 20 + 27 * model.factor.operations() / (450.0 * model.elements); }
+// The factor is that of A with 3 x 3 blocks in place of numbers.
+double newton_cost(const Model& model) { return cost_of_hessian(model, 27.0 * model.factor.operations()); }
 
 }  // namespace supple

@@ -21,7 +21,7 @@ class NewtonSystem {
 
   // Sets workspace.direction at workspace.current; returns tr(grad^T d) [J]. Planes that are near and that the
   // direction would lead through hold it, as foresee_contacts does (contact_direction.h). Allocates only for another
-  // structure than last time. Where the numbers are too large for a factor, the direction is zero.
+  // structure than last time. Where the numbers are too large for a factor or its solution, the direction is zero.
   double direction(const Model& model, const StepInputs& inputs, Workspace& workspace);
 
  private:

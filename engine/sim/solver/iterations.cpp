@@ -1,0 +1,216 @@
+#include "sim/solver/iterations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/unsolved_step.h"
+#include "sim/solver/energy_gain.h"
+#include "sim/solver/error_estimate.h"
+#include "sim/solver/first_iterate.h"
+#include "sim/solver/lbfgs.h"
+#include "sim/solver/line_search.h"
+
+namespace supple {
+namespace {
+
+int first_bad_vertex(const Model& model, const Positions& x) {
+  int worst = 0;
+  double furthest = -1;
+  for (int v = 0; v < model.vertices; ++v) {
+    if (!x.row(v).allFinite()) return model.input_of[v];
+    const double away = (x.row(v) - model.rest.row(v)).norm();
+    if (away > furthest) {
+      furthest = away;
+      worst = v;
+    }
+  }
+  return model.input_of[worst];
+}
+
+// Tells whether an objective is that of a body that flies apart: many times the energy that moves all of the body by
+// its own size in one step.
+bool absurd(const Model& model, double objective, double start) {
+  const double speed = model.size / model.time_step;
+  return !std::isfinite(objective) || objective > 1e6 * (0.5 * model.total_mass * speed * speed + std::abs(start));
+}
+
+struct Descent {
+  bool done = false;
+  double slope = 0;
+};
+
+// Asks the rule for a direction that leads downhill. If it does not, asks again after the rule has forgotten what it
+// learned.
+Descent next_direction(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule) {
+  const TimedPhase timed(w.clock, Phase::other, "direction");
+  for (;;) {
+    const double slope = w.report.slope = rule.direction(model, inputs, w);
+    if (below_resolution(model, w)) return {true, slope};
+    if (slope < 0) return {false, slope};
+    if (!rule.forget()) return {true, slope};
+  }
+}
+
+// Searches along the direction for the next iterate, and leaves it in the trial iterate. A search that meets contacts
+// which it did not foresee is repeated, a few times, along a direction that knows them: adding constraints where an
+// iterate violates them, and solving again, is the exchange method of semi-infinite programs (Hettich and Kortanek
+// 1993). A search that fails is repeated once along the direction of a rule that has forgotten what it learned.
+Search find_next(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, double slope,
+                 Change& change, IterationRecord& record) {
+  const TimedPhase timed(w.clock, Phase::evaluate, "line search");
+  if (inputs.solver.line_search == LineSearch::none) {
+    set_trial(model, w, 1);
+    change = evaluate_trial(model, w, rule.needs_gradient() ? Wanted::gradient : Wanted::value);
+    ++w.report.line_search;
+    find_contacts_of(model, inputs, w, w.trial);
+    return Search::found;
+  }
+  constexpr int most_lessons = 3;
+  int lessons = 0;
+  for (;;) {
+    const Search search = search_line(model, inputs, w, slope, lessons < most_lessons, change, record);
+    if (search == Search::unforeseen) {
+      ++lessons;
+      rule.contacts_changed(inputs);
+    } else if (search == Search::failed && rule.forget()) {
+      lessons = most_lessons;
+    } else {
+      return search;
+    }
+    const Descent again = next_direction(model, inputs, w, rule);
+    if (again.done) return Search::exhausted;
+    slope = again.slope;
+  }
+}
+
+// Replaces the contacts that the search used with those found at the trial point. Corrects the trial's gradient;
+// returns the change of its objective [J].
+double take_contacts(Workspace& w) {
+  const double stick = w.contact.stick_length;
+  Iterate& to = w.trial;
+  double jump = 0;
+  jump -= add_contacts(w.current.contacts, stick, to.x, nullptr, w.direction, &to.gradient, -1).value;
+  jump += add_contacts(to.contacts, stick, to.x, nullptr, w.direction, &to.gradient).value;
+  count_contacts(w.current.contacts, to.contacts, w.contact);
+  return jump;
+}
+
+// Makes the trial iterate the current one. before: g where the iteration began, without contacts learned since [J].
+void accept(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, double before, Change change,
+            IterationRecord& record) {
+  const TimedPhase timed(w.clock, Phase::lbfgs, "accept");
+  rule.accepted(model, inputs, w);
+  if (has_colliders(inputs)) {
+    const int changes = w.contact.counts.changes;
+    change.value += take_contacts(w);
+    if (w.contact.counts.changes != changes) rule.contacts_changed(inputs);
+  }
+  const double learned = w.current.g - before;
+  w.trial.g = w.current.g + change.value;
+  std::swap(w.current, w.trial);
+  ++w.report.iterations;
+  w.report.objective.push_back(w.current.g);
+  w.report.decrease -= change.value;
+  record.decrease = -change.value - learned;
+  record.elapsed_ms = w.clock.elapsed_ms();
+  w.report.records.push_back(record);
+}
+
+}  // namespace
+
+void fail(const Model& model, Workspace& w, const char* phase, double objective) {
+  w.report.failed = true;
+  w.report.failure.during = phase;
+  w.report.failure.vertex = first_bad_vertex(model, w.current.x);
+  w.report.failure.what =
+      std::isfinite(objective) ? "the objective has grown beyond all bounds" : "a number is no longer finite";
+}
+
+bool run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, const Limits& limits,
+                    const Origin* origin) {
+  const SolverSettings& solver = inputs.solver;
+  StepReport& report = w.report;
+  const std::size_t first = report.objective.size() - 1;
+  const double start = w.current.g;
+  report.remaining_estimate = 0;
+  if (!std::isfinite(start)) {
+    fail(model, w, "evaluate", start);
+    return false;
+  }
+  rule.begin(model, inputs, w);
+
+  report.stop_reason = StopReason::iterations;
+  report.decrement = 0;
+  report.iterations = 0;
+  const double above_start = origin != nullptr ? origin->above_start : 0;
+  Decrements decrements;
+  const int tried = report.line_search;
+  bool hopeless = false;
+  for (int most = limits.iterations;;) {
+    const bool late = limits.budget != nullptr && limits.budget->is_spent(report.iterations);
+    hopeless = limits.newton_follows && is_unsolved(0, most, report.line_search - tried);
+    bool spent = late || hopeless || report.iterations >= most;
+    if (late) report.stop_reason = StopReason::budget;
+    if (spent && !late && !hopeless && origin != nullptr && most < limits.iterations_of_rounds &&
+        gains_energy(model, inputs, origin->state, above_start, w, rule.needs_gradient())) {
+      most += solver.iterations;
+      spent = false;
+    }
+    if (spent && !rule.measures_last_iterate()) break;
+    const Descent descent = next_direction(model, inputs, w, rule);
+    if (!std::isfinite(descent.slope)) {
+      fail(model, w, "solve", descent.slope);
+      break;
+    }
+    report.decrement = descent.done ? 0 : -0.5 * descent.slope;
+    if (rule.measures_last_iterate()) report.remaining_estimate = decrements.left(2 * report.decrement);
+    const bool has_enough = -descent.slope <= limits.enough && !(limits.finishing && report.iterations == 0);
+    if (descent.done || has_enough) {
+      report.stop_reason = StopReason::round_off;
+      hopeless = false;
+      break;
+    }
+    if (spent) break;
+    if (rule.measures_last_iterate() && is_near_enough(report, solver, above_start)) {
+      report.stop_reason = StopReason::target_error;
+      break;
+    }
+    Change change{};
+    IterationRecord record;
+    const double before = w.current.g;
+    const Search search = find_next(model, inputs, w, rule, descent.slope, change, record);
+    if (search != Search::found && (search != Search::worse || limits.finishing)) {
+      // A first search that finds nothing above round-off leaves nothing to gain, and nothing to compare it with.
+      if (search == Search::exhausted && report.iterations == 0) report.remaining_estimate = 0;
+      report.stop_reason = search == Search::exhausted ? StopReason::round_off : StopReason::line_search_failed;
+      break;
+    }
+    accept(model, inputs, w, rule, before, change, record);
+    decrements.add(-descent.slope, record.decrease);
+    if (absurd(model, w.current.g, start)) {
+      fail(model, w, "line search", w.current.g);
+      break;
+    }
+    if (rule.measures_last_iterate()) continue;
+    report.remaining_estimate = left_by_decreases(report.objective, first);
+    if (is_near_enough(report, solver, above_start)) {
+      report.stop_reason = StopReason::target_error;
+      break;
+    }
+  }
+  return hopeless;
+}
+
+void minimize(const Model& model, const StepInputs& inputs, Workspace& w, double enough) {
+  SystemInverse system;
+  LbfgsRule rule(system);
+  minimize(model, inputs, w, rule, enough);
+}
+
+void minimize(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, double enough) {
+  evaluate_start(model, inputs, w);
+  run_iterations(model, inputs, w, rule, {inputs.solver.iterations, 0, enough});
+}
+
+}  // namespace supple

@@ -1,0 +1,44 @@
+// Ends the iterations of a step's search where a budget of time asks for it.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "sim/model/inputs.h"
+#include "sim/solver/workspace.h"
+
+namespace supple {
+
+// Also notes the number of iterations in the report, so that a later run can end there without a clock.
+class TimeBudget {
+ public:
+  enum Which { from_first_iterate, from_staying };
+  TimeBudget(const StepInputs& inputs, Workspace& w, Which search)
+      : limit_ms_(inputs.solver.budget_ms), clock_(w.clock), cut_(w.report.cuts.after[search]) {
+    if (inputs.repeated_cuts) repeated_ = inputs.repeated_cuts->after[search];
+    if (limit_ms_ > 0) last_ms_ = clock_.elapsed_ms();
+  }
+
+  // Tells whether no further iteration fits, after `iterations` of them. One that takes as long as the longest so far
+  // is expected; the first one is always made.
+  bool is_spent(int iterations) {
+    const bool spent = repeated_ ? iterations == *repeated_ : limit_ms_ > 0 && iterations > 0 && would_end_late();
+    if (spent) cut_ = iterations;
+    return spent;
+  }
+
+ private:
+  bool would_end_late() {
+    const double now = clock_.elapsed_ms();
+    longest_ms_ = std::max(longest_ms_, now - std::exchange(last_ms_, now));
+    return now + longest_ms_ > limit_ms_;
+  }
+
+  double limit_ms_, last_ms_ = 0, longest_ms_ = 0;
+  const StepClock& clock_;
+  int& cut_;
+  std::optional<int> repeated_;  // -1 where the earlier run's search was not ended
+};
+
+}  // namespace supple
