@@ -110,7 +110,7 @@ TriangleSolid::Nearest TriangleSolid::nearest(const Vec3& p, std::int32_t likely
     const Entry entry = stack[std::size_t(--top)];
     if (!(entry.squared < bound)) continue;
     if (entry.node < 0) {
-      look(~entry.node);
+      if (~entry.node != likely) look(~entry.node);
       continue;
     }
     const Node& node = nodes_[std::size_t(entry.node)];
