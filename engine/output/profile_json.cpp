@@ -104,8 +104,8 @@ BodyRow body_row(const Json& json) {
   json.at("objective_start").get_to(row.objective_start);
   json.at("objective_end").get_to(row.objective_end);
   json.at("error_estimate").get_to(row.error_estimate);
-  row.unsolved = json.contains("unsolved") ? json.at("unsolved").get<bool>()  // likewise
-                                           : is_unsolved(row.error_estimate, row.iterations, row.line_search);
+  const int trials = row.newton_iterations > 0 ? 0 : row.line_search;
+  row.unsolved = json.value("unsolved", is_unsolved(row.error_estimate, row.iterations, trials));  // likewise
   row.error_measured = json.contains("error");
   if (row.error_measured && !json.at("error").is_null()) row.error = json.at("error").get<double>();
   if (json.contains("collide_ms")) {
