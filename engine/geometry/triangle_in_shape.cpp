@@ -44,6 +44,30 @@ Vec3 closest_weights(const TriangleCorners& corners, const Vec3& p) {
   return best;
 }
 
+// Two convex bodies are apart if and only if they are so along the normal of a face or the cross product of an edge of
+// each (the separating axis theorem; Akenine-Moeller 2001, "Fast 3D triangle-box overlap testing").
+bool meets_box(const TriangleCorners& corners, const Bounds& box, double grown) {
+  const Vec3 half = (0.5 * (box.upper - box.lower)).array() + grown;
+  if (half.minCoeff() < 0) return false;
+  const Vec3 center = 0.5 * (box.lower + box.upper);
+  const TriangleCorners at = {corners[0] - center, corners[1] - center, corners[2] - center};
+  const auto apart = [&](const Vec3& axis) {
+    const double a = axis.dot(at[0]), b = axis.dot(at[1]), c = axis.dot(at[2]), reach = half.dot(axis.cwiseAbs());
+    return std::min({a, b, c}) > reach || std::max({a, b, c}) < -reach;
+  };
+  for (int i = 0; i < 3; ++i) {
+    if (apart(Vec3::Unit(i))) return false;
+  }
+  const TriangleCorners edges = {at[1] - at[0], at[2] - at[1], at[0] - at[2]};
+  if (apart(edges[0].cross(edges[1]))) return false;
+  for (const Vec3& edge : edges) {
+    for (int i = 0; i < 3; ++i) {
+      if (apart(Vec3::Unit(i).cross(edge))) return false;
+    }
+  }
+  return true;
+}
+
 TriangleInShape::TriangleInShape(const ShapeProbe& shape, double half_thickness, const TriangleCorners& corners,
                                  QueryMemory& near)
     : shape_(shape), corners_(corners), near_(near) {

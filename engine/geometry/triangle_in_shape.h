@@ -21,6 +21,9 @@ struct TrianglePlace {
 // Returns the weights of the triangle's point that is closest to p.
 Vec3 closest_weights(const TriangleCorners& corners, const Vec3& p);
 
+// Tells whether a triangle has a point in a box that is larger by `grown` on all sides [m]. A value below 0 shrinks it.
+bool meets_box(const TriangleCorners& corners, const Bounds& box, double grown);
+
 class TriangleInShape {
  public:
   // half_thickness: Shape::half_thickness [m]; near: a memory of queries (ShapeProbe). Corners, shape and memory must

@@ -79,6 +79,38 @@ TEST(TriangleInShape, ClosestWeightsAreThoseOfTheClosestPoint) {
   }
 }
 
+// Compares with points of a grid on the triangle, the nearest of which is at most half a cell from the box.
+TEST(TriangleInShape, MeetsABoxWhereItHasAPointInIt) {
+  std::mt19937 random(11);
+  constexpr int cells = 60;
+  int met = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    const TriangleCorners corners = {random_point(random, 1), random_point(random, 1), random_point(random, 1)};
+    Bounds box;
+    box.include(random_point(random, 0.6));
+    box.include(random_point(random, 0.6));
+    for (const double grown : {-0.05, 0.0, 0.1}) {
+      double least = 1e300, cell = 0;
+      for (int k = 0; k < 3; ++k) cell = std::max(cell, (corners[(k + 1) % 3] - corners[k]).norm() / cells);
+      for (int i = 0; i <= cells; ++i) {
+        for (int j = 0; j <= cells - i; ++j) {
+          const Vec3 p = (i * corners[0] + j * corners[1] + (cells - i - j) * corners[2]) / cells;
+          least = std::min(least, (box.lower - p).cwiseMax(p - box.upper).maxCoeff() - grown);
+        }
+      }
+      const bool meets = meets_box(corners, box, grown);
+      met += meets;
+      if (meets) {
+        EXPECT_LE(least, cell);
+      } else {
+        EXPECT_GT(least, 0);
+      }
+    }
+  }
+  EXPECT_GT(met, 200);
+  EXPECT_LT(met, 1000);
+}
+
 TEST(ShapePieces, AreTheShapeTogether) {
   ShapePart inner{Sphere{0.2}};
   inner.to_local = Eigen::Translation3d(-0.3, 0, 0);

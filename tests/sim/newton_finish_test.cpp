@@ -104,7 +104,7 @@ TEST(NewtonFinish, HasTheSameBitsForAnyNumberOfThreads) {
   Threads threads(2);
   two.scene.w.threads = &threads;
   int hard = 0;
-  for (int step = 0; step < 8; ++step) {
+  for (int step = 0; step < 20; ++step) {
     one.move();
     two.move();
     hard += one.scene.step().newton_iterations;

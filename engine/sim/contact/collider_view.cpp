@@ -117,6 +117,18 @@ bool ColliderView::leads_through(const Way& way, double field_at_a, double field
   return shape_.entry(way.a, way.b).has_value();
 }
 
+// Tells whether a place inside belongs to the surface by which its way entered, and not to the closest one: where they
+// are two sides of a wall or, for what was outside, two sides of an edge, unless it is ten times as deep below the
+// former. A vertex that falls on a thin bar beside its edge would otherwise be thrown off sideways. What was inside
+// already may slide around the edge.
+bool ColliderView::is_held_by(const SurfacePoint& entered, const SurfacePoint& closest, const Way& way,
+                              bool was_outside) const {
+  constexpr double one_side = 0.5, far_deeper = 10;
+  if (opposite(closest.normal, entered.normal)) return true;
+  return was_outside && closest.normal.dot(entered.normal) < one_side &&
+         entered.normal.dot(entered.point - way.b) < -far_deeper * closest.distance;
+}
+
 std::optional<SurfacePoint> ColliderView::holding(const Way& way, double field_at_a, double reach,
                                                   QueryMemory& near) const {
   // The balls around both ends contain the whole way, so that it meets nothing where both are empty.
@@ -126,15 +138,16 @@ std::optional<SurfacePoint> ColliderView::holding(const Way& way, double field_a
       field_at_a > 0 && knows_bounds() ? closest_within(way.b, (1 + 1e-6) * around, near) : closest(way.b, near);
   if (!nearest) return std::nullopt;
   const SurfacePoint& here = *nearest;
-  if (short_way(way.length + std::max(0.0, -field_at_a)))
-    return here.distance < reach ? std::optional(here) : std::nullopt;
   // The way leads straight onto the side that is closest: the usual case, which needs no ray.
-  if (!bends_ && here.distance < 0 && field_at_a > 0 && (way.a - here.point).dot(here.normal) >= 0) return here;
+  const bool entered_now = !bends_ && here.distance < 0 && field_at_a > 0;
+  if (entered_now && (way.a - here.point).dot(here.normal) >= 0) return here;
+  if (!entered_now && short_way(way.length + std::max(0.0, -field_at_a)))
+    return here.distance < reach ? std::optional(here) : std::nullopt;
   if (!bends_ && knows_bounds() && !leads_through(way, field_at_a, here.distance))
     return here.distance < reach ? std::optional(here) : std::nullopt;
   const std::optional<Entry> entered = entry(way, field_at_a, near);
   if (!entered) return here.distance < reach ? std::optional(here) : std::nullopt;
-  if (here.distance < 0) return opposite(here.normal, entered->surface.normal) ? entered->surface : here;
+  if (here.distance < 0) return is_held_by(entered->surface, here, way, field_at_a > 0) ? entered->surface : here;
   // The vertex is outside again. A way that cuts a corner may pass; one that leaves on the far side may not.
   const std::optional<double> back = meets(way, 1, 0, here.distance, near);
   const SurfacePoint left = back ? closest(at(way, 1 - *back), near) : here;

@@ -70,12 +70,12 @@ ContactPoint contact_point(const Model& model, Eigen::Index triangle, const Vec3
 }
 
 // Returns the direction from a place straight out of the collider: the part of the surface's normal at right angles to
-// the face or edge that the place lies in. Where that is next to nothing, it returns the normal.
-Vec3 straight_out(const TriangleCorners& corners, const TrianglePlace& place) {
-  const Vec3 normal = place.surface.normal;
+// the face or edge that the place, with these weights of the corners, lies in. Where that is next to nothing, it
+// returns the normal.
+Vec3 straight_out(const TriangleCorners& corners, const Vec3& weights, const Vec3& normal) {
   int other = -1, count = 0;
   for (int k = 0; k < 3; ++k) {
-    if (place.weights[k] >= least_weight) {
+    if (weights[k] >= least_weight) {
       ++count;
     } else {
       other = k;
@@ -119,13 +119,26 @@ struct TriangleSearch {
     return freely + reach_of(0, freely);
   }
 
+  // Returns the distance from a piece beyond which a place needs no point; what is below 0 is a depth.
+  double furthest(double reach, const FacePoints::Piece& piece) const {
+    return faces.thickness + (at_start ? reach - piece.slack : -unheld * piece.slack);
+  }
+
+  // Returns the normal of the surface that holds a place which an iterate has led into the collider. Beyond the middle
+  // of a thin bar, the surface that is closest is not the one through which it came.
+  Vec3 normal_at(const ContactPoint& point, const TrianglePlace& place) const {
+    QueryMemory near;
+    const Way way = view.way(point.at(q), point.at(x));
+    const std::optional<SurfacePoint> held = view.holding(way, view.distance(way.a, near), 0, near);
+    return held ? held->normal : place.surface.normal;
+  }
+
   // Adds the candidates of one triangle against one piece.
-  void examine(Eigen::Index triangle, const TriangleCorners& corners, double reach, const FacePoints::Piece& piece,
+  void examine(Eigen::Index triangle, const TriangleCorners& corners, double within, const FacePoints::Piece& piece,
                std::vector<FacePoints::Candidate>& found) const {
     const ShapeProbe probe(piece.piece.shape);
     QueryMemory near;
     const TriangleInShape search(probe, piece.piece.half_thickness, corners, near);
-    const double within = faces.thickness + (at_start ? reach - piece.slack : -unheld * piece.slack);
     double radius = 0;
     for (const Vec3& corner : corners) radius = std::max(radius, (corner - search.center().point).norm());
     if (std::max(search.bound(), search.center().surface.distance - radius) > within) return;
@@ -136,7 +149,9 @@ struct TriangleSearch {
       if (place.surface.distance > within || place.surface.distance + piece.slack > least.at_corners) continue;
       const ContactPoint point = contact_point(model, triangle, place.weights);
       if (point.is_vertex() || point.free == 0) continue;
-      found.push_back({point, piece.slack, seen_from * piece.slack * straight_out(corners, place), near});
+      const Vec3 normal = at_start ? place.surface.normal : normal_at(point, place);
+      found.push_back(
+          {point, piece.slack, seen_from * piece.slack * straight_out(corners, place.weights, normal), near});
     }
   }
 
@@ -158,9 +173,11 @@ struct TriangleSearch {
     if (longest_way(group) < view.clear(faces.distance[group])) return;
     for (int t = group * group_size; t < end_of(model, group); ++t) {
       const TriangleCorners places = corners(t);
-      const double edge = longest_edge_squared(places), within = at_start ? reach(t) : 0;
+      const double edge = longest_edge_squared(places), reached = at_start ? reach(t) : 0;
       for (const FacePoints::Piece& piece : faces.pieces) {
-        if (is_finer(piece, faces.thickness, edge)) examine(t, places, within, piece, found);
+        const double within = furthest(reached, piece);
+        if (!is_finer(piece, faces.thickness, edge) || !meets_box(places, piece.box, within)) continue;
+        examine(t, places, within, piece, found);
       }
     }
   }
@@ -213,7 +230,8 @@ void choose_pieces(const Model& model, const Collider& collider, const Positions
   for (ShapePiece& shape : pieces_of(collider.shape)) {
     if (std::isinf(shape.bulge)) continue;
     const double slack = usual_depth(model.size, collider, shape.half_thickness);
-    FacePoints::Piece piece{std::move(shape), slack};
+    const Bounds box = shape.shape.bounds();
+    FacePoints::Piece piece{std::move(shape), slack, box};
     if (longest < 0) longest = longest_edge_squared(model, q);
     if (is_finer(piece, collider.thickness, longest)) faces.pieces.push_back(std::move(piece));
   }

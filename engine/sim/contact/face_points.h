@@ -32,6 +32,7 @@ struct FacePoints {
   struct Piece {
     ShapePiece piece;
     double slack;  // [m]
+    Bounds box;    // around it, in the collider's frame
   };
   std::vector<Piece> pieces;          // of the collider, that may be finer than the surface
   double thickness = 0;               // of the collider's layer [m]
