@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 
+#include "geometry/cloth.h"
 #include "support/contact_scene.h"
 
 namespace supple {
@@ -181,6 +182,40 @@ TEST(FaceContact, SurfacesStayAboveWhatIsFinerThanTheirCells) {
       }
     }
   }
+}
+
+// Vertices of the cloth land beside the bars' edges, and rest in bars that have little room for what a step does
+// freely.
+TEST(FaceContact, AClothInShortStepsStaysWholeOnBarsBetweenItsVertices) {
+  BodyDescription net = test::spring_net(12);
+  net.surface = cloth_grid({0.4, 0.4}, {12, 12}).surface.triangles;
+  net.time_step = 1.0 / 120;
+  for (double& mass : net.point_mass) mass *= 0.2;
+  net.mesh.rest.rowwise() -= Eigen::RowVector3d(0.2, 0.2, 0);
+  const Eigen::Matrix3d level =
+      (Eigen::AngleAxisd(0.26, Vec3::UnitY()) * Eigen::AngleAxisd(-0.5 * 3.14159265358979, Vec3::UnitX()))
+          .toRotationMatrix();
+  net.mesh.rest = net.mesh.rest * level.transpose();
+  Shape bars;
+  for (const double x : {-0.12, -0.04, 0.04, 0.12}) {
+    bars.root.parts.push_back({Box{Vec3(0.005, 0.005, 0.3), 0}});
+    bars.root.parts.back().to_local = Eigen::Translation3d(-x, 0, 0);
+  }
+  FaceScene scene(net, {{"bars", bars, 0, 0.3}}, Vec3(0, 0.05, 0));
+  scene.state.v.col(1).setConstant(-1);
+  const auto kinetic = [&] {
+    double sum = 0;
+    for (int v = 0; v < scene.model.free; ++v) sum += 0.5 * scene.model.mass[v] * scene.state.v.row(v).squaredNorm();
+    return sum;
+  };
+  const double energy = kinetic() + 9.81 * 0.1 * scene.model.total_mass;  // falling by 0.1 m included
+  double most = 0;
+  for (int frame = 0; frame < 40; ++frame) {
+    ASSERT_FALSE(scene.step().failed);
+    most = std::max(most, kinetic() + elastic_energy(scene.model, scene.w, scene.state.x));
+  }
+  EXPECT_GT(scene.w.contact.counts.touching, 0);
+  EXPECT_LT(most, 1.2 * energy);
 }
 
 TEST(FaceContact, CostsNothingWhereCollidersAreCoarserThanTheSurface) {

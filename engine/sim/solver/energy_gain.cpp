@@ -39,11 +39,7 @@ double work_of_contacts(const Positions& q, Workspace& w) {
 
 // g without its inertia and without contact [J].
 double potential_of(const Model& model, const Workspace& w, const Iterate& at) {
-  const double inverse_h2 = 1 / (model.time_step * model.time_step);
-  double inertia = 0;
-  for (int v = 0; v < model.free; ++v)
-    inertia += 0.5 * inverse_h2 * model.mass[v] * (at.x.row(v) - w.y.row(v)).squaredNorm();
-  return at.g - inertia - contact_energy(at.contacts, at.x) -
+  return at.g - inertial_energy(model, w, at.x) - contact_energy(at.contacts, at.x) -
          friction_energy(at.contacts, w.contact.stick_length, at.x);
 }
 

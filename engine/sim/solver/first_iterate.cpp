@@ -1,6 +1,7 @@
 #include "sim/solver/first_iterate.h"
 
 #include <Eigen/SVD>
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -206,25 +207,44 @@ bool is_still(const Model& model, const State& state, const Workspace& w) {
   return model.time_step * model.time_step * way < little * free_way;
 }
 
-// Starts from q + h v where that is better. y contains the fall of the step, which leaves a body that rests on
-// something, or slides along it, g h^2 deep in its colliders, and one that hangs still that far from where it stays: a
-// soft one comes no nearer in its iterations than it was, and needs as many again. This costs an evaluation, and only
-// where something touches or hardly moves. Friction is treated as in descend_from_staying().
-void start_where_better(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
-  const TimedPhase timed(w.clock, Phase::evaluate, "start where better");
+// Makes the trial positions the first iterate where their g is below a share of the current one's. Friction is treated
+// as in descend_from_staying().
+void start_from_trial_below(double share, const Model& model, const StepInputs& inputs, Workspace& w) {
   const double stick = w.contact.stick_length;
   const double given = w.current.g - friction_energy(w.current.contacts, stick, w.current.x);
-  w.trial.x.topRows(model.free) = (state.x + model.time_step * state.v).topRows(model.free);
   find_contacts_of(model, inputs, w, w.trial);
   const double rubbed = friction_energy(w.trial.contacts, stick, w.trial.x);
   evaluate(model, w, w.trial, Wanted::gradient);
-  if (!(w.trial.g - rubbed < given)) return;
+  if (!(w.trial.g - rubbed < share * given)) return;
   std::swap(w.current, w.trial);
   w.report.objective.back() = w.current.g;
   w.carrying.searches = 1;  // the pair is of steps that begin at y
   if (!has_colliders(inputs)) return;
   forget_counts(w.contact);
   count_contacts(w.trial.contacts, w.current.contacts, w.contact);
+}
+
+// Starts from q + h v where that is better. y contains the fall of the step, which leaves a body that rests on
+// something, or slides along it, g h^2 deep in its colliders, and one that hangs still that far from where it stays: a
+// soft one comes no nearer in its iterations than it was, and needs as many again. This costs an evaluation, and only
+// where something touches or hardly moves.
+void start_without_fall(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
+  const TimedPhase timed(w.clock, Phase::evaluate, "start without fall");
+  w.trial.x.topRows(model.free) = (state.x + model.time_step * state.v).topRows(model.free);
+  start_from_trial_below(1, model, inputs, w);
+}
+
+// Starts from q where that is far better. Points between vertices that rest in something thin have no room: what the
+// body would do freely leads through it. This costs an evaluation, and only where such points touch and inertia alone
+// does not rule q out.
+void start_where_it_was(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
+  constexpr double far_better = 0.25;
+  const auto lies_between = [](const Contact& contact) { return contact.depth > 0 && !contact.point.is_vertex(); };
+  if (std::ranges::none_of(w.current.contacts, lies_between)) return;
+  const TimedPhase timed(w.clock, Phase::evaluate, "start where it was");
+  w.trial.x.topRows(model.free) = state.x.topRows(model.free);
+  if (inertial_energy(model, w, w.trial.x) < far_better * w.current.g || model.energy_may_be_negative)
+    start_from_trial_below(far_better, model, inputs, w);
 }
 
 }  // namespace
@@ -237,7 +257,8 @@ double set_first_iterate(const Model& model, const StepInputs& inputs, const Sta
   const bool touches = has_colliders(inputs) && w.contact.counts.touching > 0;
   const double from = at_y ? *at_y : w.current.g;
   const bool has_pair = w.carrying.from != nullptr;  // from y, it leads a body that hangs still back in one direction
-  if (touches || (!has_pair && is_still(model, state, w))) start_where_better(model, inputs, state, w);
+  if (touches || (!has_pair && is_still(model, state, w))) start_without_fall(model, inputs, state, w);
+  if (touches) start_where_it_was(model, inputs, state, w);
   const bool known = at_y || !touches;
   return known && !stopped ? from - w.report.objective.back() : 0;
 }

@@ -204,6 +204,14 @@ double noise_of(const Model& model, double objective, double extent) {
                      4 * last_bit * model.mean_stiffness * model.elements);
 }
 
+double inertial_energy(const Model& model, const Workspace& workspace, const Positions& x) {
+  const double inverse_h2 = model.scheme.inertia / (model.time_step * model.time_step);
+  double sum = 0;
+  for (int v = 0; v < model.free; ++v)
+    sum += 0.5 * inverse_h2 * model.mass[v] * (x.row(v) - workspace.y.row(v)).squaredNorm();
+  return sum;
+}
+
 double elastic_energy(const Model& model, Workspace& workspace, const Positions& x) {
   return evaluate_elements(model, workspace, x, workspace.trial.energy, Wanted::value, nullptr) / model.scheme.energy;
 }

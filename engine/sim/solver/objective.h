@@ -31,6 +31,9 @@ Change evaluate_trial(const Model& model, Workspace& workspace, Wanted wanted);
 // Returns the round-off of differences of g at a point with this objective and largest coordinate [J].
 double noise_of(const Model& model, double objective, double extent);
 
+// Returns the share of inertia in g at x, sum of w m |x - y|^2 / (2 h^2), where w is the integrator's weight [J].
+double inertial_energy(const Model& model, const Workspace& workspace, const Positions& x);
+
 // Returns E(x) of all elements [J]. Overwrites the energies of the trial iterate.
 double elastic_energy(const Model& model, Workspace& workspace, const Positions& x);
 

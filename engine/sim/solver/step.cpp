@@ -70,12 +70,8 @@ bool descend_from_staying(const Model& model, const StepInputs& inputs, const Or
   const double stick = w.contact.stick_length;
   const double friction_reached = friction_energy(w.current.contacts, stick, w.current.x);
   const double reached = w.current.g - friction_reached;
-  const double inverse_h2 = model.scheme.inertia / (model.time_step * model.time_step);
   set_staying(model, inputs, origin.state, w);
-  double inertia = 0;
-  for (int v = 0; v < model.free; ++v)
-    inertia += 0.5 * inverse_h2 * model.mass[v] * (w.trial.x.row(v) - w.y.row(v)).squaredNorm();
-  if (reached <= inertia && !model.energy_may_be_negative) return false;
+  if (reached <= inertial_energy(model, w, w.trial.x) && !model.energy_may_be_negative) return false;
   find_contacts_of(model, inputs, w, w.trial);
   evaluate(model, w, w.trial, Wanted::value);
   const double friction_staying = friction_energy(w.trial.contacts, stick, w.trial.x);
