@@ -12,6 +12,8 @@ constexpr double least_bend = 0.1;
 
 // Tells whether two normals belong to the two sides of a wall, not of an edge.
 bool opposite(const Vec3& a, const Vec3& b) { return a.dot(b) < -0.5; }
+// Tells whether two normals belong to one smooth side.
+bool on_one_side(const Vec3& a, const Vec3& b) { return a.dot(b) > 0.5; }
 
 }  // namespace
 
@@ -123,9 +125,9 @@ bool ColliderView::leads_through(const Way& way, double field_at_a, double field
 // already may slide around the edge.
 bool ColliderView::is_held_by(const SurfacePoint& entered, const SurfacePoint& closest, const Way& way,
                               bool was_outside) const {
-  constexpr double one_side = 0.5, far_deeper = 10;
+  constexpr double far_deeper = 10;
   if (opposite(closest.normal, entered.normal)) return true;
-  return was_outside && closest.normal.dot(entered.normal) < one_side &&
+  return was_outside && !on_one_side(closest.normal, entered.normal) &&
          entered.normal.dot(entered.point - way.b) < -far_deeper * closest.distance;
 }
 
@@ -141,7 +143,8 @@ std::optional<SurfacePoint> ColliderView::holding(const Way& way, double field_a
   // The way leads straight onto the side that is closest: the usual case, which needs no ray.
   const bool entered_now = !bends_ && here.distance < 0 && field_at_a > 0;
   if (entered_now && (way.a - here.point).dot(here.normal) >= 0) return here;
-  if (!entered_now && short_way(way.length + std::max(0.0, -field_at_a)))
+  if (short_way(way.length + std::max(0.0, -field_at_a)) &&
+      !(entered_now && !on_one_side(closest(way.a, near).normal, here.normal)))
     return here.distance < reach ? std::optional(here) : std::nullopt;
   if (!bends_ && knows_bounds() && !leads_through(way, field_at_a, here.distance))
     return here.distance < reach ? std::optional(here) : std::nullopt;
