@@ -15,9 +15,10 @@ namespace supple {
 double work_from_outside(const Model& model, const Positions& q, Workspace& workspace);
 
 // Tells whether the step, left at the current iterate, would gain more than a hundredth of the energies that it
-// exchanges, and of that of a fall of two steps, from nothing. That costs an evaluation at q, so only steps are examined whose iterations had a hard time,
-// or whose gradient leaves it possible while there was still much to gain. state: where the step began; above_start:
-// g(y) - g of its first iterate, where that is known [J]; has_gradient: whether the current iterate has one.
+// exchanges, and of that of a fall of two steps, from nothing. That costs an evaluation at q, so only steps are
+// examined whose iterations had a hard time, or whose gradient leaves it possible while there was still much to gain.
+// state: where the step began; above_start: g(y) - g of its first iterate, where that is known [J]; has_gradient:
+// whether the current iterate has one.
 bool gains_energy(const Model& model, const StepInputs& inputs, const State& state, double above_start,
                   Workspace& workspace, bool has_gradient);
 
