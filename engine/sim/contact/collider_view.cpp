@@ -15,6 +15,17 @@ bool opposite(const Vec3& a, const Vec3& b) { return a.dot(b) < -0.5; }
 // Tells whether two normals belong to one smooth side.
 bool on_one_side(const Vec3& a, const Vec3& b) { return a.dot(b) > 0.5; }
 
+// Tells whether a place inside belongs to the surface by which its way entered, and not to the closest one: where they
+// are two sides of a wall or, for what was outside, two sides of an edge, unless it is ten times as deep below the
+// former. A vertex that falls on a thin bar beside its edge would otherwise be thrown off sideways. What was inside
+// already may slide around the edge.
+bool is_held_by(const SurfacePoint& entered, const SurfacePoint& closest, const Way& way, bool was_outside) {
+  constexpr double far_deeper = 10;
+  if (opposite(closest.normal, entered.normal)) return true;
+  return was_outside && !on_one_side(closest.normal, entered.normal) &&
+         entered.normal.dot(entered.point - way.b) < -far_deeper * closest.distance;
+}
+
 }  // namespace
 
 ColliderView::ColliderView(const Collider& collider, const ColliderMotion& motion, const ColliderTraits& traits)
@@ -119,18 +130,6 @@ bool ColliderView::leads_through(const Way& way, double field_at_a, double field
   return shape_.entry(way.a, way.b).has_value();
 }
 
-// Tells whether a place inside belongs to the surface by which its way entered, and not to the closest one: where they
-// are two sides of a wall or, for what was outside, two sides of an edge, unless it is ten times as deep below the
-// former. A vertex that falls on a thin bar beside its edge would otherwise be thrown off sideways. What was inside
-// already may slide around the edge.
-bool ColliderView::is_held_by(const SurfacePoint& entered, const SurfacePoint& closest, const Way& way,
-                              bool was_outside) const {
-  constexpr double far_deeper = 10;
-  if (opposite(closest.normal, entered.normal)) return true;
-  return was_outside && !on_one_side(closest.normal, entered.normal) &&
-         entered.normal.dot(entered.point - way.b) < -far_deeper * closest.distance;
-}
-
 std::optional<SurfacePoint> ColliderView::holding(const Way& way, double field_at_a, double reach,
                                                   QueryMemory& near) const {
   // The balls around both ends contain the whole way, so that it meets nothing where both are empty.
@@ -143,6 +142,7 @@ std::optional<SurfacePoint> ColliderView::holding(const Way& way, double field_a
   // The way leads straight onto the side that is closest: the usual case, which needs no ray.
   const bool entered_now = !bends_ && here.distance < 0 && field_at_a > 0;
   if (entered_now && (way.a - here.point).dot(here.normal) >= 0) return here;
+  // A short way leads through nothing, but it may have begun before the other side of an edge.
   if (short_way(way.length + std::max(0.0, -field_at_a)) &&
       !(entered_now && !on_one_side(closest(way.a, near).normal, here.normal)))
     return here.distance < reach ? std::optional(here) : std::nullopt;

@@ -87,7 +87,7 @@ class ColliderView {
   std::optional<Entry> entry(const Way& way, double field_at_a, QueryMemory& near, double latest = 1) const;
 
   // Finds the surface that holds a vertex at the end of its way: the closest one, unless it came by another side; then
-  // it is usually that one (is_held_by). Nothing when there is none within `reach`. What goes around the rim of a plate
+  // it is usually that one. Nothing when there is none within `reach`. What goes around the rim of a plate
   // of triangles, through no more than the layer, is held by the closest side.
   std::optional<SurfacePoint> holding(const Way& way, double field_at_a, double reach, QueryMemory& near) const;
 
@@ -95,7 +95,6 @@ class ColliderView {
   double bent_length(const Vec3& q, const Vec3& x) const;
   SurfacePoint on_layer(SurfacePoint s) const;
   bool leads_through(const Way& way, double field_at_a, double field_at_b) const;
-  bool is_held_by(const SurfacePoint& entered, const SurfacePoint& closest, const Way& way, bool was_outside) const;
   // Tells whether a way is too short to lead through the shape.
   bool short_way(double way) const { return way < traits_.half_thickness; }
   std::optional<double> meets(const Way& way, double from, double to, double field_at_start, QueryMemory& near,
