@@ -88,16 +88,17 @@ double jiggle(const Model& model, const Positions& x, const Eigen::Isometry3d& m
 namespace {
 
 // Tells whether no point of a triangle is deeper in a shape than `known`, as the distances of places in it show: of its
-// centre and, down to some level, of the centres of its quarters. Only for shapes whose distance is exact.
-bool certainly_no_deeper(const ShapeProbe& probe, const Vec3& a, const Vec3& b, const Vec3& c, double known, int levels,
-                         QueryMemory& near) {
+// centre and, down to some level, of the centres of its quarters. certainty: Shape::certainty.
+bool certainly_no_deeper(const ShapeProbe& probe, double certainty, const Vec3& a, const Vec3& b, const Vec3& c,
+                         double known, int levels, QueryMemory& near) {
   const Vec3 center = (a + b + c) / 3;
-  const double needed = std::max({(a - center).norm(), (b - center).norm(), (c - center).norm()}) - known;
-  if (probe.certain_distance(center, near) >= needed || probe.distance(center, near) >= needed) return true;
+  const double radius = std::max({(a - center).norm(), (b - center).norm(), (c - center).norm()});
+  const double needed = probe.is_exact() ? radius - known : radius;
+  if (probe.certain_distance(center, near) >= needed || certainty * probe.distance(center, near) >= needed) return true;
   if (levels == 0) return false;
   const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
   const auto clear = [&](const Vec3& p, const Vec3& q, const Vec3& r) {
-    return certainly_no_deeper(probe, p, q, r, known, levels - 1, near);
+    return certainly_no_deeper(probe, certainty, p, q, r, known, levels - 1, near);
   };
   return clear(ab, bc, ca) && clear(a, ab, ca) && clear(ab, b, bc) && clear(ca, bc, c);
 }
@@ -111,19 +112,18 @@ void visit_deep_triangles(const Shape& shape, const Eigen::Isometry3d& pose, con
   const ShapeProbe probe(shape);
   const std::vector<ShapePiece> pieces = pieces_of(shape);
   std::vector<ShapeProbe> probes;
-  for (const ShapePiece& piece : pieces) probes.emplace_back(piece.shape);
+  std::vector<double> certainties;
+  for (const ShapePiece& piece : pieces) {
+    probes.emplace_back(piece.shape);
+    certainties.push_back(piece.shape.certainty());
+  }
   std::vector<QueryMemory> near(pieces.size() + 1);
   const auto depth_at = [&](const Vec3& p) { return -probe.closest(p, near.back()).distance; };
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
     TriangleCorners corner;
     for (int k = 0; k < 3; ++k) corner[k] = to_local * Vec3(x.row(triangles(t, k)));
-    const Vec3 center = (corner[0] + corner[1] + corner[2]) / 3;
-    double reach = 0;
-    for (const Vec3& p : corner) reach = std::max(reach, (p - center).norm());
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      if (probes[i].is_exact() ? certainly_no_deeper(probes[i], corner[0], corner[1], corner[2], known, 2, near[i])
-                               : pieces[i].shape.certainty() * probes[i].distance(center, near[i]) > reach)
-        continue;
+      if (certainly_no_deeper(probes[i], certainties[i], corner[0], corner[1], corner[2], known, 2, near[i])) continue;
       visit(corner, TriangleInShape(probes[i], pieces[i].half_thickness, corner, near[i]).descend(), depth_at);
     }
   }
