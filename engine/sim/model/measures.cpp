@@ -113,9 +113,11 @@ void visit_deep_triangles(const Shape& shape, const Eigen::Isometry3d& pose, con
   const std::vector<ShapePiece> pieces = pieces_of(shape);
   std::vector<ShapeProbe> probes;
   std::vector<double> certainties;
+  std::vector<int> levels;  // of quarters; near holes of a surface, inside and outside are told apart less surely
   for (const ShapePiece& piece : pieces) {
     probes.emplace_back(piece.shape);
     certainties.push_back(piece.shape.certainty());
+    levels.push_back(probes.back().is_exact() || probes.back().remembered() == nullptr ? 2 : 0);
   }
   std::vector<QueryMemory> near(pieces.size() + 1);
   const auto depth_at = [&](const Vec3& p) { return -probe.closest(p, near.back()).distance; };
@@ -123,7 +125,8 @@ void visit_deep_triangles(const Shape& shape, const Eigen::Isometry3d& pose, con
     TriangleCorners corner;
     for (int k = 0; k < 3; ++k) corner[k] = to_local * Vec3(x.row(triangles(t, k)));
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      if (certainly_no_deeper(probes[i], certainties[i], corner[0], corner[1], corner[2], known, 2, near[i])) continue;
+      if (certainly_no_deeper(probes[i], certainties[i], corner[0], corner[1], corner[2], known, levels[i], near[i]))
+        continue;
       visit(corner, TriangleInShape(probes[i], pieces[i].half_thickness, corner, near[i]).descend(), depth_at);
     }
   }
