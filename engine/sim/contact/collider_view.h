@@ -87,8 +87,8 @@ class ColliderView {
   std::optional<Entry> entry(const Way& way, double field_at_a, QueryMemory& near, double latest = 1) const;
 
   // Finds the surface that holds a vertex at the end of its way: the closest one, unless it came by another side; then
-  // it is usually that one. Nothing when there is none within `reach`. What goes around the rim of a plate of triangles,
-  // through no more than the layer, is held by the closest side.
+  // it is usually that one. Nothing when there is none within `reach`. What goes around the rim of a plate of
+  // triangles, through no more than the layer, is held by the closest side.
   std::optional<SurfacePoint> holding(const Way& way, double field_at_a, double reach, QueryMemory& near) const;
 
  private:
