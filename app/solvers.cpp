@@ -11,9 +11,10 @@ class ReferenceMeter : public ErrorMeter {
  public:
   ReferenceMeter(const Model& model, Threads& threads) : reference_(model) { workspace_.threads = &threads; }
 
-  std::optional<double> step_error(const Model& model, const StepInputs& inputs, const State& before,
-                                   const State& after) override {
-    return reference_.step_error(model, inputs, before, after, workspace_);
+  MeasuredErrors step_errors(const Model& model, const StepInputs& inputs, const State& before,
+                             const State& after) override {
+    const auto [error, motion] = reference_.step_errors(model, inputs, before, after, workspace_);
+    return {error, motion};
   }
 
  private:

@@ -23,15 +23,16 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"film", {"film", "scene", "sim", "render", "output", "geometry", "base"}},
 };
 
-// Lists the subfolders of engine/sim, and those from which each may include: solver -> contact -> model -> linear,
+// Lists the subfolders of engine/sim, and those from which each may include: solver -> contact -> coarse -> model -> linear,
 // elements -> materials. A file that lies in none of them may include from all.
 const std::map<std::string, std::set<std::string>> rooms = {
     {"materials", {"materials"}},
     {"elements", {"elements", "materials"}},
     {"linear", {"linear"}},
     {"model", {"model", "linear", "elements", "materials"}},
-    {"contact", {"contact", "model", "linear", "elements", "materials"}},
-    {"solver", {"solver", "contact", "model", "linear", "elements", "materials"}},
+    {"coarse", {"coarse", "model", "linear", "elements", "materials"}},
+    {"contact", {"contact", "coarse", "model", "linear", "elements", "materials"}},
+    {"solver", {"solver", "contact", "coarse", "model", "linear", "elements", "materials"}},
 };
 
 // Lists headers of third parties, and the files that may include them.

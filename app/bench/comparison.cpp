@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/interrupts.h"
+#include "sim/solver/first_iterate.h"
 #include "sim/solver/matrix_rule.h"
 
 namespace supple {
@@ -65,6 +66,7 @@ std::vector<Outcome> SolverComparison::run(const BenchState& state, const std::v
       outcome.iterations = report.iterations;
       outcome.trials = report.line_search;
       outcome.error_estimate = report.error_estimate;
+      outcome.motion_estimate = report.motion_estimate;
       outcome.records = report.records;
       outcome.x = after.x;
       if (report.failed) continue;
@@ -110,9 +112,15 @@ StepInputs SolverComparison::inputs_of(const BenchState& state, const SolverEntr
   inputs.solver.line_search = entry.line_search;
   inputs.solver.chebyshev = entry.chebyshev;
   inputs.solver.matrix = entry.start.matrix;
-  inputs.solver.carry = entry.start.carry;
+  inputs.solver.levels = entry.start.levels;
   inputs.solver = settings_of(entry.method, inputs.solver);
   return inputs;
+}
+
+Positions SolverComparison::prediction(const BenchState& state) {
+  Positions y;
+  inertial_prediction(subject_.model, put(state), state.before, y);
+  return y;
 }
 
 Minimum SolverComparison::reference(const BenchState& state, const std::vector<Outcome>& outcomes) {

@@ -27,10 +27,10 @@ struct Outcome {
   std::vector<double> gained;  // g(y) - g(x_k) [J]
   std::vector<double> ms;      // since the step was entered, the least of all timed runs
   std::vector<IterationRecord> records;
-  double step_ms = 0, median_ms = 0;  // of the whole step, least and median
-  double overhead_ms = 0;             // of L-BFGS without its solve
-  double matrix_ms = 0;               // of making the matrix, least: in all of `ms`
-  double error_estimate = 0;          // the solver's own
+  double step_ms = 0, median_ms = 0;               // of the whole step, least and median
+  double overhead_ms = 0;                          // of L-BFGS without its solve
+  double matrix_ms = 0;                            // of making the matrix, least: in all of `ms`
+  double error_estimate = 0, motion_estimate = 0;  // the solver's own
   int iterations = 0, trials = 0;
   bool failed = false;
   StopReason stop_reason = StopReason::iterations;
@@ -56,6 +56,9 @@ class SolverComparison {
   // turns. budget_ms: a solver that has used more than this time is not repeated any more [ms].
   std::vector<Outcome> run(const BenchState& state, const std::vector<SolverEntry>& entries, int repeats,
                            double budget_ms = 4000);
+
+  // Returns y of the step, in the model's order [m].
+  Positions prediction(const BenchState& state);
 
   // Finds the minimum below the best of the outcomes.
   Minimum reference(const BenchState& state, const std::vector<Outcome>& outcomes);

@@ -135,6 +135,34 @@ void add_unlike_parts(Cases& list) {
   list.back().turns_a_second = 1;
 }
 
+// Stiff bodies whose motion is turning, which costs them nothing.
+void add_turning(Cases& list) {
+  const std::size_t first = list.size();
+  constexpr std::string_view rough_ground =
+      "[[collider]]\nshape = { half_space = { normal = [0, 1, 0] } }\nfriction = 0.5\n";
+  constexpr std::string_view post =
+      "[[collider]]\nshape = { box = { extent = [0.1, 1, 0.1], round = 0.01 } }\nposition = [0.35, 0, 0.08]\n";
+  constexpr std::string_view hinge = "[[body.handles]]\nname = \"edge\"\nselect = { box = [[0, 0, 0], [0, 0, 1]] }\n";
+  add(list, "a stiff cube that topples", StableEnd::whole,
+      {two_seconds, cube("turn_deg = [0, 0, 30]\nposition = [0, 0.02, 0]", 4), rough_ground});
+  add(list, "a stiff cube that tumbles", StableEnd::whole,
+      {two_seconds, cube("position = [0, 0.02, 0]\nvelocity = [3, 0, 0]", 4), rough_ground});
+  add(list, "a stiff bar that swings", StableEnd::whole, {two_seconds, bar(hinge)});
+  add(list, "a stiff cube that hits a post off its middle", StableEnd::whole,
+      {weightless, cube("velocity = [3, 0, 0]", 4), post});
+  for (const double turns : {1.0, 3.0}) {
+    add(list, fmt::format("a stiff cube, {:g} turns a second", turns), StableEnd::whole, {weightless, cube("", 4)});
+    list.back().turns_a_second = turns;
+  }
+  add(list, "a stiff cube thrown with spin", StableEnd::whole,
+      {two_seconds, cube("position = [0, 0.3, 0]\nvelocity = [1, 2, 0]", 4), rough_ground});
+  list.back().turns_a_second = 2;
+  for (std::size_t i = first; i < list.size(); ++i) {
+    list[i].stiffness = 1e3;
+    list[i].follows_solution = true;
+  }
+}
+
 // The meshes of the paper have slivers: elements with volumes of 1e-6 of the mean and dihedral angles below a degree.
 void add_slivers(Cases& list, const std::filesystem::path& meshes) {
   for (const char* mesh : {"bunny", "ditto", "hippo", "squirrel_modified"}) {
@@ -164,6 +192,7 @@ std::vector<HardCase> hard_cases(const std::optional<std::filesystem::path>& pap
   add_loads(list);
   add_motions(list);
   add_unlike_parts(list);
+  add_turning(list);
   if (paper_meshes) add_slivers(list, *paper_meshes);
   return list;
 }

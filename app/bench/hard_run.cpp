@@ -12,12 +12,14 @@
 #include "scene/scene_reader.h"
 #include "sim/model/measures.h"
 #include "sim/solver/energies.h"
+#include "sim/solver/first_iterate.h"
 
 namespace supple {
 namespace {
 
 constexpr double usual_young = 3e4, usual_poisson = 0.35;
-constexpr double much_energy = 0.2;  // from nothing, over what was exchanged: where a run warns
+constexpr double much_motion = 0.05;  // error of motion of a step
+constexpr double much_energy = 0.2;   // from nothing, over what was exchanged: where a run warns
 constexpr double much_volume = 0.05, far_apart = 1e-3;
 
 SceneDef scene_of(const std::string& text) {
@@ -55,6 +57,7 @@ std::string broken_rule(const StabilityOutcome& outcome, const HardCase& hard) {
   if (hard.end == StableEnd::recovered && !outcome.is_at_rest()) return fmt::format("stretch {:.2f}", outcome.stretch);
   if (outcome.volume_change > much_volume)
     return fmt::format("volume changed by {:.0f} %", 100 * outcome.volume_change);
+  if (outcome.motion_error > much_motion) return fmt::format("motion {:.0f} % off", 100 * outcome.motion_error);
   if (outcome.turned_apart > far_apart) return fmt::format("turned copies {:.1e} apart", outcome.turned_apart);
   return "";
 }
@@ -157,7 +160,7 @@ class HardRun {
  private:
   static std::string table_of(const HardCase& hard, const NamedMaterial& material, double stiffer) {
     if (!hard.only.empty()) return hard.only;
-    return material_table(material.name, stiffer * usual_young, hard.poisson).value();
+    return material_table(material.name, stiffer * hard.stiffness * usual_young, hard.poisson).value();
   }
   static std::string text(const HardCase& hard, const std::string& table, const Variation& variation,
                           const Mat3& turn) {
@@ -178,6 +181,9 @@ class HardRun {
     make_halves_differ(body.description, hard_, std::move(materials));
     return body;
   }
+  // Returns the error of motion of the driver's last step, which began at `before`, against the step that more
+  // iterations solve.
+  double motion_error_of_step(const State& before);
   // Returns the positions in the body's own frame: turned back, about the mean of its rest positions.
   Positions turned_back() const {
     const Positions rest = in_input_order(model_, model_.rest), x = in_input_order(model_, driver_.state().x);
@@ -192,7 +198,19 @@ class HardRun {
   Model model_;
   CollisionSet set_;
   DrivenBody driver_;
+  Workspace solving_;
 };
+
+double HardRun::motion_error_of_step(const State& before) {
+  constexpr int enough = 200;
+  StepInputs inputs = driver_.inputs();
+  inputs.solver.iterations = enough;
+  State solved = before;
+  supple::step(model_, inputs, solved, solving_);
+  Positions y;
+  inertial_prediction(model_, inputs, before, y);
+  return motion_error(model_, before.x, y, driver_.state().x, solved.x);
+}
 
 StabilityOutcome HardRun::play(std::vector<Positions>* motion, WorstStep* worst) {
   StabilityOutcome outcome;
@@ -222,6 +240,7 @@ StabilityOutcome HardRun::play(std::vector<Positions>* motion, WorstStep* worst)
       outcome.from_nothing = std::max(outcome.from_nothing, balance.from_nothing / balance.exchanged);
     if (worst != nullptr && (frame == 0 || report.error_estimate > outcome.error_estimate)) *worst = {frame, before};
     outcome.error_estimate = std::max(outcome.error_estimate, report.error_estimate);
+    if (hard_.follows_solution) outcome.motion_error = std::max(outcome.motion_error, motion_error_of_step(before));
     outcome.trials += double(report.line_search) / scene_.frames;
     unsolved = unsolved || is_unsolved(report);
     if (keeps_volume_)

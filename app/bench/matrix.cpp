@@ -5,16 +5,18 @@
 
 #include "app/bench/sections.h"
 #include "base/error.h"
+#include "sim/model/measures.h"
 
 namespace supple {
 namespace {
 
-constexpr int film_frames = 66;  // of which renewals and carried pairs are counted
+constexpr int film_frames = 66;  // of which renewals are counted
 const std::vector<int> sampled_frames = {18, 30, 42, 54, 65};
 constexpr int most_iterations = 60;
 constexpr double tolerances[] = {1e-4, 1e-6};
-
-double share(int part, int whole) { return whole == 0 ? 0 : static_cast<double>(part) / whole; }
+constexpr double motion_tolerances[] = {1e-2, 1e-3};
+// The iterations after which errors of motion are measured, by a run for each.
+constexpr int motion_iterations[] = {1, 2, 3, 4, 5, 6, 8, 10, 14, 20};
 
 }  // namespace
 
@@ -22,7 +24,6 @@ double share(int part, int whole) { return whole == 0 ? 0 : static_cast<double>(
 PlayedFilm play_film(Subject& subject, Threads& threads, DirectionStart start, const std::vector<int>& frames) {
   PlayedFilm film;
   std::vector<double> renewing, examining;
-  int began_carried = 0, misled = 0, steps = 0;
   DrivenBody driver(subject.scene, subject.body, subject.model, subject.set,
                     solver_instead(Method::quasi_newton, 10, start), &threads);
   for (int frame = 0; frame < film_frames; ++frame) {
@@ -33,10 +34,6 @@ PlayedFilm play_film(Subject& subject, Threads& threads, DirectionStart start, c
     const StepReport& last = driver.make_frame(frame, [&](const StepReport& report) {
       const bool first = renewing.empty() && examining.empty();  // made as a body is prepared, like A
       (driver.workspace().renewed && !first ? renewing : examining).push_back(report.matrix_ms);
-      const CarryingWork& carrying = driver.workspace().carrying;
-      ++steps;
-      began_carried += carrying.used;
-      misled += carrying.used && carrying.misled;
     });
     if (last.failed) throw RunError(fmt::format("{}: frame {} failed", subject.choice.scene, frame));
   }
@@ -48,8 +45,6 @@ PlayedFilm play_film(Subject& subject, Threads& threads, DirectionStart start, c
   film.renewals = static_cast<double>(renewing.size()) / film_frames;
   if (start.matrix != SystemMatrix::constant)
     film.renewal_ms = (sum_of_medians(renewing) + sum_of_medians(examining)) / film_frames;
-  film.began_carried = share(began_carried, steps);
-  film.misled = share(misled, began_carried);
   return film;
 }
 
@@ -59,9 +54,11 @@ namespace {
 struct Score {
   double log_error[2] = {};  // after five iterations and after ten
   double trials = 0, iterations = 0;
-  double log_iterations[std::size(tolerances)] = {};  // to each tolerance
-  double log_ms[std::size(tolerances)] = {};          // likewise, with the film's mean of renewals
-  bool missed[std::size(tolerances)] = {};            // some state was not solved to it
+  double log_iterations[std::size(tolerances)] = {};        // to each tolerance
+  double log_ms[std::size(tolerances)] = {};                // likewise, with the film's mean of renewals
+  bool missed[std::size(tolerances)] = {};                  // some state was not solved to it
+  double log_motion[std::size(motion_iterations)] = {};     // errors of motion
+  double log_motion_ms[std::size(motion_tolerances)] = {};  // to each of their tolerances
 };
 
 void add(Score& score, const Outcome& whole_run, const Outcome& ten, double lowest, double renewal_ms) {
@@ -81,14 +78,43 @@ void add(Score& score, const Outcome& whole_run, const Outcome& ten, double lowe
   }
 }
 
+// Runs a solver anew for each number of iterations. whole_run: of the same solver, which tells how long they take.
+// estimates: of the error of motion after ten iterations, over the error.
+void add_motion(Score& score, SolverComparison& comparison, const BenchState& state, SolverEntry entry,
+                const Outcome& whole_run, const Positions& solved, std::vector<double>& estimates) {
+  const Model& model = comparison.subject().model;
+  Positions y;
+  bool reached[std::size(motion_tolerances)] = {};
+  for (std::size_t i = 0; i < std::size(motion_iterations); ++i) {
+    entry.iterations = motion_iterations[i];
+    const Outcome outcome = comparison.run(state, {entry}, 1, 0).front();
+    if (y.rows() == 0) y = comparison.prediction(state);
+    const double error = std::max(motion_error(model, state.before.x, y, outcome.x, solved), 1e-12);
+    score.log_motion[i] += std::log(error);
+    if (entry.iterations == 10 && error > 1e-8) estimates.push_back(outcome.motion_estimate / error);
+    const auto at = std::min<std::size_t>(motion_iterations[i], whole_run.ms.size() - 1);
+    for (std::size_t t = 0; t < std::size(motion_tolerances); ++t) {
+      if (reached[t] || (error > motion_tolerances[t] && i + 1 < std::size(motion_iterations))) continue;
+      reached[t] = true;  // or not within the iterations that are tried, which counts as reached with the last
+      score.log_motion_ms[t] += std::log(whole_run.ms[at]);
+    }
+  }
+}
+
 // Where the step itself made a matrix, its time is in the times of that state already, and all others are as if none
 // were ever made; so it is taken out, and each state gets the film's average in its place.
 void take_out_renewal(Outcome& outcome) {
   for (double& ms : outcome.ms) ms -= outcome.matrix_ms;
 }
 
+// Holds estimates after ten iterations over what they estimate, by state.
+struct Estimates {
+  std::vector<double> error = {}, motion = {};
+};
+
 struct Means {
   double nearer[2] = {}, ms[std::size(tolerances)] = {}, iterations[std::size(tolerances)] = {};
+  double motion_nearer[std::size(motion_iterations)] = {}, motion_ms[std::size(motion_tolerances)] = {};
   int bodies = 0;
 };
 
@@ -98,12 +124,12 @@ struct Candidate {
   DirectionStart start;
   ReportTable tables[2];
   Means means[2] = {};
-  std::vector<double> estimates = {};  // of the error after ten iterations, over the error
+  Estimates estimates = {};
 };
 
 Candidate candidate_of(DirectionStart start) {
   const std::string text = text_of(start);
-  const std::string name = std::string(name_of(start.matrix)) + (start.carry ? "-carried" : "");
+  const std::string name = std::string(name_of(start.matrix)) + (start.levels > 1 ? "-two-levels" : "");
   Candidate candidate{start,
                       {{"matrix-" + name, "Scenes without colliders: " + text},
                        {"matrix-" + name + "-colliders", "Scenes with colliders: " + text}}};
@@ -116,6 +142,14 @@ Candidate candidate_of(DirectionStart start) {
                      "error after 10, paper's",
                      "error after 10",
                      "times nearer",
+                     "motion error after 3, paper's",
+                     "motion error after 3",
+                     "after 5, paper's",
+                     "after 5",
+                     "after 10, paper's",
+                     "after 10",
+                     "to motion error 1e-2, ratio of times",
+                     "to 1e-3, ratio of times",
                      "trials an iteration, paper's",
                      "trials an iteration",
                      "iterations to 1e-4, ratio",
@@ -127,9 +161,7 @@ Candidate candidate_of(DirectionStart start) {
                      "to 1e-6 [ms]",
                      "to 1e-6, ratio",
                      "renewals a frame",
-                     "their time a frame [ms]",
-                     "steps that began with a carried pair",
-                     "of these, misled"};
+                     "their time a frame [ms]"};
   return candidate;
 }
 
@@ -148,6 +180,16 @@ void add_row(Candidate& candidate, const Subject& subject, const Score& papers, 
     means.nearer[i] += (papers.log_error[i] - score.log_error[i]) / n;
   }
   row.push_back(mean(papers.log_error[1] - score.log_error[1]));
+  for (std::size_t i = 0; i < std::size(motion_iterations); ++i) {
+    means.motion_nearer[i] += (papers.log_motion[i] - score.log_motion[i]) / n;
+    if (motion_iterations[i] != 3 && motion_iterations[i] != 5 && motion_iterations[i] != 10) continue;
+    row.push_back(mean(papers.log_motion[i]));
+    row.push_back(mean(score.log_motion[i]));
+  }
+  for (std::size_t t = 0; t < std::size(motion_tolerances); ++t) {
+    means.motion_ms[t] += (score.log_motion_ms[t] - papers.log_motion_ms[t]) / n;
+    row.push_back(mean(score.log_motion_ms[t] - papers.log_motion_ms[t]));
+  }
   row.push_back(number_text(papers.trials / papers.iterations));
   row.push_back(number_text(score.trials / score.iterations));
   for (std::size_t t = 0; t < std::size(tolerances); ++t) {
@@ -159,8 +201,7 @@ void add_row(Candidate& candidate, const Subject& subject, const Score& papers, 
     means.iterations[t] += (score.log_iterations[t] - papers.log_iterations[t]) / n;
   }
   ++means.bodies;
-  for (const double number : {film.renewals, film.renewal_ms, film.began_carried, film.misled})
-    row.push_back(number_text(number));
+  for (const double number : {film.renewals, film.renewal_ms}) row.push_back(number_text(number));
   candidate.tables[group].rows.push_back(std::move(row));
 }
 
@@ -168,24 +209,32 @@ std::string text_of(const Means& means) {
   const double n = means.bodies;
   return fmt::format(
       "the error is {:.1f} times smaller after five iterations and {:.1f} times after ten; iterations to 1e-4 and 1e-6 "
-      "are {:.2f} and {:.2f}, times {:.2f} and {:.2f} of the paper's (geometric means over {} bodies)",
+      "are {:.2f} and {:.2f}, times {:.2f} and {:.2f} of the paper's; the error of motion is {:.1f}, {:.1f} and {:.1f} "
+      "times smaller after three, five and ten iterations, and times to 1e-2 and 1e-3 of it are {:.2f} and {:.2f} "
+      "(geometric means over {} bodies)",
       std::exp(means.nearer[0] / n), std::exp(means.nearer[1] / n), std::exp(means.iterations[0] / n),
-      std::exp(means.iterations[1] / n), std::exp(means.ms[0] / n), std::exp(means.ms[1] / n), means.bodies);
+      std::exp(means.iterations[1] / n), std::exp(means.ms[0] / n), std::exp(means.ms[1] / n),
+      std::exp(means.motion_nearer[2] / n), std::exp(means.motion_nearer[4] / n), std::exp(means.motion_nearer[7] / n),
+      std::exp(means.motion_ms[0] / n), std::exp(means.motion_ms[1] / n), means.bodies);
 }
 
-std::string text_of_estimates(const std::vector<double>& ratios, const std::string& label) {
+std::string text_of_ratios(const std::vector<double>& ratios) {
   const auto percent = [&](const auto& rule) {
     const auto count = static_cast<double>(std::count_if(ratios.begin(), ratios.end(), rule));
     return ratios.empty() ? 0 : 100 * count / static_cast<double>(ratios.size());
   };
-  return fmt::format("{}: within a factor of 3 on {:.0f} % of {} states, more than ten times too small on {:.0f} %",
-                     label, percent([](double ratio) { return ratio >= 1.0 / 3 && ratio <= 3; }), ratios.size(),
+  return fmt::format("within a factor of 3 on {:.0f} % of {} states, more than ten times too small on {:.0f} %",
+                     percent([](double ratio) { return ratio >= 1.0 / 3 && ratio <= 3; }), ratios.size(),
                      percent([](double ratio) { return ratio < 0.1; }));
 }
 
-// Compares on states of the candidate's own film, which say how old its matrix is and what it carries.
-void compare(Candidate& candidate, Subject& subject, std::vector<double>& papers_estimates,
-             const BenchSetting& setting) {
+std::string text_of_estimates(const Estimates& estimates, const std::string& label) {
+  return fmt::format("{}: of equation 12 {}, of the error of motion {}", label, text_of_ratios(estimates.error),
+                     text_of_ratios(estimates.motion));
+}
+
+// Compares on states of the candidate's own film, which say how old its matrix is.
+void compare(Candidate& candidate, Subject& subject, Estimates& papers_estimates, const BenchSetting& setting) {
   const PlayedFilm film = play_film(subject, *setting.threads, candidate.start, sampled_frames);
   SolverComparison comparison(subject, *setting.threads);
   Score papers, score;
@@ -201,13 +250,15 @@ void compare(Candidate& candidate, Subject& subject, std::vector<double>& papers
     const double scale = subject.model.total_mass * std::pow(subject.model.size / subject.model.time_step, 2);
     if (!(lowest.below_y > 1e-12 * scale)) continue;  // at rest: nothing to solve
     ++states;
-    take_out_renewal(outcomes[2]);
+    if (candidate.start.matrix != SystemMatrix::constant) take_out_renewal(outcomes[2]);
+    add_motion(papers, comparison, state, entries[0], outcomes[0], lowest.x, papers_estimates.motion);
+    add_motion(score, comparison, state, entries[2], outcomes[2], lowest.x, candidate.estimates.motion);
     add(papers, outcomes[0], outcomes[1], lowest.below_y, 0);
     add(score, outcomes[2], outcomes[3], lowest.below_y, film.renewal_ms);
     for (const int ten : {1, 3}) {
       const double error = last_error(outcomes[ten], lowest.below_y);
       if (error > 1e-13)
-        (ten == 1 ? papers_estimates : candidate.estimates).push_back(outcomes[ten].error_estimate / error);
+        (ten == 1 ? papers_estimates : candidate.estimates).error.push_back(outcomes[ten].error_estimate / error);
     }
   }
   if (states > 0) add_row(candidate, subject, papers, score, film, states);
@@ -216,10 +267,9 @@ void compare(Candidate& candidate, Subject& subject, std::vector<double>& papers
 }  // namespace
 
 ReportSection bench_matrix(const BenchSetting& setting) {
-  Candidate candidates[] = {candidate_of({SystemMatrix::constant, true}), candidate_of({SystemMatrix::tangent, false}),
-                            candidate_of({SystemMatrix::tangent, true}), candidate_of({SystemMatrix::hessian, false}),
-                            candidate_of({SystemMatrix::hessian, true})};
-  std::vector<double> papers_estimates;
+  Candidate candidates[] = {candidate_of({SystemMatrix::constant, 2}), candidate_of({SystemMatrix::tangent, 1}),
+                            candidate_of({SystemMatrix::hessian, 1})};
+  Estimates papers_estimates;
   for (const SubjectChoice& choice : all_subjects()) {
     Subject subject(choice);
     if (subject.model.vertices > most_vertices || subject.body.def.solver.method != Method::quasi_newton) continue;
@@ -228,15 +278,15 @@ ReportSection bench_matrix(const BenchSetting& setting) {
   }
   ReportSection section{"matrix", "What directions start from"};
   section.text = fmt::format(
-      "Matrices that follow the body, solver.matrix, and a pair that is carried over from the step before, "
-      "solver.carry, beside the paper's constant matrix, M/h^2 + L, with nothing carried, on states of all bodies of "
+      "Two levels, solver.levels, and matrices that follow the body, solver.matrix, beside the paper's constant "
+      "matrix, M/h^2 + L, on states of all bodies of "
       "up to {} vertices, geometric means over their frames. Times contain the renewals that the matrix' film had, on "
       "average over {} frames.",
       most_vertices, film_frames);
   for (const Candidate& candidate : candidates)
     section.text += fmt::format(" {}, without colliders: {}; with colliders: {}.", text_of(candidate.start),
                                 text_of(candidate.means[0]), text_of(candidate.means[1]));
-  section.text += " Estimates of the error after ten iterations, " + text_of_estimates(papers_estimates, "the paper's");
+  section.text += " Estimates after ten iterations: " + text_of_estimates(papers_estimates, "the paper's");
   for (const Candidate& candidate : candidates)
     section.text += "; " + text_of_estimates(candidate.estimates, text_of(candidate.start));
   section.text += ".";

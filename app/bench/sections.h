@@ -33,6 +33,8 @@ ReportSection bench_minima(const BenchSetting& setting);
 ReportSection bench_sweeps(const BenchSetting& setting);
 ReportSection bench_substeps(const BenchSetting& setting);
 ReportSection bench_hanging(const BenchSetting& setting);
+// turning.cpp
+ReportSection bench_turning(const BenchSetting& setting);
 // engineering.cpp
 ReportSection bench_ablation(const BenchSetting& setting);
 ReportSection bench_contact(const BenchSetting& setting);
@@ -47,8 +49,6 @@ ReportSection bench_roofline(const BenchSetting& setting);
 struct PlayedFilm {
   double renewals = 0;                  // of the matrix, by frame
   double renewal_ms = 0;                // what they cost by frame, with the examination of whether one is due
-  double began_carried = 0;             // share of the steps that began with a carried pair
-  double misled = 0;                    // share of these that were misled
   std::vector<BenchState> states = {};  // of the film before some of its frames
 };
 // frames: those whose states are wanted, ascending.

@@ -30,6 +30,7 @@ struct StabilityOutcome {
   double volume_change = 0;   // the worst of all frames, over the volume at rest
   double turned_apart = 0;    // from the first copy, turned back: the worst of all frames, over the body's size
   double error_estimate = 0;  // the worst of all frames
+  double motion_error = 0;    // likewise, against the solved step; where the case asks for it
   double trials = 0;          // evaluations a frame
   bool told = false;          // whether the run says that something is wrong
   std::string failure = {};   // the rule that was broken; empty: passed

@@ -57,7 +57,7 @@ Solvers scenes_own_solver() {
 }
 
 std::string text_of(const DirectionStart& start) {
-  return std::string(name_of(start.matrix)) + (start.carry ? ", carried" : "");
+  return std::string(name_of(start.matrix)) + (start.levels > 1 ? ", two levels" : "");
 }
 
 Solvers solver_instead(Method method, int iterations, DirectionStart start) {
@@ -66,7 +66,7 @@ Solvers solver_instead(Method method, int iterations, DirectionStart start) {
             SolverSettings settings = solver.settings;
             settings.iterations = iterations;
             settings.matrix = start.matrix;
-            settings.carry = start.carry;
+            settings.levels = start.levels;
             return settings_of(method, settings);
           }};
 }

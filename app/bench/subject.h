@@ -21,9 +21,9 @@ struct SubjectChoice {
 // Says what directions of quasi-Newton start from. The default is the paper's.
 struct DirectionStart {
   SystemMatrix matrix = SystemMatrix::constant;
-  bool carry = false;
+  int levels = 1;
 };
-std::string text_of(const DirectionStart& start);  // "tangent, carried"
+std::string text_of(const DirectionStart& start);  // "constant, two levels"
 
 // These functions return the solver that a scene names, or another solver in its place.
 Solvers scenes_own_solver();

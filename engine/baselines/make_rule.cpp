@@ -109,7 +109,8 @@ SolverSettings settings_of(const Method& method, SolverSettings settings) {
   if (method.acceleration != Acceleration::lbfgs) settings.history = 0;
   if (method != Method::quasi_newton) {
     settings.matrix = SystemMatrix::constant;
-    settings.carry = settings.newton = false;
+    settings.levels = 1;
+    settings.newton = false;
   }
   if (method.matrix == StartMatrix::hecht || method.matrix == StartMatrix::vertex_blocks ||
       method.acceleration == Acceleration::admm)

@@ -7,7 +7,6 @@ namespace supple {
 const StepReport& step_then_project(const Model& model, const StepInputs& inputs, State& state, Workspace& w) {
   StepInputs without_colliders = inputs;
   without_colliders.solver.matrix = SystemMatrix::constant;  // as what it is compared with
-  without_colliders.solver.carry = false;
   without_colliders.colliders = nullptr;
   const State before = state;
   const StepReport& report = step(model, without_colliders, state, w);

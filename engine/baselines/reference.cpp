@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "baselines/newton.h"
+#include "sim/model/measures.h"
 #include "sim/solver/iterations.h"
 
 namespace supple {
@@ -81,15 +82,17 @@ Minimum Reference::minimum(const Model& model, const StepInputs& inputs, const S
   return result;
 }
 
-std::optional<double> Reference::step_error(const Model& model, const StepInputs& inputs, const State& before,
-                                            const State& after, Workspace& w) {
+Reference::StepErrors Reference::step_errors(const Model& model, const StepInputs& inputs, const State& before,
+                                             const State& after, Workspace& w) {
   const Minimum lowest = minimum(model, inputs, before, after.x, w);
+  StepErrors errors;
+  errors.motion = motion_error(model, before.x, w.y, after.x, lowest.x);
   w.trial.x = w.y;
   w.trial.contacts = w.current.contacts;
   evaluate(model, w, w.trial, Wanted::value);
   const double noise = 2 * noise_of(model, w.trial.g, before.x.cwiseAbs().maxCoeff());
-  if (!(lowest.below_y > noise)) return std::nullopt;
-  return lowest.below_end / lowest.below_y;
+  if (lowest.below_y > noise) errors.error = lowest.below_end / lowest.below_y;
+  return errors;
 }
 
 }  // namespace supple

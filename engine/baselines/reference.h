@@ -30,11 +30,21 @@ class Reference {
   Minimum minimum(const Model& model, const StepInputs& inputs, const State& before, const Positions& x,
                   Workspace& workspace);
 
+  // Holds the errors of a step.
+  struct StepErrors {
+    std::optional<double> error;  // of equation 12; empty where g(y) - g* is round-off
+    double motion = 0;            // the error of motion (sim/model/measures.h)
+  };
   // Computes error(x_k) = (g(x_k) - g*) / (g(y) - g*). `before` and `after` are the states around the step. g* is what
   // minimum() finds when it continues from x_k. Both differences are sums of small ones, so that small errors keep
-  // their digits. Empty where g(y) - g* is round-off.
+  // their digits.
+  StepErrors step_errors(const Model& model, const StepInputs& inputs, const State& before, const State& after,
+                         Workspace& workspace);
+  // Returns the first of them.
   std::optional<double> step_error(const Model& model, const StepInputs& inputs, const State& before,
-                                   const State& after, Workspace& workspace);
+                                   const State& after, Workspace& workspace) {
+    return step_errors(model, inputs, before, after, workspace).error;
+  }
 
  private:
   struct Parts;

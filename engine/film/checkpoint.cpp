@@ -73,11 +73,7 @@ std::string checkpoint_bytes(const Checkpoint& checkpoint, const std::string& id
                               {"matrix_vertices", body.matrix_made_at.rows()},
                               {"matrix_age", body.matrix_age},
                               {"hessian_progress", body.hessian_progress},
-                              {"constant_progress", body.constant_progress},
-                              {"carried_vertices", body.carried.step.rows()},
-                              {"carried_system", body.carried.system},
-                              {"carried_misses", body.carried.misses},
-                              {"carried_wait", body.carried.wait}});
+                              {"constant_progress", body.constant_progress}});
   }
   const std::string text = exact_json_text(head);
   std::string bytes(signature);
@@ -89,8 +85,6 @@ std::string checkpoint_bytes(const Checkpoint& checkpoint, const std::string& id
     append(bytes, body.anchors.points);
     for (const Vec3& center : body.anchors.centers) append(bytes, center.transpose());
     append(bytes, body.matrix_made_at);
-    append(bytes, body.carried.step);
-    append(bytes, body.carried.gradient);
   }
   append_number(bytes, hash_text(bytes));
   return bytes;
@@ -119,11 +113,6 @@ State read_body(const Json& body, Reader& reader) {
   state.matrix_age = body.at("matrix_age");
   state.hessian_progress = body.at("hessian_progress");
   state.constant_progress = body.at("constant_progress");
-  state.carried.step = reader.rows(body.at("carried_vertices"));
-  state.carried.gradient = reader.rows(body.at("carried_vertices"));
-  state.carried.system = body.at("carried_system");
-  state.carried.misses = body.at("carried_misses");
-  state.carried.wait = body.at("carried_wait");
   for (const Json& held : body.at("holds")) state.anchors.holds.push_back(held.get<bool>());
   return state;
 }

@@ -10,15 +10,21 @@
 
 namespace supple {
 
-// Measures the error of one body's steps against the converged solution.
+// Holds the measured errors of a step.
+struct MeasuredErrors {
+  // Of equation 12; empty where the objective of the start is above its minimum by round-off alone.
+  std::optional<double> error;
+  double motion = 0;  // the error of motion (sim/model/measures.h)
+};
+
+// Measures the errors of one body's steps against the converged solution.
 class ErrorMeter {
  public:
   virtual ~ErrorMeter() = default;
 
-  // Evaluates equation 12 for a step from `before` to `after`. Returns nothing where the objective of the start is
-  // above its minimum by round-off alone.
-  virtual std::optional<double> step_error(const Model& model, const StepInputs& inputs, const State& before,
-                                           const State& after) = 0;
+  // Measures a step from `before` to `after`.
+  virtual MeasuredErrors step_errors(const Model& model, const StepInputs& inputs, const State& before,
+                                     const State& after) = 0;
 };
 
 struct FilmSolvers {

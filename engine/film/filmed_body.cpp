@@ -26,6 +26,7 @@ void add_up(BodyRow& row, const StepReport& report) {
   row.objective_start = report.objective.empty() ? 0 : report.objective.front();
   row.objective_end = report.objective.empty() ? 0 : report.objective.back();
   row.error_estimate = std::max(row.error_estimate, report.error_estimate);  // of the worst step of the frame
+  row.motion_estimate = std::max(row.motion_estimate, report.motion_estimate);
   row.unsolved = row.unsolved || is_unsolved(report);
   row.stop_reason = name_of(report.stop_reason);
   if (!row.contact) return;
@@ -97,7 +98,10 @@ std::string FilmedBody::advance(int frame, bool measure_error, BodyRow& row) {
     if (report.failed) return failure_text(frame, row.name, report.failure);
     if (!measured) continue;
     row.error_measured = true;
-    if (!driver_.untangled()) row.error = step_error(before);  // another energy has another minimum
+    if (driver_.untangled()) continue;  // another energy has another minimum
+    const MeasuredErrors errors = step_errors(before);
+    row.error = errors.error;
+    row.motion_error = errors.motion;
   }
   measure(frame, row);
   return "";
@@ -123,11 +127,11 @@ const StepReport& FilmedBody::make_step() {
   return report;
 }
 
-std::optional<double> FilmedBody::step_error(const State& before) {
+MeasuredErrors FilmedBody::step_errors(const State& before) {
   const Zone zone("reference error", driver_.body().def.name);
   if (metered_model_ != model().id) error_meter_ = solvers_.error_meter(model(), threads_);
   metered_model_ = model().id;
-  return error_meter_->step_error(model(), driver_.inputs(), before, state());
+  return error_meter_->step_errors(model(), driver_.inputs(), before, state());
 }
 
 void FilmedBody::measure(int frame, BodyRow& row) {

@@ -52,7 +52,7 @@ class FilmedBody {
   void start_energy_balance(const EnergyBalance& balance);
   const StepReport& make_step();
   void measure(int frame, BodyRow& row);
-  std::optional<double> step_error(const State& before);
+  MeasuredErrors step_errors(const State& before);
 
   const SceneDef& scene_;
   const RunFolder& folder_;

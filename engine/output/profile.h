@@ -40,10 +40,11 @@ struct BodyRow {
   double step_ms = 0, evaluate_ms = 0, solve_ms = 0, lbfgs_ms = 0, matrix_ms = 0, other_ms = 0;
   int iterations = 0, newton_iterations = 0, line_search = 0;  // the second: of these, those that finished hard steps
   double objective_start = 0, objective_end = 0;               // [J]
-  double error_estimate = 0;                                   // of the frame's worst step
+  double error_estimate = 0, motion_estimate = 0;              // of the frame's worst step
   bool unsolved = false;  // a step of the frame did not come near its minimum (base/unsolved_step.h)
   bool error_measured = false;
   std::optional<double> error;                  // equation 12; null where the start is already the minimum to round-off
+  std::optional<double> motion_error;           // how far the solved motion is, over the step's own motion
   double stretch = 0;                           // 99.9th percentile of the largest stretch, weighted by volume
   std::optional<std::array<double, 5>> energy;  // kinetic, elastic, gravitational, springs, contact [J]; when asked for
   std::optional<BalanceRow> balance;            // absent in profiles of earlier versions

@@ -32,8 +32,10 @@ Json json_of(const BodyRow& body) {
               {"objective_start", body.objective_start},
               {"objective_end", body.objective_end},
               {"error_estimate", body.error_estimate},
+              {"motion_estimate", body.motion_estimate},
               {"unsolved", body.unsolved}};
   if (body.error_measured) row["error"] = body.error ? Json(*body.error) : Json(nullptr);
+  if (body.motion_error) row["motion_error"] = *body.motion_error;
   if (body.contact) {
     row["collide_ms"] = rounded_ms(body.contact->collide_ms);
     row["contacts"] = body.contact->contacts;
@@ -104,6 +106,8 @@ BodyRow body_row(const Json& json) {
   json.at("objective_start").get_to(row.objective_start);
   json.at("objective_end").get_to(row.objective_end);
   json.at("error_estimate").get_to(row.error_estimate);
+  row.motion_estimate = json.value("motion_estimate", 0.0);  // likewise
+  if (json.contains("motion_error")) row.motion_error = json.at("motion_error").get<double>();
   const int trials = row.newton_iterations > 0 ? 0 : row.line_search;
   row.unsolved = json.value("unsolved", is_unsolved(row.error_estimate, row.iterations, trials));  // likewise
   row.error_measured = json.contains("error");
@@ -185,6 +189,7 @@ Json summary_json(const RowTally& tally, const std::string& verdict) {
     summary["unsolved"].push_back({{"frame", step.frame},
                                    {"body", step.body},
                                    {"error_estimate", step.error_estimate},
+                                   {"motion_estimate", step.motion_estimate},
                                    {"trials_per_iteration", step.trials}});
   }
   if (!verdict.empty()) summary["verdict"] = verdict;

@@ -62,8 +62,10 @@ void RowTally::add_body(const FrameRow& row, std::size_t number) {
   tally.iterations += body.iterations;
   tally.stretch = std::max(tally.stretch, body.stretch);
   tally.estimates += body.error_estimate;
+  tally.motion_estimates += body.motion_estimate;
   if (body.jiggle) tally.jiggle = std::max(tally.jiggle.value_or(*body.jiggle), *body.jiggle);
   if (body.error) tally.errors.push_back(*body.error);
+  if (body.motion_error) tally.motion_errors.push_back(*body.motion_error);
   measured_ = measured_ || body.error_measured;
   if (body.contact) {
     tally.collide.push_back(body.contact->collide_ms);
@@ -79,7 +81,7 @@ void RowTally::add_body(const FrameRow& row, std::size_t number) {
   tally.inverted = body.inverted.value_or(0);
   tally.collapsed = body.collapsed.value_or(0);
   if (body.unsolved)
-    unsolved_.push_back({row.frame, body.name, body.error_estimate,
+    unsolved_.push_back({row.frame, body.name, body.error_estimate, body.motion_estimate,
                          body.iterations > 0 ? double(body.line_search) / body.iterations : 0});
 }
 
@@ -181,18 +183,24 @@ std::string RowTally::table() const {
   if (frames_ == 0) return text;
   text += fmt::format("\n  {:<14}{:>9}{:>9}{:>12}{:>10}{:>10}{:>12}", "body", "step ms", "p95", "trials/it", "stretch",
                       "jiggle", "error est.");
+  text += fmt::format("{:>13}", "motion est.");
   if (touching_) text += fmt::format("{:>12}{:>10}{:>13}", "collide ms", "contacts", "penetration");
-  text += measured_ ? fmt::format("{:>11}{:>10}{:>10}\n", "error mean", "p95", "worst") : "\n";
+  if (measured_)
+    text += fmt::format("{:>11}{:>10}{:>10}{:>12}{:>10}", "error mean", "p95", "worst", "motion mean", "worst");
+  text += '\n';
   for (const BodyTally& body : bodies_) {
     const Distribution step = distribution_of(body.step);
     text += fmt::format("  {:<14}{:>9.2f}{:>9.2f}{:>12.3f}{:>10.3f}{:>10}{:>12.1e}", body.name, step.p50, step.p95,
                         body.iterations > 0 ? body.trials / body.iterations : 0.0, body.stretch,
                         body.jiggle ? fmt::format("{:.3f}", *body.jiggle) : "-", body.estimates / body.frames);
+    text += fmt::format("{:>13.1e}", body.motion_estimates / body.frames);
     if (touching_)
       text += fmt::format("{:>12.2f}{:>10}{:>13.1e}", distribution_of(body.collide).p50, body.contacts, body.deepest);
     if (measured_) {
       const Distribution error = distribution_of(body.errors);
-      text += fmt::format("{:>11.1e}{:>10.1e}{:>10.1e}", error.mean, error.p95, error.max);
+      const Distribution motion = distribution_of(body.motion_errors);
+      text += fmt::format("{:>11.1e}{:>10.1e}{:>10.1e}{:>12.1e}{:>10.1e}", error.mean, error.p95, error.max,
+                          motion.mean, motion.max);
     }
     text += '\n';
   }
@@ -208,14 +216,18 @@ std::string RowTally::unsolved_text() const {
     const auto at = std::ranges::find(worst, step.body, &UnsolvedStep::body);
     if (at == worst.end()) {
       worst.push_back(step);
-    } else if (step.error_estimate > at->error_estimate) {
+    } else if (std::max(step.error_estimate, step.motion_estimate) >
+               std::max(at->error_estimate, at->motion_estimate)) {
       *at = step;
     }
   }
   std::string text = fmt::format("{} of {} frames did not come near their solution:", frames, frames_);
   for (const UnsolvedStep& step : worst) {
-    text += fmt::format("{} body '{}' worst in frame {}, with an error of about {:.2g} and {:.1f} trials an iteration",
-                        &step == &worst.front() ? "" : ";", step.body, step.frame, step.error_estimate, step.trials);
+    text += fmt::format(
+        "{} body '{}' worst in frame {}, with errors of about {:.2g} in energy and {:.2g} in motion, and {:.1f} "
+                        "trials an iteration",
+        &step == &worst.front() ? "" : ";", step.body, step.frame, step.error_estimate, step.motion_estimate,
+        step.trials);
   }
   return text + "; more iterations or substeps help";
 }

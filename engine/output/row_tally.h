@@ -21,8 +21,8 @@ struct StageTally {
 // Tallies the figures of one body.
 struct BodyTally {
   std::string name;
-  std::vector<double> step, collide, errors;
-  double trials = 0, iterations = 0, stretch = 0, deepest = 0, estimates = 0;
+  std::vector<double> step, collide, errors, motion_errors;
+  double trials = 0, iterations = 0, stretch = 0, deepest = 0, estimates = 0, motion_estimates = 0;
   int contacts = 0, frames = 0;
   std::optional<double> jiggle;
   // Energy from nothing: where it first was much, and where most [J].

@@ -12,7 +12,7 @@ namespace supple {
 struct UnsolvedStep {
   int frame;
   std::string body;
-  double error_estimate;
+  double error_estimate, motion_estimate;
   double trials;  // of the line search, an iteration
 };
 

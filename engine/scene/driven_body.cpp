@@ -91,7 +91,6 @@ const StepReport& DrivenBody::step() {
   if (!untangled_) return supple::step(model_, inputs_, state_, workspace_, *rule_);
   StepInputs inputs = inputs_;
   inputs.solver.matrix = SystemMatrix::constant;
-  inputs.solver.carry = false;  // another material's pair
   return supple::step(rigid_model(), inputs, state_, workspace_);
 }
 

@@ -26,7 +26,7 @@ constexpr auto patterns = std::to_array<LivePattern>({
     {"solver.damping", new_factor},
     {"solver.iterations", nothing},
     {"solver.history", nothing},
-    {"solver.carry", nothing},
+    {"solver.levels", nothing},
     {"solver.matrix", nothing},
     {"solver.rounds", nothing},
     {"solver.untangle", nothing},

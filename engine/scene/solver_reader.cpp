@@ -105,10 +105,11 @@ SolverSettings read_settings(const ConfigTable& table, SolverSettings s) {
                     s.iterations, Range::between(1, 10000));
   s.history =
       table.integer({"history", "", "window m of L-BFGS; 0 is plain quasi-Newton"}, s.history, Range::between(0, 100));
-  s.carry = table.boolean({"carry", "",
-                           "the first direction of quasi-newton learns from the step before, in which the paper's "
-                           "begins with nothing"},
-                          s.carry);
+  s.levels =
+      table.integer({"levels", "",
+                     "2: the first matrix of quasi-newton's directions knows that turning parts of the body costs "
+                     "nothing; 1: it resists turning, as the paper's"},
+                    s.levels, Range::between(1, 2));
   s.matrix = table.word<SystemMatrix>(
       {"matrix", "",
        "what directions of quasi-newton start from: a matrix that follows the body, or the paper's M/h^2 + L"},

@@ -76,9 +76,9 @@ select = { box = [[0, 0, 0], [0.01, 1, 1]] }
 )";
   film(scene);
   EXPECT_LT(from_nothing(), 0.05);
-  film(scene, {"--set", "solver.carry=false"});
+  film(scene, {"--set", "solver.levels=1"});
   EXPECT_LT(from_nothing(), 0.05);
-  film(scene, {"--set", "solver.carry=false", "--set", "solver.rounds=1"});
+  film(scene, {"--set", "solver.levels=1", "--set", "solver.rounds=1"});
   EXPECT_GT(from_nothing(), 0.2);
 }
 

@@ -56,18 +56,6 @@ TEST_F(ResumedFilm, GoesOnAfterAnInterruptAndMayBecomeLonger) {
   EXPECT_EQ(run(folder_.path, film({"--out", "cut", "--resume", "--frames", "20"})).status, 2);
 }
 
-TEST_F(ResumedFilm, GoesOnWithThePairThatItsStepsCarry) {
-  ASSERT_EQ(run(folder_.path, film({"--out", "plain", "--set", "solver.carry=false"})).status, 0);
-  ASSERT_EQ(run(folder_.path, film({"--out", "whole"})).status, 0);
-  EXPECT_NE(hashes("whole"), hashes("plain"));
-  const Result cut = run(folder_.path, film({"--out", "cut", "--checkpoint-every", "1"}),
-                         folder_.path / "cut" / "frames" / "000007.png");
-  ASSERT_EQ(cut.status, 130) << cut.err;
-  const Result on = run(folder_.path, film({"--out", "cut", "--resume"}));
-  ASSERT_EQ(on.status, 0) << on.err;
-  expect_the_same_film("whole", "cut");
-}
-
 TEST_F(ResumedFilm, SaysWhereGraphsOfALongerFilmHaveAnotherLength) {
   const auto longer = [&](const char* frames, bool resumed) {
     std::vector<std::string> arguments = film({"--out", "a", "--frames", frames, "--set", "text.error_graph=true"});

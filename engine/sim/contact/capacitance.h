@@ -56,6 +56,9 @@ class Capacitance {
   // Solves in place; the numbers are ordered by direction.
   void solve(Eigen::VectorXf& answer) const;
 
+  // With rows W by direction, computes W^T C^-1 W for the system's matrix C.
+  Eigen::MatrixXd between(const Eigen::MatrixXf& rows) const;
+
   // Returns how many numbers of A^-1 and of its factor are kept from step to step.
   std::int64_t kept_numbers() const { return entries_.stored_numbers(); }
 

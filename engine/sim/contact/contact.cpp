@@ -41,13 +41,6 @@ double contact_energy(const std::vector<Contact>& contacts, const Positions& poi
   return sum;
 }
 
-void add_normal_forces(const std::vector<Contact>& contacts, const Positions& point, double sign, Positions& force) {
-  for (const Contact& contact : contacts) {
-    const double below = std::min(0.0, gap(contact, point));
-    contact.point.spread(-sign * 2 * contact.stiffness * below * contact.normal, force);
-  }
-}
-
 void add_forces(const std::vector<Contact>& contacts, double stick_length, const Positions& point,
                 std::vector<Vec3>& by_collider) {
   for (const Contact& contact : contacts) {

@@ -42,9 +42,6 @@ double friction_stiffness(const Contact& contact, const Positions& x, double sti
 // Returns the share of the normal forces in the energy [J].
 double contact_energy(const std::vector<Contact>& contacts, const Positions& point);
 
-// Adds `sign` times the normal forces at a point to `force` [N].
-void add_normal_forces(const std::vector<Contact>& contacts, const Positions& point, double sign, Positions& force);
-
 // Adds the force of each contact at a point, friction included, to that of its collider on the body [N].
 void add_forces(const std::vector<Contact>& contacts, double stick_length, const Positions& point,
                 std::vector<Vec3>& by_collider);

@@ -12,7 +12,6 @@ void find_stiff_directions(const Model& model, const std::vector<Contact>& conta
   for (const Contact& contact : contacts) {
     if (contact.depth > 0) stiff.push_back({contact.point, contact.normal, 2 * contact.stiffness});
   }
-  correction.normals = stiff.size();
   for (const Contact& contact : contacts) {
     if (contact.friction <= 0) continue;  // it is lagged: a point may have left and still be rubbed
     const double along = friction_stiffness(contact, x, stick_length);
@@ -138,6 +137,37 @@ void add_answer(ContactCorrection& c, const FactorPart& part, Positions& r) {
   c.solve.pass_on(part);
 }
 
+// Prepares the solves with C + N^T Z D Z^T N, where C is the matrix of the system on the first level alone:
+// (C + W D W^T)^-1 = C^-1 - C^-1 W (1 + D W^T C^-1 W)^-1 D W^T C^-1 (Woodbury).
+void couple_levels(ContactCorrection& c) {
+  if (c.second == nullptr) return;
+  const std::vector<StiffDirection>& directions = c.system.directions();
+  c.rows.resize(static_cast<Eigen::Index>(directions.size()), c.second->columns());
+  Eigen::VectorXd row(c.second->columns());
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    row.setZero();
+    for (int k = 0; k < directions[i].point.free; ++k)
+      c.second->system().restrict_one(directions[i].point.vertex[k], directions[i].point.weight[k] * directions[i].axis,
+                                      *c.x, row.data());
+    c.rows.row(static_cast<Eigen::Index>(i)) = row.cast<float>().transpose();
+  }
+  const Eigen::MatrixXd sum = c.second->difference() * c.system.between(c.rows);
+  c.both.compute(Eigen::MatrixXd::Identity(sum.rows(), sum.cols()) + sum);
+}
+
+// Solves with that matrix, in place.
+void solve_coupled(ContactCorrection& c) {
+  c.system.solve(c.answer);
+  if (c.second == nullptr) return;
+  const Eigen::VectorXd seen = (c.rows.transpose() * c.answer).cast<double>();
+  Eigen::VectorXf back = c.rows * c.both.solve(c.second->difference() * seen).cast<float>();
+  c.system.solve(back);
+  c.answer -= back;
+}
+
+// Adds the forces -N answer on the second level.
+void add_coarse_answer(ContactCorrection& c) { c.coarse -= (c.rows.transpose() * c.answer).cast<double>(); }
+
 void finish(const Model& model, ContactCorrection& c, const Positions& r, Positions& z) {
   c.solve.finish(z.data());
   if (model.free_floating) restore_translation(model, r, z);
@@ -155,9 +185,19 @@ void apply_low_rank(const Model& model, ContactCorrection& c, Positions& r, Posi
     for (int k = 1; k < point.free; ++k) seen += point.weight[k] * c.solve.seen(point.vertex[k]);
     c.answer[i] = static_cast<float>(seen.dot(directions[i].axis));
   }
-  c.system.solve(c.answer);
+  if (c.second != nullptr) c.answer += c.rows * (c.second->difference() * c.coarse).cast<float>();
+  solve_coupled(c);
   add_answer(c, c.part, r);
   finish(model, c, r, z);
+  if (c.second == nullptr) return;
+  add_coarse_answer(c);
+  c.second->add(model, *c.x, c.coarse, c.threads, z);
+}
+
+void apply_both_levels(const Model& model, ContactCorrection& c, SolveScratch& scratch, const Positions& r,
+                       Positions& z) {
+  solve_system(model, system_of(model, c), r, z, scratch);
+  if (c.second != nullptr) c.second->add_to(model, *c.x, r, c.threads, z);
 }
 
 }  // namespace
@@ -168,7 +208,7 @@ void apply_inverse(const Model& model, const ContactSettings& settings, ContactC
                    Positions& r, Positions& z) {
   if (c.wanted.empty() || settings.direction == ContactDirection::ignored) {
     c.system.clear();
-    return solve_system(model, system_of(model, c), r, z, scratch);
+    return apply_both_levels(model, c, scratch, r, z);
   }
   if (settings.direction == ContactDirection::diagonal) return apply_diagonal(model, c, scratch, r, z);
   split(c, affordable(model, c.wanted));
@@ -176,8 +216,10 @@ void apply_inverse(const Model& model, const ContactSettings& settings, ContactC
   c.part = part_of(system_of(model, c), c.system.directions());
   for (const StiffDirection& s : c.rest) scale_rest(system_of(model, c), s, r);
   if (c.system.directions().empty()) {
-    solve_system(model, system_of(model, c), r, z, scratch);
+    apply_both_levels(model, c, scratch, r, z);
   } else {
+    couple_levels(c);
+    if (c.second != nullptr) c.second->restrict(model, *c.x, r, c.threads, c.coarse);
     apply_low_rank(model, c, r, z);
   }
   for (std::size_t i = c.rest.size(); i-- > 0;) scale_rest(system_of(model, c), c.rest[i], z);
@@ -190,23 +232,30 @@ double gap_after(const Contact& contact, const Positions& x, const Positions& di
   return contact.normal.dot(contact.point.at(x) + contact.point.of_free(direction)) - contact.offset;
 }
 
-// Minimises the quadratic model with the energies of these planes included: the direction then ends where the planes
-// hold it.
-void bend(const Model& model, const std::vector<StiffDirection>& ahead, const std::vector<float>& gaps,
-          ContactCorrection& c, Positions& direction) {
-  const auto before = static_cast<Eigen::Index>(c.system.directions().size());
+// Adds to a motion what minimises the quadratic model again when the motion has come off the planes of the system by
+// `off`, in the order of its directions, and would lead through more planes by these gaps [m].
+void bend(const Model& model, const Eigen::VectorXf& off, const std::vector<StiffDirection>& ahead,
+          const std::vector<float>& gaps, ContactCorrection& c, Positions& motion) {
+  const Eigen::Index before = off.size();
   if (!c.system.append(system_of(model, c), ahead, c.threads)) return;
-  c.answer = Eigen::VectorXf::Zero(static_cast<Eigen::Index>(c.system.directions().size()));
+  c.answer.resize(static_cast<Eigen::Index>(c.system.directions().size()));
+  c.answer.head(before) = off;
   std::copy(gaps.begin(), gaps.end(), c.answer.data() + before);
-  c.system.solve(c.answer);
+  couple_levels(c);
+  solve_coupled(c);
   const FactorPart part = part_of(system_of(model, c), c.system.directions());
   c.push.setZero(model.free, 3);
   c.back.resize(model.free, 3);
   c.solve.begin_from_zero(system_of(model, c).factor, c.answer.cwiseAbs().maxCoeff());
   add_answer(c, part, c.push);
   finish(model, c, c.push, c.back);
+  if (c.second != nullptr) {
+    c.coarse.setZero(c.second->columns());
+    add_coarse_answer(c);
+    c.second->add(model, *c.x, c.coarse, c.threads, c.back);
+  }
   for (const StiffDirection& s : c.rest) scale_rest(system_of(model, c), s, c.back);
-  direction += c.back;
+  motion += c.back;
 }
 
 }  // namespace
@@ -228,7 +277,7 @@ bool foresee_contacts(const Model& model, const ContactSettings& settings, const
   std::vector<StiffDirection> all = c.system.directions();
   all.insert(all.end(), ahead.begin(), ahead.end());
   if (affordable(model, all) == all.size()) {
-    bend(model, ahead, gaps, c, direction);
+    bend(model, Eigen::VectorXf::Zero(std::ssize(c.system.directions())), ahead, gaps, c, direction);
     return true;
   }
   for (const Contact& contact : contacts) {
@@ -237,6 +286,32 @@ bool foresee_contacts(const Model& model, const ContactSettings& settings, const
     if (gap < 0) contact.point.spread(-gap / contact.point.weights_squared() * contact.normal, direction);
   }
   return true;
+}
+
+void keep_bow_on_planes(const Model& model, const ContactSettings& settings, const std::vector<Contact>& contacts,
+                        const Positions& x, const Positions& direction, ContactCorrection& c, Positions& bow) {
+  if (settings.direction != ContactDirection::low_rank || contacts.empty()) return;
+  const std::vector<StiffDirection>& held = c.system.directions();
+  Eigen::VectorXf off(std::ssize(held));
+  for (Eigen::Index i = 0; i < off.size(); ++i) off[i] = static_cast<float>(held[i].along(bow));
+  const Positions end = direction + bow;
+  std::vector<StiffDirection> ahead;
+  std::vector<float> gaps;
+  for (const Contact& contact : contacts) {
+    if (contact.depth > 0) continue;
+    const double gap = gap_after(contact, x, end);
+    if (gap >= 0) continue;
+    const bool is_held = std::any_of(held.begin(), held.end(), [&](const StiffDirection& s) {
+      return s.point == contact.point && s.axis == contact.normal;
+    });
+    if (is_held) continue;
+    ahead.push_back({contact.point, contact.normal, 2 * contact.stiffness});
+    gaps.push_back(static_cast<float>(gap));
+  }
+  if (off.size() == 0 && ahead.empty()) return;
+  std::vector<StiffDirection> all = held;
+  all.insert(all.end(), ahead.begin(), ahead.end());
+  if (affordable(model, all) == all.size()) bend(model, off, ahead, gaps, c, bow);
 }
 
 }  // namespace supple

@@ -8,11 +8,15 @@
 //             directions than that system may have, it contains those of some vertices, which also represent their
 //             neighbours: K'. Each of the others, R, is scaled by itself: H = T (A + K')^-1 T,
 //             T = I - R diag(1 - sqrt(a / (a + k))) R^T.
+// Where directions have a second level (coarse/second_level.h), A^-1 + Z D Z^T stands in place of A^-1 throughout the
+// second of these.
 // All of these H are symmetric and positive definite.
 #pragma once
 
+#include <Eigen/LU>
 #include <vector>
 
+#include "sim/coarse/second_level.h"
 #include "sim/contact/capacitance.h"
 #include "sim/contact/contact.h"
 #include "sim/linear/parted_solve.h"
@@ -26,7 +30,6 @@ struct ContactCorrection {
   const System* matrix = nullptr;              // A here: the matrix in force, of the step; null: the model's own
   Threads* threads = nullptr;                  // null: the calling one alone
   std::vector<StiffDirection> wanted;          // those of the contacts in force: normals, then tangents
-  std::size_t normals = 0;                     // how many of these are normals
   std::vector<StiffDirection> together, rest;  // how they are treated
   Capacitance system;
   PartedSolve solve;
@@ -35,6 +38,12 @@ struct ContactCorrection {
   std::vector<double> along, products;  // of L-BFGS steps: by stiff direction and pair; by pair and pair
   Positions push, back;                 // n_free x 3 [N], [m]
   Positions unbent;                     // the direction before foresee_contacts [m]
+  // The second level of directions (coarse/second_level.h), and the positions at which it serves; null: there is none.
+  SecondLevel* second = nullptr;
+  const Positions* x = nullptr;
+  Eigen::VectorXd coarse;                     // Z^T of the forces in hand, r
+  Eigen::MatrixXf rows;                       // N^T Z: by direction of the system, r
+  Eigen::PartialPivLU<Eigen::MatrixXd> both;  // of 1 + D Z^T N C^-1 N^T Z, for the system's matrix C
 };
 
 // Returns the largest number of mutually coupled directions that a body's system may have.
@@ -58,5 +67,11 @@ void apply_inverse(const Model& model, const ContactSettings& settings, ContactC
 // correction.unbent.
 bool foresee_contacts(const Model& model, const ContactSettings& settings, const std::vector<Contact>& contacts,
                       const Positions& x, ContactCorrection& correction, Positions& direction);
+
+// Corrects the arc of a search (coarse/turning.h) that is to be added to this direction, so that it leads the body
+// along the planes as the direction does: by what it departs from those that the direction takes into account, and by
+// what it would go through others.
+void keep_bow_on_planes(const Model& model, const ContactSettings& settings, const std::vector<Contact>& contacts,
+                        const Positions& x, const Positions& direction, ContactCorrection& correction, Positions& bow);
 
 }  // namespace supple

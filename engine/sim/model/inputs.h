@@ -106,8 +106,8 @@ struct ChebyshevSettings {
 // Holds the settings of [solver] that step() reads from its inputs; the others are in the Model or in the SearchRule.
 struct SolverSettings {
   int iterations = 10;
-  int history = 5;    // window m of L-BFGS; 0 is plain quasi-Newton
-  bool carry = true;  // L-BFGS begins with what the step before learned (solver/carried_pair.h); the paper's does not
+  int history = 5;  // window m of L-BFGS; 0 is plain quasi-Newton
+  int levels = 2;   // 2: directions know how the body turns (coarse/second_level.h); 1: the paper's method
   SystemMatrix matrix = SystemMatrix::constant;
   LineSearch line_search = LineSearch::armijo;
   double armijo = 0.3;      // gamma

@@ -180,4 +180,31 @@ std::vector<Vec3> deep_places(const Collider& collider, const Eigen::Isometry3d&
   return places;
 }
 
+double mass_length(const Model& model, const Positions& displacement) {
+  double sum = 0;
+  for (int v = 0; v < model.free; ++v) sum += model.mass[v] * displacement.row(v).squaredNorm();
+  return std::sqrt(sum);
+}
+
+namespace {
+
+double mass_distance(const Model& model, const Positions& a, const Positions& b) {
+  double sum = 0;
+  for (int v = 0; v < model.free; ++v) sum += model.mass[v] * (a.row(v) - b.row(v)).squaredNorm();
+  return std::sqrt(sum);
+}
+
+}  // namespace
+
+double motion_error(const Model& model, const Positions& q, const Positions& y, const Positions& x, double distance) {
+  constexpr double least_share = 0.01;
+  const double moved = std::max(mass_distance(model, x, q), least_share * mass_distance(model, y, q));
+  return moved > 0 ? distance / moved : 0;
+}
+
+double motion_error(const Model& model, const Positions& q, const Positions& y, const Positions& x,
+                    const Positions& solved) {
+  return motion_error(model, q, y, solved, mass_distance(model, x, solved));
+}
+
 }  // namespace supple

@@ -122,6 +122,7 @@ struct Model : System {
     std::vector<double> value;
   };
   SparseRows damping;
+  double drag = 0;  // beta/h
 
   ElementChunk chunk(int index) const;
 };

@@ -1,6 +1,7 @@
 // Defines the report of a step: times by phase, iterations, the decrease reached, and why it ended.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -61,6 +62,7 @@ struct StepReport {
   double decrease = 0;                   // g(start) - g(end), summed without cancellation [J]
   double remaining_estimate = 0;         // g(end) - g*, from the decrement or from how decreases shrank [J]
   double error_estimate = 0;             // of equation 12, from that
+  double motion_estimate = 0;            // of the error of motion (measures.h), from the last direction
   double slope = 0;                      // tr(grad^T d) of the last direction [J]
   double decrement = 0;                  // half of that at the end, downhill: what a quadratic g would still lose [J]
   StopReason stop_reason = StopReason::iterations;
@@ -75,7 +77,8 @@ struct StepReport {
 // Tells whether a step did not come near its minimum. Where Newton's method finished it, the estimate alone counts: the
 // trials tell how hard the iterations before had it.
 inline bool is_unsolved(const StepReport& report) {
-  return is_unsolved(report.error_estimate, report.iterations, report.newton_iterations > 0 ? 0 : report.line_search);
+  return is_unsolved(std::max(report.error_estimate, report.motion_estimate), report.iterations,
+                     report.newton_iterations > 0 ? 0 : report.line_search);
 }
 
 }  // namespace supple

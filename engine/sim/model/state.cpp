@@ -7,7 +7,7 @@
 namespace supple {
 
 State rest_state(const Model& model) {
-  return {model.rest, Positions::Zero(model.vertices, 3), 0, {}, {}, 0, 0, 0, {}};
+  return {model.rest, Positions::Zero(model.vertices, 3), 0, {}, {}, 0, 0, 0};
 }
 
 Positions in_input_order(const Model& model, const Positions& rows) {

@@ -18,17 +18,8 @@ struct Anchors {
   std::vector<char> holds;    // whether each handle holds its vertices; one that has let go does not pull
 };
 
-// Holds the curvature of g that a step found, with which the next one begins (solver/carried_pair.h).
-struct CarriedPair {
-  Positions step;            // s: the sum of the steps of its iterations, n_free x 3; empty: there was none yet [m]
-  Positions gradient;        // t: of the changes of the gradient, n_free x 3 [N]
-  std::uint64_t system = 0;  // hash of the A that the body had
-  int misses = 0;            // how many times in a row such a pair misled the step that began with it
-  int wait = 0;              // so many steps begin without: the pair misled one, or there is none
-};
-
 // All that a body's future depends on, unless its SearchRule remembers earlier steps (solver/step.h). A copy is a
-// snapshot. step() changes x, v, time, and what is said of its matrix and its pair; DrivenBody changes the anchors, and
+// snapshot. step() changes x, v, time, and what is said of its matrix; DrivenBody changes the anchors, and
 // replaces the whole when it restores one.
 struct State {
   Positions x;      // positions, n x 3, in the model's order [m]
@@ -41,7 +32,6 @@ struct State {
   // The factor by which one evaluation reduced the error (its estimate to the power of one over their number) in the
   // last step that started directions from the Hessian, and in the last that started them from A; 0: not known.
   double hessian_progress = 0, constant_progress = 0;
-  CarriedPair carried;
 };
 
 // Returns the state of a model that is at rest where it was built.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/contact/contact.h"
+#include "sim/model/measures.h"
 #include "sim/solver/first_iterate.h"
 #include "sim/solver/line_search.h"
 
@@ -74,6 +75,20 @@ double error_at_end(const Model& model, const StepInputs& inputs, Workspace& w, 
   const double left = w.report.remaining_estimate;
   if (left <= noise_of(model, w.current.g, extent_of(model, w))) return 0;
   return error_of(left, gained_in_all(model, inputs, w, gained));
+}
+
+// What is left to gain is some number of times what the direction's quadratic model foretells, half the decrement; the
+// way that is left is the square root of that number of times the direction.
+double motion_estimate_at_end(const Model& model, const StepInputs& inputs, const Positions& q, Workspace& w) {
+  if (w.report.failed || w.report.decrement <= 0) return 0;
+  if (w.report.remaining_estimate <= noise_of(model, w.current.g, extent_of(model, w))) return 0;
+  Positions& d = w.direction;
+  if (inputs.solver.levels < 2 && !w.second_level_serves && w.second_level.begin(model, w.current.x)) {
+    w.scratch = -w.current.gradient;
+    w.second_level.add_to(model, w.current.x, w.scratch, w.threads, d);
+  }
+  const double more = std::sqrt(std::max(1.0, w.report.remaining_estimate / w.report.decrement));
+  return motion_error(model, q, w.y, w.current.x, more * mass_length(model, d));
 }
 
 }  // namespace supple

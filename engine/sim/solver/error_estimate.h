@@ -1,5 +1,5 @@
-// Estimates how far a step is from the minimum of g, without knowing it: what is left to gain, and the error of
-// equation 12, its share of the whole possible gain. docs/method.md ("Error and its estimate") compares both with what
+// Estimates how far a step is from the minimum of g, without knowing it: what is left to gain, the error of
+// equation 12, its share of the whole possible gain, and how far the solved motion is. docs/method.md ("Error and its estimate") compares both with what
 // is true.
 #pragma once
 
@@ -47,5 +47,10 @@ double gained_in_all(const Model& model, const StepInputs& inputs, Workspace& wo
 // what is left is then no error, however much of it that is, where it is lost in the round-off of g. Overwrites the
 // trial iterate.
 double error_at_end(const Model& model, const StepInputs& inputs, Workspace& workspace, double gained);
+
+// Estimates the error of motion (model/measures.h) at the end of a step from q whose last direction was computed at its
+// end, from the length of that direction: it leads to the minimum of its quadratic model. On the first level alone that
+// model resists turning; the second adds what it misses. 0 where the rule does not look beyond its last iterate.
+double motion_estimate_at_end(const Model& model, const StepInputs& inputs, const Positions& q, Workspace& workspace);
 
 }  // namespace supple

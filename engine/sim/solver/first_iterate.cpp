@@ -18,6 +18,7 @@ void find_contacts_of(const Model& model, const StepInputs& inputs, Workspace& w
 
 void set_trial(const Model& model, Workspace& w, double alpha) {
   w.trial.x.topRows(model.free) = w.current.x.topRows(model.free) + alpha * w.direction;
+  if (w.is_bowed) w.trial.x.topRows(model.free) += alpha * alpha * w.bow;
 }
 
 void move_rigidly(const Model& model, const Eigen::Isometry3d& motion, Positions& x) {
@@ -58,7 +59,9 @@ void begin_step(const Model& model, const StepInputs& inputs, const State& state
   w.start_positions = &state.x;
   w.system = w.correction.matrix = &model;
   w.correction.threads = w.threads;
-  w.hessian_serves = false;
+  w.hessian_serves = w.second_level_serves = false;
+  w.correction.second = nullptr;
+  w.is_bowed = false;
   if (needs_start(model)) w.start_copy = state.x;
   w.current.contacts.clear();
   w.trial.contacts.clear();
@@ -142,31 +145,58 @@ void turn_with_handles(const Model& model, const StepInputs& inputs, const State
   }
 }
 
-// Sets a first iterate that fits the handles. The paper starts from y. With rows eliminated, y tears the elements
-// beside a handle apart by all that the handle did not do freely (its keyed motion, and the fall that it did not take),
-// often by more than their size. The handles' departure from y is therefore spread into the body by the quadratic model
-// that also gives the directions, A_ff d_f = -A_fh d_h: one solve. docs/results.md ("Error of the polynomial head")
-// tells what starting from y cost in earlier films. This costs one additional evaluation, because y stays the first
-// iterate where it is the better one. Returns g(y), with the handles at their targets, when the first iterate is
-// another one.
-std::optional<double> spread_handles(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
-  if (w.system->couplings.empty()) return std::nullopt;
+// Finds how what turns departs from the straight motions h v, and whether that matters: straight motions stretch it.
+void find_turning(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
+  constexpr double little = 1e-5;  // of the kinetic energy of what the body would do freely
+  w.turns = false;
+  if (inputs.solver.levels < 2) return;
+  const TimedPhase timed(w.clock, Phase::matrix, "turn");
+  w.second_level.prepare(model);
+  double way = 0;
+  for (int v = 0; v < model.free; ++v) way += model.mass[v] * (w.y.row(v) - state.x.row(v)).squaredNorm();
+  const double energy = little * way / (2 * model.time_step * model.time_step);
+  w.motion = model.time_step * state.v;
+  w.turning.take_velocity(w.second_level.system(), state.x, w.motion);
+  w.turns = w.turning.energy() > energy;
+  if (w.turns) w.turning.correct(model, w.second_level.system(), state.x, w.solve_scratch, w.turned);
+}
+
+// Sets the direction to that from y which spreads the handles' departure from y. Returns false where they do not
+// depart.
+bool spread_handles(Workspace& w) {
   Positions& right = w.scratch;
   right.setZero();
   for (const System::Coupling& entry : w.system->couplings) {
     right.row(entry.free) -= entry.value * (w.current.x.row(entry.held) - w.y.row(entry.held));
   }
-  if (right.isZero(0)) return std::nullopt;
-  TimedPhase timed(w.clock, Phase::solve, "solve");
+  if (right.isZero(0)) return false;
+  const TimedPhase timed(w.clock, Phase::solve, "solve");
   w.system->factor.solve(right.data(), w.direction.data(), w.solve_scratch.data());
-  timed.next(Phase::evaluate, "spread handles");
+  return true;
+}
+
+// Sets a first iterate that fits the handles and turns what turns. The paper starts from y. With rows eliminated, y
+// tears the elements beside a handle apart by all that the handle did not do freely (its keyed motion, and the fall
+// that it did not take), often by more than their size. The handles' departure from y is therefore spread into the body
+// by the quadratic model that also gives the directions, A_ff d_f = -A_fh d_h: one solve. docs/results.md ("Error of
+// the polynomial head") tells what starting from y cost in earlier films. Where parts turn fast, y stretches them, and
+// the start has them turned instead (coarse/turning.h). This costs one additional evaluation, because y stays the first
+// iterate where it is the better one. Returns g(y), with the handles at their targets, when the first iterate is
+// another one.
+std::optional<double> leave_prediction(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
+  find_turning(model, inputs, state, w);
+  const bool spreads = spread_handles(w);
+  if (!spreads && !w.turns) return std::nullopt;
+  if (!spreads) w.direction.setZero();
+  if (w.turns) w.direction += w.turned;
+  const TimedPhase timed(w.clock, Phase::evaluate, "leave prediction");
   find_contacts_of(model, inputs, w, w.current);
   evaluate(model, w, w.current, Wanted::value);
   const double at_y = w.current.g;
   set_trial(model, w, 1);
   std::swap(w.current, w.trial);
   evaluate_start(model, inputs, w);
-  turn_with_handles(model, inputs, state, w);
+  if (spreads) turn_with_handles(model, inputs, state, w);
   if (w.current.g <= at_y) return at_y;
   w.current.x.topRows(model.free) = w.y.topRows(model.free);
   forget_start(w);
@@ -218,7 +248,6 @@ void start_from_trial_below(double share, const Model& model, const StepInputs& 
   if (!(w.trial.g - rubbed < share * given)) return;
   std::swap(w.current, w.trial);
   w.report.objective.back() = w.current.g;
-  w.carrying.searches = 1;  // the pair is of steps that begin at y
   if (!has_colliders(inputs)) return;
   forget_counts(w.contact);
   count_contacts(w.trial.contacts, w.current.contacts, w.contact);
@@ -231,6 +260,7 @@ void start_from_trial_below(double share, const Model& model, const StepInputs& 
 void start_without_fall(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
   const TimedPhase timed(w.clock, Phase::evaluate, "start without fall");
   w.trial.x.topRows(model.free) = (state.x + model.time_step * state.v).topRows(model.free);
+  if (w.turns) w.trial.x.topRows(model.free) += w.turned;
   start_from_trial_below(1, model, inputs, w);
 }
 
@@ -250,14 +280,13 @@ void start_where_it_was(const Model& model, const StepInputs& inputs, const Stat
 }  // namespace
 
 double set_first_iterate(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
-  const std::optional<double> at_y = spread_handles(model, inputs, state, w);
+  const std::optional<double> at_y = leave_prediction(model, inputs, state, w);
   const bool stopped = stop_at_impact(model, inputs, state, w);
   if (stopped) forget_start(w);
   if (stopped || !at_y) evaluate_start(model, inputs, w);
   const bool touches = has_colliders(inputs) && w.contact.counts.touching > 0;
   const double from = at_y ? *at_y : w.current.g;
-  const bool has_pair = w.carrying.from != nullptr;  // from y, it leads a body that hangs still back in one direction
-  if (touches || (!has_pair && is_still(model, state, w))) start_without_fall(model, inputs, state, w);
+  if (touches || is_still(model, state, w)) start_without_fall(model, inputs, state, w);
   if (touches) start_where_it_was(model, inputs, state, w);
   const bool known = at_y || !touches;
   return known && !stopped ? from - w.report.objective.back() : 0;

@@ -48,19 +48,18 @@ double along_pair(const StiffDirection& stiff, const double* step) {
   return mean.dot(stiff.axis);
 }
 
-// Holds the share of normal forces in all pairs, t_i += K s_i, when it is kept separately (ContactHistory::current).
-// Friction is not included: its stiffness falls while it slides, which the pairs contain.
+// Holds the share of contacts in all pairs, t_i += K s_i, when it is kept separately (ContactHistory::current).
 class ContactPairs {
  public:
   ContactPairs(const Model& model, const ContactSettings& settings, Workspace& w, const Pointers& s, int count)
       : correction_(w.correction) {
     find_stiff_directions(model, w.current.contacts, w.current.x, w.contact.stick_length, w.correction);
-    if (settings.history != ContactHistory::current || count == 0 || correction_.normals == 0) return;
+    directions_ = correction_.wanted.size();
+    if (settings.history != ContactHistory::current || count == 0 || directions_ == 0) return;
     count_ = count;
-    normals_ = correction_.normals;
-    correction_.along.resize(normals_ * count);
+    correction_.along.resize(directions_ * count);
     correction_.products.assign(std::size_t(count) * count, 0.0);
-    for (std::size_t k = 0; k < normals_; ++k) {
+    for (std::size_t k = 0; k < directions_; ++k) {
       const StiffDirection& stiff = correction_.wanted[k];
       double* along = &correction_.along[k * count];
       for (int i = 0; i < count; ++i) along[i] = along_pair(stiff, s[i]);
@@ -75,7 +74,7 @@ class ContactPairs {
 
   // Adds sum factor_i K s_i to r.
   void add(const double* factors, Positions& r) const {
-    for (std::size_t k = 0; k < normals_; ++k) {
+    for (std::size_t k = 0; k < directions_; ++k) {
       const StiffDirection& stiff = correction_.wanted[k];
       double sum = 0;
       for (int i = 0; i < count_; ++i) sum += factors[i] * correction_.along[k * count_ + i];
@@ -86,7 +85,7 @@ class ContactPairs {
   // Returns K s_i . z.
   double dot(int i, const Positions& z) const {
     double sum = 0;
-    for (std::size_t k = 0; k < normals_; ++k) {
+    for (std::size_t k = 0; k < directions_; ++k) {
       const StiffDirection& stiff = correction_.wanted[k];
       sum += stiff.stiffness * correction_.along[k * count_ + i] * stiff.along(z);
     }
@@ -96,7 +95,7 @@ class ContactPairs {
  private:
   ContactCorrection& correction_;
   int count_ = 0;
-  std::size_t normals_ = 0;
+  std::size_t directions_ = 0;
 };
 
 }  // namespace
@@ -163,6 +162,10 @@ bool is_safely_positive(double st, double ss, double tt) { return st > 1e-10 * s
 
 void remember_pair(const Model& model, const ContactSettings& contact, Workspace& workspace, PairHistory& history) {
   if (history.window == 0) return;
+  if (workspace.is_bowed) {  // it has turned the body away from where the pairs were found
+    history.clear();
+    return;
+  }
   const int next = (history.newest + 1) % history.window;
   Positions& s = workspace.step_pairs[next];
   Positions& t = workspace.gradient_pairs[next];
@@ -170,16 +173,11 @@ void remember_pair(const Model& model, const ContactSettings& contact, Workspace
   s = to.x.topRows(model.free) - from.x.topRows(model.free);
   t = to.gradient - from.gradient;
   if (contact.history == ContactHistory::current && !from.contacts.empty()) {
-    // Both gradients are taken with the planes that the search used.
-    add_normal_forces(from.contacts, to.x, 1, t);
-    add_normal_forces(from.contacts, from.x, -1, t);
-  }
-
-  CarryingWork& carrying = workspace.carrying;
-  if (carrying.wanted && carrying.searches == 1) {
-    carrying.step += s;
-    carrying.gradient += t;
-    carrying.touches |= !to.contacts.empty();
+    // Both gradients are taken with the planes that the search used. Friction is taken out, too: its stiffness falls
+    // while it slides, and a pair that tells so lets the next direction slide past where it would stick.
+    const double stick = workspace.contact.stick_length;
+    add_contacts(from.contacts, stick, to.x, nullptr, workspace.direction, &t, -1);
+    add_contacts(from.contacts, stick, from.x, nullptr, workspace.direction, &t, 1);
   }
 
   Pointers other{s.data(), t.data()};
@@ -205,37 +203,25 @@ void remember_pair(const Model& model, const ContactSettings& contact, Workspace
   for (int i = 0; i < history.count; ++i) workspace.products[next * history.window + history.place(i)] = with[i];
 }
 
-void begin_with_carried_pair(const Model& model, Workspace& w, PairHistory& history) {
-  CarryingWork& work = w.carrying;
-  if (!work.wanted || ++work.searches > 1) return;
-  work.step.setZero();
-  work.gradient.setZero();
-  work.touches = !w.current.contacts.empty();
-  if (work.from == nullptr || work.touches) return;
-  w.step_pairs[0] = work.from->step;
-  w.gradient_pairs[0] = work.from->gradient;
-  Pointers step{w.step_pairs[0].data()};
-  dot_all(model, w, step, 1, w.gradient_pairs[0].data(), &w.products[0]);
-  history.newest = 0;
-  history.count = 1;
-  history.begins_carried = work.used = true;
-  work.misled = true;  // until an iteration shows otherwise
+void SystemInverse::begin(const Model& model, const StepInputs& inputs, Workspace& w) {
+  // A step that starts again from where the body was is a violent one: the stiffness at rest says little of it.
+  const bool starts_again = !w.report.records.empty();
+  const bool wanted =
+      inputs.solver.levels > 1 && !starts_again && w.system == static_cast<const System*>(&model) && !w.hessian_serves;
+  const TimedPhase timed(w.clock, Phase::matrix, "second level");
+  has_second_level_ = w.second_level_serves = wanted && w.second_level.begin(model, w.current.x);
 }
 
-// The matrix B that gave the direction d foresees the curvature d.B d = -tr(grad^T d), and s.t is what g turned out to
-// have. The pair helps where the two agree; where they differ, it gains nothing or harms (docs/method.md).
-void end_carried_pair(Workspace& w, PairHistory& history) {
-  constexpr double least = 0.8, most = 1.25;
-  const bool remembered = history.count > 1 || (history.window == 1 && history.count == 1);
-  const double found = remembered ? w.products[history.newest * history.window + history.newest] : 0;
-  const double agreement = found / -w.report.slope;
-  w.carrying.misled = !(w.report.line_search == 1 && agreement > least && agreement < most);
-  history.begins_carried = false;
-  if (!remembered) {
-    history.clear();
-  } else if (history.window > 1) {
-    --history.count;  // the oldest
-  }
+void SystemInverse::apply(const Model& model, const StepInputs& inputs, Workspace& w, Positions& r, Positions& z) {
+  if (w.hessian_serves && w.current.contacts.empty()) return w.hessian.solve(model, r, z);
+  w.second_level_serves = has_second_level_;
+  w.correction.second = has_second_level_ ? &w.second_level : nullptr;
+  w.correction.x = &w.current.x;
+  apply_inverse(model, inputs.solver.contact, w.correction, w.solve_scratch, r, z);
+}
+
+bool SystemInverse::bend(const Model& model, const StepInputs& inputs, Workspace& w) {
+  return foresee_contacts(model, inputs.solver.contact, w.current.contacts, w.current.x, w.correction, w.direction);
 }
 
 }  // namespace supple

@@ -2,6 +2,8 @@
 // Hessian (Liu et al. 2017, section 4.2).
 #pragma once
 
+#include <utility>
+
 #include "sim/solver/search_rule.h"
 
 namespace supple {
@@ -11,14 +13,10 @@ struct PairHistory {
   int window = 0;
   int count = 0;
   int newest = -1;
-  bool begins_carried = false;  // the oldest pair is the step before's, and no iteration has tried it yet
 
   // Returns the slot of the i-th newest pair in the ring.
   int place(int i) const { return (newest - i + 2 * window) % window; }
-  void clear() {
-    count = 0;
-    begins_carried = false;
-  }
+  void clear() { count = 0; }
   // Returns false when there was nothing to forget.
   bool forget() {
     const bool some = count > 0;
@@ -39,6 +37,8 @@ class InitialInverse {
                      Positions& z) = 0;
   // As SearchRule::measures_last_iterate.
   virtual bool measures_last_iterate() const { return false; }
+  // As SearchRule::forget, once no pairs are left.
+  virtual bool forget() { return false; }
   // This is called after the recursion. It may correct workspace.direction for contacts that it would cross, and
   // returns whether it did.
   virtual bool bend(const Model&, const StepInputs&, Workspace&) { return false; }
@@ -57,12 +57,6 @@ void remember_pair(const Model& model, const ContactSettings& contact, Workspace
 // lost in round-off would spoil the matrix: Nocedal and Wright 2006, section 7.2, skip such pairs.
 bool is_safely_positive(double st, double ss, double tt);
 
-// Begins a search with the pair of the step before as the only one, where the workspace has one for it.
-void begin_with_carried_pair(const Model& model, Workspace& workspace, PairHistory& history);
-
-// Drops that pair after the iteration whose direction it served, and notes whether it misled it.
-void end_carried_pair(Workspace& workspace, PairHistory& history);
-
 // Implements L-BFGS from any initial Hessian, which must outlive this object. The settings contain the window.
 class LbfgsRule : public SearchRule {
  public:
@@ -70,7 +64,6 @@ class LbfgsRule : public SearchRule {
 
   void begin(const Model& model, const StepInputs& inputs, Workspace& workspace) override {
     history_ = {inputs.solver.history};
-    begin_with_carried_pair(model, workspace, history_);
     initial_.begin(model, inputs, workspace);
   }
   double direction(const Model& model, const StepInputs& inputs, Workspace& workspace) override {
@@ -79,13 +72,12 @@ class LbfgsRule : public SearchRule {
   void accepted(const Model& model, const StepInputs& inputs, Workspace& workspace) override {
     initial_.accepted(model, inputs, workspace);
     remember_pair(model, inputs.solver.contact, workspace, history_);
-    if (history_.begins_carried) end_carried_pair(workspace, history_);
   }
   void contacts_changed(const StepInputs& inputs) override {
     if (inputs.solver.contact.history == ContactHistory::dropped) history_.clear();
   }
   bool measures_last_iterate() const override { return initial_.measures_last_iterate(); }
-  bool forget() override { return history_.forget(); }
+  bool forget() override { return history_.forget() || initial_.forget(); }
 
  private:
   InitialInverse& initial_;
@@ -93,18 +85,19 @@ class LbfgsRule : public SearchRule {
 };
 
 // Starts directions from the matrix in force, Workspace::system, by its factor, with contacts as in
-// contact_direction.h: the paper's A = M/h^2 + L, or one that follows the body (matrix_rule.h).
+// contact_direction.h: the paper's A = M/h^2 + L, with its second level (coarse/second_level.h) where the settings ask
+// for it, or one that follows the body (matrix_rule.h).
 class SystemInverse final : public InitialInverse {
  public:
-  void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override {
-    if (workspace.hessian_serves && workspace.current.contacts.empty()) return workspace.hessian.solve(model, r, z);
-    apply_inverse(model, inputs.solver.contact, workspace.correction, workspace.solve_scratch, r, z);
-  }
+  void begin(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
+  void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
   bool measures_last_iterate() const override { return true; }
-  bool bend(const Model& model, const StepInputs& inputs, Workspace& workspace) override {
-    return foresee_contacts(model, inputs.solver.contact, workspace.current.contacts, workspace.current.x,
-                            workspace.correction, workspace.direction);
-  }
+  bool bend(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
+  // Goes on with the first level alone, where directions of both came to nothing.
+  bool forget() override { return std::exchange(has_second_level_, false); }
+
+ private:
+  bool has_second_level_ = false;
 };
 
 }  // namespace supple

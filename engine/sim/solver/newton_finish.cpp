@@ -36,7 +36,6 @@ void finish_by_newton(const Model& model, const StepInputs& inputs, const Origin
   const double gained = gained_in_all(model, inputs, w, report.decrease + origin.above_start);
   const double left = report.remaining_estimate;
   const int iterations = report.iterations;
-  ++w.carrying.searches;
   NewtonDirections newton;
   Limits limits{(inputs.solver.rounds - 1) * inputs.solver.iterations, 0,
                 (gains ? smaller_share : small_share) * gained};

@@ -1,5 +1,5 @@
 // Makes a step in this order, which step() at the end of this file shows: the prediction y and the targets of handles
-// (begin_step), the matrix of directions, the pair of the step before, the first iterate, the iterations, the
+// (begin_step), the matrix of directions, the first iterate, the iterations, the
 // comparison with staying, the estimate of what is left, Newton's method where the step is hard, and the new state. The
 // iterations are one search; a step makes a second search where the first ended above staying, and Newton's method is
 // one more. The report's iterations and decrease are sums over all searches; its stop reason, slope and decrement are
@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "base/trace.h"
-#include "sim/solver/carried_pair.h"
 #include "sim/solver/error_estimate.h"
 #include "sim/solver/iterations.h"
 #include "sim/solver/lbfgs.h"
@@ -144,7 +143,6 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   clear(report);
   begin_step(model, inputs, state, w);
   choose_matrix(model, inputs, state, w);
-  choose_carried_pair(model, inputs.solver, state, w);
   zone.next("first iterate");
   const double above_start = set_first_iterate(model, inputs, state, w);
   choose_hessian(model, inputs, state, w);
@@ -161,11 +159,11 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
     hopeless |= descend_from_staying(model, inputs, origin, w, rule);
   report.error_estimate = error_at_end(model, inputs, w, report.decrease + above_start);
   if (origin.newton_follows && !report.failed) finish_by_newton(model, inputs, origin, w, hopeless);
+  report.motion_estimate = motion_estimate_at_end(model, inputs, state.x, w);
   const Positions& x = w.current.x;
   if (!report.failed && !x.allFinite()) fail(model, w, "step", std::numeric_limits<double>::quiet_NaN());
   if (!report.failed) {
     remember_matrix(model, inputs.solver, w, state);
-    remember_carried_pair(w, state);
     set_velocity(model, x, state);
     state.x = x;
     state.time += model.time_step;

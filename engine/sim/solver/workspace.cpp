@@ -12,7 +12,7 @@ void Workspace::prepare(const Model& model, const SolverSettings& solver) {
   const std::size_t most_values = 2 * (std::size_t(solver.rounds) + 1) * (std::size_t(solver.iterations) + 1);
   if (report.objective.capacity() < most_values) report.objective.reserve(most_values);
   if (report.records.capacity() < most_values) report.records.reserve(most_values);
-  if (prepared_for_ == model.id && window_ >= solver.history) return;
+  if (prepared_for_ == model.id && window_ >= solver.history && (solver.levels < 2 || bow.rows() == model.free)) return;
   if (prepared_for_ != model.id) correction = {};
   prepared_for_ = model.id;
   window_ = std::max(window_, solver.history);
@@ -27,6 +27,12 @@ void Workspace::prepare(const Model& model, const SolverSettings& solver) {
   middle.resize(model.scheme.theta < 1 ? model.vertices : 0, 3);
   if (!model.handle_stiffness.empty()) target.resize(model.free, 3);
   direction.resize(model.free, 3);
+  if (solver.levels > 1) {
+    turning.prepare(model);
+    motion.resize(model.vertices, 3);
+    turned.resize(model.free, 3);
+    bow.resize(model.free, 3);
+  }
   scratch.resize(model.free, 3);
   force.resize(model.chunk_vertex.size() * 3);
   local.resize(std::size_t(model.chunks.size()) * model.largest_chunk * 3);

@@ -3,12 +3,13 @@
 #pragma once
 
 #include "base/threads.h"
+#include "sim/coarse/second_level.h"
+#include "sim/coarse/turning.h"
 #include "sim/contact/contact_direction.h"
 #include "sim/contact/find_contacts.h"
 #include "sim/model/hessian_system.h"
 #include "sim/model/report.h"
 #include "sim/model/tangent_system.h"
-#include "sim/solver/carrying_work.h"
 #include "sim/solver/iterate.h"
 #include "sim/solver/newton_system.h"
 #include "sim/solver/step_clock.h"
@@ -41,13 +42,21 @@ struct Workspace {
   Positions next_matrix_at;  // q + h v, where a matrix is made if this step makes one, n x 3 [m]
   bool renewed = false;      // it did
 
+  // The second level of directions, and the arcs by which parts of the body turn; empty until a step asks for them.
+  SecondLevel second_level;
+  bool second_level_serves = false;  // in the search in hand
+  Turning turning;
+  Positions motion;       // h v, n x 3 [m]
+  Positions turned;       // how what turns departs from q + h v, n_free x 3 [m]
+  bool turns = false;     // it does, by so much that the first iterates have `turned` in them
+  Positions bow;          // how the search in hand departs from its straight direction, n_free x 3 [m]
+  bool is_bowed = false;  // it does
+
   NewtonSystem newton;  // empty until a step is finished by it
 
   // The pairs of L-BFGS are stored in a ring.
   std::vector<Positions> step_pairs, gradient_pairs;  // s [m] and t [N]
   std::vector<double> products;                       // s_i . t_j, window x window [J]
-
-  CarryingWork carrying;
 
   ContactWork contact;
   ContactCorrection correction;

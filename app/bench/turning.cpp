@@ -1,0 +1,568 @@
+// Compares films of bodies that turn with the same films whose every step is solved. The constant matrix of a
+// quasi-Newton step resists a turn as it resists a strain, so a few iterations turn a stiff body too little. Such a
+// body hardly deforms, so this shows in its motion as a whole: a ball that rolls too slowly, a bar that falls too late.
+#include <fmt/core.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <span>
+#include <string_view>
+
+#include "app/bench/sections.h"
+#include "base/interrupts.h"
+#include "film/places.h"
+#include "scene/obstacle.h"
+#include "scene/rotation.h"
+#include "scene/scene_reader.h"
+
+namespace supple {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+constexpr double friction = 0.5;
+
+// These "path=value" settings make the three films of a case. Ours has what a scene has that sets nothing.
+std::vector<std::string> our_settings() { return {}; }
+std::vector<std::string> paper_settings() { return {"solver.levels=1"}; }
+std::vector<std::string> solved_settings() { return {"solver.iterations=200"}; }
+
+// Returns up to three numbers that tell how far a body has come.
+using Observe = std::function<Vec3(const Model& model, const State& state)>;
+
+struct TurningCase {
+  std::string scene;  // its text, with one body
+  Observe observe;
+  Vec3 spin = Vec3::Zero();  // angular velocity at the start, of a body that nothing holds [rad/s]
+};
+
+struct TurningFilm {
+  std::vector<Vec3> seen;     // what was observed before the first frame and after each; NaN once a step has failed
+  double trials = 0;          // evaluations by iteration
+  double step_ms = 0;         // mean
+  double error_estimate = 0;  // the largest of all steps
+  int vertices = 0;
+};
+
+struct ThreeFilms {
+  TurningFilm ours, papers, solved;
+};
+
+SceneDef scene_of(const std::string& text, const std::vector<std::string>& settings) {
+  Config config = Config::parse(text, "turning body", assets_folder());
+  for (const std::string& setting : settings) config.set(setting, exclusive_keys());
+  SceneDef scene = read_scene(config);
+  config.finish();
+  return scene;
+}
+
+// Returns the mean of rows by vertex, weighted with the vertices' masses.
+Vec3 mass_mean(const Model& model, const Positions& rows) {
+  Vec3 sum = Vec3::Zero();
+  double mass = 0;
+  for (int v = 0; v < model.vertices; ++v) {
+    sum += model.mass[std::size_t(v)] * rows.row(v).transpose();
+    mass += model.mass[std::size_t(v)];
+  }
+  return sum / mass;
+}
+
+State spun(const Model& model, State state, const Vec3& spin) {
+  const Vec3 center = mass_mean(model, state.x);
+  for (int v = 0; v < model.vertices; ++v)
+    state.v.row(v) += spin.cross(state.x.row(v).transpose() - center).transpose();
+  return state;
+}
+
+TurningFilm play(const TurningCase& turning, const std::vector<std::string>& settings, Threads& threads) {
+  if (interrupted()) throw BenchInterrupted{};
+  const SceneDef scene = scene_of(turning.scene, settings);
+  Body body = std::move(assemble(scene).front());
+  Model model = build_model(body.description);
+  const CollisionSet set = collision_set(scene);
+  DrivenBody driver(scene, body, model, set, scenes_own_solver(), &threads);
+  driver.restore(spun(model, driver.state(), turning.spin));
+  TurningFilm film;
+  film.vertices = model.vertices;
+  film.seen.push_back(turning.observe(model, driver.state()));
+  int iterations = 0, trials = 0;
+  for (int frame = 0; frame < scene.frames; ++frame) {
+    const StepReport& last = driver.make_frame(frame, [&](const StepReport& report) {
+      iterations += report.iterations;
+      trials += report.line_search;
+      film.step_ms += report.step_ms / (scene.frames * scene.substeps);
+      film.error_estimate = std::max(film.error_estimate, report.error_estimate);
+    });
+    if (last.failed) break;
+    film.seen.push_back(turning.observe(model, driver.state()));
+  }
+  film.seen.resize(std::size_t(scene.frames) + 1, Vec3::Constant(std::nan("")));
+  film.trials = double(trials) / std::max(iterations, 1);
+  return film;
+}
+
+ThreeFilms play_three(const TurningCase& turning, const std::string& name, const BenchSetting& setting) {
+  say_doing(setting, name);
+  Threads& threads = *setting.threads;
+  return {play(turning, our_settings(), threads), play(turning, paper_settings(), threads),
+          play(turning, solved_settings(), threads)};
+}
+
+// Holds a number by frame; the first is that before the first frame.
+using Curve = Eigen::ArrayXd;
+
+struct Curves {
+  Curve ours, papers, solved;
+};
+
+Curve curve_of(const TurningFilm& film, int coordinate) {
+  Curve curve(Eigen::Index(film.seen.size()));
+  for (Eigen::Index k = 0; k < curve.size(); ++k) curve[k] = film.seen[std::size_t(k)][coordinate];
+  return curve;
+}
+
+Curves curves_of(const ThreeFilms& films, int coordinate) {
+  return {curve_of(films.ours, coordinate), curve_of(films.papers, coordinate), curve_of(films.solved, coordinate)};
+}
+
+// Makes angles that are known up to whole turns go on from frame to frame without jumps [degrees].
+Curve without_jumps(Curve angle) {
+  for (Eigen::Index k = 1; k < angle.size(); ++k)
+    angle[k] = angle[k - 1] + std::remainder(angle[k] - angle[k - 1], 360.0);
+  return angle;
+}
+
+Curves without_jumps(const Curves& angles) {
+  return {without_jumps(angles.ours), without_jumps(angles.papers), without_jumps(angles.solved)};
+}
+
+double last_of(const Curve& curve) { return curve[curve.size() - 1]; }
+
+// Returns the largest difference of all frames, in a unit that may differ from frame to frame; NaN of failed films.
+double worst_difference(const Curve& curve, const Curve& solved, const Curve& unit) {
+  return ((curve - solved).abs() / unit).maxCoeff<Eigen::PropagateNaN>();
+}
+
+Curve constant_unit(const Curves& curves, double unit) { return Curve::Constant(curves.solved.size(), unit); }
+
+struct Quantity {
+  std::string name, unit, unit_of_difference;
+};
+
+using Cells = std::vector<std::string>;
+
+void append(Cells& cells, const Cells& more) { cells.insert(cells.end(), more.begin(), more.end()); }
+
+Cells columns_of(const Quantity& quantity) {
+  Cells columns;
+  for (const char* whose : {"ours", "paper's"})
+    columns.push_back(fmt::format("{}, {} from solved, worst [{}]", quantity.name, whose, quantity.unit_of_difference));
+  for (const char* whose : {"ours", "paper's", "solved"})
+    columns.push_back(fmt::format("{}, {}, at the end [{}]", quantity.name, whose, quantity.unit));
+  return columns;
+}
+
+Cells cells_of(const Curves& curves, const Curve& unit) {
+  return {number_text(worst_difference(curves.ours, curves.solved, unit)),
+          number_text(worst_difference(curves.papers, curves.solved, unit)), number_text(last_of(curves.ours), 4),
+          number_text(last_of(curves.papers), 4), number_text(last_of(curves.solved), 4)};
+}
+
+const Cells cost_columns = {"vertices",          "ours, trials an iteration", "paper's, trials an iteration",
+                            "ours, a step [ms]", "paper's, a step [ms]",      "solved, largest error estimate"};
+
+Cells costs_of(const ThreeFilms& films) {
+  return {std::to_string(films.solved.vertices), number_text(films.ours.trials),
+          number_text(films.papers.trials),      number_text(films.ours.step_ms),
+          number_text(films.papers.step_ms),     number_text(films.solved.error_estimate)};
+}
+
+ReportTable table_of(const std::string& name, const std::string& title, Cells columns,
+                     const std::vector<Quantity>& quantities) {
+  ReportTable table{name, title};
+  table.columns = std::move(columns);
+  for (const Quantity& quantity : quantities) append(table.columns, columns_of(quantity));
+  append(table.columns, cost_columns);
+  return table;
+}
+
+struct Substance {
+  std::string name, keys;  // of a body
+};
+
+Substance preset(const std::string& name) { return {name, fmt::format("material = \"{}\"\n", name)}; }
+
+Substance substance_of(const std::string& model, double young, double poisson, double density) {
+  return {fmt::format("{}, {:.0e} Pa", model, young),
+          fmt::format("material = {{ model = \"{}\", young = {:g}, poisson = {:g} }}\ndensity = {:g}\n", model, young,
+                      poisson, density)};
+}
+
+// Returns a substance that keeps its volume nearly, as rubber does, and is stiffer than any preset.
+Substance stiff_rubber(double young) { return substance_of("stable-neo-hookean", young, 0.45, 1100); }
+Substance stiff_corotated(double young) { return substance_of("corotated", young, 0.4, 1000); }
+
+std::string list_text(const Vec3& v) { return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x(), v.y(), v.z()); }
+
+std::string plane(const Vec3& normal) {
+  return fmt::format("[[collider]]\nshape = {{ half_space = {{ normal = {} }} }}\nfriction = {:g}\n", list_text(normal),
+                     friction);
+}
+
+// Returns the rotation that comes nearest to what took the body from rest to x: the polar factor of sum m x X^T about
+// the centres of mass.
+Mat3 rotation_of(const Model& model, const Positions& x) {
+  const Vec3 center = mass_mean(model, x), rest_center = mass_mean(model, model.rest);
+  Mat3 sum = Mat3::Zero();
+  for (int v = 0; v < model.vertices; ++v)
+    sum += model.mass[std::size_t(v)] * (x.row(v).transpose() - center) * (model.rest.row(v) - rest_center.transpose());
+  const Eigen::JacobiSVD<Mat3> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Mat3 turn = svd.matrixU() * svd.matrixV().transpose();
+  const Vec3 signs(1, 1, turn.determinant() < 0 ? -1 : 1);
+  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+}
+
+// Returns the angle by which a rotation turns about the z axis, clockwise as a ball that rolls along x does [degrees].
+double rolled_angle(const Mat3& rotation) {
+  return std::atan2(rotation(0, 1) - rotation(1, 0), rotation(0, 0) + rotation(1, 1)) / degree;
+}
+
+// Balls.
+
+constexpr double ball_radius = 0.1;  // [m]
+constexpr int usual_ball = 1000;     // vertices
+// Without these two sizes, which take most of the time, the table still has every material.
+constexpr std::array other_balls = {300, 4000};
+
+struct Ball {
+  Substance substance;
+  int vertices = usual_ball;
+};
+
+std::vector<Ball> balls(std::span<const int> other_sizes) {
+  std::vector<Ball> list;
+  for (const char* name : {"jelly", "flesh", "rubber"}) list.push_back({preset(name)});
+  for (const double young : {1e7, 1e8, 1e9}) list.push_back({stiff_rubber(young)});
+  for (const int vertices : other_sizes) {
+    list.push_back({preset("rubber"), vertices});
+    list.push_back({stiff_rubber(1e8), vertices});
+  }
+  return list;
+}
+
+// center: where the ball's centre is at the start.
+std::string ball_text(const Ball& ball, int frames, const Vec3& center, double speed) {
+  return fmt::format(
+      "frames = {}\n[[body]]\nname = \"ball\"\nshape = \"shapes/sphere.toml\"\nscale = {:g}\nvertices = {}\nposition = "
+      "{}\nvelocity = [{:g}, 0, 0]\n{}",
+      frames, ball_radius, ball.vertices, list_text(center - ball_radius * Vec3::UnitY()), speed, ball.substance.keys);
+}
+
+std::string name_of(const Ball& ball) { return fmt::format("{}, {} vertices", ball.substance.name, ball.vertices); }
+
+ReportTable roll_table(std::span<const int> other_sizes, const BenchSetting& setting) {
+  constexpr double speed = 1;  // [m/s]
+  ReportTable table = table_of("turning-roll", "A ball that slides at first, and rolls after", {"material"},
+                               {{"speed", "m/s", "% of the first"}, {"angle", "degrees", "degrees"}});
+  table.note =
+      fmt::format("Radius {:g} m, {:g} m/s along the ground, friction {:g}; 12 frames.", ball_radius, speed, friction);
+  for (const Ball& ball : balls(other_sizes)) {
+    TurningCase rolling;
+    rolling.scene = ball_text(ball, 12, ball_radius * Vec3::UnitY(), speed) + plane(Vec3::UnitY());
+    rolling.observe = [](const Model& model, const State& state) {
+      return Vec3(mass_mean(model, state.v).x(), rolled_angle(rotation_of(model, state.x)), 0);
+    };
+    const ThreeFilms films = play_three(rolling, "rolling ball: " + name_of(ball), setting);
+    const Curves speeds = curves_of(films, 0), angles = without_jumps(curves_of(films, 1));
+    Cells row = {ball.substance.name};
+    append(row, cells_of(speeds, constant_unit(speeds, speed / 100)));
+    append(row, cells_of(angles, constant_unit(angles, 1)));
+    append(row, costs_of(films));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+ReportTable slope_table(std::span<const int> other_sizes, const BenchSetting& setting) {
+  constexpr double slope_deg = 10;
+  const Vec3 normal(std::sin(slope_deg * degree), std::cos(slope_deg * degree), 0), down(normal.y(), -normal.x(), 0);
+  ReportTable table = table_of("turning-slope", "A ball that starts to roll down a slope", {"material"},
+                               {{"speed", "m/s", "% of the solved last one"}});
+  table.note = fmt::format("Radius {:g} m, at rest at the start, {:g} degrees, friction {:g}; 15 frames.", ball_radius,
+                           slope_deg, friction);
+  for (const Ball& ball : balls(other_sizes)) {
+    TurningCase rolling;
+    rolling.scene = ball_text(ball, 15, ball_radius * normal, 0) + plane(normal);
+    rolling.observe = [down](const Model& model, const State& state) {
+      return Vec3(mass_mean(model, state.v).dot(down), 0, 0);
+    };
+    const ThreeFilms films = play_three(rolling, "ball on a slope: " + name_of(ball), setting);
+    const Curves speeds = curves_of(films, 0);
+    Cells row = {ball.substance.name};
+    append(row, cells_of(speeds, constant_unit(speeds, std::abs(last_of(speeds.solved)) / 100)));
+    append(row, costs_of(films));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+// A cube that topples.
+
+std::string cube_text(const Substance& substance, std::string_view keys) {
+  return fmt::format("[[body]]\nname = \"cube\"\nbox = {{ extent = [0.2, 0.2, 0.2], cells = [6, 6, 6] }}\n{}{}", keys,
+                     substance.keys);
+}
+
+// Returns the smallest angle between an axis of the cube, whichever points up, and the vertical [degrees].
+double tilt(const Mat3& rotation) { return std::acos(std::min(rotation.row(1).cwiseAbs().maxCoeff(), 1.0)) / degree; }
+
+// Returns the number of frames after which the cube first lies on a face; empty: it never does.
+std::string frames_until_flat(const Curve& tilts) {
+  constexpr double flat = 2;  // [degrees]
+  for (Eigen::Index k = 0; k < tilts.size(); ++k) {
+    if (tilts[k] < flat) return std::to_string(k);
+  }
+  return "";
+}
+
+ReportTable topple_table(const BenchSetting& setting) {
+  const Vec3 turn_deg(30, 0, 20);
+  const Mat3 first_turn = rotation_from_degrees(turn_deg).toRotationMatrix();
+  ReportTable table = table_of("turning-topple", "A cube that falls on a corner, and topples onto a face",
+                               {"material", "ours, frames until below 2 degrees",
+                                "paper's, frames until below 2 degrees", "solved, frames until below 2 degrees"},
+                               {{"tilt", "degrees", "degrees"}});
+  table.note = fmt::format(
+      "Edge 0.2 m, turned by {} degrees, from 2 cm above the ground, friction {:g}; 30 frames. The tilt is the "
+      "smallest "
+      "angle between an axis of the cube and the vertical.",
+      list_text(turn_deg), friction);
+  for (const Substance& substance : {preset("rubber"), stiff_rubber(1e9)}) {
+    TurningCase toppling;
+    toppling.scene =
+        "frames = 30\n" +
+        cube_text(substance, fmt::format("position = [0, 0.02, 0]\nturn_deg = {}\n", list_text(turn_deg))) +
+        plane(Vec3::UnitY());
+    toppling.observe = [first_turn](const Model& model, const State& state) {
+      return Vec3(tilt(rotation_of(model, state.x) * first_turn), 0, 0);
+    };
+    const ThreeFilms films = play_three(toppling, "toppling cube: " + substance.name, setting);
+    const Curves tilts = curves_of(films, 0);
+    Cells row = {substance.name, frames_until_flat(tilts.ours), frames_until_flat(tilts.papers),
+                 frames_until_flat(tilts.solved)};
+    append(row, cells_of(tilts, constant_unit(tilts, 1)));
+    append(row, costs_of(films));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+// Bars.
+
+// box: the corners of what a hard handle holds, relative to the body's box at rest.
+std::string held(const char* box) {
+  return fmt::format("[[body.handles]]\nname = \"held\"\nselect = {{ box = {} }}\n", box);
+}
+
+// Returns a bar of one metre along x. Its cells are cubes, so many across.
+std::string bar_text(double thickness, int across, const Substance& substance) {
+  return fmt::format("[[body]]\nname = \"bar\"\nbox = {{ extent = [1, {0:g}, {0:g}], cells = [{1}, {2}, {2}] }}\n{3}",
+                     thickness, std::lround(across / thickness), across, substance.keys);
+}
+
+// Returns where the end of the body that lies furthest in a direction at rest is now: the mean of its vertices.
+Vec3 tip_of(const Model& model, const Positions& x, const Vec3& direction) {
+  const Eigen::VectorXd along = model.rest * direction;
+  const double end = along.maxCoeff() - 1e-6 * model.size;
+  Vec3 sum = Vec3::Zero();
+  int count = 0;
+  for (int v = 0; v < model.vertices; ++v) {
+    if (along[v] < end) continue;
+    sum += x.row(v).transpose();
+    ++count;
+  }
+  return sum / count;
+}
+
+Vec3 middle_of_held(const Model& model) {
+  Vec3 sum = Vec3::Zero();
+  for (const Model::HandleVertex& held_vertex : model.handled) sum += model.rest.row(held_vertex.vertex).transpose();
+  return sum / double(model.handled.size());
+}
+
+// Returns the angle below the horizontal of the line from the hinge to the far end [degrees].
+double swung_angle(const Model& model, const State& state) {
+  const Vec3 line = tip_of(model, state.x, Vec3::UnitX()) - middle_of_held(model);
+  return std::atan2(-line.y(), line.x()) / degree;
+}
+
+ReportTable swing_table(const BenchSetting& setting) {
+  ReportTable table = table_of("turning-swing", "A bar that swings on a hinge or on a single vertex",
+                               {"held", "material"}, {{"angle", "degrees", "degrees"}});
+  table.note =
+      "1 m x 0.05 m x 0.05 m, level at the start; 15 frames. A hinge is the lower edge of one end; a pin is the vertex "
+      "in the middle of that end.";
+  const std::array<std::pair<const char*, const char*>, 2> ways = {
+      {{"hinge", "[[0, 0, 0], [0, 0, 1]]"}, {"pin", "[[0, 0.5, 0.5], [0, 0.5, 0.5]]"}}};
+  for (const auto& [way, box] : ways) {
+    for (const double young : {5e6, 1e8, 1e9, 1e10}) {
+      const Substance substance = stiff_corotated(young);
+      TurningCase swinging;
+      swinging.scene = "frames = 15\n" + bar_text(0.05, 2, substance) + held(box);
+      swinging.observe = [](const Model& model, const State& state) { return Vec3(swung_angle(model, state), 0, 0); };
+      const ThreeFilms films = play_three(swinging, fmt::format("swinging bar, {}: {}", way, substance.name), setting);
+      const Curves angles = without_jumps(curves_of(films, 0));
+      Cells row = {way, substance.name};
+      append(row, cells_of(angles, constant_unit(angles, 1)));
+      append(row, costs_of(films));
+      table.rows.push_back(std::move(row));
+    }
+  }
+  return table;
+}
+
+struct Cantilever {
+  std::string form;
+  Substance substance;
+  std::string body;                // the text of the body and its handle
+  Vec3 end_along = Vec3::UnitX();  // from its middle towards the tip, at rest
+};
+
+Cantilever straight_bar(double slenderness, int across, double young) {
+  const Substance substance = stiff_corotated(young);
+  return {fmt::format("straight, slenderness {:g}", slenderness), substance,
+          bar_text(1 / slenderness, across, substance) + held("[[0, 0, 0], [0, 1, 1]]")};
+}
+
+// Returns a bar of a shape file. Its elements do not lie in layers, so that the handle reaches in by about one of them.
+Cantilever shaped_bar(const std::string& form, const std::string& file, const Vec3& end_along, double young) {
+  const Substance substance = stiff_corotated(young);
+  return {form, substance,
+          fmt::format("[[body]]\nname = \"bar\"\nshape = \"bench/{}\"\nvertices = 1000\n{}{}", file, substance.keys,
+                      held("[[0, 0, 0], [0.03, 1, 1]]")),
+          end_along};
+}
+
+std::vector<Cantilever> cantilevers() {
+  std::vector<Cantilever> list;
+  for (const double young : {1e5, 1e6, 1e7, 1e8, 1e9}) list.push_back(straight_bar(12.5, 3, young));
+  list.push_back(straight_bar(5, 3, 1e7));
+  for (const double slenderness : {20.0, 50.0}) list.push_back(straight_bar(slenderness, 2, 1e7));
+  list.push_back(shaped_bar("bent", "bent-bar.toml", Vec3::UnitZ(), 1e7));
+  list.push_back(shaped_bar("forked", "forked-bar.toml", Vec3(1, 0, 1), 1e7));
+  return list;
+}
+
+// Returns one percent of the way that the solved tip has gone, frame by frame [m].
+Curve percent_of_way(const TurningFilm& solved) {
+  constexpr double least_way = 1e-4;  // [m]; a shorter way would make percents of what nobody sees
+  Curve unit(Eigen::Index(solved.seen.size()));
+  double way = 0;
+  for (std::size_t k = 0; k < solved.seen.size(); ++k) {
+    if (k > 0) way += (solved.seen[k] - solved.seen[k - 1]).norm();
+    unit[Eigen::Index(k)] = std::max(least_way, way) / 100;
+  }
+  return unit;
+}
+
+ReportTable clamped_table(const BenchSetting& setting) {
+  ReportTable table = table_of("turning-clamped", "A bar that is clamped at one end and let go", {"form", "material"},
+                               {{"height of the tip", "m", "% of its way so far"}});
+  table.note =
+      "1 m long, level at the start; 12 frames. The bent bar turns to the side by a right angle, the forked one has "
+      "two "
+      "arms. Differences are shares of the way that the solved tip has gone so far, which counts as at least 0.1 mm.";
+  for (const Cantilever& bar : cantilevers()) {
+    TurningCase falling;
+    falling.scene = "frames = 12\n" + bar.body;
+    falling.observe = [along = bar.end_along](const Model& model, const State& state) {
+      return tip_of(model, state.x, along);
+    };
+    const ThreeFilms films =
+        play_three(falling, fmt::format("clamped bar, {}: {}", bar.form, bar.substance.name), setting);
+    Cells row = {bar.form, bar.substance.name};
+    append(row, cells_of(curves_of(films, 1), percent_of_way(films.solved)));
+    append(row, costs_of(films));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+// Free bodies that spin.
+
+// Returns the angular momentum about the centre of mass [kg m^2/s].
+Vec3 angular_momentum(const Model& model, const State& state) {
+  const Vec3 center = mass_mean(model, state.x), velocity = mass_mean(model, state.v);
+  Vec3 sum = Vec3::Zero();
+  for (int v = 0; v < model.vertices; ++v)
+    sum +=
+        model.mass[std::size_t(v)] * (state.x.row(v).transpose() - center).cross(state.v.row(v).transpose() - velocity);
+  return sum;
+}
+
+std::string creature_text(const Substance& substance) {
+  return "[[body]]\nname = \"creature\"\nshape = \"shapes/blob.toml\"\nsize = 0.2\nvertices = 500\n" + substance.keys;
+}
+
+Curves over_first(const Curves& curves) {
+  return {curves.ours / curves.ours[0], curves.papers / curves.papers[0], curves.solved / curves.solved[0]};
+}
+
+ReportTable spin_table(const BenchSetting& setting) {
+  const Vec3 spin(1, 6, 0.5);  // [rad/s]
+  ReportTable table = table_of("turning-spin", "A free body that spins", {"body", "material"},
+                               {{"angular momentum", "of the first", "%"}});
+  table.note = fmt::format(
+      "0.2 m, without gravity, {} rad/s at the start; 30 frames. Backward Euler itself takes angular momentum away: "
+      "the "
+      "solved film says how much.",
+      list_text(spin));
+  for (const Substance& substance :
+       {preset("rubber"), preset("wood"), stiff_corotated(1e6), substance_of("neo-hookean", 1e7, 0.4, 1000)}) {
+    const std::array<std::pair<const char*, std::string>, 2> bodies = {
+        {{"cube", cube_text(substance, "")}, {"creature", creature_text(substance)}}};
+    for (const auto& [name, text] : bodies) {
+      TurningCase spinning;
+      spinning.scene = "frames = 30\ngravity = [0, 0, 0]\n" + text;
+      spinning.observe = [](const Model& model, const State& state) {
+        return Vec3(angular_momentum(model, state).norm(), 0, 0);
+      };
+      spinning.spin = spin;
+      const ThreeFilms films = play_three(spinning, fmt::format("spinning {}: {}", name, substance.name), setting);
+      const Curves momenta = over_first(curves_of(films, 0));
+      Cells row = {name, substance.name};
+      append(row, cells_of(momenta, momenta.solved / 100));
+      append(row, costs_of(films));
+      table.rows.push_back(std::move(row));
+    }
+  }
+  return table;
+}
+
+}  // namespace
+
+ReportSection bench_turning(const BenchSetting& setting) {
+  ReportSection section{"turning", "Bodies that turn"};
+  section.text =
+      "Each case is filmed three times from the same start, with h = 1/30 s: \"ours\" as a scene is solved that says "
+      "nothing of its solver, with ten iterations a step; \"paper's\" with ten iterations that start as the paper's "
+      "do; "
+      "and \"solved\" with 200 iterations a step. One number tells how far the body has come. The tables have the "
+      "worst "
+      "difference of all frames from the solved film, and the number itself at the end.\n\n"
+      "Films go their own ways: a difference is what all steps so far have left, not the error of one. The last column "
+      "tells how well the worst step of the solved film is solved.";
+  section.tables = {roll_table(other_balls, setting),
+                    slope_table(other_balls, setting),
+                    topple_table(setting),
+                    swing_table(setting),
+                    clamped_table(setting),
+                    spin_table(setting)};
+  return section;
+}
+
+}  // namespace supple

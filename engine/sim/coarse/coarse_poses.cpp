@@ -1,0 +1,244 @@
+// The part of CoarseSystem that steps use: its matrices in a pose, forces and motions of clusters, and their turns.
+// What a model has for good is in coarse_system.cpp.
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "sim/coarse/coarse_system.h"
+#include "sim/model/vertex_chunks.h"
+
+namespace supple {
+namespace {
+
+constexpr int motions = CoarseSystem::motions_of_cluster;
+using Block = Eigen::Matrix<double, motions, motions>;
+
+Mat3 cross_matrix(const Vec3& s) {
+  Mat3 m;
+  m << 0, -s.z(), s.y(), s.z(), 0, -s.x(), -s.y(), s.x(), 0;
+  return m;
+}
+
+// Expresses a block in the motions of its clusters about their own centres, along the world's axes. turn: from the
+// group's frame to the world's; s: from the centres to the group's.
+Block turned(const Eigen::Ref<const Block>& block, const Mat3& turn, const Mat3& s_c, const Mat3& s_d) {
+  const Mat3 b11 = turn * block.block<3, 3>(0, 0) * turn.transpose();
+  const Mat3 b12 = turn * block.block<3, 3>(0, 3) * turn.transpose();
+  const Mat3 b21 = turn * block.block<3, 3>(3, 0) * turn.transpose();
+  const Mat3 b22 = turn * block.block<3, 3>(3, 3) * turn.transpose();
+  Block result;
+  const Mat3 upper = b12 - b11 * s_d;
+  result.block<3, 3>(0, 0) = b11;
+  result.block<3, 3>(0, 3) = upper;
+  result.block<3, 3>(3, 0) = b21 + s_c * b11;
+  result.block<3, 3>(3, 3) = b22 - b21 * s_d + s_c * upper;
+  return result;
+}
+
+// Holds the polar decomposition of a group's mean deformation gradient, by its singular values.
+struct GroupPose {
+  Mat3 turn;
+  double least, most;  // stretches; the least is below 0 where the group is inverted
+
+  explicit GroupPose(const Mat3& gradient) {
+    const Eigen::JacobiSVD<Mat3> svd(gradient, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Mat3 u = svd.matrixU();
+    const bool inverted = (u * svd.matrixV().transpose()).determinant() < 0;
+    if (inverted) u.col(2) *= -1;
+    turn = u * svd.matrixV().transpose();
+    least = inverted ? -svd.singularValues()[2] : svd.singularValues()[2];
+    most = svd.singularValues()[0];
+  }
+};
+
+}  // namespace
+
+bool CoarseSystem::turn_to(const Positions& x) {
+  // Beyond these, the stiffness at rest says little of a group. With 0.4 and 2.5, spheres of spline materials were up
+  // to four times farther from their solution than with one level, and bodies that were flattened by a violent impact
+  // came to rest inside out; with 0.75 and 1.35, a ball of jelly that squashes as it rolls was three times as far.
+  constexpr double least_stretch = 0.5, most_stretch = 2;
+  const int count = clusters_.count();
+  centers_.resize(count);
+  for (int c = 0; c < count; ++c) centers_[c] = x.row(clusters_.center[c]).transpose();
+  constant_.setZero(columns(), columns());
+  hessian_.setZero(columns(), columns());
+  std::vector<Mat3>& shift = shift_;
+  for (const Group& group : groups_) {
+    Mat3 gradient = Mat3::Zero();
+    Vec3 center = Vec3::Zero();
+    for (std::size_t i = 0; i < group.vertex.size(); ++i) {
+      const Vec3 at = x.row(group.vertex[i]).transpose();
+      gradient += at * group.gradient[i].transpose();
+      center += group.share[i] * at;
+    }
+    const GroupPose pose(gradient);
+    if (!(pose.least > least_stretch && pose.most < most_stretch)) return false;
+    const Mat3& turn = pose.turn;
+    shift.clear();
+    for (const std::int32_t c : group.clusters) shift.push_back(cross_matrix(center - centers_[c]));
+    for (std::size_t c = 0; c < group.clusters.size(); ++c) {
+      for (std::size_t d = 0; d <= c; ++d) {
+        const auto from = static_cast<Eigen::Index>(motions * c), to = static_cast<Eigen::Index>(motions * d);
+        const Eigen::Index row = motions * group.clusters[c], column = motions * group.clusters[d];
+        constant_.block<motions, motions>(row, column) +=
+            turned(group.constant.block<motions, motions>(from, to), turn, shift[c], shift[d]);
+        hessian_.block<motions, motions>(row, column) +=
+            turned(group.hessian.block<motions, motions>(from, to), turn, shift[c], shift[d]);
+      }
+    }
+  }
+  return true;
+}
+
+namespace {
+
+// Holds a vector in a register, its fourth number 0; the compiler splits it where registers are narrower.
+typedef double Four __attribute__((vector_size(4 * sizeof(double))));
+
+Four load_three(const double* from) { return Four{from[0], from[1], from[2], 0}; }
+
+Four cross(const Four& a, const Four& b) {
+  constexpr std::int64_t x = 0, y = 1, z = 2, w = 3;
+  typedef std::int64_t Order __attribute__((vector_size(4 * sizeof(std::int64_t))));
+  const Order next = {y, z, x, w}, last = {z, x, y, w};
+  return __builtin_shuffle(a, next) * __builtin_shuffle(b, last) -
+         __builtin_shuffle(a, last) * __builtin_shuffle(b, next);
+}
+
+constexpr int cluster_numbers = 8;  // of sums: a force and a torque, or a shift and a turn, each with a fourth number
+
+}  // namespace
+
+// Torques are summed about the first centre, and moved to each cluster's own at the end.
+void CoarseSystem::restrict(const Model& model, const Positions& x, const Positions& forces, const Vec3& acceleration,
+                            Threads* threads, Eigen::VectorXd& result) {
+  const int chunks = vertex_chunks(model), count = clusters_.count();
+  const Four origin = load_three(centers_[0].data()), out = load_three(acceleration.data());
+  run_chunks(threads, chunks, long(model.free) * 12, [&](int chunk) {
+    double* sums = partial_.data() + std::size_t(chunk) * count * cluster_numbers;
+    std::fill(sums, sums + count * cluster_numbers, 0.0);
+    const int end = std::min(model.free, (chunk + 1) * vertices_a_chunk);
+    for (int v = chunk * vertices_a_chunk; v < end; ++v) {
+      const Four force = load_three(forces.data() + 3 * std::size_t(v)) - model.mass[v] * out;
+      const Four torque = cross(load_three(x.data() + 3 * std::size_t(v)) - origin, force);
+      for (int k = 0; k < Clusters::most_of_vertex; ++k) {
+        double* to = sums + cluster_numbers * clusters_.of[v][k];
+        const double weight = clusters_.weight[v][k];
+        Four sum, turn;
+        __builtin_memcpy(&sum, to, sizeof sum);
+        __builtin_memcpy(&turn, to + 4, sizeof turn);
+        sum += weight * force;
+        turn += weight * torque;
+        __builtin_memcpy(to, &sum, sizeof sum);
+        __builtin_memcpy(to + 4, &turn, sizeof turn);
+      }
+    }
+  });
+  result.setZero(columns());
+  for (int chunk = 0; chunk < chunks; ++chunk) {
+    const double* sums = partial_.data() + std::size_t(chunk) * count * cluster_numbers;
+    for (int c = 0; c < count; ++c) {
+      result.segment<3>(motions * c) += Eigen::Map<const Vec3>(sums + cluster_numbers * c);
+      result.segment<3>(motions * c + 3) += Eigen::Map<const Vec3>(sums + cluster_numbers * c + 4);
+    }
+  }
+  for (int c = 0; c < count; ++c) {
+    const Vec3 force = result.segment<3>(motions * c);
+    result.segment<3>(motions * c + 3) -= (centers_[c] - centers_[0]).cross(force);
+  }
+}
+
+Vec3 CoarseSystem::prolong(const Model& model, const Positions& x, const Eigen::VectorXd& y, Threads* threads,
+                           Positions& to) {
+  const int chunks = vertex_chunks(model), count = clusters_.count();
+  const Four origin = load_three(centers_[0].data());
+  by_cluster_.resize(std::size_t(count) * cluster_numbers);
+  for (int c = 0; c < count; ++c) {
+    const Vec3 turn = y.segment<3>(motions * c + 3);
+    const Vec3 shift = y.segment<3>(motions * c) - turn.cross(centers_[c] - centers_[0]);
+    Eigen::Map<Eigen::Matrix<double, cluster_numbers, 1>>(&by_cluster_[std::size_t(c) * cluster_numbers]) << shift, 0,
+        turn, 0;
+  }
+  run_chunks(threads, chunks, long(model.free) * 12, [&](int chunk) {
+    Four moved = {0, 0, 0, 0};
+    const int end = std::min(model.free, (chunk + 1) * vertices_a_chunk);
+    for (int v = chunk * vertices_a_chunk; v < end; ++v) {
+      Four motion = {0, 0, 0, 0}, turn = {0, 0, 0, 0};
+      for (int k = 0; k < Clusters::most_of_vertex; ++k) {
+        const double* from = &by_cluster_[std::size_t(cluster_numbers) * clusters_.of[v][k]];
+        const double weight = clusters_.weight[v][k];
+        Four of_shift, of_turn;
+        __builtin_memcpy(&of_shift, from, sizeof of_shift);
+        __builtin_memcpy(&of_turn, from + 4, sizeof of_turn);
+        motion += weight * of_shift;
+        turn += weight * of_turn;
+      }
+      motion += cross(turn, load_three(x.data() + 3 * std::size_t(v)) - origin);
+      for (int i = 0; i < 3; ++i) to.data()[3 * std::size_t(v) + i] += motion[i];
+      moved += model.mass[v] * motion;
+    }
+    for (int i = 0; i < 3; ++i) partial_[3 * std::size_t(chunk) + i] = moved[i];
+  });
+  Vec3 moved = Vec3::Zero();
+  for (int chunk = 0; chunk < chunks; ++chunk)
+    moved += Eigen::Map<const Vec3>(partial_.data() + 3 * std::size_t(chunk));
+  return moved;
+}
+
+// A group whose mean deformation gradient F changes by D turns by the angle that minimises |D - [theta]x F|.
+void CoarseSystem::find_turns(const Positions& x, const Positions& motion, std::vector<Turn>& turns) const {
+  turns.assign(clusters_.count(), {});
+  for (const Group& group : groups_) {
+    Mat3 gradient = Mat3::Zero(), change = Mat3::Zero();
+    for (std::size_t i = 0; i < group.vertex.size(); ++i) {
+      gradient += x.row(group.vertex[i]).transpose() * group.gradient[i].transpose();
+      if (group.vertex[i] < motion.rows())
+        change += motion.row(group.vertex[i]).transpose() * group.gradient[i].transpose();
+    }
+    Vec3 torque = Vec3::Zero();
+    for (int j = 0; j < 3; ++j) torque += gradient.col(j).cross(change.col(j));
+    const Mat3 products = gradient * gradient.transpose();
+    const Mat3 inertia = products.trace() * Mat3::Identity() - products;
+    const Mat3 rate = change * gradient.inverse();
+    Turn& turn = turns[group.cluster];
+    turn.angle += group.volume * inertia.ldlt().solve(torque);
+    turn.strain += group.volume * 0.5 * (rate + rate.transpose());
+    turn.volume += group.volume;
+    turn.stiffness += group.volume * group.stiffness;
+  }
+  for (Turn& turn : turns) {
+    if (turn.volume <= 0) continue;
+    turn.angle /= turn.volume;
+    turn.strain /= turn.volume;
+  }
+}
+
+double CoarseSystem::most_stretched(const Model& model, const Positions& motion) const {
+  double sum = 0;
+  for (int v = 0; v < model.free; ++v) sum += model.mass[v] * motion.row(v).squaredNorm();
+  return stretch_bound_ * sum * sum;
+}
+
+Mat3 CoarseSystem::mean_at(std::int32_t vertex, const std::vector<Mat3>& by_cluster) const {
+  Mat3 sum = Mat3::Zero();
+  for (int k = 0; k < Clusters::most_of_vertex; ++k)
+    sum += clusters_.weight[vertex][k] * by_cluster[clusters_.of[vertex][k]];
+  return sum;
+}
+
+void CoarseSystem::restrict_one(std::int32_t vertex, const Vec3& force, const Positions& x, double* sums) const {
+  for (int k = 0; k < Clusters::most_of_vertex; ++k) {
+    const std::int32_t c = clusters_.of[vertex][k];
+    const Vec3 part = clusters_.weight[vertex][k] * force;
+    const Vec3 torque = (x.row(vertex).transpose() - centers_[c]).cross(part);
+    for (int i = 0; i < 3; ++i) {
+      sums[motions * c + i] += part[i];
+      sums[motions * c + 3 + i] += torque[i];
+    }
+  }
+}
+
+}  // namespace supple

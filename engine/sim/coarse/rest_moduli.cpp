@@ -1,0 +1,21 @@
+#include "sim/coarse/rest_moduli.h"
+
+#include <algorithm>
+
+#include "sim/elements/tetrahedron_stiffness.h"
+
+namespace supple {
+
+// In stretches, mu |e|^2 + lambda/2 tr^2 e has the second derivatives 2 mu + lambda and, between two axes, lambda.
+RestModuli rest_moduli(const Material& material) {
+  return std::visit(
+      [](const auto& m) {
+        const double rest[3] = {1, 1, 1};
+        const StretchDerivatives<double> at = stretch_derivatives(m, rest);
+        const double lambda = at.second[0][1];
+        return RestModuli{std::max(0.0, (at.second[0][0] - lambda) / 2), std::max(0.0, lambda)};
+      },
+      material);
+}
+
+}  // namespace supple

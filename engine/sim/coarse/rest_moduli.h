@@ -1,0 +1,15 @@
+// Finds the moduli of linear elasticity that a material has at rest.
+#pragma once
+
+#include "sim/materials/material.h"
+
+namespace supple {
+
+struct RestModuli {
+  double mu = 0, lambda = 0;  // of mu |e|^2 + lambda/2 tr^2 e [Pa]
+};
+
+// Both are 0 where the material has no stiffness at rest, as the polynomial.
+RestModuli rest_moduli(const Material& material);
+
+}  // namespace supple

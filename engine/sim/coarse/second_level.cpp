@@ -1,0 +1,50 @@
+#include "sim/coarse/second_level.h"
+
+namespace supple {
+
+// A motion that hardly moves any free vertex has next to no inertia. The same little stiffness is added to both
+// matrices, so that it is taken out again.
+bool SecondLevel::begin(const Model& model, const Positions& x) {
+  system_.make(model);
+  const int count = columns();
+  if (count == 0 || !system_.turn_to(x)) return false;
+  inverse_.resize(count, count);
+  difference_.setZero(count, count);
+  for (const auto& [matrix, sign] : {std::pair(&system_.hessian(), 1.0), std::pair(&system_.constant(), -1.0)}) {
+    matrix_ = *matrix;
+    matrix_.diagonal() += 1e-9 * system_.constant().diagonal();
+    factor_.compute(matrix_);
+    if (factor_.info() != Eigen::Success) return false;
+    inverse_.setIdentity();
+    factor_.solveInPlace(inverse_);
+    difference_ += sign * inverse_;
+  }
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j < i; ++j)
+      difference_(i, j) = difference_(j, i) = 0.5 * (difference_(i, j) + difference_(j, i));
+  }
+  return true;
+}
+
+void SecondLevel::add(const Model& model, const Positions& x, const Eigen::VectorXd& f, Threads* threads,
+                      Positions& motions) {
+  motion_.noalias() = difference_ * f;
+  system_.prolong(model, x, motion_, threads, motions);
+}
+
+void SecondLevel::add_to(const Model& model, const Positions& x, const Positions& forces, Threads* threads,
+                         Positions& motions) {
+  Vec3 mean = Vec3::Zero();
+  if (model.free_floating) {
+    for (int v = 0; v < model.free; ++v) mean += forces.row(v).transpose();
+    mean /= model.total_mass;
+  }
+  system_.restrict(model, x, forces, mean, threads, restricted_);
+  motion_.noalias() = difference_ * restricted_;
+  const Vec3 moved = system_.prolong(model, x, motion_, threads, motions);
+  if (!model.free_floating) return;
+  const Eigen::RowVector3d back = -moved.transpose() / model.total_mass;
+  for (int v = 0; v < model.free; ++v) motions.row(v) += back;
+}
+
+}  // namespace supple

@@ -1,0 +1,49 @@
+// Corrects search directions on the second level. The first level starts them from the paper's A^-1. On the motions Z
+// of the body's clusters (coarse_system.h), the second has the elastic Hessian H in place of A's resistance to turning:
+//
+//   B^-1 = A^-1 + Z D Z^T,   D = (Z^T (M/h^2 + H) Z)^-1 - (Z^T A Z)^-1
+//
+// which is a two-level additive Schwarz method without what the first level has on Z already (Smith, Bjorstad, Gropp
+// 1996, "Domain decomposition", section 1.2, has such preconditioners). B is symmetric, and positive definite. Contacts
+// are added to B as they are to A (contact/contact_direction.h).
+#pragma once
+
+#include <Eigen/Cholesky>
+
+#include "sim/coarse/coarse_system.h"
+
+namespace supple {
+
+class SecondLevel {
+ public:
+  void prepare(const Model& model) { system_.make(model); }
+  const CoarseSystem& system() const { return system_; }
+
+  // Computes D for a search that starts at x. Returns false where there is none: the body has no tetrahedra, or is far
+  // from its rest shape.
+  bool begin(const Model& model, const Positions& x);
+
+  int columns() const { return system_.columns(); }
+  const Eigen::MatrixXd& difference() const { return difference_; }  // D, r x r
+
+  // Computes Z^T f for forces (n_free x 3) at x.
+  void restrict(const Model& model, const Positions& x, const Positions& forces, Threads* threads,
+                Eigen::VectorXd& result) {
+    system_.restrict(model, x, forces, Vec3::Zero(), threads, result);
+  }
+  // Adds Z D f to motions (n_free x 3) at x.
+  void add(const Model& model, const Positions& x, const Eigen::VectorXd& f, Threads* threads, Positions& motions);
+
+  // Adds P Z D Z^T P^T f for forces f at x. Where nothing holds the body, P takes out the motion of its centre of mass,
+  // which the first level has exactly.
+  void add_to(const Model& model, const Positions& x, const Positions& forces, Threads* threads, Positions& motions);
+
+ private:
+  CoarseSystem system_;
+  Eigen::MatrixXd difference_;
+  Eigen::VectorXd motion_, restricted_;
+  Eigen::MatrixXd matrix_, inverse_;  // scratch
+  Eigen::LLT<Eigen::MatrixXd> factor_;
+};
+
+}  // namespace supple
