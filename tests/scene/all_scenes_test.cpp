@@ -81,8 +81,12 @@ TEST(Scenes, TheHippoIsWholeAgainAfterTenSecondsFromRandomPositions) {
 TEST(Scenes, HaveNothingToWarnOf) {
   for (const std::filesystem::path& path : scenes()) {
     const SceneDef scene = load_scene(path, test::assets, {});
-    for (const Problem& warning : warnings(scene, assemble(scene)))
-      ADD_FAILURE() << path.stem() << ": " << warning.text();
+    for (const Problem& warning : warnings(scene, assemble(scene))) {
+      // One of the balls is there to show it.
+      const bool is_meant =
+          path.stem() == "rolling" && warning.message.find("turn less than it should") != std::string::npos;
+      if (!is_meant) ADD_FAILURE() << path.stem() << ": " << warning.text();
+    }
   }
 }
 

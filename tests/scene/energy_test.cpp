@@ -28,7 +28,8 @@ std::vector<double> energy_of(const std::string& body, const std::vector<std::st
 
 TEST(Energy, IsLostByBackwardEulerKeptByAWellSolvedMidpointAndPumpedIntoABadlySolvedOne) {
   constexpr int frames = 240;
-  const std::vector<double> euler = energy_of("euler", {}, frames), midpoint = energy_of("midpoint", {}, frames),
+  const std::vector<double> euler = energy_of("euler", {}, frames),
+                            midpoint = energy_of("midpoint", {"solver.levels=1"}, frames),
                             solved = energy_of("midpoint", {"solver.iterations=100"}, frames),
                             substeps = energy_of("midpoint", {"substeps=4"}, frames),
                             damped = energy_of("damped", {}, frames);
@@ -45,8 +46,9 @@ TEST(Energy, IsLostByBackwardEulerKeptByAWellSolvedMidpointAndPumpedIntoABadlySo
     EXPECT_NEAR(substeps[i], 0, 0.05 * -lowest) << "frame " << i;
   }
   EXPECT_LT(damped.back(), 0.9 * lowest);
-  // Ten iterations leave the fast modes unsolved, and midpoint damps nothing: their energy grows without bound. That no
-  // step is worse than staying does not help, because it bounds midpoint's objective and not its energy.
+  // Ten iterations of the paper's method leave the fast modes unsolved, and midpoint damps nothing: their energy grows
+  // without bound. That no step is worse than staying does not help, because it bounds midpoint's objective and not its
+  // energy.
   EXPECT_GT(midpoint.back(), -3 * lowest);
 }
 
