@@ -12,7 +12,7 @@ namespace supple {
 
 // Holds the measured errors of a step.
 struct MeasuredErrors {
-  // Of equation 12; empty where the objective of the start is above its minimum by round-off alone.
+  // This is the error of equation 12; it is empty where the start's objective is above its minimum by round-off alone.
   std::optional<double> error;
   double motion = 0;  // the error of motion (sim/model/measures.h)
 };

@@ -82,7 +82,7 @@ TEST(Clusters, ABodyThatIsTurnedHasTheSame) {
   EXPECT_EQ(make_clusters(build_model(body), 5).center, before.center);
 }
 
-// Where the body is at rest, turned or not, the matrix of A is Z^T A Z.
+// The matrix of A is exactly Z^T A Z for a body that has its rest shape, turned or not.
 TEST(CoarseSystem, HasTheMatrixOfAOnItsMotions) {
   for (const Held held : {Held::nothing, Held::hard_end, Held::spring_end}) {
     const Model model = build_model(bar(Corotated{1e4, 3e4}, held, Precision::double_precision, 2));
@@ -152,7 +152,7 @@ TEST(SecondLevel, DirectionsAreSymmetricAndLeadDownhill) {
   }
 }
 
-// Where directions of both levels lead nowhere, the first goes on alone.
+// A rule that is asked to forget drops its pairs, then its second level, and then has nothing left to forget.
 TEST(SecondLevel, IsForgottenAfterThePairs) {
   const Model model = build_model(bar(Corotated{1e4, 3e4}, Held::hard_end, Precision::double_precision, 2));
   const StepInputs inputs = test::still_inputs(model);

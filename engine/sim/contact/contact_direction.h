@@ -8,8 +8,8 @@
 //             directions than that system may have, it contains those of some vertices, which also represent their
 //             neighbours: K'. Each of the others, R, is scaled by itself: H = T (A + K')^-1 T,
 //             T = I - R diag(1 - sqrt(a / (a + k))) R^T.
-// Where directions have a second level (coarse/second_level.h), A^-1 + Z D Z^T stands in place of A^-1 throughout the
-// second of these.
+// The second of these uses A^-1 + Z D Z^T in place of A^-1 for directions that have a second level
+// (coarse/second_level.h).
 // All of these H are symmetric and positive definite.
 #pragma once
 
