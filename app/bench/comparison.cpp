@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/interrupts.h"
+#include "sim/model/measures.h"
 #include "sim/solver/first_iterate.h"
 #include "sim/solver/matrix_rule.h"
 
@@ -54,7 +55,10 @@ std::vector<Outcome> SolverComparison::run(const BenchState& state, const std::v
       workspace_.correction = {};  // no solver may use what another one learned of A^-1
       // The matrix that a film would have at hand here is.
       prepare_matrix(subject_.model, inputs.solver, state.before, workspace_);
+      if (repeat == 0)
+        workspace_.watch = [&](const Positions& x) { outcome.moved.emplace_back((x - state.before.x).cast<float>()); };
       const StepReport& report = step(subject_.model, inputs, after, workspace_, rule);
+      workspace_.watch = nullptr;
       outcome.used_ms += report.step_ms;
       if (repeat > 0) {
         add_times(outcome, report);
@@ -123,6 +127,15 @@ Positions SolverComparison::prediction(const BenchState& state) {
   return y;
 }
 
+std::vector<double> SolverComparison::motion_errors(const BenchState& state, const Outcome& outcome,
+                                                    const Positions& solved) {
+  const Positions y = prediction(state);
+  std::vector<double> errors;
+  for (const Eigen::MatrixX3f& moved : outcome.moved)
+    errors.push_back(motion_error(subject_.model, state.before.x, y, state.before.x + moved.cast<double>(), solved));
+  return errors;
+}
+
 Minimum SolverComparison::reference(const BenchState& state, const std::vector<Outcome>& outcomes) {
   const auto better = [](const Outcome& a, const Outcome& b) {
     const double none = -std::numeric_limits<double>::infinity();
@@ -149,6 +162,12 @@ double time_to(const Outcome& outcome, double whole, double tolerance) {
     if (whole - outcome.gained[k] <= tolerance * whole) return outcome.ms[k];
   }
   return std::numeric_limits<double>::infinity();
+}
+
+double time_to(const Outcome& outcome, const std::vector<double>& errors, double tolerance) {
+  const auto near = [tolerance](double error) { return error <= tolerance; };
+  const auto place = std::find_if(errors.begin(), errors.end(), near) - errors.begin();
+  return place < std::ssize(outcome.ms) ? outcome.ms[place] : std::numeric_limits<double>::infinity();
 }
 
 ChebyshevSettings trained_chebyshev(SolverComparison& comparison, const BenchState& training, const Method& method) {

@@ -35,6 +35,7 @@ struct Outcome {
   bool failed = false;
   StopReason stop_reason = StopReason::iterations;
   Positions x;
+  std::vector<Eigen::MatrixX3f> moved;   // from the state before [m]
   std::vector<double> steps, overheads;  // of each timed run [ms]
   double used_ms = 0;                    // by all runs
 };
@@ -59,6 +60,9 @@ class SolverComparison {
 
   // Returns y of the step, in the model's order [m].
   Positions prediction(const BenchState& state);
+
+  // Evaluates the error of motion for each iteration. solved: the minimum [m].
+  std::vector<double> motion_errors(const BenchState& state, const Outcome& outcome, const Positions& solved);
 
   // Finds the minimum below the best of the outcomes.
   Minimum reference(const BenchState& state, const std::vector<Outcome>& outcomes);
@@ -89,6 +93,8 @@ double last_error(const Outcome& outcome, double whole);
 
 // Returns the first time at which the error is at most `tolerance`, or infinity when it never is [ms].
 double time_to(const Outcome& outcome, double whole, double tolerance);
+// The same for errors by iteration.
+double time_to(const Outcome& outcome, const std::vector<double>& errors, double tolerance);
 
 // Finds the radius with which a method that Chebyshev's semi-iterative method accelerates comes closest to the minimum
 // after 30 iterations on a training state, with the delay of Wang 2015.

@@ -29,38 +29,78 @@ double at_iteration(const std::vector<double>& errors, int k) {
   return !errors.empty() && errors.back() < 1e-11 ? errors.back() : std::nan("");  // it stopped at round-off, or early
 }
 
-// Adds the curves of one state, as two plots and a table.
-void add_curves(ReportSection& section, const std::string& name, const std::vector<Outcome>& outcomes, double whole,
-                const std::string& ours) {
-  ReportPlot by_iteration{name + "-iterations", "Error by iteration"}, by_time{name + "-time", "Error by time"};
+// Holds what solvers achieved on one state: errors of motion by solver and iteration, and g(y) - g* [J].
+struct Curves {
+  std::vector<Outcome> outcomes;
+  std::vector<std::vector<double>> motion_errors = {};
+  double whole = 0;
+
+  void compare_with(SolverComparison& comparison, const BenchState& state, const Minimum& lowest) {
+    whole = lowest.below_y;
+    for (const Outcome& outcome : outcomes) motion_errors.push_back(comparison.motion_errors(state, outcome, lowest.x));
+  }
+};
+
+// Returns a curve that ends before round-off.
+PlotSeries curve_of(const Outcome& outcome, const std::vector<double>& errors, bool by_time) {
+  PlotSeries curve{outcome.label};
+  for (std::size_t k = 0; k < std::min(errors.size(), outcome.ms.size()); ++k) {
+    if (errors[k] < 1e-14) break;
+    curve.x.push_back(by_time ? outcome.ms[k] : static_cast<double>(k));
+    curve.y.push_back(errors[k]);
+  }
+  return curve;
+}
+
+// Adds the curves of one state, as three plots and a table.
+void add_curves(ReportSection& section, const std::string& name, const Curves& curves, const std::string& ours) {
+  ReportPlot by_iteration{name + "-iterations", "Error by iteration"}, by_time{name + "-time", "Error by time"},
+      motion_by_time{name + "-motion", "Error of motion by time"};
   by_iteration.x_label = "iteration";
-  by_time.x_label = "time [ms]";
-  by_time.log_x = true;
+  for (ReportPlot* plot : {&by_time, &motion_by_time}) {
+    plot->x_label = "time [ms]";
+    plot->log_x = true;
+  }
   ReportTable table{name, "The same in numbers"};
-  table.columns = {"method",   "error after 1",      "after 5",      "after 10",     "after 20",
-                   "after 50", "10 iterations [ms]", "to 1e-2 [ms]", "to 1e-4 [ms]", "to 1e-6 [ms]",
-                   "trials",   "iterations"};
+  table.columns = {"method",
+                   "error after 1",
+                   "after 5",
+                   "after 10",
+                   "after 20",
+                   "after 50",
+                   "10 iterations [ms]",
+                   "to 1e-2 [ms]",
+                   "to 1e-4 [ms]",
+                   "to 1e-6 [ms]",
+                   "motion error after 3",
+                   "motion error after 5",
+                   "motion error after 10",
+                   "to 1e-2 in motion [ms]",
+                   "to 1e-3 in motion [ms]",
+                   "trials",
+                   "iterations"};
   double longest = 0;
-  for (const Outcome& outcome : outcomes) {
-    const std::vector<double> errors = errors_of(outcome, whole);
-    PlotSeries curve{outcome.label};
-    curve.thick = outcome.label == ours;
-    for (std::size_t k = 0; k < errors.size(); ++k) {
-      if (errors[k] < 1e-14) break;
-      curve.x.push_back(static_cast<double>(k));
-      curve.y.push_back(errors[k]);
+  for (std::size_t i = 0; i < curves.outcomes.size(); ++i) {
+    const Outcome& outcome = curves.outcomes[i];
+    const std::vector<double> errors = errors_of(outcome, curves.whole);
+    const std::vector<double>& motion = curves.motion_errors[i];
+    by_iteration.series.push_back(curve_of(outcome, errors, false));
+    by_time.series.push_back(curve_of(outcome, errors, true));
+    motion_by_time.series.push_back(curve_of(outcome, motion, true));
+    if (outcome.label == ours) {
+      for (ReportPlot* plot : {&by_iteration, &by_time, &motion_by_time}) plot->series.back().thick = true;
+      if (!by_time.series.back().x.empty()) longest = by_time.series.back().x.back();
     }
-    by_iteration.series.push_back(curve);
-    curve.x.assign(outcome.ms.begin(), outcome.ms.begin() + static_cast<long>(curve.y.size()));
-    if (curve.thick && !curve.x.empty()) longest = curve.x.back();
-    by_time.series.push_back(curve);
     const auto ms_at = [&](std::size_t k) { return outcome.ms.size() > k ? outcome.ms[k] : std::nan(""); };
     table.rows.push_back({outcome.label, number_text(at_iteration(errors, 1)), number_text(at_iteration(errors, 5)),
                           number_text(at_iteration(errors, 10)), number_text(at_iteration(errors, 20)),
                           number_text(at_iteration(errors, 50)), number_text(ms_at(10)),
-                          number_text(time_to(outcome, whole, 1e-2)), number_text(time_to(outcome, whole, 1e-4)),
-                          number_text(time_to(outcome, whole, 1e-6)), std::to_string(outcome.trials),
-                          std::to_string(outcome.iterations)});
+                          number_text(time_to(outcome, curves.whole, 1e-2)),
+                          number_text(time_to(outcome, curves.whole, 1e-4)),
+                          number_text(time_to(outcome, curves.whole, 1e-6)), number_text(at_iteration(motion, 3)),
+                          number_text(at_iteration(motion, 5)), number_text(at_iteration(motion, 10)),
+                          number_text(time_to(outcome, motion, 1e-2)), number_text(time_to(outcome, motion, 1e-3)),
+                          std::to_string(outcome.trials), std::to_string(outcome.iterations)});
   }
   for (ReportPlot* plot : {&by_iteration, &by_time}) {
     plot->y_label = "error (equation 12)";
@@ -69,11 +109,17 @@ void add_curves(ReportSection& section, const std::string& name, const std::vect
   }
   by_iteration.x_min = 0;
   by_iteration.x_max = 60;
-  by_time.x_min = 0.2;
-  by_time.x_max = std::max(20 * longest, 1000.0);
+  motion_by_time.y_label = "error of motion";
+  motion_by_time.y_min = 1e-6;
+  motion_by_time.y_max = 2;
+  for (ReportPlot* plot : {&by_time, &motion_by_time}) {
+    plot->x_min = 0.2;
+    plot->x_max = std::max(20 * longest, 1000.0);
+  }
   section.tables.push_back(std::move(table));
   section.plots.push_back(std::move(by_iteration));
   section.plots.push_back(std::move(by_time));
+  section.plots.push_back(std::move(motion_by_time));
 }
 
 ReportSection compare(const BenchSetting& setting, const std::string& name, const std::string& heading,
@@ -82,14 +128,15 @@ ReportSection compare(const BenchSetting& setting, const std::string& name, cons
   SolverComparison comparison(subject, *setting.threads);
   const std::vector<BenchState> states = states_of(subject, {60, example_frame}, setting);
   train_chebyshev(comparison, states[0], entries);
-  const std::vector<Outcome> outcomes = comparison.run(states[1], entries, 5);
-  const Minimum lowest = comparison.reference(states[1], outcomes);
+  Curves curves{comparison.run(states[1], entries, 5)};
+  const Minimum lowest = comparison.reference(states[1], curves.outcomes);
+  curves.compare_with(comparison, states[1], lowest);
   ReportSection section{name, heading};
   section.text =
       fmt::format("Twisting bar, Neo-Hookean, frame {} ({}). {}{}", example_frame, subject.size_text(), text,
                   lowest.positive_definite ? " The reference is a minimum: its Hessian has a Cholesky factor."
                                            : " The Hessian at the reference has no Cholesky factor.");
-  add_curves(section, name, outcomes, lowest.below_y, ours);
+  add_curves(section, name, curves, ours);
   return section;
 }
 
@@ -244,8 +291,7 @@ ReportSection bench_figure14(const BenchSetting& setting) {
 
 ReportSection bench_figure15(const BenchSetting& setting) {
   ReportSection section{"figure15", "Figure 15: the interval of equation 11"};
-  std::vector<Outcome> outcomes;
-  double whole = 0;
+  Curves curves;
   std::optional<BenchState> state;
   std::string sizes, stiffnesses;
   for (const double half : {0.5, 0.4, 0.3, 0.2, 0.1, 0.01}) {
@@ -256,8 +302,11 @@ ReportSection bench_figure15(const BenchSetting& setting) {
     SolverComparison comparison(subject, *setting.threads);
     if (!state) state = states_of(subject, {example_frame}, setting).front();  // the same for all
     const std::string label = fmt::format("[{:g}, {:g}]", 1 - half, 1 + half);
-    outcomes.push_back(comparison.run(*state, {{label, Method::quasi_newton, 100}}, 5).front());
-    whole = std::max(whole, comparison.reference(*state, {outcomes.back()}).below_y);
+    curves.outcomes.push_back(comparison.run(*state, {{label, Method::quasi_newton, 100}}, 5).front());
+    const Outcome& outcome = curves.outcomes.back();
+    const Minimum lowest = comparison.reference(*state, {outcome});
+    curves.whole = std::max(curves.whole, lowest.below_y);
+    curves.motion_errors.push_back(comparison.motion_errors(*state, outcome, lowest.x));
     stiffnesses +=
         fmt::format("{}{}: k = {:.4g}", stiffnesses.empty() ? "" : "; ", label, subject.model.stiffness[0].k);
     sizes = subject.size_text();
@@ -265,7 +314,7 @@ ReportSection bench_figure15(const BenchSetting& setting) {
   section.text =
       fmt::format("Twisting bar, frame {} ({}); stiffness by interval: {}. In the paper the curves nearly coincide.",
                   example_frame, sizes, stiffnesses);
-  add_curves(section, "figure15", outcomes, whole, "[0.5, 1.5]");
+  add_curves(section, "figure15", curves, "[0.5, 1.5]");
   return section;
 }
 

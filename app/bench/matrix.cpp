@@ -5,7 +5,6 @@
 
 #include "app/bench/sections.h"
 #include "base/error.h"
-#include "sim/model/measures.h"
 
 namespace supple {
 namespace {
@@ -15,8 +14,7 @@ const std::vector<int> sampled_frames = {18, 30, 42, 54, 65};
 constexpr int most_iterations = 60;
 constexpr double tolerances[] = {1e-4, 1e-6};
 constexpr double motion_tolerances[] = {1e-2, 1e-3};
-// The iterations after which errors of motion are measured, by a run for each.
-constexpr int motion_iterations[] = {1, 2, 3, 4, 5, 6, 8, 10, 14, 20};
+constexpr int motion_iterations[] = {3, 5, 10};  // after which errors of motion are compared
 
 }  // namespace
 
@@ -59,6 +57,7 @@ struct Score {
   bool missed[std::size(tolerances)] = {};                  // some state was not solved to it
   double log_motion[std::size(motion_iterations)] = {};     // errors of motion
   double log_motion_ms[std::size(motion_tolerances)] = {};  // to each of their tolerances
+  bool missed_motion[std::size(motion_tolerances)] = {};    // some state was not solved to it
 };
 
 void add(Score& score, const Outcome& whole_run, const Outcome& ten, double lowest, double renewal_ms) {
@@ -78,26 +77,19 @@ void add(Score& score, const Outcome& whole_run, const Outcome& ten, double lowe
   }
 }
 
-// Runs a solver anew for each number of iterations. whole_run: of the same solver, which tells how long they take.
 // estimates: of the error of motion after ten iterations, over the error.
-void add_motion(Score& score, SolverComparison& comparison, const BenchState& state, SolverEntry entry,
-                const Outcome& whole_run, const Positions& solved, std::vector<double>& estimates) {
-  const Model& model = comparison.subject().model;
-  Positions y;
-  bool reached[std::size(motion_tolerances)] = {};
-  for (std::size_t i = 0; i < std::size(motion_iterations); ++i) {
-    entry.iterations = motion_iterations[i];
-    const Outcome outcome = comparison.run(state, {entry}, 1, 0).front();
-    if (y.rows() == 0) y = comparison.prediction(state);
-    const double error = std::max(motion_error(model, state.before.x, y, outcome.x, solved), 1e-12);
-    score.log_motion[i] += std::log(error);
-    if (entry.iterations == 10 && error > 1e-8) estimates.push_back(outcome.motion_estimate / error);
-    const auto at = std::min<std::size_t>(motion_iterations[i], whole_run.ms.size() - 1);
-    for (std::size_t t = 0; t < std::size(motion_tolerances); ++t) {
-      if (reached[t] || (error > motion_tolerances[t] && i + 1 < std::size(motion_iterations))) continue;
-      reached[t] = true;  // or not within the iterations that are tried, which counts as reached with the last
-      score.log_motion_ms[t] += std::log(whole_run.ms[at]);
-    }
+void add_motion(Score& score, const Outcome& whole_run, const Outcome& ten, const std::vector<double>& errors,
+                std::vector<double>& estimates) {
+  const auto after = [&](int iterations) {
+    return std::max(errors[std::min<std::size_t>(iterations, errors.size() - 1)], 1e-12);
+  };
+  for (std::size_t i = 0; i < std::size(motion_iterations); ++i)
+    score.log_motion[i] += std::log(after(motion_iterations[i]));
+  if (after(10) > 1e-8) estimates.push_back(ten.motion_estimate / after(10));
+  for (std::size_t t = 0; t < std::size(motion_tolerances); ++t) {
+    const double ms = time_to(whole_run, errors, motion_tolerances[t]);
+    score.missed_motion[t] |= !std::isfinite(ms);
+    score.log_motion_ms[t] += std::log(std::isfinite(ms) ? ms : whole_run.ms.back());
   }
 }
 
@@ -182,13 +174,13 @@ void add_row(Candidate& candidate, const Subject& subject, const Score& papers, 
   row.push_back(mean(papers.log_error[1] - score.log_error[1]));
   for (std::size_t i = 0; i < std::size(motion_iterations); ++i) {
     means.motion_nearer[i] += (papers.log_motion[i] - score.log_motion[i]) / n;
-    if (motion_iterations[i] != 3 && motion_iterations[i] != 5 && motion_iterations[i] != 10) continue;
     row.push_back(mean(papers.log_motion[i]));
     row.push_back(mean(score.log_motion[i]));
   }
   for (std::size_t t = 0; t < std::size(motion_tolerances); ++t) {
     means.motion_ms[t] += (score.log_motion_ms[t] - papers.log_motion_ms[t]) / n;
-    row.push_back(mean(score.log_motion_ms[t] - papers.log_motion_ms[t]));
+    row.push_back(mean(score.log_motion_ms[t] - papers.log_motion_ms[t]) +
+                  (score.missed_motion[t] ? " (not all)" : ""));
   }
   row.push_back(number_text(papers.trials / papers.iterations));
   row.push_back(number_text(score.trials / score.iterations));
@@ -214,7 +206,7 @@ std::string text_of(const Means& means) {
       "(geometric means over {} bodies)",
       std::exp(means.nearer[0] / n), std::exp(means.nearer[1] / n), std::exp(means.iterations[0] / n),
       std::exp(means.iterations[1] / n), std::exp(means.ms[0] / n), std::exp(means.ms[1] / n),
-      std::exp(means.motion_nearer[2] / n), std::exp(means.motion_nearer[4] / n), std::exp(means.motion_nearer[7] / n),
+      std::exp(means.motion_nearer[0] / n), std::exp(means.motion_nearer[1] / n), std::exp(means.motion_nearer[2] / n),
       std::exp(means.motion_ms[0] / n), std::exp(means.motion_ms[1] / n), means.bodies);
 }
 
@@ -251,8 +243,10 @@ void compare(Candidate& candidate, Subject& subject, Estimates& papers_estimates
     if (!(lowest.below_y > 1e-12 * scale)) continue;  // at rest: nothing to solve
     ++states;
     if (candidate.start.matrix != SystemMatrix::constant) take_out_renewal(outcomes[2]);
-    add_motion(papers, comparison, state, entries[0], outcomes[0], lowest.x, papers_estimates.motion);
-    add_motion(score, comparison, state, entries[2], outcomes[2], lowest.x, candidate.estimates.motion);
+    add_motion(papers, outcomes[0], outcomes[1], comparison.motion_errors(state, outcomes[0], lowest.x),
+               papers_estimates.motion);
+    add_motion(score, outcomes[2], outcomes[3], comparison.motion_errors(state, outcomes[2], lowest.x),
+               candidate.estimates.motion);
     add(papers, outcomes[0], outcomes[1], lowest.below_y, 0);
     add(score, outcomes[2], outcomes[3], lowest.below_y, film.renewal_ms);
     for (const int ten : {1, 3}) {

@@ -138,15 +138,24 @@ const std::vector<Row>& rows() {
 struct BesidePapers {
   DirectionStart start;
   PlayedFilm film;
-  std::vector<double> error = {}, ms_to_same = {};  // by state: after ten iterations; time to the paper's error
+  // By state: errors after ten iterations, of equation 12 and of motion, and times to the paper's.
+  std::vector<double> error = {}, ms_to_same = {}, motion_error = {}, ms_to_same_motion = {};
 };
 
-void add_start_row(ReportTable& table, const std::string& model, bool paper_mesh, double papers_error, double papers_ms,
+// Holds means over states of ten iterations of the paper's method.
+struct PapersMeans {
+  double error, motion_error, ms;
+};
+
+void add_start_row(ReportTable& table, const std::string& model, bool paper_mesh, const PapersMeans& papers,
                    const BesidePapers& beside) {
   const double same = summary_of(beside.ms_to_same).mean + beside.film.renewal_ms;
-  table.rows.push_back({model, paper_mesh ? "the paper's" : "ours", text_of(beside.start), number_text(papers_error),
-                        number_text(papers_ms), number_text(summary_of(beside.error).mean), number_text(same),
-                        number_text(same / papers_ms), number_text(beside.film.renewals),
+  const double same_motion = summary_of(beside.ms_to_same_motion).mean + beside.film.renewal_ms;
+  table.rows.push_back({model, paper_mesh ? "the paper's" : "ours", text_of(beside.start), number_text(papers.error),
+                        number_text(papers.ms), number_text(summary_of(beside.error).mean), number_text(same),
+                        number_text(same / papers.ms), number_text(papers.motion_error),
+                        number_text(summary_of(beside.motion_error).mean), number_text(same_motion),
+                        number_text(same_motion / papers.ms), number_text(beside.film.renewals),
                         number_text(beside.film.renewal_ms)});
 }
 
@@ -158,8 +167,8 @@ void add_row(ReportTable& table, ReportTable& by_start, const Row& row, const Su
   SolverComparison comparison(subject, *setting.threads);
   std::vector<SolverEntry> entries = {{"ours", Method::quasi_newton, 10}, {"Newton", Method::newton, 1}};
   std::vector<BesidePapers> beside;
-  for (const SystemMatrix matrix : {SystemMatrix::constant, SystemMatrix::tangent}) {
-    const DirectionStart start{matrix, true};
+  for (const DirectionStart start :
+       {DirectionStart{SystemMatrix::constant, 2}, DirectionStart{SystemMatrix::tangent}}) {
     beside.push_back({start, play_film(subject, *setting.threads, start)});
     for (const int iterations : {10, 40}) {
       entries.push_back({text_of(start), Method::quasi_newton, iterations});
@@ -167,7 +176,7 @@ void add_row(ReportTable& table, ReportTable& by_start, const Row& row, const Su
     }
   }
   std::vector<double> papers_ms;
-  std::vector<double> errors[2];
+  std::vector<double> errors[2], motion_errors[2];
   double least[2] = {1e300, 1e300}, median[2] = {0, 0}, overhead = 0, trials = 0;
   const std::vector<BenchState> states = states_of(subject, row.frames, setting);
   for (const BenchState& state : states) {
@@ -175,6 +184,7 @@ void add_row(ReportTable& table, ReportTable& by_start, const Row& row, const Su
     const Minimum lowest = comparison.reference(state, outcomes);
     for (int m = 0; m < 2; ++m) {
       errors[m].push_back(last_error(outcomes[m], lowest.below_y));
+      motion_errors[m].push_back(comparison.motion_errors(state, outcomes[m], lowest.x).back());
       least[m] = std::min(least[m], outcomes[m].step_ms);
       median[m] += outcomes[m].median_ms / static_cast<double>(states.size());
     }
@@ -182,14 +192,18 @@ void add_row(ReportTable& table, ReportTable& by_start, const Row& row, const Su
     for (std::size_t i = 0; i < beside.size(); ++i) {
       const Outcome &ten = outcomes[2 + 2 * i], &longer = outcomes[3 + 2 * i];
       beside[i].error.push_back(last_error(ten, lowest.below_y));
-      beside[i].ms_to_same.push_back(time_to(longer, lowest.below_y, errors[0].back()) - longer.matrix_ms);
+      const double matrix_ms = beside[i].start.matrix == SystemMatrix::constant ? 0 : longer.matrix_ms;
+      beside[i].ms_to_same.push_back(time_to(longer, lowest.below_y, errors[0].back()) - matrix_ms);
+      beside[i].motion_error.push_back(comparison.motion_errors(state, ten, lowest.x).back());
+      beside[i].ms_to_same_motion.push_back(
+          time_to(longer, comparison.motion_errors(state, longer, lowest.x), motion_errors[0].back()) - matrix_ms);
     }
     overhead += outcomes[0].overhead_ms / static_cast<double>(states.size());
     trials += static_cast<double>(outcomes[0].trials) / static_cast<double>(states.size());
   }
   const Summary ours = summary_of(errors[0]), newton = summary_of(errors[1]);
-  for (const BesidePapers& one : beside)
-    add_start_row(by_start, row.model, paper_mesh, ours.mean, summary_of(papers_ms).mean, one);
+  const PapersMeans means{ours.mean, summary_of(motion_errors[0]).mean, summary_of(papers_ms).mean};
+  for (const BesidePapers& one : beside) add_start_row(by_start, row.model, paper_mesh, means, one);
   const double ratio = median[1] / median[0];
   const bool holds = ratio > 1 && ours.mean < newton.mean;
   table.rows.push_back({row.model,
@@ -208,6 +222,8 @@ void add_row(ReportTable& table, ReportTable& by_start, const Row& row, const Su
                         number_text(median[1]),
                         number_text(newton.mean),
                         number_text(newton.worst),
+                        number_text(means.motion_error),
+                        number_text(summary_of(motion_errors[1]).mean),
                         number_text(ratio),
                         holds                      ? "yes"
                         : ours.mean >= newton.mean ? "no: error"
@@ -242,6 +258,8 @@ ReportTable empty_table() {
                    "Newton, median [ms]",
                    "error, Newton",
                    "worst, Newton",
+                   "motion error, ours",
+                   "motion error, Newton",
                    "Newton over ours",
                    "faster and nearer",
                    "paper: trials",
@@ -264,6 +282,8 @@ ReportTable empty_table() {
                         "paper: Newton [ms]",
                         "error, Newton",
                         "paper: error, Newton",
+                        "motion error, ours",
+                        "motion error, Newton",
                         "Newton over ours",
                         "paper: Newton over ours",
                         "faster and nearer"};
@@ -287,6 +307,10 @@ ReportTable empty_table_by_start() {
                    "error after ten",
                    "to the paper's error [ms]",
                    "ratio",
+                   "motion error, the paper's",
+                   "motion error after ten",
+                   "to the paper's motion error [ms]",
+                   "ratio in motion",
                    "renewals a frame",
                    "their time a frame [ms]"};
   table.note = "Means over the states. Times contain the renewals that a film with that start has, on average.";

@@ -5,6 +5,7 @@ namespace supple {
 // A motion that hardly moves any free vertex has next to no inertia. The same little stiffness is added to both
 // matrices, so that it is taken out again.
 bool SecondLevel::begin(const Model& model, const Positions& x) {
+  ++pose_;
   system_.make(model);
   const int count = columns();
   if (count == 0 || !system_.turn_to(x)) return false;

@@ -24,6 +24,7 @@ class SecondLevel {
   bool begin(const Model& model, const Positions& x);
 
   int columns() const { return system_.columns(); }
+  std::uint64_t pose() const { return pose_; }  // counts the calls of begin
   const Eigen::MatrixXd& difference() const { return difference_; }  // D, r x r
 
   // Computes Z^T f for forces (n_free x 3) at x.
@@ -40,6 +41,7 @@ class SecondLevel {
 
  private:
   CoarseSystem system_;
+  std::uint64_t pose_ = 0;
   Eigen::MatrixXd difference_;
   Eigen::VectorXd motion_, restricted_;
   Eigen::MatrixXd matrix_, inverse_;  // scratch

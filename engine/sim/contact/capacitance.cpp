@@ -70,6 +70,7 @@ std::size_t couple(const StiffDirection& direction, Eigen::Index number, std::ve
 void Capacitance::clear() {
   directions_.clear();
   lists_.clear();
+  rows_of_ = 0;
 }
 
 void Capacitance::begin_step(const System& system) {
@@ -97,13 +98,16 @@ bool Capacitance::set(const System& system, const std::vector<StiffDirection>& w
   }
   for (std::size_t i = 0; i < ordered.size(); ++i) couple(ordered[i], static_cast<Eigen::Index>(i), lists_);
   directions_.swap(ordered);
+  keep_rows(place);
   factors_.resize(std::max(factors_.size(), lists_.size()));
   for (std::size_t i = 0; i < lists_.size(); ++i) {
-    Eigen::Index& kept = factors_[i].factored = 0;
-    if (place.empty() || i >= lists_before.size()) continue;
-    const std::vector<Eigen::Index>&was = lists_before[i].members, &is = lists_[i].members;
-    const std::size_t most = std::min(was.size(), is.size());
-    while (std::size_t(kept) < most && place[was[kept]] == is[kept]) ++kept;
+    Eigen::Index kept = 0;
+    if (!place.empty() && i < lists_before.size()) {
+      const std::vector<Eigen::Index>&was = lists_before[i].members, &is = lists_[i].members;
+      const std::size_t most = std::min(was.size(), is.size());
+      while (std::size_t(kept) < most && place[was[kept]] == is[kept]) ++kept;
+    }
+    factors_[i].keep(kept);
   }
   return append(system, {}, threads);
 }
@@ -115,9 +119,9 @@ bool Capacitance::append(const System& system, const std::vector<StiffDirection>
     const std::size_t home = couple(direction, static_cast<Eigen::Index>(directions_.size()), lists_);
     directions_.push_back(direction);
     factors_.resize(std::max(factors_.size(), lists_.size()));
-    if (lists_.size() > count) factors_[home].factored = 0;
+    if (lists_.size() > count) factors_[home].keep(0);
     if (lists_.size() < count) {
-      for (Factor& factor : factors_) factor.factored = 0;
+      for (Factor& factor : factors_) factor.keep(0);
     }
   }
   std::vector<std::int32_t> touched;
@@ -164,6 +168,12 @@ void Capacitance::fill_row(const CoupledDirections& list, Eigen::Index row, floa
   values[row] += static_cast<float>(1 / own.stiffness);
 }
 
+void Capacitance::Factor::keep(Eigen::Index members) {
+  factored = std::min(factored, members);
+  seen_members = std::min(seen_members, members);
+  if (summed > members) summed = 0;
+}
+
 bool Capacitance::extend(const CoupledDirections& list, Factor& factor) {
   const auto n = static_cast<Eigen::Index>(list.members.size()), first = factor.factored, more = n - first;
   if (more == 0) return true;
@@ -198,16 +208,62 @@ void Capacitance::solve(Eigen::VectorXf& answer) const {
   }
 }
 
-Eigen::MatrixXd Capacitance::between(const Eigen::MatrixXf& rows) const {
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(rows.cols(), rows.cols());
-  for (std::size_t i = 0; i < lists_.size(); ++i) {
-    const std::vector<Eigen::Index>& members = lists_[i].members;
-    const auto n = static_cast<Eigen::Index>(members.size());
-    Eigen::MatrixXf part = rows(members, Eigen::all);
-    factors_[i].lower.topLeftCorner(n, n).triangularView<Eigen::Lower>().solveInPlace(part);
-    sum += (part.transpose() * part).cast<double>();
+// Moves the rows of directions that stay to where these are now.
+void Capacitance::keep_rows(const std::vector<Eigen::Index>& place) {
+  if (rows_of_ == 0) return;
+  RowMatrix rows(std::ssize(directions_), rows_.cols());
+  std::vector<char> known(directions_.size(), 0);
+  for (std::size_t i = 0; i < std::min(place.size(), known_.size()); ++i) {
+    if (place[i] < 0 || known_[i] == 0) continue;
+    rows.row(place[i]) = rows_.row(static_cast<Eigen::Index>(i));
+    known[place[i]] = 1;
   }
-  return sum;
+  rows_.swap(rows);
+  known_.swap(known);
+}
+
+bool Capacitance::know_rows(std::uint64_t pose, int r, const FindRow& find_row) {
+  if (rows_of_ != pose) {
+    rows_of_ = pose;
+    known_.clear();
+    lists_counted_ = 0;
+    for (Factor& factor : factors_) factor.seen_members = factor.summed = 0;
+  }
+  const std::size_t before = known_.size(), count = directions_.size();
+  if (before < count || rows_.cols() != r) rows_.conservativeResize(static_cast<Eigen::Index>(count), r);
+  known_.resize(count, 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (known_[i] == 0) find_row(directions_[i], rows_.row(static_cast<Eigen::Index>(i)).data());
+    known_[i] = 1;
+  }
+  bool is_new = lists_counted_ != lists_.size();
+  for (std::size_t i = 0; i < lists_.size(); ++i) is_new |= count_rows(lists_[i], factors_[i]);
+  if (!is_new) return false;
+  lists_counted_ = lists_.size();
+  between_.setZero(r, r);
+  for (std::size_t i = 0; i < lists_.size(); ++i)
+    between_.triangularView<Eigen::Lower>() += factors_[i].product.cast<double>();
+  between_.triangularView<Eigen::StrictlyUpper>() = between_.transpose();
+  return true;
+}
+
+bool Capacitance::count_rows(const CoupledDirections& list, Factor& factor) const {
+  const auto n = static_cast<Eigen::Index>(list.members.size()), r = rows_.cols();
+  if (factor.summed == n) return false;
+  const Eigen::Index first = factor.seen_members, more = n - first;
+  if (factor.seen.rows() < n || factor.seen.cols() != r) factor.seen.conservativeResize(n + n / 2, r);
+  if (more > 0) {
+    auto added = factor.seen.middleRows(first, more);
+    for (Eigen::Index i = 0; i < more; ++i) added.row(i) = rows_.row(list.members[first + i]);
+    if (first > 0) added.noalias() -= factor.lower.block(first, 0, more, first) * factor.seen.topRows(first);
+    factor.lower.block(first, first, more, more).triangularView<Eigen::Lower>().solveInPlace(added);
+    factor.seen_members = n;
+  }
+  if (factor.summed == 0) factor.product.setZero(r, r);
+  factor.product.selfadjointView<Eigen::Lower>().rankUpdate(
+      factor.seen.middleRows(factor.summed, n - factor.summed).transpose());
+  factor.summed = n;
+  return true;
 }
 
 }  // namespace supple

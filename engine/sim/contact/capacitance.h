@@ -4,6 +4,7 @@
 // same for x, y and z: on flat ground normals and both tangents are three systems. All in single precision.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "base/types.h"
@@ -56,19 +57,34 @@ class Capacitance {
   // Solves in place; the numbers are ordered by direction.
   void solve(Eigen::VectorXf& answer) const;
 
-  // With rows W by direction, computes W^T C^-1 W for the system's matrix C.
-  Eigen::MatrixXd between(const Eigen::MatrixXf& rows) const;
+  using RowMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  // Makes ready rows(), W, of what each direction is on r coarse motions, and between(), W^T C^-1 W for the system's
+  // matrix C. `find_row` writes the r numbers of a direction; it is asked once for each of a pose (which is not 0), for
+  // as long as the direction stays. Returns whether anything is new.
+  using FindRow = std::function<void(const StiffDirection&, float* row)>;
+  bool know_rows(std::uint64_t pose, int r, const FindRow& find_row);
+  const RowMatrix& rows() const { return rows_; }
+  const Eigen::MatrixXd& between() const { return between_; }
 
   // Returns how many numbers of A^-1 and of its factor are kept from step to step.
   std::int64_t kept_numbers() const { return entries_.stored_numbers(); }
 
  private:
-  using RowMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   struct Factor {
-    RowMatrix lower;            // Cholesky factor, in its top left corner
+    RowMatrix lower;            // Cholesky factor L, in its top left corner
     Eigen::Index factored = 0;  // members that it holds already
+    RowMatrix seen;             // L^-1 W, in its upper rows
+    Eigen::Index seen_members = 0;
+    Eigen::MatrixXf product;  // W^T (L L^T)^-1 W, the lower triangle
+    Eigen::Index summed = 0;  // members that it holds already
+
+    // Leaves what belongs to this many first members.
+    void keep(Eigen::Index members);
   };
   bool extend(const CoupledDirections& list, Factor& factor);
+  void keep_rows(const std::vector<Eigen::Index>& place);
+  bool count_rows(const CoupledDirections& list, Factor& factor) const;
   void fill_row(const CoupledDirections& list, Eigen::Index row, float* values) const;
   float entry(const ContactPoint& a, const ContactPoint& b) const;
 
@@ -77,6 +93,11 @@ class Capacitance {
   std::vector<Factor> factors_;  // of the lists
   InverseEntries entries_;
   std::uint64_t entries_of_ = 0;  // System::id
+  std::uint64_t rows_of_ = 0;     // the pose of the rows; 0: there are none
+  RowMatrix rows_;
+  std::vector<char> known_;        // by direction: whether its row is known
+  std::size_t lists_counted_ = 0;  // in `between_`
+  Eigen::MatrixXd between_;
 };
 
 }  // namespace supple

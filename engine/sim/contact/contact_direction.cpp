@@ -141,32 +141,32 @@ void add_answer(ContactCorrection& c, const FactorPart& part, Positions& r) {
 // (C + W D W^T)^-1 = C^-1 - C^-1 W (1 + D W^T C^-1 W)^-1 D W^T C^-1 (Woodbury).
 void couple_levels(ContactCorrection& c) {
   if (c.second == nullptr) return;
-  const std::vector<StiffDirection>& directions = c.system.directions();
-  c.rows.resize(static_cast<Eigen::Index>(directions.size()), c.second->columns());
-  Eigen::VectorXd row(c.second->columns());
-  for (std::size_t i = 0; i < directions.size(); ++i) {
-    row.setZero();
-    for (int k = 0; k < directions[i].point.free; ++k)
-      c.second->system().restrict_one(directions[i].point.vertex[k], directions[i].point.weight[k] * directions[i].axis,
-                                      *c.x, row.data());
-    c.rows.row(static_cast<Eigen::Index>(i)) = row.cast<float>().transpose();
-  }
-  const Eigen::MatrixXd sum = c.second->difference() * c.system.between(c.rows);
-  c.both.compute(Eigen::MatrixXd::Identity(sum.rows(), sum.cols()) + sum);
+  Eigen::VectorXd numbers(c.second->columns());
+  const bool is_new =
+      c.system.know_rows(c.second->pose(), c.second->columns(), [&](const StiffDirection& s, float* row) {
+        numbers.setZero();
+        for (int k = 0; k < s.point.free; ++k)
+          c.second->system().restrict_one(s.point.vertex[k], s.point.weight[k] * s.axis, *c.x, numbers.data());
+        Eigen::Map<Eigen::VectorXf>(row, numbers.size()) = numbers.cast<float>();
+      });
+  if (!is_new) return;
+  c.both.compute(Eigen::MatrixXd::Identity(numbers.size(), numbers.size()) +
+                 c.second->difference() * c.system.between());
 }
 
 // Solves with that matrix, in place.
 void solve_coupled(ContactCorrection& c) {
   c.system.solve(c.answer);
   if (c.second == nullptr) return;
-  const Eigen::VectorXd seen = (c.rows.transpose() * c.answer).cast<double>();
-  Eigen::VectorXf back = c.rows * c.both.solve(c.second->difference() * seen).cast<float>();
+  const auto& rows = c.system.rows();
+  const Eigen::VectorXd seen = (rows.transpose() * c.answer).cast<double>();
+  Eigen::VectorXf back = rows * c.both.solve(c.second->difference() * seen).cast<float>();
   c.system.solve(back);
   c.answer -= back;
 }
 
 // Adds the forces -N answer on the second level.
-void add_coarse_answer(ContactCorrection& c) { c.coarse -= (c.rows.transpose() * c.answer).cast<double>(); }
+void add_coarse_answer(ContactCorrection& c) { c.coarse -= (c.system.rows().transpose() * c.answer).cast<double>(); }
 
 void finish(const Model& model, ContactCorrection& c, const Positions& r, Positions& z) {
   c.solve.finish(z.data());
@@ -185,7 +185,7 @@ void apply_low_rank(const Model& model, ContactCorrection& c, Positions& r, Posi
     for (int k = 1; k < point.free; ++k) seen += point.weight[k] * c.solve.seen(point.vertex[k]);
     c.answer[i] = static_cast<float>(seen.dot(directions[i].axis));
   }
-  if (c.second != nullptr) c.answer += c.rows * (c.second->difference() * c.coarse).cast<float>();
+  if (c.second != nullptr) c.answer += c.system.rows() * (c.second->difference() * c.coarse).cast<float>();
   solve_coupled(c);
   add_answer(c, c.part, r);
   finish(model, c, r, z);

@@ -42,8 +42,7 @@ struct ContactCorrection {
   SecondLevel* second = nullptr;
   const Positions* x = nullptr;
   Eigen::VectorXd coarse;                     // Z^T of the forces in hand, r
-  Eigen::MatrixXf rows;                       // N^T Z: by direction of the system, r
-  Eigen::PartialPivLU<Eigen::MatrixXd> both;  // of 1 + D Z^T N C^-1 N^T Z, for the system's matrix C
+  Eigen::PartialPivLU<Eigen::MatrixXd> both;  // of 1 + D W^T C^-1 W, for the system's rows W = N^T Z and its matrix C
 };
 
 // Returns the largest number of mutually coupled directions that a body's system may have.

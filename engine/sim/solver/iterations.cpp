@@ -131,6 +131,7 @@ void accept(const Model& model, const StepInputs& inputs, Workspace& w, SearchRu
   record.decrease = -change.value - learned;
   record.elapsed_ms = w.clock.elapsed_ms();
   w.report.records.push_back(record);
+  if (w.watch) w.watch(w.current.x);
 }
 
 }  // namespace

@@ -80,6 +80,7 @@ bool descend_from_staying(const Model& model, const StepInputs& inputs, const Or
   const double gained = reached + friction_reached - staying - friction_staying;
   report.decrease += gained;
   report.records.push_back({w.clock.elapsed_ms(), gained, 0, {}});
+  if (w.watch) w.watch(w.current.x);
   const int iterations = report.iterations;
   evaluate_start(model, inputs, w);
   TimeBudget budget(inputs, w, TimeBudget::from_staying);
@@ -147,6 +148,7 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   const double above_start = set_first_iterate(model, inputs, state, w);
   choose_hessian(model, inputs, state, w);
   report.start_ms = w.clock.elapsed_ms();
+  if (w.watch) w.watch(w.current.x);
   zone.next("iterate");
   TimeBudget budget(inputs, w, TimeBudget::from_first_iterate);
   const Origin origin{state, above_start, may_finish_by_newton(model, inputs)};

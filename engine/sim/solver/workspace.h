@@ -2,6 +2,8 @@
 // changes a result.
 #pragma once
 
+#include <functional>
+
 #include "base/threads.h"
 #include "sim/coarse/second_level.h"
 #include "sim/coarse/turning.h"
@@ -71,6 +73,8 @@ struct Workspace {
 
   StepReport report;
   StepClock clock;
+  // Is shown every iterate of a step, n x 3, by those who compare solvers; empty: nobody looks.
+  std::function<void(const Positions& x)> watch;
 
  private:
   std::uint64_t prepared_for_ = 0;  // Model::id
