@@ -225,6 +225,7 @@ StabilityOutcome HardRun::play(std::vector<Positions>* motion, WorstStep* worst)
   State before;
   for (int frame = 0; frame < scene_.frames && outcome.finite; ++frame) {
     driver_.prepare_step(frame, 0);
+    if (!budget.knows_springs()) budget.know_springs(model_, driver_.targets_at_start(), driver_.state());
     budget.before_step(model_, driver_.inputs(), driver_.state(), workspace);
     before = driver_.state();
     const StepReport& report = driver_.step();

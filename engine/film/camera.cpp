@@ -72,6 +72,14 @@ Bounds framed_box(const SceneDef& scene, const Stage& stage) {
   return box;
 }
 
+std::optional<Followed> followed_at(const SceneDef& scene, const Stage& stage,
+                                    const std::vector<std::vector<float>>& positions) {
+  if (scene.camera.follow.empty()) return std::nullopt;
+  const std::size_t mesh = followed_mesh(scene);
+  const bool known = mesh < positions.size() && !positions[mesh].empty();
+  return Followed{mesh, known ? Vec3(mean_of(positions[mesh]) - stage.meshes[mesh].rest.center()) : Vec3(Vec3::Zero())};
+}
+
 Camera camera_at(const SceneDef& scene, const Stage& stage, double time,
                  const std::vector<std::vector<float>>& positions) {
   const CameraDef& def = scene.camera;
@@ -92,16 +100,29 @@ Camera camera_at(const SceneDef& scene, const Stage& stage, double time,
   camera.target = value_at<Vec3>(def, time, &CameraKey::target, def.target.value_or(camera.target));
   camera.eye = camera.target + value_at(def, time, &CameraKey::distance, def.distance.value_or(distance)) * direction;
   camera.eye = value_at<Vec3>(def, time, &CameraKey::position, def.position.value_or(camera.eye));
-  if (def.follow.empty()) return camera;
-  const std::size_t mesh = followed_mesh(scene);
-  const Vec3 offset = camera.eye - camera.target;
-  const bool moved = mesh < positions.size() && !positions[mesh].empty();
-  const Vec3 center = moved ? mean_of(positions[mesh]) : stage.meshes[mesh].rest.center();
+  const std::optional<Followed> followed = followed_at(scene, stage, positions);
+  if (!followed) return camera;
+  const Vec3 center = stage.meshes[followed->mesh].rest.center() + followed->moved;
   // A position stands in a fixed place to what is followed at rest.
-  camera.eye = center + offset;
-  if (def.position) camera.eye = *def.position + center - stage.meshes[mesh].rest.center();
+  camera.eye = center + (camera.eye - camera.target);
+  if (def.position) camera.eye = *def.position + followed->moved;
   camera.target = center;
   return camera;
+}
+
+double share_in_picture(const Camera& camera, const Stage& stage, const std::vector<float>& points) {
+  constexpr std::size_t enough = 2000;  // points tell the share
+  const Eigen::Matrix4d to_eye = look_at(camera.eye, camera.target).cast<double>();
+  const double high = std::tan(camera.fov_deg * std::numbers::pi / 360), wide = high * stage.width / stage.height;
+  const std::size_t step = std::max<std::size_t>(1, points.size() / 3 / enough);
+  int seen = 0, all = 0;
+  for (std::size_t i = 0; i + 2 < points.size(); i += 3 * step) {
+    const Vec3 from = Vec3(points[i], points[i + 1], points[i + 2]) - camera.eye;
+    const Vec3 at = to_eye.topLeftCorner<3, 3>() * from;  // to the right, up, and towards the eye
+    ++all;
+    seen += at.z() < 0 && std::abs(at.x()) <= -wide * at.z() && std::abs(at.y()) <= -high * at.z() ? 1 : 0;
+  }
+  return all > 0 ? double(seen) / all : 1;
 }
 
 }  // namespace supple

@@ -13,12 +13,26 @@ namespace supple {
 
 namespace {
 
+bool changes_camera(const Script& script, int frame) {
+  return std::ranges::any_of(script.at_work(frame),
+                             [](const TimedChange* change) { return change->path.starts_with("camera"); });
+}
+
+// Tells whether the camera moves in the film, of itself or because a replay moves it.
+bool moves_camera(const Script& script) {
+  const SceneDef& scene = script.scene();
+  if (scene.camera.moves() || !scene.camera.follow.empty()) return true;
+  for (int frame = 0; frame < scene.frames; ++frame) {
+    if (changes_camera(script, frame)) return true;
+  }
+  return false;
+}
+
 std::vector<Camera> cameras_of(const Script& script, const Stage& stage) {
   SceneDef scene = script.scene();
   std::vector<Camera> cameras = {camera_at(scene, stage, 0)};
-  const auto moves_camera = [](const TimedChange* change) { return change->path.starts_with("camera"); };
   for (int frame = 0; frame < script.scene().frames; ++frame) {
-    const bool changes = std::ranges::any_of(script.at_work(frame), moves_camera);
+    const bool changes = changes_camera(script, frame);
     if (changes) scene = script.scene_at(frame);
     if (changes || scene.camera.moves()) cameras.push_back(camera_at(scene, stage, (frame + 1) / scene.fps));
   }
@@ -37,6 +51,7 @@ DrawnFilm::DrawnFilm(const Script& script, const std::vector<Body>& bodies, std:
   fit_to_cameras(drawn_, bodies, cameras_of(script, fine), scene.output.height);
   stage_ = make_stage(scene, bodies, drawn_, set.obstacles, collider_skins_, font);
   stage_.graphs = graph_looks(scene, 0);
+  stage_.camera_moves = moves_camera(script);
   if (!scene.look.ghost.empty()) add_ghosts(scene, bodies);
   if (scene.field.quantity != FieldQuantity::none) field_.emplace(scene, bodies);
   for (std::size_t b = 0; b < bodies.size() && field_; ++b) stage_.meshes[b].mapped = field_->shown_on(b);
@@ -142,6 +157,7 @@ DrawList DrawnFilm::list(const SceneDef& scene, const FramePose& pose, const Col
     result.positions.push_back(
         skin_positions(drawn_[b], bodies_[b].description.mesh, ghosts_->at(b, pose.frame), &threads));
   result.camera = camera_at(scene, stage_, pose.time, result.positions);
+  result.followed = followed_at(scene, stage_, result.positions);
   for (std::size_t b = 0; b < bodies && scene.look.marks; ++b)
     append_marks(bodies_[b], *pose.motion[b], set, pose.time, &threads, result.marks);
   result.headline = headline_text(scene, pose.time);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "film/camera.h"
 #include "film/draw_scene.h"
 #include "film/surface_field.h"
 #include "scene/script.h"
@@ -31,6 +32,10 @@ class DrawnFilm {
 
   // Returns how far a body's skin is stretched beyond its elements in a list (draw_scene.h). now: the positions of its
   // mesh [m].
+  // Returns the share of a body's surface that lies within the borders of a frame's picture.
+  double share_in_picture(std::size_t body, const DrawList& list) const {
+    return supple::share_in_picture(list.camera, stage_, list.positions[body]);
+  }
   std::optional<double> skin_excess_of(std::size_t body, const DrawList& list, const TetMesh& mesh,
                                        const Positions& now) const {
     return skin_excess(drawn_[body], list.positions[body], mesh, now);

@@ -113,6 +113,8 @@ const StepReport& FilmedBody::make_step() {
   {
     const Zone zone("energy budget", driver_.body().def.name);
     w.prepare(model(), driver_.inputs().solver);
+    if (!energy_budget_.knows_springs())
+      energy_budget_.know_springs(model(), driver_.targets_at_start(), state());
     energy_budget_.before_step(model(), driver_.inputs(), state(), w);
     start_of_step_ = state().x;
   }

@@ -105,8 +105,10 @@ bool FrameLoop::show(int frame, FrameRow& row) {
   pose.earlier = graphed_;
   DrawList list = drawn_->list(scene_, pose, colliders_, threads_);
   keep_motion();
-  for (std::size_t b = 0; b < filmed_.size(); ++b)
+  for (std::size_t b = 0; b < filmed_.size(); ++b) {
     row.bodies[b].skin_excess = drawn_->skin_excess_of(b, list, bodies_[b].description.mesh, *pose.motion[b]);
+    row.bodies[b].in_picture = drawn_->share_in_picture(b, list);
+  }
   row.draw_ms = watch.elapsed_ms();
   zone.next("wait for render");
   return pictures_->put(every ? frame / plan_.pictures_every() : frame, std::move(list));

@@ -126,6 +126,8 @@ struct Shape {
   // Returns a length such that a straight path shorter than twice this length cannot lead through the solid, except
   // across its edges; 0 where no such length is known.
   double half_thickness() const;
+  // Returns the same, or for closed surfaces what all but their thinnest twentieth have at least [m].
+  double usual_half_thickness() const;
 
   // Returns the tag of the last tagged part that holds the point; outside all parts, the tag of the nearest one.
   int region(const Vec3& point) const;

@@ -219,20 +219,25 @@ double certainty_of(const ShapeGroup& group) {
   return least;
 }
 
-// Returns half the thickness of a solid at its thinnest place, or 0 where it is not known.
-double half_thickness(const Primitive& primitive);
+// Return half the thickness of a solid at its thinnest place, or 0 where it is not known. of_surface: returns that of a
+// closed surface.
+template <class OfSurface>
+double half_thickness(const Primitive& primitive, const OfSurface& of_surface);
 
-double thinnest_of(const ShapeGroup& group) {
+template <class OfSurface>
+double thinnest_of(const ShapeGroup& group, const OfSurface& of_surface) {
   double least = 1e300;
   for (const ShapePart& part : group.parts) {
     if (part.combine != Combine::add) return 0;
-    least = std::min(least, part.scale * half_thickness(part.primitive));
+    least = std::min(least, part.scale * half_thickness(part.primitive, of_surface));
   }
   return least;
 }
 
-double half_thickness(const Primitive& primitive) {
+template <class OfSurface>
+double half_thickness(const Primitive& primitive, const OfSurface& of_surface) {
   struct Visitor {
+    const OfSurface& of_surface;
     double operator()(const Sphere& s) const { return s.radius; }
     double operator()(const Ellipsoid& e) const { return e.radii.minCoeff(); }
     double operator()(const Capsule& c) const { return c.radius; }
@@ -241,10 +246,10 @@ double half_thickness(const Primitive& primitive) {
     double operator()(const Cylinder& c) const { return std::min(c.radius, c.half_height); }
     double operator()(const Torus& t) const { return t.tube; }
     double operator()(const HalfSpace&) const { return 1e300; }
-    double operator()(const ClosedSurface&) const { return 0; }
-    double operator()(const ShapeGroup& g) const { return thinnest_of(g); }
+    double operator()(const ClosedSurface& s) const { return of_surface(s); }
+    double operator()(const ShapeGroup& g) const { return thinnest_of(g, of_surface); }
   };
-  return std::visit(Visitor{}, primitive);
+  return std::visit(Visitor{of_surface}, primitive);
 }
 
 // Follows Newton's steps to the zero set and returns whether they reached it.
@@ -266,7 +271,12 @@ Vec3 side_of(const Vec3& way, const Slope& slope) {
 
 }  // namespace
 
-double Shape::half_thickness() const { return thinnest_of(root); }
+double Shape::half_thickness() const {
+  return thinnest_of(root, [](const ClosedSurface&) { return 0.0; });
+}
+double Shape::usual_half_thickness() const {
+  return thinnest_of(root, [](const ClosedSurface& surface) { return surface.solid->usual_half_thickness(); });
+}
 double Shape::certainty() const { return certainty_of(root); }
 
 SurfacePoint Shape::closest(const Vec3& point) const {

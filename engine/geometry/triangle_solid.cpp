@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/threads.h"
+#include "geometry/surface_thickness.h"
 #include "geometry/triangle_edges.h"
 
 namespace supple {
@@ -282,6 +283,16 @@ void TriangleSolid::close_holes() {
   Vec3 apex = Vec3::Zero();
   for (const auto& [from, to] : open) apex += surface_.points.row(from).transpose() / double(open.size());
   for (const auto& [from, to] : open) lids_.push_back({surface_.points.row(to), surface_.points.row(from), apex});
+}
+
+double TriangleSolid::usual_half_thickness() const {
+  constexpr int places = 500;
+  std::call_once(measured_->once, [this] {
+    if (!is_closed()) return;
+    const std::vector<ThicknessSample> samples = sampled_thickness(surface_, places);
+    if (!samples.empty()) measured_->usual_half_thickness = 0.5 * samples[samples.size() / 20].thickness;
+  });
+  return measured_->usual_half_thickness;
 }
 
 }  // namespace supple

@@ -7,6 +7,8 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -71,6 +73,10 @@ class TriangleSolid {
   // Sums near parts exactly and far ones as dipoles; the result is accurate to about 0.1.
   double winding_number(const Vec3& p) const;
 
+  // Returns half the thickness that all but the thinnest twentieth of the solid has, 0 for a surface with holes [m].
+  // The first call measures it.
+  double usual_half_thickness() const;
+
   const Bounds& bounds() const { return bounds_; }
   const TriMesh& surface() const { return surface_; }
 
@@ -133,6 +139,11 @@ class TriangleSolid {
   static int crossing(const Vec3& p, const Corners& corners, int axis, int direction);
 
   TriMesh surface_;
+  struct Measured {
+    std::once_flag once;
+    double usual_half_thickness = 0;  // [m]
+  };
+  std::unique_ptr<Measured> measured_ = std::make_unique<Measured>();
   Bounds bounds_;
   double on_surface_ = 0;      // nearer than this, the vector to a query point has no reliable direction [m]
   double certainty_ = 0;       // what certain distances are shorter by, so that round-off can't make them wrong [m]

@@ -52,7 +52,8 @@ struct BodyRow {
   // How much more the most stretched edge of the drawn skin is stretched than the elements; absent where no skin is
   // carried and drawn, or none of its edges is stretched by half.
   std::optional<double> skin_excess;
-  std::optional<double> jiggle;  // jiggle of the body over its size; only for bodies with a handle
+  std::optional<double> in_picture;  // share of its surface that lies within the picture's borders; where it is drawn
+  std::optional<double> jiggle;      // jiggle of the body over its size; only for bodies with a handle
   std::optional<ContactRow> contact;
   std::string stop_reason;
   std::vector<std::array<int, 2>>

@@ -63,6 +63,7 @@ Json json_of(const BodyRow& body) {
   if (body.inverted) row["inverted"] = *body.inverted;
   if (body.collapsed) row["collapsed"] = *body.collapsed;
   if (body.skin_excess) row["skin_excess"] = *body.skin_excess;
+  if (body.in_picture) row["in_picture"] = *body.in_picture;
   if (body.jiggle) row["jiggle"] = *body.jiggle;
   row["stop_reason"] = body.stop_reason;
   if (!body.budget_cuts.empty()) row["budget_cuts"] = body.budget_cuts;
@@ -135,6 +136,7 @@ BodyRow body_row(const Json& json) {
   read_if_there(json, "inverted", row.inverted);
   read_if_there(json, "collapsed", row.collapsed);
   read_if_there(json, "skin_excess", row.skin_excess);
+  read_if_there(json, "in_picture", row.in_picture);
   read_if_there(json, "jiggle", row.jiggle);
   json.at("stop_reason").get_to(row.stop_reason);
   if (json.contains("budget_cuts")) json.at("budget_cuts").get_to(row.budget_cuts);

@@ -11,6 +11,7 @@ namespace supple {
 namespace {
 
 constexpr double much_energy = 0.2;       // of what was exchanged
+constexpr double much_in_picture = 0.6;   // less of a body's surface is a cut that one sees
 constexpr double much_skin_excess = 1.5;  // as many times the stretch of the elements
 constexpr double deep = 0.01;             // a depth that a viewer sees, over the body's size
 
@@ -78,6 +79,13 @@ void RowTally::add_body(const FrameRow& row, std::size_t number) {
     tally.skin_excess = *body.skin_excess;
     tally.skin_frame = row.frame;
   }
+  if (body.in_picture) {
+    ++tally.drawn;
+    const bool out = *body.in_picture <= 0, cut = !out && *body.in_picture < much_in_picture;
+    if (out && tally.out++ == 0) tally.first_out = row.frame;
+    if (cut && tally.cut++ == 0) tally.first_cut = row.frame;
+    if (cut) tally.least_in_picture = std::min(tally.least_in_picture, *body.in_picture);
+  }
   tally.inverted = body.inverted.value_or(0);
   tally.collapsed = body.collapsed.value_or(0);
   if (body.unsolved)
@@ -134,6 +142,29 @@ std::vector<std::string> RowTally::penetrations() const {
   return list;
 }
 
+std::vector<std::string> RowTally::missing_in_pictures() const {
+  constexpr const char* help = "camera.frames = \"film\" shows the whole motion, camera.follow goes along with a body";
+  const bool none_seen = std::all_of(bodies_.begin(), bodies_.end(),
+                                     [](const BodyTally& body) { return body.drawn > 0 && body.out == body.drawn; });
+  if (none_seen && !bodies_.empty()) return {fmt::format("no picture shows a body; {}", help)};
+  std::vector<std::string> list;
+  for (const BodyTally& body : bodies_) {
+    if (body.drawn == 0) continue;
+    if (body.out == body.drawn) {
+      list.push_back(fmt::format("body '{}' is in no picture; {}", body.name, help));
+    } else if (body.out > 0) {
+      list.push_back(fmt::format("body '{}' is out of the picture in {} of {} frames, first in frame {}; {}", body.name,
+                                 body.out, body.drawn, body.first_out, help));
+    } else if (body.cut > 0) {
+      list.push_back(
+          fmt::format("the picture's border cuts body '{}' in {} of {} frames, first in frame {}: it shows "
+                      "as little as {:.0f} % of it; {}",
+                      body.name, body.cut, body.drawn, body.first_cut, 100 * body.least_in_picture, help));
+    }
+  }
+  return list;
+}
+
 std::vector<std::string> RowTally::warnings() const {
   std::vector<std::string> list;
   for (const BodyTally& body : bodies_) {
@@ -155,6 +186,7 @@ std::vector<std::string> RowTally::warnings() const {
                                  count_text(body.collapsed, "element")));
   }
   for (std::string& warning : penetrations()) list.push_back(std::move(warning));
+  for (std::string& warning : missing_in_pictures()) list.push_back(std::move(warning));
   return list;
 }
 
@@ -225,7 +257,7 @@ std::string RowTally::unsolved_text() const {
   for (const UnsolvedStep& step : worst) {
     text += fmt::format(
         "{} body '{}' worst in frame {}, with errors of about {:.2g} in energy and {:.2g} in motion, and {:.1f} "
-                        "trials an iteration",
+        "trials an iteration",
         &step == &worst.front() ? "" : ";", step.body, step.frame, step.error_estimate, step.motion_estimate,
         step.trials);
   }

@@ -30,6 +30,10 @@ struct BodyTally {
   double gained = 0, exchanged = 0;
   double skin_excess = 0;  // the largest
   int skin_frame = 0;
+  // Frames that were drawn, and of these: those in which it is out of the picture, and cut by its border.
+  int drawn = 0, out = 0, cut = 0;
+  int first_out = -1, first_cut = -1;
+  double least_in_picture = 1;
   int inverted = 0, collapsed = 0;  // in the last frame
 };
 
@@ -59,6 +63,7 @@ class RowTally {
   std::vector<StageSummary> stages() const;
   std::vector<std::string> warnings() const;
   std::vector<std::string> penetrations() const;
+  std::vector<std::string> missing_in_pictures() const;
   std::string unsolved_text() const;
   std::string table() const;
   FrameWork work(double encoding) const;

@@ -24,6 +24,7 @@ Captions::Captions(const Stage& stage, std::vector<PixelRect> taken)
       ink_(ink_on(stage)),
       around_(framed_at_start(stage)),
       taken_(std::move(taken)) {
+  if (stage.camera_moves) first_camera_ = stage.first_camera;
   for (const DrawMesh& mesh : stage.meshes) bodies_.push_back({mesh.label, mesh.rest, mesh.kept_clear});
 }
 
@@ -34,6 +35,16 @@ void Captions::renew(std::size_t mesh, const std::string& label) {
 
 int Captions::width_of(const std::string& text, int em) const {
   return text.empty() ? 0 : draw_caption(font_, text, em).width;
+}
+
+// Returns the pixel below which a body's caption stands; nothing behind the eye. The caption stands on the ground: for
+// a body that hangs in the air, below the place where it starts.
+std::optional<Eigen::Vector2d> Captions::foot_of(const Projection& project, const Body& body) const {
+  std::optional<Eigen::Vector2d> foot =
+      project({body.rest.center().x(), std::min(body.rest.lower.y(), 0.0), body.rest.upper.z()});
+  if (!foot || !body.kept_clear) return foot;
+  for (const Eigen::Vector2d& corner : project.outline(body.rest)) foot->y() = std::max(foot->y(), corner.y());
+  return foot;
 }
 
 // Tries to place all captions in letters of one size. Returns whether each has a place.
@@ -50,11 +61,9 @@ bool Captions::try_size(const Camera& camera, int em, bool over_bodies) {
   for (std::size_t m = 0; m < bodies_.size(); ++m) {
     const Body& body = bodies_[m];
     Outline outline = body.kept_clear ? project.outline(body.rest) : Outline();
-    // The caption stands on the ground: for a body that hangs in the air, below the place where it starts.
-    const auto foot = project({body.rest.center().x(), std::min(body.rest.lower.y(), 0.0), body.rest.upper.z()});
+    const auto foot = foot_of(project, body);
     if (!body.label.empty() && foot) {
       double lowest = foot->y();
-      for (const Eigen::Vector2d& corner : outline) lowest = std::max(lowest, corner.y());
       const int width = std::max(width_of(body.label, em), note_width) + 2 * halo;
       lowest = std::min(lowest + 0.012 * height_, over_bodies ? height_ - 2.0 * height : 1e9);
       wanted.push_back({{foot->x(), lowest}, width, height});
@@ -85,12 +94,18 @@ void Captions::drop_unplaced(const Camera& camera, int em) {
   bodies_ = all;
 }
 
-const std::vector<Captions::Placed>& Captions::places(const Camera& camera) {
-  if (camera_ && same(*camera_, camera)) return placed_;
+const std::vector<Captions::Placed>& Captions::places(const Camera& camera, const std::optional<Followed>& followed) {
+  const Camera& layout = first_camera_ ? *first_camera_ : camera;
+  if (!camera_ || !same(*camera_, layout)) lay_out(layout);
+  if (first_camera_) go_along(camera, followed);
+  return placed_;
+}
+
+void Captions::lay_out(const Camera& camera) {
   camera_ = camera;
   placed_.clear();
   stickers_.clear();
-  if (font_.empty()) return placed_;
+  if (font_.empty()) return;
   const int largest = std::max(9, static_cast<int>(std::lround(height_ / 32.0)));
   const int smallest = std::max(8, static_cast<int>(std::lround(height_ / 60.0)));
   bool done = false;
@@ -105,14 +120,36 @@ const std::vector<Captions::Placed>& Captions::places(const Camera& camera) {
     sticker.text_with_halo(font_, label, em_, (one.place.width - width_of(label, em_)) / 2, Sticker::halo(em_), ink_);
     stickers_.push_back(std::move(sticker));
   }
-  return placed_;
+  laid_out_ = placed_;
+}
+
+// Moves all captions as far as the feet of their bodies have moved in the picture. A caption of a body that has left
+// the picture goes with it; its place is then outside.
+void Captions::go_along(const Camera& camera, const std::optional<Followed>& followed) {
+  const Projection before(*first_camera_, around_, width_, height_), now(camera, around_, width_, height_);
+  placed_ = laid_out_;
+  for (Placed& one : placed_) {
+    Body body = bodies_[one.mesh];
+    const auto from = foot_of(before, body);
+    if (followed && followed->mesh == one.mesh) {
+      // It moves along the ground with its body, and not up and down.
+      const Vec3 moved(followed->moved.x(), 0, followed->moved.z());
+      body.rest.lower += moved;
+      body.rest.upper += moved;
+    }
+    const auto to = foot_of(now, body);
+    const bool behind = !from || !to;
+    one.place.x = behind ? -2 * one.place.width : one.place.x + static_cast<int>(std::lround(to->x() - from->x()));
+    one.place.y = behind ? -2 * one.place.height : one.place.y + static_cast<int>(std::lround(to->y() - from->y()));
+  }
 }
 
 void Captions::draw(Image& image, const DrawList& list) {
-  places(list.camera);
+  places(list.camera, list.followed);
   const int note_em = std::max(8, static_cast<int>(std::lround(note_size * em_)));
   for (std::size_t i = 0; i < placed_.size(); ++i) {
     const PixelRect& place = placed_[i].place;
+    if (place.right() < 0 || place.bottom() < 0 || place.x >= width_ || place.y >= height_) continue;
     stickers_[i].onto(image, place.x, place.y);
     if (placed_[i].mesh >= list.notes.size() || list.notes[placed_[i].mesh].empty()) continue;
     const std::string& text = list.notes[placed_[i].mesh];

@@ -1,5 +1,7 @@
 // Lays the captions of bodies over the finished picture: each below its body, and none over another or over a body that
-// stands where it stood at the start. Where there is little room, all captions become smaller together.
+// stands where it stood at the start. Where there is little room, all captions become smaller together. A camera that
+// moves changes nothing of this layout but where the bodies are: captions keep their distance from them and do not
+// jump.
 #pragma once
 
 #include <string>
@@ -7,6 +9,7 @@
 
 #include "render/caption_layout.h"
 #include "render/draw_list.h"
+#include "render/projection.h"
 
 namespace supple {
 
@@ -24,8 +27,8 @@ class Captions {
     PixelRect place;
   };
   // Returns the places of all captions that are drawn. A caption for which even small letters find no place that is
-  // free of other captions is left out.
-  const std::vector<Placed>& places(const Camera& camera);
+  // free of other captions is left out; so is that of a body that the camera has left behind.
+  const std::vector<Placed>& places(const Camera& camera, const std::optional<Followed>& followed = {});
 
   // Tells whether a caption stands in front of a body where there is no other room; `placed` counts in places().
   bool over_a_body(std::size_t placed) const { return over_body_[placed]; }
@@ -39,7 +42,10 @@ class Captions {
     Bounds rest;
     bool kept_clear = false;
   };
+  std::optional<Eigen::Vector2d> foot_of(const Projection& project, const Body& body) const;
   bool try_size(const Camera& camera, int em, bool over_bodies);
+  void lay_out(const Camera& camera);
+  void go_along(const Camera& camera, const std::optional<Followed>& followed);
   void drop_unplaced(const Camera& camera, int em);
   int width_of(const std::string& text, int em) const;
 
@@ -48,12 +54,13 @@ class Captions {
   Vec3 ink_;  // of the letters [sRGB]
   Bounds around_;
   std::vector<PixelRect> taken_;
-  std::vector<Body> bodies_;  // by mesh of the stage
-  std::vector<Placed> placed_;
-  std::vector<bool> over_body_;    // as placed_
-  std::vector<Sticker> stickers_;  // of the labels, as placed_
-  int em_ = 0;                     // that was chosen [pixels]
-  std::optional<Camera> camera_;   // for which they were placed
+  std::vector<Body> bodies_;               // by mesh of the stage
+  std::vector<Placed> placed_, laid_out_;  // in the picture in hand; in that of the camera of the layout
+  std::optional<Camera> first_camera_;     // of the layout, where the camera moves
+  std::vector<bool> over_body_;            // as placed_
+  std::vector<Sticker> stickers_;          // of the labels, as placed_
+  int em_ = 0;                             // that was chosen [pixels]
+  std::optional<Camera> camera_;           // for which they were laid out
 };
 
 }  // namespace supple

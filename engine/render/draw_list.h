@@ -104,11 +104,19 @@ struct Stage {
   std::string note_template;       // a note as long as any below a caption; there are none when empty
   std::string headline_template;   // a line as long as any at the top of the picture; there is none when empty
   std::vector<GraphLook> graphs;
-  Camera first_camera;  // at the start of the film; graphs keep clear of what it shows
+  Camera first_camera;        // at the start of the film; graphs keep clear of what it shows
+  bool camera_moves = false;  // over the film
+};
+
+// Describes what the camera goes along with.
+struct Followed {
+  std::size_t mesh;
+  Vec3 moved;  // of its middle since the start [m]
 };
 
 struct DrawList {
   Camera camera;
+  std::optional<Followed> followed;
   std::vector<std::vector<float>> positions;  // by mesh: x y z by vertex [m]
   std::vector<std::vector<float>>
       field;  // by mesh: by vertex, from 0 (low) to 1 (high) or no_field; empty if not mapped

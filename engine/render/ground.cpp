@@ -25,8 +25,7 @@ void set_light(const Program& program, const StageLight& light) {
   program.set("ray_up", light.rays.up);
 }
 
-Ground::Ground(const GlTable& gl, const std::filesystem::path& shaders, int width, int height, const Bounds& bounds,
-               double largest_body)
+Ground::Ground(const GlTable& gl, const std::filesystem::path& shaders, int width, int height, double largest_body)
     : gl_(gl),
       bare_(gl, shaders, "tiles", "ground"),
       arriving_(gl, shaders, "tiles", "ground_light"),
@@ -34,9 +33,7 @@ Ground::Ground(const GlTable& gl, const std::filesystem::path& shaders, int widt
       shaded_(gl, shaders, "tiles", "ground", {"SHADED"}),
       width_(width),
       height_(height),
-      center_(bounds.center()),
-      radius_(0.5 * bounds.diagonal() + largest_body),
-      occlusion_(bounds, largest_body),
+      occlusion_(largest_body),
       tiles_(width, height),
       open_tiles_(width, height),
       tile_buffer_(gl) {
@@ -81,7 +78,7 @@ Ground::~Ground() {
 void Ground::set_stage(const Program& program, const StageLight& light) const {
   program.use();
   set_light(program, light);
-  program.set("stage", Vec3(center_.x(), center_.z(), radius_));
+  program.set("stage", lit_);
 }
 
 void Ground::draw_bare(const Eigen::Matrix4f& view, const StageLight& light) {
@@ -90,6 +87,7 @@ void Ground::draw_bare(const Eigen::Matrix4f& view, const StageLight& light) {
   set_stage(bare_, light);
   tile_buffer_.draw({-1, -1, 3, -1, -1, 3});  // a triangle that holds the picture
   bare_view_ = view;
+  bare_lit_ = lit_;
   bare_colors_ = {light.ground, light.background, light.exposure};
 }
 
@@ -136,15 +134,16 @@ void Ground::mark_occlusion(const Eigen::Matrix4f& view, const std::vector<float
 }
 
 void Ground::draw(GLuint picture, const Eigen::Matrix4f& view, const StageLight& light, const ShadowMap& shadows,
-                  const std::vector<DrawMesh>& meshes, const std::vector<std::vector<float>>& positions,
-                  const Tiles& covered) {
+                  const StageCover::Frame& cover, const std::vector<DrawMesh>& meshes,
+                  const std::vector<std::vector<float>>& positions, const Tiles& covered) {
+  lit_ = Vec3(cover.light_center.x(), cover.light_center.z(), cover.light_radius);
   const StageColors colors = {light.ground, light.background, light.exposure};
-  if (!bare_view_ || *bare_view_ != view || bare_colors_ != colors) draw_bare(view, light);
+  if (!bare_view_ || *bare_view_ != view || bare_lit_ != lit_ || bare_colors_ != colors) draw_bare(view, light);
   gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
   gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, picture);
   gl_.BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
 
-  const std::vector<float>& open = occlusion_.compute(meshes, positions);
+  const std::vector<float>& open = occlusion_.compute(meshes, positions, cover.shade_center, cover.shade_extent);
   tiles_.clear();
   open_tiles_.clear();
   mark_shadows(view, light, shadows.widest_penumbra(), meshes, positions);

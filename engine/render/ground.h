@@ -13,6 +13,7 @@
 #include "render/light_rig.h"
 #include "render/program.h"
 #include "render/shadow_map.h"
+#include "render/stage_cover.h"
 #include "render/tile_buffer.h"
 #include "render/tiles.h"
 #include "render/view.h"
@@ -34,17 +35,16 @@ void set_light(const Program& program, const StageLight& light);
 
 class Ground {
  public:
-  // bounds: those of the stage. largest_body: diagonal of the largest body [m].
-  Ground(const GlTable& gl, const std::filesystem::path& shaders, int width, int height, const Bounds& bounds,
-         double largest_body);
+  // largest_body: diagonal of the largest body [m].
+  Ground(const GlTable& gl, const std::filesystem::path& shaders, int width, int height, double largest_body);
   ~Ground();
   Ground(const Ground&) = delete;
   Ground& operator=(const Ground&) = delete;
 
   // Fills the picture's framebuffer, except for the tiles that bodies cover.
   void draw(GLuint picture, const Eigen::Matrix4f& view, const StageLight& light, const ShadowMap& shadows,
-            const std::vector<DrawMesh>& meshes, const std::vector<std::vector<float>>& positions,
-            const Tiles& covered);
+            const StageCover::Frame& cover, const std::vector<DrawMesh>& meshes,
+            const std::vector<std::vector<float>>& positions, const Tiles& covered);
 
  private:
   void draw_bare(const Eigen::Matrix4f& view, const StageLight& light);
@@ -57,8 +57,7 @@ class Ground {
   const GlTable& gl_;
   Program bare_, arriving_, arriving_unshadowed_, shaded_;
   int width_, height_;
-  Vec3 center_;
-  double radius_;  // of the stage [m]
+  Vec3 lit_ = Vec3(0, 0, 1);  // centre x, z and radius of the stage in the frame in hand [m]
   GroundOcclusion occlusion_;
   Tiles tiles_;       // that shadows may reach
   Tiles open_tiles_;  // the others that have a body above them
@@ -67,6 +66,7 @@ class Ground {
   GLuint light_framebuffer_ = 0, light_ = 0;  // key light and open sky, at half the resolution
   GLuint occlusion_texture_ = 0;
   std::optional<Eigen::Matrix4f> bare_view_;  // that the bare ground was drawn with
+  Vec3 bare_lit_;                             // the same
   StageColors bare_colors_;                   // the same, linear
   std::vector<float> cast_;                   // scratch: a mesh's shadow on the ground
 };

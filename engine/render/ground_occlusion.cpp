@@ -6,62 +6,79 @@
 
 namespace supple {
 
-GroundOcclusion::GroundOcclusion(const Bounds& stage, double largest_body)
-    : reach_(0.6 * largest_body), lowest_(cells * cells), open_(cells * cells) {
-  extent_ = std::max(stage.extent().x(), stage.extent().z()) + 2.5 * largest_body;
-  origin_x_ = stage.center().x() - 0.5 * extent_;
-  origin_z_ = stage.center().z() - 0.5 * extent_;
+GroundOcclusion::GroundOcclusion(double largest_body)
+    : reach_(0.6 * largest_body), covers_(cells * cells), open_(cells * cells) {}
+
+// Records a piece of surface that lies over an area of the ground [m^2]. It is shared between the four cells around its
+// place, so that shade does not change from cell to cell as a body moves (the cloud-in-cell scheme of Birdsall and Fuss
+// 1969).
+void GroundOcclusion::cover(float x, float y, float z, float area) {
+  const auto by_cell = static_cast<float>(cells / extent_);
+  const float u = (x - static_cast<float>(origin_x_)) * by_cell - 0.5f,
+              v = (z - static_cast<float>(origin_z_)) * by_cell - 0.5f;
+  if (!(u >= 0 && v >= 0 && u < cells - 1 && v < cells - 1)) return;
+  const int i = static_cast<int>(u), j = static_cast<int>(v);
+  const float s = u - static_cast<float>(i), t = v - static_cast<float>(j);
+  const float shares[4] = {(1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t};
+  for (int k = 0; k < 4; ++k) {
+    Cover& cell = covers_[std::size_t(j + k / 2) * cells + std::size_t(i + k % 2)];
+    cell.area += shares[k] * area;
+    cell.height += shares[k] * area * y;
+  }
 }
 
-// Records that there is a surface at a point.
-void GroundOcclusion::lower(float x, float y, float z) {
-  if (y > reach_) return;
-  const double cell = extent_ / cells, by_cell = cells / extent_;
-  const double u = (x - origin_x_) * by_cell, v = (z - origin_z_) * by_cell;
-  if (!(u >= 0 && v >= 0 && u < cells && v < cells)) return;
-  float& low = lowest_[std::size_t(v) * cells + std::size_t(u)];
-  low = std::min(low, std::max(y, static_cast<float>(0.35 * cell)));
-}
-
-// Does the same for points of a triangle that are less than a cell apart. The corners of a small triangle are enough,
-// and they have been recorded already.
-void GroundOcclusion::lower_over_triangle(const float* a, const float* b, const float* c) {
+// Does so for a triangle, in pieces of less than a cell. Of closed bodies only what looks down counts.
+void GroundOcclusion::cover_by_triangle(const float* a, const float* b, const float* c, bool two_sided) {
+  if (std::min({a[1], b[1], c[1]}) > reach_) return;
+  float area = 0.5f * ((b[0] - a[0]) * (c[2] - a[2]) - (b[2] - a[2]) * (c[0] - a[0]));
+  if (two_sided) area = std::abs(area);
+  if (!(area > 0)) return;
   const auto span = [](float p, float q, float r) { return std::max({p, q, r}) - std::min({p, q, r}); };
-  const double cell = extent_ / cells;
-  const double widest = std::max(span(a[0], b[0], c[0]), span(a[2], b[2], c[2]));
-  if (widest < cell || std::min({a[1], b[1], c[1]}) > reach_) return;
-  const int parts = std::min(static_cast<int>(std::ceil(widest / cell)), 2 * cells);
-  for (int i = 0; i <= parts; ++i) {
-    for (int k = 0; k <= parts - i; ++k) {
-      const float s = static_cast<float>(i) / static_cast<float>(parts),
-                  t = static_cast<float>(k) / static_cast<float>(parts);
-      lower(a[0] + s * (b[0] - a[0]) + t * (c[0] - a[0]), a[1] + s * (b[1] - a[1]) + t * (c[1] - a[1]),
-            a[2] + s * (b[2] - a[2]) + t * (c[2] - a[2]));
+  const double widest = std::max(span(a[0], b[0], c[0]), span(a[2], b[2], c[2])), piece = 0.7 * extent_ / cells;
+  const int parts = std::clamp(static_cast<int>(std::ceil(widest / piece)), 1, 2 * cells);
+  const auto whole = static_cast<float>(parts), each = area / (whole * whole);
+  const auto cover_at = [&](float s, float t) {
+    const auto at = [&](int k) { return a[k] + s * (b[k] - a[k]) + t * (c[k] - a[k]); };
+    if (at(1) <= reach_) cover(at(0), std::max(at(1), 0.0f), at(2), each);
+  };
+  for (int i = 0; i < parts; ++i) {
+    for (int k = 0; k + i < parts; ++k) {
+      const auto s = static_cast<float>(i), t = static_cast<float>(k);
+      cover_at((s + 1.0f / 3) / whole, (t + 1.0f / 3) / whole);
+      if (i + k + 1 < parts) cover_at((s + 2.0f / 3) / whole, (t + 2.0f / 3) / whole);
     }
   }
 }
 
 const std::vector<float>& GroundOcclusion::compute(const std::vector<DrawMesh>& meshes,
-                                                   const std::vector<std::vector<float>>& positions) {
+                                                   const std::vector<std::vector<float>>& positions, const Vec3& center,
+                                                   double extent) {
+  extent_ = extent;
+  origin_x_ = center.x() - 0.5 * extent_;
+  origin_z_ = center.z() - 0.5 * extent_;
   const double cell = extent_ / cells;
-  std::fill(lowest_.begin(), lowest_.end(), 1e9f);
+  std::fill(covers_.begin(), covers_.end(), Cover{});
   for (std::size_t m = 0; m < positions.size(); ++m) {
     if (meshes[m].ghost) continue;
     const std::vector<float>& points = positions[m];
-    for (std::size_t i = 0; i + 2 < points.size(); i += 3) lower(points[i], points[i + 1], points[i + 2]);
     const std::vector<std::uint32_t>& triangles = meshes[m].triangles;
     for (std::size_t t = 0; t + 2 < triangles.size(); t += 3)
-      lower_over_triangle(&points[3 * triangles[t]], &points[3 * triangles[t + 1]], &points[3 * triangles[t + 2]]);
+      cover_by_triangle(&points[3 * triangles[t]], &points[3 * triangles[t + 1]], &points[3 * triangles[t + 2]],
+                        meshes[m].two_sided);
   }
   // A patch at height y, seen from a point at distance d beside it, covers this share of the sky: y^2 dA / (pi (d^2 +
-  // y^2)^2).
+  // y^2)^2). At the least height, a cell that is covered whole hides all of it from the ground below. All shares are
+  // taken larger than they are: a studio's sky is darker near the horizon, and a body should be seen to stand.
+  constexpr float stronger = 1.3f;
   std::fill(open_.begin(), open_.end(), 1.0f);
   const int radius = std::max(1, static_cast<int>(reach_ / cell));
-  const auto patch = static_cast<float>(cell * cell / std::numbers::pi);
+  const auto whole = static_cast<float>(cell * cell), lowest = static_cast<float>(cell / std::sqrt(std::numbers::pi));
   for (int j = 0; j < cells; ++j) {
     for (int i = 0; i < cells; ++i) {
-      const float y = lowest_[std::size_t(j) * cells + i];
-      if (y > reach_) continue;
+      const Cover& cover = covers_[std::size_t(j) * cells + i];
+      if (cover.area <= 1e-3f * whole) continue;
+      const float y = std::max(cover.height / cover.area, lowest);
+      const float patch = stronger * std::min(cover.area, whole) / static_cast<float>(std::numbers::pi);
       for (int v = std::max(0, j - radius); v <= std::min(cells - 1, j + radius); ++v) {
         for (int u = std::max(0, i - radius); u <= std::min(cells - 1, i + radius); ++u) {
           const auto d2 = static_cast<float>(((u - i) * (u - i) + (v - j) * (v - j)) * cell * cell);

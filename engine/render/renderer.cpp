@@ -15,20 +15,6 @@
 namespace supple {
 namespace {
 
-// Includes the ground below bodies that hang in the air, because their shadows fall there.
-Bounds stage_bounds(const Stage& stage) {
-  Bounds box = framed_at_start(stage);
-  if (!box.empty()) box.lower.y() = std::min(0.0, box.lower.y());
-  return box;
-}
-
-double largest_of(const Stage& stage) {
-  double largest = 1e-6;
-  for (const DrawMesh& mesh : stage.meshes)
-    if (mesh.framed) largest = std::max(largest, mesh.rest.diagonal());
-  return largest;
-}
-
 std::string gl_text(const GlTable& gl, GLenum what) {
   const auto* text = reinterpret_cast<const char*>(gl.GetString(what));
   return text != nullptr ? text : "";
@@ -56,8 +42,10 @@ class DrawZone {
 
 }  // namespace
 
-// As shaders/ground.frag has it far from all bodies.
+// A flat backdrop has the colour that was asked for, whatever the light. The ground fades into what shaders/ground.frag
+// has far from all bodies.
 Vec3 backdrop_of(const Stage& stage) {
+  if (stage.backdrop != Backdrop::ground) return stage.colors.background;
   const Vec3 linear = linear_of(stage.colors.background).cwiseProduct(stage.light.background_tint);
   return film_of(2 * linear, stage.colors.exposure);
 }
@@ -69,12 +57,11 @@ Renderer::Renderer(const Stage& stage, GlChoice choice, const std::filesystem::p
       gl_(load_gl(context_)),
       name_(gl_text(gl_, GL_RENDERER)),
       version_(gl_text(gl_, GL_VERSION)),
-      bounds_(stage_bounds(stage)),
-      largest_body_(largest_of(stage)) {
+      cover_(stage, stage.light.to_key.normalized()) {
   make_targets();
   shadows_ =
-      std::make_unique<ShadowMap>(gl_, shaders, bounds_, largest_body_, stage_.light.to_key.normalized(), stage_.width);
-  ground_ = std::make_unique<Ground>(gl_, shaders, stage_.width, stage_.height, bounds_, largest_body_);
+      std::make_unique<ShadowMap>(gl_, shaders, cover_.largest_body(), stage_.light.to_key.normalized(), stage_.width);
+  ground_ = std::make_unique<Ground>(gl_, shaders, stage_.width, stage_.height, cover_.largest_body());
   tile_buffer_ = std::make_unique<TileBuffer>(gl_);
   textures_ = std::make_unique<TextureBuffer>(gl_, stage_.meshes);
   make_shading_program();
@@ -172,7 +159,7 @@ void Renderer::upload(const DrawList& list) {
 
 // Finds what each pixel shows, and uploads the rectangle around the bodies.
 void Renderer::find_visible(const Eigen::Matrix4f& view, const StageLight& light, const DrawList& list) {
-  const double nearest = nearest_seen(list.camera, bounds_.center(), bounds_.diagonal() + largest_body_);
+  const double nearest = nearest_seen(list.camera, cover_.bounds().center(), cover_.reach());
   visibility_->find(stage_.meshes, list.positions, view, nearest, light.rays.up.norm());
   const Tiles::Area box = visibility_->tiles().around();
   if (box.width == 0) return;
@@ -203,7 +190,7 @@ void Renderer::shade(const StageLight& light) {
 
 Image Renderer::draw(const DrawList& list) {
   const double aspect = static_cast<double>(stage_.width) / stage_.height;
-  const Eigen::Matrix4f view = view_matrix(list.camera, aspect, bounds_.center(), bounds_.diagonal() + largest_body_);
+  const Eigen::Matrix4f view = view_matrix(list.camera, aspect, cover_.bounds().center(), cover_.reach());
   if (list.colors) stage_.colors = *list.colors;
   const StageLight light = {stage_.light,
                             stage_.light.to_key.normalized(),
@@ -215,12 +202,14 @@ Image Renderer::draw(const DrawList& list) {
   DrawZone zone(gl_, "upload");
   upload(list);
   zone.next("shadow map");
-  shadows_->draw(*surfaces_, stage_.meshes);
+  const StageCover::Frame cover = cover_.at(stage_.meshes, list);
+  shadows_->draw(*surfaces_, stage_.meshes, cover.shadow_center, cover.shadow_radius);
   zone.next("visibility");
   find_visible(view, light, list);
   zone.next("ground");
   if (stage_.backdrop == Backdrop::ground) {
-    ground_->draw(picture_framebuffer_, view, light, *shadows_, stage_.meshes, list.positions, visibility_->full());
+    ground_->draw(picture_framebuffer_, view, light, *shadows_, cover, stage_.meshes, list.positions,
+                  visibility_->full());
   } else {
     clear_picture();
   }
@@ -239,7 +228,7 @@ void Renderer::draw_marks(const Eigen::Matrix4f& view, const DrawList& list) {
   gl_.BindFramebuffer(GL_FRAMEBUFFER, picture_framebuffer_);
   gl_.Viewport(0, 0, stage_.width, stage_.height);
   // Vertices of a mesh lie up to a part of an element below a finer skin.
-  marks_->draw(list.marks, view, *visibility_, 0.02 * largest_body_);
+  marks_->draw(list.marks, view, *visibility_, 0.02 * cover_.largest_body());
 }
 
 // Fills the picture with the colour of the background, or with nothing.

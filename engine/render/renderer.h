@@ -20,6 +20,7 @@
 #include "render/overlays.h"
 #include "render/program.h"
 #include "render/shadow_map.h"
+#include "render/stage_cover.h"
 #include "render/surface_buffers.h"
 #include "render/texture_buffer.h"
 #include "render/tile_buffer.h"
@@ -60,8 +61,7 @@ class Renderer {
   GlContext context_;
   GlTable gl_;
   std::string name_, version_;
-  Bounds bounds_;  // bounds of the stage at rest; lights and shadows cover them
-  double largest_body_ = 1;
+  StageCover cover_;
   GLuint visible_ = 0;  // see Visibility::surfaces()
   GLuint picture_framebuffer_ = 0, picture_color_ = 0;
   std::unique_ptr<Program> shading_program_;

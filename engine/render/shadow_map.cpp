@@ -19,21 +19,14 @@ constexpr int taps = 24;  // in the border of a shadow
 
 }  // namespace
 
-ShadowMap::ShadowMap(const GlTable& gl, const std::filesystem::path& shaders, const Bounds& bounds, double largest_body,
-                     const Vec3& to_light, int width)
+ShadowMap::ShadowMap(const GlTable& gl, const std::filesystem::path& shaders, double largest_body, const Vec3& to_light,
+                     int width)
     : gl_(gl),
       program_(gl, shaders, "shadow", "shadow"),
-      radius_(0.5 * bounds.diagonal() + 0.45 * largest_body),
+      to_light_(to_light),
       offset_(0.0058 * largest_body),
       widest_(0.036 * largest_body),
       edge_(std::clamp(static_cast<int>(std::bit_ceil(static_cast<unsigned>(width))) / 2, 512, 4096)) {
-  const Vec3 center = bounds.center();
-  Eigen::Matrix4f project = Eigen::Matrix4f::Identity();
-  project(0, 0) = project(1, 1) = static_cast<float>(1 / radius_);
-  project(2, 2) = static_cast<float>(-1 / radius_);  // covers depths from radius to 3 radius before the light's eye
-  project(2, 3) = -2;
-  matrix_ = project * look_at(center + 2 * radius_ * to_light, center);
-
   gl_.GenTextures(1, &texture_);
   gl_.BindTexture(GL_TEXTURE_2D, texture_);
   gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, edge_, edge_, 0, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, nullptr);
@@ -57,7 +50,14 @@ ShadowMap::~ShadowMap() {
   gl_.DeleteTextures(1, &texture_);
 }
 
-void ShadowMap::draw(const SurfaceBuffers& surfaces, const std::vector<DrawMesh>& meshes) const {
+void ShadowMap::draw(const SurfaceBuffers& surfaces, const std::vector<DrawMesh>& meshes, const Vec3& center,
+                     double radius) {
+  radius_ = radius;
+  Eigen::Matrix4f project = Eigen::Matrix4f::Identity();
+  project(0, 0) = project(1, 1) = static_cast<float>(1 / radius_);
+  project(2, 2) = static_cast<float>(-1 / radius_);  // covers depths from radius to 3 radius before the light's eye
+  project(2, 3) = -2;
+  matrix_ = project * look_at(center + 2 * radius_ * to_light_, center);
   gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
   gl_.Viewport(0, 0, edge_, edge_);
   gl_.Enable(GL_DEPTH_TEST);

@@ -1,5 +1,5 @@
-// Draws the key light's shadow map: the distance from the light to the nearest surface. The map is orthographic, covers
-// the stage with room for motion, and keeps its place for a whole film, so that shadows do not shimmer.
+// Draws the key light's shadow map: the distance from the light to the nearest surface. The map is orthographic; what
+// it covers is told for each frame (stage_cover.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -12,16 +12,16 @@ namespace supple {
 
 class ShadowMap {
  public:
-  // bounds: those of the stage, with the ground below it. largest_body: diagonal of the largest body [m]. to_light:
-  // unit vector. width: that of the picture in pixels, on which the map's resolution depends.
-  ShadowMap(const GlTable& gl, const std::filesystem::path& shaders, const Bounds& bounds, double largest_body,
-            const Vec3& to_light, int width);
+  // largest_body: diagonal of the largest body [m]. to_light: unit vector. width: that of the picture in pixels, on
+  // which the map's resolution depends.
+  ShadowMap(const GlTable& gl, const std::filesystem::path& shaders, double largest_body, const Vec3& to_light,
+            int width);
   ~ShadowMap();
   ShadowMap(const ShadowMap&) = delete;
   ShadowMap& operator=(const ShadowMap&) = delete;
 
-  // Draws all meshes into the map.
-  void draw(const SurfaceBuffers& surfaces, const std::vector<DrawMesh>& meshes) const;
+  // Draws all meshes into the map, which covers a ball [m].
+  void draw(const SurfaceBuffers& surfaces, const std::vector<DrawMesh>& meshes, const Vec3& center, double radius);
 
   // Passes the map and its parameters to a program whose shader includes shadow.glsl; the map uses this unit.
   void bind(const Program& program, int unit) const;
@@ -32,8 +32,9 @@ class ShadowMap {
   const GlTable& gl_;
   Program program_;
   GLuint framebuffer_ = 0, texture_ = 0;
+  Vec3 to_light_;
   Eigen::Matrix4f matrix_;  // maps the world to the light's clip coordinates
-  double radius_;           // of what the map covers [m]
+  double radius_ = 0;       // of what the map covers [m]
   double offset_, widest_;  // [m]
   int edge_;                // of the map, in texels
 };

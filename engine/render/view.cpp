@@ -40,8 +40,8 @@ struct Depths {
 };
 
 Depths depths_of(const Camera& camera, const Vec3& center, double reach) {
-  const double distance = (camera.eye - center).norm();
-  return {std::max(0.02 * reach, distance - 2 * reach), distance + 60 * reach};
+  const double nearest = 0.02 * std::min(reach, (camera.eye - camera.target).norm());
+  return {nearest, (camera.eye - center).norm() + 60 * reach};
 }
 
 }  // namespace

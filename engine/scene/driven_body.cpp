@@ -59,14 +59,20 @@ void DrivenBody::switch_handles(double time) {
 void DrivenBody::prepare_step(int frame, int substep) {
   const Zone zone("inputs", body_.def.name);
   const double done = static_cast<double>(frame) * scene_.substeps + substep, share = 1.0 / scene_.substeps;
-  const StepSpan span{done * scene_.time_step(), (done + 1) * scene_.time_step(), substep * share,
-                      (substep + 1) * share};
+  span_ = {done * scene_.time_step(), (done + 1) * scene_.time_step(), substep * share, (substep + 1) * share};
+  const StepSpan& span = span_;
   switch_handles(span.from);
   handle_targets(model_, body_, state_.anchors, span.to, span.change_to, inputs_.targets);
   if (model_.scheme.theta < 1)
     handle_targets(model_, body_, state_.anchors, 0.5 * (span.from + span.to),
                    0.5 * (span.change_from + span.change_to), inputs_.middle_targets);
   collider_motions(set_, span, inputs_.collider_motions);
+}
+
+Positions DrivenBody::targets_at_start() const {
+  Positions targets;
+  handle_targets(model_, body_, state_.anchors, span_.from, span_.change_from, targets);
+  return targets;
 }
 
 void DrivenBody::repeat(const std::optional<BudgetCuts>& cuts) {

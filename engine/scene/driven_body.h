@@ -49,6 +49,8 @@ class DrivenBody {
   // Computes the inputs of a step, and lets handles grab and release when their time has come. A second call changes
   // nothing.
   void prepare_step(int frame, int substep);
+  // Returns where the targets of handles are as the step that was prepared begins, in the order of Model::handled [m].
+  Positions targets_at_start() const;
   // Makes the prepared step end where an earlier run's budget of time ended it, whatever budget this run has. Nothing:
   // the earlier run had none for this step.
   void repeat(const std::optional<BudgetCuts>& cuts);
@@ -77,6 +79,7 @@ class DrivenBody {
   Solvers solvers_;
   State state_;
   StepInputs inputs_;
+  StepSpan span_{};  // of the step that was prepared last
   std::unique_ptr<SearchRule> rule_;
   Workspace workspace_;
   std::optional<ModelValues> values_;  // once the model has changed

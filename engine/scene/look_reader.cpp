@@ -6,7 +6,7 @@ LookDef read_look(const ConfigTable& root, LookDef look) {
   const auto table = root.table({"look", "", "ground, background and light"});
   if (!table) return look;
   look.backdrop = table->word<BackdropKind>(
-      {"backdrop", "", "a ground with shadows, the colour of the background alone, or pictures with coverage"},
+      {"backdrop", "", "a ground with shadows, the colour of the background alone, exactly as asked for, or pictures with coverage"},
       look.backdrop);
   look.ground = table->color({"ground", "sRGB", "colour of the ground"}, look.ground);
   look.background = table->color({"background", "sRGB", "colour that the ground fades into"}, look.background);

@@ -120,5 +120,17 @@ TEST(Camera, RefusesValuesThatSayTheSameTwice) {
   EXPECT_NE(problem("keys = [{ t = 1 }, { t = 1 }]").find("order of time"), std::string::npos);
 }
 
+TEST(Camera, TellsHowMuchOfABodyIsInThePicture) {
+  Stage stage;
+  stage.width = 200;
+  stage.height = 100;
+  Camera camera;  // at a distance of 3, with 30 degrees from top to bottom
+  const float high = static_cast<float>(3 * std::tan(15 * std::numbers::pi / 180));
+  EXPECT_EQ(share_in_picture(camera, stage, {0, 0, 0, 0, 0.9f * high, 0, 1.9f * high, 0, 0}), 1);
+  EXPECT_EQ(share_in_picture(camera, stage, {0, 1.1f * high, 0, 2.1f * high, 0, 0}), 0);
+  EXPECT_EQ(share_in_picture(camera, stage, {0, 0, 4}), 0) << "it lies behind the eye";
+  EXPECT_NEAR(share_in_picture(camera, stage, {0, 0, 0, 0, 5, 0, 5, 0, 0, 0, 0, -1}), 0.5, 1e-12);
+}
+
 }  // namespace
 }  // namespace supple

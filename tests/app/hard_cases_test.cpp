@@ -4,6 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "output/point_cache.h"
 #include "support/bodies.h"
 #include "support/program.h"
 
@@ -55,6 +56,75 @@ material = { model = "neo-hookean", young = 1e3, poisson = 0.4 }
 name = "top"
 select = { box = [[0, 0.999, 0], [1, 1, 1]] }
 )";
+
+// A soft handle whose keys begin with the film puts energy in from the first frame on.
+TEST_F(HardCases, WhatASoftHandlePutsInCountsFromTheFirstFrame) {
+  const std::string dragged = R"(frames = 20
+gravity = [0, 0, 0]
+[[body]]
+name = "box"
+box = { extent = [0.2, 0.2, 0.2], cells = [3, 3, 3] }
+material = "rubber"
+[[body.handles]]
+name = "all"
+select = { box = [[0, 0, 0], [1, 1, 1]] }
+stiffness = 500
+keys = [{ t = 0 }, { t = 1, move = [0.1, 0, 0] }]
+)";
+  EXPECT_EQ(film(dragged).err, "");
+  EXPECT_GT(profile_["frames"][0]["bodies"][0]["energy"]["put_in"].get<double>(), 0);
+  EXPECT_LT(from_nothing(), 0.05);
+  EXPECT_EQ(film(dragged, {"--set", "substeps=3"}).err, "");
+  EXPECT_LT(from_nothing(), 0.05);
+}
+
+// A plate of 1 mm as triangles from a file. A corner that comes through in a step would hang on the other side for
+// ever.
+TEST_F(HardCases, NoCornerComesThroughAThinPlateOfTriangles) {
+  std::ofstream plate(folder_.path / "plate.obj");
+  for (int corner = 0; corner < 8; ++corner)
+    plate << "v " << ((corner & 1) != 0 ? 0.5 : -0.5) << ' ' << ((corner & 2) != 0 ? 0.0005 : -0.0005) << ' '
+          << ((corner & 4) != 0 ? 0.5 : -0.5) << '\n';
+  plate << "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+  plate.close();
+  for (const int speed : {0, 3, 20}) {
+    film(R"(frames = 20
+[[body]]
+name = "cube"
+box = { extent = [0.2, 0.2, 0.2], cells = [4, 4, 4] }
+material = "rubber"
+turn_deg = [45, 0, 35]
+position = [0, 0.2, 0]
+velocity = [0, -)" +
+         std::to_string(speed) +
+         R"(, 0]
+[[collider]]
+shape = { surface = "plate.obj" }
+)");
+    PointCacheReader motion(folder_.path / "out" / "scene" / "motion" / "cube.pc2");
+    EXPECT_GT(motion.frame(motion.frames() - 1).col(1).minCoeff(), -0.0005) << speed;
+  }
+}
+
+// The energy of a ball that begins to roll falls. Its friction took it, and no more than that.
+TEST_F(HardCases, ARollingBallGainsNoEnergy) {
+  const std::string rolling = R"(frames = 20
+[[body]]
+name = "ball"
+shape = "shapes/sphere.toml"
+scale = 0.1
+vertices = 400
+material = "rubber"
+velocity = [1, 0, 0]
+[[collider]]
+shape = { half_space = { normal = [0, 1, 0] } }
+friction = 0.5
+)";
+  film(rolling, {"--set", "solver.iterations=100"});
+  EXPECT_LT(from_nothing(), 0.02);
+  film(rolling);
+  EXPECT_LT(from_nothing(), 0.02);
+}
 
 TEST_F(HardCases, AnOverloadedBodyGainsNoEnergy) {
   EXPECT_EQ(film(overloaded).err, "");

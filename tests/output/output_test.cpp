@@ -119,6 +119,7 @@ TEST(Profile, RowsComeBackFromTheirText) {
   body.error_measured = true;
   body.jiggle = 1.0 / 3;
   body.skin_excess = 1.75;
+  body.in_picture = 0.25;
   body.inverted = 2;
   body.energy = {1, 2, 3.5};
   body.contact = {0.5, 4, 3, 2, 1e-3, {{"ground", 1e-3, 12.5}, {"press", 0, 0}}};
@@ -134,6 +135,7 @@ TEST(Profile, RowsComeBackFromTheirText) {
   EXPECT_TRUE(back.bodies[0].error_measured && !back.bodies[0].error);
   EXPECT_EQ(back.bodies[0].budget_cuts, body.budget_cuts);
   EXPECT_EQ(back.bodies[0].skin_excess, 1.75);
+  EXPECT_EQ(back.bodies[0].in_picture, 0.25);
   EXPECT_FALSE(back.draw_ms || back.bodies[1].contact || back.bodies[1].jiggle || back.bodies[1].skin_excess);
 
   const test::TemporaryFolder folder;
@@ -176,6 +178,35 @@ TEST(Profile, WarnsOfASkinThatIsStretchedBeyondItsElements) {
       warnings_of(rows)[0],
       "the skin of body 'soft' was stretched 2.5 times as much as its elements in frame 1; more vertices bring the "
       "elements closer to the skin");
+}
+
+TEST(Profile, WarnsOfBodiesThatThePicturesDoNotShow) {
+  std::vector<FrameRow> rows(4);
+  for (int frame = 0; frame < 4; ++frame) {
+    rows[frame].frame = frame;
+    for (const char* name : {"first", "second"}) {
+      rows[frame].bodies.emplace_back().name = name;
+      rows[frame].bodies.back().in_picture = 1.0;
+    }
+  }
+  const auto words = [&] {
+    std::string all;
+    for (const std::string& warning : warnings_of(rows)) all += warning.substr(0, warning.find(';')) + "\n";
+    return all;
+  };
+  EXPECT_EQ(words(), "");
+  rows[2].bodies[1].in_picture = 0.4;
+  EXPECT_EQ(words(),
+            "the picture's border cuts body 'second' in 1 of 4 frames, first in frame 2: it shows as little as 40 % of "
+            "it\n");
+  rows[3].bodies[1].in_picture = 0.0;
+  EXPECT_EQ(words(), "body 'second' is out of the picture in 1 of 4 frames, first in frame 3\n");
+  for (FrameRow& row : rows) row.bodies[1].in_picture = 0.0;
+  EXPECT_EQ(words(), "body 'second' is in no picture\n");
+  for (FrameRow& row : rows) row.bodies[0].in_picture = 0.0;
+  EXPECT_EQ(words(), "no picture shows a body\n");
+  for (FrameRow& row : rows) row.bodies[0].in_picture.reset();  // it was not drawn
+  EXPECT_EQ(words(), "body 'second' is in no picture\n");
 }
 
 TEST(Profile, TellsWhatEachColliderDidAndWarnsOfDepthsAboveAHundredth) {

@@ -168,6 +168,25 @@ const Shot squirrels = {shipped("squirrel"), {"look.labels=false"}};
 
 TEST(Golden, ThreeSquirrelsAtRest) { expect_golden("squirrels", squirrels, {{.on_stage = remove_paint}}); }
 
+// A picture far from the stage's place, with all that it shows, is the picture that it was at that place. When only the
+// light moves after the bodies by a part of its radius, the ground differs by a level or two.
+TEST(Golden, WhatLeavesItsPlaceKeepsItsPicture) {
+  const Picture here = picture_of(squirrels);
+  const Image expected = draw(here);
+  for (const Vec3& moved : {Vec3(1.5, 0, 0), Vec3(-12, 0, 5)}) {
+    Picture there = here;
+    for (std::vector<float>& points : there.list.positions) {
+      for (std::size_t i = 0; i < points.size(); ++i) points[i] += static_cast<float>(moved[Eigen::Index(i % 3)]);
+    }
+    there.list.camera.eye += moved;
+    there.list.camera.target += moved;
+    there.list.followed = Followed{0, moved};
+    const Difference difference = difference_of(expected.rgb, draw(there).rgb);
+    EXPECT_LT(difference.mean, 1.5) << moved.transpose();
+    EXPECT_LT(difference.pixels, 0.02) << moved.transpose();
+  }
+}
+
 TEST(Golden, EglGivesThePictureOfOsmesa) {
   try {
     expect_golden("squirrels", draw(picture_of(squirrels), GlChoice::egl));

@@ -12,7 +12,8 @@ namespace {
 struct Bar {
   Collider collider{"bar", test::shape_of(Box{Vec3(0.008, 0.008, 0.5), 0})};
   ColliderMotion motion;
-  ColliderTraits traits{collider.shape.certainty(), collider.shape.half_thickness()};
+  ColliderTraits traits{collider.shape.certainty(), collider.shape.half_thickness(),
+                        collider.shape.usual_half_thickness()};
   ColliderView view{collider, motion, traits};
 
   // Returns the normal of the side that holds a vertex which went from q to x in a step.

@@ -136,7 +136,7 @@ TEST(SecondLevel, DirectionsAreSymmetricAndLeadDownhill) {
       const auto direction = [&](const Positions& r) {
         Positions z(model.free, 3);
         solve_system(model, r, z, scratch);
-        level.add_to(model, x, r, nullptr, z);
+        level.add_to(model, r, nullptr, z);
         return z;
       };
       for (unsigned seed = 1; seed <= 5; ++seed) {
@@ -185,7 +185,6 @@ TEST(SecondLevel, ContactsAreAddedToBothLevels) {
   find_stiff_directions(model, w.current.contacts, w.current.x, w.contact.stick_length, w.correction);
   ASSERT_GT(w.correction.wanted.size(), 10u);
   ASSERT_TRUE(w.second_level.begin(model, w.current.x));
-  w.correction.x = &w.current.x;
   const int n = model.free;
   Eigen::MatrixXd inverse(3 * n, 3 * n);
   Positions r(n, 3), z(n, 3);
@@ -193,20 +192,26 @@ TEST(SecondLevel, ContactsAreAddedToBothLevels) {
     r.setZero();
     r.data()[column] = 1;
     solve_system(model, r, z, w.solve_scratch);
-    w.second_level.add_to(model, w.current.x, r, nullptr, z);
+    w.second_level.add_to(model, r, nullptr, z);
     inverse.col(column) = flat(z);
   }
-  Eigen::MatrixXd system = inverse.inverse();
-  for (const StiffDirection& s : w.correction.wanted) {
-    Positions along = Positions::Zero(n, 3);
-    s.add(1, along);
-    system += s.stiffness * flat(along) * flat(along).transpose();
-  }
-  r = shaken(Positions::Zero(n, 3), 1, 2);
-  const Eigen::VectorXd wanted = system.ldlt().solve(flat(r));
   w.correction.second = &w.second_level;
-  apply_inverse(model, {}, w.correction, w.solve_scratch, r, z);
-  EXPECT_LT((flat(z) - wanted).norm(), 1e-3 * wanted.norm());
+  const std::vector<StiffDirection> all = w.correction.wanted;
+  // Between iterations some contacts go and others come. What is kept of those that stay must serve as if it were new.
+  for (const auto& [first, step] : {std::pair(0u, 1u), {1u, 3u}, {0u, 2u}, {0u, 1u}}) {
+    w.correction.wanted.clear();
+    Eigen::MatrixXd system = inverse.inverse();
+    for (std::size_t i = first; i < all.size(); i += step) {
+      w.correction.wanted.push_back(all[i]);
+      Positions along = Positions::Zero(n, 3);
+      all[i].add(1, along);
+      system += all[i].stiffness * flat(along) * flat(along).transpose();
+    }
+    r = shaken(Positions::Zero(n, 3), 1, 2);
+    const Eigen::VectorXd wanted = system.ldlt().solve(flat(r));
+    apply_inverse(model, {}, w.correction, w.solve_scratch, r, z);
+    EXPECT_LT((flat(z) - wanted).norm(), 1e-3 * wanted.norm()) << first << " " << step;
+  }
 }
 
 // A straight motion by which a body turns becomes that turn, and keeps its lengths.
@@ -297,7 +302,8 @@ TEST(MotionError, SeesABodyThatDoesNotTurn) {
   }
 }
 
-// A ball that slides onto rough ground rolls with 5/7 of its speed, less what its squashing takes.
+// A ball that slides onto rough ground rolls with 5/7 of its speed, less what its squashing takes: as fast as the ball
+// whose steps are solved.
 TEST(SecondLevel, ABallRolls) {
   for (const double young : {1e6, 1e8}) {
     BodyDescription body = cube(4, StableNeoHookean{young / 2.9 * 4 / 3, young / 2.9 * 9 + young / 2.9 * 5 / 6});
@@ -306,15 +312,19 @@ TEST(SecondLevel, ABallRolls) {
       if (at.norm() > 0) body.mesh.rest.row(v) = (at.cwiseAbs().maxCoeff() / at.norm() * at).transpose();
     }
     body.precision = Precision::single_precision;
-    test::ContactScene scene(body, {{"ground", test::shape_of(HalfSpace{Vec3::UnitY(), 0}), 0, 0.5}},
-                             Vec3(0, 0.1001, 0));
-    scene.state.v.rowwise() = Eigen::RowVector3d(1, 0, 0);
-    for (int frame = 0; frame < 12; ++frame) ASSERT_FALSE(scene.step().failed);
-    double speed = 0;
-    for (int v = 0; v < scene.model.vertices; ++v)
-      speed += scene.model.mass[v] / scene.model.total_mass * scene.state.v(v, 0);
-    EXPECT_GT(speed, 0.55) << young;  // 0.03 with one level
-    EXPECT_LT(speed, 0.8) << young;
+    double speeds[2];
+    for (const bool solved : {false, true}) {
+      test::ContactScene scene(body, {{"ground", test::shape_of(HalfSpace{Vec3::UnitY(), 0}), 0, 0.5}},
+                               Vec3(0, 0.1001, 0));
+      if (solved) scene.inputs.solver.iterations = 200;
+      scene.state.v.rowwise() = Eigen::RowVector3d(1, 0, 0);
+      for (int frame = 0; frame < 12; ++frame) ASSERT_FALSE(scene.step().failed);
+      double& speed = speeds[solved ? 1 : 0] = 0;
+      for (int v = 0; v < scene.model.vertices; ++v)
+        speed += scene.model.mass[v] / scene.model.total_mass * scene.state.v(v, 0);
+    }
+    EXPECT_GT(speeds[1], 0.5) << young;
+    EXPECT_NEAR(speeds[0], speeds[1], 0.1) << young;  // it has 125 vertices; with one level it stops: 0.03
   }
 }
 

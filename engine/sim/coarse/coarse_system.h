@@ -29,7 +29,8 @@ class CoarseSystem {
   // where some group is so far from its rest shape that there are none.
   bool turn_to(const Positions& x);
 
-  int columns() const { return motions_of_cluster * clusters_.count(); }  // r; 0: the body has no tetrahedra
+  int columns() const { return motions_of_cluster * clusters_.count(); }         // r; 0: the body has no tetrahedra
+  const std::vector<std::int32_t>& centers() const { return clusters_.center; }  // by cluster, a vertex
   // r x r, the lower triangle [N/m], [N], [N m]
   const Eigen::MatrixXd& constant() const { return constant_; }
   const Eigen::MatrixXd& hessian() const { return hessian_; }

@@ -1,5 +1,7 @@
 #include "sim/coarse/second_level.h"
 
+#include <algorithm>
+
 namespace supple {
 
 // A motion that hardly moves any free vertex has next to no inertia. The same little stiffness is added to both
@@ -9,6 +11,7 @@ bool SecondLevel::begin(const Model& model, const Positions& x) {
   system_.make(model);
   const int count = columns();
   if (count == 0 || !system_.turn_to(x)) return false;
+  x_ = x;
   inverse_.resize(count, count);
   difference_.setZero(count, count);
   for (const auto& [matrix, sign] : {std::pair(&system_.hessian(), 1.0), std::pair(&system_.constant(), -1.0)}) {
@@ -27,22 +30,30 @@ bool SecondLevel::begin(const Model& model, const Positions& x) {
   return true;
 }
 
-void SecondLevel::add(const Model& model, const Positions& x, const Eigen::VectorXd& f, Threads* threads,
-                      Positions& motions) {
-  motion_.noalias() = difference_ * f;
-  system_.prolong(model, x, motion_, threads, motions);
+bool SecondLevel::has_left(const Model& model, const Positions& x) const {
+  constexpr double far = 0.01;  // of the body's size
+  const std::vector<std::int32_t>& centers = system_.centers();
+  Eigen::RowVector3d together = Eigen::RowVector3d::Zero();
+  for (const std::int32_t v : centers) together += x.row(v) - x_.row(v);
+  together /= static_cast<double>(centers.size());
+  return std::any_of(centers.begin(), centers.end(),
+                     [&](std::int32_t v) { return (x.row(v) - x_.row(v) - together).norm() > far * model.size; });
 }
 
-void SecondLevel::add_to(const Model& model, const Positions& x, const Positions& forces, Threads* threads,
-                         Positions& motions) {
+void SecondLevel::add(const Model& model, const Eigen::VectorXd& f, Threads* threads, Positions& motions) {
+  motion_.noalias() = difference_ * f;
+  system_.prolong(model, x_, motion_, threads, motions);
+}
+
+void SecondLevel::add_to(const Model& model, const Positions& forces, Threads* threads, Positions& motions) {
   Vec3 mean = Vec3::Zero();
   if (model.free_floating) {
     for (int v = 0; v < model.free; ++v) mean += forces.row(v).transpose();
     mean /= model.total_mass;
   }
-  system_.restrict(model, x, forces, mean, threads, restricted_);
+  system_.restrict(model, x_, forces, mean, threads, restricted_);
   motion_.noalias() = difference_ * restricted_;
-  const Vec3 moved = system_.prolong(model, x, motion_, threads, motions);
+  const Vec3 moved = system_.prolong(model, x_, motion_, threads, motions);
   if (!model.free_floating) return;
   const Eigen::RowVector3d back = -moved.transpose() / model.total_mass;
   for (int v = 0; v < model.free; ++v) motions.row(v) += back;

@@ -23,25 +23,34 @@ class SecondLevel {
   // from its rest shape.
   bool begin(const Model& model, const Positions& x);
 
+  // Tells whether the clusters have moved against each other, as they do where the body turns, so far from where they
+  // were at the last begin that D is no longer that of x.
+  bool has_left(const Model& model, const Positions& x) const;
+
   int columns() const { return system_.columns(); }
-  std::uint64_t pose() const { return pose_; }  // counts the calls of begin
+  std::uint64_t pose() const { return pose_; }                       // counts the calls of begin
   const Eigen::MatrixXd& difference() const { return difference_; }  // D, r x r
 
-  // Computes Z^T f for forces (n_free x 3) at x.
-  void restrict(const Model& model, const Positions& x, const Positions& forces, Threads* threads,
-                Eigen::VectorXd& result) {
-    system_.restrict(model, x, forces, Vec3::Zero(), threads, result);
+  // These use Z at the positions of the last begin.
+  // Computes Z^T f for forces (n_free x 3).
+  void restrict(const Model& model, const Positions& forces, Threads* threads, Eigen::VectorXd& result) {
+    system_.restrict(model, x_, forces, Vec3::Zero(), threads, result);
   }
-  // Adds Z D f to motions (n_free x 3) at x.
-  void add(const Model& model, const Positions& x, const Eigen::VectorXd& f, Threads* threads, Positions& motions);
+  // Adds Z^T of a force on one free vertex to r numbers.
+  void restrict_one(std::int32_t vertex, const Vec3& force, double* sums) const {
+    system_.restrict_one(vertex, force, x_, sums);
+  }
+  // Adds Z D f to motions (n_free x 3).
+  void add(const Model& model, const Eigen::VectorXd& f, Threads* threads, Positions& motions);
 
-  // Adds P Z D Z^T P^T f for forces f at x. Where nothing holds the body, P takes out the motion of its centre of mass,
+  // Adds P Z D Z^T P^T f for forces f. Where nothing holds the body, P takes out the motion of its centre of mass,
   // which the first level has exactly.
-  void add_to(const Model& model, const Positions& x, const Positions& forces, Threads* threads, Positions& motions);
+  void add_to(const Model& model, const Positions& forces, Threads* threads, Positions& motions);
 
  private:
   CoarseSystem system_;
   std::uint64_t pose_ = 0;
+  Positions x_;  // at the last begin, n x 3 [m]
   Eigen::MatrixXd difference_;
   Eigen::VectorXd motion_, restricted_;
   Eigen::MatrixXd matrix_, inverse_;  // scratch

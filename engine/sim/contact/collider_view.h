@@ -12,8 +12,9 @@ namespace supple {
 
 // Traits of a shape that a search asks for once.
 struct ColliderTraits {
-  double certainty;       // Shape::certainty
-  double half_thickness;  // Shape::half_thickness [m]
+  double certainty;             // Shape::certainty
+  double half_thickness;        // Shape::half_thickness [m]
+  double usual_half_thickness;  // Shape::usual_half_thickness [m]
 };
 
 // The way of a point of the world through the collider's frame, from q when the step starts to x when it ends.

@@ -146,7 +146,7 @@ void couple_levels(ContactCorrection& c) {
       c.system.know_rows(c.second->pose(), c.second->columns(), [&](const StiffDirection& s, float* row) {
         numbers.setZero();
         for (int k = 0; k < s.point.free; ++k)
-          c.second->system().restrict_one(s.point.vertex[k], s.point.weight[k] * s.axis, *c.x, numbers.data());
+          c.second->restrict_one(s.point.vertex[k], s.point.weight[k] * s.axis, numbers.data());
         Eigen::Map<Eigen::VectorXf>(row, numbers.size()) = numbers.cast<float>();
       });
   if (!is_new) return;
@@ -191,13 +191,13 @@ void apply_low_rank(const Model& model, ContactCorrection& c, Positions& r, Posi
   finish(model, c, r, z);
   if (c.second == nullptr) return;
   add_coarse_answer(c);
-  c.second->add(model, *c.x, c.coarse, c.threads, z);
+  c.second->add(model, c.coarse, c.threads, z);
 }
 
 void apply_both_levels(const Model& model, ContactCorrection& c, SolveScratch& scratch, const Positions& r,
                        Positions& z) {
   solve_system(model, system_of(model, c), r, z, scratch);
-  if (c.second != nullptr) c.second->add_to(model, *c.x, r, c.threads, z);
+  if (c.second != nullptr) c.second->add_to(model, r, c.threads, z);
 }
 
 }  // namespace
@@ -219,7 +219,7 @@ void apply_inverse(const Model& model, const ContactSettings& settings, ContactC
     apply_both_levels(model, c, scratch, r, z);
   } else {
     couple_levels(c);
-    if (c.second != nullptr) c.second->restrict(model, *c.x, r, c.threads, c.coarse);
+    if (c.second != nullptr) c.second->restrict(model, r, c.threads, c.coarse);
     apply_low_rank(model, c, r, z);
   }
   for (std::size_t i = c.rest.size(); i-- > 0;) scale_rest(system_of(model, c), c.rest[i], z);
@@ -252,7 +252,7 @@ void bend(const Model& model, const Eigen::VectorXf& off, const std::vector<Stif
   if (c.second != nullptr) {
     c.coarse.setZero(c.second->columns());
     add_coarse_answer(c);
-    c.second->add(model, *c.x, c.coarse, c.threads, c.back);
+    c.second->add(model, c.coarse, c.threads, c.back);
   }
   for (const StiffDirection& s : c.rest) scale_rest(system_of(model, c), s, c.back);
   motion += c.back;

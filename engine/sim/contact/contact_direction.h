@@ -38,9 +38,8 @@ struct ContactCorrection {
   std::vector<double> along, products;  // of L-BFGS steps: by stiff direction and pair; by pair and pair
   Positions push, back;                 // n_free x 3 [N], [m]
   Positions unbent;                     // the direction before foresee_contacts [m]
-  // The second level of directions (coarse/second_level.h), and the positions at which it serves; null: there is none.
+  // The second level of directions (coarse/second_level.h); null: there is none.
   SecondLevel* second = nullptr;
-  const Positions* x = nullptr;
   Eigen::VectorXd coarse;                     // Z^T of the forces in hand, r
   Eigen::PartialPivLU<Eigen::MatrixXd> both;  // of 1 + D W^T C^-1 W, for the system's rows W = N^T Z and its matrix C
 };

@@ -26,8 +26,9 @@ double push_out_of(const Model& model, const StepInputs& inputs) {
 // Returns k_c over m / h^2 for a collider. The depth of a vertex is inversely proportional to it.
 double stiffness_of(const Model& model, const StepInputs& inputs, const ContactWork& work, std::size_t collider) {
   constexpr double most = 1000;  // times as stiff as for a thick one
-  const double share = usual_depth(model.size, (*inputs.colliders)[collider], work.traits[collider].half_thickness) /
-                       usual_depth(model.size);
+  const double share =
+      usual_depth(model.size, (*inputs.colliders)[collider], work.traits[collider].usual_half_thickness) /
+      usual_depth(model.size);
   return inputs.solver.contact.stiffness * std::min(1 / share, most);
 }
 
@@ -126,7 +127,8 @@ void begin_contacts(const Model& model, const StepInputs& inputs, const Position
   work.by_chunk.resize((groups + groups_a_chunk - 1) / groups_a_chunk);
   work.traits.clear();
   for (const Collider& collider : *inputs.colliders)
-    work.traits.push_back({collider.shape.certainty(), collider.shape.half_thickness()});
+    work.traits.push_back(
+        {collider.shape.certainty(), collider.shape.half_thickness(), collider.shape.usual_half_thickness()});
   for (int group = 0; group < groups; ++group) {
     const int first = group * vertices_a_group, count = std::min(model.free - first, vertices_a_group);
     const Vec3 center = work.start.middleRows(first, count).colwise().mean().transpose();

@@ -36,7 +36,7 @@ Impact first_impact(const Model& model, const StepInputs& inputs, const Position
     const VertexSearch search{model, inputs, x, work};
     const ColliderView view = search.view(c);
     const double here =
-        std::min(allowed, usual_depth(model.size, (*inputs.colliders)[c], work.traits[c].half_thickness));
+        std::min(allowed, usual_depth(model.size, (*inputs.colliders)[c], work.traits[c].usual_half_thickness));
     for (int group = 0; group < vertex_groups(model); ++group) {
       search.near(c, view, group, [&](int v, const Way& way, double field, double) {
         const double share = share_to_impact(view, way, field, here, first.share, search.memory(c, v));

@@ -16,11 +16,11 @@ void set_motion(const Model& model, const State& state, const Vec3& gravity, Ene
   }
 }
 
-double spring_energy(const Model& model, const StepInputs& inputs, const Positions& x) {
+double spring_energy(const Model& model, const Positions& targets, const Positions& x) {
   double sum = 0;
   for (std::size_t i = 0; i < model.handled.size(); ++i) {
     const std::int32_t v = model.handled[i].vertex;
-    if (v < model.free) sum += 0.5 * model.handle_stiffness[v] * (x.row(v) - inputs.targets.row(i)).squaredNorm();
+    if (v < model.free) sum += 0.5 * model.handle_stiffness[v] * (x.row(v) - targets.row(static_cast<Eigen::Index>(i))).squaredNorm();
   }
   return sum;
 }
@@ -43,7 +43,7 @@ void EnergyBudget::start(const Model& model, const Vec3& gravity, const State& s
   moved_ = 0;
   lowest_ = balance_.total - balance_.put_in - balance_.from_nothing;
   model_ = model.id;
-  has_targets_ = false;
+  knows_springs_ = false;
 }
 
 void EnergyBudget::add_to_budget(double work) {
@@ -51,16 +51,22 @@ void EnergyBudget::add_to_budget(double work) {
   moved_ += std::abs(work);
 }
 
+void EnergyBudget::know_springs(const Model& model, const Positions& targets, const State& state) {
+  if (knows_springs_) return;
+  parts_.springs = spring_energy(model, targets, state.x);
+  knows_springs_ = true;
+}
+
 void EnergyBudget::before_step(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
   Energies now = parts_;
   set_motion(model, state, inputs.gravity, now);
   if (model.id != model_) now.elastic = elastic_energy(model, w, state.x);
-  now.springs = spring_energy(model, inputs, state.x);
-  if (!has_targets_) parts_.springs = now.springs;
+  now.springs = spring_energy(model, inputs.targets, state.x);
+  if (!knows_springs_) parts_.springs = now.springs;
   add_to_budget(now.total() - parts_.total());
   parts_ = now;
   model_ = model.id;
-  has_targets_ = true;
+  knows_springs_ = true;
 }
 
 void EnergyBudget::after_step(const Model& model, const StepInputs& inputs, const Positions& q, const State& state,
@@ -68,7 +74,7 @@ void EnergyBudget::after_step(const Model& model, const StepInputs& inputs, cons
   add_to_budget(work_from_outside(model, q, w));
   set_motion(model, state, inputs.gravity, parts_);
   parts_.elastic = elastic_energy(model, w, state.x);
-  parts_.springs = spring_energy(model, inputs, state.x);
+  parts_.springs = spring_energy(model, inputs.targets, state.x);
   parts_.contact = contact_energy(w.current.contacts, state.x);
   sum_up();
 }
@@ -86,7 +92,7 @@ void EnergyBudget::after_untangling(const Model& model, const StepInputs& inputs
   const double before = parts_.total();
   set_motion(model, state, inputs.gravity, parts_);
   parts_.elastic = elastic_energy(model, w, state.x);
-  parts_.springs = spring_energy(model, inputs, state.x);
+  parts_.springs = spring_energy(model, inputs.targets, state.x);
   parts_.contact = contact_energy(w.current.contacts, state.x);
   add_to_budget(parts_.total() - before);
   sum_up();

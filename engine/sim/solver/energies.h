@@ -33,6 +33,10 @@ class EnergyBudget {
   // Begins with a state, before what its next frame changes; `balance` is what was known there.
   void start(const Model& model, const Vec3& gravity, const State& state, Workspace& workspace,
              const EnergyBalance& balance = {});
+  // Counts the springs of soft handles before the first step, where their targets are then; later steps find by
+  // themselves how far these have moved. Does nothing where that is known.
+  void know_springs(const Model& model, const Positions& targets, const State& state);
+  bool knows_springs() const { return knows_springs_; }
   // Counts what was changed since the last step, when the inputs of the next one are there.
   void before_step(const Model& model, const StepInputs& inputs, const State& state, Workspace& workspace);
   // Counts a step that succeeded. The workspace is as it left it; q: positions before it.
@@ -55,7 +59,7 @@ class EnergyBudget {
   double most_ = 0;    // of the parts that are not negative
   double moved_ = 0;   // sum of all work, each as positive
   std::uint64_t model_ = 0;
-  bool has_targets_ = false;  // of soft handles; before the first step there are none
+  bool knows_springs_ = false;  // their energy at the end of the last step, or before the first one
 };
 
 }  // namespace supple

@@ -85,7 +85,7 @@ double motion_estimate_at_end(const Model& model, const StepInputs& inputs, cons
   Positions& d = w.direction;
   if (inputs.solver.levels < 2 && !w.second_level_serves && w.second_level.begin(model, w.current.x)) {
     w.scratch = -w.current.gradient;
-    w.second_level.add_to(model, w.current.x, w.scratch, w.threads, d);
+    w.second_level.add_to(model, w.scratch, w.threads, d);
   }
   const double more = std::sqrt(std::max(1.0, w.report.remaining_estimate / w.report.decrement));
   return motion_error(model, q, w.y, w.current.x, more * mass_length(model, d));

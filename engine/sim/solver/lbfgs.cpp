@@ -214,9 +214,12 @@ void SystemInverse::begin(const Model& model, const StepInputs& inputs, Workspac
 
 void SystemInverse::apply(const Model& model, const StepInputs& inputs, Workspace& w, Positions& r, Positions& z) {
   if (w.hessian_serves && w.current.contacts.empty()) return w.hessian.solve(model, r, z);
+  if (has_second_level_ && w.second_level.has_left(model, w.current.x)) {
+    const TimedPhase timed(w.clock, Phase::matrix, "second level");
+    has_second_level_ = w.second_level.begin(model, w.current.x);
+  }
   w.second_level_serves = has_second_level_;
   w.correction.second = has_second_level_ ? &w.second_level : nullptr;
-  w.correction.x = &w.current.x;
   apply_inverse(model, inputs.solver.contact, w.correction, w.solve_scratch, r, z);
 }
 
