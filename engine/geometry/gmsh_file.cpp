@@ -40,7 +40,8 @@ void add_tetrahedron(Words& words, int type, long long group, Gmsh& mesh) {
   if (group < 0 || group > largest_reference)
     words.refuse(fmt::format("group {} is outside 0 to {}", group, largest_reference));
   mesh.raw.lines.push_back(words.line());
-  words.skip_line();  // the middles of the edges
+  if (type == linear_tetrahedron && !words.at_line_end()) words.refuse("more than four nodes of a tetrahedron");
+  words.skip_numbers("a node of an element");  // the middles of the edges
   mesh.quadratic |= type == quadratic_tetrahedron;
   mesh.tets.push_back(corners);
   mesh.raw.mesh.regions.push_back(int(group));
@@ -71,7 +72,7 @@ void read_elements_2(Words& words, Gmsh& mesh) {
     if (is_tetrahedron(type)) {
       add_tetrahedron(words, type, group, mesh);
     } else {
-      words.skip_line();
+      words.skip_numbers("a node of an element");
     }
   }
 }
@@ -134,7 +135,7 @@ void read_elements_4(Words& words, Gmsh& mesh) {
       if (is_tetrahedron(type)) {
         add_tetrahedron(words, type, group == mesh.group_of.end() ? 0 : group->second, mesh);
       } else {
-        words.skip_line();
+        words.skip_numbers("a node of an element");
       }
     }
   }

@@ -21,6 +21,9 @@ void check_counts(const VtkCells& cells, const std::string& name) {
   };
   same(cells.types.size(), "types of cells");
   if (!cells.regions.empty()) same(cells.regions.size(), "regions of cells");
+  if (!cells.ends.empty() && cells.ends.back() < std::ssize(cells.points))
+    throw InputError(
+        name, fmt::format("the cells have {} points, but {} are listed", cells.ends.back(), cells.points.size()));
 }
 
 }  // namespace
