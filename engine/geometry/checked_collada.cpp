@@ -1,0 +1,89 @@
+// Implements COLLADA of checked_surface.h: Khronos, "COLLADA 1.4.1 specification". Lists of numbers are checked, word
+// by word and by their counts; assimp itself refuses indices that are too large, and files that are no XML.
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "geometry/checked_surface.h"
+#include "geometry/number_words.h"
+
+namespace supple {
+namespace {
+
+class ColladaChecker {
+ public:
+  ColladaChecker(std::string_view text, const std::string& name) : text_(text), name_(name) {}
+
+  void run() const {
+    for (std::size_t at = text_.find('<'); at != std::string_view::npos; at = text_.find('<', at + 1)) {
+      if (text_.substr(at).starts_with("<!--")) {
+        at = std::min(text_.find("-->", at), text_.size() - 1);
+        continue;
+      }
+      const std::size_t end = std::min(text_.find('>', at), text_.size());
+      const std::string_view head = text_.substr(at, end - at);
+      if (head.ends_with('/')) continue;
+      const std::string_view tag = head.substr(1, head.find_first_of(" \t\r\n") - 1);
+      const std::size_t begin = std::min(end + 1, text_.size());
+      const std::string_view list = text_.substr(begin, std::min(text_.find('<', begin), text_.size()) - begin);
+      if (tag == "float_array") check_floats(head, list);
+      if (tag == "p" || tag == "vcount") check_indices(list);
+    }
+  }
+
+ private:
+  [[noreturn]] void refuse(std::string_view part, const std::string& message) const {
+    const std::string_view before = text_.substr(0, std::size_t(part.data() - text_.data()));
+    const std::size_t line_begin = before.rfind('\n') + 1;  // 0 where there is none
+    throw InputError(
+        {Problem{{name_, 1 + int(std::count(before.begin(), before.end(), '\n')), int(before.size() - line_begin) + 1},
+                 message}});
+  }
+
+  template <class Take>
+  static void for_each_word(std::string_view list, const Take& take) {
+    constexpr std::string_view spaces = " \t\r\n";
+    for (std::size_t at = list.find_first_not_of(spaces); at != std::string_view::npos;) {
+      const std::size_t end = std::min(list.find_first_of(spaces, at), list.size());
+      take(list.substr(at, end - at));
+      at = list.find_first_not_of(spaces, end);
+    }
+  }
+
+  void check_floats(std::string_view head, std::string_view list) const {
+    long long held = 0;
+    for_each_word(list, [&](std::string_view word) {
+      ++held;
+      if (!number_of<double>(word))
+        refuse(word, fmt::format("'{}' is no number{}", word.substr(0, 40), why_no_number(word)));
+    });
+    const std::size_t count = head.find(" count=");
+    if (count == std::string_view::npos || count + 9 > head.size()) return;
+    const std::string_view quoted = head.substr(count + 8);
+    const std::string_view word = quoted.substr(0, quoted.find(head[count + 7]));
+    if (number_of<long long>(word) != held)
+      refuse(head, fmt::format("a list announces {} numbers, and holds {}", word.substr(0, 40), held));
+  }
+
+  void check_indices(std::string_view list) const {
+    for_each_word(list, [&](std::string_view word) {
+      const auto index = number_of<long long>(word);
+      if (!index || *index < 0) refuse(word, fmt::format("'{}' is no whole number from 0", word.substr(0, 40)));
+    });
+  }
+
+  const std::string_view text_;
+  const std::string& name_;
+};
+
+}  // namespace
+
+CheckedSurface checked_collada(std::string bytes, const std::string& name) {
+  ColladaChecker(bytes, name).run();
+  CheckedSurface result;
+  result.bytes = std::move(bytes);
+  return result;
+}
+
+}  // namespace supple
