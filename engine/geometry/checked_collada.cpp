@@ -13,9 +13,10 @@ namespace {
 
 class ColladaChecker {
  public:
-  ColladaChecker(std::string_view text, const std::string& name) : text_(text), name_(name) {}
+  ColladaChecker(std::string& bytes, const std::string& name) : bytes_(bytes), text_(bytes), name_(name) {}
 
-  void run() const {
+  // Makes points of decimal commas, which old exporters wrote, and returns whether there were any.
+  bool run() {
     for (std::size_t at = text_.find('<'); at != std::string_view::npos; at = text_.find('<', at + 1)) {
       if (text_.substr(at).starts_with("<!--")) {
         at = std::min(text_.find("-->", at), text_.size() - 1);
@@ -30,6 +31,7 @@ class ColladaChecker {
       if (tag == "float_array") check_floats(head, list);
       if (tag == "p" || tag == "vcount") check_indices(list);
     }
+    return has_commas_;
   }
 
  private:
@@ -51,12 +53,14 @@ class ColladaChecker {
     }
   }
 
-  void check_floats(std::string_view head, std::string_view list) const {
+  void check_floats(std::string_view head, std::string_view list) {
     long long held = 0;
     for_each_word(list, [&](std::string_view word) {
       ++held;
-      if (!number_of<double>(word))
-        refuse(word, fmt::format("'{}' is no number{}", word.substr(0, 40), why_no_number(word)));
+      if (number_of<double>(word)) return;
+      if (why_no_number(word).empty()) refuse(word, fmt::format("'{}' is no number", word.substr(0, 40)));
+      bytes_[std::size_t(word.data() - text_.data()) + word.find(',')] = '.';
+      has_commas_ = true;
     });
     const std::size_t count = head.find(" count=");
     if (count == std::string_view::npos || count + 9 > head.size()) return;
@@ -73,15 +77,18 @@ class ColladaChecker {
     });
   }
 
-  const std::string_view text_;
+  std::string& bytes_;
+  const std::string_view text_;  // the same
   const std::string& name_;
+  bool has_commas_ = false;
 };
 
 }  // namespace
 
 CheckedSurface checked_collada(std::string bytes, const std::string& name) {
-  ColladaChecker(bytes, name).run();
   CheckedSurface result;
+  if (ColladaChecker(bytes, name).run())
+    result.remarks.emplace_back("its numbers have decimal commas, which are read as points");
   result.bytes = std::move(bytes);
   return result;
 }

@@ -54,7 +54,8 @@ class GltfChecker {
     for (std::size_t v = 0; v < list("bufferViews").size(); ++v) check_view(v);
     for (std::size_t a = 0; a < list("accessors").size(); ++a) check_accessor(a);
     for (std::size_t m = 0; m < list("meshes").size(); ++m) {
-      const Json& primitives = list("meshes")[m].at("primitives");
+      const Json primitives = list("meshes")[m].value("primitives", Json());
+      if (!primitives.is_array()) refuse(fmt::format("mesh {}: it has no list of primitives", m));
       for (std::size_t p = 0; p < primitives.size(); ++p)
         check_primitive(primitives[p], fmt::format("mesh {}, primitive {}", m, p));
     }
@@ -334,10 +335,8 @@ CheckedSurface checked_gltf(std::string bytes, const std::filesystem::path& file
   std::string_view text = bytes, inside;
   CheckedSurface result;
   if (bytes.starts_with("glTF")) {
-    if (word_at(bytes, 4) == 1) {  // of another layout, which is left to assimp
-      result.bytes = std::move(bytes);
-      return result;
-    }
+    if (word_at(bytes, 4) != 2)
+      throw InputError(name, fmt::format("binary glTF of version {} is not read; 2 is", word_at(bytes, 4)));
     text = {};
     take_chunks(bytes, name, text, inside);
   }
@@ -345,7 +344,9 @@ CheckedSurface checked_gltf(std::string bytes, const std::filesystem::path& file
     Json document = Json::parse(text);
     if (!document.is_object() || !document.contains("asset"))
       throw InputError(name, "is no glTF: it has no asset with a version");
-    const std::string version = document.at("asset").value("version", "");
+    const Json& asset = document.at("asset");
+    const bool is_number = asset.contains("version") && asset.at("version").is_number();  // in some files of version 1
+    const std::string version = is_number ? asset.at("version").dump() : asset.value("version", "");
     if (!version.starts_with("2") && !version.starts_with("1"))
       throw InputError(name, fmt::format("glTF of version '{}' is not read; 1.0 and 2.0 are", version.substr(0, 40)));
     if (version.starts_with("2") && GltfChecker(document, inside, file).run() && !bytes.starts_with("glTF"))
@@ -353,7 +354,8 @@ CheckedSurface checked_gltf(std::string bytes, const std::filesystem::path& file
   } catch (const Json::parse_error& error) {
     refuse_json(text, error.byte, name);
   } catch (const Json::exception& error) {
-    throw InputError(name, fmt::format("is no glTF: {}", error.what()));
+    const std::string_view what = error.what();  // "[json.exception...] type must be ..."
+    throw InputError(name, fmt::format("is no glTF: {}", what.substr(what.find(']') + 1)));
   }
   result.bytes = std::move(bytes);
   return result;

@@ -60,24 +60,24 @@ class OffChecker {
     std::string_view word = words_[0].text;
     const RowWord first = words_[0];
     if (number_of<double>(word)) return;
-    std::string kind;
     const auto prefix = [&](std::string_view letters) {
       if (!word.starts_with(letters)) return false;
       word.remove_prefix(letters.size());
       return true;
     };
-    if (prefix("ST")) kind += "ST", fewest_ += 2;
-    if (prefix("C")) kind += "C", fewest_ += 3;
-    if (prefix("N")) kind += "N", fewest_ += 3;
-    if (prefix("4")) weighted_ = true, fewest_ += 1;
+    has_places_ = prefix("ST");
+    has_colors_ = prefix("C");
+    has_normals_ = prefix("N");
+    weighted_ = prefix("4");
+    fewest_ += (has_places_ ? 2 : 0) + (has_colors_ ? 3 : 0) + (has_normals_ ? 3 : 0) + (weighted_ ? 1 : 0);
     const bool has_dimension = prefix("n");
     if (word != "OFF") rows_.refuse(first, fmt::format("'{}' stands where OFF should", first.text.substr(0, 40)));
     words_.erase(words_.begin());
     if (!words_.empty() && words_[0].text == "BINARY")
       rows_.refuse(words_[0], "binary OFF files are not read; those of text are");
     if (has_dimension && next_count("the dimension") != 3) rows_.refuse("the dimension must be 3");
-    kind_ = kind + "OFF";
-    is_plain_ = kind.empty() && !weighted_;
+    kind_ = fmt::format("{}{}{}OFF", has_places_ ? "ST" : "", has_colors_ ? "C" : "", has_normals_ ? "N" : "");
+    is_plain_ = !has_places_ && !has_colors_ && !has_normals_ && !weighted_;
   }
 
   long long next_count(const char* what) {
@@ -121,9 +121,20 @@ class OffChecker {
       text += is_new ? fmt::format("{:.9g} ", p[Eigen::Index(k)] - origin_[Eigen::Index(k)])
                      : plain_number(words_[k].text, values[k]) + ' ';
     }
-    for (std::size_t k = weighted_ ? 4 : 3; k < words_.size() && !is_plain_; ++k)
-      text.append(words_[k].text).append(" ");
+    if (!is_plain_) add_rest(text);
     text.back() = '\n';
+  }
+
+  // Adds what follows a position: a normal, a colour and a place in a texture. Of a colour, assimp wants four numbers.
+  void add_rest(std::string& text) const {
+    const std::size_t begin = weighted_ ? 4 : 3, end = words_.size() - (has_places_ ? 2 : 0);
+    const std::size_t color = begin + (has_normals_ ? 3 : 0), parts = end - color;
+    if (parts != (has_colors_ ? 3 : 0) && parts != (has_colors_ ? 4 : 0))
+      rows_.refuse(words_.back(), fmt::format("a vertex of {} numbers", words_.size()));
+    for (std::size_t k = begin; k < words_.size(); ++k) {
+      text.append(words_[k].text).append(" ");
+      if (k + 1 == end && has_colors_ && parts == 3) text += "1 ";
+    }
   }
 
   // Returns false for a face that is left out.
@@ -158,7 +169,7 @@ class OffChecker {
   std::vector<RowWord> words_;  // of the row that are not taken yet
   std::string kind_ = "OFF";
   std::size_t fewest_ = 3;  // numbers of a vertex
-  bool weighted_ = false, is_plain_ = true;
+  bool has_places_ = false, has_colors_ = false, has_normals_ = false, weighted_ = false, is_plain_ = true;
 };
 
 }  // namespace

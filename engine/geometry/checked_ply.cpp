@@ -36,6 +36,7 @@ struct Head {
   std::string text;     // its lines, as they are
   std::size_t end = 0;  // where the first element begins
   long long vertices = 0, faces = 0;
+  int unknown = 0;  // lines of the header
 };
 
 std::size_t bytes_of(Number type) {
@@ -126,8 +127,10 @@ void take_head_row(const TextRows& rows, Head& head) {
     if (is_list && !is_whole(*property.length)) rows.refuse(words[2], "the length of a list must be a whole number");
     head.elements.back().properties.push_back(std::move(property));
   } else if (key != "comment" && key != "obj_info" && key != "ply") {
-    rows.refuse(words[0], fmt::format("'{}' begins no line of a PLY header", key.substr(0, 40)));
+    ++head.unknown;  // some programs leave lines of their own
+    return;
   }
+  head.text.append(rows.raw()).append("\n");
 }
 
 void check_head(const TextRows& rows, Head& head) {
@@ -155,10 +158,16 @@ Head take_head(TextRows& rows) {
       check_head(rows, head);
       return head;
     }
-    head.text.append(rows.raw()).append("\n");
     take_head_row(rows, head);
   }
   rows.refuse("has a header without an end (end_header)");
+}
+
+void add_remarks(const Head& head, long long small_faces, CheckedSurface& result) {
+  if (head.unknown > 0)
+    result.remarks.push_back(fmt::format("{} lines unknown to PLY in its header were left out", head.unknown));
+  if (small_faces > 0)
+    result.remarks.push_back(fmt::format("{} faces of fewer than three corners were left out", small_faces));
 }
 
 class PlyTextChecker {
@@ -179,8 +188,7 @@ class PlyTextChecker {
         announced += fmt::format("{}{} of '{}'", announced.empty() ? "" : " and ", element.count, element.name);
       rows_.refuse(fmt::format("{} announced, but more lines follow", announced));
     }
-    if (small_ > 0)
-      result_.remarks.push_back(fmt::format("{} faces of fewer than three corners were left out", small_));
+    add_remarks(head_, small_, result_);
     return std::move(result_);
   }
 
@@ -278,8 +286,8 @@ class PlyBinaryChecker {
     CheckedSurface result;
     result.origin = far_origin(box_);
     if (result.origin != Vec3::Zero()) move_to(result.origin);
-    if (small_ > 0) result.remarks.push_back(fmt::format("{} faces of fewer than three corners were left out", small_));
-    result.bytes = std::move(bytes_);
+    add_remarks(head_, small_, result);
+    result.bytes = head_.text + bytes_.substr(head_.end);
     return result;
   }
 

@@ -171,6 +171,10 @@ void add_off(std::vector<OddFile>& files) {
   read("blank lines", replaced_everywhere(box, "\n", "\n\n"));
   read("a vertex on two lines", replaced(box, "1 0 0\n", "1\n0 0\n"));
   read("colours of vertices", "COFF\n8 6 12\n" + points_text("", Vec3::Zero(), 1, " 1 0 0 1") + faces);
+  read("colours of three parts and comments",
+       "COFF\n8 6 12\n" + points_text("", Vec3::Zero(), 1, " 1 0 0.5#red") + faces);
+  read("all that a vertex may have",
+       "STCN4OFF\n8 6 12\n" + points_text("", Vec3::Zero(), 2, " 2 0 0 1 1 0 0.5 0 1") + faces);
   read("colours of vertices in a plain file",
        "OFF\n8 6 12\n" + points_text("", Vec3::Zero(), 1, " 255 0 0 255") + faces);
   read("normals", "NOFF\n8 6 12\n" + points_text("", Vec3::Zero(), 1, " 0 0 1") + faces);
@@ -283,8 +287,8 @@ void add_ply_texts(std::vector<OddFile>& files) {
   refused("no z", replaced(box, "property float z\n", ""), "a vertex has no x, y and z");
   refused("an unknown type", replaced(box, "float x", "half x"), ":5:10: 'half' is no type of PLY");
   refused("an unknown format", replaced(box, "ascii", "text"), ":2:8: format 'text' is not known");
-  refused("an unknown line", replaced(box, "comment made", "remark made"),
-          ":3:1: 'remark' begins no line of a PLY header");
+  read("an unknown line in the header", replaced(box, "comment made", "made"),
+       "1 lines unknown to PLY in its header were left out");
   refused("no end of the header", replaced(box, "end_header\n", ""), "has a header without an end (end_header)");
   refused("no faces", replaced(box, "face 6", "face 0"), "8 of 'vertex' and 0 of 'face'");
   refused("a negative count", replaced(box, "vertex 8", "vertex -8"), ":4:16: -8 of 'vertex' announced");
@@ -575,8 +579,8 @@ void add_others(std::vector<OddFile>& files) {
   files.push_back({"plain", ".dae", collada, ""});
   files.push_back({"a byte-order mark", ".dae", mark + collada, ""});
   files.push_back({"lines of Windows", ".dae", windows(collada), ""});
-  files.push_back({"decimal commas", ".dae", replaced(collada, "0 0 0 1 0 0", "0 0 0 1,5 0 0"),
-                   ":6:7: '1,5' is no number (decimal commas"});
+  files.push_back({"decimal commas", ".dae", replaced(collada, "0 0 0 1 0 0", "0,0 0 0 1,0 0 0"), "",
+                   "its numbers have decimal commas, which are read as points"});
   files.push_back(
       {"hexadecimal numbers", ".dae", replaced(collada, "0 0 0 1 0 0", "0 0 0 0x1 0 0"), ":6:7: '0x1' is no number"});
   files.push_back({"a number that is missing", ".dae", replaced(collada, "0 0 0 1 0 0", "0 0 0 1 0"),
