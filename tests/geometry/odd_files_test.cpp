@@ -102,6 +102,10 @@ void add_obj(std::vector<OddFile>& files) {
   read("groups, objects and smoothing", "o box\ng a b\ns off\n" + box);
   read("a name with a comment's sign", "o box#1\n" + box);
   read("a missing library", "mtllib none.mtl\n" + box, "its materials are missing");
+  read("a folder for a library", "mtllib folder.bin\n" + box, "its materials are missing");
+  read("a pipe for a library", "mtllib pipe.bin\n" + box, "its materials are missing");
+  read("a pipe for a texture", "mtllib pipe.mtl\nusemtl skin\nvt 0 0\n" + points + sides_text("f", 1, "/1"),
+       "texture 'pipe.bin' is missing");
   read("a face of two corners", box + "f 1 2\n", "1 faces of fewer than three corners were left out");
   read("an unknown line", box + "extra 1 2 3\n", "1 line unknown to OBJ was left out, the first is line 15");
   read("faces before vertices", faces + points);
@@ -628,6 +632,7 @@ TEST_F(OddFiles, OfSurfacesAreReadAsWhatTheySayOrRefusedInWords) {
   EXPECT_GE(files.size(), 150u);
   write("box.bin", gltf_data());
   write("my box.bin", gltf_data());
+  write("pipe.mtl", "newmtl skin\nKd 1 0 0\nmap_Kd pipe.bin\n");
   ASSERT_EQ(::mkfifo((folder_.path / "pipe.bin").c_str(), 0600), 0);
   std::filesystem::create_directory(folder_.path / "folder.bin");
   for (const OddFile& odd : files) {
