@@ -137,13 +137,19 @@ void check_head(const TextRows& rows, Head& head) {
   for (const Element& element : head.elements) {
     if (element.properties.empty() && element.count > 0)
       rows.refuse(fmt::format("'{}' has no properties", element.name.substr(0, 40)));
+    const auto same = [&](const Element& other) { return other.name == element.name; };
+    if (std::count_if(head.elements.begin(), head.elements.end(), same) > 1)
+      rows.refuse(fmt::format("'{}' is announced twice", element.name.substr(0, 40)));
+    // Of several strips, assimp reads the last one alone.
+    if (element.name == "tristrips" && element.count > 0)
+      rows.refuse("its triangles stand in strips (tristrips), which are not read; faces are");
     if (element.name == "face") head.faces = element.count;
     if (element.name != "vertex") continue;
     head.vertices = element.count;
     for (int axis = 0; axis < 3; ++axis) {
       const auto& own = element.properties;
-      if (std::none_of(own.begin(), own.end(), [&](const Property& p) { return axis_of(element, p) == axis; }))
-        rows.refuse("a vertex has no x, y and z");
+      if (std::count_if(own.begin(), own.end(), [&](const Property& p) { return axis_of(element, p) == axis; }) != 1)
+        rows.refuse("a vertex must have one x, one y and one z");
     }
   }
 }
@@ -346,7 +352,7 @@ class PlyBinaryChecker {
       small_ += length < 3 ? 1 : 0;
       for (std::size_t k = 0; k < std::size_t(length); ++k) {
         const double v = value(begin + k * bytes_of(property.type), property.type);
-        if (!(v >= 0 && v < double(head_.vertices)))
+        if (!(v >= 0 && v < double(head_.vertices) && v == std::floor(v)))
           throw InputError(name_, fmt::format("face {} names vertex {}, but there are {} (counted from 0)", row + 1, v,
                                               head_.vertices));
       }

@@ -104,6 +104,10 @@ std::string mesh_text(const std::filesystem::path& path) {
   return text;
 }
 
+std::string left_out_note(long long elements) {
+  return fmt::format("{} elements are no tetrahedra of the first or second order, and have been left out", elements);
+}
+
 bool is_mesh_file(const std::filesystem::path& path) { return format_of(path) != nullptr || is_tetgen(path); }
 
 MeshFile read_mesh(const std::filesystem::path& path) {

@@ -288,13 +288,20 @@ void add_ply_texts(std::vector<OddFile>& files) {
           ":19:5: '4.5' is not a vertex of a face");
   refused("a word for a length", replaced(box, "4 0 4 6 2", "four 0 4 6 2"), ":19:1: 'four' is not the length");
   refused("a negative length", replaced(box, "4 0 4 6 2", "-4 0 4 6 2"), ":19:1: the length of 'vertex_indices' is -4");
-  refused("no z", replaced(box, "property float z\n", ""), "a vertex has no x, y and z");
+  refused("no z", replaced(box, "property float z\n", ""), "a vertex must have one x, one y and one z");
   refused("an unknown type", replaced(box, "float x", "half x"), ":5:10: 'half' is no type of PLY");
   refused("an unknown format", replaced(box, "ascii", "text"), ":2:8: format 'text' is not known");
   read("an unknown line in the header", replaced(box, "comment made", "made"),
        "1 lines unknown to PLY in its header were left out");
   refused("no end of the header", replaced(box, "end_header\n", ""), "has a header without an end (end_header)");
   refused("no faces", replaced(box, "face 6", "face 0"), "8 of 'vertex' and 0 of 'face'");
+  refused("an element that stands twice", replaced(box, "end_header", "element face 1\nproperty int a\nend_header"),
+          "'face' is announced twice");
+  refused("a coordinate that stands twice", replaced(box, "property float y", "property float x"),
+          "a vertex must have one x, one y and one z");
+  refused("strips of triangles",
+          replaced(ply_head("ascii", 8, 1), "element face", "element tristrips") + points + "4 0 1 2 3\n",
+          "its triangles stand in strips (tristrips), which are not read");
   refused("a negative count", replaced(box, "vertex 8", "vertex -8"), ":4:16: -8 of 'vertex' announced");
   refused("a property before all elements", replaced(box, "element vertex", "property float w\nelement vertex"),
           ":4:1: a property before the first element");

@@ -121,12 +121,31 @@ TEST_F(OddMeshes, AreReadAsWhatTheySayOrRefusedInWords) {
           "NumberOfPoints = 3 announced, but the file holds 4");
   refused(".vtu", "points of two numbers", replaced(vtu_text(), "Components=\"3\"", "Components=\"2\""),
           "points have 2 components, and 3 are read");
+  const std::string left_out = "1 elements are no tetrahedra of the first or second order, and have been left out";
+  files.push_back({"a pyramid", ".msh",
+                   replaced(replaced(gmsh_text_2(), "$Elements\n1", "$Elements\n2"), "$EndElements",
+                            "2 7 2 0 1 1 2 3 4 1\n$EndElements"),
+                   "", left_out});
+  files.push_back({"a triangle", ".msh",
+                   replaced(replaced(gmsh_text_2(), "$Elements\n1", "$Elements\n2"), "$EndElements",
+                            "2 2 2 0 1 1 2 3\n$EndElements"),
+                   ""});
+  files.push_back({"a pyramid", ".vtk",
+                   replaced(replaced(vtk_text(), "CELLS 1 5\n", "CELLS 2 11\n5 0 1 2 3 0\n"), "CELL_TYPES 1\n",
+                            "CELL_TYPES 2\n14\n"),
+                   "", left_out});
   for (const OddFile& odd : files) {
     write("odd" + odd.ending, odd.bytes);
     test::expect_as_said(odd, [&] {
       const MeshFile found = read_mesh(folder_.path / ("odd" + odd.ending));
       EXPECT_NEAR(tet_volume(found.mesh, 0), 1.0 / 6, 1e-15);
-      EXPECT_TRUE(found.notes.empty());
+      std::string notes;
+      for (const std::string& note : found.notes) notes += note + '\n';
+      if (odd.remark.empty()) {
+        EXPECT_EQ(notes, "");
+      } else {
+        EXPECT_NE(notes.find(odd.remark), std::string::npos) << notes;
+      }
     });
   }
 }
