@@ -280,10 +280,11 @@ class GltfChecker {
         parent = n;
       }
     }
+    std::vector<std::size_t> reached_from(nodes.size(), nodes.size());
     for (std::size_t n = 0; n < nodes.size(); ++n) {
-      std::size_t steps = 0;
-      for (std::size_t up = n; up != nodes.size(); up = parents[up])
-        if (++steps > nodes.size()) refuse(fmt::format("node {} is among its own descendants", n));
+      std::size_t up = n;
+      for (; up != nodes.size() && reached_from[up] == nodes.size(); up = parents[up]) reached_from[up] = n;
+      if (up != nodes.size() && reached_from[up] == n) refuse(fmt::format("node {} is among its own descendants", up));
     }
     for (std::size_t s = 0; s < list("scenes").size(); ++s) {
       if (!list("scenes")[s].contains("nodes")) continue;
