@@ -99,7 +99,7 @@ std::string lost_digits(const Soup& soup) {
     const supple::Vec3 p(soup.positions.data() + 3 * std::size_t(v));
     if (p.allFinite()) box.include(p);
   }
-  if (box.empty()) return "";
+  if (box.empty() || !(box.extent().maxCoeff() > 0)) return "";
   const double reach = std::max(box.lower.cwiseAbs().maxCoeff(), box.upper.cwiseAbs().maxCoeff());
   const double step = std::exp2(std::floor(std::log2(std::max(reach, 1e-300))) - 23);  // between floats there
   if (step < 1e-5 * box.extent().maxCoeff()) return "";

@@ -20,7 +20,8 @@ struct CheckedSurface {
 };
 
 // Reads and checks a file: OBJ, OFF, PLY, STL and glTF in all that decides their shape, COLLADA in its lists of
-// numbers; of other formats, only that it is a plain file. Throws InputError with line and column, or with the accessor, where the file is no good.
+// numbers, AC3D, ASE, NFF, RAW and SMD for decimal commas; of other formats, only that it is a plain file. Throws
+// InputError with line and column, or with the accessor, where the file is no good.
 CheckedSurface checked_surface(const std::filesystem::path& file);
 
 // Checks one format each. bytes: the file's, without a byte-order mark.

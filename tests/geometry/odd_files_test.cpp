@@ -599,6 +599,14 @@ void add_others(std::vector<OddFile>& files) {
   files.push_back(
       {"a negative index", ".dae", replaced(collada, "<p>0 4 6", "<p>0 -4 6"), "'-4' is no whole number from 0"});
   files.push_back({"an index too large", ".dae", replaced(collada, "<p>0 4 6", "<p>0 8 6"), "cannot be read: "});
+  const auto raw = [](const std::string& one) {
+    std::string text;
+    for (const auto& t : unit_box.triangles.rowwise())
+      for (int k = 0; k < 9; ++k) text += (unit_box.points(t[k / 3], k % 3) > 0 ? one : "0") + (k < 8 ? " " : "\n");
+    return text;
+  };
+  files.push_back({"plain", ".raw", raw("1"), ""});
+  files.push_back({"decimal commas", ".raw", raw("1,5"), "is no number (decimal commas are not read: 1.5)"});
   files.push_back({"an unknown format", ".xyz", "hello", "of no format that is read: OBJ, PLY"});
   files.push_back({"a COLLADA file that is none", ".dae", "hello", "cannot be read: "});
   files.push_back({"an FBX file that is none", ".fbx", "hello", "cannot be read: "});
