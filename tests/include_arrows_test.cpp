@@ -44,7 +44,7 @@ const std::vector<std::pair<std::regex, std::regex>> cages = {
     {std::regex("(GL|EGL)/.*"), std::regex("engine/render/.*")},
     {std::regex("ft2build\\.h"), std::regex("engine/render/caption\\.cpp")},
     {std::regex("toml\\+\\+/.*"), std::regex("engine/scene/toml_document\\.h")},
-    {std::regex("assimp/.*"), std::regex("engine/geometry/assimp_(reader\\.cpp|colors\\.(h|cpp))")},
+    {std::regex("assimp/.*"), std::regex("engine/geometry/assimp_(reader\\.cpp|(colors|files)\\.(h|cpp))")},
     {std::regex("meshoptimizer\\.h"), std::regex("engine/geometry/simplify\\.cpp")},
     {std::regex("xxhash\\.h"), std::regex("engine/base/hash\\.cpp")},
     {std::regex("CLI/.*"), std::regex("app/command_line\\.cpp")},

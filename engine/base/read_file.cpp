@@ -71,6 +71,14 @@ std::string read_file(const std::filesystem::path& path, std::uintmax_t most_byt
   return text;
 }
 
+std::string read_text(const std::filesystem::path& path, std::uintmax_t most_bytes) {
+  std::string text = read_file(path, most_bytes);
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
+    throw InputError(path.string(), "is a text of 16-bit characters (UTF-16); it must be saved as UTF-8 or ASCII");
+  if (text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);
+  return text;
+}
+
 std::string read_standard_input(std::uintmax_t most_bytes) {
   std::string text;
   std::array<char, 65536> part{};

@@ -14,6 +14,10 @@ inline constexpr std::uintmax_t usual_most_bytes = 1'000'000'000;
 // it is larger than `most_bytes`, or the system's reason why it cannot be read.
 std::string read_file(const std::filesystem::path& path, std::uintmax_t most_bytes = usual_most_bytes);
 
+// Returns the content of a text file without the byte-order mark of UTF-8 that some editors put before it. Throws
+// InputError as read_file() does, and for texts of 16-bit characters, which have a mark of their own.
+std::string read_text(const std::filesystem::path& path, std::uintmax_t most_bytes = usual_most_bytes);
+
 // Returns all of standard input. Throws InputError that names `<stdin>` when it is larger than `most_bytes` or cannot
 // be read.
 std::string read_standard_input(std::uintmax_t most_bytes);

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <system_error>
 
 #include "geometry/surface_stream.h"
 #include "geometry/texture_reader.h"
+#include "geometry/uri_names.h"
 
 namespace supple {
 namespace {
@@ -36,29 +36,12 @@ Wrap wrap_of(aiTextureMapMode mode) {
   return mode == aiTextureMapMode_Clamp || mode == aiTextureMapMode_Decal ? Wrap::clamp : Wrap::repeat;
 }
 
-// Replaces %20 and the like by the bytes that they stand for.
-std::string decoded(const std::string& text) {
-  std::string result;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto is_digit = [&](std::size_t k) {
-      return k < text.size() && std::isxdigit(static_cast<unsigned char>(text[k]));
-    };
-    if (text[i] == '%' && is_digit(i + 1) && is_digit(i + 2)) {
-      result += char(std::strtol(text.substr(i + 1, 2).c_str(), nullptr, 16));
-      i += 2;
-    } else {
-      result += text[i];
-    }
-  }
-  return result;
-}
-
 // Finds a file that a model names. Models name files where they were made, often on another machine, so that a file of
 // the same name beside the model serves too.
 fs::path found_beside(const fs::path& model, std::string name) {
   std::replace(name.begin(), name.end(), '\\', '/');
   if (name.starts_with("file://")) name.erase(0, 7);
-  for (const std::string& one : {name, decoded(name)}) {
+  for (const std::string& one : {name, decoded_uri(name)}) {
     const fs::path path(one), folder = model.parent_path();
     for (const fs::path& place : {folder / path, folder / path.filename(), folder / "textures" / path.filename()}) {
       std::error_code error;

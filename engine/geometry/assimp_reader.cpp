@@ -8,15 +8,20 @@
 #include <assimp/Importer.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <new>
 #include <string>
 #include <system_error>
 #include <vector>
 
+#include "base/error.h"
 #include "geometry/assimp_colors.h"
+#include "geometry/assimp_files.h"
+#include "geometry/checked_surface.h"
 #include "geometry/surface_stream.h"
 
 namespace {
@@ -63,11 +68,45 @@ void allow_seconds(int seconds) {
   limit(RLIMIT_CPU, std::min(std::max(now.rlim_cur, spent + rlim_t(seconds)), now.rlim_max), now.rlim_max);
 }
 
-int refuse(std::string reason) {
+int refuse(std::string reason, stream::Place place = {}) {
   reason = supple::printable(std::move(reason));
   std::fwrite(stream::refused, 1, sizeof stream::refused, stdout);
+  std::fwrite(&place, sizeof place, 1, stdout);
   std::fwrite(reason.data(), 1, reason.size(), stdout);
   return std::fflush(stdout) == 0 ? 0 : 1;
+}
+
+constexpr char too_large[] = "takes more than 2 GB of memory to read";
+
+// Says in plain words why assimp did not read a file.
+std::string reason_of(const std::string& error, const supple::AssimpFiles& files) {
+  const auto says = [&](const char* words) { return error.find(words) != std::string::npos; };
+  if (says("bad_alloc")) return too_large;
+  if (says("No suitable reader"))
+    return "its ending and its first bytes are of no format that is read: OBJ, PLY, STL, OFF, glTF, COLLADA (.dae), "
+           "3DS, FBX, Blender, 3MF and X3D are";
+  if (!files.refused().empty())
+    return "it names the file '" + std::filesystem::path(files.refused()).filename().string() +
+           "', which cannot be opened: " + error;
+  if (says("read error")) return "the file ends too soon, or is none of its ending's format (" + error + ")";
+  return error;
+}
+
+// Returns what is to be said of a body so far from the origin that floats do not hold its shape; else nothing.
+std::string lost_digits(const Soup& soup) {
+  supple::Bounds box;
+  for (const std::int32_t v : soup.indices) {
+    const supple::Vec3 p(soup.positions.data() + 3 * std::size_t(v));
+    if (p.allFinite()) box.include(p);
+  }
+  if (box.empty() || !(box.extent().maxCoeff() > 0)) return "";
+  const double reach = std::max(box.lower.cwiseAbs().maxCoeff(), box.upper.cwiseAbs().maxCoeff());
+  const double step = std::exp2(std::floor(std::log2(std::max(reach, 1e-300))) - 23);  // between floats there
+  if (step < 1e-5 * box.extent().maxCoeff()) return "";
+  return fmt::format(
+      "it lies {:.2g} from the origin, where positions are exact to {:.2g} alone: a model of {:.3g} should be moved "
+      "nearer to it",
+      reach, step, box.extent().maxCoeff());
 }
 
 // Returns what is wrong with the mesh, or nothing when all is well.
@@ -104,10 +143,13 @@ void write_textures(const std::vector<supple::Texture>& textures) {
 }
 
 int read(const char* path) {
+  const supple::CheckedSurface checked = supple::checked_surface(path);
   Assimp::Importer importer;
+  auto* const files = new supple::AssimpFiles(path, checked.bytes);
+  importer.SetIOHandler(files);  // which deletes it
   const aiScene* scene =
       importer.ReadFile(path, aiProcess_Triangulate | aiProcess_TransformUVCoords | aiProcess_PreTransformVertices);
-  if (scene == nullptr) return refuse(importer.GetErrorString());
+  if (scene == nullptr) return refuse(reason_of(importer.GetErrorString(), *files));
   Soup soup;
   supple::ColorReader reader(*scene, path, allow_seconds);
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
@@ -115,10 +157,16 @@ int read(const char* path) {
     if (!problem.empty()) return refuse(problem);
     reader.append(*scene->mMeshes[m]);
   }
-  const supple::FoundColors colors = reader.take();
+  supple::FoundColors colors = reader.take();
+  colors.remarks.insert(colors.remarks.begin(), checked.remarks.begin(), checked.remarks.end());
+  const bool is_moved = checked.origin != supple::Vec3::Zero();
+  const std::string lost = is_moved ? "" : lost_digits(soup);
+  if (!lost.empty()) colors.remarks.push_back(lost);
+  for (std::size_t i = 0; is_moved && i < soup.positions.size(); ++i)
+    soup.positions[i] += checked.origin[Eigen::Index(i % 3)];
   std::string remarks;
   for (const std::string& remark : colors.remarks)
-    if (std::ssize(remarks) + std::ssize(remark) < stream::most_text) remarks += remark + '\n';
+    if (std::ssize(remarks) + std::ssize(remark) < stream::most_text) remarks += supple::printable(remark) + '\n';
   const stream::Counts counts{std::int64_t(soup.positions.size() / 3),
                               std::int64_t(soup.indices.size() / 3),
                               std::int64_t(colors.by_vertex.size()),
@@ -146,6 +194,11 @@ int main(int count, char** arguments) {
   limit_this_process(arguments[1]);
   try {
     return read(arguments[1]);
+  } catch (const supple::InputError& error) {
+    const supple::Problem& problem = error.problems().front();
+    return refuse(problem.message, {problem.place.line, problem.place.column});
+  } catch (const std::bad_alloc&) {
+    return refuse(too_large);
   } catch (const std::exception& error) {
     return refuse(error.what());
   }

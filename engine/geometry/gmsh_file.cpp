@@ -1,5 +1,6 @@
 // Implements Gmsh's MSH format of mesh_formats.h: gmsh.info/doc/texinfo/gmsh.html, "Gmsh file formats". Tetrahedra of
 // the first and second order are read, of the latter their corners; all other elements are skipped.
+#include <algorithm>
 #include <array>
 #include <map>
 #include <unordered_map>
@@ -19,7 +20,14 @@ struct Gmsh {
   std::map<long long, int> group_of;  // the first physical group of a volume, by its tag
   RawMesh raw;
   bool quadratic = false;
+  long long others = 0;  // elements with a volume that are no such tetrahedra
 };
+
+// Counts hexahedra, prisms, pyramids and tetrahedra of higher orders, without which a body has holes.
+void count_other(int type, Gmsh& mesh) {
+  constexpr std::array volumes = {5, 6, 7, 12, 13, 14, 17, 18, 19, 29, 30, 31, 92, 93};
+  mesh.others += std::find(volumes.begin(), volumes.end(), type) != volumes.end() ? 1 : 0;
+}
 
 void add_node(Words& words, long long tag, Gmsh& mesh) {
   Vec3 p;
@@ -40,7 +48,8 @@ void add_tetrahedron(Words& words, int type, long long group, Gmsh& mesh) {
   if (group < 0 || group > largest_reference)
     words.refuse(fmt::format("group {} is outside 0 to {}", group, largest_reference));
   mesh.raw.lines.push_back(words.line());
-  words.skip_line();  // the middles of the edges
+  if (type == linear_tetrahedron && !words.at_line_end()) words.refuse("more than four nodes of a tetrahedron");
+  words.skip_numbers("a node of an element");  // the middles of the edges
   mesh.quadratic |= type == quadratic_tetrahedron;
   mesh.tets.push_back(corners);
   mesh.raw.mesh.regions.push_back(int(group));
@@ -71,7 +80,8 @@ void read_elements_2(Words& words, Gmsh& mesh) {
     if (is_tetrahedron(type)) {
       add_tetrahedron(words, type, group, mesh);
     } else {
-      words.skip_line();
+      count_other(type, mesh);
+      words.skip_numbers("a node of an element");
     }
   }
 }
@@ -134,7 +144,8 @@ void read_elements_4(Words& words, Gmsh& mesh) {
       if (is_tetrahedron(type)) {
         add_tetrahedron(words, type, group == mesh.group_of.end() ? 0 : group->second, mesh);
       } else {
-        words.skip_line();
+        count_other(type, mesh);
+        words.skip_numbers("a node of an element");
       }
     }
   }
@@ -173,6 +184,7 @@ RawMesh finished(Words& words, Gmsh& mesh) {
   for (std::size_t e = 0; e < mesh.tets.size(); ++e)
     for (int k = 0; k < 4; ++k) result.tets(Eigen::Index(e), k) = mesh.tets[e][std::size_t(k)];
   if (mesh.quadratic) mesh.raw.notes.emplace_back("of elements of the second order only the corners are used");
+  if (mesh.others > 0) mesh.raw.notes.push_back(left_out_note(mesh.others));
   return std::move(mesh.raw);
 }
 

@@ -6,7 +6,6 @@
 #include <array>
 
 #include "base/error.h"
-#include "base/read_file.h"
 #include "geometry/mesh_file.h"
 #include "geometry/mesh_formats.h"
 #include "geometry/mesh_words.h"
@@ -147,7 +146,7 @@ RawMesh read_medit(std::string text, const std::string& name) {
 
 TriMesh read_surface(const std::filesystem::path& path) {
   const std::string name = path.string();
-  Words words(read_file(path), name);
+  Words words(mesh_text(path), name);
   const Sections read = read_sections(words, Wanted::triangles);
   if (read.triangles.rows() == 0) words.refuse("the file has no Triangles");
   check_triangles(read, name);

@@ -98,6 +98,16 @@ void write_text(const std::filesystem::path& path, const std::string& text) {
 
 }  // namespace
 
+std::string mesh_text(const std::filesystem::path& path) {
+  std::string text = read_text(path);
+  if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');
+  return text;
+}
+
+std::string left_out_note(long long elements) {
+  return fmt::format("{} elements are no tetrahedra of the first or second order, and have been left out", elements);
+}
+
 bool is_mesh_file(const std::filesystem::path& path) { return format_of(path) != nullptr || is_tetgen(path); }
 
 MeshFile read_mesh(const std::filesystem::path& path) {
@@ -108,10 +118,10 @@ MeshFile read_mesh(const std::filesystem::path& path) {
     nodes.replace_extension(".node");
     elements.replace_extension(".ele");
     name = elements.string();
-    raw = read_tetgen(read_file(nodes), nodes.string(), read_file(elements), name);
+    raw = read_tetgen(mesh_text(nodes), nodes.string(), mesh_text(elements), name);
   } else {
     const Format* format = format_of(path);
-    raw = (format != nullptr ? *format : formats.front()).read(read_file(path), name);
+    raw = (format != nullptr ? *format : formats.front()).read(mesh_text(path), name);
   }
   MeshFile file{std::move(raw.mesh), std::move(raw.notes)};
   check_duplicates(file.mesh, raw.lines, name);

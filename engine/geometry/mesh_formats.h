@@ -2,6 +2,7 @@
 // formats have in common is checked in mesh_file.cpp.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,12 @@ struct RawMesh {
 };
 
 inline constexpr long long largest_reference = 1'000'000;  // of an element
+
+// Returns a file's text without a byte-order mark; lines that end with \r alone end with \n.
+std::string mesh_text(const std::filesystem::path& path);
+
+// Says that elements with a volume were left out.
+std::string left_out_note(long long elements);
 
 RawMesh read_medit(std::string text, const std::string& name);
 RawMesh read_gmsh(std::string text, const std::string& name);  // versions 2.2 and 4.1, as text

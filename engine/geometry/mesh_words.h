@@ -3,13 +3,13 @@
 
 #include <fmt/core.h>
 
-#include <charconv>
 #include <cmath>
 #include <string>
 #include <string_view>
 
 #include "base/error.h"
 #include "geometry/mesh.h"
+#include "geometry/number_words.h"
 
 namespace supple {
 
@@ -47,15 +47,12 @@ class Words {
                          rows_, what));
     }
     if (word.empty()) refuse(fmt::format("the file ends where {} should stand", what));
-    Number value{};
-    const char* begin = word.data() + (word.front() == '+' ? 1 : 0);
-    const auto [end, error] = std::from_chars(begin, word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size())
-      refuse(fmt::format("'{}' is not {}", word.substr(0, 40), what));
+    const auto value = number_of<Number>(word);
+    if (!value) refuse(fmt::format("'{}' is not {}{}", word.substr(0, 40), what, why_no_number(word)));
     if constexpr (std::is_floating_point_v<Number>) {
-      if (!std::isfinite(value)) refuse(fmt::format("{} is not finite ({})", what, word.substr(0, 40)));
+      if (!std::isfinite(*value)) refuse(fmt::format("{} is not finite ({})", what, word.substr(0, 40)));
     }
-    return value;
+    return *value;
   }
 
   // Reads a section's count and refuses it when the rest of the file could not hold that many rows.
@@ -99,11 +96,16 @@ class Words {
     while (at_ < text_.size() && text_[at_] != '\n') ++at_;
   }
 
-  // Tells whether nothing but spaces stands before the next line.
+  // Passes over the rest of the line, on which only numbers may stand.
+  void skip_numbers(std::string_view what) {
+    while (!at_line_end()) (void)number<double>(what);
+  }
+
+  // Tells whether nothing but spaces and a comment stands before the next line.
   bool at_line_end() const {
     std::size_t at = at_;
     while (at < text_.size() && text_[at] != '\n' && is_space(text_[at])) ++at;
-    return at >= text_.size() || text_[at] == '\n';
+    return at >= text_.size() || text_[at] == '\n' || text_[at] == '#';
   }
 
   bool at_end() const { return at_ >= text_.size(); }
@@ -117,12 +119,7 @@ class Words {
  private:
   static bool is_space(char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == '\f' || c == '\v'; }
 
-  static bool is_number(std::string_view word) {
-    double value = 0;
-    if (word.empty()) return false;
-    const char* begin = word.data() + (word.front() == '+' ? 1 : 0);
-    return std::from_chars(begin, word.data() + word.size(), value).ptr == word.data() + word.size();
-  }
+  static bool is_number(std::string_view word) { return number_of<double>(word).has_value(); }
 
   std::string text_;
   std::string name_;

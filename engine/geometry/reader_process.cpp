@@ -88,9 +88,11 @@ class Child {
   int output_ = -1;
 };
 
-void check_status(int status, const std::string& name, const std::string& too_long) {
+void check_status(int status, const std::string& name) {
   if (WIFSIGNALED(status)) {
-    if (WTERMSIG(status) == SIGXCPU) throw InputError(name, too_long);
+    if (WTERMSIG(status) == SIGXCPU)
+      throw InputError(name, "takes too long to read: its reader may compute for 3 s, and 2 s for each MB of the file");
+    if (WTERMSIG(status) == SIGKILL) throw InputError(name, "cannot be read: its reader was killed; is memory short?");
     throw InputError(name, fmt::format("is broken: its reader crashed (signal {})", WTERMSIG(status)));
   }
   if (WEXITSTATUS(status) != 0)
@@ -101,7 +103,8 @@ void check_status(int status, const std::string& name, const std::string& too_lo
 
 std::string run_reader(const std::filesystem::path& program, const std::filesystem::path& file,
                        const ReaderLimits& limits) {
-  const std::string name = file.string(), too_long = "takes too long to read";
+  const std::string name = file.string(),
+                    too_long = fmt::format("takes too long to read: more than {:.3g} s", limits.seconds);
   const Clock::time_point deadline =
       Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limits.seconds));
   Child child(program, file);
@@ -121,7 +124,7 @@ std::string run_reader(const std::filesystem::path& program, const std::filesyst
   }
   const int status = child.wait_until(deadline);
   if (status == -1) throw InputError(name, too_long);
-  check_status(status, name, too_long);
+  check_status(status, name);
   return bytes;
 }
 

@@ -90,8 +90,12 @@ ColoredSurface decode(const std::string& bytes, const std::string& name) {
   Stream in(bytes, name);
   char head[8];
   in.take(head, sizeof head);
-  if (std::memcmp(head, stream::refused, sizeof head) == 0)
+  if (std::memcmp(head, stream::refused, sizeof head) == 0) {
+    stream::Place place;
+    in.take(&place, 1);
+    if (place.line > 0) throw InputError({Problem{{name, place.line, place.column}, std::string(in.rest())}});
     throw InputError(name, fmt::format("cannot be read: {}", in.rest()));
+  }
   stream::Counts counts;
   in.take(&counts, 1);
   const auto within = [](std::int64_t count, std::int64_t most) { return count >= 0 && count <= most; };

@@ -7,6 +7,7 @@
 
 #include "geometry/numbered_surface.h"
 #include "geometry/triangle_soup.h"
+#include "geometry/united_volume.h"
 
 namespace supple {
 namespace {
@@ -128,6 +129,20 @@ void share_out(const TriMesh& drawn, std::vector<SolidSurface>& pieces) {
   for (std::size_t p = 0; p < pieces.size(); ++p) pieces[p].drawn = own_mesh(drawn, owned[p], name);
 }
 
+// Returns the volume of a piece's solid. More than one of its parts may hold the same place; where none does, the sum
+// of the parts is exact.
+double solid_volume(const TriMesh& mesh, const std::vector<const Part*>& parts) {
+  const double sum = enclosed_volume(mesh);
+  bool may_overlap = false;
+  for (std::size_t a = 0; a < parts.size(); ++a)
+    for (std::size_t b = a + 1; b < parts.size() && !may_overlap; ++b)
+      may_overlap = parts[a]->volume > 0 && parts[b]->volume > 0 && boxes_meet(parts[a]->box, parts[b]->box, 0);
+  if (!may_overlap) return sum;
+  constexpr double error = 0.005;  // of columns, and more than that
+  const double united = united_volume(mesh);
+  return std::abs(united - sum) < error * sum ? sum : united;
+}
+
 }  // namespace
 
 double enclosed_volume(const TriMesh& boundary) {
@@ -164,22 +179,25 @@ SurfacePieces pieces_of(SolidSurface surface, Joining joining, double gap) {
     }
   }
   std::vector<std::vector<Eigen::Index>> triangles(parts.size());
+  std::vector<std::vector<const Part*>> parts_of_piece(parts.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
     auto& own = triangles[root(i)];
     own.insert(own.end(), parts[i].triangles.begin(), parts[i].triangles.end());
+    parts_of_piece[root(i)].push_back(&parts[i]);
   }
   std::erase_if(triangles, [](const auto& list) { return list.empty(); });
+  std::erase_if(parts_of_piece, [](const auto& list) { return list.empty(); });
   if (triangles.size() == 1) {  // the whole surface, with the bits that it had
-    result.volumes = {enclosed_volume(surface.boundary)};
+    result.volumes = {solid_volume(surface.boundary, parts_of_piece.front())};
     result.pieces.push_back(std::move(surface));
     return result;
   }
   std::vector<std::pair<double, TriMesh>> meshes;
   std::vector<std::int32_t> name(at(surface.boundary.points.rows()), -1);
-  for (auto& list : triangles) {
-    std::sort(list.begin(), list.end());
-    TriMesh mesh = own_mesh(surface.boundary, list, name);
-    const double volume = enclosed_volume(mesh);
+  for (std::size_t p = 0; p < triangles.size(); ++p) {
+    std::sort(triangles[p].begin(), triangles[p].end());
+    TriMesh mesh = own_mesh(surface.boundary, triangles[p], name);
+    const double volume = solid_volume(mesh, parts_of_piece[p]);
     meshes.emplace_back(volume, std::move(mesh));
   }
   std::stable_sort(meshes.begin(), meshes.end(), [](const auto& a, const auto& b) { return a.first > b.first; });

@@ -12,7 +12,7 @@ enum class Joining {
 
 struct SurfacePieces {
   std::vector<SolidSurface> pieces;  // by volume, the largest first
-  std::vector<double> volumes;       // of each piece; what overlaps counts twice [m^3]
+  std::vector<double> volumes;       // of each piece; what overlaps counts once [m^3]
   bool touching = false;             // whether parts of a piece are near each other without an overlap
 };
 

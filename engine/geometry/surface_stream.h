@@ -1,5 +1,5 @@
-// Defines what supple-read-surface writes: either `refused` and a reason of one line, or `accepted` and, all with the
-// bytes that they have in memory,
+// Defines what supple-read-surface writes: either `refused`, a Place and a reason of one line, or `accepted` and, all
+// with the bytes that they have in memory,
 //   Counts, the positions (3 doubles a vertex), the indices (3 int32 a triangle), the colours (a SurfaceColor a
 //   vertex), the textures (TextureHead, name, 3 bytes a pixel), the remarks and what was found, as text.
 #pragma once
@@ -15,6 +15,10 @@ inline constexpr std::int64_t most_vertices = 3 * most_triangles;  // reached wh
 inline constexpr std::int64_t most_textures = 64;
 inline constexpr std::int64_t most_pixels = 1 << 26;  // of all textures together
 inline constexpr std::int64_t most_text = 1 << 16;    // bytes of the remarks, and of what was found
+
+struct Place {
+  std::int32_t line = 0, column = 0;  // 0: unknown
+};
 
 struct Counts {
   std::int64_t vertices = 0, triangles = 0;

@@ -29,7 +29,8 @@ std::vector<ThicknessSample> sampled_thickness(const TriMesh& boundary, int coun
       const Vec3 middle = 0.5 * (corner(boundary, t, 1) + corner(boundary, t, 2));
       const Vec3 place = corner(boundary, t, 0) + std::sqrt(share) * (middle - corner(boundary, t, 0));
       const Vec3 inward = -soup.normals().row(t).transpose();
-      const auto hit = soup.first_hit(place + 1e-7 * size * inward, inward, t);
+      auto hit = soup.first_hit(place + 1e-7 * size * inward, inward, t);
+      if (!hit) hit = soup.first_hit(place, inward, t);  // the solid may be thinner than that
       if (hit) samples.push_back({*hit, place, inward});
     }
   }

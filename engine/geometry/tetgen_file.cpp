@@ -15,14 +15,14 @@ VertexOf read_nodes(Words& words, Positions& rest) {
   const Eigen::Index count = words.count("points", 8);
   const int dimension = words.number<int>("the dimension");
   if (dimension != 3) words.refuse(fmt::format("the dimension must be 3, not {}", dimension));
-  words.skip_line();  // the numbers of attributes and boundary markers
+  words.skip_numbers("the number of attributes or markers");
   VertexOf vertex_of;
   rest.resize(count, 3);
   for (Eigen::Index v = 0; v < count; ++v, words.end_row()) {
     const auto number = words.number<long long>("a point's number");
     if (!vertex_of.emplace(number, std::int32_t(v)).second) words.refuse(fmt::format("point {} stands twice", number));
     for (int k = 0; k < 3; ++k) rest(v, k) = words.number<double>("a coordinate");
-    words.skip_line();
+    words.skip_numbers("an attribute or marker of a point");
   }
   words.refuse_further_rows(0);
   return vertex_of;
@@ -49,7 +49,7 @@ void read_elements(Words& words, const VertexOf& vertex_of, RawMesh& raw) {
     if (!(region >= 0 && region <= double(largest_reference)) || region != std::floor(region))
       words.refuse(fmt::format("attribute {} is no whole number from 0 to {}", region, largest_reference));
     raw.mesh.regions.push_back(int(region));
-    words.skip_line();
+    words.skip_numbers("an attribute of an element");
   }
   words.refuse_further_rows(0);
 }

@@ -94,8 +94,32 @@ struct Search {
   double volume;   // of the body, about [m^3]
   int attempts;    // at most
   bool is_graded;
-  double near;  // relative difference from the wanted number that is accepted at last
+  double near;       // relative difference from the wanted number that is accepted at last
+  Vec3 extent;       // of the shape's box [m]
+  double swell = 0;  // [spacings]
+
+  // Returns how many cells a lattice of the present spacing has around the shape.
+  double cells() const { return (extent / spacing + Vec3::Constant(4 + 2 * swell)).prod(); }
 };
+
+// A body that fills next to nothing of its box needs a lattice of more points than any body is worth: a cell takes 32
+// bytes, and a million of them take a twentieth of a second.
+double most_cells(int vertices) { return std::max(4e6, 100.0 * vertices); }
+double most_cells_of_all_attempts(int vertices) { return std::max(1.2e7, 400.0 * vertices); }
+
+// found: vertices of the best mesh, 0 where there is none. is_capped: whether lattices became too large.
+[[noreturn]] void refuse_number(int vertices, Eigen::Index found, bool is_capped, const std::string& source) {
+  std::string text = fmt::format("cannot be meshed with {} vertices", vertices);
+  if (is_capped) {
+    text +=
+        fmt::format(": it fills so little of its box that lattices of more than {:.3g} million cells would be needed",
+                    1e-6 * most_cells(vertices));
+  } else if (found == 0 || found > vertices) {
+    text += ": its thinnest part needs more of them";
+  }
+  if (found > 0) text += fmt::format("; {} is the nearest number that gives a mesh", found);
+  throw InputError(source, text);
+}
 
 // Makes meshes until one has about the wanted number, and leaves the spacing of the mesh that it returns in the search.
 // make: of a spacing and a shift, see stuffed_lattice.h. Throws InputError where no mesh comes near enough.
@@ -108,7 +132,12 @@ TetMesh nearest_mesh(Search& search, int vertices, const std::string& source, co
   const auto miss = [&](const TetMesh& mesh) { return std::abs(static_cast<double>(mesh.rest.rows()) / vertices - 1); };
   double last_spacing = 0, last_count = 0, best_spacing = search.spacing;
   int in_pieces = 0;  // attempts
+  double cells = 0;   // of all attempts
+  bool is_capped = false;
   for (int attempt = 0; attempt < search.attempts; ++attempt) {
+    cells += search.cells();
+    is_capped = search.cells() > most_cells(vertices) || cells > most_cells_of_all_attempts(vertices);
+    if (is_capped) break;
     // After six attempts at the same alignment the lattice itself is shifted, because small bodies gain and lose whole
     // layers of vertices at once.
     const Vec3 shift = Vec3(0.31, 0.17, 0.43) * (attempt < 6 ? 0.0 : 0.37 * attempt);
@@ -137,11 +166,7 @@ TetMesh nearest_mesh(Search& search, int vertices, const std::string& source, co
   }
   search.spacing = best_spacing;
   if (miss(best) <= search.near) return best;
-  const auto found = best.rest.rows();
-  throw InputError(source,
-                   fmt::format("cannot be meshed with {} vertices{}{}", vertices,
-                               found == 0 || found > vertices ? ": its thinnest part needs more of them" : "",
-                               found == 0 ? "" : fmt::format("; {} is the nearest number that gives a mesh", found)));
+  refuse_number(vertices, best.rest.rows(), is_capped, source);
 }
 
 // With a volume far below the sampled one (whose own error is a few per cent), whole parts are missing.
@@ -159,7 +184,8 @@ TetMesh tetrahedralize(const Shape& shape, int vertices, const std::string& sour
   // The first guess of the spacing counts two lattice points for each cell; a small body has about as many again on its
   // surface, which the iteration corrects. The volume of a swollen shape follows from the spacing: some rounds find
   // both.
-  Search search{shape.bounds().diagonal() / std::cbrt(vertices), 0, 24, false, swell > 0 ? 0.1 : 0.03};
+  const Bounds box = shape.bounds();
+  Search search{box.diagonal() / std::cbrt(vertices), 0, 24, false, swell > 0 ? 0.1 : 0.03, box.extent(), swell};
   for (int round = 0; round < (swell > 0 ? 3 : 1); ++round) {
     search.volume = sampled_volume(shape, swell * search.spacing, swell > 0 ? fine : coarse, threads);
     check_inside(search.volume, source);
@@ -180,7 +206,7 @@ TetMesh graded_tetrahedralize(const Shape& shape, int vertices, const std::strin
                               const MeshingListener& listener) {
   check_bounds(shape, source);
   Threads threads = all_cores();
-  Search search{0, sampled_volume(shape, 0, fine, threads), 12, true, 0.1};
+  Search search{0, sampled_volume(shape, 0, fine, threads), 12, true, 0.1, shape.bounds().extent()};
   check_inside(search.volume, source);
   search.spacing = 1.2 * std::cbrt(2 * search.volume / vertices);  // thin parts take some of the vertices
   TetMesh mesh =

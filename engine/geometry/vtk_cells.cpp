@@ -2,6 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <array>
+
 #include "base/error.h"
 
 namespace supple {
@@ -14,6 +17,13 @@ constexpr long long tetrahedron = 10, quadratic_tetrahedron = 24;  // VTK's numb
   throw InputError({Problem{{name, cells.lines[cell]}, message}});
 }
 
+// Tells of voxels, hexahedra, wedges, pyramids and the like, and of polyhedra.
+bool has_volume(long long type) {
+  constexpr std::array<long long, 26> volumes = {11, 12, 13, 14, 15, 16, 25, 26, 27, 29, 31, 32, 33,
+                                                 37, 41, 42, 64, 65, 66, 67, 71, 72, 73, 74, 78, 79};
+  return std::find(volumes.begin(), volumes.end(), type) != volumes.end();
+}
+
 void check_counts(const VtkCells& cells, const std::string& name) {
   const auto same = [&](std::size_t count, const char* what) {
     if (count != cells.ends.size())
@@ -21,6 +31,9 @@ void check_counts(const VtkCells& cells, const std::string& name) {
   };
   same(cells.types.size(), "types of cells");
   if (!cells.regions.empty()) same(cells.regions.size(), "regions of cells");
+  if (!cells.ends.empty() && cells.ends.back() < std::ssize(cells.points))
+    throw InputError(
+        name, fmt::format("the cells have {} points, but {} are listed", cells.ends.back(), cells.points.size()));
 }
 
 }  // namespace
@@ -30,11 +43,15 @@ RawMesh tetrahedra_of(VtkCells cells, const std::string& name) {
   RawMesh raw;
   std::vector<std::array<std::int32_t, 4>> tets;
   long long begin = 0;
+  long long others = 0;  // cells with a volume that are no such tetrahedra
   bool quadratic = false;
   for (std::size_t c = 0; c < cells.ends.size(); begin = cells.ends[c], ++c) {
     if (cells.ends[c] < begin || cells.ends[c] > std::ssize(cells.points))
       refuse(cells, c, name, fmt::format("it ends at {} of {} points", cells.ends[c], cells.points.size()));
-    if (cells.types[c] != tetrahedron && cells.types[c] != quadratic_tetrahedron) continue;
+    if (cells.types[c] != tetrahedron && cells.types[c] != quadratic_tetrahedron) {
+      others += has_volume(cells.types[c]) ? 1 : 0;
+      continue;
+    }
     const long long count = cells.ends[c] - begin, wanted = cells.types[c] == tetrahedron ? 4 : 10;
     if (count != wanted) refuse(cells, c, name, fmt::format("a tetrahedron of {} points; it has {}", count, wanted));
     std::array<std::int32_t, 4> corners{};
@@ -54,6 +71,7 @@ RawMesh tetrahedra_of(VtkCells cells, const std::string& name) {
   }
   if (tets.empty()) throw InputError(name, "the file has no tetrahedra");
   if (quadratic) raw.notes.emplace_back("of elements of the second order only the corners are used");
+  if (others > 0) raw.notes.push_back(left_out_note(others));
   raw.mesh.rest = std::move(cells.rest);
   raw.mesh.tets.resize(std::ssize(tets), 4);
   for (std::size_t e = 0; e < tets.size(); ++e)

@@ -21,6 +21,8 @@ void read_cells(Words& words, bool arrays, VtkCells& cells) {
     if (words.next() != "OFFSETS") words.refuse("OFFSETS should follow CELLS");
     (void)words.next();  // the type of the numbers
     cells.ends = read_integers(words, first, "an offset of a cell");
+    if (!cells.ends.empty() && cells.ends.front() != 0)
+      words.refuse(fmt::format("the first offset of the cells is {}, not 0", cells.ends.front()));
     if (!cells.ends.empty()) cells.ends.erase(cells.ends.begin());  // the first one is the first cell's start
     if (words.next() != "CONNECTIVITY") words.refuse("CONNECTIVITY should follow OFFSETS");
     (void)words.next();
@@ -37,6 +39,8 @@ void read_cells(Words& words, bool arrays, VtkCells& cells) {
     cells.ends.push_back(std::ssize(cells.points));
     cells.lines.push_back(words.line());
   }
+  const Eigen::Index held = std::ssize(cells.points) + first;
+  if (held < second) words.refuse(fmt::format("{} numbers of cells announced, but the cells hold {}", second, held));
 }
 
 void read_points(Words& words, VtkCells& cells) {

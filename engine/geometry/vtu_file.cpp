@@ -2,14 +2,15 @@
 // read as text, or as base64 that is not compressed; XML is taken apart only as far as these files need it.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <optional>
 
 #include "base/error.h"
 #include "geometry/mesh_formats.h"
+#include "geometry/number_words.h"
 #include "geometry/vtk_cells.h"
 
 namespace supple {
@@ -20,6 +21,11 @@ class Vtu {
   Vtu(std::string text, std::string name) : text_(std::move(text)), name_(std::move(name)) {}
 
   [[noreturn]] void refuse(const std::string& message) const { throw InputError(name_, message); }
+  // Names the line of a part of the text.
+  [[noreturn]] void refuse(std::string_view part, const std::string& message) const {
+    const auto line = 1 + std::count(text_.data(), part.data(), '\n');
+    throw InputError({Problem{{name_, int(line)}, message}});
+  }
 
   // Returns the place of the next opening tag of this name from a place on, before another place; npos where there is
   // none.
@@ -132,11 +138,11 @@ std::vector<To> text_array(const Vtu& file, std::string_view text) {
     i = text.find_first_not_of(" \t\r\n", i);
     if (i == std::string_view::npos) break;
     const std::size_t end = std::min(text.find_first_of(" \t\r\n", i), text.size());
-    To value{};
-    const auto [stop, error] = std::from_chars(text.data() + i, text.data() + end, value);
-    if (error != std::errc() || stop != text.data() + end)
-      file.refuse(fmt::format("'{}' in an array is no number", text.substr(i, std::min<std::size_t>(end - i, 40))));
-    values.push_back(value);
+    const std::string_view word = text.substr(i, end - i);
+    const auto value = number_of<To>(word);
+    if (!value)
+      file.refuse(word, fmt::format("'{}' in an array is no number{}", word.substr(0, 40), why_no_number(word)));
+    values.push_back(*value);
     i = end;
   }
   return values;
@@ -188,7 +194,11 @@ RawMesh read_vtu(std::string text, const std::string& name) {
   if (file.tag("Piece", piece + 1, file.size()) != std::string::npos)
     file.refuse("files with several pieces are not read");
   VtkCells cells;
-  const auto coordinates = array_at<double>(file, required(file, "Points", ""), header);
+  const std::size_t points = required(file, "Points", "");
+  const std::string components = file.attribute(points, "NumberOfComponents");
+  if (!components.empty() && components != "3")
+    file.refuse(fmt::format("points have {} components, and 3 are read", components.substr(0, 40)));
+  const auto coordinates = array_at<double>(file, points, header);
   cells.points = array_at<long long>(file, required(file, "Cells", "connectivity"), header);
   cells.ends = array_at<long long>(file, required(file, "Cells", "offsets"), header);
   cells.types = array_at<long long>(file, required(file, "Cells", "types"), header);

@@ -1,10 +1,13 @@
-// Tests what `supple info` prints about a mesh, a scene and the folder of a run.
+// Tests what `supple info` prints about a mesh, a surface, a scene and the folder of a run.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <chrono>
 #include <fstream>
 
 #include "support/bodies.h"
 #include "support/program.h"
+#include "support/surfaces.h"
 
 namespace supple {
 namespace {
@@ -130,6 +133,59 @@ TEST(Info, TellsOfARunThatWasKilled) {
                             "frames          0 in profile.json, 2 pictures\n", "    frames/ ", "3 bytes  3 files\n"});
   std::ofstream(out / "run.json") << "{}\n";  // as a run starts
   EXPECT_EQ(run(folder.path, {"info", "out"}).status, 0);
+}
+
+TEST(Info, TellsOfASurfaceTheVolumeThatBecomesABody) {
+  const test::TemporaryFolder folder;
+  const Vec3 half(0.5, 0.5, 0.5);
+  std::ofstream(folder.path / "nested.obj")
+      << test::obj_text(test::together(test::box_surface(half), test::box_surface(0.6 * half)));
+  const Result result = run(folder.path, {"info", "nested.obj"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  expect_lines(result.out, {"piece 1         1 x 1 x 1, volume 1, 24 triangles\n"});
+}
+
+// A lattice as fine as the volume of these asks for would take gigabytes and minutes.
+TEST(Info, TellsSoonOfSurfacesThatFillNextToNothingOfTheirBox) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path / "thin.obj") << test::obj_text(test::box_surface(Vec3(0.5, 0.5, 5e-10)));
+  TriMesh spike = test::box_surface(Vec3(0.5, 0.5, 0.5)), fin = spike;
+  spike.points.row(7) << 1000, 1000, 1000;
+  fin.points.conservativeResize(9, 3);
+  fin.points.row(8) << 1000, 1000, 1000;
+  fin.triangles.conservativeResize(13, 3);
+  fin.triangles.row(12) << 0, 1, 8;
+  TriMesh torn = fin;
+  torn.triangles.conservativeResize(12, 3);
+  torn.triangles(3, 2) = 8;
+  std::ofstream(folder.path / "spike.obj") << test::obj_text(spike);
+  std::ofstream(folder.path / "fin.obj") << test::obj_text(fin);
+  std::ofstream(folder.path / "torn.obj") << test::obj_text(torn);
+  for (const char* name : {"thin.obj", "spike.obj", "fin.obj", "torn.obj"}) {
+    const auto start = std::chrono::steady_clock::now();
+    const Result result = run(folder.path, {"info", name});
+    EXPECT_TRUE(result.status == 0 || (result.status == 2 && !result.err.empty())) << name << ": " << result.err;
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10)) << name;
+    if (std::string(name) == "spike.obj")
+      expect_lines(result.err,
+                   {"fills so little of its box that lattices of more than 4 million cells would be needed"});
+    if (std::string(name) == "thin.obj") expect_lines(result.out, {"volume 1e-09", "thickness     1e-09"});
+  }
+  rusage used{};
+  ::getrusage(RUSAGE_CHILDREN, &used);
+  EXPECT_LT(used.ru_maxrss, 2'000'000);  // kB
+}
+
+TEST(Info, ReadsScenesAndReplaysWithAByteOrderMark) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path / "bar.toml") << "\xef\xbb\xbf" << bar_scene;
+  std::ofstream(folder.path / "r.toml") << "\xef\xbb\xbf"
+                                        << "scene = \"bar.toml\"\n[[change]]\nt = 0.1\npath = \"gravity\"\n"
+                                           "value = [0, 0, 0]\n";
+  EXPECT_EQ(run(folder.path, {"info", "bar.toml"}).status, 0);
+  const Result result = run(folder.path, {"info", "r.toml"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  expect_lines(result.out, {"changes         1 while it runs\n"});
 }
 
 TEST(Info, TellsOfAMeshAndRefusesTheRest) {

@@ -30,6 +30,17 @@ TEST(ReadFile, GivesEveryByte) {
   EXPECT_FALSE(read_file("/proc/self/status").empty());  // has no size
 }
 
+TEST(ReadFile, TextHasNoByteOrderMark) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path / "text", std::ios::binary) << "\xef\xbb\xbf"
+                                                        << "v 1\n\xef\xbb\xbf";
+  EXPECT_EQ(read_text(folder.path / "text"), "v 1\n\xef\xbb\xbf");
+  for (const char* mark : {"\xff\xfe", "\xfe\xff"}) {
+    std::ofstream(folder.path / "wide", std::ios::binary) << mark << "v";
+    EXPECT_THROW((void)read_text(folder.path / "wide"), InputError);
+  }
+}
+
 TEST(ReadFile, RefusesWhatHasNoEndOrCannotBeRead) {
   const test::TemporaryFolder folder;
   const std::string name = folder.path.string();

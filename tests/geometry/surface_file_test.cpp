@@ -321,14 +321,19 @@ TEST_F(SurfaceFile, RefusesWhatIsNoFileOfThatKind) {
   expect_refusal(refusal_of(folder_.path / "large.stl"), "is larger than 1 GiB");
   expect_refusal(refusal_of(write("text.xyz", "hello")), "cannot be read: ");
   expect_refusal(refusal_of(write("none.stl", stl_bytes(TriMesh{}, 0))), "cannot be read: ");
-  expect_refusal(refusal_of(write("points.obj", "v 0 0 0\nv 1 0 0\n")), "cannot be read: ");
+  expect_refusal(refusal_of(write("points.obj", "v 0 0 0\nv 1 0 0\n")), "the file has 2 vertices, and no faces");
   std::string nan = obj_text(ring_);
   nan.replace(0, nan.find('\n'), "v nan 0 0");
-  expect_refusal(refusal_of(write("nan.obj", nan)), "is not finite: (nan, 0, 0)");
+  expect_refusal(refusal_of(write("nan.obj", nan)), "a coordinate is not finite: nan");
 }
 
 TEST_F(SurfaceFile, SurvivesHeadersThatClaimGigabytes) {
-  EXPECT_NE(refusal_of(write("many.stl", stl_bytes(ring_, 0xFFFFFFFFu))), "");
+  const ColoredSurface closed = read_colored_surface(write("many.stl", stl_bytes(ring_, 0xFFFFFFFFu)));
+  EXPECT_EQ(closed.mesh.triangles.rows(), 192);
+  ASSERT_EQ(closed.remarks.size(), 1u);
+  EXPECT_EQ(closed.remarks[0], "4294967295 facets announced, but the file has 192; those are closed, and are read");
+  expect_refusal(refusal_of(write("many.stl", stl_bytes(test::without_triangle(ring_, 7), 0xFFFFFFFFu))),
+                 "4294967295 facets announced, but the file has 191");
 }
 
 // The reader would take memory for what is announced, and seek the end of a header until its time is up.
@@ -380,10 +385,13 @@ TEST_F(SurfaceFile, AReaderThatCrashesHangsFailsOrFloodsIsRefusedAndGone) {
   EXPECT_EQ(run_reader(script("printf \"$1\""), "file"), "file");
   EXPECT_EQ(says("kill -SEGV $$", {}), "is broken: its reader crashed (signal 11)");
   EXPECT_EQ(says("exit 3", {}), "is broken: its reader failed (status 3)");
-  EXPECT_EQ(says("kill -XCPU $$", {}), "takes too long to read");
+  EXPECT_EQ(says("kill -XCPU $$", {}),
+            "takes too long to read: its reader may compute for 3 s, and 2 s for each MB of the file");
+  EXPECT_EQ(says("kill -KILL $$", {}), "cannot be read: its reader was killed; is memory short?");
   const auto start = std::chrono::steady_clock::now();
-  EXPECT_EQ(says("exec sleep 100", {.seconds = 0.2}), "takes too long to read");
-  EXPECT_EQ(says("exec sleep 100 >&-", {.seconds = 0.2}), "takes too long to read");  // output closed, yet it lives
+  EXPECT_EQ(says("exec sleep 100", {.seconds = 0.2}), "takes too long to read: more than 0.2 s");
+  EXPECT_EQ(says("exec sleep 100 >&-", {.seconds = 0.2}),
+            "takes too long to read: more than 0.2 s");  // output closed, yet it lives
   EXPECT_EQ(says("exec cat /dev/zero", {.bytes = 3 << 20}), "holds more than 3 MB of triangles");
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(50));
   EXPECT_EQ(refusal([&] { run_reader(folder_.path / "none", "file"); }),

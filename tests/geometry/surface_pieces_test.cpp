@@ -41,6 +41,20 @@ TEST(SurfacePieces, ACavityBelongsToWhatIsAroundIt) {
   EXPECT_NEAR(pieces_of({shell, {}}, Joining::near, 0).volumes[0], 8 - 1, 1e-12);
 }
 
+TEST(SurfacePieces, WhatIsInsideTwiceCountsOnce) {
+  const auto volume = [](const TriMesh& mesh) { return pieces_of({mesh, {}}, Joining::near, 0).volumes[0]; };
+  const TriMesh nested = test::together(box_at(0, 0.5), box_at(0.03, 0.3));
+  EXPECT_NEAR(volume(nested), 1, 1e-9);
+  EXPECT_NEAR(volume(test::together(nested, box_at(0, 0.1))), 1, 1e-9);
+  // Half of the smaller box is in the larger one.
+  EXPECT_NEAR(volume(test::together(box_at(0, 0.5), box_at(0.5, 0.25))), 1 + 0.125 / 2, 0.005);
+  const TriMesh ball = test::sphere_surface(1, 60, 30);
+  const double own = enclosed_volume(ball), cap = std::numbers::pi * 0.25 * 2.5 / 3;  // of height 1/2
+  EXPECT_NEAR(volume(test::together(ball, test::moved(ball, Vec3(0, 0.3, 1)))), 2 * own - 2 * cap, 0.15);
+  const TriMesh shell = test::together(box_at(0, 1), test::inside_out(box_at(0, 0.5)));
+  EXPECT_NEAR(volume(test::together(shell, box_at(0.9, 0.2))), 8 - 1 + 0.4 * 0.4 * 0.1, 0.02);
+}
+
 TEST(SurfacePieces, TheLargestComesFirstAndWhatIsDrawnGoesWithItsPiece) {
   const TriMesh both = test::together(box_at(0, 0.5), box_at(5, 1));
   const SurfacePieces found = pieces_of({both, both}, Joining::near, 0.1);
@@ -64,6 +78,12 @@ TEST(SurfaceThickness, IsThatOfAPlateAndOfATube) {
   EXPECT_NEAR(plate.back().thickness, 2, 1e-6);
   const auto ring = sampled_thickness(test::torus_surface(1, 0.2, 60, 30));
   EXPECT_NEAR(ring[ring.size() / 2].thickness, 0.4, 0.01);
+}
+
+TEST(SurfaceThickness, OfAPlateThatIsNextToNothingIsFound) {
+  const auto plate = sampled_thickness(test::box_surface(Vec3(1, 5e-10, 1)));
+  ASSERT_GT(plate.size(), 1900u);
+  EXPECT_NEAR(plate[plate.size() / 2].thickness, 1e-9, 1e-12);
 }
 
 TEST(SurfaceThickness, SpacingAndVerticesBelongTogether) {
