@@ -142,7 +142,8 @@ std::vector<std::string> one_repeat(const std::string& program, const std::vecto
       words.push_back(word);
     }
   }
-  words.insert(words.end(), {"--repeats", "1", "--quiet", "--out", folder.string()});
+  // They stand after the verb, and before a "--", after which no word is an option.
+  words.insert(words.begin() + 2, {"--repeats", "1", "--quiet", "--out", file_word(folder)});
   return words;
 }
 

@@ -64,15 +64,18 @@ std::string gif_words(const FilmCoding& coding) {
       colors, coding.quality == FilmQuality::best ? 3 : 5);
 }
 
+// Keeps ffmpeg to files and pipes, whatever a name looks like. It wants to be told for its input and for its output.
+constexpr const char* local_alone = "-protocol_whitelist file,pipe";
+
 std::vector<std::string> ffmpeg_words(const std::filesystem::path& part, int width, int height, double fps,
                                       const FilmCoding& coding) {
   const bool gif = coding.format == FilmFormat::gif;
   const std::string words =
       // Frames come in the film's own colours (film_colors.h): ffmpeg took 4 ms for the same conversion.
       fmt::format(
-          "ffmpeg -nostdin -y -loglevel error -f rawvideo -pixel_format {} -video_size {}x{} -framerate {} "
-          "-i pipe:0 ",
-          gif ? "rgb24" : "yuv420p", width, height, fps) +
+          "ffmpeg -nostdin -y -loglevel error {} -f rawvideo -pixel_format {} -video_size {}x{} -framerate {} "
+          "-i pipe:0 {} ",
+          local_alone, gif ? "rgb24" : "yuv420p", width, height, fps, local_alone) +
       // The transfer function is that of the frames, sRGB.
       (gif ? gif_words(coding)
            : "-pix_fmt yuv420p -color_range tv -colorspace bt709 -color_primaries bt709 -color_trc iec61966-2-1 " +
@@ -80,7 +83,7 @@ std::vector<std::string> ffmpeg_words(const std::filesystem::path& part, int wid
   std::vector<std::string> list;
   std::istringstream stream(words);
   for (std::string word; stream >> word;) list.push_back(word);
-  list.push_back(part.string());
+  list.push_back(file_word(part));
   return list;
 }
 
@@ -163,8 +166,9 @@ VideoResult VideoEncoder::finish() {
 }
 
 long count_video_frames(const std::filesystem::path& video) {
-  const auto probe = run_program({"ffprobe", "-v", "error", "-count_packets", "-select_streams", "v:0", "-show_entries",
-                                  "stream=nb_read_packets", "-of", "csv=p=0", video.string()});
+  const auto probe =
+      run_program({"ffprobe", "-v", "error", "-protocol_whitelist", "file", "-count_packets", "-select_streams", "v:0",
+                   "-show_entries", "stream=nb_read_packets", "-of", "csv=p=0", file_word(video)});
   if (!probe || probe->status != 0) return -1;
   char* end = nullptr;
   const long count = std::strtol(probe->output.c_str(), &end, 10);

@@ -148,6 +148,18 @@ TEST_F(FilmOfABar, WithoutFilesIsTheSameFilm) {
   EXPECT_EQ(film("a", {"--film-only", "--no-video"}).status, 2);
 }
 
+// To ffmpeg, such a name by itself would be a protocol or an option.
+TEST_F(FilmOfABar, GoesIntoAFolderOfAnyName) {
+  for (const std::string name : {"take:1", "concat:1|2", "-dash", "http://nowhere.invalid/film"}) {
+    const Result result = run(folder_.path, {"render", "bar.toml", "--quiet", "--out=" + name});
+    EXPECT_EQ(result.status, 0) << name << result.err;
+    EXPECT_EQ(count_video_frames(folder_.path / name / "video.mp4"), 12) << name;
+    const Result drawn = run(folder_.path, {"draw", "--quiet", "--jobs", "2", "--out=" + name + "-again", "--", name});
+    EXPECT_EQ(drawn.status, 0) << name << drawn.err;
+    EXPECT_EQ(count_video_frames(folder_.path / (name + "-again") / "video.mp4"), 12) << name;
+  }
+}
+
 TEST_F(FilmOfABar, WithoutFilesNeedsFfmpegToTheEnd) {
   const std::string program = fmt::format("'{}' render bar.toml --quiet --film-only", test::program_name);
   const Result without = in_shell("PATH=/nowhere " + program);
