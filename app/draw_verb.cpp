@@ -73,11 +73,12 @@ int finish_film(const DrawCommand& command, const LoadedDrawing& drawing, std::o
   if (end.outcome == VideoOutcome::failed)
     throw RunError(
         fmt::format("no film: {}; the pictures are whole{}", end.reason, end.told.empty() ? "" : ". " + end.told));
+  const bool written = end.outcome == VideoOutcome::written;
+  if (!written) say(stderr, fmt::format("warning: no film: {}; the pictures are whole\n", end.reason));
   if (command.quiet) return 0;
   say(stdout, fmt::format("  {} pictures in {}\n", pictures, duration_text(seconds)));
-  const bool written = end.outcome == VideoOutcome::written;
-  say(stdout, written ? fmt::format("  film     {}\n", (command.folder() / film_file(command.coding.format)).string())
-                      : fmt::format("  no film: {}\n", end.reason));
+  if (written)
+    say(stdout, fmt::format("  film     {}\n", (command.folder() / film_file(command.coding.format)).string()));
   return 0;
 }
 

@@ -72,7 +72,6 @@ void print_result(const FilmResult& result, const RunFolder& folder, const Scene
   say(stdout, fmt::format("  {} frames{} in {} ({}the film's rate is {:g}), after {} of set-up\n", made, kept,
                           duration_text(seconds), rate, scene.fps, duration_text(result.setup_ms / 1000)));
   if (result.video_written) say(stdout, fmt::format("  film     {}\n", result.video.string()));
-  if (!result.video_message.empty() && !result.video_failed) say(stdout, fmt::format("  {}\n", result.video_message));
   for (const std::filesystem::path& still : result.stills)
     say(stdout, fmt::format("  {:<8} {}\n", still.stem().string(), still.string()));
   say(stdout, fmt::format("  profile  {}\n", (folder.path() / "profile.json").string()));
@@ -127,7 +126,8 @@ int say_result(const FilmCommand& command, const EndOfRun& end) {
   if (const std::string unsolved = result.tally.unsolved_text(); !unsolved.empty())
     say(stderr, fmt::format("warning: {}\n", unsolved));
   if (!unrecorded.empty()) say(stderr, fmt::format("supple: {}\n", unrecorded));
-  if (result.video_failed) say(stderr, fmt::format("supple: {}\n", result.video_message));
+  if (!result.video_message.empty())
+    say(stderr, fmt::format("{}: {}\n", result.video_failed ? "supple" : "warning", result.video_message));
   if (!result.stills_message.empty()) say(stderr, fmt::format("supple: {}\n", result.stills_message));
   if (result.end == FilmEnd::interrupted) {
     say(stderr, fmt::format("supple: interrupted after {} frames; they are whole, and so is what belongs to them in "

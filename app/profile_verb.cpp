@@ -69,7 +69,7 @@ void report(const ProfileCommand& request, const ZoneProfile& profile, const std
     if (plotted) say(stdout, fmt::format("  plot     {}\n", (folder / "frame-times.svg").string()));
     say(stdout, fmt::format("  {}\n", verdict(work_of(profile))));
   }
-  if (!plotted && !request.film.plan.quiet) say(stderr, fmt::format("note: {}\n", no_plot));
+  if (!plotted) say(stderr, fmt::format("note: {}\n", no_plot));
 }
 
 // Profiles one run in this process.

@@ -85,10 +85,11 @@ int make_film_of(const SplitCommand& command, const Drawn& drawn) {
     const VideoResult end = video->finish();
     if (end.outcome == VideoOutcome::failed)
       throw RunError(fmt::format("no film: {}; the pictures are whole. {}", end.reason, end.told));
-    if (!command.quiet)
-      say(stdout, end.outcome == VideoOutcome::written
-                      ? fmt::format("  film     {}\n", (command.folder / file).string())
-                      : fmt::format("  no film: {}\n", end.reason));
+    if (end.outcome != VideoOutcome::written) {
+      say(stderr, fmt::format("warning: no film: {}; the pictures are whole\n", end.reason));
+    } else if (!command.quiet) {
+      say(stdout, fmt::format("  film     {}\n", (command.folder / file).string()));
+    }
   }
   return 0;
 }

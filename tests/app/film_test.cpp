@@ -160,6 +160,23 @@ TEST_F(FilmOfABar, GoesIntoAFolderOfAnyName) {
   }
 }
 
+TEST_F(FilmOfABar, IsMissedAloudWithoutFfmpeg) {
+  const std::string program = fmt::format("PATH=/nowhere '{}'", test::program_name);
+  const std::string message = "warning: no film: ffmpeg is not installed (Debian: ffmpeg); the {} are whole\n";
+  for (const char* more : {"--quiet", "--json", ""}) {
+    const Result result = in_shell(program + " render bar.toml --force --out out " + more);
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.err.find(fmt::format(fmt::runtime(message), "frames")), std::string::npos) << result.err;
+    EXPECT_EQ(pictures("out"), 12);
+  }
+  const Result drawn = in_shell(program + " draw out --quiet");
+  EXPECT_EQ(drawn.status, 0);
+  EXPECT_EQ(drawn.err, fmt::format(fmt::runtime(message), "pictures"));
+  const Result split = in_shell(program + " draw out out --quiet");
+  EXPECT_EQ(split.status, 0);
+  EXPECT_EQ(split.err, fmt::format(fmt::runtime(message), "pictures"));
+}
+
 TEST_F(FilmOfABar, WithoutFilesNeedsFfmpegToTheEnd) {
   const std::string program = fmt::format("'{}' render bar.toml --quiet --film-only", test::program_name);
   const Result without = in_shell("PATH=/nowhere " + program);
