@@ -3,6 +3,7 @@
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
+#include "film/picture_words.h"
 #include "film/places.h"
 #include "film/progress.h"
 #include "scene/script_trial.h"
@@ -44,6 +45,7 @@ int check(const std::string& name, const std::vector<std::string>& settings, boo
     later.message = "supple render refuses this: " + later.message;
     list.push_back(std::move(later));
   }
+  if (auto letters = letters_warning(script, caption_font())) list.push_back(std::move(*letters));
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (auto warning = skin_warning(bodies[b], drawn[b])) list.push_back(std::move(*warning));
   }

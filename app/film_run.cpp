@@ -12,6 +12,7 @@
 #include "base/interrupts.h"
 #include "base/text.h"
 #include "base/timing.h"
+#include "film/picture_words.h"
 #include "film/places.h"
 #include "film/rough_motion.h"
 #include "output/json_text.h"
@@ -24,7 +25,7 @@ namespace supple {
 namespace {
 
 // Prints warnings, and the notes from reading meshes.
-void say_remarks(const LoadedFilm& film) {
+void say_remarks(const FilmPlan& plan, const LoadedFilm& film) {
   const SceneDef& scene = film.script.scene();
   if (scene.sweep_points > 0) {
     say(stderr, fmt::format("note: the scene has a sweep of {} points, which this leaves aside: supple sweep runs it\n",
@@ -32,6 +33,8 @@ void say_remarks(const LoadedFilm& film) {
   }
   for (const Problem& warning : all_warnings(film.script, film.bodies))
     say(stderr, fmt::format("warning: {}\n", warning.text()));
+  if (const auto letters = letters_warning(film.script, caption_font()); letters && plan.pictures != FilmPictures::none)
+    say(stderr, fmt::format("warning: {}\n", letters->text()));
   for (const Body& body : film.bodies) {
     for (const std::string& note : body.notes) say(stderr, fmt::format("note: {}: {}\n", body.source, note));
   }
@@ -246,7 +249,7 @@ int run_film(const FilmCommand& command, const std::vector<std::string>& words, 
   const Stopwatch setup;
   LoadedFilm film = load_film(plan, words);
   const SceneDef& scene = film.script.scene();
-  if (!plan.quiet) say_remarks(film);
+  if (!plan.quiet) say_remarks(plan, film);
   build_models(plan, film);
   if (!plan.quiet) say_bodies(film.info);
   if (!plan.quiet && plan.preview) say_preview(film);

@@ -177,8 +177,8 @@ int ConfigTable::integer(const Key& key, std::optional<int> fallback, const Rang
     if (!fallback) complain(fmt::format("'{}' is missing: {} ({})", key.name, key.meaning, range.text()));
     return instead;
   }
-  const std::optional<std::int64_t> value = node->is_integer() ? node->value<std::int64_t>() : std::nullopt;
-  if (!value || !range.contains(static_cast<double>(*value)) || std::abs(static_cast<double>(*value)) > 2e9) {
+  const std::optional<double> value = node->is_number() ? node->value<double>() : std::nullopt;  // 10.0 is whole too
+  if (!value || *value != std::trunc(*value) || !range.contains(*value) || std::abs(*value) > 2e9) {
     wrong(key, *node, fmt::format("a whole number, {}{}", range.text(), word_hint(*node)));
     return instead;
   }

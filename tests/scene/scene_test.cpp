@@ -71,6 +71,18 @@ keys = [ { t = 1 }, { t = 0.5 } ]
   }
 }
 
+TEST(SceneFile, TakesWholeNumbersWithAPoint) {
+  const SceneDef scene =
+      test::scene_of("frames = 10.0\nsubsteps = 2e0\nfps = 24\n[solver]\niterations = 12.0\n" + good_body);
+  EXPECT_EQ(scene.frames, 10);
+  EXPECT_EQ(scene.substeps, 2);
+  EXPECT_EQ(scene.bodies.front().solver.settings.iterations, 12);
+  EXPECT_EQ(problems_of("frames = 10.5\n" + good_body),
+            std::vector<std::string>{"scene.toml:1:10: frames = 10.5: must be a whole number, 1 to 1e+06"});
+  EXPECT_EQ(problems_of("frames = 1e300\n" + good_body).size(), 1u);
+  EXPECT_EQ(problems_of("frames = nan\n" + good_body).size(), 1u);
+}
+
 TEST(SceneFile, RefusesNamesThatFilesCannotHave) {
   const auto named = [](const std::string& name) { return problems_of(good_body + "name = \"" + name + "\"\n"); };
   for (const char* name : {"", "a b", "a/b", "a.b"}) {
