@@ -9,6 +9,7 @@
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
+#include "base/frame_time.h"
 #include "base/interrupts.h"
 #include "base/text.h"
 #include "base/timing.h"
@@ -56,7 +57,7 @@ int say_end(const DrawResult& result, const std::filesystem::path& folder) {
 void make_sheet(const DrawCommand& command, const LoadedDrawing& drawing) {
   const SceneDef& scene = drawing.film.script.scene();
   std::vector<double> times;
-  for (const int frame : drawing.frames) times.push_back((frame + 1) / scene.fps);
+  for (const int frame : drawing.frames) times.push_back(frame_time(frame, scene.fps));
   const std::filesystem::path file = write_sheet(command.folder(), scene.title, times);
   if (!command.quiet) say(stdout, fmt::format("  sheet    {}\n", file.string()));
 }

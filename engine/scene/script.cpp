@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/frame_time.h"
 #include "base/text.h"
 #include "scene/model_scene.h"
 #include "scene/replay_start.h"
@@ -82,7 +83,7 @@ Config Script::Parts::document_at(double time, std::size_t count, std::optional<
 }
 
 bool Script::Parts::at_work(const TimedChange& change, int frame) const {
-  const double from = frame / start.fps, to = (frame + 1) / start.fps;
+  const double from = frame / start.fps, to = frame_time(frame, start.fps);
   if (change.over <= 0)
     return change.at > time_tolerance && change.at > from - time_tolerance && change.at < to - time_tolerance;
   return change.at < to - time_tolerance && change.at + change.over > from + time_tolerance;
@@ -181,7 +182,7 @@ std::vector<const TimedChange*> Script::at_work(int frame) const {
 }
 
 SceneDef Script::scene_at(int frame) const {
-  Config document = parts_->document_at((frame + 1) / parts_->start.fps, parts_->changes.size());
+  Config document = parts_->document_at(frame_time(frame, parts_->start.fps), parts_->changes.size());
   return parts_->read(document);
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "base/frame_time.h"
 #include "scene/material_reader.h"
 #include "scene/scene_reader.h"
 #include "scene/script_parts.h"
@@ -168,12 +169,12 @@ void Script::Parts::check_frames(Reported& reported) {
       frames.push_back(frame);
   }
   const auto check = [&](std::size_t i) {
-    check_at((frames[i] + 1) / start.fps, fmt::format(" (first in frame {})", frames[i]), reported);
+    check_at(frame_time(frames[i], start.fps), fmt::format(" (first in frame {})", frames[i]), reported);
   };
   const std::size_t stride = 1 + frames.size() / most_checked;
   for (std::size_t first = 0; first < frames.size() && problems.size() < most_problems; first += stride) {
     const std::size_t last = std::min(first + stride, frames.size()) - 1;
-    if (stride > 1 && problems_of(document_at((frames[last] + 1) / start.fps, changes.size())).empty()) continue;
+    if (stride > 1 && problems_of(document_at(frame_time(frames[last], start.fps), changes.size())).empty()) continue;
     for (std::size_t i = first; i <= last; ++i) check(i);
   }
 }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "base/frame_time.h"
 #include "support/bodies.h"
 
 namespace supple {
@@ -53,6 +54,17 @@ TEST(RunPage, HoldsEveryFramesValuesForItsCursor) {
   ASSERT_EQ(data["series"].size(), 7u);
   EXPECT_EQ(data["series"][0], (std::vector<double>{10, 10, 10, 90, 10, 10}));
   EXPECT_EQ(data["series"][5], (std::vector<double>{0, 1, 2, 3, 4, 5}));
+}
+
+TEST(RunPage, TellsTheTimesThatCaptionsTell) {
+  const test::TemporaryFolder folder;
+  const std::string page = run_page(small_run(folder.path, 6));
+  const nlohmann::json times = data_of(page)["times"];
+  ASSERT_EQ(times.size(), 6u);
+  for (int frame = 0; frame < 6; ++frame) EXPECT_EQ(times[std::size_t(frame)], frame_time(frame, 25)) << frame;
+  EXPECT_NE(page.find("data.times[shown].toFixed(2)"), std::string::npos);
+  EXPECT_NE(page.find("<div class=\"times\"><span>0.04 s</span><span>0.24 s</span></div>"), std::string::npos);
+  EXPECT_NEAR(frame_time(200, 30), 6.7, 1e-12);  // after its steps, and not 6.67
 }
 
 TEST(RunPage, NeedsNoOtherFileAndTakesNoNameForMarkup) {
