@@ -14,6 +14,9 @@ namespace supple {
 // meant.
 std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates);
 
+// Returns "; did you mean 'mu'?", with the candidate that is nearest; nothing where none is near.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
+
 // Gives "mu, lambda or nu".
 std::string word_list(const std::vector<std::string>& words);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "base/near_files.h"
 #include "base/text.h"
 #include "scene/toml_document.h"
 
@@ -213,8 +214,7 @@ bool ConfigTable::is_one_of(const Words& words, const Key& key, const toml::node
     config_->complain(&node, fmt::format("{0} = '{1}': is now written {0} = {2}", key.name, word, instead));
     return false;
   }
-  const std::string nearest = value ? nearest_word(*value, words.allowed) : "", list = word_list(words.allowed);
-  wrong(key, node, nearest.empty() ? list : fmt::format("{}; did you mean '{}'?", list, nearest));
+  wrong(key, node, word_list(words.allowed) + (value ? did_you_mean(*value, words.allowed) : ""));
   return false;
 }
 
@@ -395,7 +395,14 @@ std::filesystem::path ConfigTable::file(const Key& key) const {
   if (std::filesystem::exists(asset, error)) return asset;
   const std::string places =
       beside == asset ? beside.string() : fmt::format("{} and {}", beside.string(), asset.string());
-  config_->complain(node, fmt::format("{} = '{}': no such file (looked for {})", key.name, *value, places));
+  const auto same_ending = [&beside](const std::filesystem::path& entry) {
+    return entry.extension() == beside.extension();
+  };
+  std::filesystem::path near = near_file(beside, same_ending);
+  if (near.empty()) near = near_file(asset, same_ending);
+  if (!near.empty()) near = std::filesystem::path(*value).replace_filename(near.filename());  // as the scene writes it
+  config_->complain(
+      node, fmt::format("{} = '{}': no such file (looked for {}){}", key.name, *value, places, meant_file(near)));
   return {};
 }
 

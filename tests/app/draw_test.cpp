@@ -277,6 +277,18 @@ TEST_F(DrawnRun, KnowsTheRangeOfTheFilmOnlyOnceItIsMade) {
   EXPECT_FALSE(std::filesystem::exists(path("none")));
 }
 
+TEST_F(DrawnRun, HasAReferenceOfTheSameBodies) {
+  std::ofstream(path("rod.toml"))
+      << "frames = 12\n[[body]]\nname = \"rod\"\nbox = { extent = [0.4, 0.1, 0.1], cells = [8, 2, "
+         "2] }\nmaterial = \"jelly\"\n[output]\nwidth = 96\nheight = 64\n";
+  ASSERT_EQ(run(folder_->path, {"render", "rod.toml", "--out", "rod", "--no-images", "--quiet"}).status, 0);
+  const Result result = draw("none", {"--field", "distance", "--reference", "rod"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("rod: that run has no body 'bar' (it has rod), so that the two cannot be compared"),
+            std::string::npos)
+      << result.err;
+}
+
 TEST_F(DrawnRun, BecomesAFilmOfAnyFormat) {
   for (const auto& [format, file] : std::vector<std::pair<std::string, std::string>>{
            {"mp4-h265", "video.mp4"}, {"webm", "video.webm"}, {"webm-av1", "video.webm"}, {"gif", "video.gif"}}) {

@@ -138,8 +138,8 @@ TEST(Info, TellsOfAMeshAndRefusesTheRest) {
   ASSERT_EQ(result.status, 0) << result.err;
   expect_lines(run(folder.path, {"info", "s.mesh"}).out,
                {"vertices        ", "dihedral angles ", "boundary        manifold"});
-  EXPECT_EQ(run(folder.path, {"info", "none"}).err,
-            "none: neither a mesh, a surface, a scene (.toml, or a name of supple list) nor a run's folder\n");
+  EXPECT_EQ(run(folder.path, {"info", "none"}).err, "none: no such file\n");
+  EXPECT_EQ(run(folder.path, {"info", "squirel"}).err, "squirel: no such file; did you mean 'squirrel'?\n");
   EXPECT_EQ(run(folder.path, {"info", "none.toml"}).status, 2);
   EXPECT_EQ(run(folder.path, {"info", "none.mesh"}).status, 2);
   std::filesystem::create_directory(folder.path / "empty");

@@ -87,6 +87,36 @@ TEST(Help, NamesTheWordThatIsNoVerbAndTheNearestOne) {
   EXPECT_EQ(told("--frobnicating"), "supple: no option '--frobnicating'\nTry: supple --help\n");
 }
 
+TEST(Words, ThatAreMistypedAreMetByTheNearestThatIsKnown) {
+  const Program program;
+  const auto told = [&](std::vector<std::string> words) {
+    const Result result = run(program.folder.path, words);
+    EXPECT_EQ(result.status, 2) << words[1];
+    return result.err;
+  };
+  for (const char* verb : {"render", "check", "info", "profile"})
+    EXPECT_EQ(told({verb, "squirel"}), "squirel: no such file; did you mean 'squirrel'?\n") << verb;
+  EXPECT_EQ(told({"replay", "eer-pull"}), "eer-pull: no such file; did you mean 'ear-pull'?\n");
+  EXPECT_EQ(told({"sweep", "pulled-ba"}), "pulled-ba: no such file; did you mean 'pulled-bar'?\n");
+  EXPECT_EQ(told({"mesh", "squirel", "-o", "s.mesh"}), "squirel: no such file; did you mean 'squirrel'?\n");
+  std::filesystem::create_directories(program.folder.path / "mine");
+  std::ofstream(program.folder.path / "mine" / "balloon.toml") << "frames = 1\n";
+  EXPECT_EQ(told({"render", "mine/ballon.toml"}),
+            "mine/ballon.toml: no such file; did you mean 'mine/balloon.toml'?\n");
+  EXPECT_EQ(told({"render", "nothing-like-it.toml"}), "nothing-like-it.toml: no such file\n");
+  std::filesystem::create_directories(program.folder.path / "out" / "squirrel");
+  std::ofstream(program.folder.path / "out" / "squirrel" / "run.json") << "{}\n";
+  for (const char* verb : {"draw", "page"})
+    EXPECT_EQ(told({verb, "out/squirel/"}), "out/squirel/: no such folder; did you mean 'out/squirrel'?\n") << verb;
+  EXPECT_EQ(
+      told({"check", "squirrel", "--set", "body.sof.material.mu=3"}),
+      "--set body.sof.material.mu=3: there is no body named 'sof' (there is soft, stiff or polynomial); did you mean "
+      "'soft'?\n");
+  EXPECT_EQ(told({"bench", "figur7"}).find("supple: NAME: 'figur7': must be all, table1, "), 0u);
+  EXPECT_NE(told({"bench", "figur7"}).find("; did you mean 'figure7'?\n"), std::string::npos);
+  EXPECT_NE(told({"render", "squirrel", "--format", "giff"}).find("; did you mean 'gif'?\n"), std::string::npos);
+}
+
 TEST(Completion, KnowsEveryVerbAndOptionOfTheHelp) {
   const Program program;
   const std::vector<std::string> verbs = program.verbs();

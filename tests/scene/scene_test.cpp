@@ -54,7 +54,7 @@ keys = [ { t = 1 }, { t = 0.5 } ]
       "scene.toml:7:10: armijo = -0.3: must be above 0 to 0.5",
       "scene.toml:8:15: line_search = 'armjo': must be armijo, wolfe or none; did you mean 'armijo'?",
       "scene.toml:10:9: shape = 'shapes/squirel.toml': no such file (looked for shapes/squirel.toml and " +
-          (test::assets / "shapes/squirel.toml").string() + ")",
+          (test::assets / "shapes/squirel.toml").string() + "); did you mean 'shapes/squirrel.toml'?",
       "scene.toml:11:22: model = 'polynomal': must be " + word_list(test::model_names()) +
           "; did you mean 'polynomial'?",
       "scene.toml:13:8: two bodies named 'body'",
