@@ -87,8 +87,11 @@ int finish_film(const DrawCommand& command, const LoadedDrawing& drawing, std::o
 void begin_film(const DrawCommand& command, const LoadedDrawing& drawing, std::optional<VideoEncoder>& video) {
   const SceneDef& scene = drawing.film.script.scene();
   const std::string file = film_file(command.coding.format);
-  if (!file.empty())
-    video.emplace(command.folder() / file, scene.output.width, scene.output.height, drawing.rate, command.coding);
+  if (file.empty()) return;
+  const bool transparent = scene.look.backdrop == BackdropKind::transparent;
+  for (const std::string& warning : coding_warnings(command.coding, drawing.rate, transparent))
+    say(stderr, fmt::format("warning: {}\n", warning));
+  video.emplace(command.folder() / file, scene.output.width, scene.output.height, drawing.rate, command.coding);
 }
 
 // Makes the film from pictures that other processes have drawn.

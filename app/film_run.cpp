@@ -56,6 +56,14 @@ void say_place(const FilmPlan& plan, const RunPlace& place) {
   if (!place.note.empty() && (!plan.quiet || !place.is_as_asked)) say(stderr, fmt::format("note: {}\n", place.note));
 }
 
+// Tells what the film's format cannot hold, which concerns what the film shows.
+void say_coding(const FilmPlan& plan, const SceneDef& scene) {
+  if (!plan.wants_video()) return;
+  const bool transparent = scene.look.backdrop == BackdropKind::transparent;
+  for (const std::string& warning : coding_warnings(plan.coding, scene.fps / plan.pictures_every(), transparent))
+    say(stderr, fmt::format("warning: {}\n", warning));
+}
+
 // Tells what a preview leaves out.
 void say_preview(const LoadedFilm& film) {
   const SceneDef& scene = film.script.scene();
@@ -257,6 +265,7 @@ int run_film(const FilmCommand& command, const std::vector<std::string>& words, 
   if (start.verifier && !start.verifier->remark().empty())
     say(stderr, fmt::format("note: {}: {}\n", plan.verify, start.verifier->remark()));
   say_place(plan, start.place);
+  say_coding(plan, scene);
   catch_interrupts();
   find_framing(plan, start, all_solvers(), film);
   const RunFolder folder = open_folder(start, film);

@@ -76,8 +76,11 @@ int make_film_of(const SplitCommand& command, const Drawn& drawn) {
     const auto number = static_cast<int>(picture);
     const Image image = split_picture(drawn.screen, number, drawn.frames[picture]);
     write_png(picture_file(command.folder / "frames", number), image.width, image.height, image.rgb);
-    if (!video && !file.empty())
+    if (!video && !file.empty()) {
+      for (const std::string& warning : coding_warnings(command.coding, drawn.rate, false))
+        say(stderr, fmt::format("warning: {}\n", warning));
       video.emplace(command.folder / file, image.width, image.height, drawn.rate, command.coding);
+    }
     if (video) video->add(image.rgb);
   }
   if (interrupted()) return 130;
