@@ -110,10 +110,24 @@ bool is_whole_number(const Config& scene, const std::string& path) {
 }  // namespace
 
 void open_tables(Config& document) {
-  std::vector<std::string> tables = {"camera", "solver"};
+  std::vector<std::string> tables = {"camera", "look", "solver"};
   if (document.value_at("collider")) tables.emplace_back("solver.contact");
   for (const std::string& table : tables) {
     if (!document.value_at(table)) document.put(table, *ConfigValue::parse("{}"), {}, {});
+  }
+}
+
+std::string table_of(const std::string& path) {
+  const std::size_t dot = path.rfind('.');
+  return dot == std::string::npos ? "" : path.substr(0, dot);
+}
+
+void open_table_of(Config& document, const std::string& path) {
+  const std::string table = table_of(path);
+  if (table.empty() || document.value_at(table)) return;
+  try {
+    document.put(table, *ConfigValue::parse("{}"), {}, {});
+  } catch (const InputError&) {  // a part of the path names nothing that is there
   }
 }
 
@@ -129,14 +143,13 @@ void Script::Parts::read_replay(const std::filesystem::path& assets, const std::
   Config plain = scene_file.copy();
   start = read_scene(plain);
   const std::vector<Problem> of_scene = plain.take_problems();
-  open_tables(plain);
-  (void)read_scene(plain);  // so that the types of all keys are known
   for (const ConfigTable& table : root.tables({"change", "", "a value that changes while the film runs"})) {
-    auto change = read_change(table, start.fps);
-    if (!change) continue;
-    change->whole = is_whole_number(plain, change->path);
-    changes.push_back(std::move(*change));
+    if (auto change = read_change(table, start.fps)) changes.push_back(std::move(*change));
   }
+  open_tables(plain);
+  for (const TimedChange& change : changes) open_table_of(plain, change.path);
+  (void)read_scene(plain);  // so that the types of all keys are known
+  for (TimedChange& change : changes) change.whole = is_whole_number(plain, change.path);
   for (const std::vector<Problem>& more : {of_scene, replay->take_problems()})
     problems.insert(problems.end(), more.begin(), more.end());
   if (!of_scene.empty()) throw InputError(std::move(problems));

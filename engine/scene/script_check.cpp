@@ -28,12 +28,6 @@ std::vector<Problem> beyond(const std::vector<Problem>& list, const std::vector<
   return rest;
 }
 
-// Returns the table that a path leads into; empty at the top.
-std::string table_of(const std::string& path) {
-  const std::size_t dot = path.rfind('.');
-  return dot == std::string::npos ? "" : path.substr(0, dot);
-}
-
 Problem at(const TimedChange& change, std::string message) { return {change.place, std::move(message)}; }
 
 // Returns the problems that a change causes, as messages that point into the replay. A problem that appears at another
@@ -97,6 +91,7 @@ void Script::Parts::put_each() {
 std::optional<ConfigValue> Script::Parts::value_at(const std::string& path, Config document) const {
   if (auto value = document.value_at(path)) return value;
   open_tables(document);
+  open_table_of(document, path);
   (void)read_scene(document);
   for (const KnownKey& key : document.known()) {
     if (key.path == path) return ConfigValue::parse(key.value);

@@ -46,6 +46,17 @@ TEST(Info, TellsOfASceneAndWhatAFrameCosts) {
   expect_lines(run(folder.path, {"info", "tightening"}).out, {"changes         ", " while it runs\n"});
 }
 
+TEST(Info, SaysWhereItsCostIsThatOfAFreeFall) {
+  const test::TemporaryFolder folder;
+  std::string scene = bar_scene;
+  scene.erase(scene.find("[[body.handles]]"), scene.find("[[collider]]") - scene.find("[[body.handles]]"));
+  std::ofstream(folder.path / "low.toml") << scene;
+  std::ofstream(folder.path / "high.toml") << scene.insert(scene.find("material"), "position = [0, 5, 0]\n");
+  const std::string words = "threads; it touches nothing in them, and contacts cost more)\n";
+  EXPECT_NE(run(folder.path, {"info", "high.toml"}).out.find(words), std::string::npos);
+  EXPECT_EQ(run(folder.path, {"info", "low.toml"}).out.find(words), std::string::npos);
+}
+
 TEST(Info, GivesTheTerminalNoOrdersOfAScene) {
   const test::TemporaryFolder folder;
   std::string scene = bar_scene;
