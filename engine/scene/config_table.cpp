@@ -229,6 +229,21 @@ std::string ConfigTable::choice(const Key& key, std::optional<std::string> fallb
   return is_one_of(words, key, *node) ? *node->value_exact<std::string>() : instead;
 }
 
+std::vector<std::string> ConfigTable::choices(const Key& key, const Words& words) const {
+  const std::string allowed = "a list of " + word_list(words.allowed);
+  const toml::node* node = find(key, "list of words", "none", allowed);
+  std::vector<std::string> values;
+  if (node == nullptr) return values;
+  const toml::array* list = node->as_array();
+  if (list == nullptr) {
+    wrong(key, *node, allowed);
+    return values;
+  }
+  for (const toml::node& element : *list)
+    if (is_one_of(words, key, element)) values.push_back(*element.value_exact<std::string>());
+  return values;
+}
+
 // Returns an empty text when the key is absent or wrong.
 std::string ConfigTable::choice_if_given(const Key& key, const char* fallback, const Words& words) const {
   const toml::node* node = find(key, "word", fallback, word_list(words.allowed));

@@ -117,6 +117,45 @@ TEST(Words, ThatAreMistypedAreMetByTheNearestThatIsKnown) {
   EXPECT_NE(told({"render", "squirrel", "--format", "giff"}).find("; did you mean 'gif'?\n"), std::string::npos);
 }
 
+TEST(Check, TellsAFilmMakerInWordsAndInNumbersWhereTheyAreAsked) {
+  const Program program;
+  std::ofstream(program.folder.path / "s.toml") << "[[body]]\nname = \"ball\"\nshape = \"shapes/sphere.toml\"\n"
+                                                   "vertices = 300\nsize = 0.4\nmaterial = \"jelly\"\n";
+  const Result words = run(program.folder.path, {"check", "s.toml"});
+  EXPECT_EQ(words.status, 0) << words.err;
+  EXPECT_NE(words.out.find(" for its time step\n    skin: close to its elements\n"), std::string::npos) << words.out;
+  EXPECT_EQ(words.out.find('%'), std::string::npos);
+  EXPECT_EQ(words.out.find("rho"), std::string::npos);
+  const Result numbers = run(program.folder.path, {"check", "s.toml", "--verbose"});
+  EXPECT_NE(numbers.out.find("(k h^2 / (rho L^2) = "), std::string::npos) << numbers.out;
+  EXPECT_NE(numbers.out.find("% outside the elements"), std::string::npos) << numbers.out;
+}
+
+TEST(Check, LeavesOutWarningsThatAreMeantButInJson) {
+  const Program program;
+  const std::string falls = "warning: s.toml:1:1: body 'ball' falls through the ground that the film shows";
+  const auto checked = [&](const std::string& meant, std::vector<std::string> more = {}) {
+    std::ofstream(program.folder.path / "s.toml")
+        << "[[body]]\nname = \"ball\"\nbox = { extent = [1, 1, 1], cells = [2, 2, "
+           "2] }\nmaterial = \"jelly\"\n"
+        << meant;
+    more.insert(more.begin(), {"check", "s.toml"});
+    return run(program.folder.path, more);
+  };
+  EXPECT_NE(checked("").out.find(falls), std::string::npos) << checked("").out;
+  EXPECT_NE(checked("").out.find("s: no errors, 1 warning; "), std::string::npos);
+  const std::string meant = "meant = [\"fall\"]\n";
+  EXPECT_EQ(checked(meant).out.find("warning:"), std::string::npos) << checked(meant).out;
+  EXPECT_NE(checked(meant).out.find("s: no errors, 0 warnings (1 meant); "), std::string::npos);
+  const auto json = nlohmann::json::parse(checked(meant, {"--json"}).out);
+  ASSERT_EQ(json["warnings"].size(), 1u);
+  EXPECT_EQ(json["warnings"][0]["kind"], "fall");
+  EXPECT_EQ(json["warnings"][0]["meant"], true);
+  EXPECT_EQ(checked("meant = [\"fal\"]\n").status, 2);
+  EXPECT_NE(checked("meant = [\"fal\"]\n").err.find("; did you mean 'fall'?"), std::string::npos);
+  EXPECT_EQ(checked("meant = \"fall\"\n").status, 2);
+}
+
 TEST(Completion, KnowsEveryVerbAndOptionOfTheHelp) {
   const Program program;
   const std::vector<std::string> verbs = program.verbs();

@@ -288,7 +288,7 @@ TEST_F(Replay, WarnsOfGrabsThatJump) {
         "keys = " +
         keys + "\n");
     std::string all;
-    for (const Problem& warning : warnings(grab.scene(), assemble(grab.scene()))) all += warning.text() + "\n";
+    for (const Problem& warning : said(warnings(grab.scene(), assemble(grab.scene())))) all += warning.text() + "\n";
     return all.find("handle 'f' of body 'bar' has moved by its keys already when it grabs") != std::string::npos;
   };
   EXPECT_TRUE(warned("[{ t = 0.1 }, { t = 0.4, move = [0, 0.1, 0] }]"));
