@@ -1,6 +1,9 @@
 #include <fmt/core.h>
+#include <stdlib.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <memory>
 #include <thread>
 
@@ -11,6 +14,7 @@
 #include "base/error.h"
 #include "base/frame_time.h"
 #include "base/interrupts.h"
+#include "base/read_file.h"
 #include "base/text.h"
 #include "base/timing.h"
 #include "film/film_stills.h"
@@ -230,12 +234,36 @@ void add_short_forms(DrawCommand& command) {
   all.insert(all.begin(), settings.begin(), settings.end());
 }
 
+// Draws one frame of several runs side by side, by way of a folder beside the picture, which does not stay.
+int draw_several_once(const DrawCommand& command) {
+  const auto frame = static_cast<int>(*command.frame);
+  const std::filesystem::path file = command.still.empty() ? fmt::format("frame-{:06}.png", frame) : command.still;
+  std::string scratch = (file.parent_path() / "supple-still-XXXXXX").string();
+  if (::mkdtemp(scratch.data()) == nullptr)
+    throw RunError(fmt::format("{}: no folder can be made beside it: {}", file.string(), std::strerror(errno)));
+  SplitCommand split{command.plan, command.runs, scratch, command.layout, {FilmFormat::png, FilmQuality::good}, true};
+  split.plan.first = split.plan.last = frame;
+  std::error_code ignored;
+  int status = 1;
+  try {
+    status = draw_split(split);
+    if (status == 0) write_whole_file(file, read_file(picture_file(split.folder / "frames", 0)));
+  } catch (...) {
+    std::filesystem::remove_all(scratch, ignored);
+    throw;
+  }
+  std::filesystem::remove_all(scratch, ignored);
+  if (status == 0 && !command.quiet) say(stdout, fmt::format("  {}\n", file.string()));
+  return status;
+}
+
 // Draws several runs side by side.
 int draw_several(const DrawCommand& command) {
-  if (command.frame || command.index || command.merge || command.jobs > 1 || command.sheet)
+  if (command.index || command.merge || command.jobs > 1 || command.sheet || command.skins)
     throw InputError("draw",
-                     "several runs are drawn into one film as a whole: leave out --frame, --still, --jobs, "
-                     "--index, --merge and --sheet");
+                     "several runs are drawn into one film as a whole: leave out --jobs, --index, --merge, --sheet and "
+                     "--skins");
+  if (command.frame) return draw_several_once(command);
   std::filesystem::path folder = command.out;
   if (folder.empty()) folder = std::filesystem::path(command.folder().string() + "-side-by-side");
   return draw_split({command.plan, command.runs, folder, command.layout, command.coding, command.quiet});

@@ -86,7 +86,8 @@ void print_result(const FilmResult& result, const RunFolder& folder, const Scene
   for (const std::filesystem::path& still : result.stills)
     say(stdout, fmt::format("  {:<8} {}\n", still.stem().string(), still.string()));
   say(stdout, fmt::format("  profile  {}\n", (folder.path() / "profile.json").string()));
-  say(stdout, fmt::format("  {}\n", verdict_on(result)));
+  const bool too_slow = made > 0 && made / seconds < scene.fps;  // only then is it worth saying what helps
+  if (too_slow) say(stdout, fmt::format("  {}\n", verdict_on(result)));
 }
 
 void print_json(const FilmResult& result, const RunFolder& folder) {
@@ -257,7 +258,7 @@ void add_film(Verb& verb, const FilmArgument& argument, const std::vector<std::s
   verb.flag("--resume", plan.resume, "go on with the film in --out that was interrupted or killed");
   verb.flag("--force", plan.force, "overwrite another run in the folder; without it a numbered folder is taken");
   verb.flag("--preview", plan.preview,
-            "a first look: a quarter of the size, every other frame, coarse meshes, into out/NAME-preview")
+            "a first look: small pictures of every other frame, coarse meshes, into out/NAME-preview")
       .excludes({"--resume", "--checkpoint-every"});
   add_coding_options(verb, plan.coding);
   verb.flag(

@@ -223,8 +223,7 @@ void add_gallery(CommandLine& line) {
   verb.option("--out", command->out, "folder for the results").shows_default();
   verb.option("--width", command->width, "most pixels of the pictures' width").between(16, 8192).shows_default();
   verb.option("--frames", command->frames, "most frames of a film [the scene's]").between(1, 1000000);
-  verb.flag("--preview", command->preview, "previews of all: a quarter of the scenes' size, coarse meshes")
-      .excludes({"--width"});
+  verb.flag("--preview", command->preview, "previews of all: small pictures, coarse meshes").excludes({"--width"});
   verb.option("--set", command->settings, "path=value over those of all scenes; may be repeated").repeatable();
   verb.option("--gl", command->gl, word_list(all_names<GlChoice>())).one_of(all_names<GlChoice>());
   verb.flag("--again", command->again, "film scenes that are done once more");

@@ -240,11 +240,19 @@ std::string data_html(const std::vector<FrameGraph>& graphs, const std::vector<F
   return "<script type=\"application/json\" id=\"data\">" + json_text(data) + "</script>\n";
 }
 
+// Tells whether the frames but the first took longer to make than they last. Only then it is worth saying what helps.
+bool is_slower_than_asked(const std::vector<FrameRow>& rows) {
+  double sum_ms = 0;
+  for (std::size_t i = 1; i < rows.size(); ++i) sum_ms += of_all_stages(rows[i]);
+  return rows.size() > 1 && sum_ms > 1000 * (rows.back().time_s - rows.front().time_s);
+}
+
 std::string warnings_html(const RunRecord& run) {
   std::ifstream file(run.folder / "profile.json");
   const Json profile = json_if_valid<Json>(file);
   std::string html;
-  if (profile.is_object() && profile.contains("summary") && profile["summary"].contains("verdict"))
+  if (is_slower_than_asked(run.rows) && profile.is_object() && profile.contains("summary") &&
+      profile["summary"].contains("verdict"))
     html += "<p class=\"soft\">" + markup_text(text_at(profile["summary"], "verdict")) + "</p>\n";
   for (const std::string& warning : warnings_of(run.rows))
     html += "<p class=\"warning\">" + markup_text(warning) + "</p>\n";

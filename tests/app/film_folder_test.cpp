@@ -203,9 +203,16 @@ TEST_F(FilmFolder, IsNotMadeForAWrongSceneOnStandardInput) {
 TEST_F(FilmFolder, OfAPreviewHasAQuarterOfTheSizeAndHalfThePictures) {
   const Result result = run(folder_.path, {"render", "bar.toml", "--preview"});
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_NE(result.err.find("preview: 80 x 44 pixels, every other frame; 'bar' has "), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("preview: 320 x 180 pixels, every other frame; 'bar' has "), std::string::npos)
+      << result.err;
   EXPECT_EQ(pictures("bar-preview"), 3);
-  EXPECT_EQ(read_png(picture_file(out("bar-preview") / "frames", 2)).width, 80);
+  EXPECT_EQ(read_png(picture_file(out("bar-preview") / "frames", 2)).width, 320);
+  const Result wide = run(folder_.path, {"render", "bar.toml", "--preview", "--frames", "1", "--no-video", "--out",
+                                         "wide", "--set", "output.width=1280", "--set", "output.height=720"});
+  EXPECT_NE(wide.err.find("preview: 480 x 270 pixels"), std::string::npos) << wide.err;
+  const Result wider = run(folder_.path, {"render", "bar.toml", "--preview", "--frames", "1", "--no-images", "--out",
+                                          "wider", "--set", "output.width=3840", "--set", "output.height=2160"});
+  EXPECT_NE(wider.err.find("preview: 960 x 540 pixels"), std::string::npos) << wider.err;
   EXPECT_EQ(info("bar-preview")["frames"], 5) << "all frames are simulated";
   EXPECT_LT(info("bar-preview")["meshes"][0]["vertices"], 9 * 5 * 5);
   if (has_ffmpeg()) {

@@ -56,6 +56,14 @@ TEST(RunPage, HoldsEveryFramesValuesForItsCursor) {
   EXPECT_EQ(data["series"][5], (std::vector<double>{0, 1, 2, 3, 4, 5}));
 }
 
+TEST(RunPage, SaysWhatHelpsOnlyWhereTheFilmIsSlowerThanAsked) {
+  const test::TemporaryFolder folder;
+  RunRecord run = small_run(folder.path, 6);
+  EXPECT_EQ(run_page(run).find("solving is 90 %"), std::string::npos);
+  run.rows[3].step_ms = 900;
+  EXPECT_NE(run_page(run).find("solving is 90 %"), std::string::npos);
+}
+
 TEST(RunPage, TellsTheTimesThatCaptionsTell) {
   const test::TemporaryFolder folder;
   const std::string page = run_page(small_run(folder.path, 6));
@@ -69,7 +77,9 @@ TEST(RunPage, TellsTheTimesThatCaptionsTell) {
 
 TEST(RunPage, NeedsNoOtherFileAndTakesNoNameForMarkup) {
   const test::TemporaryFolder folder;
-  const std::string page = run_page(small_run(folder.path, 6));
+  RunRecord slow = small_run(folder.path, 6);
+  slow.rows[3].step_ms = 900;
+  const std::string page = run_page(slow);
   EXPECT_FALSE(std::regex_search(page, std::regex("(src|href)=\"(?!data:)"))) << "something is loaded";
   EXPECT_EQ(page.find("http"), std::string::npos);
   EXPECT_NE(page.find("<title>A &amp; B</title>"), std::string::npos);
