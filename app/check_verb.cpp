@@ -1,88 +1,162 @@
 #include <fmt/core.h>
 
+#include <nlohmann/json.hpp>
+
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
+#include "base/text.h"
+#include "film/picture_words.h"
 #include "film/places.h"
 #include "film/progress.h"
+#include "output/json_text.h"
 #include "scene/script_trial.h"
 #include "scene/skin_report.h"
 #include "scene/sweep.h"
-#include "scene/warnings.h"
 
 namespace supple {
 namespace {
 
-int check(const std::string& name, const std::vector<std::string>& settings, bool cache) {
-  const SceneSource source = scene_source(name);
-  const Script script = Script::load(source, assets_folder(), settings);
-  const SceneDef& scene = script.scene();
-  if (scene.sweep_points > 0 && !script.is_replay()) {
-    check_sweep_points(source, assets_folder(), settings, load_sweep(source, assets_folder(), settings));
-  }
+using Json = nlohmann::ordered_json;
+
+struct CheckCommand {
+  std::string scene;
+  std::vector<std::string> settings;
+  bool no_cache = false, verbose = false, json = false;
+};
+
+// Holds all that a check looks at.
+struct Checked {
+  Script script;
   std::vector<Body> bodies;
   std::vector<DrawnBody> drawn;
+};
+
+Checked read_all(const CheckCommand& command) {
+  const SceneSource source = scene_source(command.scene);
+  Checked checked{Script::load(source, assets_folder(), command.settings), {}, {}};
+  const SceneDef& scene = checked.script.scene();
+  if (scene.sweep_points > 0 && !checked.script.is_replay()) {
+    check_sweep_points(source, assets_folder(), command.settings,
+                       load_sweep(source, assets_folder(), command.settings));
+  }
   {
-    MakingLine line(false);
-    bodies = assemble(scene, making_with(cache, line));
-    drawn = drawn_bodies(bodies, making_with(cache, line));
+    MakingLine line(command.json);
+    checked.bodies = assemble(scene, making_with(!command.no_cache, line));
+    checked.drawn = drawn_bodies(checked.bodies, making_with(!command.no_cache, line));
   }
-  try_changes(script, bodies);
-  for (const Body& body : bodies) {
-    for (const std::string& note : body.notes) say(stdout, fmt::format("note: {}: {}\n", body.source, note));
-  }
-  for (const Body& body : bodies) {
+  try_changes(checked.script, checked.bodies);
+  return checked;
+}
+
+std::vector<std::string> notes_of(const Checked& checked) {
+  std::vector<std::string> notes;
+  for (const Body& body : checked.bodies)
+    for (const std::string& note : body.notes) notes.push_back(fmt::format("{}: {}", body.source, note));
+  for (const Body& body : checked.bodies) {
     const std::string advice = untangle_advice(body);
-    if (!advice.empty()) say(stdout, fmt::format("note: body '{}': {}\n", body.def.name, advice));
+    if (!advice.empty()) notes.push_back(fmt::format("body '{}': {}", body.def.name, advice));
   }
-  for (const ColliderDef& collider : scene.colliders) {
+  for (const ColliderDef& collider : checked.script.scene().colliders)
     for (const std::string& note : collider.shape.notes)
-      say(stdout, fmt::format("note: collider '{}': {}\n", collider.name, note));
-  }
-  std::vector<Problem> list = all_warnings(script, bodies);
-  for (Problem& later : known_after_film(scene)) {
+      notes.push_back(fmt::format("collider '{}': {}", collider.name, note));
+  return notes;
+}
+
+std::vector<Warning> warnings_of(const Checked& checked) {
+  std::vector<Warning> list = all_warnings(checked.script, checked.bodies);
+  for (Problem& later : known_after_film(checked.script.scene())) {
     later.message = "supple render refuses this: " + later.message;
-    list.push_back(std::move(later));
+    list.push_back({std::nullopt, std::move(later)});
   }
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    if (auto warning = skin_warning(bodies[b], drawn[b])) list.push_back(std::move(*warning));
+  if (auto letters = letters_warning(checked.script, caption_font()))
+    list.push_back({std::nullopt, std::move(*letters)});
+  for (std::size_t b = 0; b < checked.bodies.size(); ++b) {
+    if (auto warning = skin_warning(checked.bodies[b], checked.drawn[b])) list.push_back(std::move(*warning));
   }
+  return list;
+}
+
+std::size_t parts_of(const Body& body) {
+  return body.def.cloth ? body.description.springs.size() : std::size_t(body.description.mesh.tets.rows());
+}
+
+void say_body(const Body& body, const DrawnBody& drawn, bool verbose) {
+  const double crossing = crossing_number(body);
+  const std::string skin = verbose ? skin_text(body, drawn) : skin_words(body, drawn);
+  say(stdout, fmt::format("  {}: {} vertices, {} {}, {}{}\n", body.def.name, body.description.mesh.rest.rows(),
+                          parts_of(body), body.def.cloth ? "springs" : "elements", stiffness_words(crossing),
+                          verbose ? fmt::format(" (k h^2 / (rho L^2) = {:.3g})", crossing) : ""));
+  if (!skin.empty()) say(stdout, fmt::format("    skin: {}\n", skin));
+}
+
+void say_all(const Checked& checked, bool verbose) {
+  const SceneDef& scene = checked.script.scene();
+  for (const std::string& note : notes_of(checked)) say(stdout, fmt::format("note: {}\n", note));
+  const std::vector<Warning> all = warnings_of(checked);
+  const std::vector<Problem> list = said(all);
   for (const Problem& warning : list) say(stdout, fmt::format("warning: {}\n", warning.text()));
-  say(stdout,
-      fmt::format("{}: no errors, {} warning{}; {} frames, {} {}\n", scene.name, list.size(),
-                  list.size() == 1 ? "" : "s", scene.frames, bodies.size(), bodies.size() == 1 ? "body" : "bodies"));
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const Body& body = bodies[b];
-    const TetMesh& mesh = body.description.mesh;
+  const std::size_t meant = all.size() - list.size();
+  say(stdout, fmt::format("{}: no errors, {}{}; {} frames, {} {}\n", scene.name,
+                          count_text(long(list.size()), "warning"), meant > 0 ? fmt::format(" ({} meant)", meant) : "",
+                          scene.frames, checked.bodies.size(), checked.bodies.size() == 1 ? "body" : "bodies"));
+  for (std::size_t b = 0; b < checked.bodies.size(); ++b) say_body(checked.bodies[b], checked.drawn[b], verbose);
+  if (checked.script.is_replay())
     say(stdout,
-        fmt::format("  {}: {} vertices, {} {}, k h^2 / (rho L^2) = {:.3g} (stiff above 300)\n", body.def.name,
-                    mesh.rest.rows(), body.def.cloth ? body.description.springs.size() : std::size_t(mesh.tets.rows()),
-                    body.def.cloth ? "springs" : "elements", crossing_number(body)));
-    const std::string skin = skin_text(body, drawn[b]);
-    if (!skin.empty()) say(stdout, fmt::format("    skin: {}\n", skin));
-  }
-  if (script.is_replay())
-    say(stdout, fmt::format("  replay: {} change{}, all possible\n", script.changes().size(),
-                            script.changes().size() == 1 ? "" : "s"));
+        fmt::format("  replay: {}, all possible\n", count_text(long(checked.script.changes().size()), "change")));
   if (scene.sweep_points > 0)
-    say(stdout,
-        fmt::format("  sweep: {} point{}, all readable\n", scene.sweep_points, scene.sweep_points == 1 ? "" : "s"));
+    say(stdout, fmt::format("  sweep: {}, all readable\n", count_text(long(scene.sweep_points), "point")));
+}
+
+Json json_of(const Checked& checked) {
+  const SceneDef& scene = checked.script.scene();
+  Json json = {{"scene", scene.name}, {"frames", scene.frames}};
+  json["warnings"] = Json::array();
+  for (const Warning& warning : warnings_of(checked)) {
+    const Json kind = warning.kind ? Json(name_of(*warning.kind)) : Json(nullptr);
+    json["warnings"].push_back({{"kind", kind},
+                                {"place", warning.problem.place.text()},
+                                {"message", warning.problem.message},
+                                {"meant", warning.meant}});
+  }
+  json["notes"] = notes_of(checked);
+  json["bodies"] = Json::array();
+  for (std::size_t b = 0; b < checked.bodies.size(); ++b) {
+    const Body& body = checked.bodies[b];
+    json["bodies"].push_back({{"name", body.def.name},
+                              {"vertices", body.description.mesh.rest.rows()},
+                              {body.def.cloth ? "springs" : "elements", parts_of(body)},
+                              {"crossing_number", crossing_number(body)},
+                              {"skin", skin_text(body, checked.drawn[b])}});
+  }
+  return json;
+}
+
+int check(const CheckCommand& command) {
+  const Checked checked = read_all(command);
+  if (command.json) {
+    say(stdout, json_text(json_of(checked)) + "\n");
+  } else {
+    say_all(checked, command.verbose);
+  }
   return 0;
 }
 
 }  // namespace
 
 void add_check(CommandLine& line) {
-  auto name = std::make_shared<std::string>();
-  auto settings = std::make_shared<std::vector<std::string>>();
-  auto no_cache = std::make_shared<bool>(false);
+  auto command = std::make_shared<CheckCommand>();
   Verb verb = line.verb("check", "Every error and warning of a scene or replay at once; writes nothing but the cache.");
   verb.footer("Example: supple check my-scene.toml");
-  verb.option("SCENE|REPLAY", *name, "scene or replay file, the name of one that ships, or - for standard input")
+  verb.option("SCENE|REPLAY", command->scene,
+              "scene or replay file, the name of one that ships, or - for standard input")
       .required();
-  verb.option("--set", *settings, "path=value over the scene's; may be repeated").repeatable();
-  verb.flag("--no-cache", *no_cache, "make meshes anew; keep none in the user's cache folder");
-  verb.runs([name, settings, no_cache] { return check(*name, *settings, !*no_cache); });
+  verb.option("--set", command->settings, "path=value over the scene's; may be repeated").repeatable();
+  verb.flag("--no-cache", command->no_cache, "make meshes anew; keep none in the user's cache folder");
+  verb.flag("--verbose", command->verbose,
+            "also the numbers: how stiff a body is for its steps, how far its skin reaches");
+  verb.flag("--json", command->json, "one line of JSON, which also has the warnings that the scene says are meant");
+  verb.runs([command] { return check(*command); });
 }
 
 }  // namespace supple

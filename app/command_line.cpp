@@ -21,9 +21,8 @@ std::vector<CLI::App*> visible_verbs(CLI::App& app) {
 std::string unknown_word(CLI::App& app, const std::string& word) {
   std::vector<std::string> known = {"--help", "--version"};
   for (const CLI::App* verb : visible_verbs(app)) known.push_back(verb->get_name());
-  const std::string nearest = nearest_word(word, known);
   return fmt::format("supple: no {} '{}'{}\nTry: supple --help\n", word.starts_with("-") ? "option" : "verb", word,
-                     nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
+                     did_you_mean(word, known));
 }
 
 // Returns the words of a closed choice, which CLI11 describes as "{a,b,c}".
@@ -83,7 +82,12 @@ Option& Option::between(double least, double most) {
 }
 
 Option& Option::one_of(const std::vector<std::string>& words) {
-  option_->check(CLI::IsMember(words));
+  const CLI::IsMember member(words);
+  const auto check = [words, member](std::string& word) {
+    return member(word).empty() ? ""
+                                : fmt::format("'{}': must be {}{}", word, word_list(words), did_you_mean(word, words));
+  };
+  option_->check(CLI::Validator(check, member.get_description()));  // the description tells --help the words
   return *this;
 }
 

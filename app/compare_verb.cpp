@@ -78,12 +78,22 @@ std::string differences_text(const RunComparison& c) {
   return text;
 }
 
+// Times are compared where both runs have the same bodies: of all of them at once, or else of each that both have.
+std::string times_text(const RunComparison& c) {
+  const auto line = [](const std::string& what, double a, double b) {
+    return fmt::format("  {:<16}{:.3f} ms in A, {:.3f} ms in B: B takes {:.3f} times as long\n", what, a, b, b / a);
+  };
+  if (c.only_a.empty() && c.only_b.empty()) return line("median step", c.step_ms_a, c.step_ms_b);
+  std::string text = "  median step     of the bodies that both have; the others' times cannot be compared\n";
+  for (const BodyComparison& body : c.bodies) text += line("  " + body.name, body.step_ms_a, body.step_ms_b);
+  return text;
+}
+
 std::string text_of(const RunRecord& a, const RunRecord& b, const RunComparison& c) {
   std::string text = fmt::format("  A               {} ({} frames, {})\n", a.folder.string(), c.frames_a, a.ended());
   text += fmt::format("  B               {} ({} frames, {})\n", b.folder.string(), c.frames_b, b.ended());
   text += fmt::format("  states          {}\n{}\n{}\n", states_text(c), motion_text(c), distance_table(c));
-  text += fmt::format("  median step     {:.3f} ms in A, {:.3f} ms in B: B takes {:.3f} times as long\n\n", c.step_ms_a,
-                      c.step_ms_b, c.step_ms_b / c.step_ms_a);
+  text += times_text(c) + "\n";
   return text + differences_text(c);
 }
 
@@ -99,6 +109,7 @@ std::string json_of(const RunRecord& a, const RunRecord& b, const RunComparison&
   for (const BodyComparison& body : c.bodies) {
     Json row = {
         {"name", body.name}, {"vertices", {{"a", body.vertices_a}, {"b", body.vertices_b}}}, {"size_m", body.size}};
+    row["median_step_ms"] = {{"a", body.step_ms_a}, {"b", body.step_ms_b}};
     row["saved_frames"] = {{"a", body.saved_a}, {"b", body.saved_b}};
     if (!body.distance.empty()) {
       const FrameDistance& worst = body.distance[body.worst_frame];

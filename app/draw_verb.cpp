@@ -1,6 +1,9 @@
 #include <fmt/core.h>
+#include <stdlib.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <memory>
 #include <thread>
 
@@ -9,7 +12,9 @@
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
+#include "base/frame_time.h"
 #include "base/interrupts.h"
+#include "base/read_file.h"
 #include "base/text.h"
 #include "base/timing.h"
 #include "film/film_stills.h"
@@ -56,7 +61,7 @@ int say_end(const DrawResult& result, const std::filesystem::path& folder) {
 void make_sheet(const DrawCommand& command, const LoadedDrawing& drawing) {
   const SceneDef& scene = drawing.film.script.scene();
   std::vector<double> times;
-  for (const int frame : drawing.frames) times.push_back((frame + 1) / scene.fps);
+  for (const int frame : drawing.frames) times.push_back(frame_time(frame, scene.fps));
   const std::filesystem::path file = write_sheet(command.folder(), scene.title, times);
   if (!command.quiet) say(stdout, fmt::format("  sheet    {}\n", file.string()));
 }
@@ -73,11 +78,12 @@ int finish_film(const DrawCommand& command, const LoadedDrawing& drawing, std::o
   if (end.outcome == VideoOutcome::failed)
     throw RunError(
         fmt::format("no film: {}; the pictures are whole{}", end.reason, end.told.empty() ? "" : ". " + end.told));
+  const bool written = end.outcome == VideoOutcome::written;
+  if (!written) say(stderr, fmt::format("warning: no film: {}; the pictures are whole\n", end.reason));
   if (command.quiet) return 0;
   say(stdout, fmt::format("  {} pictures in {}\n", pictures, duration_text(seconds)));
-  const bool written = end.outcome == VideoOutcome::written;
-  say(stdout, written ? fmt::format("  film     {}\n", (command.folder() / film_file(command.coding.format)).string())
-                      : fmt::format("  no film: {}\n", end.reason));
+  if (written)
+    say(stdout, fmt::format("  film     {}\n", (command.folder() / film_file(command.coding.format)).string()));
   return 0;
 }
 
@@ -85,8 +91,11 @@ int finish_film(const DrawCommand& command, const LoadedDrawing& drawing, std::o
 void begin_film(const DrawCommand& command, const LoadedDrawing& drawing, std::optional<VideoEncoder>& video) {
   const SceneDef& scene = drawing.film.script.scene();
   const std::string file = film_file(command.coding.format);
-  if (!file.empty())
-    video.emplace(command.folder() / file, scene.output.width, scene.output.height, drawing.rate, command.coding);
+  if (file.empty()) return;
+  const bool transparent = scene.look.backdrop == BackdropKind::transparent;
+  for (const std::string& warning : coding_warnings(command.coding, drawing.rate, transparent))
+    say(stderr, fmt::format("warning: {}\n", warning));
+  video.emplace(command.folder() / file, scene.output.width, scene.output.height, drawing.rate, command.coding);
 }
 
 // Makes the film from pictures that other processes have drawn.
@@ -128,9 +137,9 @@ std::vector<std::string> command_of_part(const DrawCommand& command, int index) 
   const DrawPlan& plan = command.plan;
   std::vector<std::string> words = {std::filesystem::read_symlink("/proc/self/exe").string(),
                                     "draw",
-                                    command.run,
+                                    file_word(command.run),
                                     "--out",
-                                    command.folder().string(),
+                                    file_word(command.folder()),
                                     "--index",
                                     std::to_string(index),
                                     "--of",
@@ -145,7 +154,7 @@ std::vector<std::string> command_of_part(const DrawCommand& command, int index) 
   if (plan.last >= 0) words.insert(words.end(), {"--last", std::to_string(plan.last)});
   if (plan.rate > 0) words.insert(words.end(), {"--rate", fmt::format("{}", plan.rate)});
   if (!plan.cache) words.emplace_back("--no-cache");
-  if (!command.scene.empty()) words.insert(words.end(), {"--scene", command.scene});
+  if (!command.scene.empty()) words.insert(words.end(), {"--scene", file_word(command.scene)});
   for (const std::string& setting : plan.settings) words.insert(words.end(), {"--set", setting});
   return words;
 }
@@ -225,12 +234,36 @@ void add_short_forms(DrawCommand& command) {
   all.insert(all.begin(), settings.begin(), settings.end());
 }
 
+// Draws one frame of several runs side by side, by way of a folder beside the picture, which does not stay.
+int draw_several_once(const DrawCommand& command) {
+  const auto frame = static_cast<int>(*command.frame);
+  const std::filesystem::path file = command.still.empty() ? fmt::format("frame-{:06}.png", frame) : command.still;
+  std::string scratch = (file.parent_path() / "supple-still-XXXXXX").string();
+  if (::mkdtemp(scratch.data()) == nullptr)
+    throw RunError(fmt::format("{}: no folder can be made beside it: {}", file.string(), std::strerror(errno)));
+  SplitCommand split{command.plan, command.runs, scratch, command.layout, {FilmFormat::png, FilmQuality::good}, true};
+  split.plan.first = split.plan.last = frame;
+  std::error_code ignored;
+  int status = 1;
+  try {
+    status = draw_split(split);
+    if (status == 0) write_whole_file(file, read_file(picture_file(split.folder / "frames", 0)));
+  } catch (...) {
+    std::filesystem::remove_all(scratch, ignored);
+    throw;
+  }
+  std::filesystem::remove_all(scratch, ignored);
+  if (status == 0 && !command.quiet) say(stdout, fmt::format("  {}\n", file.string()));
+  return status;
+}
+
 // Draws several runs side by side.
 int draw_several(const DrawCommand& command) {
-  if (command.frame || command.index || command.merge || command.jobs > 1 || command.sheet)
+  if (command.index || command.merge || command.jobs > 1 || command.sheet || command.skins)
     throw InputError("draw",
-                     "several runs are drawn into one film as a whole: leave out --frame, --still, --jobs, "
-                     "--index, --merge and --sheet");
+                     "several runs are drawn into one film as a whole: leave out --jobs, --index, --merge, --sheet and "
+                     "--skins");
+  if (command.frame) return draw_several_once(command);
   std::filesystem::path folder = command.out;
   if (folder.empty()) folder = std::filesystem::path(command.folder().string() + "-side-by-side");
   return draw_split({command.plan, command.runs, folder, command.layout, command.coding, command.quiet});

@@ -12,6 +12,7 @@
 #include "base/interrupts.h"
 #include "base/text.h"
 #include "base/timing.h"
+#include "film/picture_words.h"
 #include "film/places.h"
 #include "film/rough_motion.h"
 #include "output/json_text.h"
@@ -24,14 +25,16 @@ namespace supple {
 namespace {
 
 // Prints warnings, and the notes from reading meshes.
-void say_remarks(const LoadedFilm& film) {
+void say_remarks(const FilmPlan& plan, const LoadedFilm& film) {
   const SceneDef& scene = film.script.scene();
   if (scene.sweep_points > 0) {
     say(stderr, fmt::format("note: the scene has a sweep of {} points, which this leaves aside: supple sweep runs it\n",
                             scene.sweep_points));
   }
-  for (const Problem& warning : all_warnings(film.script, film.bodies))
+  for (const Problem& warning : said(all_warnings(film.script, film.bodies)))
     say(stderr, fmt::format("warning: {}\n", warning.text()));
+  if (const auto letters = letters_warning(film.script, caption_font()); letters && plan.pictures != FilmPictures::none)
+    say(stderr, fmt::format("warning: {}\n", letters->text()));
   for (const Body& body : film.bodies) {
     for (const std::string& note : body.notes) say(stderr, fmt::format("note: {}: {}\n", body.source, note));
   }
@@ -53,6 +56,14 @@ void say_place(const FilmPlan& plan, const RunPlace& place) {
   if (!place.note.empty() && (!plan.quiet || !place.is_as_asked)) say(stderr, fmt::format("note: {}\n", place.note));
 }
 
+// Tells what the film's format cannot hold, which concerns what the film shows.
+void say_coding(const FilmPlan& plan, const SceneDef& scene) {
+  if (!plan.wants_video()) return;
+  const bool transparent = scene.look.backdrop == BackdropKind::transparent;
+  for (const std::string& warning : coding_warnings(plan.coding, scene.fps / plan.pictures_every(), transparent))
+    say(stderr, fmt::format("warning: {}\n", warning));
+}
+
 // Tells what a preview leaves out.
 void say_preview(const LoadedFilm& film) {
   const SceneDef& scene = film.script.scene();
@@ -72,11 +83,11 @@ void print_result(const FilmResult& result, const RunFolder& folder, const Scene
   say(stdout, fmt::format("  {} frames{} in {} ({}the film's rate is {:g}), after {} of set-up\n", made, kept,
                           duration_text(seconds), rate, scene.fps, duration_text(result.setup_ms / 1000)));
   if (result.video_written) say(stdout, fmt::format("  film     {}\n", result.video.string()));
-  if (!result.video_message.empty() && !result.video_failed) say(stdout, fmt::format("  {}\n", result.video_message));
   for (const std::filesystem::path& still : result.stills)
     say(stdout, fmt::format("  {:<8} {}\n", still.stem().string(), still.string()));
   say(stdout, fmt::format("  profile  {}\n", (folder.path() / "profile.json").string()));
-  say(stdout, fmt::format("  {}\n", verdict_on(result)));
+  const bool too_slow = made > 0 && made / seconds < scene.fps;  // only then is it worth saying what helps
+  if (too_slow) say(stdout, fmt::format("  {}\n", verdict_on(result)));
 }
 
 void print_json(const FilmResult& result, const RunFolder& folder) {
@@ -100,6 +111,7 @@ struct EndOfRun {
   const RunFolder& folder;
   const RunPlace& place;
   const SceneDef& scene;
+  const std::string& scene_json;
   std::string unrecorded;  // the message of a final record that could not be written
 };
 
@@ -110,9 +122,31 @@ std::string resuming_text(const EndOfRun& end) {
   return fmt::format("; --resume --out {} goes on", shell_word(end.folder.path().string()));
 }
 
+// Returns the options that triple the iterations of a scene's bodies: those of the scene, unless bodies have their own.
+std::string more_iterations(const SceneDef& scene, const std::string& scene_json) {
+  const auto tripled = [](const BodyDef& body) { return 3 * body.solver.settings.iterations; };
+  const auto json = json_if_valid<nlohmann::ordered_json>(scene_json);
+  std::string options;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const BodyDef& body = scene.bodies[b];
+    const nlohmann::ordered_json::json_pointer own(fmt::format("/body/{}/solver/iterations", b));
+    if (json.contains(own)) options += fmt::format(" --set body.{}.solver.iterations={}", body.name, tripled(body));
+  }
+  return options.empty() ? fmt::format(" --set solver.iterations={}", tripled(scene.bodies.front())) : options;
+}
+
+// Names the frames that were not solved, and what brings them nearer. Bodies may say that it is meant.
+std::string unsolved_warning(const EndOfRun& end) {
+  std::vector<std::string> meant;
+  for (const BodyDef& body : end.scene.bodies)
+    if (is_meant(body, WarningKind::unsolved)) meant.push_back(body.name);
+  const std::string text = end.result.tally.unsolved_text(meant);
+  return text.empty() ? "" : text + ";" + more_iterations(end.scene, end.scene_json) + " brings them nearer";
+}
+
 // Prints how the film ended; returns the exit status.
 int say_result(const FilmCommand& command, const EndOfRun& end) {
-  const auto& [result, folder, place, scene, unrecorded] = end;
+  const auto& [result, folder, place, scene, scene_json, unrecorded] = end;
   if (command.json) {
     print_json(result, folder);
   } else if (command.table && !command.plan.quiet && !result.rows.empty()) {
@@ -124,10 +158,11 @@ int say_result(const FilmCommand& command, const EndOfRun& end) {
                             std::max(result.rows.size(), result.kept_frames),
                             command.plan.film_only ? "frames' motion" : "whole frames", folder.path().string()));
   }
-  if (const std::string unsolved = result.tally.unsolved_text(); !unsolved.empty())
+  if (const std::string unsolved = unsolved_warning(end); !unsolved.empty())
     say(stderr, fmt::format("warning: {}\n", unsolved));
   if (!unrecorded.empty()) say(stderr, fmt::format("supple: {}\n", unrecorded));
-  if (result.video_failed) say(stderr, fmt::format("supple: {}\n", result.video_message));
+  if (!result.video_message.empty())
+    say(stderr, fmt::format("{}: {}\n", result.video_failed ? "supple" : "warning", result.video_message));
   if (!result.stills_message.empty()) say(stderr, fmt::format("supple: {}\n", result.stills_message));
   if (result.end == FilmEnd::interrupted) {
     say(stderr, fmt::format("supple: interrupted after {} frames; they are whole, and so is what belongs to them in "
@@ -223,7 +258,7 @@ void add_film(Verb& verb, const FilmArgument& argument, const std::vector<std::s
   verb.flag("--resume", plan.resume, "go on with the film in --out that was interrupted or killed");
   verb.flag("--force", plan.force, "overwrite another run in the folder; without it a numbered folder is taken");
   verb.flag("--preview", plan.preview,
-            "a first look: a quarter of the size, every other frame, coarse meshes, into out/NAME-preview")
+            "a first look: small pictures of every other frame, coarse meshes, into out/NAME-preview")
       .excludes({"--resume", "--checkpoint-every"});
   add_coding_options(verb, plan.coding);
   verb.flag(
@@ -246,7 +281,7 @@ int run_film(const FilmCommand& command, const std::vector<std::string>& words, 
   const Stopwatch setup;
   LoadedFilm film = load_film(plan, words);
   const SceneDef& scene = film.script.scene();
-  if (!plan.quiet) say_remarks(film);
+  if (!plan.quiet) say_remarks(plan, film);
   build_models(plan, film);
   if (!plan.quiet) say_bodies(film.info);
   if (!plan.quiet && plan.preview) say_preview(film);
@@ -254,6 +289,7 @@ int run_film(const FilmCommand& command, const std::vector<std::string>& words, 
   if (start.verifier && !start.verifier->remark().empty())
     say(stderr, fmt::format("note: {}: {}\n", plan.verify, start.verifier->remark()));
   say_place(plan, start.place);
+  say_coding(plan, scene);
   catch_interrupts();
   find_framing(plan, start, all_solvers(), film);
   const RunFolder folder = open_folder(start, film);
@@ -266,7 +302,7 @@ int run_film(const FilmCommand& command, const std::vector<std::string>& words, 
 
   std::vector<ThreadTrace> trace = plan.trace ? stop_trace() : std::vector<ThreadTrace>();
   const std::string unrecorded = write_records(result, film, folder, plan.trace ? &trace : nullptr);
-  int status = say_result(command, {result, folder, start.place, scene, unrecorded});
+  int status = say_result(command, {result, folder, start.place, scene, film.info.scene_json, unrecorded});
   if (start.verifier && result.end == FilmEnd::done && !say_verdict(command, *start.verifier, result.rows.size()))
     status = 1;
   if (command.page && !result.rows.empty()) {

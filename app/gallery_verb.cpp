@@ -65,13 +65,15 @@ std::vector<std::filesystem::path> files_of(const GalleryCommand& command) {
   return files;
 }
 
+constexpr std::size_t first_option = 5;  // of the words below, after the scene and --out
+
 // Returns the words with which the program films a scene within the gallery's bounds.
 std::vector<std::string> words_for(const GalleryCommand& command, const ListedScene& listed, const SceneDef& scene) {
   std::vector<std::string> words = {std::filesystem::read_symlink("/proc/self/exe").string(),
                                     "render",
-                                    listed.file.string(),
+                                    file_word(listed.file),
                                     "--out",
-                                    command.folder(listed.name).string(),
+                                    file_word(command.folder(listed.name)),
                                     "--force",
                                     "--quiet",
                                     "--gl",
@@ -110,7 +112,8 @@ ListedScene listed(const GalleryCommand& command, const std::filesystem::path& f
     result.title = script.scene().title;
     result.words = words_for(command, result, script.scene());
     std::string all = hash_text_form(program_identity()) + script.scene_json() + script.replay_json();
-    for (std::size_t i = 2; i < result.words.size(); ++i) all += '\n' + result.words[i];
+    all += '\n' + file.string() + '\n' + command.folder(result.name).string();  // the words name them absolutely
+    for (std::size_t i = first_option; i < result.words.size(); ++i) all += '\n' + result.words[i];
     result.identity = hash_text_form(hash_text(all));
   } catch (const InputError& error) {
     result.identity = hash_text_form(hash_text(error.what()));
@@ -220,8 +223,7 @@ void add_gallery(CommandLine& line) {
   verb.option("--out", command->out, "folder for the results").shows_default();
   verb.option("--width", command->width, "most pixels of the pictures' width").between(16, 8192).shows_default();
   verb.option("--frames", command->frames, "most frames of a film [the scene's]").between(1, 1000000);
-  verb.flag("--preview", command->preview, "previews of all: a quarter of the scenes' size, coarse meshes")
-      .excludes({"--width"});
+  verb.flag("--preview", command->preview, "previews of all: small pictures, coarse meshes").excludes({"--width"});
   verb.option("--set", command->settings, "path=value over those of all scenes; may be repeated").repeatable();
   verb.option("--gl", command->gl, word_list(all_names<GlChoice>())).one_of(all_names<GlChoice>());
   verb.flag("--again", command->again, "film scenes that are done once more");

@@ -4,12 +4,14 @@
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
+#include "base/near_files.h"
 #include "base/text.h"
 #include "base/timing.h"
 #include "film/places.h"
 #include "film/progress.h"
 #include "geometry/mesh_file.h"
 #include "scene/body_mesh.h"
+#include "scene/model_scene.h"
 
 namespace supple {
 namespace {
@@ -18,7 +20,9 @@ std::filesystem::path shape_file(const std::string& name) {
   std::error_code error;
   if (std::filesystem::exists(name, error)) return name;
   const std::filesystem::path shipped = assets_folder() / "shapes" / (name + ".toml");
-  return std::filesystem::exists(shipped, error) ? shipped : std::filesystem::path(name);
+  if (std::filesystem::exists(shipped, error)) return shipped;
+  const auto is_shape = [](const std::filesystem::path& file) { return file.extension() == ".toml" || is_model(file); };
+  throw InputError(name, "no such file" + meant_file(near_file(name, is_shape, shipped_names("shapes"))));
 }
 
 int make_mesh(const std::string& input, const std::string& output, int vertices, const SurfaceOptions& options) {

@@ -69,7 +69,7 @@ void report(const ProfileCommand& request, const ZoneProfile& profile, const std
     if (plotted) say(stdout, fmt::format("  plot     {}\n", (folder / "frame-times.svg").string()));
     say(stdout, fmt::format("  {}\n", verdict(work_of(profile))));
   }
-  if (!plotted && !request.film.plan.quiet) say(stderr, fmt::format("note: {}\n", no_plot));
+  if (!plotted) say(stderr, fmt::format("note: {}\n", no_plot));
 }
 
 // Profiles one run in this process.
@@ -142,7 +142,8 @@ std::vector<std::string> one_repeat(const std::string& program, const std::vecto
       words.push_back(word);
     }
   }
-  words.insert(words.end(), {"--repeats", "1", "--quiet", "--out", folder.string()});
+  // They stand after the verb, and before a "--", after which no word is an option.
+  words.insert(words.begin() + 2, {"--repeats", "1", "--quiet", "--out", file_word(folder)});
   return words;
 }
 

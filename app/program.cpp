@@ -6,7 +6,9 @@
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <optional>
 
@@ -16,10 +18,22 @@
 namespace supple {
 namespace {
 
+// Every relative path of the command line leads nowhere once the working folder has been removed.
+void check_working_folder() {
+  std::error_code error;
+  (void)std::filesystem::current_path(error);
+  if (!error) return;
+  const char* name = std::getenv("PWD");
+  throw InputError(name != nullptr ? name : "the working folder",
+                   fmt::format("the folder that the command was called in cannot be used: {}; cd to one that is there",
+                               error.message()));
+}
+
 int run(int argc, char** argv, const std::function<void(CommandLine&)>& add_verbs) {
   CommandLine line(argc, argv);
   add_verbs(line);
   if (const std::optional<int> status = line.read()) return *status;
+  check_working_folder();
   const int status = line.run();
   const bool said = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
   return status == 0 && !said ? 1 : status;
@@ -42,6 +56,10 @@ int run_command_line(int argc, char** argv, const std::function<void(CommandLine
   } catch (const InputError& error) {
     say(stderr, fmt::format("{}\n", error.what()));
     return 2;
+  } catch (const std::filesystem::filesystem_error& error) {
+    const std::string where = error.path1().empty() ? "" : error.path1().string() + ": ";
+    say(stderr, fmt::format("supple: {}{}\n", where, error.code().message()));
+    return 1;
   } catch (const std::bad_alloc&) {
     say(stderr, fmt::format("supple: out of memory\n"));
     return 1;

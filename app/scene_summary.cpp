@@ -21,8 +21,10 @@ std::string cost_text(const SceneDef& scene, Body& body, Model& model, const Col
   const FrameCost cost =
       cost_of_frames(scene, body, model, set, all_solvers().steps, threads, std::min(tried_frames, scene.frames));
   if (!cost.failure.empty()) return cost.failure;
-  return fmt::format("{:.2f} ms a frame (median of the first {}, {} threads)", distribution_of(cost.frame_ms).p50,
-                     cost.frame_ms.size(), threads.count());
+  const bool free = !set.obstacles.empty() && !cost.touched;
+  return fmt::format("{:.2f} ms a frame (median of the first {}, {} threads{})", distribution_of(cost.frame_ms).p50,
+                     cost.frame_ms.size(), threads.count(),
+                     free ? "; it touches nothing in them, and contacts cost more" : "");
 }
 
 std::string substance_text(const Body& body) {

@@ -76,8 +76,11 @@ int make_film_of(const SplitCommand& command, const Drawn& drawn) {
     const auto number = static_cast<int>(picture);
     const Image image = split_picture(drawn.screen, number, drawn.frames[picture]);
     write_png(picture_file(command.folder / "frames", number), image.width, image.height, image.rgb);
-    if (!video && !file.empty())
+    if (!video && !file.empty()) {
+      for (const std::string& warning : coding_warnings(command.coding, drawn.rate, false))
+        say(stderr, fmt::format("warning: {}\n", warning));
       video.emplace(command.folder / file, image.width, image.height, drawn.rate, command.coding);
+    }
     if (video) video->add(image.rgb);
   }
   if (interrupted()) return 130;
@@ -85,10 +88,11 @@ int make_film_of(const SplitCommand& command, const Drawn& drawn) {
     const VideoResult end = video->finish();
     if (end.outcome == VideoOutcome::failed)
       throw RunError(fmt::format("no film: {}; the pictures are whole. {}", end.reason, end.told));
-    if (!command.quiet)
-      say(stdout, end.outcome == VideoOutcome::written
-                      ? fmt::format("  film     {}\n", (command.folder / file).string())
-                      : fmt::format("  no film: {}\n", end.reason));
+    if (end.outcome != VideoOutcome::written) {
+      say(stderr, fmt::format("warning: no film: {}; the pictures are whole\n", end.reason));
+    } else if (!command.quiet) {
+      say(stdout, fmt::format("  film     {}\n", (command.folder / file).string()));
+    }
   }
   return 0;
 }

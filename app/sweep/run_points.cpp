@@ -25,11 +25,11 @@ namespace {
 std::vector<std::string> command_of(const SweepRequest& request, std::size_t point) {
   std::vector<std::string> words = {std::filesystem::read_symlink("/proc/self/exe").string(),
                                     "sweep",
-                                    request.scene,
+                                    file_word(request.file),
                                     "--index",
                                     std::to_string(point),
                                     "--out",
-                                    request.out.string(),
+                                    file_word(request.out),
                                     "--threads",
                                     std::to_string(request.threads),
                                     "--gl",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/frame_time.h"
 #include "film/camera.h"
 #include "film/film_graphs.h"
 #include "film/marked_vertices.h"
@@ -34,7 +35,7 @@ std::vector<Camera> cameras_of(const Script& script, const Stage& stage) {
   for (int frame = 0; frame < script.scene().frames; ++frame) {
     const bool changes = changes_camera(script, frame);
     if (changes) scene = script.scene_at(frame);
-    if (changes || scene.camera.moves()) cameras.push_back(camera_at(scene, stage, (frame + 1) / scene.fps));
+    if (changes || scene.camera.moves()) cameras.push_back(camera_at(scene, stage, frame_time(frame, scene.fps)));
   }
   return cameras;
 }

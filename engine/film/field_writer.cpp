@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/frame_time.h"
 #include "sim/solver/fields.h"
 
 namespace supple {
@@ -38,7 +39,7 @@ void FieldWriter::find_earlier(int frame) {
 void FieldWriter::write_collection() const {
   std::vector<PvdEntry> entries;
   for (const int frame : written_)
-    entries.push_back({(frame + 1) / fps_, folder_.fields(body_.def.name, frame).filename().string()});
+    entries.push_back({frame_time(frame, fps_), folder_.fields(body_.def.name, frame).filename().string()});
   write_pvd(folder_.field_collection(body_.def.name), entries);
 }
 

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "base/error.h"
+#include "base/frame_time.h"
 #include "base/timing.h"
 #include "base/variants.h"
 #include "film/film_checks.h"
@@ -284,7 +285,7 @@ void make_stills(const FilmPlan& plan, const SceneDef& scene, const RunFolder& f
   const Zone zone("stills");
   std::vector<double> times;
   for (int picture = 0; picture < pictures_of(plan, result); ++picture)
-    times.push_back((picture * plan.pictures_every() + 1) / scene.fps);
+    times.push_back(frame_time(picture * plan.pictures_every(), scene.fps));
   try {
     result.stills = write_stills(folder.path(), scene.title, times);
   } catch (const std::exception& error) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/frame_time.h"
 #include "base/trace.h"
 #include "film/state_file.h"
 #include "output/obj_file.h"
@@ -160,7 +161,7 @@ void FilmedBody::measure(int frame, BodyRow& row) {
     row.energy = {energy.kinetic, energy.elastic, energy.gravitational, energy.springs, energy.contact};
   }
   if (!body.motions.empty() && !body.def.handles.front().grabs) {
-    const double time = (frame + 1) / scene_.fps;
+    const double time = frame_time(frame, scene_.fps);
     row.jiggle = jiggle(model(), state().x, body.motions.front().at(time));
   }
 }

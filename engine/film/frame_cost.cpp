@@ -13,6 +13,7 @@ FrameCost cost_of_frames(const SceneDef& scene, Body& body, Model& model, const 
     double ms = 0;
     driver.make_frame(frame, [&](const StepReport& report) {
       if (report.failed) cost.failure = fmt::format("step {} fails: {}", steps, report.failure.what);
+      cost.touched = cost.touched || report.contacts.touching > 0;
       ms += report.step_ms;
       ++steps;
     });

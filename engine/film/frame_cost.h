@@ -11,6 +11,7 @@ namespace supple {
 struct FrameCost {
   std::vector<double> frame_ms;  // of the steps of each frame that was whole
   State state;                   // after them
+  bool touched = false;          // a collider, at the end of any step
   std::string failure;           // why a step failed; empty: none did
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/frame_time.h"
 #include "base/hash.h"
 #include "base/interrupts.h"
 #include "base/timing.h"
@@ -16,7 +17,7 @@ FilmEnd FrameLoop::run(Progress& progress, std::string& message) {
     const Zone zone("frame", {}, frame);
     FrameRow row;
     row.frame = frame;
-    row.time_s = (frame + 1) / scene_.fps;
+    row.time_s = frame_time(frame, scene_.fps);
     if (log_.keeps_checkpoints()) keep_checkpoint_before(frame);
     apply_replay(frame, row);
     message = step_bodies(frame, row);

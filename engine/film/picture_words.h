@@ -1,10 +1,11 @@
 // Writes what a picture says in words: a line at its top, and a note below each body.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "output/profile.h"
-#include "scene/scene_def.h"
+#include "scene/script.h"
 
 namespace supple {
 
@@ -20,5 +21,9 @@ std::string note_text(const TextDef& text, const BodyDef& body, const BodyRow* r
 
 // Returns a note that is as long as any of the scene's, so that captions can keep room for it.
 std::string longest_note(const SceneDef& scene);
+
+// Warns of characters in the title and in the captions, at any time of the film, for which the font has no glyph: the
+// pictures show boxes in their place. font: its file; empty where there is none, and then there are no captions.
+std::optional<Problem> letters_warning(const Script& script, const std::string& font);
 
 }  // namespace supple

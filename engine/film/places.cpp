@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <system_error>
 
+#include "base/error.h"
+#include "base/near_files.h"
 #include "base/read_file.h"
+#include "scene/model_scene.h"
 
 namespace supple {
 namespace {
@@ -52,7 +55,11 @@ std::filesystem::path scene_file(const std::string& name) {
     const std::filesystem::path shipped = assets_folder() / kind / (name + ".toml");
     if (std::filesystem::exists(shipped, error)) return shipped;
   }
-  return name;
+  if (std::filesystem::exists(name, error)) return name;
+  std::vector<std::string> shipped = shipped_names("scenes");
+  for (std::string& replay : shipped_names("replays")) shipped.push_back(std::move(replay));
+  const auto is_input = [](const std::filesystem::path& file) { return file.extension() == ".toml" || is_model(file); };
+  throw InputError(name, "no such file" + meant_file(near_file(name, is_input, shipped)));
 }
 
 SceneSource scene_source(const std::string& name) {

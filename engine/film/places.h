@@ -20,7 +20,8 @@ std::vector<std::string> shipped_names(const std::string& kind);
 // Returns the file of a sans-serif font for captions; empty when none of the known fonts is installed.
 std::string caption_font();
 
-// Returns the scene or replay that a user means: a file, or the name of one that ships ("squirrel").
+// Returns the scene or replay that a user means: a file, or the name of one that ships ("squirrel"). Throws InputError
+// where there is neither.
 std::filesystem::path scene_file(const std::string& name);
 // Does the same, and takes "-" for standard input, which it reads. Throws InputError.
 SceneSource scene_source(const std::string& name);

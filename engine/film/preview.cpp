@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "scene/body_pieces.h"
 
@@ -12,7 +13,15 @@ namespace {
 
 constexpr int fewest_vertices = 250;
 
-int quarter(int size) { return std::max(16, size / 4 / 2 * 2); }
+constexpr int least_width = 480;  // of the pictures, below which faces and folds are not made out
+
+// Returns the width and height of the pictures: a quarter of the scene's, but not below the least width, unless the
+// scene's are narrower.
+std::pair<int, int> preview_size(const OutputDef& output) {
+  const int width = std::min(output.width, std::max(least_width, output.width / 4)) / 2 * 2;
+  const double share = static_cast<double>(width) / output.width;
+  return {std::max(16, width), std::max(16, static_cast<int>(std::lround(output.height * share / 2)) * 2)};
+}
 
 // Returns the table that a body comes from: pieces of a surface share one.
 std::string table_of(const BodyDef& body) {
@@ -53,8 +62,8 @@ std::string coarser(const SceneDef& scene, const BodyDef& body, double share) {
 }  // namespace
 
 std::vector<std::string> preview_settings(const SceneDef& scene, double share) {
-  std::vector<std::string> settings = {fmt::format("output.width={}", quarter(scene.output.width)),
-                                       fmt::format("output.height={}", quarter(scene.output.height))};
+  const auto [width, height] = preview_size(scene.output);
+  std::vector<std::string> settings = {fmt::format("output.width={}", width), fmt::format("output.height={}", height)};
   for (const BodyDef& body : scene.bodies) {
     const std::string setting = share < 1 ? coarser(scene, body, share) : "";
     if (!setting.empty()) settings.push_back(setting);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/frame_time.h"
 #include "base/interrupts.h"
 #include "base/text.h"
 #include "base/threads.h"
@@ -41,6 +42,7 @@ constexpr std::array seen = {"title",
                              "body[].color",
                              "body[].gloss",
                              "body[].label",
+                             "body[].meant",
                              "body[].pattern",
                              "body[].pattern_size",
                              "body[].skin_cells",
@@ -249,7 +251,7 @@ class Drawing {
   }
 
   FramePose pose(int frame) const {
-    FramePose pose{frame, (frame + 1) / scene_.fps, {}, {}};
+    FramePose pose{frame, frame_time(frame, scene_.fps), {}, {}};
     for (const Positions& body : motion_) pose.motion.push_back(&body);
     for (const Positions& body : before_) pose.before.push_back(&body);
     for (const Positions& body : forces_) pose.forces.push_back(&body);

@@ -2,7 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "base/error.h"
+#include "base/text.h"
 #include "output/obj_file.h"
 #include "output/run_record.h"
 
@@ -10,7 +13,15 @@ namespace supple {
 
 ReferenceRun::ReferenceRun(const std::filesystem::path& folder, const std::vector<Body>& bodies) : folder_(folder) {
   const RunRecord run = read_run(folder);
+  std::vector<std::string> there;
+  if (!run.rows.empty())
+    for (const BodyRow& row : run.rows.front().bodies) there.push_back(row.name);
   for (const Body& body : bodies) {
+    const std::string& name = body.def.name;
+    if (!there.empty() && std::ranges::find(there, name) == there.end())
+      throw InputError(folder.string(), fmt::format("that run has no body '{}' (it has {}), so that the two cannot be "
+                                                    "compared; another run of this scene can be{}",
+                                                    name, word_list(there), did_you_mean(name, there)));
     motion_.emplace_back(run.motion(body.def.name));
     origin_.push_back(motion_origin(body.description.mesh.rest));
     const auto vertices = static_cast<int>(body.description.mesh.rest.rows());

@@ -1,8 +1,11 @@
 #include "film/rough_motion.h"
 
+#include <fmt/core.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 
 #include "base/error.h"
 #include "output/obj_file.h"
@@ -17,8 +20,14 @@ constexpr double air = 0.02;  // around the box, because finer bodies move a lit
 class ScratchFolder {
  public:
   ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "supple-first-pass-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw RunError(name + ": the folder of the first pass cannot be made");
+    const char* given = std::getenv("TMPDIR");
+    const std::filesystem::path place = given != nullptr && *given != '\0' ? given : "/tmp";
+    std::string name = (place / "supple-first-pass-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr)
+      throw RunError(
+          fmt::format("{}: the camera's first pass cannot make a folder there: {}; set TMPDIR to a folder "
+                      "that can be written",
+                      place.string(), std::strerror(errno)));
     path = name;
   }
   ~ScratchFolder() {

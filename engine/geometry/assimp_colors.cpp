@@ -8,6 +8,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "base/text.h"
 #include "geometry/surface_stream.h"
 #include "geometry/texture_reader.h"
 #include "geometry/uri_names.h"
@@ -53,16 +54,19 @@ fs::path found_beside(const fs::path& model, std::string name) {
 
 std::string file_name(std::string path) {
   std::replace(path.begin(), path.end(), '\\', '/');
-  return printable(fs::path(path).filename().string());
+  return one_line(fs::path(path).filename().string());
 }
 
 }  // namespace
 
-std::string printable(std::string text) {
-  text = text.substr(0, text.find('\n')).substr(0, 200);
-  for (char& c : text)
-    if (c < ' ' || c > '~') c = '?';
-  return text;
+std::string one_line(std::string_view text) {
+  std::string_view line = text.substr(0, text.find('\n'));
+  std::size_t end = 0;  // of the whole characters that are kept
+  for (std::size_t next = 0; next <= 200 && next <= line.size();
+       next += std::max<std::size_t>(1, first_character(line.substr(next)))) {
+    end = next;
+  }
+  return printable(line.substr(0, end));
 }
 
 ColorReader::ColorReader(const aiScene& scene, fs::path file, std::function<void(int)> more_time)
@@ -107,7 +111,7 @@ void ColorReader::find_library() {
     if (!there) missing = name;
   }
   if (!has_library_ && !missing.empty())
-    remark("its materials are missing: there is no file '" + printable(missing) + "' beside it");
+    remark("its materials are missing: there is no file '" + one_line(missing) + "' beside it");
 }
 
 // Tells whether a material is one of the file's: assimp makes up others where there are none.
@@ -204,7 +208,7 @@ std::int32_t ColorReader::keep_texture(const std::string& bytes, const std::stri
   more_time_(10);
   ReadTexture read =
       read_texture(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), stream::most_pixels - pixels_);
-  refusal = printable(read.refusal);
+  refusal = one_line(read.refusal);
   if (!refusal.empty()) return -1;
   if (read.transparent) remark("transparency of texture '" + name + "' is not drawn");
   if (read.damaged) remark("texture '" + name + "' is damaged: parts of it may be grey");

@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/texture.h"
@@ -60,6 +61,6 @@ class ColorReader {
 };
 
 // Returns text of a file as one line that a terminal can show.
-std::string printable(std::string text);
+std::string one_line(std::string_view text);
 
 }  // namespace supple

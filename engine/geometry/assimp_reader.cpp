@@ -68,8 +68,8 @@ void allow_seconds(int seconds) {
   limit(RLIMIT_CPU, std::min(std::max(now.rlim_cur, spent + rlim_t(seconds)), now.rlim_max), now.rlim_max);
 }
 
-int refuse(std::string reason, stream::Place place = {}) {
-  reason = supple::printable(std::move(reason));
+int refuse(const std::string& words, stream::Place place = {}) {
+  const std::string reason = supple::one_line(words);
   std::fwrite(stream::refused, 1, sizeof stream::refused, stdout);
   std::fwrite(&place, sizeof place, 1, stdout);
   std::fwrite(reason.data(), 1, reason.size(), stdout);

@@ -128,6 +128,8 @@ class NoSigpipe {
 
 }  // namespace
 
+std::string file_word(const std::filesystem::path& file) { return std::filesystem::absolute(file).string(); }
+
 std::optional<ProgramEnd> run_program(const std::vector<std::string>& words, const std::function<bool()>& stop) {
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) return std::nullopt;

@@ -5,6 +5,7 @@
 #include <sys/types.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <span>
@@ -18,6 +19,10 @@ struct ProgramEnd {
   std::string output;  // the last 4 kB of standard output and standard error
   double cpu_ms = 0;   // processor time of all its threads
 };
+
+// Names a file to another program: by its absolute path, because a bare name could be taken for an option ("-dash"), a
+// protocol ("http://...", "concat:...") or a pipe ("|...").
+std::string file_word(const std::filesystem::path& file);
 
 // Looks the program up in PATH and runs it with an empty standard input. Returns nothing when it is not installed.
 // stop: is called several times a second; once it returns true, the program gets SIGINT, and its end is still waited

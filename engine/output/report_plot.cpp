@@ -209,7 +209,7 @@ struct Script {
 
 Script plot_script(const ReportPlot& plot, const std::vector<Points>& points, const std::filesystem::path& picture) {
   const std::vector<Look> looks = looks_of(plot);
-  Script script{frame_script(plot, points) + "set output " + quoted(picture.string()) + "\n", {}};
+  Script script{frame_script(plot, points) + "set output " + quoted(file_word(picture)) + "\n", {}};
   std::string items;
   const auto add = [&](std::size_t i, bool in_legend) {
     const std::string title =
@@ -281,7 +281,7 @@ bool write_plot(const ReportPlot& plot, const std::filesystem::path& folder, std
 
   const Script script = plot_script(plot, points, part);
   write_whole_file(script_file, script.text);
-  const auto drawn = run_program({"gnuplot", "--default-settings", script_file.string()});
+  const auto drawn = run_program({"gnuplot", "--default-settings", file_word(script_file)});
   const std::string picture = drawn && drawn->status == 0 ? named_svg(plot, script.groups, read_text(part)) : "";
   std::filesystem::remove(script_file, ignored);
   std::filesystem::remove(part, ignored);

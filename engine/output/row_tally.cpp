@@ -239,29 +239,46 @@ std::string RowTally::table() const {
   return text + touch_table();
 }
 
-std::string RowTally::unsolved_text() const {
-  if (unsolved_.empty()) return "";
+namespace {
+
+// Says how far a body was from its solution in its worst step, and whether that is seen. A share of a motion is seen
+// where there is much of it.
+std::string distance_words(const UnsolvedStep& step) {
+  constexpr double seen = 0.1;  // of a step's motion
+  if (step.motion_estimate <= 0) return fmt::format("with an error of about {:.2g} in energy", step.error_estimate);
+  if (step.motion_estimate < seen) return "by too little to be seen";
+  const std::string share = step.motion_estimate < 1
+                                ? fmt::format("about {:.2g} of a step's motion", step.motion_estimate)
+                                : std::string("more than a step's motion");
+  return "by " + share + ", which is seen where it moves fast";
+}
+
+// Tells whether a step is further from its solution than another of the same body.
+bool is_further(const UnsolvedStep& one, const UnsolvedStep& other) {
+  return std::pair(one.motion_estimate, one.error_estimate) > std::pair(other.motion_estimate, other.error_estimate);
+}
+
+}  // namespace
+
+std::string RowTally::unsolved_text(const std::vector<std::string>& meant) const {
   int frames = 0, last = -1;
   std::vector<UnsolvedStep> worst;  // of each body
   for (const UnsolvedStep& step : unsolved_) {
+    if (std::ranges::find(meant, step.body) != meant.end()) continue;
     frames += step.frame != std::exchange(last, step.frame) ? 1 : 0;
     const auto at = std::ranges::find(worst, step.body, &UnsolvedStep::body);
     if (at == worst.end()) {
       worst.push_back(step);
-    } else if (std::max(step.error_estimate, step.motion_estimate) >
-               std::max(at->error_estimate, at->motion_estimate)) {
+    } else if (is_further(step, *at)) {
       *at = step;
     }
   }
+  if (worst.empty()) return "";
   std::string text = fmt::format("{} of {} frames did not come near their solution:", frames, frames_);
-  for (const UnsolvedStep& step : worst) {
-    text += fmt::format(
-        "{} body '{}' worst in frame {}, with errors of about {:.2g} in energy and {:.2g} in motion, and {:.1f} "
-        "trials an iteration",
-        &step == &worst.front() ? "" : ";", step.body, step.frame, step.error_estimate, step.motion_estimate,
-        step.trials);
-  }
-  return text + "; more iterations or substeps help";
+  for (const UnsolvedStep& step : worst)
+    text += fmt::format("{} body '{}' {} (frame {})", &step == &worst.front() ? "" : ";", step.body,
+                        distance_words(step), step.frame);
+  return text;
 }
 
 }  // namespace supple

@@ -64,7 +64,8 @@ class RowTally {
   std::vector<std::string> warnings() const;
   std::vector<std::string> penetrations() const;
   std::vector<std::string> missing_in_pictures() const;
-  std::string unsolved_text() const;
+  // Leaves out the bodies of which that is meant.
+  std::string unsolved_text(const std::vector<std::string>& meant = {}) const;
   std::string table() const;
   FrameWork work(double encoding) const;
 

@@ -39,6 +39,16 @@ PointCacheReader open_motion(const RunRecord& run, const std::string& body, int 
   return reader;
 }
 
+// Returns the median of a body's steps over all frames but the first, which warms caches.
+double median_step_of(const std::vector<FrameRow>& rows, const std::string& name) {
+  std::vector<double> ms;
+  for (std::size_t i = rows.size() > 1 ? 1 : 0; i < rows.size(); ++i) {
+    const auto body = std::ranges::find(rows[i].bodies, name, &BodyRow::name);
+    if (body != rows[i].bodies.end()) ms.push_back(body->step_ms);
+  }
+  return distribution_of(ms).p50;
+}
+
 BodyComparison compare_body(const RunRecord& a, const RunRecord& b, const std::string& name, int frames) {
   PointCacheReader motion_a = open_motion(a, name, frames), motion_b = open_motion(b, name, frames);
   BodyComparison body;
@@ -47,6 +57,8 @@ BodyComparison compare_body(const RunRecord& a, const RunRecord& b, const std::s
   body.vertices_b = motion_b.points();
   body.saved_a = motion_a.frames();
   body.saved_b = motion_b.frames();
+  body.step_ms_a = median_step_of(a.rows, name);
+  body.step_ms_b = median_step_of(b.rows, name);
   body.size = bounds_of(motion_a.frame(0)).diagonal();
   if (body.vertices_a != body.vertices_b) return body;
   const Vec3 apart = origin_of_obj(b.surface(name)) - origin_of_obj(a.surface(name));

@@ -25,6 +25,7 @@ struct BodyComparison {
   int worst_frame = 0;                  // where the largest distance is largest
   std::optional<int> first_difference;  // the first frame whose positions differ
   int saved_a = 0, saved_b = 0;         // frames that the saved motion holds
+  double step_ms_a = 0, step_ms_b = 0;  // median of its steps over all frames but the first [ms]
 };
 
 struct RunComparison {
@@ -33,7 +34,7 @@ struct RunComparison {
   std::vector<double> time_s;                  // by frame
   std::vector<BodyComparison> bodies;          // that both have, in the order of A
   std::vector<std::string> only_a, only_b;     // names of the others
-  double step_ms_a = 0, step_ms_b = 0;         // median over all frames but the first [ms]
+  double step_ms_a = 0, step_ms_b = 0;         // of all bodies, median over all frames but the first [ms]
   std::vector<JsonDifference> differences;     // of run.json, but for how the run itself went
 
   // Tells whether both runs have the same bodies and frames, all with the same hash.

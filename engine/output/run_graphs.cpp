@@ -145,7 +145,7 @@ std::string tick_text(double value) {
 
 }  // namespace
 
-std::string graph_html(const FrameGraph& graph, std::size_t first, double seconds) {
+std::string graph_html(const FrameGraph& graph, std::size_t first, double from, double to) {
   const Axis axis = axis_of(graph);
   std::string html = "<div class=\"graph\"><div class=\"legend\"><b>" + markup_text(graph.title) +
                      (graph.unit.empty() ? "" : " [" + graph.unit + "]") + "</b>\n";
@@ -163,7 +163,7 @@ std::string graph_html(const FrameGraph& graph, std::size_t first, double second
   for (std::size_t s = 0; s < graph.series.size(); ++s)
     html += fmt::format("<path stroke=\"{}\" d=\"{}\"/>\n", colors[s % colors.size()], path_of(graph.series[s], axis));
   html += "</svg><div class=\"cursor\"></div></div>\n";
-  return html + fmt::format("<div class=\"times\"><span>0 s</span><span>{:.3g} s</span></div></div>\n", seconds);
+  return html + fmt::format("<div class=\"times\"><span>{:.2f} s</span><span>{:.2f} s</span></div></div>\n", from, to);
 }
 
 }  // namespace supple

@@ -25,8 +25,8 @@ struct FrameGraph {
 // Returns the graphs for which the rows have values: times, errors, stretch, contacts, penetration. There must be rows.
 std::vector<FrameGraph> graphs_of(const std::vector<FrameRow>& rows);
 
-// Returns a graph as HTML. first: the number of its first series on the page, for the script. seconds: the film's
-// length.
-std::string graph_html(const FrameGraph& graph, std::size_t first, double seconds);
+// Returns a graph as HTML. first: the number of its first series on the page, for the script. from, to: the times of
+// the first and the last frame [s].
+std::string graph_html(const FrameGraph& graph, std::size_t first, double from, double to);
 
 }  // namespace supple

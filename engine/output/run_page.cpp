@@ -78,7 +78,7 @@ function show(frame) {
   shown = Math.min(last, Math.max(0, frame));
   for (const area of areas) area.querySelector(".cursor").style.left = 100 * (last ? shown / last : 0) + "%";
   for (const out of document.querySelectorAll(".legend output")) out.value = text(data.series[out.dataset.series][shown]);
-  for (const out of document.querySelectorAll("output.frame")) out.value = "Shown: frame " + shown + ", " + (shown / data.rate).toFixed(2) + " s.";
+  for (const out of document.querySelectorAll("output.frame")) out.value = "Shown: frame " + shown + ", " + data.times[shown].toFixed(2) + " s.";
 }
 function seek(frame) {
   if (film) { film.pause(); film.currentTime = (frame + 0.5) / data.rate; }
@@ -225,7 +225,9 @@ std::string facts_html(const Json& info) {
 }
 
 // Everything in a JSON text that a page's script reads must not end the element that holds it.
-std::string data_html(const std::vector<FrameGraph>& graphs, std::size_t frames, double rate) {
+std::string data_html(const std::vector<FrameGraph>& graphs, const std::vector<FrameRow>& rows, double rate) {
+  Json times = Json::array();
+  for (const FrameRow& row : rows) times.push_back(row.time_s);
   Json series = Json::array();
   for (const FrameGraph& graph : graphs) {
     for (const FrameSeries& one : graph.series) {
@@ -234,15 +236,23 @@ std::string data_html(const std::vector<FrameGraph>& graphs, std::size_t frames,
       series.push_back(std::move(values));
     }
   }
-  const Json data = {{"frames", frames}, {"rate", rate}, {"series", series}};
+  const Json data = {{"frames", rows.size()}, {"rate", rate}, {"times", times}, {"series", series}};
   return "<script type=\"application/json\" id=\"data\">" + json_text(data) + "</script>\n";
+}
+
+// Tells whether the frames but the first took longer to make than they last. Only then it is worth saying what helps.
+bool is_slower_than_asked(const std::vector<FrameRow>& rows) {
+  double sum_ms = 0;
+  for (std::size_t i = 1; i < rows.size(); ++i) sum_ms += of_all_stages(rows[i]);
+  return rows.size() > 1 && sum_ms > 1000 * (rows.back().time_s - rows.front().time_s);
 }
 
 std::string warnings_html(const RunRecord& run) {
   std::ifstream file(run.folder / "profile.json");
   const Json profile = json_if_valid<Json>(file);
   std::string html;
-  if (profile.is_object() && profile.contains("summary") && profile["summary"].contains("verdict"))
+  if (is_slower_than_asked(run.rows) && profile.is_object() && profile.contains("summary") &&
+      profile["summary"].contains("verdict"))
     html += "<p class=\"soft\">" + markup_text(text_at(profile["summary"], "verdict")) + "</p>\n";
   for (const std::string& warning : warnings_of(run.rows))
     html += "<p class=\"warning\">" + markup_text(warning) + "</p>\n";
@@ -272,13 +282,13 @@ std::string run_page(const RunRecord& run) {
     graphs = graphs_of(run.rows);
     std::size_t first = 0;
     for (const FrameGraph& graph : graphs) {
-      html += graph_html(graph, first, seconds);
+      html += graph_html(graph, first, run.rows.front().time_s, run.rows.back().time_s);
       first += graph.series.size();
     }
     html += slowest_html(run.rows);
   }
   html += facts_html(info);
-  html += data_html(graphs, frames, rate) + "<script>" + std::string(script) + "</script></body></html>\n";
+  html += data_html(graphs, run.rows, rate) + "<script>" + std::string(script) + "</script></body></html>\n";
   return html;
 }
 

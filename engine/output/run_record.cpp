@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/near_files.h"
 #include "base/read_file.h"
 #include "output/json_text.h"
 
@@ -34,7 +35,12 @@ std::string RunRecord::ended() const {
 
 RunRecord read_run(const std::filesystem::path& folder) {
   std::error_code error;
-  if (!std::filesystem::is_directory(folder, error)) throw InputError(folder.string(), "no such folder");
+  if (!std::filesystem::is_directory(folder, error)) {
+    const auto is_run = [&error](const std::filesystem::path& entry) {
+      return std::filesystem::exists(entry / "run.json", error);
+    };
+    throw InputError(folder.string(), "no such folder" + meant_file(near_file(folder, is_run)));
+  }
   if (!std::filesystem::exists(folder / "run.json", error))
     throw InputError(folder.string(), "there is no run.json in it: this is not the folder of a run");
   RunRecord record;

@@ -19,7 +19,8 @@ struct UnsolvedStep {
 // Lists the bodies' frames of which a step is unsolved.
 std::vector<UnsolvedStep> unsolved_steps(const std::vector<FrameRow>& rows);
 
-// "3 of 400 frames were not solved: ...", with the worst of each body; empty where there are none.
+// "3 of 400 frames did not come near their solution: ...", with the worst of each body and whether it is seen; empty
+// where there are none.
 std::string unsolved_text(const std::vector<FrameRow>& rows);
 
 }  // namespace supple

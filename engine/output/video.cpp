@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <sstream>
 #include <utility>
@@ -15,6 +16,14 @@
 
 namespace supple {
 namespace {
+
+// Returns how many frames there are for each one that the film has. A GIF counts the time of a frame in hundredths of a
+// second, and browsers show one of a single hundredth for ten. With two or more, ffmpeg spreads them so that the film
+// keeps its speed.
+int frames_for_one(FilmFormat format, double fps) {
+  constexpr double fastest_gif = 50;
+  return format == FilmFormat::gif ? std::max(1, static_cast<int>(std::ceil(fps / fastest_gif - 1e-9))) : 1;
+}
 
 std::filesystem::path part_of(const std::filesystem::path& video) {
   return video.parent_path() / (video.stem().string() + ".part" + video.extension().string());
@@ -64,15 +73,18 @@ std::string gif_words(const FilmCoding& coding) {
       colors, coding.quality == FilmQuality::best ? 3 : 5);
 }
 
+// Keeps ffmpeg to files and pipes, whatever a name looks like. It wants to be told for its input and for its output.
+constexpr const char* local_alone = "-protocol_whitelist file,pipe";
+
 std::vector<std::string> ffmpeg_words(const std::filesystem::path& part, int width, int height, double fps,
                                       const FilmCoding& coding) {
   const bool gif = coding.format == FilmFormat::gif;
   const std::string words =
       // Frames come in the film's own colours (film_colors.h): ffmpeg took 4 ms for the same conversion.
       fmt::format(
-          "ffmpeg -nostdin -y -loglevel error -f rawvideo -pixel_format {} -video_size {}x{} -framerate {} "
-          "-i pipe:0 ",
-          gif ? "rgb24" : "yuv420p", width, height, fps) +
+          "ffmpeg -nostdin -y -loglevel error {} -f rawvideo -pixel_format {} -video_size {}x{} -framerate {} "
+          "-i pipe:0 {} ",
+          local_alone, gif ? "rgb24" : "yuv420p", width, height, fps, local_alone) +
       // The transfer function is that of the frames, sRGB.
       (gif ? gif_words(coding)
            : "-pix_fmt yuv420p -color_range tv -colorspace bt709 -color_primaries bt709 -color_trc iec61966-2-1 " +
@@ -80,11 +92,27 @@ std::vector<std::string> ffmpeg_words(const std::filesystem::path& part, int wid
   std::vector<std::string> list;
   std::istringstream stream(words);
   for (std::string word; stream >> word;) list.push_back(word);
-  list.push_back(part.string());
+  list.push_back(file_word(part));
   return list;
 }
 
 }  // namespace
+
+std::vector<std::string> coding_warnings(const FilmCoding& coding, double fps, bool transparent) {
+  std::vector<std::string> list;
+  const bool webm = coding.format == FilmFormat::webm || coding.format == FilmFormat::webm_av1;
+  if (transparent && (webm || coding.format == FilmFormat::gif))
+    list.push_back(
+        fmt::format("the film is not transparent, because supple gives a {} no coverage: it has the colour of "
+                    "the background; pictures (frames/, or --format png) have coverage",
+                    webm ? "WebM" : "GIF"));
+  if (const int every = frames_for_one(coding.format, fps); every > 1)
+    list.push_back(
+        fmt::format("a GIF shows no more than 50 pictures a second: of {:g}, it has one in {}, and its speed is "
+                    "that of the film",
+                    fps, every));
+  return list;
+}
 
 std::string film_file(FilmFormat format) {
   switch (format) {
@@ -102,7 +130,8 @@ VideoEncoder::VideoEncoder(std::filesystem::path video, int width, int height, d
     : video_(std::move(video)), part_(part_of(video_)), width_(width), height_(height), coding_(coding) {
   std::error_code ignored;
   std::filesystem::remove(part_, ignored);  // of a run that was killed
-  ffmpeg_.emplace(ffmpeg_words(part_, width, height, fps, coding_));
+  every_ = frames_for_one(coding_.format, fps);
+  ffmpeg_.emplace(ffmpeg_words(part_, width, height, fps / every_, coding_));
 }
 
 VideoEncoder::~VideoEncoder() {
@@ -113,8 +142,9 @@ VideoEncoder::~VideoEncoder() {
 }
 
 bool VideoEncoder::add(std::span<const std::uint8_t> rgb) {
-  ++frames_;
+  const int number = frames_++;
   if (!taken_) return false;
+  if (number % every_ != 0) return true;
   if (coding_.format == FilmFormat::gif) {
     taken_ = ffmpeg_->write(rgb);
   } else {
@@ -155,7 +185,8 @@ VideoResult VideoEncoder::finish() {
   if (end->status != 0) return failure("ffmpeg " + how_it_ended(*end), end->output);
   if (!taken_) return failure("ffmpeg ended before it had all frames", end->output);
   const long found = count_video_frames(part_);
-  if (found >= 0 && found != frames_) return failure(fmt::format("ffmpeg wrote {} of {} frames", found, frames_));
+  const int wanted = (frames_ + every_ - 1) / every_;
+  if (found >= 0 && found != wanted) return failure(fmt::format("ffmpeg wrote {} of {} frames", found, wanted));
   std::error_code error;
   std::filesystem::rename(part_, video_, error);
   if (error) return failure(fmt::format("{} cannot be renamed into place: {}", part_.string(), error.message()));
@@ -163,8 +194,9 @@ VideoResult VideoEncoder::finish() {
 }
 
 long count_video_frames(const std::filesystem::path& video) {
-  const auto probe = run_program({"ffprobe", "-v", "error", "-count_packets", "-select_streams", "v:0", "-show_entries",
-                                  "stream=nb_read_packets", "-of", "csv=p=0", video.string()});
+  const auto probe =
+      run_program({"ffprobe", "-v", "error", "-protocol_whitelist", "file", "-count_packets", "-select_streams", "v:0",
+                   "-show_entries", "stream=nb_read_packets", "-of", "csv=p=0", file_word(video)});
   if (!probe || probe->status != 0) return -1;
   char* end = nullptr;
   const long count = std::strtol(probe->output.c_str(), &end, 10);

@@ -40,6 +40,9 @@ struct FilmCoding {
   FilmFormat format = FilmFormat::mp4;
   FilmQuality quality = FilmQuality::good;
 };
+// Returns what a film of pictures at this rate, with or without coverage, cannot hold of them, for people.
+std::vector<std::string> coding_warnings(const FilmCoding& coding, double fps, bool transparent);
+
 // Returns the name of the film's file in its folder, "video.mp4"; empty where there is no film.
 std::string film_file(FilmFormat format);
 
@@ -62,7 +65,7 @@ class VideoEncoder {
   ~VideoEncoder();
 
   // Adds a frame: 8-bit sRGB, rows from the top. Waits while ffmpeg is busy. Returns false once ffmpeg takes no more
-  // frames.
+  // frames. A GIF leaves out those for which it is too slow.
   bool add(std::span<const std::uint8_t> rgb);
 
   // Adds the frames of a folder (000000.png, 000001.png, ...) that have not been added yet, until `count` frames have
@@ -83,6 +86,7 @@ class VideoEncoder {
   FilmCoding coding_;
   std::vector<std::uint8_t> planes_;  // scratch
   int frames_ = 0;
+  int every_ = 1;       // of the frames, the film has one in so many
   bool taken_ = true;   // all frames so far
   std::string unread_;  // why a file could not be added
   double cpu_ms_ = 0;   // of ffmpeg

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/text.h"
 
 namespace supple {
 namespace {
@@ -33,20 +34,26 @@ std::vector<char32_t> code_points(const std::string& text) {
 struct Library {
   FT_Library freetype = nullptr;
   FT_Face face = nullptr;
+
+  explicit Library(const std::string& font_file) {
+    if (FT_Init_FreeType(&freetype) != 0 || FT_New_Face(freetype, font_file.c_str(), 0, &face) != 0) {
+      if (freetype != nullptr) FT_Done_FreeType(freetype);
+      throw RunError(fmt::format("{}: not a usable font", font_file));
+    }
+  }
+  Library(const Library&) = delete;
+  Library& operator=(const Library&) = delete;
   ~Library() {
-    if (face != nullptr) FT_Done_Face(face);
-    if (freetype != nullptr) FT_Done_FreeType(freetype);
+    FT_Done_Face(face);
+    FT_Done_FreeType(freetype);
   }
 };
 
 }  // namespace
 
 CaptionBitmap draw_caption(const std::string& font_file, const std::string& text, int pixels) {
-  Library ft;
-  if (FT_Init_FreeType(&ft.freetype) != 0 || FT_New_Face(ft.freetype, font_file.c_str(), 0, &ft.face) != 0 ||
-      FT_Set_Pixel_Sizes(ft.face, 0, pixels) != 0) {
-    throw RunError(fmt::format("{}: not a usable font", font_file));
-  }
+  const Library ft(font_file);
+  if (FT_Set_Pixel_Sizes(ft.face, 0, pixels) != 0) throw RunError(fmt::format("{}: not a usable font", font_file));
   const auto points = code_points(text);
   CaptionBitmap bitmap;
   const int ascent = static_cast<int>(ft.face->size->metrics.ascender >> 6);
@@ -72,6 +79,19 @@ CaptionBitmap draw_caption(const std::string& font_file, const std::string& text
     bitmap.width = std::max(pen + 2, 1);
   }
   return bitmap;
+}
+
+std::vector<std::string> characters_without_glyph(const std::string& font_file, const std::string& text) {
+  const Library ft(font_file);
+  std::vector<std::string> missing;
+  for (std::size_t at = 0, length = 0; at < text.size(); at += length) {
+    length = std::max<std::size_t>(1, first_character(std::string_view(text).substr(at)));
+    const std::string character = text.substr(at, length);
+    if (FT_Get_Char_Index(ft.face, code_points(character).front()) == 0 &&
+        std::find(missing.begin(), missing.end(), character) == missing.end())
+      missing.push_back(character);
+  }
+  return missing;
 }
 
 }  // namespace supple

@@ -102,16 +102,16 @@ void set_substances(Body& body, std::vector<Problem>& problems) {
     const auto known = std::find(body.regions.begin(), body.regions.end(), region.name);
     if (known == body.regions.end()) {
       const std::vector<std::string> names(body.regions.begin() + 1, body.regions.end());
-      const std::string nearest = nearest_word(region.name, names);
+      const std::string nearest = did_you_mean(region.name, names);
       // A body that uses another mesh than the one for which the scene was written may lack the region (it may have no
       // teeth that could be stiff). That is noted and not refused.
       if (!def.mesh.empty()) {
         body.notes.push_back(fmt::format("there is no region '{}'; its material is not used", region.name));
       } else {
-        problems.push_back(at(region.place, fmt::format("body '{}' has no region '{}'; {}", def.name, region.name,
-                                                        names.empty()     ? "it has no tags"
-                                                        : nearest.empty() ? "there is " + word_list(names)
-                                                                          : "did you mean '" + nearest + "'?")));
+        problems.push_back(at(region.place, fmt::format("body '{}' has no region '{}'{}", def.name, region.name,
+                                                        names.empty()     ? "; it has no tags"
+                                                        : nearest.empty() ? "; there is " + word_list(names)
+                                                                          : nearest)));
       }
       continue;
     }

@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "scene/material_reader.h"
+#include "scene/model_scene.h"
 #include "scene/solver_reader.h"
 #include "scene/start_reader.h"
 #include "scene/surface_reader.h"
@@ -126,6 +127,11 @@ std::optional<ClothDef> read_cloth(const ConfigTable& body) {
   if (!table) return std::nullopt;
   ClothDef cloth;
   cloth.mesh = table->file({"mesh", "", "the triangles of a MEDIT .mesh; without it a grid in the plane z = 0"});
+  if (!cloth.mesh.empty() && cloth.mesh.extension() != ".mesh" && is_model(cloth.mesh))
+    table->complain("mesh",
+                    fmt::format("mesh = '{}': cloth is made of the Triangles of a MEDIT .mesh, or of a grid (extent, "
+                                "cells), and of no other file; surface = '{}' in the body makes a solid of it",
+                                cloth.mesh.filename().string(), cloth.mesh.filename().string()));
   if (cloth.mesh.empty()) {
     cloth.extent = table->pair({"extent", "m", "width and height of the grid"}, Range::above(0, 1e6));
     const Eigen::Vector2d cells =
@@ -206,6 +212,7 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
   body.place = table.place(nullptr);
   body.name = table.text({"name", "", "addresses the body in --set and in reports"}, "body");
   check_name(table, body.name);
+  body.meant = table.words<WarningKind>({"meant", "", "warnings about the body that need not be said"});
   body.label = table.text({"label", "", "caption in the film; the default is the name"}, body.name);
   body.shape = table.file({"shape", "", "a shape file, to be meshed here"});
   body.surface = table.file({"surface", "", "a triangle surface (OBJ, PLY, STL, glTF, OFF), to be meshed here"});

@@ -35,8 +35,8 @@ std::string one_of(const std::string& list) { return list == "handles" ? "handle
 
 [[noreturn]] void fail_unnamed(const FilePlace& place, const std::string& list, const std::string& wanted,
                                const std::vector<std::string>& names) {
-  fail(place, fmt::format("there is no {} named '{}' (there is {})", one_of(list), wanted,
-                          names.empty() ? "none" : word_list(names)));
+  fail(place, fmt::format("there is no {} named '{}' (there is {}){}", one_of(list), wanted,
+                          names.empty() ? "none" : word_list(names), did_you_mean(wanted, names)));
 }
 
 using Places = std::map<const toml::node*, toml::source_region>;
@@ -223,7 +223,7 @@ std::vector<Problem> Config::take_problems() {
   for (const auto& [table, asked] : content_->asked) {
     for (const auto& [key, node] : *table) {
       if (std::find(asked.begin(), asked.end(), key.str()) != asked.end()) continue;
-      const std::string nearest = nearest_word(key.str(), asked);
+      const std::string nearest = did_you_mean(key.str(), asked);
       const toml::source_region& region = key.source();
       FilePlace place = content_->place(&node);
       if (place.line > 0 && region.begin.line > 0) {
@@ -233,10 +233,9 @@ std::vector<Problem> Config::take_problems() {
       std::vector<std::string> sorted = asked;
       std::sort(sorted.begin(), sorted.end());
       sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-      const std::string message =
-          nearest.empty() ? fmt::format("unknown key '{}'; allowed here: {}", std::string(key.str()), word_list(sorted))
-                          : fmt::format("unknown key '{}'; did you mean '{}'?", std::string(key.str()), nearest);
-      problems.push_back({std::move(place), message});
+      problems.push_back(
+          {std::move(place), fmt::format("unknown key '{}'{}", std::string(key.str()),
+                                         nearest.empty() ? "; allowed here: " + word_list(sorted) : nearest)});
     }
   }
   std::stable_sort(problems.begin(), problems.end(),

@@ -206,6 +206,15 @@ class ConfigTable {
   std::optional<E> word_if_given(const Key& key, const char* fallback) const {
     return value_named<E>(choice_if_given(key, fallback, {all_names<E>()}));
   }
+  // Returns a list of words; empty when the key is absent or wrong.
+  std::vector<std::string> choices(const Key& key, const Words& words) const;
+  // Returns the values of an enum that a list of words names.
+  template <Named E>
+  std::vector<E> words(const Key& key) const {
+    std::vector<E> values;
+    for (const std::string& word : choices(key, {all_names<E>()})) values.push_back(*value_named<E>(word));
+    return values;
+  }
   // Returns a word, or a table with its own keys; nothing when the key is absent or wrong. `fallback`: the default as a
   // file would give it.
   std::optional<std::variant<std::string, ConfigTable>> word_or_table(const Key& key, const std::string& fallback,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "base/near_files.h"
 #include "base/text.h"
 #include "scene/toml_document.h"
 
@@ -177,8 +178,8 @@ int ConfigTable::integer(const Key& key, std::optional<int> fallback, const Rang
     if (!fallback) complain(fmt::format("'{}' is missing: {} ({})", key.name, key.meaning, range.text()));
     return instead;
   }
-  const std::optional<std::int64_t> value = node->is_integer() ? node->value<std::int64_t>() : std::nullopt;
-  if (!value || !range.contains(static_cast<double>(*value)) || std::abs(static_cast<double>(*value)) > 2e9) {
+  const std::optional<double> value = node->is_number() ? node->value<double>() : std::nullopt;  // 10.0 is whole too
+  if (!value || *value != std::trunc(*value) || !range.contains(*value) || std::abs(*value) > 2e9) {
     wrong(key, *node, fmt::format("a whole number, {}{}", range.text(), word_hint(*node)));
     return instead;
   }
@@ -213,8 +214,7 @@ bool ConfigTable::is_one_of(const Words& words, const Key& key, const toml::node
     config_->complain(&node, fmt::format("{0} = '{1}': is now written {0} = {2}", key.name, word, instead));
     return false;
   }
-  const std::string nearest = value ? nearest_word(*value, words.allowed) : "", list = word_list(words.allowed);
-  wrong(key, node, nearest.empty() ? list : fmt::format("{}; did you mean '{}'?", list, nearest));
+  wrong(key, node, word_list(words.allowed) + (value ? did_you_mean(*value, words.allowed) : ""));
   return false;
 }
 
@@ -227,6 +227,21 @@ std::string ConfigTable::choice(const Key& key, std::optional<std::string> fallb
     return instead;
   }
   return is_one_of(words, key, *node) ? *node->value_exact<std::string>() : instead;
+}
+
+std::vector<std::string> ConfigTable::choices(const Key& key, const Words& words) const {
+  const std::string allowed = "a list of " + word_list(words.allowed);
+  const toml::node* node = find(key, "list of words", "none", allowed);
+  std::vector<std::string> values;
+  if (node == nullptr) return values;
+  const toml::array* list = node->as_array();
+  if (list == nullptr) {
+    wrong(key, *node, allowed);
+    return values;
+  }
+  for (const toml::node& element : *list)
+    if (is_one_of(words, key, element)) values.push_back(*element.value_exact<std::string>());
+  return values;
 }
 
 // Returns an empty text when the key is absent or wrong.
@@ -395,7 +410,14 @@ std::filesystem::path ConfigTable::file(const Key& key) const {
   if (std::filesystem::exists(asset, error)) return asset;
   const std::string places =
       beside == asset ? beside.string() : fmt::format("{} and {}", beside.string(), asset.string());
-  config_->complain(node, fmt::format("{} = '{}': no such file (looked for {})", key.name, *value, places));
+  const auto same_ending = [&beside](const std::filesystem::path& entry) {
+    return entry.extension() == beside.extension();
+  };
+  std::filesystem::path near = near_file(beside, same_ending);
+  if (near.empty()) near = near_file(asset, same_ending);
+  if (!near.empty()) near = std::filesystem::path(*value).replace_filename(near.filename());  // as the scene writes it
+  config_->complain(
+      node, fmt::format("{} = '{}': no such file (looked for {}){}", key.name, *value, places, meant_file(near)));
   return {};
 }
 

@@ -17,6 +17,7 @@
 #include "geometry/skin.h"
 #include "geometry/solid_surface.h"
 #include "scene/start_state.h"
+#include "scene/warning_kinds.h"
 #include "sim/model/inputs.h"
 #include "sim/model/method.h"
 #include "sim/model/model.h"
@@ -151,6 +152,7 @@ struct BodySurface;  // body_pieces.h
 struct BodyDef {
   std::string name;
   std::string label;
+  std::vector<WarningKind> meant;  // warnings that need not be said
   // One of these five members gives the mesh. The regions of a mesh file are named by their reference numbers.
   std::filesystem::path shape;
   std::filesystem::path surface;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/text.h"
 #include "scene/body_pieces.h"
 #include "scene/body_reader.h"
 #include "scene/camera_reader.h"
@@ -63,8 +64,11 @@ SceneDef read_scene(Config& config) {
     scene.camera = read_camera(*camera, scene.camera);
     const bool known =
         scene.camera.follow.empty() || names.contains(scene.camera.follow) || colliders.contains(scene.camera.follow);
+    std::vector<std::string> all(names.begin(), names.end());
+    all.insert(all.end(), colliders.begin(), colliders.end());
     if (!known)
-      camera->complain("follow", fmt::format("follow: no body or collider is called '{}'", scene.camera.follow));
+      camera->complain("follow", fmt::format("follow: no body or collider is called '{}'{}", scene.camera.follow,
+                                             did_you_mean(scene.camera.follow, all)));
   }
   scene.look = read_look(root, scene.look);
   scene.field = read_field(root);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/frame_time.h"
 #include "base/text.h"
 #include "scene/model_scene.h"
 #include "scene/replay_start.h"
@@ -82,7 +83,7 @@ Config Script::Parts::document_at(double time, std::size_t count, std::optional<
 }
 
 bool Script::Parts::at_work(const TimedChange& change, int frame) const {
-  const double from = frame / start.fps, to = (frame + 1) / start.fps;
+  const double from = frame / start.fps, to = frame_time(frame, start.fps);
   if (change.over <= 0)
     return change.at > time_tolerance && change.at > from - time_tolerance && change.at < to - time_tolerance;
   return change.at < to - time_tolerance && change.at + change.over > from + time_tolerance;
@@ -109,10 +110,24 @@ bool is_whole_number(const Config& scene, const std::string& path) {
 }  // namespace
 
 void open_tables(Config& document) {
-  std::vector<std::string> tables = {"camera", "solver"};
+  std::vector<std::string> tables = {"camera", "look", "solver"};
   if (document.value_at("collider")) tables.emplace_back("solver.contact");
   for (const std::string& table : tables) {
     if (!document.value_at(table)) document.put(table, *ConfigValue::parse("{}"), {}, {});
+  }
+}
+
+std::string table_of(const std::string& path) {
+  const std::size_t dot = path.rfind('.');
+  return dot == std::string::npos ? "" : path.substr(0, dot);
+}
+
+void open_table_of(Config& document, const std::string& path) {
+  const std::string table = table_of(path);
+  if (table.empty() || document.value_at(table)) return;
+  try {
+    document.put(table, *ConfigValue::parse("{}"), {}, {});
+  } catch (const InputError&) {  // a part of the path names nothing that is there
   }
 }
 
@@ -128,14 +143,13 @@ void Script::Parts::read_replay(const std::filesystem::path& assets, const std::
   Config plain = scene_file.copy();
   start = read_scene(plain);
   const std::vector<Problem> of_scene = plain.take_problems();
-  open_tables(plain);
-  (void)read_scene(plain);  // so that the types of all keys are known
   for (const ConfigTable& table : root.tables({"change", "", "a value that changes while the film runs"})) {
-    auto change = read_change(table, start.fps);
-    if (!change) continue;
-    change->whole = is_whole_number(plain, change->path);
-    changes.push_back(std::move(*change));
+    if (auto change = read_change(table, start.fps)) changes.push_back(std::move(*change));
   }
+  open_tables(plain);
+  for (const TimedChange& change : changes) open_table_of(plain, change.path);
+  (void)read_scene(plain);  // so that the types of all keys are known
+  for (TimedChange& change : changes) change.whole = is_whole_number(plain, change.path);
   for (const std::vector<Problem>& more : {of_scene, replay->take_problems()})
     problems.insert(problems.end(), more.begin(), more.end());
   if (!of_scene.empty()) throw InputError(std::move(problems));
@@ -181,7 +195,7 @@ std::vector<const TimedChange*> Script::at_work(int frame) const {
 }
 
 SceneDef Script::scene_at(int frame) const {
-  Config document = parts_->document_at((frame + 1) / parts_->start.fps, parts_->changes.size());
+  Config document = parts_->document_at(frame_time(frame, parts_->start.fps), parts_->changes.size());
   return parts_->read(document);
 }
 

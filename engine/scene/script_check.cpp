@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "base/frame_time.h"
 #include "scene/material_reader.h"
 #include "scene/scene_reader.h"
 #include "scene/script_parts.h"
@@ -25,12 +26,6 @@ std::vector<Problem> beyond(const std::vector<Problem>& list, const std::vector<
     if (std::none_of(other.begin(), other.end(), same)) rest.push_back(problem);
   }
   return rest;
-}
-
-// Returns the table that a path leads into; empty at the top.
-std::string table_of(const std::string& path) {
-  const std::size_t dot = path.rfind('.');
-  return dot == std::string::npos ? "" : path.substr(0, dot);
 }
 
 Problem at(const TimedChange& change, std::string message) { return {change.place, std::move(message)}; }
@@ -96,6 +91,7 @@ void Script::Parts::put_each() {
 std::optional<ConfigValue> Script::Parts::value_at(const std::string& path, Config document) const {
   if (auto value = document.value_at(path)) return value;
   open_tables(document);
+  open_table_of(document, path);
   (void)read_scene(document);
   for (const KnownKey& key : document.known()) {
     if (key.path == path) return ConfigValue::parse(key.value);
@@ -168,12 +164,12 @@ void Script::Parts::check_frames(Reported& reported) {
       frames.push_back(frame);
   }
   const auto check = [&](std::size_t i) {
-    check_at((frames[i] + 1) / start.fps, fmt::format(" (first in frame {})", frames[i]), reported);
+    check_at(frame_time(frames[i], start.fps), fmt::format(" (first in frame {})", frames[i]), reported);
   };
   const std::size_t stride = 1 + frames.size() / most_checked;
   for (std::size_t first = 0; first < frames.size() && problems.size() < most_problems; first += stride) {
     const std::size_t last = std::min(first + stride, frames.size()) - 1;
-    if (stride > 1 && problems_of(document_at((frames[last] + 1) / start.fps, changes.size())).empty()) continue;
+    if (stride > 1 && problems_of(document_at(frame_time(frames[last], start.fps), changes.size())).empty()) continue;
     for (std::size_t i = first; i <= last; ++i) check(i);
   }
 }

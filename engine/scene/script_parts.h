@@ -53,4 +53,10 @@ struct Script::Parts {
 // Adds the tables that a scene may omit, so that readers also ask for their keys.
 void open_tables(Config& document);
 
+// Returns the table that a path leads into; empty at the top.
+std::string table_of(const std::string& path);
+
+// Does the same for the table that a path leads into, where it can be there.
+void open_table_of(Config& document, const std::string& path);
+
 }  // namespace supple

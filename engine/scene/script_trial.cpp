@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "scene/warnings.h"
-
 namespace supple {
 namespace {
 
@@ -45,9 +43,9 @@ void try_changes(const Script& script, std::vector<Body> bodies) {
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 
-std::vector<Problem> all_warnings(const Script& script, const std::vector<Body>& bodies) {
-  std::vector<Problem> list = warnings(script.scene(), bodies), of_time = script.warnings();
-  list.insert(list.end(), of_time.begin(), of_time.end());
+std::vector<Warning> all_warnings(const Script& script, const std::vector<Body>& bodies) {
+  std::vector<Warning> list = warnings(script.scene(), bodies);
+  for (Problem& of_time : script.warnings()) list.push_back({std::nullopt, std::move(of_time)});
   return list;
 }
 

@@ -4,6 +4,7 @@
 
 #include "scene/assemble.h"
 #include "scene/script.h"
+#include "scene/warnings.h"
 
 namespace supple {
 
@@ -12,6 +13,6 @@ namespace supple {
 void try_changes(const Script& script, std::vector<Body> bodies);
 
 // Lists what is legal but unwise in a scene and its changes.
-std::vector<Problem> all_warnings(const Script& script, const std::vector<Body>& bodies);
+std::vector<Warning> all_warnings(const Script& script, const std::vector<Body>& bodies);
 
 }  // namespace supple

@@ -15,6 +15,14 @@ constexpr double far_outside = 1;
 
 }  // namespace
 
+std::string skin_words(const Body& body, const DrawnBody& drawn) {
+  if (!drawn.vertex_of.empty()) return "";
+  const OutsideShare outside = outside_share(drawn.embedding);
+  if (outside.share == 0) return "within its elements";
+  return outside.furthest <= far_outside * mean_edge(body.description.mesh) ? "close to its elements"
+                                                                            : "in places far from its elements";
+}
+
 std::string skin_text(const Body& body, const DrawnBody& drawn) {
   if (!drawn.vertex_of.empty()) return "";
   const OutsideShare outside = outside_share(drawn.embedding);
@@ -24,7 +32,7 @@ std::string skin_text(const Body& body, const DrawnBody& drawn) {
                             100 * outside.share, outside.furthest, outside.furthest / mean_edge(body.description.mesh));
 }
 
-std::optional<Problem> skin_warning(const Body& body, const DrawnBody& drawn) {
+std::optional<Warning> skin_warning(const Body& body, const DrawnBody& drawn) {
   if (!drawn.vertex_of.empty()) return std::nullopt;
   const OutsideShare outside = outside_share(drawn.embedding);
   const double edges = outside.furthest / mean_edge(body.description.mesh);
@@ -35,7 +43,7 @@ std::optional<Problem> skin_warning(const Body& body, const DrawnBody& drawn) {
       "element's "
       "edge: what is there follows and does not bend; more vertices (now {}) fill it",
       body.def.name, outside.furthest, at.x(), at.y(), at.z(), edges, body.def.vertices);
-  return Problem{body.def.place, std::move(message)};
+  return Warning{WarningKind::skin, {body.def.place, std::move(message)}, is_meant(body.def, WarningKind::skin)};
 }
 
 }  // namespace supple

@@ -13,7 +13,12 @@
 namespace supple {
 namespace {
 
-Problem at(const FilePlace& place, std::string message) { return {place, std::move(message)}; }
+Warning at(WarningKind kind, const FilePlace& place, std::string message) {
+  return {kind, {place, std::move(message)}};
+}
+
+constexpr double stiff_crossing = 300;  // above it, ten iterations leave a visible error
+constexpr double soft_crossing = 1;     // below it, no wave crosses the body in a step
 
 // Tells whether a body starts as a line or a point and has a material whose forces cannot restore it: laws in F alone
 // and springs have no force across a body that is flat in two directions.
@@ -26,23 +31,22 @@ bool stays_flat(const Body& body) {
 
 // Warns of a solid that its own weight stretches or squashes by more than its size: rho g L / k, where it hangs or
 // stands. No material here means such strains, and ten iterations do not find them.
-void warn_of_weight(const SceneDef& scene, const Body& body, const Bounds& box, std::vector<Problem>& list) {
+void warn_of_weight(const SceneDef& scene, const Body& body, const Bounds& box, std::vector<Warning>& list) {
   if (body.def.cloth || (body.def.handles.empty() && scene.colliders.empty()) || scene.gravity.isZero(0)) return;
   const double k =
       system_stiffness(body.def.substance.material, body.def.solver.fit).k + body.def.substance.fibre.kappa;
   const double height = box.extent().dot(scene.gravity.normalized().cwiseAbs());
   const double strain = body.description.density * scene.gravity.norm() * height / k;
   if (strain <= 1) return;
-  list.push_back(
-      at(body.def.place, fmt::format("body '{}' is soft for its load: its own weight strains it by {:.0f} % (rho "
-                                     "g L / k); a stiffer material, less gravity or more solver.iterations "
-                                     "help",
-                                     body.def.name, 100 * strain)));
+  list.push_back(at(WarningKind::weight, body.def.place,
+                    fmt::format("body '{}' is soft for its load: its own weight strains it by {:.0f} %; a "
+                                "stiffer material, less gravity or more solver.iterations help",
+                                body.def.name, 100 * strain)));
 }
 
 // Warns of regions whose stiffnesses are so far apart that the iterations spend themselves on the stiffest one: at a
 // ratio of 1e6 the error of the whole body stayed at 0.44.
-void warn_of_regions(const Body& body, std::vector<Problem>& list) {
+void warn_of_regions(const Body& body, std::vector<Warning>& list) {
   double least = HUGE_VAL, most = 0;
   std::vector<char> seen(body.description.materials.size(), 0);
   for (const int region : body.description.mesh.regions) {
@@ -52,49 +56,50 @@ void warn_of_regions(const Body& body, std::vector<Problem>& list) {
     most = std::max(most, k);
   }
   if (!(most > 1e4 * least)) return;
-  list.push_back(at(body.def.place, fmt::format("regions of body '{}' differ in stiffness by a factor of {:.1g}: "
-                                                "iterations are spent on the stiffest, and the others stay unsolved",
-                                                body.def.name, most / least)));
+  list.push_back(at(WarningKind::regions, body.def.place,
+                    fmt::format("regions of body '{}' differ in stiffness by a factor of {:.1g}: "
+                                "iterations are spent on the stiffest, and the others stay unsolved",
+                                body.def.name, most / least)));
 }
 
 // Warns of a body that is so small that gravity alone carries it past its own size within a step: contact finds it deep
 // inside what it falls on.
-void warn_of_size(const SceneDef& scene, const Body& body, const Bounds& box, std::vector<Problem>& list) {
+void warn_of_size(const SceneDef& scene, const Body& body, const Bounds& box, std::vector<Warning>& list) {
   const double fall = scene.gravity.norm() * scene.time_step() * scene.time_step();
   if (scene.colliders.empty() || fall <= box.diagonal()) return;
-  list.push_back(
-      at(body.def.place, fmt::format("body '{}' is small for its steps: gravity carries it by {:.2g} times its "
-                                     "size ({:.2g} m) in one; more substeps or a higher fps help",
-                                     body.def.name, fall / box.diagonal(), box.diagonal())));
+  list.push_back(at(WarningKind::size, body.def.place,
+                    fmt::format("body '{}' is small for its steps: gravity carries it by {:.2g} times its "
+                                "size ({:.2g} m) in one; more substeps or a higher fps help",
+                                body.def.name, fall / box.diagonal(), box.diagonal())));
 }
 
 // Warns of a delay that leaves no iteration to be accelerated.
-void warn_of_delay(const Body& body, std::vector<Problem>& list) {
+void warn_of_delay(const Body& body, std::vector<Warning>& list) {
   const SolverDef& solver = body.def.solver;
   const int delay = solver.settings.chebyshev.delay, iterations = solver.settings.iterations;
   if (solver.method.acceleration != Acceleration::chebyshev || delay < iterations) return;
-  list.push_back(at(body.def.place,
+  list.push_back(at(WarningKind::delay, body.def.place,
                     fmt::format("body '{}' is solved by chebyshev, whose acceleration begins after {} iterations, and "
                                 "a step has {}: this is projective-dynamics; make chebyshev_delay smaller than "
                                 "iterations",
                                 body.def.name, delay, iterations)));
 }
 
-void warn_of_substance(const Body& body, std::vector<Problem>& list) {
+void warn_of_substance(const Body& body, std::vector<Warning>& list) {
   for (const Material& material : body.description.materials) {
     if (system_stiffness(material, body.def.solver.fit).floored) {
       list.push_back(
-          at(body.def.place,
+          at(WarningKind::material, body.def.place,
              fmt::format("a material of body '{}' ({}) softens so much that its stiffness fit is not positive; "
                          "the solver works with a thousandth of its steepest slope instead",
                          body.def.name, name_of(material))));
     }
   }
   if (stays_flat(body)) {
-    list.push_back(
-        at(body.def.place, fmt::format("body '{}' starts as a line or a point, and its material has no force across "
-                                       "those: it will not recover",
-                                       body.def.name)));
+    list.push_back(at(WarningKind::material, body.def.place,
+                      fmt::format("body '{}' starts as a line or a point, and its material has no force across "
+                                  "those: it will not recover",
+                                  body.def.name)));
   }
 }
 
@@ -121,7 +126,7 @@ bool may_stop_a_fall(const Obstacle& obstacle, const Bounds& shaft) {
 }
 
 // Warns of a body that falls through the ground, which every film shows at y = 0 and which stops nothing.
-void warn_of_fall(const SceneDef& scene, const Body& body, std::vector<Problem>& list) {
+void warn_of_fall(const SceneDef& scene, const Body& body, std::vector<Warning>& list) {
   const double size = bounds_of(body.description.mesh.rest).diagonal(), duration = scene.frames / scene.fps;
   for (std::size_t h = 0; h < body.description.handles.size(); ++h) {
     if (body.def.handles[h].from < duration) return;
@@ -137,7 +142,7 @@ void warn_of_fall(const SceneDef& scene, const Body& body, std::vector<Problem>&
   for (const Obstacle& obstacle : collision_set(scene).obstacles) {
     if (may_stop_a_fall(obstacle, shaft)) return;
   }
-  list.push_back(at(body.def.place,
+  list.push_back(at(WarningKind::fall, body.def.place,
                     fmt::format("body '{}' falls through the ground that the film shows: the scene has no collider "
                                 "there, such as [[collider]] shape = {{ half_space = {{ normal = [0, 1, 0] }} }}",
                                 body.def.name)));
@@ -159,17 +164,33 @@ double crossing_number(const Body& body) {
   return stiffness * h * h / (density * size * size);
 }
 
-std::vector<Problem> warnings(const SceneDef& scene, const std::vector<Body>& bodies) {
-  std::vector<Problem> list;
+std::string stiffness_words(double crossing) {
+  if (crossing > stiff_crossing) return "stiff for its time step";
+  return crossing > soft_crossing ? "firm for its time step" : "soft for its time step";
+}
+
+bool is_meant(const BodyDef& body, WarningKind kind) { return std::ranges::find(body.meant, kind) != body.meant.end(); }
+
+std::vector<Problem> said(std::vector<Warning> list) {
+  std::vector<Problem> problems;
+  for (Warning& warning : list)
+    if (!warning.meant) problems.push_back(std::move(warning.problem));
+  return problems;
+}
+
+std::vector<Warning> warnings(const SceneDef& scene, const std::vector<Body>& bodies) {
+  std::vector<Warning> list;
   std::vector<Bounds> boxes;  // of the bodies before
   for (const Body& body : bodies) {
+    const std::size_t first = list.size();  // of this body's warnings
     const TetMesh& mesh = body.description.mesh;
     const MeshQuality q = quality(mesh);
     const Bounds box = bounds_of(mesh.rest);
     if (!body.def.cloth && q.smallest_volume < 1e-4) {
-      list.push_back(at(body.def.place, fmt::format("body '{}' has slivers: its smallest element has {:.1e} of the "
-                                                    "mean volume, its smallest dihedral angle is {:.2g} degrees",
-                                                    body.def.name, q.smallest_volume, q.smallest_dihedral)));
+      list.push_back(at(WarningKind::slivers, body.def.place,
+                        fmt::format("body '{}' has slivers: its smallest element has {:.1e} of the "
+                                    "mean volume, its smallest dihedral angle is {:.2g} degrees",
+                                    body.def.name, q.smallest_volume, q.smallest_dihedral)));
     }
     const std::vector<double>& points = body.description.point_mass;
     const double mass = body.description.density * q.volume + std::accumulate(points.begin(), points.end(), 0.0);
@@ -178,7 +199,7 @@ std::vector<Problem> warnings(const SceneDef& scene, const std::vector<Body>& bo
       const HandleDef& def = body.def.handles[i];
       if (def.grabs && !body.motions[i].at(def.from).isApprox(Eigen::Isometry3d::Identity(), 1e-6)) {
         list.push_back(
-            at(def.select.place,
+            at(WarningKind::handle, def.select.place,
                fmt::format("handle '{}' of body '{}' has moved by its keys already when it grabs, at {:g} s: "
                            "its vertices jump",
                            handle.name, body.def.name, def.from)));
@@ -186,7 +207,7 @@ std::vector<Problem> warnings(const SceneDef& scene, const std::vector<Body>& bo
       if (handle.stiffness <= 0 || def.grabs) continue;
       const double sag = mass * scene.gravity.norm() / (handle.stiffness * static_cast<double>(handle.vertices.size()));
       if (sag > 0.02 * box.diagonal()) {
-        list.push_back(at(body.def.handles[i].select.place,
+        list.push_back(at(WarningKind::handle, body.def.handles[i].select.place,
                           fmt::format("handle '{}' of body '{}' is soft for its load: the body's weight alone "
                                       "stretches its springs by {:.2g} m ({:.0f} % of its size)",
                                       handle.name, body.def.name, sag, 100 * sag / box.diagonal())));
@@ -195,18 +216,19 @@ std::vector<Problem> warnings(const SceneDef& scene, const std::vector<Body>& bo
     const double crossing = crossing_number(body);
     constexpr double turns_with_one_level = 0.3;  // at 0.46, a ball of jelly loses a quarter of its roll
     if (crossing > turns_with_one_level && body.def.solver.settings.levels < 2 && !body.def.cloth) {
-      list.push_back(at(body.def.place, fmt::format("body '{}' will turn less than it should: k h^2 / (rho L^2) = "
-                                                    "{:.3g}, and directions of one level resist turning; "
-                                                    "solver.levels = 2 mends it",
-                                                    body.def.name, crossing)));
+      list.push_back(at(WarningKind::turning, body.def.place,
+                        fmt::format("body '{}' will turn less than it should, because it is stiff and its "
+                                    "solver has one level; solver.levels = 2 mends it",
+                                    body.def.name)));
     }
-    if (crossing > 300 && body.def.solver.settings.iterations <= 10) {
-      list.push_back(at(body.def.place, fmt::format("body '{}' is stiff for {} iterations a step: k h^2 / (rho L^2) = "
-                                                    "{:.3g}; more iterations or substeps make it sharper",
-                                                    body.def.name, body.def.solver.settings.iterations, crossing)));
+    if (crossing > stiff_crossing && body.def.solver.settings.iterations <= 10) {
+      list.push_back(at(WarningKind::stiffness, body.def.place,
+                        fmt::format("body '{}' is stiff for {} iterations a step; more solver.iterations or "
+                                    "substeps make its motion sharper",
+                                    body.def.name, body.def.solver.settings.iterations)));
     }
     if (!body.overlaps.empty() && body.def.start_inside != StartInside::push)
-      list.push_back(at(body.def.place, overlap_text(body)));
+      list.push_back(at(WarningKind::inside, body.def.place, overlap_text(body)));
     warn_of_fall(scene, body, list);
     warn_of_substance(body, list);
     warn_of_weight(scene, body, box, list);
@@ -218,11 +240,12 @@ std::vector<Problem> warnings(const SceneDef& scene, const std::vector<Body>& bo
       const bool apart = (box.lower.array() >= b.upper.array()).any() || (b.lower.array() >= box.upper.array()).any();
       if (!apart)
         list.push_back(
-            at(body.def.place,
+            at(WarningKind::overlap, body.def.place,
                fmt::format("bodies '{}' and '{}' overlap at the start; bodies do not collide with each other",
                            bodies[other].def.name, body.def.name)));
     }
     boxes.push_back(box);
+    for (std::size_t i = first; i < list.size(); ++i) list[i].meant = is_meant(body.def, *list[i].kind);
   }
   return list;
 }

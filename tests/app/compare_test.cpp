@@ -146,6 +146,26 @@ TEST(Comparison, FindsDistancesByFrame) {
   EXPECT_FALSE(c.same_states());
 }
 
+TEST(Comparison, OfOtherBodiesKeepsTheTimesOfThoseThatBothHave) {
+  const test::TemporaryFolder folder;
+  HandMade{.bodies = {"soft", "left"}}.write(folder.path / "a");
+  HandMade{.bodies = {"soft", "right"}}.write(folder.path / "b");
+  for (const char* name : {"a", "b"}) {
+    const std::filesystem::path file = folder.path / name / "profile.json";
+    std::vector<FrameRow> rows = read_profile(file);
+    for (FrameRow& row : rows) row.bodies[0].step_ms = *name == 'a' ? 4 : 6;
+    write_bytes(file, profile_json(rows));
+  }
+  const Result result = run(folder.path, {"compare", "a", "b"});
+  EXPECT_NE(result.out.find("  median step     of the bodies that both have; the others' times cannot be compared\n"
+                            "    soft          4.000 ms in A, 6.000 ms in B: B takes 1.500 times as long\n"),
+            std::string::npos)
+      << result.out;
+  EXPECT_NE(result.out.find("only in A\n"), std::string::npos);
+  const Result same = run(folder.path, {"compare", "a", "a"});
+  EXPECT_NE(same.out.find("  median step     10.000 ms in A, 10.000 ms in B"), std::string::npos) << same.out;
+}
+
 TEST(Comparison, TellsOfOtherLengthsAndBodies) {
   const test::TemporaryFolder folder;
   HandMade{}.write(folder.path / "a");

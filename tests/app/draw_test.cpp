@@ -277,6 +277,30 @@ TEST_F(DrawnRun, KnowsTheRangeOfTheFilmOnlyOnceItIsMade) {
   EXPECT_FALSE(std::filesystem::exists(path("none")));
 }
 
+TEST_F(DrawnRun, BesideAnotherMayBeAPicture) {
+  const Result result =
+      run(folder_->path, {"draw", "run", "run", "--frame", "7", "--still", "both.png", "--layout", "row"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.out, "  both.png\n");
+  const Result film = run(folder_->path, {"draw", "run", "run", "--layout", "row", "--out", "as-film", "--quiet"});
+  ASSERT_EQ(film.status, 0) << film.err;
+  EXPECT_EQ(read_file(path("both.png")), picture("as-film", 7));
+  for (const auto& entry : std::filesystem::directory_iterator(folder_->path))
+    EXPECT_FALSE(entry.path().filename().string().starts_with("supple-still")) << entry.path();
+}
+
+TEST_F(DrawnRun, HasAReferenceOfTheSameBodies) {
+  std::ofstream(path("rod.toml"))
+      << "frames = 12\n[[body]]\nname = \"rod\"\nbox = { extent = [0.4, 0.1, 0.1], cells = [8, 2, "
+         "2] }\nmaterial = \"jelly\"\n[output]\nwidth = 96\nheight = 64\n";
+  ASSERT_EQ(run(folder_->path, {"render", "rod.toml", "--out", "rod", "--no-images", "--quiet"}).status, 0);
+  const Result result = draw("none", {"--field", "distance", "--reference", "rod"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("rod: that run has no body 'bar' (it has rod), so that the two cannot be compared"),
+            std::string::npos)
+      << result.err;
+}
+
 TEST_F(DrawnRun, BecomesAFilmOfAnyFormat) {
   for (const auto& [format, file] : std::vector<std::pair<std::string, std::string>>{
            {"mp4-h265", "video.mp4"}, {"webm", "video.webm"}, {"webm-av1", "video.webm"}, {"gif", "video.gif"}}) {
@@ -330,7 +354,7 @@ TEST_F(DrawnRun, StandsBesideAnotherRun) {
                 .status,
             0);
   EXPECT_EQ(picture("both-stretched/panel-1", 5), picture("no-legend", 5));
-  const Result wrong = run(folder_->path, {"draw", "run", "other-run", "--frame", "1"});
+  const Result wrong = run(folder_->path, {"draw", "run", "other-run", "--jobs", "2"});
   EXPECT_EQ(wrong.status, 2);
 }
 

@@ -68,6 +68,51 @@ samples = 1
 
 const std::vector<std::string> heavier = {"--no-images", "--set", "body.bar.density=900"};
 
+TEST_F(FilmFolder, ThatIsNotThereIsNamed) {
+  const auto in_shell = [this](const std::string& line) {
+    const std::string all = fmt::format("cd '{}' && {{ {}; }} > stdout.txt 2> stderr.txt", folder_.path.string(), line);
+    const int status = std::system(fmt::format("bash -c \"{}\"", all).c_str());
+    return Result{WIFEXITED(status) ? WEXITSTATUS(status) : -1, "", read_file(path("stderr.txt"))};
+  };
+  const Result scratch = in_shell(
+      fmt::format("TMPDIR=/nowhere '{}' render bar.toml --quiet --set camera.frames=film --set output.width=64",
+                  test::program_name));
+  EXPECT_EQ(scratch.status, 1);
+  EXPECT_EQ(
+      scratch.err,
+      "supple: /nowhere: the camera's first pass cannot make a folder there: No such file or directory; set TMPDIR "
+      "to a folder that can be written\n");
+  const std::string gone = path("gone").string();
+  const Result working =
+      in_shell(fmt::format("mkdir gone; cd gone; rmdir '{0}'; '{1}' list", gone, test::program_name));
+  EXPECT_EQ(working.status, 2);
+  EXPECT_EQ(working.err,
+            gone +
+                ": the folder that the command was called in cannot be used: No such file or directory; cd "
+                "to one that is there\n");
+}
+
+TEST_F(FilmFolder, WithWordsThatTheFontLacksSaysSo) {
+  const std::vector<std::string> words = {"--set", "title='\xe6\xbc\xa2 A \xf0\x9f\x90\xbf'", "--set",
+                                          "body.bar.label='\xe6\xbc\xa2'"};
+  const auto with = [&words](std::vector<std::string> line) {
+    line.insert(line.end(), words.begin(), words.end());
+    return line;
+  };
+  const std::string warning =
+      "has no '\xe6\xbc\xa2', '\xf0\x9f\x90\xbf', which the title and the caption of 'bar' have: "
+      "boxes are drawn instead\n";
+  const Result checked = run(folder_.path, with({"check", "bar.toml"}));
+  EXPECT_EQ(checked.status, 0) << checked.err;
+  EXPECT_NE(checked.out.find(warning), std::string::npos) << checked.out;
+  const Result filmed = run(folder_.path, with({"render", "bar.toml", "--frames", "1", "--no-video"}));
+  EXPECT_NE(filmed.err.find(warning), std::string::npos) << filmed.err;
+  EXPECT_EQ(run(folder_.path, with({"render", "bar.toml", "--frames", "1", "--no-images"})).err.find("boxes"),
+            std::string::npos);
+  EXPECT_EQ(run(folder_.path, {"check", "bar.toml", "--set", "body.bar.label='gr\xc3\xbcn'"}).out.find("boxes"),
+            std::string::npos);
+}
+
 TEST_F(FilmFolder, OfAnotherRunStaysAndTheNewRunIsNumbered) {
   ASSERT_EQ(film({"--no-images"}).status, 0);
   const std::string before = read_file(out("bar") / "run.json");
@@ -158,9 +203,16 @@ TEST_F(FilmFolder, IsNotMadeForAWrongSceneOnStandardInput) {
 TEST_F(FilmFolder, OfAPreviewHasAQuarterOfTheSizeAndHalfThePictures) {
   const Result result = run(folder_.path, {"render", "bar.toml", "--preview"});
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_NE(result.err.find("preview: 80 x 44 pixels, every other frame; 'bar' has "), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("preview: 320 x 180 pixels, every other frame; 'bar' has "), std::string::npos)
+      << result.err;
   EXPECT_EQ(pictures("bar-preview"), 3);
-  EXPECT_EQ(read_png(picture_file(out("bar-preview") / "frames", 2)).width, 80);
+  EXPECT_EQ(read_png(picture_file(out("bar-preview") / "frames", 2)).width, 320);
+  const Result wide = run(folder_.path, {"render", "bar.toml", "--preview", "--frames", "1", "--no-video", "--out",
+                                         "wide", "--set", "output.width=1280", "--set", "output.height=720"});
+  EXPECT_NE(wide.err.find("preview: 480 x 270 pixels"), std::string::npos) << wide.err;
+  const Result wider = run(folder_.path, {"render", "bar.toml", "--preview", "--frames", "1", "--no-images", "--out",
+                                          "wider", "--set", "output.width=3840", "--set", "output.height=2160"});
+  EXPECT_NE(wider.err.find("preview: 960 x 540 pixels"), std::string::npos) << wider.err;
   EXPECT_EQ(info("bar-preview")["frames"], 5) << "all frames are simulated";
   EXPECT_LT(info("bar-preview")["meshes"][0]["vertices"], 9 * 5 * 5);
   if (has_ffmpeg()) {

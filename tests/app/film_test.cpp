@@ -148,6 +148,78 @@ TEST_F(FilmOfABar, WithoutFilesIsTheSameFilm) {
   EXPECT_EQ(film("a", {"--film-only", "--no-video"}).status, 2);
 }
 
+// Browsers show a picture of a GIF that lasts a hundredth of a second for a tenth.
+TEST_F(FilmOfABar, KeepsItsSpeedAsAGif) {
+  for (const double fps : {120.0, 60.0, 50.0, 30.0}) {
+    const std::filesystem::path file = folder_.path / "film.gif";
+    VideoEncoder encoder(file, 16, 16, fps, {FilmFormat::gif, FilmQuality::good});
+    const int frames = static_cast<int>(fps);  // a second
+    for (int frame = 0; frame < frames; ++frame)
+      EXPECT_TRUE(encoder.add(std::vector<std::uint8_t>(16 * 16 * 3, std::uint8_t(2 * frame))));
+    EXPECT_EQ(encoder.frames(), frames);
+    ASSERT_EQ(encoder.finish().outcome, VideoOutcome::written) << fps;
+    const std::string bytes = read_file(file), mark = "\x21\xf9\x04";
+    int hundredths = 0, pictures = 0;
+    for (std::size_t at = bytes.find(mark); at != std::string::npos; at = bytes.find(mark, at + 1), ++pictures) {
+      const int delay = static_cast<unsigned char>(bytes[at + 4]) + 256 * static_cast<unsigned char>(bytes[at + 5]);
+      EXPECT_GE(delay, 2) << fps;
+      hundredths += delay;
+    }
+    EXPECT_NEAR(hundredths, 100, 2) << fps;
+    EXPECT_EQ(pictures, fps == 120 ? 40 : fps == 60 ? 30 : frames);
+  }
+}
+
+TEST_F(FilmOfABar, SaysWhatItsFormatCannotHold) {
+  const auto warned = [&](const std::string& format, const std::vector<std::string>& settings) {
+    std::vector<std::string> words = {"--force", "--frames", "2", "--format", format};
+    for (const std::string& setting : settings) words.insert(words.end(), {"--set", setting});
+    const Result result = film("out", words);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return result.err;
+  };
+  const std::string clear = "look.backdrop=transparent";
+  EXPECT_EQ(
+      warned("gif", {"fps=60"}),
+      "warning: a GIF shows no more than 50 pictures a second: of 60, it has one in 2, and its speed is that of the "
+      "film\n");
+  EXPECT_NE(warned("gif", {clear}).find("warning: the film is not transparent, because supple gives a GIF no coverage"),
+            std::string::npos);
+  EXPECT_NE(warned("webm", {clear}).find("gives a WebM no coverage"), std::string::npos);
+  EXPECT_EQ(warned("gif", {"fps=50"}) + warned("mp4", {"fps=60"}) + warned("png", {clear}), "");
+  const Result drawn = run(folder_.path, {"draw", "out", "--format", "gif", "--rate", "100", "--quiet"});
+  EXPECT_NE(drawn.err.find("of 100, it has one in 2"), std::string::npos) << drawn.err;
+}
+
+// To ffmpeg, such a name by itself would be a protocol or an option.
+TEST_F(FilmOfABar, GoesIntoAFolderOfAnyName) {
+  for (const std::string name : {"take:1", "concat:1|2", "-dash", "http://nowhere.invalid/film"}) {
+    const Result result = run(folder_.path, {"render", "bar.toml", "--quiet", "--out=" + name});
+    EXPECT_EQ(result.status, 0) << name << result.err;
+    EXPECT_EQ(count_video_frames(folder_.path / name / "video.mp4"), 12) << name;
+    const Result drawn = run(folder_.path, {"draw", "--quiet", "--jobs", "2", "--out=" + name + "-again", "--", name});
+    EXPECT_EQ(drawn.status, 0) << name << drawn.err;
+    EXPECT_EQ(count_video_frames(folder_.path / (name + "-again") / "video.mp4"), 12) << name;
+  }
+}
+
+TEST_F(FilmOfABar, IsMissedAloudWithoutFfmpeg) {
+  const std::string program = fmt::format("PATH=/nowhere '{}'", test::program_name);
+  const std::string message = "warning: no film: ffmpeg is not installed (Debian: ffmpeg); the {} are whole\n";
+  for (const char* more : {"--quiet", "--json", ""}) {
+    const Result result = in_shell(program + " render bar.toml --force --out out " + more);
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.err.find(fmt::format(fmt::runtime(message), "frames")), std::string::npos) << result.err;
+    EXPECT_EQ(pictures("out"), 12);
+  }
+  const Result drawn = in_shell(program + " draw out --quiet");
+  EXPECT_EQ(drawn.status, 0);
+  EXPECT_EQ(drawn.err, fmt::format(fmt::runtime(message), "pictures"));
+  const Result split = in_shell(program + " draw out out --quiet");
+  EXPECT_EQ(split.status, 0);
+  EXPECT_EQ(split.err, fmt::format(fmt::runtime(message), "pictures"));
+}
+
 TEST_F(FilmOfABar, WithoutFilesNeedsFfmpegToTheEnd) {
   const std::string program = fmt::format("'{}' render bar.toml --quiet --film-only", test::program_name);
   const Result without = in_shell("PATH=/nowhere " + program);

@@ -49,6 +49,17 @@ TEST(Info, TellsOfASceneAndWhatAFrameCosts) {
   expect_lines(run(folder.path, {"info", "tightening"}).out, {"changes         ", " while it runs\n"});
 }
 
+TEST(Info, SaysWhereItsCostIsThatOfAFreeFall) {
+  const test::TemporaryFolder folder;
+  std::string scene = bar_scene;
+  scene.erase(scene.find("[[body.handles]]"), scene.find("[[collider]]") - scene.find("[[body.handles]]"));
+  std::ofstream(folder.path / "low.toml") << scene;
+  std::ofstream(folder.path / "high.toml") << scene.insert(scene.find("material"), "position = [0, 5, 0]\n");
+  const std::string words = "threads; it touches nothing in them, and contacts cost more)\n";
+  EXPECT_NE(run(folder.path, {"info", "high.toml"}).out.find(words), std::string::npos);
+  EXPECT_EQ(run(folder.path, {"info", "low.toml"}).out.find(words), std::string::npos);
+}
+
 TEST(Info, GivesTheTerminalNoOrdersOfAScene) {
   const test::TemporaryFolder folder;
   std::string scene = bar_scene;
@@ -194,8 +205,8 @@ TEST(Info, TellsOfAMeshAndRefusesTheRest) {
   ASSERT_EQ(result.status, 0) << result.err;
   expect_lines(run(folder.path, {"info", "s.mesh"}).out,
                {"vertices        ", "dihedral angles ", "boundary        manifold"});
-  EXPECT_EQ(run(folder.path, {"info", "none"}).err,
-            "none: neither a mesh, a surface, a scene (.toml, or a name of supple list) nor a run's folder\n");
+  EXPECT_EQ(run(folder.path, {"info", "none"}).err, "none: no such file\n");
+  EXPECT_EQ(run(folder.path, {"info", "squirel"}).err, "squirel: no such file; did you mean 'squirrel'?\n");
   EXPECT_EQ(run(folder.path, {"info", "none.toml"}).status, 2);
   EXPECT_EQ(run(folder.path, {"info", "none.mesh"}).status, 2);
   std::filesystem::create_directory(folder.path / "empty");

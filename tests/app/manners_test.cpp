@@ -87,6 +87,75 @@ TEST(Help, NamesTheWordThatIsNoVerbAndTheNearestOne) {
   EXPECT_EQ(told("--frobnicating"), "supple: no option '--frobnicating'\nTry: supple --help\n");
 }
 
+TEST(Words, ThatAreMistypedAreMetByTheNearestThatIsKnown) {
+  const Program program;
+  const auto told = [&](std::vector<std::string> words) {
+    const Result result = run(program.folder.path, words);
+    EXPECT_EQ(result.status, 2) << words[1];
+    return result.err;
+  };
+  for (const char* verb : {"render", "check", "info", "profile"})
+    EXPECT_EQ(told({verb, "squirel"}), "squirel: no such file; did you mean 'squirrel'?\n") << verb;
+  EXPECT_EQ(told({"replay", "eer-pull"}), "eer-pull: no such file; did you mean 'ear-pull'?\n");
+  EXPECT_EQ(told({"sweep", "pulled-ba"}), "pulled-ba: no such file; did you mean 'pulled-bar'?\n");
+  EXPECT_EQ(told({"mesh", "squirel", "-o", "s.mesh"}), "squirel: no such file; did you mean 'squirrel'?\n");
+  std::filesystem::create_directories(program.folder.path / "mine");
+  std::ofstream(program.folder.path / "mine" / "balloon.toml") << "frames = 1\n";
+  EXPECT_EQ(told({"render", "mine/ballon.toml"}),
+            "mine/ballon.toml: no such file; did you mean 'mine/balloon.toml'?\n");
+  EXPECT_EQ(told({"render", "nothing-like-it.toml"}), "nothing-like-it.toml: no such file\n");
+  std::filesystem::create_directories(program.folder.path / "out" / "squirrel");
+  std::ofstream(program.folder.path / "out" / "squirrel" / "run.json") << "{}\n";
+  for (const char* verb : {"draw", "page"})
+    EXPECT_EQ(told({verb, "out/squirel/"}), "out/squirel/: no such folder; did you mean 'out/squirrel'?\n") << verb;
+  EXPECT_EQ(
+      told({"check", "squirrel", "--set", "body.sof.material.mu=3"}),
+      "--set body.sof.material.mu=3: there is no body named 'sof' (there is soft, stiff or polynomial); did you mean "
+      "'soft'?\n");
+  EXPECT_EQ(told({"bench", "figur7"}).find("supple: NAME: 'figur7': must be all, table1, "), 0u);
+  EXPECT_NE(told({"bench", "figur7"}).find("; did you mean 'figure7'?\n"), std::string::npos);
+  EXPECT_NE(told({"render", "squirrel", "--format", "giff"}).find("; did you mean 'gif'?\n"), std::string::npos);
+}
+
+TEST(Check, TellsAFilmMakerInWordsAndInNumbersWhereTheyAreAsked) {
+  const Program program;
+  std::ofstream(program.folder.path / "s.toml") << "[[body]]\nname = \"ball\"\nshape = \"shapes/sphere.toml\"\n"
+                                                   "vertices = 300\nsize = 0.4\nmaterial = \"jelly\"\n";
+  const Result words = run(program.folder.path, {"check", "s.toml"});
+  EXPECT_EQ(words.status, 0) << words.err;
+  EXPECT_NE(words.out.find(" for its time step\n    skin: close to its elements\n"), std::string::npos) << words.out;
+  EXPECT_EQ(words.out.find('%'), std::string::npos);
+  EXPECT_EQ(words.out.find("rho"), std::string::npos);
+  const Result numbers = run(program.folder.path, {"check", "s.toml", "--verbose"});
+  EXPECT_NE(numbers.out.find("(k h^2 / (rho L^2) = "), std::string::npos) << numbers.out;
+  EXPECT_NE(numbers.out.find("% outside the elements"), std::string::npos) << numbers.out;
+}
+
+TEST(Check, LeavesOutWarningsThatAreMeantButInJson) {
+  const Program program;
+  const std::string falls = "warning: s.toml:1:1: body 'ball' falls through the ground that the film shows";
+  const auto checked = [&](const std::string& meant, std::vector<std::string> more = {}) {
+    std::ofstream(program.folder.path / "s.toml")
+        << "[[body]]\nname = \"ball\"\nbox = { extent = [1, 1, 1], cells = [2, 2, "
+           "2] }\nmaterial = \"jelly\"\n"
+        << meant;
+    more.insert(more.begin(), {"check", "s.toml"});
+    return run(program.folder.path, more);
+  };
+  EXPECT_NE(checked("").out.find(falls), std::string::npos) << checked("").out;
+  EXPECT_NE(checked("").out.find("s: no errors, 1 warning; "), std::string::npos);
+  const std::string meant = "meant = [\"fall\"]\n";
+  EXPECT_EQ(checked(meant).out.find("warning:"), std::string::npos) << checked(meant).out;
+  EXPECT_NE(checked(meant).out.find("s: no errors, 0 warnings (1 meant); "), std::string::npos);
+  const auto json = nlohmann::json::parse(checked(meant, {"--json"}).out);
+  ASSERT_EQ(json["warnings"].size(), 1u);
+  EXPECT_EQ(json["warnings"][0]["kind"], "fall");
+  EXPECT_EQ(json["warnings"][0]["meant"], true);
+  EXPECT_EQ(checked("meant = [\"fal\"]\n").status, 2);
+  EXPECT_NE(checked("meant = [\"fal\"]\n").err.find("; did you mean 'fall'?"), std::string::npos);
+  EXPECT_EQ(checked("meant = \"fall\"\n").status, 2);
+}
+
 TEST(Completion, KnowsEveryVerbAndOptionOfTheHelp) {
   const Program program;
   const std::vector<std::string> verbs = program.verbs();

@@ -27,6 +27,14 @@ TEST(Text, ControlCharactersAreSpeltOut) {
   EXPECT_EQ(printable("gr\xc3\xbc\xc3\x9f \xc2\xb5"), "gr\xc3\xbc\xc3\x9f \xc2\xb5");
 }
 
+TEST(Text, BytesThatAreNotUtf8AreSpeltOut) {
+  EXPECT_EQ(printable("t\xc3\xbcr\xff.png"), "t\xc3\xbcr\\xff.png");
+  EXPECT_EQ(printable("\xe6\xbc"), "\\xe6\\xbc");  // a character that was cut off
+  EXPECT_EQ(printable("\xe6\xbc\xa2\xf0\x9f\x90\xbf"), "\xe6\xbc\xa2\xf0\x9f\x90\xbf");
+  EXPECT_EQ(first_character("\xe6\xbc\xa2!"), 3u);
+  EXPECT_EQ(first_character("\xa2!"), 0u);
+}
+
 TEST(Text, WordsAreQuotedWhereAShellWouldSplitOrReplaceThem) {
   EXPECT_EQ(shell_word("body.soft.material.mu=2e4"), "body.soft.material.mu=2e4");
   EXPECT_EQ(shell_word(""), "''");

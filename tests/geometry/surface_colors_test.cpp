@@ -47,6 +47,14 @@ void expect_color(const SurfaceColor& found, double red, double green, double bl
   EXPECT_NEAR(found.blue, blue, 1e-4);
 }
 
+TEST_F(ColoredFiles, NamesOfTexturesAreToldAsTheyAreWritten) {
+  write_squares("t\xc3\xbcr.png");
+  EXPECT_EQ(ball_with("newmtl skin\nmap_Kd t\xc3\xbcr.png\n").found, "1 material, texture 't\xc3\xbcr.png' of 32 x 32");
+  const ColoredSurface lost = ball_with("newmtl skin\nmap_Kd v\xc3\xb6llig-\x1b[2J.png\n");
+  ASSERT_FALSE(lost.remarks.empty());
+  EXPECT_NE(lost.remarks.front().find("v\xc3\xb6llig-\\x1b[2J.png"), std::string::npos) << lost.remarks.front();
+}
+
 TEST_F(ColoredFiles, VerticesOfAPlyFileHaveTheirColoursInLinearLight) {
   const TriMesh box = test::box_surface(Vec3(1, 2, 3));
   const ColoredSurface read =

@@ -205,6 +205,21 @@ TEST(ReportPlot, DrawsEverySeriesUnderItsName) {
   EXPECT_EQ(records[40], (std::vector<std::string>{"method 0", "39", "0"}));
 }
 
+// To gnuplot, such names by themselves would be commands of a shell, or an option.
+TEST(ReportPlot, IsDrawnInAFolderOfAnyName) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const test::TemporaryFolder folder;
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path);
+  for (const char* name : {"|cat", "< echo", "-persist"}) {
+    std::filesystem::create_directory(name);
+    std::string why;
+    EXPECT_TRUE(write_plot(plot_of("figure-1", 2), name, &why)) << why;
+    EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(name) / "figure-1.svg")) << name;
+  }
+  std::filesystem::current_path(before);
+}
+
 TEST(ReportPlot, DrawsAllKindsOfAxesAndStyles) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const test::TemporaryFolder folder;

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "base/frame_time.h"
 #include "support/bodies.h"
 
 namespace supple {
@@ -55,9 +56,30 @@ TEST(RunPage, HoldsEveryFramesValuesForItsCursor) {
   EXPECT_EQ(data["series"][5], (std::vector<double>{0, 1, 2, 3, 4, 5}));
 }
 
-TEST(RunPage, NeedsNoOtherFileAndTakesNoNameForMarkup) {
+TEST(RunPage, SaysWhatHelpsOnlyWhereTheFilmIsSlowerThanAsked) {
+  const test::TemporaryFolder folder;
+  RunRecord run = small_run(folder.path, 6);
+  EXPECT_EQ(run_page(run).find("solving is 90 %"), std::string::npos);
+  run.rows[3].step_ms = 900;
+  EXPECT_NE(run_page(run).find("solving is 90 %"), std::string::npos);
+}
+
+TEST(RunPage, TellsTheTimesThatCaptionsTell) {
   const test::TemporaryFolder folder;
   const std::string page = run_page(small_run(folder.path, 6));
+  const nlohmann::json times = data_of(page)["times"];
+  ASSERT_EQ(times.size(), 6u);
+  for (int frame = 0; frame < 6; ++frame) EXPECT_EQ(times[std::size_t(frame)], frame_time(frame, 25)) << frame;
+  EXPECT_NE(page.find("data.times[shown].toFixed(2)"), std::string::npos);
+  EXPECT_NE(page.find("<div class=\"times\"><span>0.04 s</span><span>0.24 s</span></div>"), std::string::npos);
+  EXPECT_NEAR(frame_time(200, 30), 6.7, 1e-12);  // after its steps, and not 6.67
+}
+
+TEST(RunPage, NeedsNoOtherFileAndTakesNoNameForMarkup) {
+  const test::TemporaryFolder folder;
+  RunRecord slow = small_run(folder.path, 6);
+  slow.rows[3].step_ms = 900;
+  const std::string page = run_page(slow);
   EXPECT_FALSE(std::regex_search(page, std::regex("(src|href)=\"(?!data:)"))) << "something is loaded";
   EXPECT_EQ(page.find("http"), std::string::npos);
   EXPECT_NE(page.find("<title>A &amp; B</title>"), std::string::npos);

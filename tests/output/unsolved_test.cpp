@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "output/row_tally.h"
 #include "support/bodies.h"
 #include "support/program.h"
 
@@ -29,9 +30,23 @@ TEST(Unsolved, NamesTheWorstFrameOfEachBody) {
   std::vector<FrameRow> rows = {row_of(0, 1e-5, 10, 10), row_of(1, 0.3, 10, 12), row_of(2, 0.63, 10, 15),
                                 row_of(3, 0.1, 10, 40)};
   rows[2].bodies[0].motion_estimate = 0.2;
+  EXPECT_EQ(
+      unsolved_text(rows),
+      "2 of 4 frames did not come near their solution: body 'bar' by about 0.2 of a step's motion, which is seen where "
+      "it moves fast (frame 2)");
+  rows[2].bodies[0].motion_estimate = 0.05;
   EXPECT_EQ(unsolved_text(rows),
-            "2 of 4 frames did not come near their solution: body 'bar' worst in frame 2, with errors of about 0.63 "
-            "in energy and 0.2 in motion, and 1.5 trials an iteration; more iterations or substeps help");
+            "2 of 4 frames did not come near their solution: body 'bar' by too little to be seen (frame 2)");
+  rows[2].bodies[0].motion_estimate = 15;
+  EXPECT_EQ(
+      unsolved_text(rows),
+      "2 of 4 frames did not come near their solution: body 'bar' by more than a step's motion, which is seen where it "
+      "moves fast (frame 2)");
+  rows[2].bodies[0].motion_estimate = 0;  // not known
+  EXPECT_EQ(
+      unsolved_text(rows),
+      "2 of 4 frames did not come near their solution: body 'bar' with an error of about 0.63 in energy (frame 2)");
+  EXPECT_EQ(RowTally(rows).unsolved_text({"bar"}), "");
   rows[0].bodies[0].motion_estimate = 0.3;
   rows[0].bodies[0].unsolved = is_unsolved(std::max(1e-5, 0.3), 10, 10);
   EXPECT_TRUE(unsolved_text(rows).starts_with("3 of 4 frames"));

@@ -7,6 +7,7 @@
 
 #include "scene/assemble.h"
 #include "scene/scene_reader.h"
+#include "scene/skin_report.h"
 #include "scene/warnings.h"
 #include "sim/model/measures.h"
 #include "support/film.h"
@@ -81,11 +82,12 @@ TEST(Scenes, TheHippoIsWholeAgainAfterTenSecondsFromRandomPositions) {
 TEST(Scenes, HaveNothingToWarnOf) {
   for (const std::filesystem::path& path : scenes()) {
     const SceneDef scene = load_scene(path, test::assets, {});
-    for (const Problem& warning : warnings(scene, assemble(scene))) {
-      // One of the balls is there to show it.
-      const bool is_meant =
-          path.stem() == "rolling" && warning.message.find("turn less than it should") != std::string::npos;
-      if (!is_meant) ADD_FAILURE() << path.stem() << ": " << warning.text();
+    const std::vector<Body> bodies = assemble(scene);
+    for (const Problem& warning : said(warnings(scene, bodies))) ADD_FAILURE() << path.stem() << ": " << warning.text();
+    const std::vector<DrawnBody> drawn = drawn_bodies(bodies);
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      const std::optional<Warning> skin = skin_warning(bodies[b], drawn[b]);
+      EXPECT_TRUE(!skin || skin->meant) << path.stem() << ": " << skin->problem.text();
     }
   }
 }

@@ -110,7 +110,7 @@ TEST(ColliderFile, EachProblemIsSaidOnceWithItsPlace) {
   EXPECT_EQ(
       problems_with("[[collider]]\nshape = \"shapes/squirel.toml\"\n"),
       Messages{"scene.toml:5:9: shape = 'shapes/squirel.toml': no such file (looked for shapes/squirel.toml and " +
-               (test::assets / "shapes/squirel.toml").string() + ")"});
+               (test::assets / "shapes/squirel.toml").string() + "); did you mean 'shapes/squirrel.toml'?"});
   for (const char* name : {"a b", "a.b", "a,b", "a/b", ""})
     EXPECT_EQ(problems_with(fmt::format("[[collider]]\nname = \"{}\"\n{}", name, ball)),
               Messages{fmt::format("scene.toml:5:8: name = '{}': must be a word without spaces, dots, commas, quotes "
@@ -152,8 +152,10 @@ shape = { box = { extent = [1, 1, 1] } }
     (void)scene_with({"collider.bal.friction=1"});
     ADD_FAILURE() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "--set collider.bal.friction=1: there is no collider named 'bal' (there is ball or wall)");
+    EXPECT_STREQ(
+        error.what(),
+        "--set collider.bal.friction=1: there is no collider named 'bal' (there is ball or wall); did you mean "
+        "'ball'?");
   }
 }
 

@@ -143,7 +143,7 @@ TEST(Chebyshev, WithoutAnIterationLeftToAccelerateIsWarnedOf) {
         "scene.toml", test::assets);
     const SceneDef scene = read_scene(config);
     config.finish();
-    const std::vector<Problem> list = warnings(scene, assemble(scene));
+    const std::vector<Problem> list = said(warnings(scene, assemble(scene)));
     return list.empty() ? std::string("nothing") : list.front().message;
   };
   EXPECT_EQ(

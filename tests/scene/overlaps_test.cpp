@@ -94,7 +94,7 @@ TEST(Overlaps, AreNamedWithBodyColliderAndDepth) {
   for (const Start& start : twelve_starts()) {
     SCOPED_TRACE(start.name);
     const SceneDef scene = test::scene_of(scene_text(start));
-    const std::vector<Problem> list = warnings(scene, assemble(scene));
+    const std::vector<Problem> list = said(warnings(scene, assemble(scene)));
     ASSERT_EQ(list.size(), 1u);
     const std::string text = list.front().message;
     EXPECT_NE(text.find("body 'cube' starts "), std::string::npos) << text;
@@ -102,7 +102,7 @@ TEST(Overlaps, AreNamedWithBodyColliderAndDepth) {
     EXPECT_NE(text.find(start.moved ? "it is moved out by" : "it is pushed out"), std::string::npos) << text;
   }
   const SceneDef scene = test::scene_of(scene_text(twelve_starts().front()));
-  EXPECT_EQ(warnings(scene, assemble(scene)).front().message,
+  EXPECT_EQ(warnings(scene, assemble(scene)).front().problem.message,
             "body 'cube' starts 0.02 m deep inside collider 'ground' (5.8 % of its size): it is moved out by (0, 0.02, "
             "0) m before the first frame");
 }
@@ -191,7 +191,7 @@ TEST(DrawnGround, ABodyThatFallsThroughItIsNamed) {
         "material = \"jelly\"\nposition = [0, 1, 0]\n" +
         more);
     std::string all;
-    for (const Problem& warning : warnings(scene, assemble(scene))) all += warning.message + "\n";
+    for (const Problem& warning : supple::said(warnings(scene, assemble(scene)))) all += warning.message + "\n";
     return all;
   };
   EXPECT_TRUE(said("").starts_with("body 'cube' falls through the ground that the film shows: ")) << said("");

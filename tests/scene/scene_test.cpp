@@ -54,7 +54,7 @@ keys = [ { t = 1 }, { t = 0.5 } ]
       "scene.toml:7:10: armijo = -0.3: must be above 0 to 0.5",
       "scene.toml:8:15: line_search = 'armjo': must be armijo, wolfe or none; did you mean 'armijo'?",
       "scene.toml:10:9: shape = 'shapes/squirel.toml': no such file (looked for shapes/squirel.toml and " +
-          (test::assets / "shapes/squirel.toml").string() + ")",
+          (test::assets / "shapes/squirel.toml").string() + "); did you mean 'shapes/squirrel.toml'?",
       "scene.toml:11:22: model = 'polynomal': must be " + word_list(test::model_names()) +
           "; did you mean 'polynomial'?",
       "scene.toml:13:8: two bodies named 'body'",
@@ -69,6 +69,18 @@ keys = [ { t = 1 }, { t = 0.5 } ]
   if (HasFailure()) {
     for (const std::string& message : list) std::cout << message << '\n';
   }
+}
+
+TEST(SceneFile, TakesWholeNumbersWithAPoint) {
+  const SceneDef scene =
+      test::scene_of("frames = 10.0\nsubsteps = 2e0\nfps = 24\n[solver]\niterations = 12.0\n" + good_body);
+  EXPECT_EQ(scene.frames, 10);
+  EXPECT_EQ(scene.substeps, 2);
+  EXPECT_EQ(scene.bodies.front().solver.settings.iterations, 12);
+  EXPECT_EQ(problems_of("frames = 10.5\n" + good_body),
+            std::vector<std::string>{"scene.toml:1:10: frames = 10.5: must be a whole number, 1 to 1e+06"});
+  EXPECT_EQ(problems_of("frames = 1e300\n" + good_body).size(), 1u);
+  EXPECT_EQ(problems_of("frames = nan\n" + good_body).size(), 1u);
 }
 
 TEST(SceneFile, RefusesNamesThatFilesCannotHave) {

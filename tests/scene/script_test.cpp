@@ -288,7 +288,7 @@ TEST_F(Replay, WarnsOfGrabsThatJump) {
         "keys = " +
         keys + "\n");
     std::string all;
-    for (const Problem& warning : warnings(grab.scene(), assemble(grab.scene()))) all += warning.text() + "\n";
+    for (const Problem& warning : said(warnings(grab.scene(), assemble(grab.scene())))) all += warning.text() + "\n";
     return all.find("handle 'f' of body 'bar' has moved by its keys already when it grabs") != std::string::npos;
   };
   EXPECT_TRUE(warned("[{ t = 0.1 }, { t = 0.4, move = [0, 0.1, 0] }]"));
@@ -338,6 +338,18 @@ TEST_F(Replay, WarnsOfRampsThatAnotherChangeBreaksOff) {
   EXPECT_LT(mu_of(broken.scene_at(29)), 2e4);
   EXPECT_EQ(mu_of(broken.scene_at(30)), 3e4);
   EXPECT_EQ(mu_of(broken.scene_at(50)), 3e4);
+}
+
+// The scene has no table [look], and its bar no solver of its own.
+TEST_F(Replay, RampsBeginAtDefaults) {
+  const Script lighter = script("[[change]]\nt = 0\nover = 1\nease = 'linear'\npath = 'look.exposure'\nvalue = 3\n");
+  EXPECT_NEAR(lighter.scene_at(14).look.exposure, 2, 1e-9);
+  const Script longer = script(
+      "[[change]]\nt = 0\nover = 1\nease = 'linear'\npath = 'body.bar.solver.iterations'\n"
+      "value = 30\n");
+  EXPECT_EQ(longer.scene_at(14).bodies[0].solver.settings.iterations, 20);
+  const std::string listed = "look.exposure";
+  EXPECT_TRUE(std::ranges::any_of(script("").live(), [&](const LiveKey& key) { return key.key.path == listed; }));
 }
 
 TEST_F(Replay, ListsWhatCanChange) {

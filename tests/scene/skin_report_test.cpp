@@ -25,15 +25,23 @@ TEST(SkinReport, SaysHowMuchLiesOutsideAndWarnsOfWhatTheElementsMiss) {
   const DrawnBody drawn = drawn_bodies(spike).front();
   EXPECT_NE(skin_text(spike[0], drawn).find("% outside the elements, by up to 0.2"), std::string::npos)
       << skin_text(spike[0], drawn);
-  const std::optional<Problem> warning = skin_warning(spike[0], drawn);
+  const std::optional<Warning> warning = skin_warning(spike[0], drawn);
   ASSERT_TRUE(warning);
-  EXPECT_NE(warning->text().find("the skin of body 'it' reaches 0.2"), std::string::npos) << warning->text();
-  EXPECT_NE(warning->text().find("more vertices (now 300) fill it"), std::string::npos) << warning->text();
+  EXPECT_FALSE(warning->meant);
+  EXPECT_EQ(skin_words(spike[0], drawn), "in places far from its elements");
+  std::vector<Body> meant = spike;
+  meant[0].def.meant = {WarningKind::skin};
+  EXPECT_TRUE(skin_warning(meant[0], drawn)->meant);
+  EXPECT_NE(warning->problem.text().find("the skin of body 'it' reaches 0.2"), std::string::npos)
+      << warning->problem.text();
+  EXPECT_NE(warning->problem.text().find("more vertices (now 300) fill it"), std::string::npos)
+      << warning->problem.text();
 
   const std::vector<Body> ball = bodies_of(folder.path, "shape = \"shapes/sphere.toml\"\nvertices = 1000");
   const DrawnBody round = drawn_bodies(ball).front();
   EXPECT_FALSE(skin_warning(ball[0], round));
   EXPECT_NE(skin_text(ball[0], round).find("vertices"), std::string::npos);
+  EXPECT_EQ(skin_words(ball[0], round), "close to its elements");
 
   const std::vector<Body> box = bodies_of(folder.path, "box = { extent = [1, 1, 1], cells = [3, 3, 3] }");
   EXPECT_EQ(skin_text(box[0], drawn_bodies(box).front()), "");

@@ -127,7 +127,7 @@ TEST(Substances, AreRefusedWithWordsThatSayWhatIsAllowed) {
 TEST(Substances, SoftenedFitsAndBodiesThatStayFlatAreWarnedOf) {
   const auto warning = [](const std::string& text) {
     const SceneDef scene = scene_of("gravity = [0, 0, 0]\n" + box_body(text));
-    const std::vector<Problem> list = warnings(scene, assemble(scene));
+    const std::vector<Problem> list = said(warnings(scene, assemble(scene)));
     return list.empty() ? std::string("nothing") : list.front().message;
   };
   EXPECT_NE(warning("material = { model = \"spline\", a = [[0.5, 2], [1, 0], [1.5, -2]] }\n").find("softens"),
@@ -272,7 +272,7 @@ TEST(StartStates, BodiesRecoverFromThem) {
 std::string warnings_about(const std::string& text) {
   const SceneDef scene = scene_of(text);
   std::string all;
-  for (const Problem& warning : warnings(scene, assemble(scene))) all += warning.text() + "\n";
+  for (const Problem& warning : said(warnings(scene, assemble(scene)))) all += warning.text() + "\n";
   return all;
 }
 
