@@ -166,7 +166,7 @@ int read(const char* path) {
     soup.positions[i] += checked.origin[Eigen::Index(i % 3)];
   std::string remarks;
   for (const std::string& remark : colors.remarks)
-    if (std::ssize(remarks) + std::ssize(remark) < stream::most_text) remarks += supple::printable(remark) + '\n';
+    if (std::ssize(remarks) + std::ssize(remark) < stream::most_text) remarks += supple::one_line(remark) + '\n';
   const stream::Counts counts{std::int64_t(soup.positions.size() / 3),
                               std::int64_t(soup.indices.size() / 3),
                               std::int64_t(colors.by_vertex.size()),

@@ -156,7 +156,7 @@ SolverDef read_solver(const ConfigTable& table, const SolverDef& defaults) {
       {"factor", "", "precision of the factor of M/h^2 + L, hence of directions; energies are always double"},
       defaults.precision);
   solver.integrator = table.word<Integrator>(
-      {"integrator", "", "backward Euler damps and is stable; implicit midpoint keeps energy and may fail"},
+      {"integrator", "", "backward Euler damps and is stable; implicit midpoint damps nothing, keeps energy where steps are short, and may fail"},
       defaults.integrator);
   solver.damping =
       table.number({"damping", "s", "beta of stiffness-proportional damping; also slows turning as a whole"},

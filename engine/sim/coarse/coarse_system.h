@@ -30,7 +30,6 @@ class CoarseSystem {
   bool turn_to(const Positions& x);
 
   int columns() const { return motions_of_cluster * clusters_.count(); }         // r; 0: the body has no tetrahedra
-  const std::vector<std::int32_t>& centers() const { return clusters_.center; }  // by cluster, a vertex
   // r x r, the lower triangle [N/m], [N], [N m]
   const Eigen::MatrixXd& constant() const { return constant_; }
   const Eigen::MatrixXd& hessian() const { return hessian_; }

@@ -1,7 +1,5 @@
 #include "sim/coarse/second_level.h"
 
-#include <algorithm>
-
 namespace supple {
 
 // A motion that hardly moves any free vertex has next to no inertia. The same little stiffness is added to both
@@ -28,16 +26,6 @@ bool SecondLevel::begin(const Model& model, const Positions& x) {
       difference_(i, j) = difference_(j, i) = 0.5 * (difference_(i, j) + difference_(j, i));
   }
   return true;
-}
-
-bool SecondLevel::has_left(const Model& model, const Positions& x) const {
-  constexpr double far = 0.01;  // of the body's size
-  const std::vector<std::int32_t>& centers = system_.centers();
-  Eigen::RowVector3d together = Eigen::RowVector3d::Zero();
-  for (const std::int32_t v : centers) together += x.row(v) - x_.row(v);
-  together /= static_cast<double>(centers.size());
-  return std::any_of(centers.begin(), centers.end(),
-                     [&](std::int32_t v) { return (x.row(v) - x_.row(v) - together).norm() > far * model.size; });
 }
 
 void SecondLevel::add(const Model& model, const Eigen::VectorXd& f, Threads* threads, Positions& motions) {

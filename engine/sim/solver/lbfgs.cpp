@@ -210,14 +210,13 @@ void SystemInverse::begin(const Model& model, const StepInputs& inputs, Workspac
       inputs.solver.levels > 1 && !starts_again && w.system == static_cast<const System*>(&model) && !w.hessian_serves;
   const TimedPhase timed(w.clock, Phase::matrix, "second level");
   has_second_level_ = w.second_level_serves = wanted && w.second_level.begin(model, w.current.x);
+  iterations_ = w.report.iterations;
 }
 
 void SystemInverse::apply(const Model& model, const StepInputs& inputs, Workspace& w, Positions& r, Positions& z) {
   if (w.hessian_serves && w.current.contacts.empty()) return w.hessian.solve(model, r, z);
-  if (has_second_level_ && w.second_level.has_left(model, w.current.x)) {
-    const TimedPhase timed(w.clock, Phase::matrix, "second level");
-    has_second_level_ = w.second_level.begin(model, w.current.x);
-  }
+  if (has_second_level_ && iterations_ != w.report.iterations) w.second_level.move_to(w.current.x);
+  iterations_ = w.report.iterations;
   w.second_level_serves = has_second_level_;
   w.correction.second = has_second_level_ ? &w.second_level : nullptr;
   apply_inverse(model, inputs.solver.contact, w.correction, w.solve_scratch, r, z);

@@ -98,6 +98,7 @@ class SystemInverse final : public InitialInverse {
 
  private:
   bool has_second_level_ = false;
+  int iterations_ = 0;  // StepReport::iterations at the iterate where the second level has its Z
 };
 
 }  // namespace supple
