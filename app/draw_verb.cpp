@@ -137,9 +137,7 @@ std::vector<std::string> command_of_part(const DrawCommand& command, int index) 
   const DrawPlan& plan = command.plan;
   std::vector<std::string> words = {std::filesystem::read_symlink("/proc/self/exe").string(),
                                     "draw",
-                                    file_word(command.run),
-                                    "--out",
-                                    file_word(command.folder()),
+                                    "--out=" + command.folder().string(),
                                     "--index",
                                     std::to_string(index),
                                     "--of",
@@ -154,8 +152,9 @@ std::vector<std::string> command_of_part(const DrawCommand& command, int index) 
   if (plan.last >= 0) words.insert(words.end(), {"--last", std::to_string(plan.last)});
   if (plan.rate > 0) words.insert(words.end(), {"--rate", fmt::format("{}", plan.rate)});
   if (!plan.cache) words.emplace_back("--no-cache");
-  if (!command.scene.empty()) words.insert(words.end(), {"--scene", file_word(command.scene)});
+  if (!command.scene.empty()) words.push_back("--scene=" + command.scene);
   for (const std::string& setting : plan.settings) words.insert(words.end(), {"--set", setting});
+  words.insert(words.end(), {"--", command.run});
   return words;
 }
 

@@ -65,15 +65,11 @@ std::vector<std::filesystem::path> files_of(const GalleryCommand& command) {
   return files;
 }
 
-constexpr std::size_t first_option = 5;  // of the words below, after the scene and --out
-
 // Returns the words with which the program films a scene within the gallery's bounds.
 std::vector<std::string> words_for(const GalleryCommand& command, const ListedScene& listed, const SceneDef& scene) {
   std::vector<std::string> words = {std::filesystem::read_symlink("/proc/self/exe").string(),
                                     "render",
-                                    file_word(listed.file),
-                                    "--out",
-                                    file_word(command.folder(listed.name)),
+                                    "--out=" + command.folder(listed.name).string(),
                                     "--force",
                                     "--quiet",
                                     "--gl",
@@ -89,6 +85,7 @@ std::vector<std::string> words_for(const GalleryCommand& command, const ListedSc
   if (command.frames > 0 && command.frames < scene.frames)
     words.insert(words.end(), {"--frames", std::to_string(command.frames)});
   for (const std::string& setting : command.settings) words.insert(words.end(), {"--set", setting});
+  words.insert(words.end(), {"--", listed.file.string()});
   return words;
 }
 
@@ -112,8 +109,7 @@ ListedScene listed(const GalleryCommand& command, const std::filesystem::path& f
     result.title = script.scene().title;
     result.words = words_for(command, result, script.scene());
     std::string all = hash_text_form(program_identity()) + script.scene_json() + script.replay_json();
-    all += '\n' + file.string() + '\n' + command.folder(result.name).string();  // the words name them absolutely
-    for (std::size_t i = first_option; i < result.words.size(); ++i) all += '\n' + result.words[i];
+    for (std::size_t i = 2; i < result.words.size(); ++i) all += '\n' + result.words[i];
     result.identity = hash_text_form(hash_text(all));
   } catch (const InputError& error) {
     result.identity = hash_text_form(hash_text(error.what()));

@@ -143,7 +143,7 @@ std::vector<std::string> one_repeat(const std::string& program, const std::vecto
     }
   }
   // They stand after the verb, and before a "--", after which no word is an option.
-  words.insert(words.begin() + 2, {"--repeats", "1", "--quiet", "--out", file_word(folder)});
+  words.insert(words.begin() + 2, {"--repeats", "1", "--quiet", "--out=" + folder.string()});
   return words;
 }
 

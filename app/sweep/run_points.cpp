@@ -25,11 +25,9 @@ namespace {
 std::vector<std::string> command_of(const SweepRequest& request, std::size_t point) {
   std::vector<std::string> words = {std::filesystem::read_symlink("/proc/self/exe").string(),
                                     "sweep",
-                                    file_word(request.file),
                                     "--index",
                                     std::to_string(point),
-                                    "--out",
-                                    file_word(request.out),
+                                    "--out=" + request.out.string(),
                                     "--threads",
                                     std::to_string(request.threads),
                                     "--gl",
@@ -40,6 +38,7 @@ std::vector<std::string> command_of(const SweepRequest& request, std::size_t poi
   if (request.pictures == FilmPictures::none) words.emplace_back("--no-images");
   if (request.pictures == FilmPictures::all) words.emplace_back("--images");
   if (!request.cache) words.emplace_back("--no-cache");
+  words.insert(words.end(), {"--", request.scene});
   return words;
 }
 
