@@ -60,7 +60,7 @@ samples = 1
 TEST_F(Faults, WithoutFfmpegTheFramesAreWholeAndThePackageIsNamed) {
   const Result result = in_shell("PATH=/nowhere", "render bar.toml");
   EXPECT_EQ(result.status, 0) << result.err;
-  EXPECT_NE(result.out.find("ffmpeg is not installed (Debian: ffmpeg)"), std::string::npos) << result.out;
+  EXPECT_NE(result.err.find("ffmpeg is not installed (Debian: ffmpeg)"), std::string::npos) << result.err;
   expect_whole_frames(8);
 }
 

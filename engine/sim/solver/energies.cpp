@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/contact/find_contacts.h"
 #include "sim/solver/energy_gain.h"
 
 namespace supple {
@@ -20,9 +21,32 @@ double spring_energy(const Model& model, const Positions& targets, const Positio
   double sum = 0;
   for (std::size_t i = 0; i < model.handled.size(); ++i) {
     const std::int32_t v = model.handled[i].vertex;
-    if (v < model.free) sum += 0.5 * model.handle_stiffness[v] * (x.row(v) - targets.row(static_cast<Eigen::Index>(i))).squaredNorm();
+    if (v < model.free)
+      sum += 0.5 * model.handle_stiffness[v] * (x.row(v) - targets.row(static_cast<Eigen::Index>(i))).squaredNorm();
   }
   return sum;
+}
+
+// Returns the work of contacts over a step from q to the current iterate [J]: of all forces along the way of the
+// collider, and of friction along the way on it. What presses does none where the collider stands, although the vertex
+// that comes down on it, as those of a ball that rolls do, has a way; only what is pushed out has gained.
+double work_of_contacts(const StepInputs& inputs, const Positions& q, Workspace& w) {
+  const Positions& x = w.current.x;
+  std::vector<Contact> one(1);
+  double work = 0;
+  for (const Contact& contact : w.current.contacts) {
+    const ContactPoint& point = contact.point;
+    one.front() = contact;
+    for (int k = 0; k < point.free; ++k) w.scratch.row(point.vertex[k]).setZero();
+    add_contacts(one, w.contact.stick_length, x, nullptr, w.direction, &w.scratch, -1);
+    Vec3 force = Vec3::Zero();
+    for (int k = 0; k < point.free; ++k) force += w.scratch.row(point.vertex[k]).transpose();
+    const Vec3 from = point.at(q), carried = motion_after(inputs, contact.collider, 0) * from - from;
+    const Vec3 slip = point.at(x) - from - carried;
+    const double pressing = force.dot(contact.normal), away = slip.dot(contact.normal);
+    work += force.dot(carried) + force.dot(slip) - pressing * away + pressing * std::max(0.0, away);
+  }
+  return work;
 }
 
 }  // namespace
@@ -71,7 +95,8 @@ void EnergyBudget::before_step(const Model& model, const StepInputs& inputs, con
 
 void EnergyBudget::after_step(const Model& model, const StepInputs& inputs, const Positions& q, const State& state,
                               Workspace& w) {
-  add_to_budget(work_from_outside(model, q, w));
+  if (model.free < model.vertices) add_to_budget(work_of_handles(model, q, w));
+  if (has_colliders(inputs)) add_to_budget(work_of_contacts(inputs, q, w));
   set_motion(model, state, inputs.gravity, parts_);
   parts_.elastic = elastic_energy(model, w, state.x);
   parts_.springs = spring_energy(model, inputs.targets, state.x);

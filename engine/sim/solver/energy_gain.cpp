@@ -5,9 +5,7 @@
 #include "sim/solver/objective.h"
 
 namespace supple {
-namespace {
 
-// Work of the elements on held vertices that were moved: what the handles had to put in.
 double work_of_handles(const Model& model, const Positions& q, Workspace& w) {
   const Positions& x = w.current.x;
   if ((x.bottomRows(model.vertices - model.free) - q.bottomRows(model.vertices - model.free)).isZero(0)) return 0;
@@ -21,16 +19,13 @@ double work_of_handles(const Model& model, const Positions& q, Workspace& w) {
   return work;
 }
 
-// Work of the contacts' forces, friction among them, along the way of each vertex. Where iterations end before contacts
-// do not change any more, forces at the end are not those that the vertices were moved with: these are greater by what
-// is left of the gradient of g, the balance of forces.
-double work_of_contacts(const Model& model, const Positions& q, Workspace& w) {
+namespace {
+
+// Work of the contacts' forces, friction among them, along the way of each vertex.
+double work_of_contacts(const Positions& q, Workspace& w) {
   Positions& force = w.scratch;
   force.setZero();
   add_contacts(w.current.contacts, w.contact.stick_length, w.current.x, nullptr, w.direction, &force, -1);
-  if (model.integrator == Integrator::backward_euler && w.current.gradient.rows() == model.free &&
-      w.current.gradient.allFinite())
-    force += w.current.gradient;
   double work = 0;
   for (const Contact& contact : w.current.contacts) {
     for (int k = 0; k < contact.point.free; ++k) {
@@ -52,7 +47,7 @@ double potential_of(const Model& model, const Workspace& w, const Iterate& at) {
 
 double work_from_outside(const Model& model, const Positions& q, Workspace& w) {
   return (model.free < model.vertices ? work_of_handles(model, q, w) : 0) +
-         (w.current.contacts.empty() ? 0 : work_of_contacts(model, q, w));
+         (w.current.contacts.empty() ? 0 : work_of_contacts(q, w));
 }
 
 namespace {

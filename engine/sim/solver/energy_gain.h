@@ -9,9 +9,13 @@
 
 namespace supple {
 
+// Returns the work of the elements on held vertices that were moved in a step from q to the current iterate, by the
+// forces at its end: what hard handles put in [J]. Evaluates all elements where one has moved, and then overwrites the
+// workspace's trial energies and forces.
+double work_of_handles(const Model& model, const Positions& q, Workspace& workspace);
+
 // Returns the work over a step from q to the current iterate that hard handles and contacts do on the body, by the
-// forces at its end [J]. Evaluates all elements where a hard handle has moved, and then overwrites the workspace's
-// trial energies and forces.
+// forces at its end and the ways of the vertices: what backward Euler takes for that work [J]. Evaluates as above.
 double work_from_outside(const Model& model, const Positions& q, Workspace& workspace);
 
 // Tells whether the step, left at the current iterate, would gain more than a hundredth of the energies that it
