@@ -38,10 +38,10 @@ int Captions::width_of(const std::string& text, int em) const {
 }
 
 // Returns the pixel below which a body's caption stands; nothing behind the eye. The caption stands on the ground: for
-// a body that hangs in the air, below the place where it starts.
-std::optional<Eigen::Vector2d> Captions::foot_of(const Projection& project, const Body& body) const {
-  std::optional<Eigen::Vector2d> foot =
-      project({body.rest.center().x(), std::min(body.rest.lower.y(), 0.0), body.rest.upper.z()});
+// a body that hangs in the air, below the place where it starts. z: of the part below which it
+// stands [m].
+std::optional<Eigen::Vector2d> Captions::foot_of(const Projection& project, const Body& body, double z) const {
+  std::optional<Eigen::Vector2d> foot = project({body.rest.center().x(), std::min(body.rest.lower.y(), 0.0), z});
   if (!foot || !body.kept_clear) return foot;
   for (const Eigen::Vector2d& corner : project.outline(body.rest)) foot->y() = std::max(foot->y(), corner.y());
   return foot;
@@ -61,7 +61,7 @@ bool Captions::try_size(const Camera& camera, int em, bool over_bodies) {
   for (std::size_t m = 0; m < bodies_.size(); ++m) {
     const Body& body = bodies_[m];
     Outline outline = body.kept_clear ? project.outline(body.rest) : Outline();
-    const auto foot = foot_of(project, body);
+    const auto foot = foot_of(project, body, body.rest.upper.z());
     if (!body.label.empty() && foot) {
       double lowest = foot->y();
       const int width = std::max(width_of(body.label, em), note_width) + 2 * halo;
@@ -130,14 +130,14 @@ void Captions::go_along(const Camera& camera, const std::optional<Followed>& fol
   placed_ = laid_out_;
   for (Placed& one : placed_) {
     Body body = bodies_[one.mesh];
-    const auto from = foot_of(before, body);
+    const auto from = foot_of(before, body, body.rest.center().z());
     if (followed && followed->mesh == one.mesh) {
       // It moves along the ground with its body, and not up and down.
       const Vec3 moved(followed->moved.x(), 0, followed->moved.z());
       body.rest.lower += moved;
       body.rest.upper += moved;
     }
-    const auto to = foot_of(now, body);
+    const auto to = foot_of(now, body, body.rest.center().z());
     const bool behind = !from || !to;
     one.place.x = behind ? -2 * one.place.width : one.place.x + static_cast<int>(std::lround(to->x() - from->x()));
     one.place.y = behind ? -2 * one.place.height : one.place.y + static_cast<int>(std::lround(to->y() - from->y()));

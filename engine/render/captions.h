@@ -42,7 +42,7 @@ class Captions {
     Bounds rest;
     bool kept_clear = false;
   };
-  std::optional<Eigen::Vector2d> foot_of(const Projection& project, const Body& body) const;
+  std::optional<Eigen::Vector2d> foot_of(const Projection& project, const Body& body, double z) const;
   bool try_size(const Camera& camera, int em, bool over_bodies);
   void lay_out(const Camera& camera);
   void go_along(const Camera& camera, const std::optional<Followed>& followed);

@@ -13,9 +13,7 @@ GroundOcclusion::GroundOcclusion(double largest_body)
 // place, so that shade does not change from cell to cell as a body moves (the cloud-in-cell scheme of Birdsall and Fuss
 // 1969).
 void GroundOcclusion::cover(float x, float y, float z, float area) {
-  const auto by_cell = static_cast<float>(cells / extent_);
-  const float u = (x - static_cast<float>(origin_x_)) * by_cell - 0.5f,
-              v = (z - static_cast<float>(origin_z_)) * by_cell - 0.5f;
+  const float u = x * by_cell_ - first_u_, v = z * by_cell_ - first_v_;
   if (!(u >= 0 && v >= 0 && u < cells - 1 && v < cells - 1)) return;
   const int i = static_cast<int>(u), j = static_cast<int>(v);
   const float s = u - static_cast<float>(i), t = v - static_cast<float>(j);
@@ -29,17 +27,18 @@ void GroundOcclusion::cover(float x, float y, float z, float area) {
 
 // Does so for a triangle, in pieces of less than a cell. Of closed bodies only what looks down counts.
 void GroundOcclusion::cover_by_triangle(const float* a, const float* b, const float* c, bool two_sided) {
-  if (std::min({a[1], b[1], c[1]}) > reach_) return;
+  const auto high = static_cast<float>(reach_);
+  if (a[1] > high && b[1] > high && c[1] > high) return;
   float area = 0.5f * ((b[0] - a[0]) * (c[2] - a[2]) - (b[2] - a[2]) * (c[0] - a[0]));
   if (two_sided) area = std::abs(area);
   if (!(area > 0)) return;
   const auto span = [](float p, float q, float r) { return std::max({p, q, r}) - std::min({p, q, r}); };
-  const double widest = std::max(span(a[0], b[0], c[0]), span(a[2], b[2], c[2])), piece = 0.7 * extent_ / cells;
-  const int parts = std::clamp(static_cast<int>(std::ceil(widest / piece)), 1, 2 * cells);
+  const float widest = std::max(span(a[0], b[0], c[0]), span(a[2], b[2], c[2])) * by_cell_ / 0.7f;  // in pieces
+  const int parts = std::clamp(static_cast<int>(std::ceil(std::min(widest, 1e6f))), 1, 2 * cells);
   const auto whole = static_cast<float>(parts), each = area / (whole * whole);
   const auto cover_at = [&](float s, float t) {
     const auto at = [&](int k) { return a[k] + s * (b[k] - a[k]) + t * (c[k] - a[k]); };
-    if (at(1) <= reach_) cover(at(0), std::max(at(1), 0.0f), at(2), each);
+    if (at(1) <= high) cover(at(0), std::max(at(1), 0.0f), at(2), each);
   };
   for (int i = 0; i < parts; ++i) {
     for (int k = 0; k + i < parts; ++k) {
@@ -57,6 +56,9 @@ const std::vector<float>& GroundOcclusion::compute(const std::vector<DrawMesh>& 
   origin_x_ = center.x() - 0.5 * extent_;
   origin_z_ = center.z() - 0.5 * extent_;
   const double cell = extent_ / cells;
+  by_cell_ = static_cast<float>(1 / cell);
+  first_u_ = static_cast<float>(origin_x_ / cell + 0.5);
+  first_v_ = static_cast<float>(origin_z_ / cell + 0.5);
   std::fill(covers_.begin(), covers_.end(), Cover{});
   for (std::size_t m = 0; m < positions.size(); ++m) {
     if (meshes[m].ghost) continue;

@@ -35,6 +35,7 @@ class GroundOcclusion {
   void cover_by_triangle(const float* a, const float* b, const float* c, bool two_sided);
 
   double origin_x_ = 0, origin_z_ = 0, extent_ = 1, reach_;  // [m]
+  float by_cell_ = 1, first_u_ = 0, first_v_ = 0;            // 1 over a cell's edge [1/m]; the first centre, in cells
   std::vector<Cover> covers_;                                // by cell
   std::vector<float> open_;
 };
