@@ -18,6 +18,7 @@ enum class WarningKind {
   weight,     // strains the body
   size,       // small for its steps
   regions,    // of stiffnesses that are far apart
+  thin,       // a bar or a plate with few elements across
   delay,      // of chebyshev, which leaves no iteration
   overlap,    // of two bodies
   skin,       // reaches far beyond the elements
@@ -31,8 +32,9 @@ struct Names<WarningKind> {
       Name{WarningKind::inside, "inside"},     Name{WarningKind::fall, "fall"},
       Name{WarningKind::material, "material"}, Name{WarningKind::weight, "weight"},
       Name{WarningKind::size, "size"},         Name{WarningKind::regions, "regions"},
-      Name{WarningKind::delay, "delay"},       Name{WarningKind::overlap, "overlap"},
-      Name{WarningKind::skin, "skin"},         Name{WarningKind::unsolved, "unsolved"}};
+      Name{WarningKind::thin, "thin"},         Name{WarningKind::delay, "delay"},
+      Name{WarningKind::overlap, "overlap"},   Name{WarningKind::skin, "skin"},
+      Name{WarningKind::unsolved, "unsolved"}};
 };
 
 }  // namespace supple

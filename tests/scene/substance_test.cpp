@@ -1,5 +1,6 @@
 // Tests materials, fibres, cloth, boxes and start states of scene files: what is read, what is refused, and with which
 // messages.
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -294,6 +295,23 @@ TEST(Substances, WhatIsSoftForItsLoadOrSmallForItsStepsOrStiffInOneRegionIsWarne
   EXPECT_NE(warnings_about(shape + "[body.regions.teeth]\nmaterial = { model = \"neo-hookean\", mu = 1e11 }\n")
                 .find("differ in stiffness by a factor of 1e+06"),
             std::string::npos);
+}
+
+TEST(Substances, BarsThatAreTooFewCellsAcrossToBendAreWarnedOf) {
+  const auto bar = [](const char* cells, double thickness) {
+    return warnings_about(fmt::format(
+        "[[body]]\nname = \"bar\"\nposition = [0, 1, 0]\nbox = {{ extent = [1, {0}, {0}], cells = {1} }}\nmaterial = "
+        "\"rubber\"\n[[body.handles]]\nname = \"end\"\nselect = {{ box = [[0, 0, 0], [0, 1, 1]] }}\n",
+        thickness, cells));
+  };
+  EXPECT_NE(bar("[20, 1, 2]", 0.05)
+                .find("body 'bar' is one cell across where it is thin: it bends as if it were 3.5 "
+                      "times as stiff"),
+            std::string::npos);
+  EXPECT_NE(bar("[40, 2, 2]", 0.05).find("two cells across where it is thin: it bends as if it were 1.6 times"),
+            std::string::npos);
+  EXPECT_EQ(bar("[40, 3, 3]", 0.05), "");
+  EXPECT_EQ(bar("[4, 1, 1]", 0.25), "") << "it hardly bends";
 }
 
 }  // namespace
