@@ -67,7 +67,7 @@ class ObjChecker {
     }
   }
 
-  // What decides neither shape nor colour is left out.
+  // Lines that decide neither shape nor colour are left out.
   void pass_over(std::string_view key) {
     constexpr std::array surfaces = {"curv", "curv2", "surf", "bzp", "bsp", "cdc", "cdp", "res"};
     constexpr std::array known = {"vp",    "p",     "l",      "cstype", "deg",      "bmat",      "step",

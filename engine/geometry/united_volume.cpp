@@ -12,7 +12,7 @@ namespace {
 
 constexpr int across = 256;  // columns along either side
 
-// Where a column enters or leaves a surface.
+// Holds the place where a column enters or leaves a surface.
 struct Crossing {
   int column;
   double height;

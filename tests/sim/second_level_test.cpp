@@ -99,7 +99,7 @@ TEST(CoarseSystem, HasTheMatrixOfAOnItsMotions) {
   }
 }
 
-// Whatever the shape, a rigid motion of the whole body costs no elastic energy: the matrix has its inertia alone.
+// A rigid motion of the whole body costs no elastic energy in any shape: the matrix has its inertia alone.
 TEST(CoarseSystem, DoesNotResistTurningInAnyShape) {
   const Model model = build_model(bar(Corotated{1e7, 3e7}, Held::nothing, Precision::double_precision, 3));
   CoarseSystem system;
@@ -324,7 +324,9 @@ TEST(SecondLevel, ABallRolls) {
         speed += scene.model.mass[v] / scene.model.total_mass * scene.state.v(v, 0);
     }
     EXPECT_GT(speeds[1], 0.5) << young;
-    EXPECT_NEAR(speeds[0], speeds[1], 0.1) << young;  // it has 125 vertices; with one level it stops: 0.03
+    EXPECT_NEAR(speeds[0], speeds[1], 0.1) << young;  // it has 125 vertices
+    EXPECT_GT(speeds[0], 0.55) << young;              // 0.03 with one level
+    EXPECT_LT(speeds[0], 0.8) << young;
   }
 }
 

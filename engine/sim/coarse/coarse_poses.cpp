@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "sim/coarse/coarse_system.h"
+#include "sim/coarse/cross_matrix.h"
 #include "sim/model/vertex_chunks.h"
 
 namespace supple {
@@ -14,12 +15,6 @@ namespace {
 
 constexpr int motions = CoarseSystem::motions_of_cluster;
 using Block = Eigen::Matrix<double, motions, motions>;
-
-Mat3 cross_matrix(const Vec3& s) {
-  Mat3 m;
-  m << 0, -s.z(), s.y(), s.z(), 0, -s.x(), -s.y(), s.x(), 0;
-  return m;
-}
 
 // Expresses a block in the motions of its clusters about their own centres, along the world's axes. turn: from the
 // group's frame to the world's; s: from the centres to the group's.

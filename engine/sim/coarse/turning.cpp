@@ -3,14 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/coarse/cross_matrix.h"
+
 namespace supple {
 namespace {
-
-Mat3 cross_matrix(const Vec3& s) {
-  Mat3 m;
-  m << 0, -s.z(), s.y(), s.z(), 0, -s.x(), -s.y(), s.x(), 0;
-  return m;
-}
 
 // Returns the direction of an angle, as a cross product.
 Mat3 axis_of(const Vec3& angle) { return cross_matrix(angle / angle.norm()); }

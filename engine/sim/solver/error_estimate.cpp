@@ -77,8 +77,8 @@ double error_at_end(const Model& model, const StepInputs& inputs, Workspace& w, 
   return error_of(left, gained_in_all(model, inputs, w, gained));
 }
 
-// What is left to gain is some number of times what the direction's quadratic model foretells, half the decrement; the
-// way that is left is the square root of that number of times the direction.
+// The direction's quadratic model foretells a gain of half the decrement. The step is estimated to have some number of
+// times that gain left; the way that is left is the square root of that number of times the direction.
 double motion_estimate_at_end(const Model& model, const StepInputs& inputs, const Positions& q, Workspace& w) {
   if (w.report.failed || w.report.decrement <= 0) return 0;
   if (w.report.remaining_estimate <= noise_of(model, w.current.g, extent_of(model, w))) return 0;
