@@ -32,12 +32,12 @@ std::optional<double> largest(const BodyRows& rows, const Get& get) {
   return most;
 }
 
-std::optional<double> mean_error(const BodyRows& rows) {
+std::optional<double> mean(const BodyRows& rows, std::optional<double> BodyRow::*value) {
   double sum = 0;
   int count = 0;
   for (const BodyRow* row : rows) {
-    if (!row->error) continue;
-    sum += *row->error;
+    if (!(row->*value)) continue;
+    sum += *(row->*value);
     ++count;
   }
   return count > 0 ? std::optional(sum / count) : std::nullopt;
@@ -66,8 +66,11 @@ const std::vector<Measure>& measures() {
       {"iterations", [](const BodyRows& r) { return Value(total(r, [](const BodyRow& b) { return b.iterations; })); }},
       {"trials", [](const BodyRows& r) { return Value(total(r, [](const BodyRow& b) { return b.line_search; })); }},
       {"objective_end [J]", [](const BodyRows& r) { return Value(r.back()->objective_end); }},
-      {"error_mean", mean_error},
-      {"error_max", [](const BodyRows& r) { return largest(r, [](const BodyRow& b) { return b.error; }); }}};
+      {"error_mean", [](const BodyRows& r) { return mean(r, &BodyRow::error); }},
+      {"error_max", [](const BodyRows& r) { return largest(r, [](const BodyRow& b) { return b.error; }); }},
+      {"motion_error_mean", [](const BodyRows& r) { return mean(r, &BodyRow::motion_error); }},
+      {"motion_error_max",
+       [](const BodyRows& r) { return largest(r, [](const BodyRow& b) { return b.motion_error; }); }}};
   return list;
 }
 

@@ -30,8 +30,9 @@ double time_scale(double longest) { return longest > 0 ? rounded_up(longest) : 1
 GraphPoint graph_point(const FrameRow& row) {
   GraphPoint point{row.step_ms, 0, nothing};
   for (const BodyRow& body : row.bodies) {
-    point.estimate = std::max(point.estimate, body.error_estimate);
-    if (body.error_measured) point.measured = std::fmax(point.measured, body.error.value_or(0));
+    point.estimate = std::max({point.estimate, body.error_estimate, body.motion_estimate});
+    if (body.error_measured)
+      point.measured = std::fmax(point.measured, std::max(body.error.value_or(0), body.motion_error.value_or(0)));
   }
   return point;
 }

@@ -55,8 +55,13 @@ std::string note_text(const TextDef& text, const BodyDef& body, const BodyRow* r
   if (row == nullptr) return line;
   if (text.iterations) add(line, fmt::format("{} iterations", row->iterations));
   if (text.milliseconds) add(line, fmt::format("{:.1f} ms", row->step_ms));
-  if (text.error && row->error_measured) add(line, fmt::format("error {:.1e}", row->error.value_or(0)));
-  if (text.error && !row->error_measured) add(line, fmt::format("error about {:.1e}", row->error_estimate));
+  if (text.error && row->error_measured) {
+    add(line, fmt::format("error {:.1e}", row->error.value_or(0)));
+    if (row->motion_error) add(line, fmt::format("of motion {:.1e}", *row->motion_error));
+  } else if (text.error) {
+    add(line, fmt::format("error about {:.1e}", row->error_estimate));
+    add(line, fmt::format("of motion about {:.1e}", row->motion_estimate));
+  }
   return line;
 }
 
@@ -64,7 +69,7 @@ std::string longest_note(const SceneDef& scene) {
   BodyRow wide;
   wide.iterations = 1000;
   wide.step_ms = 1000;
-  wide.error_estimate = 8.8e-88;
+  wide.error_estimate = wide.motion_estimate = 8.8e-88;
   std::string longest;
   for (const BodyDef& body : scene.bodies) {
     const std::string note = note_text(scene.text, body, &wide);

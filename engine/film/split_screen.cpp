@@ -82,20 +82,23 @@ std::string figures_of(const std::vector<FrameRow>& rows, int frame) {
   if (frame < 0 || frame >= static_cast<int>(rows.size())) return "";
   const FrameRow& row = rows[frame];
   int iterations = 0;
-  double estimate = 0, error = 0;
+  double estimate = 0, motion_estimate = 0, error = 0, motion_error = 0;
   for (const BodyRow& body : row.bodies) {
     iterations += body.iterations;
     estimate = std::max(estimate, body.error_estimate);
+    motion_estimate = std::max(motion_estimate, body.motion_estimate);
   }
   bool measured = false;
   for (int at = frame; at >= 0 && !measured; --at) {
     for (const BodyRow& body : rows[at].bodies) {
       measured = measured || body.error_measured;
       error = std::max(error, body.error.value_or(0));
+      motion_error = std::max(motion_error, body.motion_error.value_or(0));
     }
   }
-  return fmt::format("{:.1f} ms, {} iteration{}, {} {:.1e}", row.step_ms, iterations, iterations == 1 ? "" : "s",
-                     measured ? "error" : "estimated error", measured ? error : estimate);
+  return fmt::format("{:.1f} ms, {} iteration{}, {} {:.1e}, of motion {:.1e}", row.step_ms, iterations,
+                     iterations == 1 ? "" : "s", measured ? "error" : "estimated error", measured ? error : estimate,
+                     measured ? motion_error : motion_estimate);
 }
 
 Image split_picture(const SplitScreen& screen, int picture, int frame) {

@@ -88,8 +88,8 @@ struct Figures {
   RunRecord run;
   int bodies = 0, vertices = 0, elements = 0;
   double fps = 30;
-  Distribution solving;  // [ms]
-  std::optional<double> error;
+  Distribution solving;                       // [ms]
+  std::optional<double> error, motion_error;  // the largest estimates
 };
 
 std::optional<Figures> figures_of(const GalleryScene& scene) {
@@ -106,7 +106,10 @@ std::optional<Figures> figures_of(const GalleryScene& scene) {
   std::vector<double> times;
   for (const FrameRow& row : figures.run.rows) {
     times.push_back(row.step_ms);
-    for (const BodyRow& body : row.bodies) figures.error = std::max(figures.error.value_or(0), body.error_estimate);
+    for (const BodyRow& body : row.bodies) {
+      figures.error = std::max(figures.error.value_or(0), body.error_estimate);
+      figures.motion_error = std::max(figures.motion_error.value_or(0), body.motion_estimate);
+    }
   }
   if (!times.empty() && figures.run.rows.front().time_s > 0) figures.fps = 1 / figures.run.rows.front().time_s;
   figures.solving = distribution_of(times);
@@ -167,7 +170,8 @@ std::string row_html(const GalleryScene& scene, const std::optional<Figures>& fi
   html += cell(if_filmed(f.bodies), "{:.0f}") + cell(if_filmed(f.vertices), "{:.0f}") +
           cell(if_filmed(f.elements), "{:.0f}") + cell(if_filmed(frames), "{:.0f}") +
           cell(if_filmed(f.solving.p50), "{:.2f}") + cell(if_filmed(f.solving.p95), "{:.2f}") +
-          cell(if_filmed(f.solving.max), "{:.2f}") + cell(filmed ? f.error : std::nullopt, "{:.1e}");
+          cell(if_filmed(f.solving.max), "{:.2f}") + cell(filmed ? f.error : std::nullopt, "{:.1e}") +
+          cell(filmed ? f.motion_error : std::nullopt, "{:.1e}");
   return html + fmt::format("<td data-value=\"{0}\"{1}>{2}</td></tr>\n", scene.trouble.empty() ? 0 : 1,
                             scene.trouble.empty() ? "" : " class=\"bad\"",
                             scene.trouble.empty() ? "whole" : "not whole");
@@ -190,7 +194,7 @@ std::string gallery_page(const std::string& heading, const std::string& note, co
   }
   html += "</main>\n<h2 id=\"figures\">Figures</h2>\n<div class=\"box\"><table><thead><tr>";
   for (const char* head : {"scene", "bodies", "vertices", "elements", "frames", "solving, median [ms]", "95 % [ms]",
-                           "slowest [ms]", "largest estimated error", "film"})
+                           "slowest [ms]", "largest estimated error", "of motion", "film"})
     html += fmt::format("<th scope=\"col\">{}</th>", head);
   return html + "</tr></thead><tbody>\n" + rows + "</tbody></table></div>\n<script>" + std::string(script) +
          "</script></body></html>\n";

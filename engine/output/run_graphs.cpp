@@ -39,6 +39,18 @@ std::vector<FrameSeries> by_body(const std::vector<FrameRow>& rows, const std::s
   return result;
 }
 
+// Makes the graph of one of the errors, with the estimate and what was measured of each body.
+FrameGraph errors_graph(const std::vector<FrameRow>& rows, const char* title, double BodyRow::*estimate,
+                        std::optional<double> BodyRow::*measured) {
+  FrameGraph graph{title, "", true, {}};
+  graph.series = by_body(rows, ", estimate", [&](const BodyRow& body) { return body.*estimate; });
+  for (FrameSeries& series : by_body(rows, ", measured", [&](const BodyRow& body) {
+         return body.error_measured ? (body.*measured).value_or(none) : none;
+       }))
+    graph.series.push_back(std::move(series));
+  return graph;
+}
+
 }  // namespace
 
 std::vector<FrameGraph> graphs_of(const std::vector<FrameRow>& rows) {
@@ -51,12 +63,12 @@ std::vector<FrameGraph> graphs_of(const std::vector<FrameRow>& rows) {
   if (rows.front().compress_ms)
     times.series.push_back(
         by_frame(rows, "compressing", [](const FrameRow& row) { return row.compress_ms.value_or(none); }));
-  FrameGraph errors{"Error of a step: what is left to gain over what there was (equation 12)", "", true, {}};
-  errors.series = by_body(rows, ", estimate", [](const BodyRow& body) { return body.error_estimate; });
-  for (FrameSeries& measured : by_body(rows, ", measured", [](const BodyRow& body) {
-         return body.error_measured && body.error ? *body.error : none;
-       }))
-    errors.series.push_back(std::move(measured));
+  const FrameGraph errors =
+      errors_graph(rows, "Error of a step: what is left to gain over what there was (equation 12)",
+                   &BodyRow::error_estimate, &BodyRow::error);
+  const FrameGraph motion_errors =
+      errors_graph(rows, "Error of motion: how far the solved step ends, over the step's own motion",
+                   &BodyRow::motion_estimate, &BodyRow::motion_error);
   FrameGraph stretch{"Largest stretch", "", false, by_body(rows, "", [](const BodyRow& body) { return body.stretch; })};
   FrameGraph contacts{"Vertices in contact", "", false, by_body(rows, "", [](const BodyRow& body) {
                         return body.contact ? body.contact->contacts : none;
@@ -65,7 +77,7 @@ std::vector<FrameGraph> graphs_of(const std::vector<FrameRow>& rows) {
       "Deepest point inside a collider, over the body's size", "", false,
       by_body(rows, "", [](const BodyRow& body) { return body.contact ? body.contact->penetration : none; })};
   std::vector<FrameGraph> graphs;
-  for (FrameGraph& graph : std::array{times, errors, stretch, contacts, depth}) {
+  for (FrameGraph& graph : std::array{times, errors, motion_errors, stretch, contacts, depth}) {
     if (!graph.series.empty()) graphs.push_back(std::move(graph));
   }
   return graphs;

@@ -6,7 +6,8 @@ LookDef read_look(const ConfigTable& root, LookDef look) {
   const auto table = root.table({"look", "", "ground, background and light"});
   if (!table) return look;
   look.backdrop = table->word<BackdropKind>(
-      {"backdrop", "", "a ground with shadows, the colour of the background alone, exactly as asked for, or pictures with coverage"},
+      {"backdrop", "",
+       "a ground with shadows, the colour of the background alone, exactly as asked for, or pictures with coverage"},
       look.backdrop);
   look.ground = table->color({"ground", "sRGB", "colour of the ground"}, look.ground);
   look.background = table->color({"background", "sRGB", "colour that the ground fades into"}, look.background);
@@ -55,12 +56,12 @@ TextDef read_text(const ConfigTable& root) {
   text.milliseconds =
       table->boolean({"milliseconds", "", "below each body: what its steps of the frame took"}, text.milliseconds);
   text.iterations = table->boolean({"iterations", "", "below each body: how many they made"}, text.iterations);
-  text.error = table->boolean({"error", "", "below each body: the error where it is measured, otherwise its estimate"},
-                              text.error);
-  text.error_graph =
-      table->boolean({"error_graph", "",
-                      "in a corner: the largest error estimate of a body, frame by frame, and measured errors as dots"},
-                     text.error_graph);
+  text.error = table->boolean(
+      {"error", "", "below each body: both errors where they are measured, otherwise their estimates"}, text.error);
+  text.error_graph = table->boolean({"error_graph", "",
+                                     "in a corner: the larger of the two error estimates, of the body where it is "
+                                     "largest, frame by frame, and measured errors as dots"},
+                                    text.error_graph);
   text.time_graph = table->boolean(
       {"time_graph", "", "in a corner: what the steps of each frame took; in drawings from saved motion alone"},
       text.time_graph);

@@ -121,9 +121,9 @@ SolverSettings read_settings(const ConfigTable& table, SolverSettings s) {
   s.line_search = table.word<LineSearch>(
       {"line_search", "", "how a step length is accepted; none takes every full step"}, s.line_search);
   s.armijo = table.number({"armijo", "", "gamma of the sufficient decrease"}, s.armijo, Range::above(0, 0.5));
-  s.target_error =
-      table.number({"target_error", "", "stop once the solver's own error estimate is below; 0 does all iterations"},
-                   s.target_error, Range::between(0, 1));
+  s.target_error = table.number(
+      {"target_error", "", "stop once both of the solver's own error estimates are below; 0 does all iterations"},
+      s.target_error, Range::between(0, 1));
   s.budget_ms = table.number({"budget_ms", "ms",
                               "no iteration of a step begins that would probably end later, except for the first; runs "
                               "then differ, unless --repeat takes their numbers from an earlier run; 0: no bound"},
@@ -155,9 +155,10 @@ SolverDef read_solver(const ConfigTable& table, const SolverDef& defaults) {
   solver.precision = table.word<Precision>(
       {"factor", "", "precision of the factor of M/h^2 + L, hence of directions; energies are always double"},
       defaults.precision);
-  solver.integrator = table.word<Integrator>(
-      {"integrator", "", "backward Euler damps and is stable; implicit midpoint damps nothing, keeps energy where steps are short, and may fail"},
-      defaults.integrator);
+  solver.integrator = table.word<Integrator>({"integrator", "",
+                                              "backward Euler damps and is stable; implicit midpoint damps nothing, "
+                                              "keeps energy where steps are short, and may fail"},
+                                             defaults.integrator);
   solver.damping =
       table.number({"damping", "s", "beta of stiffness-proportional damping; also slows turning as a whole"},
                    defaults.damping, Range::at_least(0));

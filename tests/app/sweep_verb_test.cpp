@@ -91,8 +91,9 @@ TEST(SweepVerb, GivesTheSameTableWhoeverRunsThePoints) {
   EXPECT_EQ(table[0][0], "point");
   EXPECT_EQ(table[1][0], "0");
   EXPECT_EQ(table[4][1], "100000");
-  for (const char* name : {"bar.stretch", "bar.jiggle", "bar.inverted", "bar.iterations", "bar.trials",
-                           "bar.objective_end [J]", "bar.error_mean", "bar.error_max"}) {
+  for (const char* name :
+       {"bar.stretch", "bar.jiggle", "bar.inverted", "bar.iterations", "bar.trials", "bar.objective_end [J]",
+        "bar.error_mean", "bar.error_max", "bar.motion_error_mean", "bar.motion_error_max"}) {
     EXPECT_FALSE(table[4][column(table, name)].empty()) << name;
   }
   std::set<std::string> hashes;

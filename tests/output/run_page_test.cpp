@@ -50,10 +50,10 @@ TEST(RunPage, HoldsEveryFramesValuesForItsCursor) {
   const nlohmann::json data = data_of(run_page(small_run(folder.path, 6)));
   EXPECT_EQ(data["frames"], 6);
   EXPECT_NEAR(data["rate"].get<double>(), 25, 1e-9);
-  // Solving, an estimate for each body, a stretch for each, contacts and depth of one.
-  ASSERT_EQ(data["series"].size(), 7u);
+  // Solving, two estimates for each body, a stretch for each, contacts and depth of one.
+  ASSERT_EQ(data["series"].size(), 9u);
   EXPECT_EQ(data["series"][0], (std::vector<double>{10, 10, 10, 90, 10, 10}));
-  EXPECT_EQ(data["series"][5], (std::vector<double>{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(data["series"][7], (std::vector<double>{0, 1, 2, 3, 4, 5}));
 }
 
 TEST(RunPage, SaysWhatHelpsOnlyWhereTheFilmIsSlowerThanAsked) {
@@ -115,17 +115,21 @@ TEST(RunPage, ShowsValuesOfSomeFramesAndLeavesTheFirstFramesTimeAside) {
   run.rows[0].step_ms = 5000;
   for (FrameRow& row : run.rows) {
     row.bodies[0].error_measured = row.frame % 2 == 0;
-    if (row.bodies[0].error_measured) row.bodies[0].error = 1e-3 / (row.frame + 1);
+    row.bodies[0].motion_estimate = 0.02;
+    if (row.bodies[0].error_measured) row.bodies[0].error = row.bodies[0].motion_error = 1e-3 / (row.frame + 1);
   }
   const std::string page = run_page(run);
   const std::string times = page.substr(page.find("Time by stage"));
   EXPECT_NE(times.substr(0, times.find("<svg")).find(">100<"), std::string::npos) << times;
   EXPECT_EQ(times.substr(0, times.find("<svg")).find("000<"), std::string::npos) << times;
-  const std::string errors = page.substr(page.find("Error of a step"));
-  const std::size_t measured = errors.find("<path", errors.find("<path", errors.find("<path") + 1) + 1);
-  const std::string curve = errors.substr(measured, errors.find("/>", measured) - measured);
-  EXPECT_EQ(std::ranges::count(curve, 'M'), 1) << curve;
-  EXPECT_EQ(std::ranges::count(curve, 'L'), 2) << curve;
+  for (const char* title : {"Error of a step", "Error of motion"}) {
+    ASSERT_NE(page.find(title), std::string::npos) << title;
+    const std::string errors = page.substr(page.find(title));
+    const std::size_t measured = errors.find("<path", errors.find("<path", errors.find("<path") + 1) + 1);
+    const std::string curve = errors.substr(measured, errors.find("/>", measured) - measured);
+    EXPECT_EQ(std::ranges::count(curve, 'M'), 1) << curve;
+    EXPECT_EQ(std::ranges::count(curve, 'L'), 2) << curve;
+  }
 }
 
 TEST(RunPage, HasNoColumnWithoutAValue) {

@@ -65,12 +65,13 @@ TEST(ErrorEstimate, EndsAStepAsSoonAsItIsBelowTheTarget) {
     Workspace w;
     return step(model, inputs, state, w);
   };
-  for (const double target : {1e-3, 1e-5, 1e-7}) {
+  const auto worse = [](const StepReport& report) { return std::max(report.error_estimate, report.motion_estimate); };
+  for (const double target : {1e-2, 1e-3, 1e-4}) {
     const StepReport report = stepped(target, 100);
     EXPECT_EQ(report.stop_reason, StopReason::target_error);
-    EXPECT_LT(report.error_estimate, target);
+    EXPECT_LT(worse(report), target);
     ASSERT_GT(report.iterations, 0);
-    EXPECT_GE(stepped(0, report.iterations - 1).error_estimate, target) << target;
+    EXPECT_GE(worse(stepped(0, report.iterations - 1)), target) << target;
   }
 }
 

@@ -158,8 +158,8 @@ void set_weights(const Distances& distances, std::size_t v, Clusters& clusters) 
 
 }  // namespace
 
-// A body of a thousand vertices whose parts are as thick as they are long has eight. Slender ones have up to twice as
-// many: a bar bends between its ends. A cluster of fewer than a dozen vertices would hardly differ from the first
+// A body of a thousand vertices whose parts are as thick as they are long has eight. Slender ones have up to four times
+// as many: a bar bends between its ends. A cluster of fewer than a dozen vertices would hardly differ from the first
 // level.
 int wanted_clusters(const Model& model) {
   constexpr int vertices_a_cluster = 100, least_vertices_a_cluster = 12, least = 4, most = 12;
@@ -169,7 +169,7 @@ int wanted_clusters(const Model& model) {
   });
   const double slenderness = model.size / std::cbrt(volume);
   const double wanted =
-      std::clamp(model.vertices / vertices_a_cluster, least, most) * std::clamp(slenderness / 4, 1.0, 2.0);
+      std::clamp(model.vertices / vertices_a_cluster, least, most) * std::clamp(slenderness / 4, 1.0, 4.0);
   return std::max(1, std::min(static_cast<int>(wanted), model.vertices / least_vertices_a_cluster));
 }
 

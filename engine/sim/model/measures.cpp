@@ -197,9 +197,9 @@ double mass_distance(const Model& model, const Positions& a, const Positions& b)
 }  // namespace
 
 double motion_error(const Model& model, const Positions& q, const Positions& y, const Positions& x, double distance) {
-  constexpr double least_share = 0.01;
-  const double moved = std::max(mass_distance(model, x, q), least_share * mass_distance(model, y, q));
-  return moved > 0 ? distance / moved : 0;
+  constexpr double least_share = 0.01, least_of_size = 1e-7;
+  const double least = least_of_size * model.size * std::sqrt(model.total_mass);
+  return distance / std::max({mass_distance(model, x, q), least_share * mass_distance(model, y, q), least});
 }
 
 double motion_error(const Model& model, const Positions& q, const Positions& y, const Positions& x,

@@ -45,11 +45,6 @@ double left_by_decreases(const std::vector<double>& g, std::size_t first) {
 
 double error_of(double left, double gained) { return left > 0 ? left / (std::max(gained, 0.0) + left) : 0; }
 
-bool is_near_enough(const StepReport& report, const SolverSettings& solver, double above_start) {
-  const double gained = report.decrease + above_start;
-  return solver.target_error > 0 && error_of(report.remaining_estimate, gained) < solver.target_error;
-}
-
 namespace {
 
 // Finds how far the contacts' energy alone is above g of the last iterate, if the body had gone to y [J]. An impact
@@ -79,16 +74,24 @@ double error_at_end(const Model& model, const StepInputs& inputs, Workspace& w, 
 
 // The direction's quadratic model foretells a gain of half the decrement. The step is estimated to have some number of
 // times that gain left; the way that is left is the square root of that number of times the direction.
-double motion_estimate_at_end(const Model& model, const StepInputs& inputs, const Positions& q, Workspace& w) {
-  if (w.report.failed || w.report.decrement <= 0) return 0;
-  if (w.report.remaining_estimate <= noise_of(model, w.current.g, extent_of(model, w))) return 0;
-  Positions& d = w.direction;
+double motion_estimate(const Model& model, const StepInputs& inputs, const Positions& q, Workspace& w) {
+  const StepReport& report = w.report;
+  if (report.failed || report.decrement <= 0) return 0;
+  Positions& d = w.trial.gradient;
+  d = w.direction;
   if (inputs.solver.levels < 2 && !w.second_level_serves && w.second_level.begin(model, w.current.x)) {
     w.scratch = -w.current.gradient;
     w.second_level.add_to(model, w.scratch, w.threads, d);
   }
-  const double more = std::sqrt(std::max(1.0, w.report.remaining_estimate / w.report.decrement));
+  const double more = std::sqrt(std::max(1.0, report.remaining_estimate / report.decrement));
   return motion_error(model, q, w.y, w.current.x, more * mass_length(model, d));
+}
+
+bool is_near_enough(const Model& model, const StepInputs& inputs, const Positions* q, double above_start,
+                    Workspace& w) {
+  const double target = inputs.solver.target_error;
+  if (target <= 0 || error_of(w.report.remaining_estimate, w.report.decrease + above_start) >= target) return false;
+  return q == nullptr || motion_estimate(model, inputs, *q, w) < target;
 }
 
 }  // namespace supple

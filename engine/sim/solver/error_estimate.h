@@ -1,6 +1,6 @@
 // Estimates how far a step is from the minimum of g, without knowing it: what is left to gain, the error of
-// equation 12, its share of the whole possible gain, and how far the solved motion is. docs/method.md ("Error and its estimate") compares both with what
-// is true.
+// equation 12, its share of the whole possible gain, and how far the solved motion is. docs/method.md ("Error and its
+// estimate") compares both with what is true.
 #pragma once
 
 #include <array>
@@ -35,10 +35,6 @@ double left_by_decreases(const std::vector<double>& objective, std::size_t first
 // Returns the share of what is left in the whole possible gain; both in J.
 double error_of(double left, double gained);
 
-// Tells whether the estimate has reached the target error of the settings. above_start: g(y) - g of the first iterate,
-// which equation 12 counts as gained [J].
-bool is_near_enough(const StepReport& report, const SolverSettings& solver, double above_start);
-
 // Returns what the step to the current iterate gained since y. gained: the decrease of g over its iterations, with what
 // is known to have been gained before. All in J. Overwrites the trial iterate.
 double gained_in_all(const Model& model, const StepInputs& inputs, Workspace& workspace, double gained);
@@ -48,9 +44,16 @@ double gained_in_all(const Model& model, const StepInputs& inputs, Workspace& wo
 // trial iterate.
 double error_at_end(const Model& model, const StepInputs& inputs, Workspace& workspace, double gained);
 
-// Estimates the error of motion (model/measures.h) at the end of a step from q whose last direction was computed at its
-// end, from the length of that direction: it leads to the minimum of its quadratic model. On the first level alone that
+// Estimates the error of motion (model/measures.h) of a step from q to the current iterate, where the direction begins,
+// from the length of that direction: it leads to the minimum of its quadratic model. On the first level alone that
 // model resists turning; the second adds what it misses. 0 where the rule does not look beyond its last iterate.
-double motion_estimate_at_end(const Model& model, const StepInputs& inputs, const Positions& q, Workspace& workspace);
+// Overwrites the trial iterate.
+double motion_estimate(const Model& model, const StepInputs& inputs, const Positions& q, Workspace& workspace);
+
+// Tells whether the estimates have reached the target error of the settings: of equation 12, and of motion where the
+// step's start q (n x 3) is given. above_start: g(y) - g of the first iterate, which equation 12 counts as gained [J].
+// Overwrites the trial iterate.
+bool is_near_enough(const Model& model, const StepInputs& inputs, const Positions* q, double above_start,
+                    Workspace& workspace);
 
 }  // namespace supple

@@ -163,6 +163,7 @@ bool run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
   report.decrement = 0;
   report.iterations = 0;
   const double above_start = origin != nullptr ? origin->above_start : 0;
+  const Positions* const q = origin != nullptr ? &origin->state.x : nullptr;
   Decrements decrements;
   const int tried = report.line_search;
   bool hopeless = false;
@@ -191,7 +192,7 @@ bool run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
       break;
     }
     if (spent) break;
-    if (rule.measures_last_iterate() && is_near_enough(report, solver, above_start)) {
+    if (rule.measures_last_iterate() && is_near_enough(model, inputs, q, above_start, w)) {
       report.stop_reason = StopReason::target_error;
       break;
     }
@@ -213,7 +214,7 @@ bool run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, 
     }
     if (rule.measures_last_iterate()) continue;
     report.remaining_estimate = left_by_decreases(report.objective, first);
-    if (is_near_enough(report, solver, above_start)) {
+    if (is_near_enough(model, inputs, nullptr, above_start, w)) {
       report.stop_reason = StopReason::target_error;
       break;
     }

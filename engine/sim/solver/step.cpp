@@ -85,8 +85,8 @@ bool descend_from_staying(const Model& model, const StepInputs& inputs, const Or
   evaluate_start(model, inputs, w);
   TimeBudget budget(inputs, w, TimeBudget::from_staying);
   const double enough = small_share * std::max(0.0, report.decrease + origin.above_start);
-  const bool hopeless =
-      run_iterations(model, inputs, w, rule, {inputs.solver.iterations, 0, enough, &budget, origin.newton_follows});
+  const bool hopeless = run_iterations(model, inputs, w, rule,
+                                       {inputs.solver.iterations, 0, enough, &budget, origin.newton_follows}, &origin);
   report.iterations += iterations;
   return hopeless;
 }
@@ -161,7 +161,7 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
     hopeless |= descend_from_staying(model, inputs, origin, w, rule);
   report.error_estimate = error_at_end(model, inputs, w, report.decrease + above_start);
   if (origin.newton_follows && !report.failed) finish_by_newton(model, inputs, origin, w, hopeless);
-  report.motion_estimate = motion_estimate_at_end(model, inputs, state.x, w);
+  report.motion_estimate = motion_estimate(model, inputs, state.x, w);
   const Positions& x = w.current.x;
   if (!report.failed && !x.allFinite()) fail(model, w, "step", std::numeric_limits<double>::quiet_NaN());
   if (!report.failed) {
