@@ -28,17 +28,22 @@ class NewtonDirections final : public SearchRule {
 
 }  // namespace
 
-void finish_by_newton(const Model& model, const StepInputs& inputs, const Origin& origin, Workspace& w, bool hopeless) {
-  constexpr double small_share = 1e-4, smaller_share = 1e-8;  // energy from nothing needs few of them
+bool finish_by_newton(const Model& model, const StepInputs& inputs, const Origin& origin, Workspace& w, bool hopeless) {
+  constexpr double small_share = 1e-4, smaller_share = 1e-8;  // energy from nothing and turning need few of them
+  constexpr int most_to_turn = 30;
   StepReport& report = w.report;
   const bool gains = gains_energy(model, inputs, origin.state, origin.above_start, w, true);
-  if (!gains && !hopeless && !is_unsolved(report.error_estimate, report.iterations, report.line_search)) return;
+  const bool far_in_energy = hopeless || is_unsolved(report.error_estimate, report.iterations, report.line_search);
+  const bool far_in_motion = inputs.solver.levels > 1 && is_unsolved(report);
+  if (!gains && !far_in_energy && !far_in_motion) return false;
   const double gained = gained_in_all(model, inputs, w, report.decrease + origin.above_start);
   const double left = report.remaining_estimate;
   const int iterations = report.iterations;
   NewtonDirections newton;
-  Limits limits{(inputs.solver.rounds - 1) * inputs.solver.iterations, 0,
-                (gains ? smaller_share : small_share) * gained};
+  const bool turns = !gains && !far_in_energy;
+  const int most = (inputs.solver.rounds - 1) * inputs.solver.iterations;
+  Limits limits{turns ? std::min(most, most_to_turn) : most, 0,
+                (gains || turns ? smaller_share : small_share) * gained};
   limits.finishing = true;
   run_iterations(model, inputs, w, newton, limits);
   report.newton_iterations = report.iterations;
@@ -51,6 +56,7 @@ void finish_by_newton(const Model& model, const StepInputs& inputs, const Origin
     report.remaining_estimate = report.decrement;
   }
   report.error_estimate = error_at_end(model, inputs, w, report.decrease + origin.above_start);
+  return true;
 }
 
 }  // namespace supple

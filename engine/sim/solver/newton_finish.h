@@ -13,9 +13,10 @@ namespace supple {
 // gained energy).
 bool may_finish_by_newton(const Model& model, const StepInputs& inputs);
 
-// Goes on where the iterations of a step gave up (hopeless), left it far from its minimum, or gained energy from
-// nothing, until a direction promises next to nothing of what the step has gained, but never uphill.
-void finish_by_newton(const Model& model, const StepInputs& inputs, const Origin& origin, Workspace& workspace,
+// Goes on where the iterations of a step gave up (hopeless), left it far from its minimum by one of the estimates of
+// the report, or gained energy from nothing, until a direction promises next to nothing of what the step has gained,
+// but never uphill. Returns whether it did.
+bool finish_by_newton(const Model& model, const StepInputs& inputs, const Origin& origin, Workspace& workspace,
                       bool hopeless);
 
 }  // namespace supple

@@ -160,8 +160,9 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   if (!report.failed && inputs.solver.line_search != LineSearch::none)
     hopeless |= descend_from_staying(model, inputs, origin, w, rule);
   report.error_estimate = error_at_end(model, inputs, w, report.decrease + above_start);
-  if (origin.newton_follows && !report.failed) finish_by_newton(model, inputs, origin, w, hopeless);
   report.motion_estimate = motion_estimate(model, inputs, state.x, w);
+  if (origin.newton_follows && !report.failed && finish_by_newton(model, inputs, origin, w, hopeless))
+    report.motion_estimate = motion_estimate(model, inputs, state.x, w);
   const Positions& x = w.current.x;
   if (!report.failed && !x.allFinite()) fail(model, w, "step", std::numeric_limits<double>::quiet_NaN());
   if (!report.failed) {
