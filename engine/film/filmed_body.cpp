@@ -8,6 +8,7 @@
 #include "base/trace.h"
 #include "film/state_file.h"
 #include "output/obj_file.h"
+#include "scene/body_surface.h"
 #include "sim/model/measures.h"
 #include "sim/solver/fields.h"
 
@@ -51,11 +52,6 @@ std::optional<BudgetCuts> cuts_at(const CutsByFrame& cuts, int frame, int subste
 std::string failure_text(int frame, const std::string& body, const StepFailure& failure) {
   return fmt::format("frame {}: body '{}' failed while in '{}': {} (vertex {} is furthest out)", frame, body,
                      failure.during, failure.what, failure.vertex + 1);
-}
-
-// Returns the surface in the numbering of the input file.
-Triangles surface_of(const Body& body) {
-  return body.def.cloth ? body.cloth.surface.triangles : boundary_faces(body.description.mesh.tets);
 }
 
 }  // namespace
@@ -114,8 +110,7 @@ const StepReport& FilmedBody::make_step() {
   {
     const Zone zone("energy budget", driver_.body().def.name);
     w.prepare(model(), driver_.inputs().solver);
-    if (!energy_budget_.knows_springs())
-      energy_budget_.know_springs(model(), driver_.targets_at_start(), state());
+    if (!energy_budget_.knows_springs()) energy_budget_.know_springs(model(), driver_.targets_at_start(), state());
     energy_budget_.before_step(model(), driver_.inputs(), state(), w);
     start_of_step_ = state().x;
   }

@@ -82,6 +82,7 @@ Json json_of(const FrameRow& row) {
   if (row.render_ms) frame["render_ms"] = rounded_ms(*row.render_ms);
   if (row.compress_ms) frame["compress_ms"] = rounded_ms(*row.compress_ms);
   frame["state_hash"] = hash_text_form(row.state_hash);
+  if (!row.met.empty()) frame["met"] = row.met;
   frame["bodies"] = Json::array();
   for (const BodyRow& body : row.bodies) frame["bodies"].push_back(json_of(body));
   return frame;
@@ -153,6 +154,7 @@ FrameRow frame_row(const Json& json) {
   read_if_there(json, "render_ms", row.render_ms);
   read_if_there(json, "compress_ms", row.compress_ms);
   row.state_hash = std::stoull(json.at("state_hash").get<std::string>(), nullptr, 16);
+  if (json.contains("met")) json.at("met").get_to(row.met);
   for (const Json& body : json.at("bodies")) row.bodies.push_back(body_row(body));
   return row;
 }

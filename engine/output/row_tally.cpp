@@ -104,6 +104,7 @@ void RowTally::add(const FrameRow& row) {
     stages_[s].rest.push_back(*value);
     stages_[s].sum += *value;
   }
+  for (const std::array<std::string, 2>& bodies : row.met) met_.push_back({bodies, row.frame});
   for (std::size_t body = 0; body < row.bodies.size(); ++body) add_body(row, body);
 }
 
@@ -185,6 +186,11 @@ std::vector<std::string> RowTally::warnings() const {
       list.push_back(fmt::format("body '{}' has {} without volume in its last frame", body.name,
                                  count_text(body.collapsed, "element")));
   }
+  for (const MetTally& pair : met_)
+    list.push_back(
+        fmt::format("bodies '{}' and '{}' pass through each other from frame {} on: bodies do not collide with each "
+                    "other",
+                    pair.bodies[0], pair.bodies[1], pair.frame));
   for (std::string& warning : penetrations()) list.push_back(std::move(warning));
   for (std::string& warning : missing_in_pictures()) list.push_back(std::move(warning));
   return list;

@@ -45,6 +45,12 @@ struct TouchTally {
   double force_sum = 0, largest_force = 0;  // [N]
 };
 
+// Tells since when two bodies pass through each other.
+struct MetTally {
+  std::array<std::string, 2> bodies;
+  int frame;
+};
+
 class RowTally {
  public:
   RowTally() = default;
@@ -79,6 +85,7 @@ class RowTally {
   StageTally stages_[5];  // in the order of stage_names
   std::vector<BodyTally> bodies_;
   std::vector<TouchTally> touches_;
+  std::vector<MetTally> met_;
   std::vector<UnsolvedStep> unsolved_;
 };
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geometry/cloth.h"
+#include "scene/body_meetings.h"
 #include "scene/obstacle.h"
 #include "scene/overlaps.h"
 #include "sim/model/measures.h"
@@ -165,6 +166,21 @@ void warn_of_fall(const SceneDef& scene, const Body& body, std::vector<Warning>&
                                 body.def.name)));
 }
 
+// Warns of bodies that start in the same place. Either of them may say that it is meant.
+void warn_of_meetings(const std::vector<Body>& bodies, std::vector<Warning>& list) {
+  if (bodies.size() < 2) return;
+  std::vector<Positions> points;
+  for (const Body& body : bodies) points.push_back(first_positions(body));
+  for (const auto& [a, b] : BodyMeetings(bodies).find(points)) {
+    const BodyDef &one = bodies[a].def, &other = bodies[b].def;
+    list.push_back(at(WarningKind::overlap, other.place,
+                      fmt::format("bodies '{}' and '{}' pass through each other from the start on: bodies do not "
+                                  "collide with each other",
+                                  one.name, other.name)));
+    list.back().meant = is_meant(one, WarningKind::overlap) || is_meant(other, WarningKind::overlap);
+  }
+}
+
 }  // namespace
 
 double crossing_number(const Body& body) {
@@ -197,7 +213,6 @@ std::vector<Problem> said(std::vector<Warning> list) {
 
 std::vector<Warning> warnings(const SceneDef& scene, const std::vector<Body>& bodies) {
   std::vector<Warning> list;
-  std::vector<Bounds> boxes;  // of the bodies before
   for (const Body& body : bodies) {
     const std::size_t first = list.size();  // of this body's warnings
     const TetMesh& mesh = body.description.mesh;
@@ -253,18 +268,9 @@ std::vector<Warning> warnings(const SceneDef& scene, const std::vector<Body>& bo
     warn_of_regions(body, list);
     warn_of_thinness(body, list);
     warn_of_delay(body, list);
-    for (std::size_t other = 0; other < boxes.size(); ++other) {
-      const Bounds& b = boxes[other];
-      const bool apart = (box.lower.array() >= b.upper.array()).any() || (b.lower.array() >= box.upper.array()).any();
-      if (!apart)
-        list.push_back(
-            at(WarningKind::overlap, body.def.place,
-               fmt::format("bodies '{}' and '{}' overlap at the start; bodies do not collide with each other",
-                           bodies[other].def.name, body.def.name)));
-    }
-    boxes.push_back(box);
     for (std::size_t i = first; i < list.size(); ++i) list[i].meant = is_meant(body.def, *list[i].kind);
   }
+  warn_of_meetings(bodies, list);
   return list;
 }
 
