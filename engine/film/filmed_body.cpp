@@ -9,6 +9,7 @@
 #include "film/state_file.h"
 #include "output/obj_file.h"
 #include "scene/body_surface.h"
+#include "sim/contact/far_side.h"
 #include "sim/model/measures.h"
 #include "sim/solver/fields.h"
 
@@ -145,7 +146,9 @@ void FilmedBody::measure(int frame, BodyRow& row) {
         penetrations(colliders, driver_.inputs().collider_motions, state().x, model().surface);
     const std::vector<Vec3>& forces = driver_.workspace().report.collider_forces;
     for (std::size_t c = 0; c < colliders.size(); ++c) {
-      row.contact->colliders.push_back({colliders[c].name, depths[c] / model().size, forces[c].norm()});
+      const double far_side =
+          reach_on_far_side(model(), colliders[c], driver_.inputs().collider_motions[c].end, state().x);
+      row.contact->colliders.push_back({colliders[c].name, depths[c] / model().size, forces[c].norm(), far_side});
       row.contact->penetration = std::max(row.contact->penetration, depths[c] / model().size);
     }
   }

@@ -18,6 +18,7 @@ struct ColliderRow {
   std::string name;
   double penetration = 0;  // the surface's largest depth inside it, over the body's size
   double force = 0;        // on the body [N]
+  double far_side = 0;     // how far a part of the surface that went through it reaches out beyond it [m]
 };
 
 // Describes the contact with colliders; it is absent where a scene has none.

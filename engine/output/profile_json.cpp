@@ -43,8 +43,10 @@ Json json_of(const BodyRow& body) {
     row["contact_cycles"] = body.contact->cycles;
     row["penetration"] = body.contact->penetration;
     row["colliders"] = Json::array();
-    for (const ColliderRow& c : body.contact->colliders)
+    for (const ColliderRow& c : body.contact->colliders) {
       row["colliders"].push_back({{"name", c.name}, {"penetration", c.penetration}, {"force", c.force}});
+      if (c.far_side > 0) row["colliders"].back()["far_side"] = c.far_side;
+    }
   }
   row["stretch"] = body.stretch;
   if (body.energy) {
@@ -119,8 +121,8 @@ BodyRow body_row(const Json& json) {
                    json.at("contact_changes").get<int>(), json.at("contact_cycles").get<int>(),
                    json.at("penetration").get<double>()};
     for (const Json& c : json.value("colliders", Json::array())) {  // earlier versions did not write them
-      row.contact->colliders.push_back(
-          {c.at("name").get<std::string>(), c.at("penetration").get<double>(), c.at("force").get<double>()});
+      row.contact->colliders.push_back({c.at("name").get<std::string>(), c.at("penetration").get<double>(),
+                                        c.at("force").get<double>(), c.value("far_side", 0.0)});
     }
   }
   json.at("stretch").get_to(row.stretch);

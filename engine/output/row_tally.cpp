@@ -37,6 +37,8 @@ void add_touches(const FrameRow& row, const BodyRow& body, std::vector<TouchTall
       found->deepest_frame = row.frame;
     }
     found->deep_frames += collider.penetration > deep;
+    if (collider.far_side > 0 && found->far_frames++ == 0) found->first_far_frame = row.frame;
+    found->far_side = std::max(found->far_side, collider.far_side);
     found->force_sum += collider.force;
     found->largest_force = std::max(found->largest_force, collider.force);
   }
@@ -133,6 +135,11 @@ FrameWork RowTally::work(double encoding) const {
 std::vector<std::string> RowTally::penetrations() const {
   std::vector<std::string> list;
   for (const TouchTally& one : touches_) {
+    if (one.far_frames > 0)
+      list.push_back(
+          fmt::format("a part of body '{}' is on the far side of collider '{}' from frame {} on (in {} of {} frames), "
+                      "by up to {:.2g} m: substeps or a thicker collider keep it on one side",
+                      one.body, one.collider, one.first_far_frame, one.far_frames, frames_, one.far_side));
     if (one.deepest <= deep) continue;
     list.push_back(fmt::format(
         "the surface of body '{}' was up to {:.2g} % of its size deep inside collider '{}' (at "

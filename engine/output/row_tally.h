@@ -42,6 +42,8 @@ struct TouchTally {
   std::string body, collider;
   double deepest = 0;  // over the body's size
   int deepest_frame = 0, deep_frames = 0;
+  double far_side = 0;  // the largest [m]
+  int first_far_frame = 0, far_frames = 0;
   double force_sum = 0, largest_force = 0;  // [N]
 };
 
