@@ -9,6 +9,7 @@
 #include "scene/body_meetings.h"
 #include "scene/obstacle.h"
 #include "scene/overlaps.h"
+#include "scene/thin_bodies.h"
 #include "sim/model/measures.h"
 
 namespace supple {
@@ -72,23 +73,6 @@ void warn_of_size(const SceneDef& scene, const Body& body, const Bounds& box, st
                     fmt::format("body '{}' is small for its steps: gravity carries it by {:.2g} times its "
                                 "size ({:.2g} m) in one; more substeps or a higher fps help",
                                 body.def.name, fall / box.diagonal(), box.diagonal())));
-}
-
-// Warns of a bar or a plate with so few elements across that it bends too little. Linear tetrahedra shear where they
-// should bend: the tip of a clamped bar with 1, 2 and 4 cells across sank by 2.95, 6.1 and 8.6 mm where beam theory has
-// 10, so it is 1 + 2.5 / cells^2 times as stiff as it should be.
-void warn_of_thinness(const Body& body, std::vector<Warning>& list) {
-  constexpr double slender = 5;  // length over thickness, from which on bending is most of what a body does
-  if (!body.def.box) return;
-  const Vec3& extent = body.def.box->extent;
-  Eigen::Index thinnest = 0;
-  const double thickness = extent.minCoeff(&thinnest);
-  const int cells = body.def.box->cells[thinnest];
-  if (cells >= 3 || extent.maxCoeff() < slender * thickness) return;
-  list.push_back(at(WarningKind::thin, body.def.place,
-                    fmt::format("body '{}' is {} across where it is thin: it bends as if it were {:.1f} times as "
-                                "stiff; three or more cells there help",
-                                body.def.name, cells == 1 ? "one cell" : "two cells", 1 + 2.5 / (cells * cells))));
 }
 
 // Warns of a delay that leaves no iteration to be accelerated.
@@ -266,7 +250,8 @@ std::vector<Warning> warnings(const SceneDef& scene, const std::vector<Body>& bo
     warn_of_weight(scene, body, box, list);
     warn_of_size(scene, body, box, list);
     warn_of_regions(body, list);
-    warn_of_thinness(body, list);
+    if (std::string thin = thinness_text(body); !thin.empty())
+      list.push_back(at(WarningKind::thin, body.def.place, std::move(thin)));
     warn_of_delay(body, list);
     for (std::size_t i = first; i < list.size(); ++i) list[i].meant = is_meant(body.def, *list[i].kind);
   }
