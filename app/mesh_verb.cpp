@@ -74,7 +74,8 @@ void add_mesh(CommandLine& line) {
           "shape file (.toml), the name of a shape that ships, a surface (OBJ, PLY, STL, glTF, OFF), or a mesh (as -o)")
       .required();
   verb.option("-o,--output", options->output, fmt::format("mesh to write: {}", mesh_formats)).required();
-  verb.option("--vertices", options->vertices, "wanted (within 3 %, or 10 % where parts are thin)").between(50, 500000);
+  verb.option("--vertices", options->vertices, "wanted (within 3 %; up to 50 % where parts are thin)")
+      .between(50, 500000);
   SurfaceOptions& surface = options->surface;
   verb.option(
           "--close", [&surface](const std::string& word) { surface.close = *value_named<Closing>(word); },

@@ -8,6 +8,8 @@
 #include "base/trace.h"
 #include "film/state_file.h"
 #include "output/obj_file.h"
+#include "scene/body_surface.h"
+#include "sim/contact/far_side.h"
 #include "sim/model/measures.h"
 #include "sim/solver/fields.h"
 
@@ -51,11 +53,6 @@ std::optional<BudgetCuts> cuts_at(const CutsByFrame& cuts, int frame, int subste
 std::string failure_text(int frame, const std::string& body, const StepFailure& failure) {
   return fmt::format("frame {}: body '{}' failed while in '{}': {} (vertex {} is furthest out)", frame, body,
                      failure.during, failure.what, failure.vertex + 1);
-}
-
-// Returns the surface in the numbering of the input file.
-Triangles surface_of(const Body& body) {
-  return body.def.cloth ? body.cloth.surface.triangles : boundary_faces(body.description.mesh.tets);
 }
 
 }  // namespace
@@ -114,8 +111,7 @@ const StepReport& FilmedBody::make_step() {
   {
     const Zone zone("energy budget", driver_.body().def.name);
     w.prepare(model(), driver_.inputs().solver);
-    if (!energy_budget_.knows_springs())
-      energy_budget_.know_springs(model(), driver_.targets_at_start(), state());
+    if (!energy_budget_.knows_springs()) energy_budget_.know_springs(model(), driver_.targets_at_start(), state());
     energy_budget_.before_step(model(), driver_.inputs(), state(), w);
     start_of_step_ = state().x;
   }
@@ -150,7 +146,9 @@ void FilmedBody::measure(int frame, BodyRow& row) {
         penetrations(colliders, driver_.inputs().collider_motions, state().x, model().surface);
     const std::vector<Vec3>& forces = driver_.workspace().report.collider_forces;
     for (std::size_t c = 0; c < colliders.size(); ++c) {
-      row.contact->colliders.push_back({colliders[c].name, depths[c] / model().size, forces[c].norm()});
+      const double far_side =
+          reach_on_far_side(model(), colliders[c], driver_.inputs().collider_motions[c].end, state().x);
+      row.contact->colliders.push_back({colliders[c].name, depths[c] / model().size, forces[c].norm(), far_side});
       row.contact->penetration = std::max(row.contact->penetration, depths[c] / model().size);
     }
   }

@@ -8,6 +8,7 @@
 #include "base/timing.h"
 #include "base/trace.h"
 #include "film/places.h"
+#include "scene/warnings.h"
 
 namespace supple {
 
@@ -22,6 +23,7 @@ FilmEnd FrameLoop::run(Progress& progress, std::string& message) {
     apply_replay(frame, row);
     message = step_bodies(frame, row);
     if (!message.empty()) return FilmEnd::failed;
+    find_meetings(row);
     save_outputs(frame, row);
     if (!show(frame, row)) return FilmEnd::failed;  // finish() takes the message from the pictures
     if (graphs_) graphed_.push_back(graph_point(row));
@@ -76,6 +78,15 @@ std::string FrameLoop::step_body(int frame, FilmedBody& body, FrameRow& row) {
   std::string message = body.advance(frame, measure_error, row.bodies.back());
   if (message.empty()) row.step_ms += row.bodies.back().step_ms;
   return message;
+}
+
+// Notes the bodies that have met in this frame.
+void FrameLoop::find_meetings(FrameRow& row) {
+  if (meetings_.none_left()) return;
+  const Zone zone("meetings");
+  std::vector<Positions> points;
+  for (const auto& body : filmed_) points.push_back(in_input_order(body->model(), body->state().x));
+  for (const auto& [a, b] : meetings_.find(points)) row.met.push_back({bodies_[a].def.name, bodies_[b].def.name});
 }
 
 void FrameLoop::save_outputs(int frame, const FrameRow& row) {
@@ -134,7 +145,9 @@ FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
       first_(start.kept_frames()),
       log_(log),
       graphs_(plan.pictures != FilmPictures::none && (scene_.text.error_graph || scene_.text.time_graph)),
-      verifier_(start.verifier ? &*start.verifier : nullptr) {
+      verifier_(start.verifier ? &*start.verifier : nullptr),
+      meetings_(film.bodies) {
+  look_for_meetings();
   if (plan.pictures != FilmPictures::none) {
     drawn_.emplace(script_, bodies_, std::move(film.drawn), colliders_, caption_font());
     if (film.info.framed) drawn_->frame_motion(*film.info.framed);
@@ -153,6 +166,20 @@ FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
     for (const auto& body : filmed_) last_motion_.push_back(body->present_motion());
   }
   if (!plan.record.empty()) recorder_.emplace(plan.record, start.record_head, first_);
+}
+
+// Leaves out the pairs of bodies whose meeting is meant, and those that met in the frames of an earlier run.
+void FrameLoop::look_for_meetings() {
+  if (meetings_.none_left()) return;
+  std::vector<std::array<std::string, 2>> met;
+  log_.whole_rows().each([&met](const FrameRow& row) { met.insert(met.end(), row.met.begin(), row.met.end()); });
+  const auto meant = [this](std::size_t body) { return is_meant(bodies_[body].def, WarningKind::overlap); };
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    for (std::size_t a = 0; a < b; ++a) {
+      const std::array names = {bodies_[a].def.name, bodies_[b].def.name};
+      if (meant(a) || meant(b) || std::ranges::find(met, names) != met.end()) meetings_.leave_out(a, b);
+    }
+  }
 }
 
 // Restores the state at which an earlier run took its checkpoint: first the scene at that time, then the bodies.

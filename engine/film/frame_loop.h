@@ -14,6 +14,7 @@
 #include "film/pictures.h"
 #include "film/progress.h"
 #include "output/pose_table.h"
+#include "scene/body_meetings.h"
 
 namespace supple {
 
@@ -35,6 +36,7 @@ class FrameLoop {
   // These functions are the parts of a frame, in their order.
   void apply_replay(int frame, FrameRow& row);
   std::string step_bodies(int frame, FrameRow& row);
+  void find_meetings(FrameRow& row);
   void save_outputs(int frame, const FrameRow& row);
   bool show(int frame, FrameRow& row);
   void keep_motion();
@@ -42,6 +44,7 @@ class FrameLoop {
   void resume(const Checkpoint& checkpoint);
   void end_last_changes();
   void apply(SceneDef scene, const std::vector<TimedChange>& changes);
+  void look_for_meetings();
   std::string step_body(int frame, FilmedBody& body, FrameRow& row);
   Checkpoint checkpoint_after(int frames) const;
   void keep_checkpoint_before(int frame);
@@ -64,6 +67,7 @@ class FrameLoop {
   std::optional<DrawnFilm> drawn_;      // only with pictures
   std::vector<Positions> last_motion_;  // of the bodies at the end of the last frame, where the pictures need it [m]
   std::vector<std::unique_ptr<FilmedBody>> filmed_;
+  BodyMeetings meetings_;                 // that no earlier frame has had
   std::optional<PoseTableWriter> poses_;  // only with colliders
   std::optional<StateRecorder> recorder_;
   std::optional<Pictures> pictures_;  // last, so that its threads end first

@@ -9,6 +9,7 @@
 #include "film/marked_vertices.h"
 #include "geometry/cloth.h"
 #include "render/color_map.h"
+#include "scene/body_surface.h"
 #include "sim/solver/fields.h"
 
 namespace supple {
@@ -125,7 +126,7 @@ std::vector<double> lengths(const Positions& rows, double factor) {
 // Returns the share of each vertex in the surface of a body at rest; 0 inside [m^2].
 std::vector<double> surface_areas(const Body& body) {
   const TetMesh& mesh = body.description.mesh;
-  return vertex_areas({mesh.rest, body.def.cloth ? body.cloth.surface.triangles : boundary_faces(mesh.tets)});
+  return vertex_areas({mesh.rest, surface_of(body)});
 }
 
 // Returns the contact force on each vertex over its area; 0 where it has none.

@@ -88,6 +88,8 @@ void check_inside(double volume, const std::string& source) {
     throw InputError(source, "the shape has no inside: its parts cut each other away, or are too thin to mesh");
 }
 
+constexpr double whole = 0.85;  // share of the sampled volume, whose own error is a few per cent
+
 // A search for the spacing that gives the wanted number of vertices.
 struct Search {
   double spacing;  // the first guess [m]
@@ -98,6 +100,10 @@ struct Search {
   Vec3 extent;       // of the shape's box [m]
   double swell = 0;  // [spacings]
 
+  // Tells whether it takes the nearest number that gives a mesh in one piece, also where that is not very near.
+  bool takes_nearest() const { return !is_graded && swell <= 0 && near > usual_miss; }
+  // Returns how many meshes of about the right number may be in pieces before the shape is refused.
+  int most_in_pieces() const { return takes_nearest() ? 8 : 3; }
   // Returns how many cells a lattice of the present spacing has around the shape.
   double cells() const { return (extent / spacing + Vec3::Constant(4 + 2 * swell)).prod(); }
 };
@@ -146,16 +152,17 @@ TetMesh nearest_mesh(Search& search, int vertices, const std::string& source, co
     };
     TetMesh mesh = make(search.spacing, shift - Vec3(shift.array().floor()), told);
     const double count = std::max<double>(static_cast<double>(mesh.rest.rows()), 1.0);
-    // More attempts do not join what three of about the right size have left apart.
+    // More attempts do not join what some of about the right size have left apart.
     const double held = quality(mesh).volume / search.volume;
     in_pieces += miss(mesh) < 0.1 && held < 0.75 ? 1 : 0;
-    if (in_pieces == 3) refuse_pieces(source, held);
+    if (in_pieces == search.most_in_pieces()) refuse_pieces(source, held);
     if (listener.judge && miss(mesh) < 0.1) listener.judge(mesh);
-    if (best.rest.rows() == 0 || miss(mesh) < miss(best)) {
+    const bool counts = held >= whole || !search.takes_nearest();
+    if (counts && (best.rest.rows() == 0 || miss(mesh) < miss(best))) {
       best = std::move(mesh);
       best_spacing = search.spacing;
     }
-    if (miss(best) < 0.01 || (attempt >= 8 && miss(best) < 0.03)) break;
+    if (miss(best) < 0.01 || (attempt >= 8 && miss(best) < usual_miss)) break;
     double power = 3;  // the number is about the inverse of this power of the spacing
     if (search.is_graded && attempt > 0 && count != last_count)
       power = std::clamp(std::log(count / last_count) / std::log(last_spacing / search.spacing), 1.0, 4.0);
@@ -169,23 +176,24 @@ TetMesh nearest_mesh(Search& search, int vertices, const std::string& source, co
   refuse_number(vertices, best.rest.rows(), is_capped, source);
 }
 
-// With a volume far below the sampled one (whose own error is a few per cent), whole parts are missing.
+// With a volume far below the sampled one, parts are missing.
 void check_whole(const TetMesh& mesh, double volume, const std::string& source) {
   const double share = quality(mesh).volume / volume;
-  if (share < 0.85) refuse_pieces(source, share);
+  if (share < whole) refuse_pieces(source, share);
 }
 
 }  // namespace
 
 TetMesh tetrahedralize(const Shape& shape, int vertices, const std::string& source, const MeshingListener& listener,
-                       double swell) {
+                       double swell, double most_missed) {
   check_bounds(shape, source);
   Threads threads = all_cores();
   // The first guess of the spacing counts two lattice points for each cell; a small body has about as many again on its
   // surface, which the iteration corrects. The volume of a swollen shape follows from the spacing: some rounds find
   // both.
   const Bounds box = shape.bounds();
-  Search search{box.diagonal() / std::cbrt(vertices), 0, 24, false, swell > 0 ? 0.1 : 0.03, box.extent(), swell};
+  const double near = std::max(most_missed, swell > 0 ? swollen_miss : usual_miss);
+  Search search{box.diagonal() / std::cbrt(vertices), 0, 24, false, near, box.extent(), swell};
   for (int round = 0; round < (swell > 0 ? 3 : 1); ++round) {
     search.volume = sampled_volume(shape, swell * search.spacing, swell > 0 ? fine : coarse, threads);
     check_inside(search.volume, source);
@@ -206,7 +214,7 @@ TetMesh graded_tetrahedralize(const Shape& shape, int vertices, const std::strin
                               const MeshingListener& listener) {
   check_bounds(shape, source);
   Threads threads = all_cores();
-  Search search{0, sampled_volume(shape, 0, fine, threads), 12, true, 0.1, shape.bounds().extent()};
+  Search search{0, sampled_volume(shape, 0, fine, threads), 12, true, swollen_miss, shape.bounds().extent()};
   check_inside(search.volume, source);
   search.spacing = 1.2 * std::cbrt(2 * search.volume / vertices);  // thin parts take some of the vertices
   TetMesh mesh =

@@ -19,13 +19,16 @@ struct MeshingListener {
   std::function<void(const TetMesh&)> judge;
 };
 
-// Makes one connected manifold body with about `vertices` vertices (within 3 %, or 10 % where it is swollen); its
-// regions follow the shape's tags. Throws InputError (naming `source`) if the shape is unbounded or empty, or too thin
-// for that many vertices. swell: how far the body reaches beyond a closed surface, in spacings of the lattice: with 1/2
-// each part of the surface is held by elements, however thin it is, and parts that are nearer to each other than a
-// spacing hang together.
+// How far the number of a mesh's vertices may be from the wanted one, over that.
+inline constexpr double usual_miss = 0.03, swollen_miss = 0.1;
+
+// Makes one connected manifold body with about `vertices` vertices; its regions follow the shape's tags. Throws
+// InputError (naming `source`) if the shape is unbounded or empty, or too thin for that many vertices. swell: how far
+// the body reaches beyond a closed surface, in spacings of the lattice: with 1/2 each part of the surface is held by
+// elements, however thin it is, and parts that are nearer to each other than a spacing hang together. most_missed: of
+// the number, where no mesh comes nearer; not less than the usual.
 TetMesh tetrahedralize(const Shape& shape, int vertices, const std::string& source,
-                       const MeshingListener& listener = {}, double swell = 0);
+                       const MeshingListener& listener = {}, double swell = 0, double most_missed = usual_miss);
 
 // The same within 10 %, with smaller elements where the shape is thin, and swollen there. thickness, swollen_to: see
 // graded_stuffing.h.

@@ -18,6 +18,7 @@ struct ColliderRow {
   std::string name;
   double penetration = 0;  // the surface's largest depth inside it, over the body's size
   double force = 0;        // on the body [N]
+  double far_side = 0;     // how far a part of the surface that went through it reaches out beyond it [m]
 };
 
 // Describes the contact with colliders; it is absent where a scene has none.
@@ -68,6 +69,7 @@ struct FrameRow {
   std::optional<double> draw_ms, render_ms;  // absent where nothing is drawn
   std::optional<double> compress_ms;         // of the frame's file; absent without one
   std::uint64_t state_hash = 0;
+  std::vector<std::array<std::string, 2>> met;  // pairs of bodies that are in the same place, first in this frame
   std::vector<BodyRow> bodies;
 };
 
@@ -88,7 +90,8 @@ struct StageSummary {
 std::vector<StageSummary> summarize(const std::vector<FrameRow>& rows);
 
 // Says what went wrong physically and did not end the run, a sentence for each body and kind: energy from nothing,
-// elements that are inverted or without volume at the end, and depths inside colliders (penetration_warnings).
+// elements that are inverted or without volume at the end, bodies that pass through each other, and depths inside
+// colliders (penetration_warnings).
 std::vector<std::string> warnings_of(const std::vector<FrameRow>& rows);
 
 class FrameRows;  // frame_rows.h

@@ -43,8 +43,10 @@ Json json_of(const BodyRow& body) {
     row["contact_cycles"] = body.contact->cycles;
     row["penetration"] = body.contact->penetration;
     row["colliders"] = Json::array();
-    for (const ColliderRow& c : body.contact->colliders)
+    for (const ColliderRow& c : body.contact->colliders) {
       row["colliders"].push_back({{"name", c.name}, {"penetration", c.penetration}, {"force", c.force}});
+      if (c.far_side > 0) row["colliders"].back()["far_side"] = c.far_side;
+    }
   }
   row["stretch"] = body.stretch;
   if (body.energy) {
@@ -82,6 +84,7 @@ Json json_of(const FrameRow& row) {
   if (row.render_ms) frame["render_ms"] = rounded_ms(*row.render_ms);
   if (row.compress_ms) frame["compress_ms"] = rounded_ms(*row.compress_ms);
   frame["state_hash"] = hash_text_form(row.state_hash);
+  if (!row.met.empty()) frame["met"] = row.met;
   frame["bodies"] = Json::array();
   for (const BodyRow& body : row.bodies) frame["bodies"].push_back(json_of(body));
   return frame;
@@ -118,8 +121,8 @@ BodyRow body_row(const Json& json) {
                    json.at("contact_changes").get<int>(), json.at("contact_cycles").get<int>(),
                    json.at("penetration").get<double>()};
     for (const Json& c : json.value("colliders", Json::array())) {  // earlier versions did not write them
-      row.contact->colliders.push_back(
-          {c.at("name").get<std::string>(), c.at("penetration").get<double>(), c.at("force").get<double>()});
+      row.contact->colliders.push_back({c.at("name").get<std::string>(), c.at("penetration").get<double>(),
+                                        c.at("force").get<double>(), c.value("far_side", 0.0)});
     }
   }
   json.at("stretch").get_to(row.stretch);
@@ -153,6 +156,7 @@ FrameRow frame_row(const Json& json) {
   read_if_there(json, "render_ms", row.render_ms);
   read_if_there(json, "compress_ms", row.compress_ms);
   row.state_hash = std::stoull(json.at("state_hash").get<std::string>(), nullptr, 16);
+  if (json.contains("met")) json.at("met").get_to(row.met);
   for (const Json& body : json.at("bodies")) row.bodies.push_back(body_row(body));
   return row;
 }

@@ -37,6 +37,8 @@ void add_touches(const FrameRow& row, const BodyRow& body, std::vector<TouchTall
       found->deepest_frame = row.frame;
     }
     found->deep_frames += collider.penetration > deep;
+    if (collider.far_side > 0 && found->far_frames++ == 0) found->first_far_frame = row.frame;
+    found->far_side = std::max(found->far_side, collider.far_side);
     found->force_sum += collider.force;
     found->largest_force = std::max(found->largest_force, collider.force);
   }
@@ -104,6 +106,7 @@ void RowTally::add(const FrameRow& row) {
     stages_[s].rest.push_back(*value);
     stages_[s].sum += *value;
   }
+  for (const std::array<std::string, 2>& bodies : row.met) met_.push_back({bodies, row.frame});
   for (std::size_t body = 0; body < row.bodies.size(); ++body) add_body(row, body);
 }
 
@@ -132,6 +135,11 @@ FrameWork RowTally::work(double encoding) const {
 std::vector<std::string> RowTally::penetrations() const {
   std::vector<std::string> list;
   for (const TouchTally& one : touches_) {
+    if (one.far_frames > 0)
+      list.push_back(
+          fmt::format("a part of body '{}' is on the far side of collider '{}' from frame {} on (in {} of {} frames), "
+                      "by up to {:.2g} m: substeps or a thicker collider keep it on one side",
+                      one.body, one.collider, one.first_far_frame, one.far_frames, frames_, one.far_side));
     if (one.deepest <= deep) continue;
     list.push_back(fmt::format(
         "the surface of body '{}' was up to {:.2g} % of its size deep inside collider '{}' (at "
@@ -185,6 +193,11 @@ std::vector<std::string> RowTally::warnings() const {
       list.push_back(fmt::format("body '{}' has {} without volume in its last frame", body.name,
                                  count_text(body.collapsed, "element")));
   }
+  for (const MetTally& pair : met_)
+    list.push_back(
+        fmt::format("bodies '{}' and '{}' pass through each other from frame {} on: bodies do not collide with each "
+                    "other",
+                    pair.bodies[0], pair.bodies[1], pair.frame));
   for (std::string& warning : penetrations()) list.push_back(std::move(warning));
   for (std::string& warning : missing_in_pictures()) list.push_back(std::move(warning));
   return list;

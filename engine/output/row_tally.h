@@ -42,7 +42,15 @@ struct TouchTally {
   std::string body, collider;
   double deepest = 0;  // over the body's size
   int deepest_frame = 0, deep_frames = 0;
+  double far_side = 0;  // the largest [m]
+  int first_far_frame = 0, far_frames = 0;
   double force_sum = 0, largest_force = 0;  // [N]
+};
+
+// Tells since when two bodies pass through each other.
+struct MetTally {
+  std::array<std::string, 2> bodies;
+  int frame;
 };
 
 class RowTally {
@@ -79,6 +87,7 @@ class RowTally {
   StageTally stages_[5];  // in the order of stage_names
   std::vector<BodyTally> bodies_;
   std::vector<TouchTally> touches_;
+  std::vector<MetTally> met_;
   std::vector<UnsolvedStep> unsolved_;
 };
 

@@ -1,5 +1,7 @@
 #include "scene/body_mesh.h"
 
+#include <cmath>
+
 #include "base/error.h"
 #include "base/hash.h"
 #include "geometry/mesh_bytes.h"
@@ -69,6 +71,10 @@ Loaded loaded_shape(const SceneDef& scene, const BodyDef& def, const Making& mak
   loaded.files = loaded.shape.files;
   loaded.mesh = kept_or_made(making.cache, kept_name(loaded, def), tet_mesh_from,
                              [&] { return shape_tetrahedra(loaded.shape, def.vertices, loaded.source, making); });
+  const auto made = double(loaded.mesh.rest.rows());
+  if (std::abs(made / def.vertices - 1) > usual_miss)
+    loaded.notes.push_back(
+        fmt::format("has {} vertices, the nearest number to {} of which a mesh was found", made, def.vertices));
   return loaded;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "scene/body_surface.h"
 #include "scene/obstacle.h"
 #include "sim/contact/usual_depth.h"
 #include "sim/contact/way_out.h"
@@ -47,7 +48,7 @@ bool may_meet(const Bounds& box, const Eigen::Isometry3d& pose, const Bounds& ot
 // Finds the places of a body's surface that lie in colliders between its vertices, where contact would find them.
 std::vector<Vec3> places_between(const CollisionSet& set, const Obstacles& obstacles, const Body& body,
                                  const Positions& vertices) {
-  const Triangles surface = body.def.cloth ? body.cloth.surface.triangles : boundary_faces(body.description.mesh.tets);
+  const Triangles surface = surface_of(body);
   const Bounds around = bounds_of(vertices);
   const double size = bounds_of(body.description.mesh.rest).diagonal();
   std::vector<Vec3> places;

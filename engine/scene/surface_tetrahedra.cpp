@@ -180,7 +180,9 @@ TetMesh tetrahedra_of(const SurfaceBody& body, const Shape& shape, const Thinnes
 }  // namespace
 
 TetMesh shape_tetrahedra(const Shape& shape, int vertices, const std::string& source, const Making& making) {
-  return tetrahedralize(shape, vertices, source, listener_of(source, vertices, making));
+  // Slender shapes gain and lose whole layers of vertices at once, and have no mesh of some numbers between.
+  constexpr double most_missed = 0.5;
+  return tetrahedralize(shape, vertices, source, listener_of(source, vertices, making), 0, most_missed);
 }
 
 SurfaceMesh surface_tetrahedra(const SurfaceBody& body, const Making& making) {

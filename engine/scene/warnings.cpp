@@ -6,8 +6,10 @@
 #include <utility>
 
 #include "geometry/cloth.h"
+#include "scene/body_meetings.h"
 #include "scene/obstacle.h"
 #include "scene/overlaps.h"
+#include "scene/thin_bodies.h"
 #include "sim/model/measures.h"
 
 namespace supple {
@@ -71,23 +73,6 @@ void warn_of_size(const SceneDef& scene, const Body& body, const Bounds& box, st
                     fmt::format("body '{}' is small for its steps: gravity carries it by {:.2g} times its "
                                 "size ({:.2g} m) in one; more substeps or a higher fps help",
                                 body.def.name, fall / box.diagonal(), box.diagonal())));
-}
-
-// Warns of a bar or a plate with so few elements across that it bends too little. Linear tetrahedra shear where they
-// should bend: the tip of a clamped bar with 1, 2 and 4 cells across sank by 2.95, 6.1 and 8.6 mm where beam theory has
-// 10, so it is 1 + 2.5 / cells^2 times as stiff as it should be.
-void warn_of_thinness(const Body& body, std::vector<Warning>& list) {
-  constexpr double slender = 5;  // length over thickness, from which on bending is most of what a body does
-  if (!body.def.box) return;
-  const Vec3& extent = body.def.box->extent;
-  Eigen::Index thinnest = 0;
-  const double thickness = extent.minCoeff(&thinnest);
-  const int cells = body.def.box->cells[thinnest];
-  if (cells >= 3 || extent.maxCoeff() < slender * thickness) return;
-  list.push_back(at(WarningKind::thin, body.def.place,
-                    fmt::format("body '{}' is {} across where it is thin: it bends as if it were {:.1f} times as "
-                                "stiff; three or more cells there help",
-                                body.def.name, cells == 1 ? "one cell" : "two cells", 1 + 2.5 / (cells * cells))));
 }
 
 // Warns of a delay that leaves no iteration to be accelerated.
@@ -165,6 +150,21 @@ void warn_of_fall(const SceneDef& scene, const Body& body, std::vector<Warning>&
                                 body.def.name)));
 }
 
+// Warns of bodies that start in the same place. Either of them may say that it is meant.
+void warn_of_meetings(const std::vector<Body>& bodies, std::vector<Warning>& list) {
+  if (bodies.size() < 2) return;
+  std::vector<Positions> points;
+  for (const Body& body : bodies) points.push_back(first_positions(body));
+  for (const auto& [a, b] : BodyMeetings(bodies).find(points)) {
+    const BodyDef &one = bodies[a].def, &other = bodies[b].def;
+    list.push_back(at(WarningKind::overlap, other.place,
+                      fmt::format("bodies '{}' and '{}' pass through each other from the start on: bodies do not "
+                                  "collide with each other",
+                                  one.name, other.name)));
+    list.back().meant = is_meant(one, WarningKind::overlap) || is_meant(other, WarningKind::overlap);
+  }
+}
+
 }  // namespace
 
 double crossing_number(const Body& body) {
@@ -197,7 +197,6 @@ std::vector<Problem> said(std::vector<Warning> list) {
 
 std::vector<Warning> warnings(const SceneDef& scene, const std::vector<Body>& bodies) {
   std::vector<Warning> list;
-  std::vector<Bounds> boxes;  // of the bodies before
   for (const Body& body : bodies) {
     const std::size_t first = list.size();  // of this body's warnings
     const TetMesh& mesh = body.description.mesh;
@@ -251,20 +250,12 @@ std::vector<Warning> warnings(const SceneDef& scene, const std::vector<Body>& bo
     warn_of_weight(scene, body, box, list);
     warn_of_size(scene, body, box, list);
     warn_of_regions(body, list);
-    warn_of_thinness(body, list);
+    if (std::string thin = thinness_text(body); !thin.empty())
+      list.push_back(at(WarningKind::thin, body.def.place, std::move(thin)));
     warn_of_delay(body, list);
-    for (std::size_t other = 0; other < boxes.size(); ++other) {
-      const Bounds& b = boxes[other];
-      const bool apart = (box.lower.array() >= b.upper.array()).any() || (b.lower.array() >= box.upper.array()).any();
-      if (!apart)
-        list.push_back(
-            at(WarningKind::overlap, body.def.place,
-               fmt::format("bodies '{}' and '{}' overlap at the start; bodies do not collide with each other",
-                           bodies[other].def.name, body.def.name)));
-    }
-    boxes.push_back(box);
     for (std::size_t i = first; i < list.size(); ++i) list[i].meant = is_meant(body.def, *list[i].kind);
   }
+  warn_of_meetings(bodies, list);
   return list;
 }
 

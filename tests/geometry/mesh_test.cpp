@@ -93,6 +93,17 @@ TEST(Tetrahedralize, HitsTheNumberOfVerticesWithGoodAnglesAndOneManifoldPiece) {
   }
 }
 
+// A slender shape gains and loses whole layers of vertices at once.
+TEST(Tetrahedralize, TakesTheNearestNumberThatASlenderShapeHasWhereThatIsAskedFor) {
+  const Shape capsule = shape_of(Capsule{Vec3(-0.3, 0, 0), Vec3(0.3, 0, 0), 0.05});
+  for (const auto& [wanted, most] : {std::pair(100, 140), {750, 780}, {1000, 1030}}) {
+    EXPECT_THROW(tetrahedralize(capsule, wanted, "capsule"), InputError) << wanted;
+    const TetMesh mesh = tetrahedralize(capsule, wanted, "capsule", {}, 0, 0.5);
+    EXPECT_NEAR(mesh.rest.rows(), wanted, most - wanted);
+    expect_sound(mesh, 8);
+  }
+}
+
 TEST(Tetrahedralize, FillsTheVolumeOfTheShape) {
   const double ball = quality(tetrahedralize(shape_of(Sphere{1}), 8000, "ball")).volume;
   EXPECT_NEAR(ball / (4.0 / 3 * M_PI), 1, 0.01);

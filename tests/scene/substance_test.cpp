@@ -8,6 +8,8 @@
 #include <numbers>
 
 #include "base/text.h"
+#include "geometry/mesh_file.h"
+#include "geometry/tetrahedralize.h"
 #include "scene/assemble.h"
 #include "scene/presets.h"
 #include "scene/scene_reader.h"
@@ -312,6 +314,48 @@ TEST(Substances, BarsThatAreTooFewCellsAcrossToBendAreWarnedOf) {
             std::string::npos);
   EXPECT_EQ(bar("[40, 3, 3]", 0.05), "");
   EXPECT_EQ(bar("[4, 1, 1]", 0.25), "") << "it hardly bends";
+}
+
+// Writes a mesh to a file, makes a body of it that stands on the ground, and returns what is warned of.
+std::string warnings_about_mesh(const TetMesh& mesh, const std::string& more = "") {
+  const test::TemporaryFolder folder;
+  write_mesh(folder.path / "body.mesh", mesh);
+  return warnings_about(
+      fmt::format("[[body]]\nname = \"body\"\nmesh = \"{}\"\nmaterial = \"rubber\"\n{}"
+                  "[[collider]]\nshape = {{ half_space = {{ normal = [0, 1, 0] }} }}\n",
+                  (folder.path / "body.mesh").string(), more));
+}
+
+TEST(Substances, SlenderMeshesOfTooFewElementsAcrossAreWarnedOf) {
+  const auto bar = [](const Eigen::Vector3i& cells, double thickness, const std::string& more = "") {
+    return warnings_about_mesh(box_mesh({1, thickness, thickness}, cells), more);
+  };
+  EXPECT_NE(bar({20, 1, 1}, 0.05).find("body 'body' is one element across where it is thin (0.05 m)"),
+            std::string::npos);
+  EXPECT_NE(bar({20, 1, 1}, 0.05, "turn_deg = [10, 40, 30]\nposition = [0, 1, 0]\n").find("is one element across"),
+            std::string::npos);
+  EXPECT_NE(bar({40, 2, 2}, 0.05).find("body 'body' is two elements across"), std::string::npos);
+  EXPECT_EQ(bar({40, 3, 3}, 0.05), "");
+  EXPECT_EQ(bar({4, 1, 1}, 0.35), "") << "it hardly bends";
+  EXPECT_EQ(bar({40, 3, 3}, 0.05, "meant = [\"thin\"]\n"), "");
+  EXPECT_NE(warnings_about_mesh(box_mesh({1, 0.05, 1}, {20, 2, 20})).find("two elements across"), std::string::npos);
+  EXPECT_EQ(warnings_about_mesh(box_mesh({1, 0.05, 1}, {20, 3, 20})), "");
+  EXPECT_EQ(warnings_about_mesh(box_mesh({1, 1, 1}, {2, 2, 2})), "") << "it is compact";
+}
+
+// A pipe is slender although the box around it is not.
+TEST(Substances, ShellsOfTooFewElementsAcrossAreWarnedOf) {
+  const auto pipe = [](int layers) {
+    TetMesh mesh = box_mesh({1, 0.06, 1}, {24, layers, 4});
+    for (Eigen::Index v = 0; v < mesh.rest.rows(); ++v) {
+      const double angle = 3 * mesh.rest(v, 0), radius = 0.5 - mesh.rest(v, 1);  // not quite closed
+      mesh.rest.row(v) = Eigen::RowVector3d(radius * std::cos(angle), radius * std::sin(angle) + 1, mesh.rest(v, 2));
+    }
+    return warnings_about_mesh(mesh);
+  };
+  EXPECT_NE(pipe(1).find("is one element across"), std::string::npos) << pipe(1);
+  EXPECT_NE(pipe(2).find("is two elements across"), std::string::npos) << pipe(2);
+  EXPECT_EQ(pipe(3), "");
 }
 
 }  // namespace

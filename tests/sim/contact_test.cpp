@@ -215,8 +215,8 @@ TEST(Contact, ABodyAtRestStaysAtRestForAMinute) {
     set = scene.w.contact.set_now;
   }
   EXPECT_LT(fastest, 1e-4 * scene.model.size);
-  // What friction holds of the landing lets go slowly, over the whole minute.
-  EXPECT_LT((scene.center() - settled).norm(), 1.5e-4 * scene.model.size);
+  // What friction has held since the first step, when the body sags, lets go slowly, over the whole minute.
+  EXPECT_LT((scene.center() - settled).norm(), 3e-4 * scene.model.size);
   EXPECT_EQ(changes, 0);
 }
 

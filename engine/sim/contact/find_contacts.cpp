@@ -115,6 +115,7 @@ void begin_contacts(const Model& model, const StepInputs& inputs, const Position
   const int groups = vertex_groups(model);
   SUPPLE_CHECK(inputs.collider_motions.size(), ==, colliders);
   forget_counts(work);
+  work.pressed_at_first.clear();
   work.prediction = &y;
   work.stick_length = inputs.solver.contact.stick * model.size * model.time_step;
   work.begin = &q;
@@ -166,6 +167,7 @@ class Planes {
         way_out_(work.way_out[c]),
         start_(*work.begin),
         prediction_(*work.prediction),
+        pressed_at_first_(work.pressed_at_first),
         collider_(static_cast<std::int32_t>(c)),
         friction_((*inputs.colliders)[c].friction),
         push_out_(push_out_of(model, inputs)),
@@ -197,6 +199,12 @@ class Planes {
   }
 
  private:
+  // Returns how deep a point is pressed in when a film begins; 0 where nothing is known of it [m].
+  double pressed_at_first(std::int32_t number) const {
+    const bool known = !pressed_at_first_.empty() && number < model_.free;
+    return known ? pressed_at_first_[collider_ * std::size_t(model_.free) + number] : 0;
+  }
+
   bool is_leaving() const { return !way_out_.isZero(0); }
 
   Contact contact_at(const ContactPoint& point, std::int32_t number) const {
@@ -214,7 +222,8 @@ class Planes {
     contact.depth = std::max(0.0, -gap(contact, x_));
     if (friction_ > 0) {
       contact.origin = view_.carried(way.q);
-      contact.friction = friction_ * lagged_force(contact, deep > 0 ? 0 : -field - slack, -gap(contact, prediction_),
+      const double depth_before = deep > 0 ? 0 : std::max(-field - slack, pressed_at_first(contact.number));
+      contact.friction = friction_ * lagged_force(contact, depth_before, -gap(contact, prediction_),
                                                   model_.scheme.inertia * contact.point.mass(model_.mass) /
                                                       (model_.time_step * model_.time_step));
     }
@@ -227,6 +236,7 @@ class Planes {
   const Vec3& way_out_;
   const Positions& start_;
   const Positions& prediction_;
+  const std::vector<double>& pressed_at_first_;
   std::int32_t collider_;
   double friction_, push_out_, unit_stiffness_;
 };

@@ -26,17 +26,20 @@ struct VertexMemories {
 // colliders.
 struct ContactWork {
   std::vector<std::vector<Contact>> by_chunk;
-  std::vector<double> clearance;          // signed distance at the start, colliders x free; NaN: not asked yet [m]
-  std::vector<VertexMemories> memories;   // by collider
-  QueryMemory no_memory;                  // stands for those of colliders of which nothing is remembered
-  std::vector<double> group_distance;     // least distance of a group's vertices at the start, colliders x groups [m]
-  std::vector<double> group_move;         // largest of a group's vertices, start to iterate [m]
-  std::vector<double> group_free_move;    // the same, start to prediction [m]
-  std::vector<double> collider_move;      // of the collider's own points near a group, colliders x groups [m]
-  std::vector<ColliderTraits> traits;     // by collider
-  std::vector<Vec3> way_out;              // by collider: of a body that starts deep inside it; zero: it does not
-  Positions start;                        // q of the free vertices [m]
-  std::vector<FacePoints> faces;          // by collider
+  std::vector<double> clearance;         // signed distance at the start, colliders x free; NaN: not asked yet [m]
+  std::vector<VertexMemories> memories;  // by collider
+  QueryMemory no_memory;                 // stands for those of colliders of which nothing is remembered
+  std::vector<double> group_distance;    // least distance of a group's vertices at the start, colliders x groups [m]
+  std::vector<double> group_move;        // largest of a group's vertices, start to iterate [m]
+  std::vector<double> group_free_move;   // the same, start to prediction [m]
+  std::vector<double> collider_move;     // of the collider's own points near a group, colliders x groups [m]
+  std::vector<ColliderTraits> traits;    // by collider
+  std::vector<Vec3> way_out;             // by collider: of a body that starts deep inside it; zero: it does not
+  Positions start;                       // q of the free vertices [m]
+  std::vector<FacePoints> faces;         // by collider
+  // How deep the vertices that touch are pressed into colliders when a film begins, colliders x free; empty in every
+  // other step, and where nothing touches (solver/first_forces.h) [m].
+  std::vector<double> pressed_at_first;
   const Positions* begin = nullptr;       // q of the step, the caller's, n x 3 [m]
   const Positions* prediction = nullptr;  // y of the step, the caller's, n x 3 [m]
   double stick_length = 0;                // friction is whole above this slip in a step [m]

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "sim/contact/usual_depth.h"
+#include "sim/solver/first_forces.h"
 
 namespace supple {
 
@@ -70,6 +71,7 @@ void begin_step(const Model& model, const StepInputs& inputs, const State& state
     begin_contacts(model, inputs, state.x, w.y, w.threads, w.contact);
     begin_corrections(model, w.correction);
   }
+  if (has_colliders(inputs)) find_first_forces(model, inputs, state, w);
   w.current.x = w.y;
   set_targets(model, inputs, w);
 }

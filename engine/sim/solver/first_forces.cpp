@@ -1,0 +1,76 @@
+#include "sim/solver/first_forces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "sim/solver/first_iterate.h"
+#include "sim/solver/iterations.h"
+
+namespace supple {
+namespace {
+
+// Friction turns a body over its front, which presses more than its back then: the first round knows no friction but
+// that of what arrives, and the next ones that of the round before. With one round, a cube that slides with a
+// coefficient of 0.5 has 86 % of its friction, with four more than 98 %.
+constexpr int rounds = 4;
+constexpr double touching = 1e-6;  // distance within which a vertex touches, over the body's size
+
+// Tells which vertices touch a collider with friction as the step begins, colliders x free; empty where none does.
+std::vector<char> touching_vertices(const Model& model, const StepInputs& inputs, const Positions& x) {
+  std::vector<char> found;
+  for (std::size_t c = 0; c < inputs.colliders->size(); ++c) {
+    const Collider& collider = (*inputs.colliders)[c];
+    if (collider.friction <= 0) continue;
+    const Eigen::Isometry3d to_local = inputs.collider_motions[c].start.inverse();
+    for (int v = 0; v < model.free; ++v) {
+      const double distance = collider.shape.distance(to_local * Vec3(x.row(v).transpose())) - collider.thickness;
+      if (std::abs(distance) > touching * model.size) continue;
+      found.resize(inputs.colliders->size() * std::size_t(model.free), 0);
+      found[c * std::size_t(model.free) + v] = 1;
+    }
+  }
+  return found;
+}
+
+// Makes the depths those at which the vertices that touch end, in a step whose friction follows from the given ones.
+// Returns false where the step fails.
+bool press_once(const Model& model, const StepInputs& inputs, const State& state, const std::vector<char>& touches,
+                Workspace& w, std::vector<double>& pressed) {
+  w.prepare(model, inputs.solver);
+  w.report = {};
+  begin_step(model, inputs, state, w);
+  w.contact.pressed_at_first = pressed;
+  set_first_iterate(model, inputs, state, w);
+  minimize(model, inputs, w);
+  if (w.report.failed || !w.current.x.allFinite()) return false;
+  pressed.assign(touches.size(), 0);
+  for (const Contact& contact : w.current.contacts) {
+    if (contact.number >= model.free) continue;
+    const std::size_t at = contact.collider * std::size_t(model.free) + contact.number;
+    if (touches[at] != 0) pressed[at] = std::max(0.0, -gap(contact, w.current.x));
+  }
+  return true;
+}
+
+}  // namespace
+
+void find_first_forces(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
+  if (state.time != 0) return;
+  const std::vector<char> touches = touching_vertices(model, inputs, state.x);
+  if (touches.empty()) return;
+  StepInputs own = inputs;
+  own.solver = {};
+  own.solver.contact = inputs.solver.contact;
+  own.repeated_cuts.reset();
+  State later = state;
+  later.time = model.time_step;  // so that no forces are looked for in a step that looks for them
+  Workspace own_workspace;
+  own_workspace.threads = w.threads;
+  std::vector<double> pressed;
+  for (int round = 0; round < rounds; ++round)
+    if (!press_once(model, own, later, touches, own_workspace, pressed)) return;
+  w.contact.pressed_at_first = std::move(pressed);
+}
+
+}  // namespace supple
