@@ -328,4 +328,6 @@ ReportSection bench_minima(const BenchSetting& setting) {
   return section;
 }
 
+std::string list_text(const Vec3& v) { return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x(), v.y(), v.z()); }
+
 }  // namespace supple

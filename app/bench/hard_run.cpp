@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "app/bench/comparison.h"
+#include "app/bench/sections.h"
 #include "app/bench/stability_matrix.h"
 #include "film/places.h"
 #include "scene/rotation.h"
@@ -33,8 +34,6 @@ std::string filled(std::string text, const std::string& word, const std::string&
   if (const std::size_t at = text.find(word); at != std::string::npos) text.replace(at, word.size(), value);
   return text;
 }
-
-std::string list_text(const Vec3& v) { return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x(), v.y(), v.z()); }
 
 }  // namespace
 

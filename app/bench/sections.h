@@ -56,6 +56,9 @@ PlayedFilm play_film(Subject& subject, Threads& threads, DirectionStart start, c
 
 constexpr int most_vertices = 4000;  // of subjects that are solved to the end in many states
 
+// Writes a vector as scenes have it, "[x, y, z]".
+std::string list_text(const Vec3& v);
+
 // All bodies of all scenes that ship, by scene.
 std::vector<SubjectChoice> all_subjects();
 

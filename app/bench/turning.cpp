@@ -38,8 +38,6 @@ Substance substance_of(const std::string& model, double young, double poisson, d
 Substance stiff_rubber(double young) { return substance_of("stable-neo-hookean", young, 0.45, 1100); }
 Substance stiff_corotated(double young) { return substance_of("corotated", young, 0.4, 1000); }
 
-std::string list_text(const Vec3& v) { return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x(), v.y(), v.z()); }
-
 std::string plane(const Vec3& normal) {
   return fmt::format("[[collider]]\nshape = {{ half_space = {{ normal = {} }} }}\nfriction = {:g}\n", list_text(normal),
                      friction);

@@ -53,6 +53,12 @@ std::string word_list(const std::vector<std::string>& words) {
   return list;
 }
 
+std::string lowercase(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return result;
+}
+
 std::string count_text(long count, const std::string& what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }

@@ -20,6 +20,9 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 // Gives "mu, lambda or nu".
 std::string word_list(const std::vector<std::string>& words);
 
+// Returns the text with its ASCII capitals made small.
+std::string lowercase(std::string_view text);
+
 // Gives "1 repeat" or "3 repeats".
 std::string count_text(long count, const std::string& what);
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 
 namespace supple {
 
@@ -17,6 +18,8 @@ using Positions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 using Triangles =
     Eigen::Matrix<std::int32_t, Eigen::Dynamic, 3, Eigen::RowMajor>;  // vertex indices, anticlockwise from outside
 using Tetrahedra = Eigen::Matrix<std::int32_t, Eigen::Dynamic, 4, Eigen::RowMajor>;  // det[x1-x0, x2-x0, x3-x0] > 0
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Describes an axis-aligned box; it is empty while any lower bound exceeds its upper one.
 struct Bounds {

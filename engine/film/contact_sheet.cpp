@@ -11,7 +11,8 @@ namespace supple {
 namespace {
 
 using Color = std::array<std::uint8_t, 3>;
-constexpr Color paper = {255, 255, 255}, ink = {29, 31, 33}, soft = {122, 128, 134}, field = {238, 239, 241};
+constexpr Color sheet_paper = {255, 255, 255}, sheet_ink = {29, 31, 33}, sheet_soft = {122, 128, 134},
+                sheet_field = {238, 239, 241};
 
 constexpr int border = 40, gap = 22, title_pixels = 34, word_pixels = 19;
 constexpr int widest_sheet = 1900, widest_picture = 460, narrowest_picture = 180;
@@ -50,7 +51,7 @@ class Canvas {
  public:
   explicit Canvas(Size size) {
     image_ = {size.width, size.height, std::vector<std::uint8_t>(std::size_t(size.width) * size.height * 3)};
-    fill(0, 0, size, paper);
+    fill(0, 0, size, sheet_paper);
   }
 
   void fill(int left, int top, Size size, const Color& color) {
@@ -167,22 +168,22 @@ PngImage compose(const Sheet& sheet) {
   const CaptionBitmap title = fitted(sheet, sheet.title, title_pixels, width - 2 * border);
   const int top = border + (title.height > 0 ? title.height + gap : 0);
   Canvas canvas({width, top + rows * row_height - gap + border});
-  canvas.write(border, border - 4, title, ink);
+  canvas.write(border, border - 4, title, sheet_ink);
   for (std::size_t i = 0; i < sheet.pictures.size(); ++i) {
     const int x = border + int(i) % sheet.columns * (cell.width + gap), y = top + int(i) / sheet.columns * row_height;
     if (images[i]) {
       const PngImage small = shrunk(*images[i], fitting(*images[i], cell));
       canvas.place(x + (cell.width - small.width) / 2, y + (cell.height - small.height) / 2, small);
     } else {
-      canvas.fill(x, y, cell, field);
+      canvas.fill(x, y, cell, sheet_field);
       const CaptionBitmap words = fitted(sheet, sheet.pictures[i].missing, word_pixels, cell.width);
-      canvas.write(x + (cell.width - words.width) / 2, y + (cell.height - words.height) / 2, words, soft);
+      canvas.write(x + (cell.width - words.width) / 2, y + (cell.height - words.height) / 2, words, sheet_soft);
     }
     const CaptionBitmap mark = bitmap_of(sheet, sheet.pictures[i].mark, word_pixels);
-    canvas.write(x + cell.width - mark.width, y + cell.height + 8, mark, soft);
+    canvas.write(x + cell.width - mark.width, y + cell.height + 8, mark, sheet_soft);
     for (std::size_t k = 0; k < lines[i].size(); ++k) {
       const int room = cell.width - (k == 0 && mark.width > 0 ? mark.width + 10 : 0);
-      canvas.write(x, y + cell.height + 8 + line * int(k), fitted_value(sheet, lines[i][k], room), ink);
+      canvas.write(x, y + cell.height + 8 + line * int(k), fitted_value(sheet, lines[i][k], room), sheet_ink);
     }
   }
   return canvas.take();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "base/floats.h"
 #include "film/picture_words.h"
 #include "geometry/simplify.h"
 #include "geometry/skin_stretch.h"
@@ -34,12 +35,6 @@ DrawMesh mesh_of(const Skin& skin, const std::vector<PaintLayer>& layers) {
   mesh.smooth.assign(skin.smooth.begin(), skin.smooth.end());
   for (const PaintLayer& layer : layers) mesh.layers.push_back({layer.color, layer.gloss, layer.soft});
   return mesh;
-}
-
-std::vector<float> as_floats(const Positions& points) {
-  std::vector<float> result(points.size());
-  for (Eigen::Index i = 0; i < points.size(); ++i) result[i] = static_cast<float>(points.data()[i]);
-  return result;
 }
 
 Positions at_pose(const Positions& points, const Eigen::Isometry3d& pose) {

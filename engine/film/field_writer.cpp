@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "base/floats.h"
 #include "base/frame_time.h"
 #include "sim/solver/fields.h"
 
@@ -10,9 +11,6 @@ namespace supple {
 namespace {
 
 using Floats = std::vector<float>;
-
-Floats as_floats(const double* values, std::size_t count) { return {values, values + count}; }
-Floats as_floats(const Positions& values) { return as_floats(values.data(), std::size_t(values.size())); }
 
 template <class T>
 VtuArray array_of(const char* name, int components, const std::vector<T>& values) {
@@ -66,7 +64,7 @@ void FieldWriter::add(int frame, const State& state, const StepInputs& inputs, c
     grid.cell_data = {array_of("stretch", 2, stretch)};
   } else {
     stretch = as_floats(fields.stretch);
-    von_mises = as_floats(fields.von_mises.data(), fields.von_mises.size());
+    von_mises = as_floats(fields.von_mises);
     grid.corners = {mesh.tets.data(), std::size_t(mesh.tets.size())};
     grid.cell_data = {array_of("stretch", 3, stretch), array_of("von_mises", 1, von_mises),
                       array_of("energy_density", 1, fields.energy)};

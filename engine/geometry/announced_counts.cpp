@@ -9,14 +9,10 @@
 #include <cmath>
 #include <vector>
 
+#include "base/text.h"
+
 namespace supple {
 namespace {
-
-std::string lowercase(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  return result;
-}
 
 // Splits a line at its spaces. Six words are enough.
 std::vector<std::string> words_of(std::string_view line) {

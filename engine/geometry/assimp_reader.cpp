@@ -76,12 +76,12 @@ int refuse(const std::string& words, stream::Place place = {}) {
   return std::fflush(stdout) == 0 ? 0 : 1;
 }
 
-constexpr char too_large[] = "takes more than 2 GB of memory to read";
+constexpr char takes_too_much[] = "takes more than 2 GB of memory to read";
 
 // Says in plain words why assimp did not read a file.
 std::string reason_of(const std::string& error, const supple::AssimpFiles& files) {
   const auto says = [&](const char* words) { return error.find(words) != std::string::npos; };
-  if (says("bad_alloc")) return too_large;
+  if (says("bad_alloc")) return takes_too_much;
   if (says("No suitable reader"))
     return "its ending and its first bytes are of no format that is read: OBJ, PLY, STL, OFF, glTF, COLLADA (.dae), "
            "3DS, FBX, Blender, 3MF and X3D are";
@@ -198,7 +198,7 @@ int main(int count, char** arguments) {
     const supple::Problem& problem = error.problems().front();
     return refuse(problem.message, {problem.place.line, problem.place.column});
   } catch (const std::bad_alloc&) {
-    return refuse(too_large);
+    return refuse(takes_too_much);
   } catch (const std::exception& error) {
     return refuse(error.what());
   }

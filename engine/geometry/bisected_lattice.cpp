@@ -9,7 +9,7 @@
 namespace supple {
 namespace {
 
-using Corners = std::array<int, 4>;
+using TetCorners = std::array<int, 4>;
 
 std::uint64_t edge_key(int a, int b) {
   return (static_cast<std::uint64_t>(std::min(a, b)) << 32) | static_cast<std::uint32_t>(std::max(a, b));
@@ -69,7 +69,7 @@ class LatticeBuilder {
   BisectedLattice result() {
     BisectedLattice lattice;
     lattice.shortest.assign(sites_.size(), std::numeric_limits<double>::max());
-    for (const Corners& tet : tets_) {
+    for (const TetCorners& tet : tets_) {
       for (const auto& [i, j] : pairs) {
         const double length = std::sqrt(double(squared_length(tet[std::size_t(i)], tet[std::size_t(j)])));
         for (const int k : {i, j}) {
@@ -100,7 +100,7 @@ class LatticeBuilder {
   }
 
   // Puts the ends of the longest edge first; there is only one in the three shapes that are bisected.
-  Corners longest_first(Corners tet) const {
+  TetCorners longest_first(TetCorners tet) const {
     int longest = 0;
     std::size_t first = 0, second = 1;
     for (const auto& [i, j] : pairs) {
@@ -115,7 +115,7 @@ class LatticeBuilder {
     return tet;
   }
 
-  bool ask(const Corners& tet) const {
+  bool ask(const TetCorners& tet) const {
     const Eigen::Vector3i a = site(tet[1]) - site(tet[0]), b = site(tet[2]) - site(tet[0]),
                           c = site(tet[3]) - site(tet[0]);
     const double sixfold = std::abs(double(a.dot(b.cross(c))));
@@ -126,12 +126,12 @@ class LatticeBuilder {
     return spacing > 1.01 * smallest && is_too_large_(middle, spacing);
   }
 
-  void add(const Corners& corners) {
+  void add(const TetCorners& corners) {
     tets_.push_back(longest_first(corners));
     too_large_.push_back(ask(corners));
   }
 
-  bool has_bisected_edge(const Corners& tet) const {
+  bool has_bisected_edge(const TetCorners& tet) const {
     for (const auto& [i, j] : pairs)
       if (middle_of_.count(edge_key(tet[std::size_t(i)], tet[std::size_t(j)])) > 0) return true;
     return false;
@@ -147,7 +147,7 @@ class LatticeBuilder {
     add({middle, to, c, d});
   }
 
-  bool is_half_pyramid(const Corners& tet) const {
+  bool is_half_pyramid(const TetCorners& tet) const {
     return 8 * squared_length(tet[0], tet[2]) == 3 * squared_length(tet[0], tet[1]) ||
            8 * squared_length(tet[0], tet[3]) == 3 * squared_length(tet[0], tet[1]);
   }
@@ -172,7 +172,7 @@ class LatticeBuilder {
   const LatticeQuestion& is_too_large_;
   std::vector<int> corner_;  // site of each corner of the cells, or -1
   std::vector<Eigen::Vector3i> sites_;
-  std::vector<Corners> tets_;                         // the ends of the longest edge come first
+  std::vector<TetCorners> tets_;                      // the ends of the longest edge come first
   std::vector<char> too_large_;                       // of each element
   std::unordered_map<std::uint64_t, int> middle_of_;  // the site on each bisected edge
 };

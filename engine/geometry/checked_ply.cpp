@@ -28,10 +28,10 @@ struct Element {
   std::vector<Property> properties;
 };
 
-enum class Format { text, little_endian, big_endian };
+enum class Encoding { text, little_endian, big_endian };
 
 struct Head {
-  Format format = Format::text;
+  Encoding format = Encoding::text;
   std::vector<Element> elements;
   std::string text;     // its lines, as they are
   std::size_t end = 0;  // where the first element begins
@@ -110,9 +110,9 @@ void take_head_row(const TextRows& rows, Head& head) {
       rows.refuse(words[1],
                   fmt::format("format '{}' is not known (ascii, binary_little_endian and binary_big_endian are)",
                               format.substr(0, 40)));
-    head.format = format == "ascii"                  ? Format::text
-                  : format == "binary_little_endian" ? Format::little_endian
-                                                     : Format::big_endian;
+    head.format = format == "ascii"                  ? Encoding::text
+                  : format == "binary_little_endian" ? Encoding::little_endian
+                                                     : Encoding::big_endian;
   } else if (key == "element") {
     want(3);
     const long long count = rows.integer(words[2], "the number of an element");
@@ -302,7 +302,7 @@ class PlyBinaryChecker {
   T raw(std::size_t at) const {
     std::array<char, sizeof(T)> bytes;
     std::memcpy(bytes.data(), bytes_.data() + at, sizeof(T));
-    if (head_.format == Format::big_endian) std::reverse(bytes.begin(), bytes.end());
+    if (head_.format == Encoding::big_endian) std::reverse(bytes.begin(), bytes.end());
     T value;
     std::memcpy(&value, bytes.data(), sizeof(T));
     return value;
@@ -373,7 +373,7 @@ class PlyBinaryChecker {
       const double moved = raw<double>(at) - origin[axis];
       std::array<char, sizeof moved> bytes;
       std::memcpy(bytes.data(), &moved, sizeof moved);
-      if (head_.format == Format::big_endian) std::reverse(bytes.begin(), bytes.end());
+      if (head_.format == Encoding::big_endian) std::reverse(bytes.begin(), bytes.end());
       std::copy(bytes.begin(), bytes.end(), bytes_.begin() + std::ptrdiff_t(at));
     }
   }
@@ -399,7 +399,7 @@ CheckedSurface checked_ply(std::string bytes, const std::string& name) {
   const Head head = take_head(rows);
   if (head.vertices == 0 || head.faces == 0)
     rows.refuse(fmt::format("the file has {} of 'vertex' and {} of 'face'", head.vertices, head.faces));
-  if (head.format != Format::text) return PlyBinaryChecker(std::move(bytes), head, name).run();
+  if (head.format != Encoding::text) return PlyBinaryChecker(std::move(bytes), head, name).run();
   PlyTextChecker checker(bytes, name, Vec3::Zero());
   CheckedSurface result = checker.run();
   const Vec3 origin = has_whole_coordinates(head) ? Vec3(Vec3::Zero()) : far_origin(checker.box());

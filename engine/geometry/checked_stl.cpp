@@ -11,16 +11,12 @@
 #include "geometry/checked_surface.h"
 #include "geometry/text_rows.h"
 
+#include "base/text.h"
+
 namespace supple {
 namespace {
 
 constexpr std::size_t head_bytes = 84, facet_bytes = 50;
-
-std::string lowercase(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  return result;
-}
 
 class StlTextChecker {
  public:

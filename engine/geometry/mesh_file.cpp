@@ -71,19 +71,20 @@ void drop_unused(MeshFile& file) {
   file.notes.push_back(fmt::format("{} vertices belong to no element, and have been left out", unused));
 }
 
-struct Format {
+struct MeshFormat {
   const char* extension;
   RawMesh (*read)(std::string text, const std::string& name);
   std::string (*write)(const TetMesh& mesh);
 };
 
-constexpr std::array formats = {Format{".mesh", read_medit, medit_text}, Format{".msh", read_gmsh, gmsh_text},
-                                Format{".vtk", read_legacy_vtk, legacy_vtk_text}, Format{".vtu", read_vtu, vtu_text}};
+constexpr std::array formats = {MeshFormat{".mesh", read_medit, medit_text}, MeshFormat{".msh", read_gmsh, gmsh_text},
+                                MeshFormat{".vtk", read_legacy_vtk, legacy_vtk_text},
+                                MeshFormat{".vtu", read_vtu, vtu_text}};
 
-const Format* format_of(const std::filesystem::path& path) {
+const MeshFormat* format_of(const std::filesystem::path& path) {
   const std::string extension = path.extension().string();
   const auto* const found =
-      std::find_if(formats.begin(), formats.end(), [&](const Format& f) { return f.extension == extension; });
+      std::find_if(formats.begin(), formats.end(), [&](const MeshFormat& f) { return f.extension == extension; });
   return found == formats.end() ? nullptr : found;
 }
 
@@ -120,7 +121,7 @@ MeshFile read_mesh(const std::filesystem::path& path) {
     name = elements.string();
     raw = read_tetgen(mesh_text(nodes), nodes.string(), mesh_text(elements), name);
   } else {
-    const Format* format = format_of(path);
+    const MeshFormat* format = format_of(path);
     raw = (format != nullptr ? *format : formats.front()).read(mesh_text(path), name);
   }
   MeshFile file{std::move(raw.mesh), std::move(raw.notes)};

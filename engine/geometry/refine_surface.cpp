@@ -7,7 +7,7 @@
 namespace supple {
 namespace {
 
-using Corners = std::array<std::int32_t, 3>;
+using TriangleCorners = std::array<std::int32_t, 3>;
 
 // Halves each edge that is too long once.
 class Pass {
@@ -16,7 +16,7 @@ class Pass {
       : points_(points), ends_(ends), longest_(longest) {}
 
   // Appends the parts of a triangle: it alone where no edge is too long.
-  void split(const Corners& corners, std::vector<Corners>& parts) {
+  void split(const TriangleCorners& corners, std::vector<TriangleCorners>& parts) {
     std::int32_t middle[3];  // of the edge from corner k to the next; -1: stays whole
     int halved = 0;
     for (int k = 0; k < 3; ++k) {
@@ -32,7 +32,8 @@ class Pass {
       parts.push_back({middle[0], middle[1], middle[2]});
       return;
     }
-    // Corners are named so that the edge from a to b is halved, and of two halved edges the second is that from b to c.
+    // TriangleCorners are named so that the edge from a to b is halved, and of two halved edges the second is that from
+    // b to c.
     int first = middle[0] >= 0 ? 0 : (middle[1] >= 0 ? 1 : 2);
     if (halved == 2 && middle[(first + 1) % 3] < 0) first = (first + 2) % 3;
     const std::int32_t a = corners[std::size_t(first)], b = corners[std::size_t((first + 1) % 3)],
@@ -75,7 +76,7 @@ RefinedSurface refined(const TriMesh& surface, double longest, Eigen::Index most
   RefinedSurface result;
   std::vector<Vec3> points(std::size_t(surface.points.rows()));
   for (std::size_t v = 0; v < points.size(); ++v) points[v] = surface.points.row(Eigen::Index(v));
-  std::vector<Corners> triangles(std::size_t(surface.triangles.rows()));
+  std::vector<TriangleCorners> triangles(std::size_t(surface.triangles.rows()));
   std::vector<std::int32_t> parent(triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (int k = 0; k < 3; ++k) triangles[t][std::size_t(k)] = surface.triangles(Eigen::Index(t), k);
@@ -84,7 +85,7 @@ RefinedSurface refined(const TriMesh& surface, double longest, Eigen::Index most
   // No triangle has more than four parts, so that a pass that starts below a fourth of the limit cannot exceed it.
   for (bool halved = true; halved && 4 * Eigen::Index(triangles.size()) <= most;) {
     Pass pass(points, result.ends, longest);
-    std::vector<Corners> parts;
+    std::vector<TriangleCorners> parts;
     std::vector<std::int32_t> parents;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       pass.split(triangles[t], parts);

@@ -10,11 +10,11 @@
 namespace supple {
 namespace {
 
-using Corners = std::array<Vec3, 3>;
+using CornerPlaces = std::array<Vec3, 3>;
 
 struct Boxed {
-  Vec3 lower, upper;  // [m]
-  Corners corner;     // of a triangle [m]
+  Vec3 lower, upper;    // [m]
+  CornerPlaces corner;  // of a triangle [m]
 };
 
 bool apart(const Vec3& lower_a, const Vec3& upper_a, const Vec3& lower_b, const Vec3& upper_b) {
@@ -36,7 +36,7 @@ std::vector<Boxed> triangles_near(const Positions& points, const Triangles& tria
 }
 
 // Tells whether an edge passes through a triangle, away from its ends and from the triangle's border.
-bool pierces(const Vec3& p, const Vec3& q, const Corners& t) {
+bool pierces(const Vec3& p, const Vec3& q, const CornerPlaces& t) {
   const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]), way = q - p;
   if (!(normal.dot(p - t[0]) * normal.dot(q - t[0]) < 0)) return false;
   const Vec3 a = t[0] - p, b = t[1] - p, c = t[2] - p;

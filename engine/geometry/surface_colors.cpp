@@ -14,7 +14,7 @@
 namespace supple {
 namespace {
 
-using Corners = std::array<SurfaceColor, 3>;
+using CornerColors = std::array<SurfaceColor, 3>;
 
 bool same(const SurfaceColor& a, const SurfaceColor& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
@@ -82,7 +82,7 @@ SurfaceColor mean(const SurfaceColor* colors, const Vec3& weights) {
 }
 
 // Returns the colour at the point of a triangle that is closest to p.
-SurfaceColor color_at(const TriMesh& mesh, Eigen::Index triangle, const Corners& colors, const Vec3& p) {
+SurfaceColor color_at(const TriMesh& mesh, Eigen::Index triangle, const CornerColors& colors, const Vec3& p) {
   const Vec3 a = corner(mesh, triangle, 0), b = corner(mesh, triangle, 1), c = corner(mesh, triangle, 2);
   return mean(colors.data(), weights_in_triangle(closest_in_triangle(p, a, b, c), a, b, c));
 }
@@ -91,9 +91,9 @@ class Painter {
  public:
   explicit Painter(const ColoredSurface& file) : file_(file), by_place_(file.mesh) {}
 
-  Corners colors_of(const TriMesh& surface, Eigen::Index triangle) {
+  CornerColors colors_of(const TriMesh& surface, Eigen::Index triangle) {
     const Eigen::Index own = by_place_.find(surface, triangle);
-    Corners result;
+    CornerColors result;
     if (own >= 0) {
       for (int k = 0; k < 3; ++k) {
         for (int j = 0; j < 3; ++j)
@@ -108,7 +108,7 @@ class Painter {
     const auto near = soup_->closest(middle, far, Vec3::Zero());
     if (near.triangle < 0) return result;
     const Eigen::Index nearest = kept_[std::size_t(near.triangle)];
-    const Corners colors = {color(nearest, 0), color(nearest, 1), color(nearest, 2)};
+    const CornerColors colors = {color(nearest, 0), color(nearest, 1), color(nearest, 2)};
     for (int k = 0; k < 3; ++k)
       result[std::size_t(k)] = color_at(file_.mesh, nearest, colors, corner(surface, triangle, k));
     return result;
@@ -135,7 +135,7 @@ class Painter {
 };
 
 std::uint64_t hash_of(const SurfaceColors& colors) {
-  std::uint64_t hash = hash_bytes(colors.corners.data(), sizeof(Corners) * colors.corners.size());
+  std::uint64_t hash = hash_bytes(colors.corners.data(), sizeof(CornerColors) * colors.corners.size());
   if (!colors.textures) return hash;
   for (const Texture& texture : *colors.textures) {
     const std::int32_t head[] = {texture.width, texture.height, std::int32_t(texture.wrap_u),

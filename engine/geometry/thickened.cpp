@@ -7,7 +7,7 @@
 namespace supple {
 namespace {
 
-using Names = std::vector<std::int32_t>;
+using CornerNames = std::vector<std::int32_t>;
 
 // Says of each triangle's edges whether a neighbour continues the sheet there with the same side up.
 std::vector<std::array<Eigen::Index, 3>> continuations(const Neighbours& next, const std::vector<char>& turned) {
@@ -27,9 +27,10 @@ std::size_t root_of(std::vector<std::size_t>& parent, std::size_t i) {
   return i;
 }
 
-// Names the corners, three for each triangle, so that only those have one name that edges connect around a vertex.
-Names corner_names(const Triangles& triangles, const std::vector<std::array<Eigen::Index, 3>>& next,
-                   std::int32_t& count) {
+// CornerNames the corners, three for each triangle, so that only those have one name that edges connect around a
+// vertex.
+CornerNames corner_names(const Triangles& triangles, const std::vector<std::array<Eigen::Index, 3>>& next,
+                         std::int32_t& count) {
   std::vector<std::size_t> parent(at(3 * triangles.rows()));
   std::iota(parent.begin(), parent.end(), std::size_t(0));
   const auto join = [&](Eigen::Index t, int k, Eigen::Index other) {
@@ -44,7 +45,7 @@ Names corner_names(const Triangles& triangles, const std::vector<std::array<Eige
       join(t, (k + 1) % 3, next[at(t)][at(k)]);
     }
   }
-  Names name(parent.size(), -1), result(parent.size());
+  CornerNames name(parent.size(), -1), result(parent.size());
   count = 0;
   for (std::size_t i = 0; i < parent.size(); ++i) {
     std::int32_t& own = name[root_of(parent, i)];
@@ -55,7 +56,7 @@ Names corner_names(const Triangles& triangles, const std::vector<std::array<Eige
 }
 
 // The normals of the corners' vertices, weighted by the triangles' angles there, as long as the triangles' own.
-Positions offsets_of(const TriMesh& mesh, const Names& name, std::int32_t count) {
+Positions offsets_of(const TriMesh& mesh, const CornerNames& name, std::int32_t count) {
   Positions sum = Positions::Zero(count, 3);
   for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
     const Vec3 normal = area_vector(mesh, t).stableNormalized();
@@ -96,7 +97,7 @@ Thickened thickened(const Numbered& surface, double thickness) {
   }
 
   std::int32_t count = 0;
-  const Names name = corner_names(mesh.triangles, next, count);
+  const CornerNames name = corner_names(mesh.triangles, next, count);
   const Positions offsets = 0.5 * thickness * offsets_of(mesh, name, count);
   TriMesh& out = result.boundary;
   out.points.resize(2 * count, 3);  // the upper side first; of closed parts both are the vertex itself

@@ -4,15 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/tree_stack.h"
 #include "geometry/triangle_solid.h"
 
 namespace supple {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 // The tree is balanced, so that 2^31 triangles make 15 levels; each level leaves at most three siblings on the stack.
-constexpr int stack_size = 64;
 
 template <class L>
 Vec3 get(const L& lanes, int k) {
@@ -92,7 +90,7 @@ TriangleSolid::Nearest TriangleSolid::nearest(const Vec3& p, std::int32_t likely
     double squared;
     std::int32_t node;
   };
-  std::array<Entry, stack_size> stack;
+  std::array<Entry, tree_stack_size> stack;
   int top = 0;
   stack[std::size_t(top++)] = {0, 0};
   Nearest best{most * most, most < infinity ? -1 : 0, 0, 0, 0, 0};
@@ -170,7 +168,7 @@ double TriangleSolid::certain_distance(const Vec3& p, const QueryMemory& near) c
 
 bool TriangleSolid::find_leaves(const Vec3& p, double reach, NearLeaves& found) const {
   const double with_slack = 1.001 * reach + 1e3 * on_surface_, bound = with_slack * with_slack;
-  std::array<std::int32_t, stack_size> stack;
+  std::array<std::int32_t, tree_stack_size> stack;
   int top = 0;
   stack[std::size_t(top++)] = 0;
   found.count = 0;

@@ -7,21 +7,19 @@
 #include <thread>
 
 #include "base/threads.h"
+#include "geometry/tree_stack.h"
 #include "geometry/triangle_edges.h"
 #include "geometry/triangle_solid.h"
 
 namespace supple {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr int stack_size = 64;  // as for the closest point
-
 // Calls ends(triangle) for all triangles of those leaves whose boxes meet a box, until it returns true. Returns whether
 // it did.
 template <class Node, class Leaf, class Ends>
 bool any_near(const std::vector<Node>& nodes, const std::vector<Leaf>& leaves, const Vec3& lower, const Vec3& upper,
               const Ends& ends) {
-  std::array<std::int32_t, stack_size> stack;
+  std::array<std::int32_t, tree_stack_size> stack;
   int top = 0;
   stack[std::size_t(top++)] = 0;
   while (top > 0) {
@@ -72,7 +70,7 @@ double TriangleSolid::winding_number(const Vec3& p) const {
   constexpr double far = 2;
   // At this distance the result is below round-off, and further away squares would overflow.
   if ((p - bounds_.center()).cwiseAbs().maxCoeff() > 1e12 * (bounds_.diagonal() + on_surface_)) return 0;
-  std::array<std::int32_t, stack_size> stack;
+  std::array<std::int32_t, tree_stack_size> stack;
   int top = 0;
   stack[std::size_t(top++)] = 0;
   double sum = 0;
@@ -300,7 +298,7 @@ std::optional<double> TriangleSolid::entry(const Vec3& a, const Vec3& b) const {
   Vec3 inverse;
   for (int k = 0; k < 3; ++k) inverse[k] = 1 / (std::abs(way[k]) > 1e-290 ? way[k] : 1e-290);
   double first = 1 + 1e-12;
-  std::array<std::int32_t, stack_size> stack;
+  std::array<std::int32_t, tree_stack_size> stack;
   int top = 0;
   stack[std::size_t(top++)] = 0;
   while (top > 0) {

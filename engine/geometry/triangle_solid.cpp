@@ -19,8 +19,6 @@
 namespace supple {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 template <class L>
 void set(L& lanes, int k, const Vec3& value) {
   lanes.x[k] = value.x();

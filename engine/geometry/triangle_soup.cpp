@@ -1,4 +1,5 @@
 #include "geometry/triangle_soup.h"
+#include "geometry/tree_stack.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -15,10 +16,8 @@
 namespace supple {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int leaf_size = 4;
-constexpr int stack_size = 64;  // the tree is balanced: 2^31 triangles make 31 levels, with one sibling waiting at each
-constexpr double far = 2.5;     // a part counts as far beyond this many of its radii: section 3.2 of the paper has 2
+constexpr double far = 2.5;  // a part counts as far beyond this many of its radii: section 3.2 of the paper has 2
 
 // Follows Moeller and Trumbore, Fast, minimum storage ray-triangle intersection, 1997, for triangles of both sides.
 double hit_of_triangle(const Vec3& from, const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -169,7 +168,7 @@ TriangleSoup::TriangleSoup(TriMesh mesh) : mesh_(std::move(mesh)) {
 
 std::optional<double> TriangleSoup::first_hit(const Vec3& from, const Vec3& direction, Eigen::Index except) const {
   const Vec3 inverse = direction.unaryExpr([](double x) { return 1 / (std::abs(x) > 1e-290 ? x : 1e-290); });
-  std::array<std::int32_t, stack_size> stack;
+  std::array<std::int32_t, tree_stack_size> stack;
   int top = 0;
   stack[std::size_t(top++)] = 0;
   double best = infinity;
@@ -196,7 +195,7 @@ TriangleSoup::Near TriangleSoup::closest(const Vec3& p, double within, const Vec
   const bool any = facing.isZero();
   Near best;
   best.squared = within * within;
-  std::array<std::int32_t, stack_size> stack;
+  std::array<std::int32_t, tree_stack_size> stack;
   int top = 0;
   stack[std::size_t(top++)] = 0;
   while (top > 0) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <numbers>
 
+#include "geometry/tree_stack.h"
 #include "geometry/triangle_soup.h"
 
 namespace supple {
@@ -13,7 +14,6 @@ namespace {
 
 constexpr int lanes = 8;  // of a group
 constexpr int groups = 8;
-constexpr int stack_size = 64;  // as for the other walks through the tree
 constexpr double pi = std::numbers::pi;
 
 using Lanes = std::array<double, lanes>;
@@ -111,7 +111,7 @@ void TriangleSoup::winding_numbers(const std::vector<Vec3>& places, std::vector<
       std::int32_t node;
       std::array<std::uint8_t, groups> active;  // lanes
     };
-    std::array<Entry, stack_size> stack;
+    std::array<Entry, tree_stack_size> stack;
     int top = 0;
     Entry& root = stack[std::size_t(top++)];
     root.node = 0;

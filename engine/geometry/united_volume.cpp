@@ -10,7 +10,7 @@
 namespace supple {
 namespace {
 
-constexpr int across = 256;  // columns along either side
+constexpr int columns_across = 256;  // columns along either side
 
 // Holds the place where a column enters or leaves a surface.
 struct Crossing {
@@ -24,15 +24,15 @@ struct Crossing {
 
 class Columns {
  public:
-  explicit Columns(const TriMesh& mesh) : mesh_(mesh), box_(bounds_of(mesh.points)), rows_(across) {
-    step_ = box_.extent() / across;
+  explicit Columns(const TriMesh& mesh) : mesh_(mesh), box_(bounds_of(mesh.points)), rows_(columns_across) {
+    step_ = box_.extent() / columns_across;
     for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
       double low = corner(mesh, t, 0).y(), high = low;
       for (int k = 1; k < 3; ++k) {
         low = std::min(low, corner(mesh, t, k).y());
         high = std::max(high, corner(mesh, t, k).y());
       }
-      for (int row = first_at(low, 1); row < across && place(row, 1) < high; ++row)
+      for (int row = first_at(low, 1); row < columns_across && place(row, 1) < high; ++row)
         rows_[std::size_t(row)].push_back(t);
     }
   }
@@ -40,7 +40,7 @@ class Columns {
   double volume() const {
     double length = 0;
     long counted = 0;
-    for (int row = 0; row < across; ++row) {
+    for (int row = 0; row < columns_across; ++row) {
       const std::vector<Crossing> crossings = crossings_of(row);
       for (std::size_t i = 0, end = 0; i < crossings.size(); i = end) {
         int winding = 0;
@@ -53,7 +53,7 @@ class Columns {
         counted += winding == 0 ? 0 : 1;
       }
     }
-    const double all = double(across) * across;
+    const double all = double(columns_across) * columns_across;
     return length * step_.x() * step_.y() * all / (all - double(counted));
   }
 
@@ -63,7 +63,7 @@ class Columns {
   double place(int n, int axis) const { return box_.lower[axis] + (n + share(axis)) * step_[axis]; }
   int first_at(double x, int axis) const {
     const double n = std::ceil((x - box_.lower[axis]) / step_[axis] - share(axis));
-    return int(std::clamp(n, 0.0, double(across)));
+    return int(std::clamp(n, 0.0, double(columns_across)));
   }
 
   std::vector<Crossing> crossings_of(int row) const {
@@ -80,7 +80,7 @@ class Columns {
         (a.y() <= y ? to_height : from_height) = a.z() + s * (b.z() - a.z());
       }
       const double low = std::min(from, to), high = std::max(from, to);
-      for (int column = first_at(low, 0); column < across && place(column, 0) < high; ++column) {
+      for (int column = first_at(low, 0); column < columns_across && place(column, 0) < high; ++column) {
         const double s = (place(column, 0) - from) / (to - from);
         result.push_back({column, from_height + s * (to_height - from_height), from < to ? -1 : 1});
       }

@@ -15,12 +15,12 @@
 namespace supple {
 namespace {
 
-using Names = std::vector<std::int32_t>;
+using VertexNames = std::vector<std::int32_t>;
 
 // Lists the vertices next to each one, in one array: those of v are at [start[v], start[v + 1]).
 struct Rings {
   std::vector<std::size_t> start;
-  Names next;
+  VertexNames next;
 };
 
 Rings rings_of(const TriMesh& mesh) {
@@ -109,7 +109,7 @@ std::vector<char> move_onto(const TriangleSoup& soup, double cell, TriMesh& boun
 
 // Vertices at the same place stay apart: merging them could join what only touches.
 TriMesh without_unused_vertices(const TriMesh& mesh) {
-  Names name(at(mesh.points.rows()), -1), used;
+  VertexNames name(at(mesh.points.rows()), -1), used;
   TriMesh result{Positions(), mesh.triangles};
   for (std::int32_t& v : result.triangles.reshaped<Eigen::RowMajor>()) {
     if (name[at(v)] < 0) {

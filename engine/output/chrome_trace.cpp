@@ -13,7 +13,7 @@ namespace supple {
 namespace {
 
 // Names of bodies are free text, and may have been cut in the middle of a letter.
-std::string quoted(const std::string& text) { return json_text(nlohmann::json(text)); }
+std::string json_string(const std::string& text) { return json_text(nlohmann::json(text)); }
 
 // Keeps whole nanoseconds, so that zones nest in the file as they did in time.
 std::string microseconds(std::int64_t ns) { return fmt::format("{}.{:03}", ns / 1000, ns % 1000); }
@@ -22,7 +22,7 @@ std::string arguments(const TraceEvent& event) {
   std::string text;
   if (event.number >= 0) text += fmt::format("\"frame\":{}", event.number);
   if (event.subject[0] != 0)
-    text += fmt::format("{}\"body\":{}", text.empty() ? "" : ",", quoted(event.subject.data()));
+    text += fmt::format("{}\"body\":{}", text.empty() ? "" : ",", json_string(event.subject.data()));
   return text.empty() ? "" : ",\"args\":{" + text + "}";
 }
 
@@ -43,11 +43,11 @@ std::string chrome_trace(const std::vector<ThreadTrace>& threads) {
     ++track;
     const std::string name = thread.number > 0 ? fmt::format("{} {}", thread.name, thread.number) : thread.name;
     text += fmt::format(",\n{{\"ph\":\"M\",\"pid\":1,\"tid\":{},\"name\":\"thread_name\",\"args\":{{\"name\":{}}}}}",
-                        track, quoted(name));
+                        track, json_string(name));
     for (const TraceEvent& event : thread.events) {
       fmt::format_to(std::back_inserter(text),
                      ",\n{{\"ph\":\"X\",\"pid\":1,\"tid\":{},\"name\":{},\"ts\":{},\"dur\":{}{}}}", track,
-                     quoted(event.name), microseconds(event.begin_ns - origin),
+                     json_string(event.name), microseconds(event.begin_ns - origin),
                      microseconds(event.end_ns - event.begin_ns), arguments(event));
     }
   }

@@ -15,23 +15,24 @@ namespace supple {
 namespace {
 
 // Describes the header, little-endian as all of the file.
-struct Header {
+struct ForceHeader {
   char signature[12];
   std::int32_t vertices;
 };
-constexpr char signature[12] = "CONTACTFRC1";
+constexpr char force_signature[12] = "CONTACTFRC1";
 
 // Describes the force on one vertex.
 struct Entry {
   std::int32_t vertex;
   float force[3];
 };
-static_assert(sizeof(Header) == 16 && sizeof(Entry) == 16);
+static_assert(sizeof(ForceHeader) == 16 && sizeof(Entry) == 16);
 
-std::optional<Header> header_of(std::ifstream& file) {
-  Header header{};
+std::optional<ForceHeader> header_of(std::ifstream& file) {
+  ForceHeader header{};
   if (!file.read(reinterpret_cast<char*>(&header), sizeof header)) return std::nullopt;
-  if (std::memcmp(header.signature, signature, sizeof signature) != 0 || header.vertices < 0) return std::nullopt;
+  if (std::memcmp(header.signature, force_signature, sizeof force_signature) != 0 || header.vertices < 0)
+    return std::nullopt;
   return header;
 }
 
@@ -41,7 +42,7 @@ std::vector<std::int64_t> marks_of(std::ifstream& file, const std::filesystem::p
                                    std::size_t most) {
   std::error_code error;
   const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path, error));
-  std::vector<std::int64_t> marks = {sizeof(Header)};
+  std::vector<std::int64_t> marks = {sizeof(ForceHeader)};
   while (!error && marks.size() <= most) {
     std::int32_t count = 0;
     file.seekg(marks.back());
@@ -58,7 +59,7 @@ std::vector<std::int64_t> marks_of(std::ifstream& file, const std::filesystem::p
 
 bool force_file_has(const std::filesystem::path& path, int vertices, int frames) {
   std::ifstream file(path, std::ios::binary);
-  const std::optional<Header> header = header_of(file);
+  const std::optional<ForceHeader> header = header_of(file);
   return header && header->vertices == vertices &&
          static_cast<int>(marks_of(file, path, vertices, std::size_t(frames)).size()) > frames;
 }
@@ -80,8 +81,8 @@ ForceFileWriter::ForceFileWriter(const std::filesystem::path& path, int vertices
   }
   file_.reset(std::fopen(path.c_str(), "wb"));
   if (!file_) fail("be created");
-  Header header{{}, vertices};
-  std::memcpy(header.signature, signature, sizeof signature);
+  ForceHeader header{{}, vertices};
+  std::memcpy(header.signature, force_signature, sizeof force_signature);
   if (std::fwrite(&header, sizeof header, 1, file_.get()) != 1) fail("be written");
 }
 
@@ -106,7 +107,7 @@ void ForceFileWriter::fail(const char* doing) const {
 
 ForceFileReader::ForceFileReader(const std::filesystem::path& path) : path_(path), file_(path, std::ios::binary) {
   if (!file_) refuse("cannot be read");
-  const std::optional<Header> header = header_of(file_);
+  const std::optional<ForceHeader> header = header_of(file_);
   if (!header) refuse("is not a file of contact forces");
   vertices_ = header->vertices;
   constexpr std::size_t all = 1u << 30;

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view style_sheet = R"css(
+constexpr std::string_view gallery_style = R"css(
 :root { --ink: #1d1f21; --soft: #63686e; --line: #d9dbde; --faint: #eef0f2; --bad: #b3400a; }
 * { box-sizing: border-box; }
 body { margin: 0 auto; padding: 1.5rem 1rem 3rem; max-width: 84rem; color: var(--ink); background: #fff;
@@ -58,7 +58,7 @@ td a { color: inherit; }
 
 // A film plays while the pointer is over it. A click, a tap or the keys for buttons start and stop it for good, and a
 // double click fills the screen with it. A click on a column's head sorts the table.
-constexpr std::string_view script = R"js(
+constexpr std::string_view gallery_script = R"js(
 "use strict";
 for (const film of document.querySelectorAll("video")) {
   const view = film.parentElement;
@@ -183,7 +183,7 @@ std::string gallery_page(const std::string& heading, const std::string& note, co
   std::string html =
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\">\n<title>" +
-      markup_text(heading) + "</title>\n<style>" + std::string(style_sheet) + "</style></head><body>\n<h1>" +
+      markup_text(heading) + "</title>\n<style>" + std::string(gallery_style) + "</style></head><body>\n<h1>" +
       markup_text(heading) + "</h1>\n<p class=\"soft\">" + markup_text(note) +
       " <a href=\"#figures\">All figures</a></p>\n<main class=\"cards\">\n";
   std::string rows;
@@ -196,7 +196,7 @@ std::string gallery_page(const std::string& heading, const std::string& note, co
   for (const char* head : {"scene", "bodies", "vertices", "elements", "frames", "solving, median [ms]", "95 % [ms]",
                            "slowest [ms]", "largest estimated error", "of motion", "film"})
     html += fmt::format("<th scope=\"col\">{}</th>", head);
-  return html + "</tr></thead><tbody>\n" + rows + "</tbody></table></div>\n<script>" + std::string(script) +
+  return html + "</tr></thead><tbody>\n" + rows + "</tbody></table></div>\n<script>" + std::string(gallery_script) +
          "</script></body></html>\n";
 }
 

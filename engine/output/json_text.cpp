@@ -1,5 +1,7 @@
 #include "output/json_text.h"
 
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 
 namespace supple {
@@ -63,5 +65,7 @@ template std::string exact_json_text(const nlohmann::ordered_json&, int);
 template nlohmann::ordered_json parsed_json(std::string_view);
 template nlohmann::ordered_json json_if_valid(std::string_view);
 template nlohmann::ordered_json json_if_valid(std::istream&);
+
+double rounded_ms(double ms) { return std::round(ms * 1e4) / 1e4; }
 
 }  // namespace supple

@@ -16,6 +16,9 @@ std::string json_text(const Json& json, int indent = -1);
 template <class Json>
 std::string exact_json_text(const Json& json, int indent = -1);
 
+// Rounds to tenths of microseconds, which is what times in files have.
+double rounded_ms(double ms);
+
 // Throws nlohmann::json::parse_error where the text is not JSON, or has more than 2000 levels.
 template <class Json>
 Json parsed_json(std::string_view text);

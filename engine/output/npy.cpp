@@ -17,26 +17,26 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "arrays are copied to files as they lie in memory");
 
-constexpr std::string_view signature = "\x93NUMPY";
+constexpr std::string_view npy_signature = "\x93NUMPY";
 constexpr std::size_t preamble = 10;   // signature, two bytes of version, two bytes of the header's length
 constexpr std::size_t alignment = 64;  // of the values in the file
 
 template <class T>
-constexpr const char* type_name = nullptr;
+constexpr const char* numpy_type = nullptr;
 template <>
-constexpr const char* type_name<double> = "<f8";
+constexpr const char* numpy_type<double> = "<f8";
 template <>
-constexpr const char* type_name<std::int32_t> = "<i4";
+constexpr const char* numpy_type<std::int32_t> = "<i4";
 
 template <class T>
 void write(const std::filesystem::path& path, NpyShape shape, std::span<const T> values) {
   SUPPLE_CHECK(std::size_t(shape.rows * shape.columns), ==, values.size());
   std::string header = fmt::format(
-      "{{'descr': '{}', 'fortran_order': False, 'shape': {}, }}", type_name<T>,
+      "{{'descr': '{}', 'fortran_order': False, 'shape': {}, }}", numpy_type<T>,
       shape.dimensions == 1 ? fmt::format("({},)", shape.rows) : fmt::format("({}, {})", shape.rows, shape.columns));
   header.append(alignment - 1 - (preamble + header.size()) % alignment, ' ');
   header += '\n';
-  std::string file(signature);
+  std::string file(npy_signature);
   file += '\x01';
   file += '\x00';
   file += static_cast<char>(header.size() & 0xff);
@@ -144,7 +144,7 @@ class HeaderReader {
 template <class T>
 NpyArray<T> read(const std::filesystem::path& path) {
   const std::string bytes = read_file(path), name = path.string();
-  if (bytes.size() < preamble || !bytes.starts_with(signature)) throw InputError(name, "is not a .npy file");
+  if (bytes.size() < preamble || !bytes.starts_with(npy_signature)) throw InputError(name, "is not a .npy file");
   const int major = static_cast<unsigned char>(bytes[6]), minor = static_cast<unsigned char>(bytes[7]);
   if (major != 1 || minor != 0)
     throw InputError(name, fmt::format("is of .npy version {}.{}; version 1.0 is read", major, minor));
@@ -153,8 +153,8 @@ NpyArray<T> read(const std::filesystem::path& path) {
   if (length == 0 || bytes[preamble + length - 1] != '\n')
     throw InputError(name, "the header does not end with its line");
   const auto header = HeaderReader(name, std::string_view(bytes).substr(preamble, length - 1)).read();
-  if (header.type != type_name<T>)
-    throw InputError(name, fmt::format("holds numbers of type '{}' where '{}' is read", header.type, type_name<T>));
+  if (header.type != numpy_type<T>)
+    throw InputError(name, fmt::format("holds numbers of type '{}' where '{}' is read", header.type, numpy_type<T>));
   const std::size_t given = bytes.size() - preamble - length;
   const auto [dimensions, rows, columns] = header.shape;
   // A shape that no file could hold must not overflow before it is compared.

@@ -58,7 +58,7 @@ void append_compressed(std::span<const std::uint8_t> data, std::vector<std::uint
   bytes.resize(begin + count);
 }
 
-constexpr std::string_view signature = "\x89PNG\r\n\x1a\n", end_of_file("\0\0\0\0IEND\xae\x42\x60\x82", 12);
+constexpr std::string_view png_signature = "\x89PNG\r\n\x1a\n", end_of_file("\0\0\0\0IEND\xae\x42\x60\x82", 12);
 
 }  // namespace
 
@@ -67,7 +67,7 @@ namespace {
 std::vector<std::uint8_t> png_of(int width, int height, int channels, std::uint8_t color_type,
                                  std::span<const std::uint8_t> samples) {
   SUPPLE_CHECK(samples.size(), ==, std::size_t(width) * height * channels);
-  std::vector<std::uint8_t> bytes(signature.begin(), signature.end());
+  std::vector<std::uint8_t> bytes(png_signature.begin(), png_signature.end());
   std::size_t chunk = begin_chunk("IHDR", bytes);
   append_number(width, bytes);
   append_number(height, bytes);
@@ -107,11 +107,12 @@ void write_png(const std::filesystem::path& path, int width, int height, std::sp
 
 bool looks_whole(const std::filesystem::path& png) {
   std::ifstream file(png, std::ios::binary);
-  char head[signature.size()] = {}, tail[end_of_file.size()] = {};
+  char head[png_signature.size()] = {}, tail[end_of_file.size()] = {};
   file.read(head, sizeof head);
   file.seekg(-static_cast<std::streamoff>(sizeof tail), std::ios::end);
   file.read(tail, sizeof tail);
-  return file && std::string_view(head, sizeof head) == signature && std::string_view(tail, sizeof tail) == end_of_file;
+  return file && std::string_view(head, sizeof head) == png_signature &&
+         std::string_view(tail, sizeof tail) == end_of_file;
 }
 
 PngImage read_png(const std::filesystem::path& path) {

@@ -13,7 +13,7 @@ namespace supple {
 namespace {
 
 // Describes the header of a PC2 file, little-endian.
-struct Header {
+struct CacheHeader {
   char signature[12];
   std::int32_t version;
   std::int32_t points;
@@ -21,8 +21,8 @@ struct Header {
   float sample_rate;
   std::int32_t samples;
 };
-static_assert(sizeof(Header) == 32);
-constexpr char signature[12] = "POINTCACHE2";
+static_assert(sizeof(CacheHeader) == 32);
+constexpr char cache_signature[12] = "POINTCACHE2";
 
 // Holds one row for each vertex, as the file does.
 using FilePoints = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
@@ -30,7 +30,7 @@ using FilePoints = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
 }  // namespace
 
 bool point_cache_has(const std::filesystem::path& path, int points, int frames) {
-  Header header{};
+  CacheHeader header{};
   std::ifstream file(path, std::ios::binary);
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);
@@ -48,13 +48,13 @@ PointCacheWriter::PointCacheWriter(const std::filesystem::path& path, int points
     return;
   }
   // The file holds one sample for each frame: the rate counts frames of the film between samples.
-  Header header{{}, 1, points, 0.0f, 1.0f, 0};
-  std::memcpy(header.signature, signature, sizeof signature);
+  CacheHeader header{{}, 1, points, 0.0f, 1.0f, 0};
+  std::memcpy(header.signature, cache_signature, sizeof cache_signature);
   if (std::fwrite(&header, sizeof header, 1, file_.get()) != 1) fail("be written");
 }
 
 void PointCacheWriter::continue_after(int frames) {
-  Header header{};
+  CacheHeader header{};
   const auto size = static_cast<std::int64_t>(sizeof header + sizeof(float) * 3 * std::size_t(points_) * frames);
   if (!point_cache_has(path_, points_, frames))
     throw RunError(fmt::format("{}: does not have the {} frames after which to continue", path_.string(), frames));
@@ -72,7 +72,7 @@ void PointCacheWriter::add(const Positions& points) {
   const FilePoints rows = points.cast<float>();
   if (std::fwrite(rows.data(), sizeof(float), rows.size(), file_.get()) != std::size_t(rows.size())) fail("be written");
   const std::int32_t samples = ++frames_;
-  if (std::fseek(file_.get(), offsetof(Header, samples), SEEK_SET) != 0 ||
+  if (std::fseek(file_.get(), offsetof(CacheHeader, samples), SEEK_SET) != 0 ||
       std::fwrite(&samples, sizeof samples, 1, file_.get()) != 1 || std::fseek(file_.get(), 0, SEEK_END) != 0 ||
       std::fflush(file_.get()) != 0) {
     fail("be written");
@@ -84,12 +84,12 @@ void PointCacheWriter::fail(const char* doing) const {
 }
 
 PointCacheReader::PointCacheReader(const std::filesystem::path& path) : path_(path), file_(path, std::ios::binary) {
-  Header header;
+  CacheHeader header;
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);
   if (error || !file_) refuse("cannot be read");
   if (!file_.read(reinterpret_cast<char*>(&header), sizeof header) ||
-      std::memcmp(header.signature, signature, sizeof signature) != 0)
+      std::memcmp(header.signature, cache_signature, sizeof cache_signature) != 0)
     refuse("is not a PC2 point cache");
   if (header.version != 1) refuse(fmt::format("is of version {}; this program reads version 1", header.version));
   if (header.points < 0 || header.samples < 0)
@@ -109,7 +109,7 @@ Positions PointCacheReader::frame(int index) {
   SUPPLE_CHECK(index, <, frames_);
   FilePoints rows(points_, 3);
   const auto bytes = std::streamsize(sizeof(float)) * rows.size();
-  file_.seekg(std::streamoff(sizeof(Header)) + bytes * index);
+  file_.seekg(std::streamoff(sizeof(CacheHeader)) + bytes * index);
   if (!file_.read(reinterpret_cast<char*>(rows.data()), bytes))
     refuse(fmt::format("cannot be read at frame {}", index));
   if (!rows.allFinite()) refuse(fmt::format("is damaged: a number of frame {} is not finite", index));

@@ -16,8 +16,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Four digits after the point are plenty for times; numbers that may be compared keep all seventeen.
-double rounded_ms(double ms) { return std::round(ms * 1e4) / 1e4; }
-
 Json json_of(const BodyRow& body) {
   Json row = {{"name", body.name},
               {"step_ms", rounded_ms(body.step_ms)},

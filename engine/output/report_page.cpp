@@ -15,7 +15,7 @@
 namespace supple {
 namespace {
 
-constexpr std::string_view style_sheet = R"css(
+constexpr std::string_view report_style = R"css(
 :root { color-scheme: light; --ink: #1d1f21; --soft: #63686e; --line: #d9dbde; --faint: #f5f6f7; --link: #23548a; }
 * { box-sizing: border-box; }
 html { -webkit-text-size-adjust: 100%; }
@@ -303,7 +303,7 @@ std::vector<std::string> write_page(const ReportPage& given, const std::filesyst
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<header>\n<h1>{0}</h1>\n<div "
       "class=\"lead\">\n{2}</div>\n",
-      markup_text(page.title), style_sheet, paragraphs(page.lead));
+      markup_text(page.title), report_style, paragraphs(page.lead));
   if (!page.facts.empty()) html += "<dl>\n";
   for (const auto& [what, value] : page.facts)
     html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", markup_text(what), markup_text(value));

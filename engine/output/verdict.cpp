@@ -11,7 +11,7 @@
 namespace supple {
 namespace {
 
-struct Stage {
+struct StageTime {
   const char* name;
   double ms;
   const char* remedies;
@@ -40,19 +40,19 @@ FrameWork work_of(const ZoneProfile& profile) {
 }
 
 std::string verdict(const FrameWork& work) {
-  const Stage stages[] = {
+  const StageTime stages[] = {
       {"solving", work.solving, "a coarser mesh, fewer iterations or fewer substeps help"},
       {"drawing", work.drawing, "fewer samples, a smaller size or --no-images help"},
       {"compressing", work.compressing, "a smaller size, or --film-only, which leaves no files of the frames, helps"},
       {"encoding", work.encoding, "a smaller size or --no-video helps"}};
   double sum = 0;
   std::string list;
-  for (const Stage& stage : stages) {
+  for (const StageTime& stage : stages) {
     sum += stage.ms;
     if (stage.ms > 0) list += fmt::format("{}{} {:.1f} ms", list.empty() ? "" : ", ", stage.name, stage.ms);
   }
   if (sum <= 0) return "";
-  const Stage& dearest = *std::ranges::max_element(stages, {}, &Stage::ms);
+  const StageTime& dearest = *std::ranges::max_element(stages, {}, &StageTime::ms);
   return fmt::format("{} is {:.0f} % of the work for a frame ({}): {}", dearest.name, 100 * dearest.ms / sum, list,
                      dearest.remedies);
 }

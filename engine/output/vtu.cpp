@@ -17,15 +17,15 @@ static_assert(std::endian::native == std::endian::little, "files are little-endi
 constexpr std::uint8_t triangle_type = 5, tetrahedron_type = 10;  // VTK's numbers
 
 template <class T>
-constexpr const char* type_name = nullptr;
+constexpr const char* vtk_type = nullptr;
 template <>
-constexpr const char* type_name<double> = "Float64";
+constexpr const char* vtk_type<double> = "Float64";
 template <>
-constexpr const char* type_name<float> = "Float32";
+constexpr const char* vtk_type<float> = "Float32";
 template <>
-constexpr const char* type_name<std::int32_t> = "Int32";
+constexpr const char* vtk_type<std::int32_t> = "Int32";
 template <>
-constexpr const char* type_name<std::uint8_t> = "UInt8";
+constexpr const char* vtk_type<std::uint8_t> = "UInt8";
 
 void append_base64(const std::vector<std::uint8_t>& bytes, std::string& text) {
   constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -44,7 +44,7 @@ void append_array(const std::string& name, int components, std::span<const T> va
   std::vector<std::uint8_t> bytes(sizeof length + length);
   std::memcpy(bytes.data(), &length, sizeof length);
   if (length > 0) std::memcpy(bytes.data() + sizeof length, values.data(), length);
-  text += fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"binary\">\n", type_name<T>,
+  text += fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"binary\">\n", vtk_type<T>,
                       markup_text(name), components);
   append_base64(bytes, text);
   text += "\n</DataArray>\n";

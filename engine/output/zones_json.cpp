@@ -14,9 +14,6 @@ using ByRepeat = std::vector<std::vector<double>>;
 
 constexpr const char* format_name = "supple zones 1";
 
-// Rounds to tenths of microseconds.
-double rounded_ms(double ms) { return std::round(ms * 1e4) / 1e4; }
-
 Json rounded(const std::vector<double>& list) {
   Json json = Json::array();
   for (const double ms : list) json.push_back(rounded_ms(ms));

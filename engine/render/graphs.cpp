@@ -12,10 +12,10 @@ namespace {
 
 const Vec3 ink(0.16, 0.16, 0.17), paper(0.97, 0.97, 0.96), grid(0.72, 0.72, 0.71), line_color(0.70, 0.27, 0.07),
     dot_color(0.10, 0.33, 0.58);
-constexpr double plate_opacity = 0.86;
+constexpr double graph_opacity = 0.86;
 
 // Holds the sizes of a graph's parts [pixels].
-struct Layout {
+struct GraphLayout {
   int em, line, pad, labels, plot_width, plot_height, title;
   int left() const { return pad + labels + pad / 2; }
   int top() const { return pad + 2 * line; }  // the highest number stands beside the plot's top
@@ -23,8 +23,8 @@ struct Layout {
   int height() const { return top() + plot_height + line / 2 + pad; }
 };
 
-Layout layout_of(const GraphLook& graph, const Stage& stage) {
-  Layout layout{};
+GraphLayout layout_of(const GraphLook& graph, const Stage& stage) {
+  GraphLayout layout{};
   layout.em = std::max(9, static_cast<int>(std::lround(stage.height / 40.0)));
   layout.pad = std::max(4, layout.em / 2);
   const CaptionBitmap title = draw_caption(stage.font, graph.title, layout.em);
@@ -37,15 +37,15 @@ Layout layout_of(const GraphLook& graph, const Stage& stage) {
   return layout;
 }
 
-PixelRect inside_of(const Layout& layout) {
+PixelRect inside_of(const GraphLayout& layout) {
   return {layout.left(), layout.top(), layout.plot_width, layout.plot_height};
 }
 
 Sticker plate_of(const GraphLook& graph, const Stage& stage) {
-  const Layout layout = layout_of(graph, stage);
+  const GraphLayout layout = layout_of(graph, stage);
   const PixelRect inside = inside_of(layout);
   Sticker plate(layout.width(), layout.height());
-  plate.plate({0, 0, layout.width(), layout.height()}, 0.5 * layout.em, paper, plate_opacity);
+  plate.plate({0, 0, layout.width(), layout.height()}, 0.5 * layout.em, paper, graph_opacity);
   plate.text(stage.font, graph.title, layout.em, layout.pad, layout.pad, ink);
   const int mark = std::max(1, layout.em / 12);
   // Where there is little room, only the first and the last value are told.
@@ -132,7 +132,7 @@ std::vector<PixelRect> graph_sizes(const Stage& stage) {
   std::vector<PixelRect> sizes;
   if (stage.font.empty()) return sizes;
   for (const GraphLook& graph : stage.graphs) {
-    const Layout layout = layout_of(graph, stage);
+    const GraphLayout layout = layout_of(graph, stage);
     sizes.push_back({0, 0, layout.width(), layout.height()});
   }
   return sizes;

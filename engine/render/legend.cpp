@@ -9,17 +9,17 @@ namespace supple {
 namespace {
 
 const Vec3 ink(0.16, 0.16, 0.17), paper(0.97, 0.97, 0.96);
-constexpr double plate_opacity = 0.82;  // text stays legible on any background, and what lies behind can be guessed
+constexpr double legend_opacity = 0.82;  // text stays legible on any background, and what lies behind can be guessed
 
 // Holds the sizes of a legend's parts [pixels].
-struct Layout {
+struct LegendLayout {
   int em, line, pad, bar_width, bar_height, labels, width, height;
   // Half a line lies between the title and the highest number, which stands beside the top of the bar.
   int bar_top() const { return pad + 2 * line; }
 };
 
-Layout layout_of(const FieldLook& field, const std::string& font, int picture_height) {
-  Layout layout{};
+LegendLayout layout_of(const FieldLook& field, const std::string& font, int picture_height) {
+  LegendLayout layout{};
   layout.em = std::max(9, static_cast<int>(std::lround(picture_height / 36.0)));
   const CaptionBitmap title = draw_caption(font, field.title, layout.em);
   layout.line = title.height;
@@ -37,9 +37,9 @@ Layout layout_of(const FieldLook& field, const std::string& font, int picture_he
 
 Sticker legend_of(const FieldLook& field, const std::string& font, int height) {
   if (field.title.empty() || font.empty()) return {};
-  const Layout layout = layout_of(field, font, height);
+  const LegendLayout layout = layout_of(field, font, height);
   Sticker legend(layout.width, layout.height);
-  legend.plate({0, 0, layout.width, layout.height}, 0.5 * layout.em, paper, plate_opacity);
+  legend.plate({0, 0, layout.width, layout.height}, 0.5 * layout.em, paper, legend_opacity);
   legend.text(font, field.title, layout.em, layout.pad, layout.pad, ink);
   const int top = layout.bar_top(), left = layout.pad;
   for (int row = 0; row < layout.bar_height; ++row) {

@@ -13,8 +13,8 @@
 namespace supple {
 namespace {
 
-constexpr int motions = CoarseSystem::motions_of_cluster;
-using Block = Eigen::Matrix<double, motions, motions>;
+constexpr int rigid_motions = CoarseSystem::motions_of_cluster;
+using Block = Eigen::Matrix<double, rigid_motions, rigid_motions>;
 
 // Expresses a block in the motions of its clusters about their own centres, along the world's axes. turn: from the
 // group's frame to the world's; s: from the centres to the group's.
@@ -76,12 +76,13 @@ bool CoarseSystem::turn_to(const Positions& x) {
     for (const std::int32_t c : group.clusters) shift.push_back(cross_matrix(center - centers_[c]));
     for (std::size_t c = 0; c < group.clusters.size(); ++c) {
       for (std::size_t d = 0; d <= c; ++d) {
-        const auto from = static_cast<Eigen::Index>(motions * c), to = static_cast<Eigen::Index>(motions * d);
-        const Eigen::Index row = motions * group.clusters[c], column = motions * group.clusters[d];
-        constant_.block<motions, motions>(row, column) +=
-            turned(group.constant.block<motions, motions>(from, to), turn, shift[c], shift[d]);
-        hessian_.block<motions, motions>(row, column) +=
-            turned(group.hessian.block<motions, motions>(from, to), turn, shift[c], shift[d]);
+        const auto from = static_cast<Eigen::Index>(rigid_motions * c),
+                   to = static_cast<Eigen::Index>(rigid_motions * d);
+        const Eigen::Index row = rigid_motions * group.clusters[c], column = rigid_motions * group.clusters[d];
+        constant_.block<rigid_motions, rigid_motions>(row, column) +=
+            turned(group.constant.block<rigid_motions, rigid_motions>(from, to), turn, shift[c], shift[d]);
+        hessian_.block<rigid_motions, rigid_motions>(row, column) +=
+            turned(group.hessian.block<rigid_motions, rigid_motions>(from, to), turn, shift[c], shift[d]);
       }
     }
   }
@@ -136,13 +137,13 @@ void CoarseSystem::restrict(const Model& model, const Positions& x, const Positi
   for (int chunk = 0; chunk < chunks; ++chunk) {
     const double* sums = partial_.data() + std::size_t(chunk) * count * cluster_numbers;
     for (int c = 0; c < count; ++c) {
-      result.segment<3>(motions * c) += Eigen::Map<const Vec3>(sums + cluster_numbers * c);
-      result.segment<3>(motions * c + 3) += Eigen::Map<const Vec3>(sums + cluster_numbers * c + 4);
+      result.segment<3>(rigid_motions * c) += Eigen::Map<const Vec3>(sums + cluster_numbers * c);
+      result.segment<3>(rigid_motions * c + 3) += Eigen::Map<const Vec3>(sums + cluster_numbers * c + 4);
     }
   }
   for (int c = 0; c < count; ++c) {
-    const Vec3 force = result.segment<3>(motions * c);
-    result.segment<3>(motions * c + 3) -= (centers_[c] - centers_[0]).cross(force);
+    const Vec3 force = result.segment<3>(rigid_motions * c);
+    result.segment<3>(rigid_motions * c + 3) -= (centers_[c] - centers_[0]).cross(force);
   }
 }
 
@@ -152,8 +153,8 @@ Vec3 CoarseSystem::prolong(const Model& model, const Positions& x, const Eigen::
   const Four origin = load_three(centers_[0].data());
   by_cluster_.resize(std::size_t(count) * cluster_numbers);
   for (int c = 0; c < count; ++c) {
-    const Vec3 turn = y.segment<3>(motions * c + 3);
-    const Vec3 shift = y.segment<3>(motions * c) - turn.cross(centers_[c] - centers_[0]);
+    const Vec3 turn = y.segment<3>(rigid_motions * c + 3);
+    const Vec3 shift = y.segment<3>(rigid_motions * c) - turn.cross(centers_[c] - centers_[0]);
     Eigen::Map<Eigen::Matrix<double, cluster_numbers, 1>>(&by_cluster_[std::size_t(c) * cluster_numbers]) << shift, 0,
         turn, 0;
   }
@@ -230,8 +231,8 @@ void CoarseSystem::restrict_one(std::int32_t vertex, const Vec3& force, const Po
     const Vec3 part = clusters_.weight[vertex][k] * force;
     const Vec3 torque = (x.row(vertex).transpose() - centers_[c]).cross(part);
     for (int i = 0; i < 3; ++i) {
-      sums[motions * c + i] += part[i];
-      sums[motions * c + 3 + i] += torque[i];
+      sums[rigid_motions * c + i] += part[i];
+      sums[rigid_motions * c + 3 + i] += torque[i];
     }
   }
 }

@@ -6,7 +6,7 @@
 namespace supple {
 namespace {
 
-constexpr int most_marches = 200;  // of a ray; one that needs more only grazes the surface
+constexpr int most_marches_of_ray = 200;  // of a ray; one that needs more only grazes the surface
 // Below this angle, the arc through a turning frame leaves its chord by less than 0.13 % of the distance to the axis.
 constexpr double least_bend = 0.1;
 
@@ -99,7 +99,7 @@ std::optional<double> ColliderView::meets(const Way& way, double from, double to
   const bool straight = !bends_;
   if (straight && shape_.knows_entries() && collider_.thickness <= 0) return shape_.entry(start, end);
   double gone = 0, field = field_at_start;
-  for (int march = 0; march < most_marches && field > close; ++march) {
+  for (int march = 0; march < most_marches_of_ray && field > close; ++march) {
     gone += clear(field);
     if (gone >= length || gone > latest * length) return std::nullopt;
     const double share = gone / length;

@@ -11,7 +11,7 @@ namespace supple {
 namespace {
 
 constexpr int group_size = 64;           // consecutive triangles
-constexpr int groups_a_chunk = 4;        // a thread takes so many; fixed, so that results do not depend on threads
+constexpr int face_groups_a_chunk = 4;   // a thread takes so many; fixed, so that results do not depend on threads
 constexpr double least_weight = 1e-3;    // a point with a smaller one belongs to the opposite edge
 constexpr double same_place = 2;         // points nearer to each other than this, over the slack, are one
 constexpr double same_weight = 0.1;      // points whose weights differ by less are one
@@ -202,12 +202,12 @@ bool is_known(const FacePoints& faces, const FacePoints::Candidate& candidate, c
 
 // Runs a search over all groups, and adds the points that are new in the order of the triangles.
 void search_all(const TriangleSearch& search, Threads* threads, FacePoints& faces) {
-  const int groups = groups_of(search.model), chunks = (groups + groups_a_chunk - 1) / groups_a_chunk;
+  const int groups = groups_of(search.model), chunks = (groups + face_groups_a_chunk - 1) / face_groups_a_chunk;
   faces.by_chunk.resize(chunks);
   run_chunks(threads, chunks, long(search.model.surface.rows()) * 4, [&](int chunk) {
     std::vector<FacePoints::Candidate>& found = faces.by_chunk[chunk];
     found.clear();
-    for (int group = chunk * groups_a_chunk; group < std::min(groups, (chunk + 1) * groups_a_chunk); ++group)
+    for (int group = chunk * face_groups_a_chunk; group < std::min(groups, (chunk + 1) * face_groups_a_chunk); ++group)
       search.examine_group(group, found);
   });
   for (const auto& list : faces.by_chunk) {

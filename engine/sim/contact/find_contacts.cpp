@@ -14,7 +14,7 @@
 namespace supple {
 namespace {
 
-constexpr int groups_a_chunk = 8;  // a thread takes so many; fixed, so that results do not depend on threads
+constexpr int vertex_groups_a_chunk = 8;  // a thread takes so many; fixed, so that results do not depend on threads
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double furthest_way_out = 100;  // that is looked for, over the body's size
 
@@ -125,7 +125,7 @@ void begin_contacts(const Model& model, const StepInputs& inputs, const Position
   work.group_distance.resize(colliders * groups);
   work.collider_move.resize(colliders * groups);
   measure_moves(model, y, work, work.group_free_move);
-  work.by_chunk.resize((groups + groups_a_chunk - 1) / groups_a_chunk);
+  work.by_chunk.resize((groups + vertex_groups_a_chunk - 1) / vertex_groups_a_chunk);
   work.traits.clear();
   for (const Collider& collider : *inputs.colliders)
     work.traits.push_back(
@@ -259,7 +259,8 @@ void find_contacts(const Model& model, const StepInputs& inputs, const Positions
     run_chunks(threads, chunks, questions, [&](int chunk) {
       std::vector<Contact>& list = work.by_chunk[chunk];
       list.clear();
-      for (int group = chunk * groups_a_chunk; group < std::min(groups, (chunk + 1) * groups_a_chunk); ++group) {
+      for (int group = chunk * vertex_groups_a_chunk; group < std::min(groups, (chunk + 1) * vertex_groups_a_chunk);
+           ++group) {
         search.near(c, view, group, [&](int v, const Way& way, double field, double reach) {
           planes.of_vertex(v, way, field, reach, search.memory(c, v), list);
         });

@@ -6,9 +6,9 @@
 namespace supple {
 namespace {
 
-constexpr std::size_t most_asked = 64;  // points whose normals are tried as directions
-constexpr int most_marches = 100;       // through the inside of a collider
-constexpr int most_rounds = 6;          // of going further because other points have come in
+constexpr std::size_t most_asked = 64;    // points whose normals are tried as directions
+constexpr int most_marches_inside = 100;  // through the inside of a collider
+constexpr int most_rounds = 6;            // of going further because other points have come in
 
 // Adds a direction, unless one is there that differs by less than 15 degrees.
 void add_direction(const Vec3& v, std::vector<Vec3>& directions) {
@@ -55,7 +55,7 @@ double further(const Obstacles& obstacles, const std::vector<Point>& points, con
     double at = gone, field = at > 0 ? obstacles.distance(p.place + at * direction) : p.distance;
     if (field >= -tolerated) continue;
     int march = 0;
-    for (; field < 0 && march < most_marches && at <= furthest; ++march) {
+    for (; field < 0 && march < most_marches_inside && at <= furthest; ++march) {
       at += std::max(obstacles.clear(field), 1e-6 * furthest);
       field = obstacles.distance(p.place + at * direction);
     }

@@ -18,6 +18,8 @@ constexpr int most_fields = 10;
 constexpr int corners_of(ElementKind kind) {
   return kind == ElementKind::tetrahedron ? Tetrahedron::corners : SpringElement::corners;
 }
+// Counts the pairs (a, b), a >= b, of an element's corners.
+constexpr int corner_pairs(int corners) { return corners * (corners + 1) / 2; }
 constexpr int fields_of(ElementKind kind) {
   return kind == ElementKind::tetrahedron ? Tetrahedron::fields : SpringElement::fields;
 }

@@ -8,9 +8,6 @@
 namespace supple {
 namespace {
 
-// Counts the pairs (a, b), a >= b, of an element's corners.
-constexpr int pairs_of(int corners) { return corners * (corners + 1) / 2; }
-
 double packed(const double* numbers, int i, int j) {
   return i >= j ? numbers[i * (i + 1) / 2 + j] : numbers[j * (j + 1) / 2 + i];
 }
@@ -103,7 +100,7 @@ ElasticHessian::ElasticHessian(const Model& model) {
   for (std::size_t c = 0; c < model.chunks.size(); ++c) {
     const Model::ChunkRange& range = model.chunks[c];
     first_place_.push_back(places_.size());
-    places_.resize(places_.size() + std::size_t(range.blocks) * block_width * pairs_of(corners_of(range.kind)),
+    places_.resize(places_.size() + std::size_t(range.blocks) * block_width * corner_pairs(corners_of(range.kind)),
                    Place{0, 0, -1, false});
   }
   std::size_t chunk = 0;
@@ -112,7 +109,7 @@ ElasticHessian::ElasticHessian(const Model& model) {
     const int corners = corners_of(element.kind);
     Place* place =
         &places_[first_place_[chunk] +
-                 std::size_t(element.lane - model.chunks[chunk].first_block * block_width) * pairs_of(corners)];
+                 std::size_t(element.lane - model.chunks[chunk].first_block * block_width) * corner_pairs(corners)];
     for (int a = 0; a < corners; ++a) {
       for (int b = 0; b <= a; ++b, ++place) {
         const std::int32_t i = element.corner[a], j = element.corner[b];
@@ -146,7 +143,7 @@ void ElasticHessian::assemble(const Model& model, const ElementMatrices& element
   double full[12][12];
   for (std::size_t c = 0; c < model.chunks.size(); ++c) {
     const Model::ChunkRange& range = model.chunks[c];
-    const int corners = corners_of(range.kind), pairs = pairs_of(corners), numbers = stiffness_numbers(range.kind);
+    const int corners = corners_of(range.kind), pairs = corner_pairs(corners), numbers = stiffness_numbers(range.kind);
     const std::int32_t* list = model.chunk_vertex.data() + range.first_vertex;
     for (int lane = 0; lane < range.blocks * block_width; ++lane) {
       if (model.element_of_lane[range.first_block * block_width + lane] < 0) continue;

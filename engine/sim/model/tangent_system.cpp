@@ -15,9 +15,6 @@ namespace {
 constexpr std::uint64_t tangent_ids = std::uint64_t(1) << 63;               // tells them from those of models
 constexpr std::int32_t nowhere = std::numeric_limits<std::int32_t>::min();  // two vertices that are held, or padding
 
-// Pairs of corners (a, b), b <= a.
-constexpr int pairs_of(int corners) { return corners * (corners + 1) / 2; }
-
 }  // namespace
 
 struct TangentSystem::Parts : System {
@@ -45,12 +42,12 @@ TangentSystem::Parts::Parts(const Model& of) : System(of), structure(of.structur
     first_place.push_back(place.size());
     first_number.push_back(numbers.size());
     const std::size_t lanes_of_chunk = std::size_t(range.blocks) * block_width;
-    place.resize(place.size() + lanes_of_chunk * pairs_of(corners_of(range.kind)), nowhere);
+    place.resize(place.size() + lanes_of_chunk * corner_pairs(corners_of(range.kind)), nowhere);
     numbers.resize(numbers.size() + lanes_of_chunk * scalar_numbers(range.kind));
     for_each_element(of, range, [&](const ElementView& element) {
       const int corners = corners_of(element.kind);
-      std::int32_t* to =
-          &place[first_place.back() + std::size_t(element.lane - range.first_block * block_width) * pairs_of(corners)];
+      std::int32_t* to = &place[first_place.back() +
+                                std::size_t(element.lane - range.first_block * block_width) * corner_pairs(corners)];
       for (int a = 0; a < corners; ++a) {
         for (int b = 0; b <= a; ++b) *to++ = place_of(of, element.corner[a], element.corner[b]);
       }
@@ -79,22 +76,22 @@ void TangentSystem::Parts::add_elements(const Model& of) {
   const double scale = shares.tangent * of.scheme.energy * of.scheme.theta * of.scheme.theta;
   for (std::size_t c = 0; c < of.chunks.size(); ++c) {
     const Model::ChunkRange& range = of.chunks[c];
-    const int inner = corners_of(range.kind) - 1, pairs = pairs_of(inner + 1), count = scalar_numbers(range.kind);
+    const int inner = corners_of(range.kind) - 1, pairs = corner_pairs(inner + 1), count = scalar_numbers(range.kind);
     const std::int32_t* to = &place[first_place[c]];
     const double* from = &numbers[first_number[c]];
-    double entry[pairs_of(most_corners)];
+    double entry[corner_pairs(most_corners)];
     for (int lane = 0; lane < range.blocks * block_width; ++lane, to += pairs, from += count) {
       double first[most_corners] = {};  // the first corner's column
       for (int a = 0, at = 0; a < inner; ++a) {
         for (int b = 0; b <= a; ++b, ++at) {
-          entry[pairs_of(a + 1) + b + 1] = from[at];
+          entry[corner_pairs(a + 1) + b + 1] = from[at];
           first[a] -= from[at];
           if (b < a) first[b] -= from[at];
         }
       }
       entry[0] = 0;
       for (int a = 0; a < inner; ++a) {
-        entry[pairs_of(a + 1)] = first[a];
+        entry[corner_pairs(a + 1)] = first[a];
         entry[0] -= first[a];
       }
       for (int p = 0; p < pairs; ++p) {

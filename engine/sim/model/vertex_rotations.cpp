@@ -10,7 +10,7 @@ namespace {
 
 constexpr int entries = 9;
 constexpr int row_numbers = 4, rotation_numbers = 3 * row_numbers;
-constexpr int blocks_a_chunk = 16;
+constexpr int rotation_blocks_a_chunk = 16;
 
 // Holds a row in a register, which the compiler splits where registers are narrower.
 typedef double RowOfFour __attribute__((vector_size(row_numbers * sizeof(double))));
@@ -56,28 +56,29 @@ VertexRotations::VertexRotations(const Model& model) : free_(model.free) {
 void VertexRotations::find(const Positions& x, Threads* threads, Rotations& rotations) const {
   rotations.resize(std::size_t(free_) * rotation_numbers);
   const int blocks = (free_ + block_width - 1) / block_width;
-  run_chunks(threads, (blocks + blocks_a_chunk - 1) / blocks_a_chunk, long(neighbor_.size()) * 20, [&](int chunk) {
-    const int first = chunk * blocks_a_chunk * block_width;
-    const int end = std::min(free_, first + blocks_a_chunk * block_width);
-    alignas(64) double matrices[blocks_a_chunk * entries * block_width] = {};
-    const auto place = [first](int v, int i) {
-      return (v - first) / block_width * entries * block_width + i * block_width + (v - first) % block_width;
-    };
-    for (int v = first; v < end; ++v) {
-      RowOfFour row[3] = {};
-      for (std::int32_t k = begin_[v]; k < begin_[v + 1]; ++k) {
-        const double* at = x.data() + 3 * std::size_t(neighbor_[k]);
-        const RowOfFour g = load(&weight_[row_numbers * std::size_t(k)]);
-        for (int i = 0; i < 3; ++i) row[i] += at[i] * g;
-      }
-      for (int i = 0; i < entries; ++i) matrices[place(v, i)] = row[i / 3][i % 3];
-    }
-    element_kernels().rotations(matrices, (end - first + block_width - 1) / block_width);
-    for (int v = first; v < end; ++v) {
-      double* to = &rotations[rotation_numbers * std::size_t(v)];
-      for (int i = 0; i < entries; ++i) to[i / 3 * row_numbers + i % 3] = matrices[place(v, i)];
-    }
-  });
+  run_chunks(threads, (blocks + rotation_blocks_a_chunk - 1) / rotation_blocks_a_chunk, long(neighbor_.size()) * 20,
+             [&](int chunk) {
+               const int first = chunk * rotation_blocks_a_chunk * block_width;
+               const int end = std::min(free_, first + rotation_blocks_a_chunk * block_width);
+               alignas(64) double matrices[rotation_blocks_a_chunk * entries * block_width] = {};
+               const auto place = [first](int v, int i) {
+                 return (v - first) / block_width * entries * block_width + i * block_width + (v - first) % block_width;
+               };
+               for (int v = first; v < end; ++v) {
+                 RowOfFour row[3] = {};
+                 for (std::int32_t k = begin_[v]; k < begin_[v + 1]; ++k) {
+                   const double* at = x.data() + 3 * std::size_t(neighbor_[k]);
+                   const RowOfFour g = load(&weight_[row_numbers * std::size_t(k)]);
+                   for (int i = 0; i < 3; ++i) row[i] += at[i] * g;
+                 }
+                 for (int i = 0; i < entries; ++i) matrices[place(v, i)] = row[i / 3][i % 3];
+               }
+               element_kernels().rotations(matrices, (end - first + block_width - 1) / block_width);
+               for (int v = first; v < end; ++v) {
+                 double* to = &rotations[rotation_numbers * std::size_t(v)];
+                 for (int i = 0; i < entries; ++i) to[i / 3 * row_numbers + i % 3] = matrices[place(v, i)];
+               }
+             });
 }
 
 void transpose(const Rotations& from, Rotations& to) {

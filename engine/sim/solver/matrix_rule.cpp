@@ -17,7 +17,7 @@ constexpr TangentShares shares{};
 constexpr double worn_progress = 0.1;
 constexpr double usual_progress = 0.25;  // of A, where it has not served lately
 constexpr double forgetting = 0.1;       // of what it did, in each step that it does not serve
-constexpr double round_off = 1e-12;
+constexpr double least_error = 1e-12;
 constexpr double most_departure_of_hessian = 0.2;
 constexpr int longest_age = 1000000;
 
@@ -91,7 +91,7 @@ namespace {
 // `report` is the whole step's.
 double progress_of(const StepReport& report) {
   if (report.newton_iterations > 0) return 1;
-  const double left = std::clamp(report.error_estimate, round_off, 1.0);
+  const double left = std::clamp(report.error_estimate, least_error, 1.0);
   return std::pow(left, 1.0 / std::max(report.line_search, 1));
 }
 
