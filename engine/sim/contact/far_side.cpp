@@ -39,7 +39,7 @@ class Plate {
   // Tells whether the straight way between two vertices leads through the plate from one side to the other. Where a
   // place beside the way, no further away than its length, is reached freely from both ends, the edge only cuts short a
   // way around the rim, and does not count.
-  bool parts(const SurfacePoint& at_a, const SurfacePoint& at_b, const Vec3& a, const Vec3& b) {
+  bool divides(const SurfacePoint& at_a, const SurfacePoint& at_b, const Vec3& a, const Vec3& b) {
     const double length = (b - a).norm();
     if (at_a.normal.dot(at_b.normal) > 0) return false;
     if (certainty_ * (std::max(0.0, at_a.distance) + std::max(0.0, at_b.distance)) > length) return false;
@@ -125,7 +125,7 @@ double reach_on_far_side(const Model& model, const Collider& collider, const Eig
   for (Eigen::Index t = 0; t < model.surface.rows(); ++t) {
     for (int k = 0; k < 3; ++k) {
       const int a = model.surface(t, k), b = model.surface(t, (k + 1) % 3);
-      if (near[a] != 0 && near[b] != 0 && plate.parts(closest_to(a), closest_to(b), place(a), place(b))) {
+      if (near[a] != 0 && near[b] != 0 && plate.divides(closest_to(a), closest_to(b), place(a), place(b))) {
         cut.push_back({a, b});
       } else {
         parts.join(a, b);
