@@ -6,7 +6,8 @@ LookDef read_look(const ConfigTable& root, LookDef look) {
   const auto table = root.table({"look", "", "ground, background and light"});
   if (!table) return look;
   look.backdrop = table->word<BackdropKind>(
-      {"backdrop", "", "a ground with shadows, the colour of the background alone, exactly as asked for, or pictures with coverage"},
+      {"backdrop", "",
+       "a ground with shadows, the colour of the background alone, exactly as asked for, or pictures with coverage"},
       look.backdrop);
   look.ground = table->color({"ground", "sRGB", "colour of the ground"}, look.ground);
   look.background = table->color({"background", "sRGB", "colour that the ground fades into"}, look.background);
@@ -14,6 +15,8 @@ LookDef read_look(const ConfigTable& root, LookDef look) {
       table->word<LightKind>({"light", "", "the lamps, and the tint that they give ground and background"}, look.light);
   look.exposure = table->number({"exposure", "", "multiplies the light"}, look.exposure, Range::above(0, 100));
   look.show_labels = table->boolean({"labels", "", "captions below the bodies"}, look.show_labels);
+  look.supports =
+      table->boolean({"supports", "", "plates, rings, rods and pins where handles hold bodies"}, look.supports);
   look.ghost = table->text({"ghost", "", "folder of a run whose bodies are seen beside these, half transparent"}, "");
   look.marks = table->boolean(
       {"marks", "", "squares where handles hold vertices, discs where vertices touch colliders"}, look.marks);
