@@ -14,7 +14,10 @@ namespace {
 
 // Sizes over the diagonal of the body's box. They are as small as can be seen in a picture of 640 pixels.
 constexpr double pin_radius = 0.012, rod_radius = 0.01;
+constexpr double largest_pin = 0.03;  // on a small part of a figure, such as the tip of an ear
+constexpr double small_part = 0.15;   // the largest such part
 constexpr double thinnest_plate = 0.012, thickest_plate = 0.03;
+constexpr double over_skin = 0.6;        // least radius of a pin over an element whose skin is finer
 constexpr double plate_by_face = 0.12;   // thickness over the face's size
 constexpr double margin_by_plate = 0.4;  // by how much a plate is wider than its face, over its thickness
 constexpr double inside_by_plate = 0.3;  // how far it reaches over the body, so that its face shows no seam
@@ -30,8 +33,10 @@ struct Frame {
   Bounds box;
   double size = 0;               // its diagonal [m]
   double edge = 0;               // the mean one of its surface [m]
+  double pin = 0, rod = 0;       // their radii [m]
   std::vector<char> on_surface;  // by vertex
   Triangles surface;             // that is seen
+  bool finer_skin = false;       // than the mesh is drawn
   std::vector<char> held = {};   // by vertex, by the handle that is looked at
 };
 
@@ -53,6 +58,11 @@ Frame frame_of(const Body& body) {
     }
   }
   frame.edge = sum / std::max(1.0, 3.0 * static_cast<double>(frame.surface.rows()));
+  // A skin that is finer than the mesh may lie half an element outside it.
+  frame.finer_skin = !body.def.shape.empty() || !body.def.surface.empty();
+  const double least = frame.finer_skin ? over_skin * frame.edge : 0;
+  frame.pin = std::max(pin_radius * frame.size, least);
+  frame.rod = std::max(rod_radius * frame.size, least);
   return frame;
 }
 
@@ -190,6 +200,11 @@ TriMesh plate_on(const Frame& frame, const Part& part, const Bounds& box, const 
   for (const std::int32_t v : part) {
     if (std::abs(frame.places(v, end.axis) - side) <= frame.edge) outer.push_back(v);
   }
+  // The tip of something pointed would have a plate too small to be seen, and inside a skin that is finer than the
+  // mesh.
+  Vec3 across = box_of(frame, outer).extent();
+  across[end.axis] = 0;
+  if (across.norm() < 4 * frame.pin) outer = part;
   const double thickness = plate_thickness(frame, box_of(frame, outer), end.axis);
   const double inside = (stands(frame, end, side) ? -below_ground : inside_by_plate) * thickness;
   const double outside = thickness - inside;
@@ -247,8 +262,8 @@ std::optional<TriMesh> clamp_on(const Frame& frame, const Part& part, const Boun
   extent.minCoeff(&axis);
   if (extent[axis] > 0.05 * frame.size) return std::nullopt;
   if (held_area(frame) < least_fill * extent[(axis + 1) % 3] * extent[(axis + 2) % 3]) return std::nullopt;
-  const double half = 0.5 * extent[axis] + rod_radius * frame.size, middle = box.center()[axis];
-  return prism_around(frame, part, axis, middle - half, middle + half, 2 * rod_radius * frame.size);
+  const double half = 0.5 * extent[axis] + frame.rod, middle = box.center()[axis];
+  return prism_around(frame, part, axis, middle - half, middle + half, 2 * frame.rod);
 }
 
 // Makes pins in vertices that are far from each other.
@@ -261,7 +276,7 @@ std::vector<TriMesh> pins_in(const Frame& frame, const Part& part) {
   std::vector<double> away(seen.size(), 1e300);  // from the nearest pin, squared
   while (!seen.empty() && pins.size() < most_pins) {
     const auto next = std::ranges::max_element(away) - away.begin();
-    const double radius = pin_radius * frame.size;
+    const double radius = frame.pin;
     if (away[std::size_t(next)] < 16 * radius * radius) break;
     const Vec3 place = frame.places.row(seen[std::size_t(next)]);
     pins.push_back(ball_at(place, radius));
@@ -275,14 +290,19 @@ std::vector<TriMesh> supports_in(const Frame& frame, const Part& part, bool clot
   const bool seen = std::ranges::any_of(part, [&](std::int32_t v) { return frame.on_surface[std::size_t(v)] != 0; });
   if (!seen) return {};
   const Bounds box = box_of(frame, part);
-  if (box.diagonal() <= 1e-6 * frame.size) return {ball_at(box.center(), pin_radius * frame.size)};
+  if (box.diagonal() <= 1e-6 * frame.size) return {ball_at(box.center(), frame.pin)};
   Vec3 from, to;
-  if (is_line(frame, part, from, to)) return {rod_between(from, to, rod_radius * frame.size)};
+  if (is_line(frame, part, from, to)) return {rod_between(from, to, frame.rod)};
   if (cloth) {
     if (const auto clamp = clamp_on(frame, part, box)) return {*clamp};
     return pins_in(frame, part);
   }
-  if (const auto end = end_of(frame, box)) return {plate_on(frame, part, box, *end)};
+  const auto end = end_of(frame, box);
+  const double across = box.diagonal();
+  const bool grabbed = frame.finer_skin && across < small_part * frame.size;
+  if (grabbed && !(end && stands(frame, *end, end->high ? box.upper[end->axis] : box.lower[end->axis])))
+    return {ball_at(box.center(), std::clamp(0.45 * across, frame.pin, std::max(frame.pin, largest_pin * frame.size)))};
+  if (end) return {plate_on(frame, part, box, *end)};
   if (const auto axis = slice_of(frame, box)) return {ring_around(frame, part, box, *axis)};
   return pins_in(frame, part);
 }

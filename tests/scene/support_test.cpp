@@ -98,6 +98,19 @@ TEST(Support, ARimOfClothHasPinsBecauseAClampWouldHideTheCloth) {
   }
 }
 
+TEST(Support, ASmallPartOfAFigureHasAPinThatStandsOutOfItsSkin) {
+  const Body ball = body_of(
+      "shape = \"shapes/sphere.toml\"\nvertices = 2000\nsize = 1\nposition = [0, 1, 0]\n"
+      "material = \"jelly\"\n" +
+      handle("fingers", "{ sphere = { center = [0.9, 0.8, 0.5], radius = 0.07 } }"));
+  const std::vector<Bounds> pins = boxes_of(ball);
+  ASSERT_EQ(pins.size(), 1u);
+  const double radius = 0.5 * pins[0].extent().x();
+  EXPECT_LT((pins[0].center() - Vec3(0.4, 1.8, 0)).norm(), 0.1);
+  EXPECT_GT((pins[0].center() - Vec3(0, 1.5, 0)).norm() + radius, 0.51);
+  EXPECT_LT(radius, 0.06);
+}
+
 TEST(Support, NothingIsSeenOfWhatHoldsNothingOrOnlyTheInside) {
   EXPECT_TRUE(supports_of(body_of(bar)).empty());
   EXPECT_TRUE(supports_of(body_of(bar + handle("inner", "{ box = [[0.1, 0.4, 0.4], [0.9, 0.6, 0.6]] }"))).empty());
