@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/solvers.h"
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
@@ -9,6 +10,7 @@
 #include "film/picture_words.h"
 #include "film/places.h"
 #include "film/progress.h"
+#include "film/rough_pictures.h"
 #include "output/json_text.h"
 #include "scene/script_trial.h"
 #include "scene/skin_report.h"
@@ -30,11 +32,12 @@ struct Checked {
   Script script;
   std::vector<Body> bodies;
   std::vector<DrawnBody> drawn;
+  std::vector<std::string> missing;  // in the pictures of a rough first pass
 };
 
 Checked read_all(const CheckCommand& command) {
   const SceneSource source = scene_source(command.scene);
-  Checked checked{Script::load(source, assets_folder(), command.settings), {}, {}};
+  Checked checked{Script::load(source, assets_folder(), command.settings), {}, {}, {}};
   const SceneDef& scene = checked.script.scene();
   if (scene.sweep_points > 0 && !checked.script.is_replay()) {
     check_sweep_points(source, assets_folder(), command.settings,
@@ -46,6 +49,12 @@ Checked read_all(const CheckCommand& command) {
     checked.drawn = drawn_bodies(checked.bodies, making_with(!command.no_cache, line));
   }
   try_changes(checked.script, checked.bodies);
+  FilmPlan plan;
+  plan.scene = source.path.string();
+  plan.scene_text = source.text;
+  plan.settings = command.settings;
+  plan.cache = !command.no_cache;
+  checked.missing = missing_in_rough_pictures(plan, all_solvers());
   return checked;
 }
 
@@ -71,6 +80,8 @@ std::vector<Warning> warnings_of(const Checked& checked) {
   }
   if (auto letters = letters_warning(checked.script, caption_font()))
     list.push_back({std::nullopt, std::move(*letters)});
+  for (const std::string& one : checked.missing)
+    list.push_back({std::nullopt, {{checked.bodies.front().def.place.source}, one}});
   for (std::size_t b = 0; b < checked.bodies.size(); ++b) {
     if (auto warning = skin_warning(checked.bodies[b], checked.drawn[b])) list.push_back(std::move(*warning));
   }

@@ -8,12 +8,30 @@
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
+#include "base/near_files.h"
 #include "film/places.h"
 #include "geometry/mesh_file.h"
 #include "scene/model_scene.h"
 
 namespace supple {
 namespace {
+
+// Refuses a name that leads nowhere, where something with a name like it can be looked at: a run, a model or a scene. A
+// name without a folder may also mean a scene that ships.
+void refuse_mistyped(const std::string& input) {
+  std::vector<std::string> shipped;
+  for (const char* kind : {"scenes", "replays"})
+    for (std::string& name : shipped_names(kind)) shipped.push_back(std::move(name));
+  std::error_code error;
+  const bool known = input == "-" || std::filesystem::exists(input, error) || std::ranges::count(shipped, input) > 0;
+  if (known) return;
+  const auto shows = [](const std::filesystem::path& entry) {
+    return is_run(entry) || entry.extension() == ".toml" || is_model(entry) || is_mesh_file(entry);
+  };
+  if (std::filesystem::path(input).has_parent_path()) shipped.clear();
+  const std::filesystem::path near = near_file(input, shows, shipped);
+  if (!near.empty()) throw InputError(input, (is_run(near) ? "no such folder" : "no such file") + meant_file(near));
+}
 
 // The kind of an input follows from what is on the disk: a folder is a run, files with the endings of meshes and
 // surfaces are models, and all else is a scene.
@@ -32,6 +50,7 @@ int inform(const std::string& input, bool live) {
     say(stdout, mesh_summary(file.mesh));
     return 0;
   }
+  refuse_mistyped(input);
   const SceneSource scene = scene_source(input);
   if (is_model(scene.path)) {
     say(stdout, surface_summary(scene.path));

@@ -53,6 +53,7 @@ DrawnFilm::DrawnFilm(const Script& script, const std::vector<Body>& bodies, std:
   stage_ = make_stage(scene, bodies, drawn_, set.obstacles, collider_skins_, font);
   stage_.graphs = graph_looks(scene, 0);
   stage_.camera_moves = moves_camera(script);
+  if (scene.look.supports) supports_.emplace(bodies, stage_);
   if (!scene.look.ghost.empty()) add_ghosts(scene, bodies);
   if (scene.field.quantity != FieldQuantity::none) field_.emplace(scene, bodies);
   for (std::size_t b = 0; b < bodies.size() && field_; ++b) stage_.meshes[b].mapped = field_->shown_on(b);
@@ -154,6 +155,7 @@ DrawList DrawnFilm::list(const SceneDef& scene, const FramePose& pose, const Col
       result.field.push_back(values[b].empty() ? std::vector<float>() : field_->on_skin(drawn_[b], values[b]));
   }
   add_colliders(set.obstacles, collider_skins_, pose.time, result);
+  if (supports_) supports_->add_to(result, scene, pose);
   for (std::size_t b = 0; b < bodies && ghosts_; ++b)
     result.positions.push_back(
         skin_positions(drawn_[b], bodies_[b].description.mesh, ghosts_->at(b, pose.frame), &threads));

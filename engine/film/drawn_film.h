@@ -9,6 +9,7 @@
 
 #include "film/camera.h"
 #include "film/draw_scene.h"
+#include "film/drawn_supports.h"
 #include "film/surface_field.h"
 #include "scene/script.h"
 
@@ -30,12 +31,12 @@ class DrawnFilm {
   // positions as motion/ holds them.
   DrawList list(const SceneDef& scene, const FramePose& pose, const CollisionSet& set, Threads& threads);
 
-  // Returns how far a body's skin is stretched beyond its elements in a list (draw_scene.h). now: the positions of its
-  // mesh [m].
   // Returns the share of a body's surface that lies within the borders of a frame's picture.
   double share_in_picture(std::size_t body, const DrawList& list) const {
     return supple::share_in_picture(list.camera, stage_, list.positions[body]);
   }
+  // Returns how far a body's skin is stretched beyond its elements in a list (draw_scene.h). now: the positions of its
+  // mesh [m].
   std::optional<double> skin_excess_of(std::size_t body, const DrawList& list, const TetMesh& mesh,
                                        const Positions& now) const {
     return skin_excess(drawn_[body], list.positions[body], mesh, now);
@@ -70,8 +71,9 @@ class DrawnFilm {
   SceneDef start_;  // of the film
   std::vector<DrawnBody> drawn_;
   std::vector<Skin> collider_skins_;
-  std::optional<ReferenceRun> ghosts_;  // whose bodies are the stage's last meshes
-  std::optional<SurfaceField> field_;   // where the scene shows one
+  std::optional<DrawnSupports> supports_;  // where the scene shows them
+  std::optional<ReferenceRun> ghosts_;     // whose bodies are the stage's last meshes
+  std::optional<SurfaceField> field_;      // where the scene shows one
   Stage stage_;
   double longest_steps_ = 0;          // of the film's frames [ms]; 0: not known
   std::vector<std::size_t> renewed_;  // colliders, since the last list

@@ -33,16 +33,16 @@ std::string RunRecord::ended() const {
   return info.contains("ended") && info["ended"].is_string() ? info["ended"].get<std::string>() : "not known";
 }
 
+bool is_run(const std::filesystem::path& folder) {
+  std::error_code error;
+  return std::filesystem::exists(folder / "run.json", error);
+}
+
 RunRecord read_run(const std::filesystem::path& folder) {
   std::error_code error;
-  if (!std::filesystem::is_directory(folder, error)) {
-    const auto is_run = [&error](const std::filesystem::path& entry) {
-      return std::filesystem::exists(entry / "run.json", error);
-    };
+  if (!std::filesystem::is_directory(folder, error))
     throw InputError(folder.string(), "no such folder" + meant_file(near_file(folder, is_run)));
-  }
-  if (!std::filesystem::exists(folder / "run.json", error))
-    throw InputError(folder.string(), "there is no run.json in it: this is not the folder of a run");
+  if (!is_run(folder)) throw InputError(folder.string(), "there is no run.json in it: this is not the folder of a run");
   RunRecord record;
   record.folder = folder;
   const Json info = json_if_valid<Json>(read_file(folder / "run.json"));

@@ -22,6 +22,9 @@ struct RunRecord {
   std::string ended() const;
 };
 
+// Tells whether a folder holds a run.
+bool is_run(const std::filesystem::path& folder);
+
 // Throws InputError naming the folder or file when there is no such folder, no run.json in it, or one of the two files
 // is damaged. A folder without profile.json is read; has_profile tells.
 RunRecord read_run(const std::filesystem::path& folder);

@@ -8,8 +8,6 @@
 namespace supple {
 namespace {
 
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 PixelRect widened(const PixelRect& r, int by) { return {r.x - by, r.y - by, r.width + 2 * by, r.height + 2 * by}; }
 
 bool is_free(const PixelRect& place, const std::vector<PixelRect>& taken, const std::vector<Outline>& bodies) {
@@ -35,27 +33,6 @@ std::optional<PixelRect> place_of(const WantedCaption& caption, const std::vecto
 }
 
 }  // namespace
-
-// By Andrew's monotone chain (1979).
-Outline hull_of(std::vector<Eigen::Vector2d> points) {
-  std::ranges::sort(points,
-                    [](const auto& a, const auto& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); });
-  Outline hull;
-  const auto add_chain = [&hull](auto begin, auto end) {
-    const std::size_t first = hull.size();
-    for (auto point = begin; point != end; ++point) {
-      while (hull.size() >= first + 2 &&
-             cross(hull.back() - hull[hull.size() - 2], *point - hull[hull.size() - 2]) <= 0)
-        hull.pop_back();
-      hull.push_back(*point);
-    }
-    hull.pop_back();
-  };
-  if (points.size() < 3) return points;
-  add_chain(points.begin(), points.end());
-  add_chain(points.rbegin(), points.rend());
-  return hull;
-}
 
 // By the separating axis theorem: the axes are those of the rectangle and the normals of the outline's edges.
 bool overlaps(const PixelRect& rectangle, const Outline& outline) {

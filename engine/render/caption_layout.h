@@ -12,8 +12,6 @@ namespace supple {
 
 using Outline = std::vector<Eigen::Vector2d>;  // corners of a convex polygon, in order
 
-// Returns the convex hull of points.
-Outline hull_of(std::vector<Eigen::Vector2d> points);
 bool overlaps(const PixelRect& rectangle, const Outline& outline);
 
 // Describes a caption that wants a place: the middle of its upper edge, and its size.

@@ -1,5 +1,6 @@
 #include "render/projection.h"
 
+#include "base/convex_hull.h"
 #include "render/view.h"
 
 namespace supple {

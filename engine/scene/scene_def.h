@@ -263,6 +263,7 @@ struct LookDef {
   Vec3 background = Vec3(0.851, 0.871, 0.902);  // sRGB
   double exposure = 1;
   bool show_labels = true;
+  bool supports = true;         // what holds the bodies is seen
   std::filesystem::path ghost;  // folder of a run whose bodies are seen through these; empty: none
   bool marks = false;           // where handles hold vertices, and where vertices touch colliders
   bool wireframe = false;       // bodies are drawn as their elements, with the elements' edges

@@ -21,7 +21,7 @@ using test::run;
 
 constexpr int frames = 12;
 
-// Holds a run of a bar and a cloth above a ball, whose size, label and camera a replay changes.
+// Holds a run of a bar that a handle turns and a cloth above a ball, whose size, label and camera a replay changes.
 class DrawnRun : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -32,6 +32,10 @@ name = "bar"
 box = { extent = [0.4, 0.1, 0.1], cells = [8, 2, 2] }
 position = [0, 0.3, 0]
 material = { model = "neo-hookean", mu = 2e4, lambda = 4e4 }
+[[body.handles]]
+name = "end"
+select = { box = [[0, 0, 0], [0, 1, 1]] }
+keys = [{ t = 0 }, { t = 0.4, turn_deg = [0, 0, 30] }]
 [[body]]
 name = "sheet"
 cloth = { extent = [0.4, 0.4], cells = [8, 8], stretch = 100, bend = 1 }

@@ -207,6 +207,15 @@ TEST(Info, TellsOfAMeshAndRefusesTheRest) {
                {"vertices        ", "dihedral angles ", "boundary        manifold"});
   EXPECT_EQ(run(folder.path, {"info", "none"}).err, "none: no such file\n");
   EXPECT_EQ(run(folder.path, {"info", "squirel"}).err, "squirel: no such file; did you mean 'squirrel'?\n");
+  std::filesystem::create_directories(folder.path / "out" / "squirrel");
+  std::filesystem::create_directories(folder.path / "out" / "squirrels-notes");
+  std::ofstream(folder.path / "out" / "squirrel" / "run.json") << "{}";
+  EXPECT_EQ(run(folder.path, {"info", "out/squirel"}).err,
+            "out/squirel: no such folder; did you mean 'out/squirrel'?\n");
+  EXPECT_EQ(run(folder.path / "out", {"info", "squirrl"}).err, "squirrl: no such folder; did you mean 'squirrel'?\n");
+  std::ofstream(folder.path / "out" / "heavy.toml") << bar_scene;
+  EXPECT_EQ(run(folder.path, {"info", "out/heavi.toml"}).err,
+            "out/heavi.toml: no such file; did you mean 'out/heavy.toml'?\n");
   EXPECT_EQ(run(folder.path, {"info", "none.toml"}).status, 2);
   EXPECT_EQ(run(folder.path, {"info", "none.mesh"}).status, 2);
   std::filesystem::create_directory(folder.path / "empty");

@@ -139,7 +139,7 @@ TEST(Check, LeavesOutWarningsThatAreMeantButInJson) {
         << "[[body]]\nname = \"ball\"\nbox = { extent = [1, 1, 1], cells = [2, 2, "
            "2] }\nmaterial = \"jelly\"\n"
         << meant;
-    more.insert(more.begin(), {"check", "s.toml"});
+    more.insert(more.begin(), {"check", "s.toml", "--set", "camera.follow=ball"});  // so that it stays in the picture
     return run(program.folder.path, more);
   };
   EXPECT_NE(checked("").out.find(falls), std::string::npos) << checked("").out;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "base/convex_hull.h"
 #include "film/camera.h"
 #include "film/draw_scene.h"
 #include "film/film_graphs.h"

@@ -298,6 +298,39 @@ TEST(Golden, MarksShowHandlesAndContacts) {
   expect_golden("marks", {written_for_tests("field"), {"look.marks=true"}}, {{{"look.marks=false"}, {}, true}});
 }
 
+TEST(Golden, SupportsAreSeenWhereHandlesHold) {
+  const Shot shot = {written_for_tests("supports")};
+  const Removal without = {{"look.supports=false"}, {}, true};
+  expect_golden("supports", shot, {without});
+  Picture picture = picture_of(shot);
+  const auto supports = std::ranges::count_if(picture.stage.meshes, [](const DrawMesh& mesh) { return !mesh.framed; });
+  EXPECT_EQ(supports, 5);
+  EXPECT_EQ(picture.list.positions.size(), picture.stage.meshes.size());
+
+  // The camera frames the same without them.
+  const Picture bare = picture_of(shot, without.settings);
+  EXPECT_EQ(bare.stage.meshes.size() + 5, picture.stage.meshes.size());
+  EXPECT_EQ(bare.list.camera.eye, picture.list.camera.eye);
+}
+
+// They go along with what is held, and are seen only while the handle holds.
+TEST(Golden, SupportsMoveWithTheirHandlesAndGoWithThem) {
+  const Shot moved = {written_for_tests("supports"), {"body.bar.handles.end.keys=[{ t = 0, move = [0, 0.2, 0] }]"}, 1};
+  const Picture still = picture_of({moved.scene, {}, 1}), up = picture_of(moved);
+  const std::size_t plate = 4;  // after the four bodies
+  ASSERT_FALSE(still.stage.meshes[plate].framed);
+  ASSERT_EQ(still.list.positions[plate].size(), up.list.positions[plate].size());
+  for (std::size_t i = 0; i < still.list.positions[plate].size(); ++i)
+    EXPECT_NEAR(up.list.positions[plate][i] - still.list.positions[plate][i], i % 3 == 1 ? 0.2 : 0, 1e-5);
+
+  const std::vector<std::string> free = {"body.bar.handles.end.stiffness=1e3", "body.bar.handles.end.from=0.5"};
+  std::vector<std::string> bare = free;
+  bare.emplace_back("look.supports=false");
+  const Shot bar_alone = {written_for_tests("supports-of-one")};
+  EXPECT_NE(draw(picture_of(bar_alone)).rgb, draw(picture_of(bar_alone, {"look.supports=false"})).rgb);
+  EXPECT_EQ(draw(picture_of(bar_alone, free)).rgb, draw(picture_of(bar_alone, bare)).rgb);
+}
+
 TEST(Golden, AGhostOfAnotherRunIsSeenThroughTheBodies) {
   const test::TemporaryFolder run;
   std::filesystem::create_directories(run.path / "motion");

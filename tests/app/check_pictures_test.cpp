@@ -1,0 +1,107 @@
+// Tests what `supple check` says of pictures that will miss a body.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "app/solvers.h"
+#include "film/places.h"
+#include "film/rough_pictures.h"
+#include "support/bodies.h"
+#include "support/program.h"
+
+namespace supple {
+namespace {
+
+using test::run;
+
+constexpr const char* boxes = R"(frames = 40
+gravity = [0, 0, 0]
+[[body]]
+name = "still"
+box = { extent = [0.2, 0.2, 0.2], cells = [4, 4, 4] }
+position = [0, 0.2, 0]
+material = "rubber"
+[[body]]
+name = "rising"
+box = { extent = [0.2, 0.2, 0.2], cells = [4, 4, 4] }
+position = [0.5, 0.2, 0]
+velocity = [0, 2, 0]
+material = "rubber"
+)";
+
+std::string checked(const std::filesystem::path& folder, const std::string& camera,
+                    const std::vector<std::string>& more = {}) {
+  std::ofstream(folder / "s.toml") << boxes << camera;
+  std::vector<std::string> words = {"check", "s.toml"};
+  words.insert(words.end(), more.begin(), more.end());
+  const test::Result result = run(folder, words);
+  EXPECT_EQ(result.status, 0) << result.err;
+  return result.out;
+}
+
+TEST(CheckPictures, NameTheBodyThatLeavesThemAndTheFirstFrame) {
+  const test::TemporaryFolder folder;
+  const std::string out = checked(folder.path, "");
+  EXPECT_NE(out.find("warning: s.toml: in the rough first pass of the film, body 'rising' is out of the picture in "),
+            std::string::npos)
+      << out;
+  EXPECT_NE(out.find(" of 40 frames, first in frame "), std::string::npos) << out;
+  EXPECT_EQ(out.find("body 'still' is out"), std::string::npos) << out;
+
+  // What it says is what render says of the film.
+  const std::size_t begin = out.find("body 'rising'");
+  const std::string words = out.substr(begin, out.find('\n', begin) - begin);
+  const test::Result rendered = run(folder.path, {"render", "s.toml", "--quiet", "--no-video", "--set",
+                                                  "output.width=96", "--set", "output.height=54"});
+  EXPECT_NE(rendered.err.find(words), std::string::npos) << words << '\n' << rendered.err;
+
+  EXPECT_EQ(checked(folder.path, "[camera]\nframes = \"film\"\n").find("rough"), std::string::npos);
+  EXPECT_EQ(checked(folder.path, "", {"--set", "body.rising.velocity=[0, 0, 0]"}).find("rough"), std::string::npos);
+}
+
+TEST(CheckPictures, SayThatNoneShowsABody) {
+  const test::TemporaryFolder folder;
+  const std::string out = checked(folder.path, "[camera]\nposition = [0, 1, 3]\ntarget = [0, 1, 9]\n");
+  EXPECT_NE(out.find("in the rough first pass of the film, no picture shows a body; camera.frames"), std::string::npos)
+      << out;
+}
+
+TEST(CheckPictures, AreThoseOfTheStartWhereAFrameWouldTakeTooLong) {
+  const test::TemporaryFolder folder;
+  const std::vector<std::string> slow = {"--set", "substeps=1000", "--set", "body.still.box.cells=[20, 20, 20]"};
+  const std::string camera = "[camera]\nposition = [0, 1, 3]\ntarget = [0, 1, 9]\n";
+  const std::string out = checked(folder.path, camera, slow);
+  EXPECT_NE(out.find("at the start, no picture shows a body; camera.frames"), std::string::npos) << out;
+  EXPECT_EQ(checked(folder.path, "", slow).find("picture"), std::string::npos);
+}
+
+TEST(CheckPictures, SayThatAnotherAspectRatioCutsBodies) {
+  const test::TemporaryFolder folder;
+  const std::vector<std::string> wide = {"check", "integrators",      "--set", "output.width=640",
+                                         "--set", "output.height=360"};
+  const std::string out = run(folder.path, wide).out;
+  EXPECT_NE(out.find(", the picture's border cuts body 'euler' in "), std::string::npos) << out;
+}
+
+// A replay is followed to its first change, which may move the camera away.
+TEST(CheckPictures, FollowAReplayToItsFirstChange) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path / "s.toml") << boxes;
+  std::ofstream(folder.path / "r.toml")
+      << "scene = \"s.toml\"\n[[change]]\nt = 0.1\npath = \"gravity\"\nvalue = [0, -9, 0]\n";
+  const test::Result result = run(folder.path, {"check", "r.toml"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.out.find("rough"), std::string::npos) << result.out;
+}
+
+TEST(CheckPictures, OfAllScenesThatShipShowTheirBodies) {
+  for (const std::string& name : shipped_names("scenes")) {
+    FilmPlan plan;
+    plan.scene = name;
+    for (const std::string& warning : missing_in_rough_pictures(plan, all_solvers()))
+      ADD_FAILURE() << name << ": " << warning;
+  }
+}
+
+}  // namespace
+}  // namespace supple
