@@ -1,6 +1,6 @@
 #version 330 core
 // The ground is seamless: it receives the shadow and the bodies' occlusion, and fades into the background before its
-// end could be seen. Without SHADED it is the bare ground, as it is far from all bodies.
+// end could be seen. Without SHADED it is the bare ground, as it is far from all bodies; with SHADOWED, shadows may fall on it.
 #include "film.glsl"
 #include "lighting.glsl"
 uniform vec3 stage;  // centre x, z; radius
@@ -18,7 +18,13 @@ void main() {
   float lit = 1.0, open = 1.0;
 #ifdef SHADED
   if (sky) discard;
-  vec2 light_there = texture(arriving, 0.5 * gl_FragCoord.xy / vec2(textureSize(arriving, 0))).rg;
+  vec2 size = vec2(textureSize(arriving, 0)), at = 0.5 * gl_FragCoord.xy;
+  vec2 light_there = texture(arriving, at / size).rg;
+#ifdef SHADOWED
+  // Four interpolated texels smooth what shadows differ in from one block of 2 x 2 texels to the next.
+  light_there.r = 0.0;
+  for (int i = 0; i < 4; ++i) light_there.r += 0.25 * texture(arriving, (at + vec2(i & 1, i >> 1) - 0.5) / size).r;
+#endif
   lit = light_there.r;
   open = light_there.g;
 #endif

@@ -1,5 +1,6 @@
 #version 330 core
 #extension GL_ARB_texture_gather : require
+#extension GL_ARB_derivative_control : enable
 // How much of the key light and of the sky reaches the ground, at half the picture's resolution. With UNSHADOWED, no
 // shadow reaches it.
 #include "lighting.glsl"
@@ -37,7 +38,7 @@ void main() {
 #ifdef UNSHADOWED
   float lit = 1.0;
 #else
-  float lit = light_reaching(world, vec3(0.0, 1.0, 0.0), 0.0);
+  float lit = light_reaching(world, vec3(0.0, 1.0, 0.0), 0.0, true);
 #endif
   pixel = vec4(lit, open, 0.0, 1.0);
 }

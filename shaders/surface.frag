@@ -1,5 +1,6 @@
 #version 330 core
 #extension GL_ARB_texture_gather : require
+#extension GL_ARB_derivative_control : enable
 // Shades what the visibility buffer shows. The material is clay with painted layers. A layer's border is the zero of
 // its interpolated distance, so it is sharp however coarse the surface is.
 #include "film.glsl"
@@ -132,7 +133,7 @@ float print(Seen seen) {
 }
 #endif
 
-vec3 light_from(Seen seen, vec4 material) {
+vec3 light_from(Seen seen, vec4 material, bool first) {
   vec3 n = seen.normal;
   vec3 v = normalize(eye - seen.world);
   vec3 albedo = material.rgb;
@@ -144,7 +145,7 @@ vec3 light_from(Seen seen, vec4 material) {
   // A little wrapping makes plastic look like clay: light bleeds past the terminator, reddened by the material's own
   // colour.
   float facing = dot(n, key_direction);
-  float lit = light_reaching(seen.world, n, 1.0);
+  float lit = light_reaching(seen.world, n, 1.0, first);
   float wrapped = max((facing + 0.25) / 1.25, 0.0);
   vec3 key = key_color * mix(vec3(max(facing, 0.0)), vec3(wrapped) * (0.55 + 0.45 * albedo), 0.5) * mix(lit, 1.0, 0.06);
   vec3 fill = fill_color * max(dot(n, normalize(vec3(0.95, 0.25, 0.45))) * 0.7 + 0.3, 0.0);
@@ -196,13 +197,14 @@ float wire(Seen seen) {
 
 // Returns the colour of the screen at a point of a surface. A field is shown in the colours of its legend, and the light
 // of a grey body darkens them, so that the shape is seen and the hue stays; a little white keeps dark ends from being flat.
-vec3 shown(Seen seen) {
+// first: whether this is the first surface of the pixel, which all pixels of a block shade at the same time.
+vec3 shown(Seen seen, bool first) {
   vec4 material = material_of(seen);
 #ifdef FIELD
   bool mapped = shows_field(seen);
   material = mapped ? vec4(vec3(0.55), 0.0) : material;
 #endif
-  vec3 color = film(light_from(seen, material)).rgb;
+  vec3 color = film(light_from(seen, material, first)).rgb;
 #ifdef FIELD
   float brightness = dot(color, vec3(0.299, 0.587, 0.114));  // luma of BT.601
   float shade = clamp(brightness / 0.78, 0.0, 1.0);
@@ -230,7 +232,7 @@ void main() {
   do {  // each surface is shaded once
     uint one = looked == 0 || surfaces.y == 0u ? surfaces.x : surfaces.y;
     vec3 place = place_of((looked == 0 ? surfaces.x : surfaces.y) >> 24);
-    sum += place.z * vec4(shown(look(one, vec2(at) + place.xy)), 1.0);
+    sum += place.z * vec4(shown(look(one, vec2(at) + place.xy), looked == 0), 1.0);
     ++looked;
   } while (looked < looks);
   pixel = sum / float(SAMPLES);

@@ -41,6 +41,52 @@ Positions at_pose(const Positions& points, const Eigen::Isometry3d& pose) {
   return (points * pose.linear().transpose()).rowwise() + pose.translation().transpose();
 }
 
+// Returns how far it is from a point straight down to a collider at the start of the film; nothing where it does not
+// lie between the point and the drawn ground. The field's values are steps that lead through no surface (sphere
+// tracing, Hart 1996). near: how close to the surface counts as on it [m].
+std::optional<double> way_down(const Vec3& from, const Obstacle& obstacle, double near) {
+  const Eigen::Isometry3d to_local = obstacle.pose(0).inverse();
+  const double certainty = obstacle.def.shape.certainty();
+  for (double way = 0; way < from.y();) {
+    const double there = certainty * obstacle.def.shape.distance(to_local * Vec3(from - way * Vec3::UnitY()));
+    if (there < near) return way;
+    way += there;
+  }
+  return std::nullopt;
+}
+
+// Returns the collider on which a body comes down. meshes: as they are drawn, the colliders after the bodies.
+std::optional<Support> support_of(const Bounds& body, const std::vector<Obstacle>& obstacles,
+                                  const std::vector<DrawMesh>& meshes, std::size_t bodies) {
+  std::optional<Support> support;
+  const double near = 1e-3 * body.diagonal();
+  double least = 1e300;
+  for (std::size_t c = 0; c < obstacles.size(); ++c) {
+    if (!meshes[bodies + c].framed) continue;
+    const std::optional<double> way = way_down(body.center(), obstacles[c], near);
+    if (!way || *way == 0 || *way >= least) continue;
+    least = *way;
+    const Eigen::Isometry3d pose = obstacles[c].pose(0);
+    const Vec3 local = pose.inverse() * Vec3(body.center() - least * Vec3::UnitY());
+    const Vec3 normal = pose.linear() * obstacles[c].def.shape.gradient(local, near).normalized();
+    const Vec3 downhill = normal.y() * normal - Vec3::UnitY();
+    constexpr double level = 0.05;  // the sine of an angle at which bodies rather stay than slide
+    support = Support{bodies + c, downhill.norm() > level ? downhill : Vec3(Vec3::Zero())};
+  }
+  return support;
+}
+
+// Finds what bodies come down on. A collider that bears several is a ground to them.
+void find_supports(const std::vector<Obstacle>& obstacles, std::size_t bodies, std::vector<DrawMesh>& meshes) {
+  std::vector<int> borne(meshes.size(), 0);
+  for (std::size_t b = 0; b < bodies; ++b) {
+    meshes[b].support = support_of(meshes[b].rest, obstacles, meshes, bodies);
+    if (meshes[b].support) ++borne[meshes[b].support->mesh];
+  }
+  for (std::size_t b = 0; b < bodies; ++b)
+    if (meshes[b].support && borne[meshes[b].support->mesh] > 1) meshes[b].support.reset();
+}
+
 }  // namespace
 
 Bounds bounds_at_rest(const std::vector<Body>& bodies) {
@@ -119,6 +165,7 @@ Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const s
     stage.meshes.push_back(std::move(mesh));
   }
   for (std::size_t c = 0; c < obstacles.size(); ++c) stage.meshes.push_back(collider_mesh(obstacles[c], skins[c]));
+  find_supports(obstacles, bodies.size(), stage.meshes);
   return stage;
 }
 

@@ -110,7 +110,7 @@ Image split_picture(const SplitScreen& screen, int picture, int frame) {
     const PngImage panel = read_png(file);
     if (p == 0) {
       grid = grid_of(panel, static_cast<int>(screen.panels.size()), screen.columns);
-      if (screen.legend) legend = legend_of(*screen.legend, screen.font, panel.height);
+      if (screen.legend) legend = legend_of(*screen.legend, screen.font, panel.width, panel.height);
       if (legend.width() > 0) grid.legend = legend.width() + 2 * grid.em;
       image = blank(grid);
     }

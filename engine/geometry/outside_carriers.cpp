@@ -20,6 +20,12 @@ constexpr double least_share = 1e-3;
 // A skin that lies this much deeper in the solid, in edges of the boundary, belongs there whatever its side.
 constexpr double deep = 0.75;
 
+// Shares of points outside are averaged over at least this length, in edges of the mesh. Without it the skin has the
+// kinks of the elements where it comes close to them, at their vertices: spikes in stripes of colour. With 0.15 they
+// are still seen. On a ball of 100 vertices, one that moves alone takes the skin along by 0.78 of its way; with 0.4 by
+// 0.70, without a least length by all of it.
+constexpr double least_reach = 0.3;
+
 // Tells which vertices of a mesh share an element.
 struct MeshLinks {
   explicit MeshLinks(const TetMesh& mesh) : beside(std::size_t(mesh.rest.rows())), mean(mean_edge(mesh)) {
@@ -286,12 +292,13 @@ class Blend {
   }
 
   // Finds over which length shares are averaged around each node [m]: the distance of a point outside from the
-  // boundary, or a jump, and less further away from the jump. Shares of points inside change at jumps alone.
+  // boundary, but no less than least_reach, or a jump, and less further away from the jump. Shares of points inside
+  // change at jumps alone.
   void find_reach(const Feet& feet) {
     reach_.assign(shares_.size(), 0);
     std::priority_queue<std::pair<double, std::int32_t>> queue;
     for (std::size_t n = 0; n < reach_.size(); ++n) {
-      if (!feet.inside(n)) reach_[n] = feet.foot(n).distance;
+      if (!feet.inside(n)) reach_[n] = std::max(feet.foot(n).distance, least_reach * feet.links().mean);
       for (const SkinEdge& edge : graph_.edges[n]) reach_[n] = std::max(reach_[n], jump(n, edge, feet));
       if (reach_[n] > 0) queue.emplace(reach_[n], std::int32_t(n));
     }

@@ -3,7 +3,7 @@
 // A point outside follows the boundary point that is closest to it, found by a walk over the boundary that starts where
 // the skin's edges lead into the solid: what is near but not joined never counts. Then shares are averaged over
 // neighbouring points of the skin, the more widely the further outside a point lies, so that they change smoothly where
-// the closest point jumps.
+// the closest point jumps, and a little everywhere, so that the elements' kinks do not show.
 #pragma once
 
 #include <vector>

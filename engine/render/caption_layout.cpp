@@ -16,17 +16,24 @@ bool is_free(const PixelRect& place, const std::vector<PixelRect>& taken, const 
          std::ranges::none_of(bodies, [&](const Outline& body) { return overlaps(place, body); });
 }
 
-// Returns the first free place for a caption, row after row, in the middle of a row before its sides.
-std::optional<PixelRect> place_of(const WantedCaption& caption, const std::vector<Outline>& bodies,
-                                  const std::vector<PixelRect>& taken, int width, int height) {
-  const int margin = std::max(2, height / 100);
-  const double left = caption.top.x() - 0.5 * caption.width;
-  PixelRect place{0, static_cast<int>(std::lround(caption.top.y())), caption.width, caption.height};
-  for (; place.bottom() <= height - margin; place.y += std::max(1, caption.height / 3)) {
+// Returns the first free place for a caption, row after row away from its body, in the middle of a row before its
+// sides.
+std::optional<PixelRect> place_of(const WantedCaption& caption, const CaptionRoom& room,
+                                  const std::vector<PixelRect>& taken, CaptionReach reach) {
+  constexpr double near_side = 0.5, near_rows = 0.7;  // over the caption's width and height
+  const int margin = std::max(2, height_for_letters(room.width, room.height) / 100);
+  const double left = caption.edge.x() - 0.5 * caption.width;
+  const bool above = caption.side == CaptionSide::above;
+  const int first = static_cast<int>(std::lround(caption.edge.y())) - (above ? caption.height : 0);
+  const int row = std::max(1, caption.height / 3);
+  PixelRect place{0, first, caption.width, caption.height};
+  for (; above ? place.y >= margin : place.bottom() <= room.height - margin; place.y += above ? -row : row) {
+    if (reach == CaptionReach::near && std::abs(place.y - first) > near_rows * caption.height) break;
     for (const double aside : {0.0, -0.25, 0.25, -0.5, 0.5, -0.75, 0.75}) {
+      if (reach == CaptionReach::near && std::abs(aside) > near_side) break;
       place.x = static_cast<int>(std::lround(left + aside * caption.width));
-      place.x = std::clamp(place.x, margin, std::max(margin, width - margin - caption.width));
-      if (place.right() <= width && is_free(place, taken, bodies)) return place;
+      place.x = std::clamp(place.x, margin, std::max(margin, room.width - margin - caption.width));
+      if (place.right() <= room.width && is_free(place, taken, room.bodies)) return place;
     }
   }
   return std::nullopt;
@@ -59,15 +66,14 @@ bool overlaps(const PixelRect& rectangle, const Outline& outline) {
 }
 
 std::optional<std::vector<PixelRect>> caption_places(const std::vector<WantedCaption>& captions,
-                                                     const std::vector<Outline>& bodies,
-                                                     const std::vector<PixelRect>& taken, int width, int height) {
+                                                     const CaptionRoom& room, CaptionReach reach) {
   std::vector<std::size_t> order(captions.size());
   std::iota(order.begin(), order.end(), std::size_t(0));
   std::ranges::stable_sort(order,
-                           [&](std::size_t a, std::size_t b) { return captions[a].top.x() < captions[b].top.x(); });
-  std::vector<PixelRect> places(captions.size()), all = taken;
+                           [&](std::size_t a, std::size_t b) { return captions[a].edge.x() < captions[b].edge.x(); });
+  std::vector<PixelRect> places(captions.size()), all = room.taken;
   for (const std::size_t i : order) {
-    const std::optional<PixelRect> place = place_of(captions[i], bodies, all, width, height);
+    const std::optional<PixelRect> place = place_of(captions[i], room, all, reach);
     if (!place) return std::nullopt;
     places[i] = *place;
     all.push_back(*place);

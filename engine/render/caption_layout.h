@@ -1,4 +1,4 @@
-// Finds places for captions: below their bodies, and neither over each other nor over a body. Pure geometry in pixels,
+// Finds places for captions: beside their bodies, and neither over each other nor over a body. Pure geometry in pixels,
 // counted from the upper left corner of the picture.
 #pragma once
 
@@ -14,16 +14,32 @@ using Outline = std::vector<Eigen::Vector2d>;  // corners of a convex polygon, i
 
 bool overlaps(const PixelRect& rectangle, const Outline& outline);
 
-// Describes a caption that wants a place: the middle of its upper edge, and its size.
+// Tells on which side of its body a caption stands.
+enum class CaptionSide { below, above };
+
+// Describes a caption that wants a place: the middle of its edge that is next to its body, its size, and its side.
 struct WantedCaption {
-  Eigen::Vector2d top;
+  Eigen::Vector2d edge;
+  int width, height;
+  CaptionSide side = CaptionSide::below;
+};
+
+// Tells how far from its wanted place a caption may stand: by less than its own height and half its width, so that it
+// is read with its body, or anywhere on its side of the body.
+enum class CaptionReach { near, anywhere };
+
+// Describes a picture [pixels] and what captions must not cover in it.
+struct CaptionRoom {
+  std::vector<Outline> bodies;
+  std::vector<PixelRect> taken;
   int width, height;
 };
 
-// Returns a place for each caption: the first one below the wanted place, or a little to its sides, that overlaps no
-// other caption, nothing that is taken, and no body. Nothing when some caption has no such place in the picture.
+// Returns a place for each caption: the first one from the wanted place away from the body, or a little to its sides,
+// that overlaps no other caption, nothing that is taken, and no body. Nothing when some caption has no such place in
+// the picture.
 std::optional<std::vector<PixelRect>> caption_places(const std::vector<WantedCaption>& captions,
-                                                     const std::vector<Outline>& bodies,
-                                                     const std::vector<PixelRect>& taken, int width, int height);
+                                                     const CaptionRoom& room,
+                                                     CaptionReach reach = CaptionReach::anywhere);
 
 }  // namespace supple

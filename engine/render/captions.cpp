@@ -25,7 +25,7 @@ Captions::Captions(const Stage& stage, std::vector<PixelRect> taken)
       around_(framed_at_start(stage)),
       taken_(std::move(taken)) {
   if (stage.camera_moves) first_camera_ = stage.first_camera;
-  for (const DrawMesh& mesh : stage.meshes) bodies_.push_back({mesh.label, mesh.rest, mesh.kept_clear});
+  for (const DrawMesh& mesh : stage.meshes) bodies_.push_back({mesh.label, mesh.rest, mesh.kept_clear, mesh.support});
 }
 
 void Captions::renew(std::size_t mesh, const std::string& label) {
@@ -47,13 +47,52 @@ std::optional<Eigen::Vector2d> Captions::foot_of(const Projection& project, cons
   return foot;
 }
 
-// Tries to place all captions in letters of one size. Returns whether each has a place.
-bool Captions::try_size(const Camera& camera, int em, bool over_bodies) {
+namespace {
+
+// Returns the smallest box that is parallel to the picture's edges and holds outlines.
+Eigen::AlignedBox2d box_of(const std::vector<Outline>& outlines) {
+  Eigen::AlignedBox2d box;
+  for (const Outline& outline : outlines) {
+    for (const Eigen::Vector2d& corner : outline) box.extend(corner);
+  }
+  return box;
+}
+
+}  // namespace
+
+// Returns the place beside a body and the collider that bears it; nothing where it has none, or that is as large as a
+// floor, which the picture does not show to its end.
+std::optional<Captions::Anchor> Captions::beside_support(const Projection& project, const Body& body) const {
+  if (!body.support) return std::nullopt;
+  const Vec3 middle = body.rest.center(), ahead = middle + 0.5 * body.rest.diagonal() * body.support->downhill;
+  const std::optional<Eigen::Vector2d> from = project(middle), to = project(ahead);
+  const Outline outline = project.outline(body.rest), bearing = project.outline(bodies_[body.support->mesh].rest);
+  if (!from || !to || outline.empty() || bearing.empty()) return std::nullopt;
+  const Eigen::AlignedBox2d both = box_of({outline, bearing});
+  // What slides down towards the lower edge of the picture would slide into a caption there.
+  const Eigen::Vector2d way = *to - *from;
+  const bool above = way.y() > std::abs(way.x());
+  const Eigen::Vector2d at(box_of({outline}).center().x(), above ? both.min().y() : both.max().y());
+  const bool shown = at.x() > 0 && at.x() < width_ && at.y() > 0 && at.y() < height_;
+  return shown ? std::optional(Anchor{at, above ? CaptionSide::above : CaptionSide::below}) : std::nullopt;
+}
+
+// supports: whether the caption stands beside a collider that bears the body.
+std::optional<Captions::Anchor> Captions::anchor_of(const Projection& project, const Body& body, bool supports) const {
+  if (const std::optional<Anchor> anchor = supports ? beside_support(project, body) : std::nullopt) return anchor;
+  const std::optional<Eigen::Vector2d> foot = foot_of(project, body, body.rest.upper.z());
+  return foot ? std::optional(Anchor{*foot, CaptionSide::below}) : std::nullopt;
+}
+
+// Tries to place all captions in letters of one size. Returns how far they stand from their wanted places, all together
+// [pixels]; nothing where one has no place.
+std::optional<double> Captions::try_size(const Camera& camera, int em, const Demand& demand) {
   const Projection project(camera, around_, width_, height_);
   const int line = draw_caption(font_, "X", em).height, halo = Sticker::halo(em);
   const int note_em = std::max(8, static_cast<int>(std::lround(note_size * em)));
   const int note_width = width_of(note_template_, note_em);
   const int height = line + 2 * halo + (note_template_.empty() ? 0 : draw_caption(font_, "X", note_em).height);
+  const double gap = 0.012 * height_for_letters(width_, height_);
   std::vector<WantedCaption> wanted;
   std::vector<Outline> bodies;
   placed_.clear();
@@ -61,36 +100,41 @@ bool Captions::try_size(const Camera& camera, int em, bool over_bodies) {
   for (std::size_t m = 0; m < bodies_.size(); ++m) {
     const Body& body = bodies_[m];
     Outline outline = body.kept_clear ? project.outline(body.rest) : Outline();
-    const auto foot = foot_of(project, body, body.rest.upper.z());
-    if (!body.label.empty() && foot) {
-      double lowest = foot->y();
+    const auto anchor = anchor_of(project, body, demand.supports);
+    if (!body.label.empty() && anchor) {
       const int width = std::max(width_of(body.label, em), note_width) + 2 * halo;
-      lowest = std::min(lowest + 0.012 * height_, over_bodies ? height_ - 2.0 * height : 1e9);
-      wanted.push_back({{foot->x(), lowest}, width, height});
+      const bool above = anchor->side == CaptionSide::above;
+      const double edge = above ? anchor->at.y() - gap
+                                : std::min(anchor->at.y() + gap, demand.over_bodies ? height_ - 2.0 * height : 1e9);
+      wanted.push_back({{anchor->at.x(), edge}, width, height, anchor->side});
       placed_.push_back({m, {}});
     }
     if (!outline.empty()) bodies.push_back(std::move(outline));
   }
-  const auto places = caption_places(wanted, over_bodies ? std::vector<Outline>() : bodies, taken_, width_, height_);
-  if (!places) return false;
+  const auto places = caption_places(
+      wanted, {demand.over_bodies ? std::vector<Outline>() : bodies, taken_, width_, height_}, demand.reach);
+  if (!places) return std::nullopt;
   over_body_.clear();
+  double away = 0;
   for (std::size_t i = 0; i < placed_.size(); ++i) {
-    placed_[i].place = (*places)[i];
-    over_body_.push_back(
-        std::ranges::any_of(bodies, [&](const Outline& body) { return overlaps(placed_[i].place, body); }));
+    const PixelRect& place = placed_[i].place = (*places)[i];
+    const double edge = wanted[i].side == CaptionSide::above ? place.bottom() : place.y;
+    away += (Eigen::Vector2d(place.x + 0.5 * place.width, edge) - wanted[i].edge).norm();
+    over_body_.push_back(std::ranges::any_of(bodies, [&](const Outline& body) { return overlaps(place, body); }));
   }
-  return true;
+  return away;
 }
 
 // Places as many captions as have room, in the order of the scene.
 void Captions::drop_unplaced(const Camera& camera, int em) {
+  constexpr Demand in_front = {CaptionReach::anywhere, false, true};
   const std::vector<Body> all = bodies_;
   for (Body& body : bodies_) body.label.clear();
   for (std::size_t m = 0; m < bodies_.size(); ++m) {
     bodies_[m].label = all[m].label;
-    if (!try_size(camera, em, true)) bodies_[m].label.clear();
+    if (!try_size(camera, em, in_front)) bodies_[m].label.clear();
   }
-  try_size(camera, em, true);
+  try_size(camera, em, in_front);
   bodies_ = all;
 }
 
@@ -106,12 +150,30 @@ void Captions::lay_out(const Camera& camera) {
   placed_.clear();
   stickers_.clear();
   if (font_.empty()) return;
-  const int largest = std::max(9, static_cast<int>(std::lround(height_ / 32.0)));
-  const int smallest = std::max(8, static_cast<int>(std::lround(height_ / 60.0)));
+  const int height = height_for_letters(width_, height_);
+  const int largest = std::max(9, static_cast<int>(std::lround(height / 32.0)));
+  const int smallest = std::max(8, static_cast<int>(std::lround(height / 60.0)));
+  const int step = std::max(1, largest / 12);
+  const bool supported = std::ranges::any_of(bodies_, [](const Body& body) { return body.support.has_value(); });
   bool done = false;
-  for (const bool over_bodies : {false, true}) {
-    for (int em = largest; em >= smallest && !done; em -= std::max(1, largest / 12))
-      done = try_size(camera, em, over_bodies);
+  // Small letters beside their body say more than large ones that could belong to another.
+  for (const Demand& demand :
+       {Demand{CaptionReach::near, true, false}, Demand{CaptionReach::near, false, false},
+        Demand{CaptionReach::anywhere, true, false}, Demand{CaptionReach::anywhere, false, false},
+        Demand{CaptionReach::anywhere, false, true}}) {
+    if (done || (demand.supports && !supported)) continue;
+    // Where they cannot all be near, they grow as long as that moves each of them by less than a line.
+    std::optional<double> most;
+    if (demand.reach == CaptionReach::anywhere && !demand.over_bodies) {
+      most = try_size(camera, smallest, demand);
+      if (!most) continue;
+      *most += smallest * static_cast<double>(placed_.size());
+    }
+    for (int em = largest; em >= smallest && !done; em -= step) {
+      const std::optional<double> away = try_size(camera, em, demand);
+      done = away && (!most || *away <= *most);
+    }
+    if (!done && most) done = try_size(camera, smallest, demand).has_value();
   }
   if (!done) drop_unplaced(camera, smallest);
   for (const Placed& one : placed_) {

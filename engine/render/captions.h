@@ -1,7 +1,8 @@
 // Lays the captions of bodies over the finished picture: each below its body, and none over another or over a body that
-// stands where it stood at the start. Where there is little room, all captions become smaller together. A camera that
-// moves changes nothing of this layout but where the bodies are: captions keep their distance from them and do not
-// jump.
+// stands where it stood at the start. The caption of a body on a collider of its own, as a board, names both and stands
+// beside both: below them, or above them where the board leads the body down in the picture. Where there is little
+// room, all captions become smaller together. A camera that moves changes nothing of this layout but where the bodies
+// are: captions keep their distance from them and do not jump.
 #pragma once
 
 #include <string>
@@ -41,9 +42,23 @@ class Captions {
     std::string label;
     Bounds rest;
     bool kept_clear = false;
+    std::optional<Support> support = {};
+  };
+  // Holds the place beside which a caption stands.
+  struct Anchor {
+    Eigen::Vector2d at;
+    CaptionSide side;
+  };
+  // Tells what a layout asks for.
+  struct Demand {
+    CaptionReach reach;
+    bool supports;     // whether captions stand beside colliders that bear their bodies
+    bool over_bodies;  // whether captions may stand in front of bodies
   };
   std::optional<Eigen::Vector2d> foot_of(const Projection& project, const Body& body, double z) const;
-  bool try_size(const Camera& camera, int em, bool over_bodies);
+  std::optional<Anchor> beside_support(const Projection& project, const Body& body) const;
+  std::optional<Anchor> anchor_of(const Projection& project, const Body& body, bool supports) const;
+  std::optional<double> try_size(const Camera& camera, int em, const Demand& demand);
   void lay_out(const Camera& camera);
   void go_along(const Camera& camera, const std::optional<Followed>& followed);
   void drop_unplaced(const Camera& camera, int em);

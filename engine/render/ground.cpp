@@ -30,7 +30,8 @@ Ground::Ground(const GlTable& gl, const std::filesystem::path& shaders, int widt
       bare_(gl, shaders, "tiles", "ground"),
       arriving_(gl, shaders, "tiles", "ground_light"),
       arriving_unshadowed_(gl, shaders, "tiles", "ground_light", {"UNSHADOWED"}),
-      shaded_(gl, shaders, "tiles", "ground", {"SHADED"}),
+      shadowed_(gl, shaders, "tiles", "ground", {"SHADED", "SHADOWED"}),
+      open_(gl, shaders, "tiles", "ground", {"SHADED"}),
       width_(width),
       height_(height),
       occlusion_(largest_body),
@@ -158,10 +159,11 @@ void Ground::draw(GLuint picture, const Eigen::Matrix4f& view, const StageLight&
 
   gl_.BindFramebuffer(GL_FRAMEBUFFER, picture);
   gl_.Viewport(0, 0, width_, height_);
-  set_stage(shaded_, light);
-  shaded_.set_texture("arriving", 0, GL_TEXTURE_2D, light_);
-  tile_buffer_.draw(tiles_.corners());
-  tile_buffer_.draw(open_tiles_.corners());
+  for (const auto& [program, tiles] : {std::pair{&shadowed_, &tiles_}, {&open_, &open_tiles_}}) {
+    set_stage(*program, light);
+    program->set_texture("arriving", 0, GL_TEXTURE_2D, light_);
+    tile_buffer_.draw(tiles->corners());
+  }
 }
 
 // Finds the light in all tiles. Shadows are looked for only where there may be one.

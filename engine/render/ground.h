@@ -55,7 +55,7 @@ class Ground {
   void set_stage(const Program& program, const StageLight& light) const;
 
   const GlTable& gl_;
-  Program bare_, arriving_, arriving_unshadowed_, shaded_;
+  Program bare_, arriving_, arriving_unshadowed_, shadowed_, open_;
   int width_, height_;
   Vec3 lit_ = Vec3(0, 0, 1);  // centre x, z and radius of the stage in the frame in hand [m]
   GroundOcclusion occlusion_;

@@ -35,9 +35,9 @@ LegendLayout layout_of(const FieldLook& field, const std::string& font, int pict
 
 }  // namespace
 
-Sticker legend_of(const FieldLook& field, const std::string& font, int height) {
+Sticker legend_of(const FieldLook& field, const std::string& font, int width, int height) {
   if (field.title.empty() || font.empty()) return {};
-  const LegendLayout layout = layout_of(field, font, height);
+  const LegendLayout layout = layout_of(field, font, std::min(height, width * 3 / 4));
   Sticker legend(layout.width, layout.height);
   legend.plate({0, 0, layout.width, layout.height}, 0.5 * layout.em, paper, legend_opacity);
   legend.text(font, field.title, layout.em, layout.pad, layout.pad, ink);
@@ -56,11 +56,13 @@ Sticker legend_of(const FieldLook& field, const std::string& font, int height) {
   return legend;
 }
 
-int legend_margin(const Stage& stage) { return stage.height / 36; }
+int legend_margin(const Stage& stage) { return height_for_letters(stage.width, stage.height) / 36; }
+
+int overlay_margin(const Stage& stage) { return std::max(4, height_for_letters(stage.width, stage.height) / 45); }
 
 double legend_room(const Stage& stage) {
   constexpr double most = 0.3;
-  const int width = stage.field ? legend_of(*stage.field, stage.font, stage.height).width() : 0;
+  const int width = stage.field ? legend_of(*stage.field, stage.font, stage.width, stage.height).width() : 0;
   return width > 0 ? std::min(most, double(width + legend_margin(stage)) / stage.width) : 0;
 }
 
@@ -68,11 +70,18 @@ Vec3 ink_on(const Stage& stage) {
   return backdrop_of(stage).mean() < 0.4 ? Vec3(0.93, 0.93, 0.92) : Vec3(0.2, 0.2, 0.21);
 }
 
-Sticker headline_of(const std::string& text, const std::string& font, int height, const Vec3& color) {
-  const int em = std::max(9, static_cast<int>(std::lround(height / 32.0))), halo = Sticker::halo(em);
-  const CaptionBitmap bitmap = draw_caption(font, text, em);
+Sticker headline_of(const Stage& stage, const std::string& text) {
+  constexpr int smallest = 9;
+  const int height = height_for_letters(stage.width, stage.height), room = stage.width - 2 * overlay_margin(stage);
+  int em = std::max(smallest, static_cast<int>(std::lround(height / 32.0)));
+  const auto wide = [&] {
+    return draw_caption(stage.font, stage.headline_template, em).width + 2 * Sticker::halo(em) > room;
+  };
+  while (em > smallest && wide()) --em;
+  const int halo = Sticker::halo(em);
+  const CaptionBitmap bitmap = draw_caption(stage.font, text, em);
   Sticker line(bitmap.width + 2 * halo, bitmap.height + 2 * halo);
-  line.text_with_halo(font, text, em, halo, halo, color);
+  line.text_with_halo(stage.font, text, em, halo, halo, ink_on(stage));
   return line;
 }
 

@@ -11,8 +11,6 @@
 namespace supple {
 namespace {
 
-int margin_of(const Stage& stage) { return std::max(4, stage.height / 45); }
-
 // Returns the outlines of the bodies' boxes in the first picture.
 std::vector<Outline> bodies_of(const Stage& stage) {
   const Projection project(stage.first_camera, framed_at_start(stage), stage.width, stage.height);
@@ -26,7 +24,7 @@ std::vector<Outline> bodies_of(const Stage& stage) {
 // Places rectangles side by side, the last one at the right, in a corner.
 std::vector<PixelRect> in_corner(std::vector<PixelRect> sizes, const Stage& stage, bool right, int top_margin,
                                  bool top) {
-  const int margin = margin_of(stage), gap = margin / 2;
+  const int margin = overlay_margin(stage), gap = margin / 2;
   int width = -gap, height = 0;
   for (const PixelRect& size : sizes) {
     width += size.width + gap;
@@ -60,7 +58,7 @@ std::vector<PixelRect> graph_places(const Stage& stage, const OverlayPlaces& oth
   const std::vector<Outline> bodies = bodies_of(stage);
   Captions captions(stage, taken);
   const std::vector<Captions::Placed> placed = captions.places(stage.first_camera);
-  const int margin = margin_of(stage), below = std::max(margin, others.headline.bottom() + margin / 2);
+  const int margin = overlay_margin(stage), below = std::max(margin, others.headline.bottom() + margin / 2);
   const std::vector<std::vector<PixelRect>> corners = {
       in_corner(sizes, stage, true, margin, true), in_corner(sizes, stage, true, below, true),
       in_corner(sizes, stage, false, below, true), in_corner(sizes, stage, true, 0, false),
@@ -102,11 +100,11 @@ OverlayPlaces overlay_places(const Stage& stage) {
   OverlayPlaces places;
   if (stage.font.empty()) return places;
   if (!stage.headline_template.empty()) {
-    const Sticker line = headline_of(stage.headline_template, stage.font, stage.height, ink_on(stage));
-    places.headline = {margin_of(stage), margin_of(stage), line.width(), line.height()};
+    const Sticker line = headline_of(stage, stage.headline_template);
+    places.headline = {overlay_margin(stage), overlay_margin(stage), line.width(), line.height()};
   }
   if (stage.field) {
-    const Sticker legend = legend_of(*stage.field, stage.font, stage.height);
+    const Sticker legend = legend_of(*stage.field, stage.font, stage.width, stage.height);
     const int x = stage.width - legend_margin(stage) - legend.width(), y = (stage.height - legend.height()) / 2;
     if (legend.width() > 0) places.legend = {x, y, legend.width(), legend.height()};
   }

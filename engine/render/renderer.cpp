@@ -129,7 +129,7 @@ void Renderer::make_shading_program() {
 // Makes the legend, and gives the colours of the field to the shader.
 void Renderer::prepare_field() {
   if (!stage_.field) return;
-  legend_ = legend_of(*stage_.field, stage_.font, stage_.height);
+  legend_ = legend_of(*stage_.field, stage_.font, stage_.width, stage_.height);
   std::vector<float> colors;
   for (const Vec3& color : stage_.field->colors) {
     for (int k = 0; k < 3; ++k) colors.push_back(static_cast<float>(color[k]));
@@ -261,7 +261,7 @@ void Renderer::draw_overlays(const DrawList& list, Image& image) {
   legend_.onto(image, overlays_.legend.x, overlays_.legend.y);
   graphs_->draw(image, list.graphs);
   if (list.headline.empty() || stage_.font.empty()) return;
-  const Sticker headline = headline_of(list.headline, stage_.font, stage_.height, ink_on(stage_));
+  const Sticker headline = headline_of(stage_, list.headline);
   headline.onto(image, overlays_.headline.x, overlays_.headline.y);
 }
 

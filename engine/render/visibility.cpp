@@ -15,6 +15,11 @@ constexpr std::uint32_t most_triangles = (1u << 24) - 1;
 // Triangles are cut at this many half pictures from the middle, so that the numbers of SampleBuffer hold their corners.
 constexpr float reach = 3;
 
+// A cloth is shown where it lies no deeper than this below the surface of a collider, over the cloth's size: its flat
+// triangles cut into what they lie on, as deep as contact lets them and as an edge is sharp. Colliders that lie further
+// in front of it along a ray than this many times as much hide it in any case.
+constexpr double cut_in = 0.0015, most_along_ray = 6;
+
 // Surfaces that lie on the ground count as above it.
 constexpr float ground = -1e-4f;
 
@@ -37,6 +42,43 @@ std::vector<std::uint32_t> smooth_patches(const DrawMesh& mesh) {
   std::vector<std::uint32_t> patches;
   for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) patches.push_back(root(mesh.triangles[t]));
   return patches;
+}
+
+double cut_into_colliders(const DrawMesh& mesh) {
+  const bool cloth = mesh.two_sided && mesh.kept_clear && !mesh.ghost;
+  return cloth ? cut_in * mesh.rest.diagonal() : 0;
+}
+
+// Returns the factors on the nearness of a mesh's vertices that bring them closer to the eye, as if they were higher by
+// a depth [m]. They change smoothly along the mesh, so that its own folds still hide each other as they do.
+std::vector<float> lifted(const std::vector<std::uint32_t>& triangles, const std::vector<float>& positions,
+                          const Vec3& eye, double depth) {
+  const auto place = [&positions](std::uint32_t v) {
+    return Vec3(positions[3 * std::size_t(v)], positions[3 * std::size_t(v) + 1], positions[3 * std::size_t(v) + 2]);
+  };
+  std::vector<Vec3> normals(positions.size() / 3, Vec3::Zero());
+  for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) {
+    const Vec3 a = place(triangles[t]);
+    const Vec3 normal = (place(triangles[t + 1]) - a).cross(place(triangles[t + 2]) - a);
+    for (std::size_t k = t; k < t + 3; ++k) normals[triangles[k]] += normal;
+  }
+  std::vector<float> factors;
+  for (std::uint32_t v = 0; v < normals.size(); ++v) {
+    const Vec3 to_eye = eye - place(v);
+    const double distance = to_eye.norm();
+    const double facing = std::abs(normals[v].dot(to_eye)) / std::max(normals[v].norm() * distance, 1e-30);
+    const double along = depth * std::min(most_along_ray, 1 / std::max(facing, 1e-6));
+    factors.push_back(static_cast<float>(1 / (1 - std::min(0.5, along / distance))));
+  }
+  return factors;
+}
+
+// Returns the place from which a view is seen: the one point that it maps to no place in the picture.
+Vec3 eye_of(const Eigen::Matrix4f& view) {
+  Mat3 rows;
+  rows << view.row(0).head<3>().cast<double>(), view.row(1).head<3>().cast<double>(),
+      view.row(3).head<3>().cast<double>();
+  return -rows.inverse() * Vec3(view(0, 3), view(1, 3), view(3, 3));
 }
 
 }  // namespace
@@ -158,9 +200,13 @@ void Visibility::find(const std::vector<DrawMesh>& meshes, const std::vector<std
   clear();
   nearest_ = static_cast<float>(nearest);
   std::uint32_t number = 0;
+  const Vec3 eye = eye_of(view);
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     project(positions[m], view);
     const std::vector<std::uint32_t>& triangles = meshes[m].triangles;
+    const double depth = cut_into_colliders(meshes[m]);
+    const std::vector<float> factors = depth > 0 ? lifted(triangles, positions[m], eye, depth) : std::vector<float>();
+    for (std::size_t v = 0; v < factors.size(); ++v) corners_[v].nearness *= factors[v];
     for (std::size_t t = 0; t + 2 < triangles.size(); t += 3) {
       ++number;
       const std::uint32_t a = triangles[t], b = triangles[t + 1], c = triangles[t + 2];
@@ -172,8 +218,13 @@ void Visibility::find(const std::vector<DrawMesh>& meshes, const std::vector<std
       polygon_.clear();
       for (const std::uint32_t v : {a, b, c}) polygon_.push_back(corner_at(&positions[m][3 * std::size_t(v)], view));
       cut(polygon_);
-      for (std::size_t k = 2; k < polygon_.size(); ++k)
-        fill({on_screen(polygon_[0]), on_screen(polygon_[k - 1]), on_screen(polygon_[k])}, number, meshes[m]);
+      const float factor = factors.empty() ? 1 : (factors[a] + factors[b] + factors[c]) / 3;
+      const auto corner = [&](std::size_t k) {
+        ScreenCorner result = on_screen(polygon_[k]);
+        result.nearness *= factor;
+        return result;
+      };
+      for (std::size_t k = 2; k < polygon_.size(); ++k) fill({corner(0), corner(k - 1), corner(k)}, number, meshes[m]);
     }
   }
   SUPPLE_CHECK(number, ==, patches_.size());

@@ -83,6 +83,38 @@ TEST(Embedding, StaysNearWhatCarriesItWhateverElementsDo) {
   EXPECT_LT(furthest_off(mirrored), 1);
 }
 
+// A vertex of the mesh that moves alone makes a hill with a round top, whatever the skin's distance from it at rest. A
+// pointed one would show as a spike in a stripe of colour.
+TEST(Embedding, MakesNoSpikeOfAVertexThatMovesAlone) {
+  CoarseBall ball;
+  ball.skin = test::sphere_surface(1, 120, 80);
+  const Embedding embedding = embed(ball.skin, ball.mesh);
+  double sharpest = 0, highest = 0;
+  for (Eigen::Index moved = 0; moved < ball.mesh.rest.rows(); ++moved) {
+    const Vec3 place = ball.mesh.rest.row(moved);
+    if (place.norm() < 0.95 || std::abs(place.y()) > 0.7) continue;
+    Positions now = ball.mesh.rest;
+    now.row(moved) += Eigen::RowVector3d(0, 1, 0);
+    const Positions way = embedded_points(embedding, now) - ball.skin.points;
+    Positions around = Positions::Zero(way.rows(), 3);
+    std::vector<int> number(std::size_t(way.rows()), 0);
+    for (Eigen::Index t = 0; t < ball.skin.triangles.rows(); ++t) {
+      for (int k = 0; k < 3; ++k) {
+        const std::int32_t from = ball.skin.triangles(t, k), to = ball.skin.triangles(t, (k + 1) % 3);
+        around.row(from) += way.row(to);
+        ++number[std::size_t(from)];
+      }
+    }
+    for (Eigen::Index v = 0; v < way.rows(); ++v) {
+      if (number[std::size_t(v)] < 6) continue;  // on the sphere's seam
+      sharpest = std::max(sharpest, std::abs(way(v, 1) - around(v, 1) / number[std::size_t(v)]));
+      highest = std::max(highest, way(v, 1));
+    }
+  }
+  EXPECT_GT(highest, 0.6) << "there is no hill";
+  EXPECT_LT(sharpest, 0.06) << "of a hill of " << highest;
+}
+
 TEST(Embedding, JoinsPartsAlongTheSkinAndNotAcrossAGap) {
   // Two blocks of elements, and two skins that reach through the gap into the other block's elements.
   const TetMesh left = tetrahedralize(shape_of(Box{Vec3(0.5, 0.5, 0.5), 0}), 300, "box");

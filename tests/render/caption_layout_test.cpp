@@ -1,5 +1,5 @@
-// Tests where captions stand: below their bodies, over no other caption, and over no body, in all scenes that ship and
-// at three sizes of the picture.
+// Tests where captions stand: beside their bodies, over no other caption, and over no body, in all scenes that ship and
+// at several sizes of the picture.
 #include "render/caption_layout.h"
 
 #include <gtest/gtest.h>
@@ -39,40 +39,177 @@ TEST(CaptionLayout, MakesTheConvexHullOfPoints) {
 }
 
 TEST(CaptionLayout, PutsCaptionsBelowWhatTheyWouldCover) {
-  const auto places = caption_places({{{150, 150}, 40, 10}, {{150, 150}, 40, 10}}, {square}, {}, 400, 300);
+  const auto places = caption_places({{{150, 150}, 40, 10}, {{150, 150}, 40, 10}}, {{square}, {}, 400, 300});
   ASSERT_TRUE(places);
   EXPECT_FALSE((*places)[0].overlaps((*places)[1]));
   for (const PixelRect& place : *places) EXPECT_FALSE(overlaps(place, square));
-  EXPECT_FALSE(caption_places({{{150, 150}, 40, 10}}, {square}, {}, 400, 205)) << "there is no room below";
-  EXPECT_FALSE(caption_places({{{150, 150}, 500, 10}}, {}, {}, 400, 300)) << "it is wider than the picture";
+  EXPECT_FALSE(caption_places({{{150, 150}, 40, 10}}, {{square}, {}, 400, 205})) << "there is no room below";
+  EXPECT_FALSE(caption_places({{{150, 150}, 500, 10}}, {{}, {}, 400, 300})) << "it is wider than the picture";
+}
+
+TEST(CaptionLayout, PutsCaptionsAboveWhereTheyWantIt) {
+  const auto places =
+      caption_places({{{150, 90}, 40, 10, CaptionSide::above}}, {{square}, {{100, 78, 100, 20}}, 400, 300});
+  ASSERT_TRUE(places);
+  EXPECT_LE(places->front().bottom(), 78) << "it gives way upwards";
+  EXPECT_FALSE(caption_places({{{150, 9}, 40, 10, CaptionSide::above}}, {{square}, {}, 400, 300}));
+}
+
+TEST(CaptionLayout, RefusesPlacesThatAreNotNear) {
+  const std::vector<WantedCaption> three(3, {{150, 210}, 40, 9});
+  const CaptionRoom room = {{square}, {}, 400, 300};
+  EXPECT_TRUE(caption_places(three, room, CaptionReach::anywhere));
+  EXPECT_FALSE(caption_places(three, room, CaptionReach::near)) << "one of them has to stand two rows below";
+  EXPECT_TRUE(caption_places({three.front()}, room, CaptionReach::near));
 }
 
 struct Size {
   int width, height;
 };
 
+// Holds a scene's first picture, and where its captions stand there.
+struct LaidOut {
+  Stage stage;
+  std::vector<Captions::Placed> captions;
+
+  Outline outline_of(std::size_t mesh) const {
+    return Projection(stage.first_camera, framed_at_start(stage), stage.width, stage.height)
+        .outline(stage.meshes[mesh].rest);
+  }
+};
+
+LaidOut laid_out(const SceneDef& scene) {
+  const std::vector<Body> bodies = assemble(scene);
+  const CollisionSet set = collision_set(scene);
+  LaidOut result = {make_stage(scene, bodies, std::vector<DrawnBody>(bodies.size()), set.obstacles,
+                               collider_skins(set.obstacles, bodies), caption_font()),
+                    {}};
+  result.stage.first_camera = camera_at(scene, result.stage, 0);
+  result.captions = Captions(result.stage).places(result.stage.first_camera);
+  return result;
+}
+
+// Holds the left, right, upper and lower end of an outline [pixels].
+struct Ends {
+  double left = 1e9, right = -1e9, top = 1e9, bottom = -1e9;
+
+  explicit Ends(const Outline& outline) {
+    for (const Eigen::Vector2d& corner : outline) {
+      left = std::min(left, corner.x());
+      right = std::max(right, corner.x());
+      top = std::min(top, corner.y());
+      bottom = std::max(bottom, corner.y());
+    }
+  }
+  double middle() const { return (left + right) / 2; }
+};
+
+double middle_of(const PixelRect& place) { return place.x + 0.5 * place.width; }
+
+SceneDef shipped_at(const std::string& name, const Size& size) {
+  return load_scene(test::assets / "scenes" / (name + ".toml"), test::assets,
+                    {"output.width=" + std::to_string(size.width), "output.height=" + std::to_string(size.height)});
+}
+
+// These bodies stand on the ground, so that captions belong right below them.
+TEST(Captions, InAPictureTallerThanWideStandBelowTheirOwnBodies) {
+  if (caption_font().empty()) GTEST_SKIP() << "no font is installed";
+  for (const Size size : {Size{720, 1280}, Size{1080, 1920}}) {
+    for (const char* name : {"squirrel", "materials", "strain-limiting"}) {
+      const LaidOut picture = laid_out(shipped_at(name, size));
+      ASSERT_EQ(picture.captions.size(), picture.stage.meshes.size()) << name;
+      for (const Captions::Placed& caption : picture.captions) {
+        const Ends body(picture.outline_of(caption.mesh));
+        const auto& label = picture.stage.meshes[caption.mesh].label;
+        EXPECT_LT(caption.place.y - body.bottom, caption.place.height) << name << ": " << label;
+        EXPECT_LT(caption.place.height, size.width / 15) << name << ": " << label;
+        for (std::size_t m = 0; m < picture.stage.meshes.size(); ++m) {
+          const Ends other(picture.outline_of(m));
+          if (m == caption.mesh || std::abs(other.bottom - body.bottom) > caption.place.height) continue;
+          EXPECT_LT(std::abs(middle_of(caption.place) - body.middle()),
+                    std::abs(middle_of(caption.place) - other.middle()))
+              << name << ": " << label << " stands rather below " << picture.stage.meshes[m].label;
+        }
+      }
+    }
+  }
+}
+
+TEST(Captions, OfBodiesThatSlideTowardsTheEyeStandAboveTheirBoards) {
+  if (caption_font().empty()) GTEST_SKIP() << "no font is installed";
+  for (const Size size : {Size{640, 360}, Size{1920, 1080}, Size{3840, 2160}}) {
+    const LaidOut picture = laid_out(shipped_at("slopes", size));
+    ASSERT_EQ(picture.captions.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const PixelRect& place = picture.captions[i].place;
+      const Ends block(picture.outline_of(i)), board(picture.outline_of(3 + i));
+      EXPECT_LE(place.bottom(), std::min(block.top, board.top));
+      EXPECT_GE(place.y, 0);
+      EXPECT_TRUE(middle_of(place) > block.left && middle_of(place) < block.right) << "it does not name its block";
+      for (std::size_t m = 0; m < 6; ++m) EXPECT_FALSE(overlaps(place, picture.outline_of(m))) << m;
+    }
+  }
+}
+
+// Returns a scene with a cube above the origin at a height [m], and more text.
+SceneDef cube_at(double height, const std::string& text) {
+  Config config = Config::parse(
+      "[[body]]\nname = \"cube\"\nbox = { extent = [0.2, 0.2, 0.2], cells = [1, 1, 1] }\nmaterial = \"rubber\"\n"
+      "position = [0, " +
+          std::to_string(height) + ", 0]\n" + text,
+      "scene.toml", test::assets);
+  return read_scene(config);
+}
+
+const std::string table =
+    "[[collider]]\nname = \"table\"\nshape = { box = { extent = [0.8, 0.1, 0.8] } }\nposition = [0, 0.45, 0]\n";
+
+TEST(Captions, OfABodyOnATableStandBelowTheTable) {
+  if (caption_font().empty()) GTEST_SKIP() << "no font is installed";
+  const LaidOut picture = laid_out(cube_at(0.5, table));
+  ASSERT_EQ(picture.captions.size(), 1u);
+  EXPECT_GE(picture.captions[0].place.y, Ends(picture.outline_of(1)).bottom);
+  const LaidOut falling = laid_out(cube_at(0.9, table));
+  EXPECT_GE(falling.captions.at(0).place.y, Ends(falling.outline_of(1)).bottom) << "it will come to lie there";
+}
+
+TEST(Captions, OfBodiesThatShareAColliderStandBelowThem) {
+  if (caption_font().empty()) GTEST_SKIP() << "no font is installed";
+  const std::string other =
+      "[[body]]\nname = \"other\"\nbox = { extent = [0.2, 0.2, 0.2], cells = [1, 1, 1] }\nmaterial = \"rubber\"\n"
+      "position = [0.25, 0.5, 0]\n";
+  const LaidOut picture = laid_out(cube_at(0.5, other + table));
+  for (const DrawMesh& mesh : picture.stage.meshes) EXPECT_FALSE(mesh.support);
+  EXPECT_EQ(picture.captions.size(), 2u);
+}
+
+TEST(Captions, KeepToTheirBodyWhereTheColliderLeavesThePicture) {
+  if (caption_font().empty()) GTEST_SKIP() << "no font is installed";
+  const std::string camera = "[camera]\nposition = [0, 1, 2]\ntarget = [0, 0.5, 0]\n";
+  const std::string floor =
+      "[[collider]]\nname = \"floor\"\nshape = { box = { extent = [20, 2, 20] } }\nposition = [0, -0.5, 0]\n";
+  const LaidOut with = laid_out(cube_at(0.5, floor + camera)), without = laid_out(cube_at(0.5, camera));
+  ASSERT_EQ(with.captions.size(), 1u);
+  EXPECT_TRUE(with.stage.meshes[0].support);
+  EXPECT_EQ(with.captions[0].place.y, without.captions[0].place.y);
+}
+
 class CaptionsOfScene : public testing::TestWithParam<std::string> {};
 
 // Neither skins nor models are needed: captions keep clear of the bodies' boxes at the start.
 TEST_P(CaptionsOfScene, OverlapNeitherEachOtherNorABodyAtAnySize) {
-  const std::string font = caption_font();
-  if (font.empty()) GTEST_SKIP() << "no font is installed";
-  for (const Size size : {Size{640, 360}, Size{1280, 720}, Size{3840, 2160}}) {
-    const SceneDef scene =
-        load_scene(test::assets / "scenes" / (GetParam() + ".toml"), test::assets,
-                   {"output.width=" + std::to_string(size.width), "output.height=" + std::to_string(size.height)});
-    const std::vector<Body> bodies = assemble(scene);
-    const CollisionSet set = collision_set(scene);
-    const Stage stage = make_stage(scene, bodies, std::vector<DrawnBody>(bodies.size()), set.obstacles,
-                                   collider_skins(set.obstacles, bodies), font);
-    Captions captions(stage);
-    const auto placed = captions.places(camera_at(scene, stage, 0));
+  if (caption_font().empty()) GTEST_SKIP() << "no font is installed";
+  for (const Size size : {Size{640, 360}, Size{1280, 720}, Size{3840, 2160}, Size{1080, 1920}}) {
+    const SceneDef scene = shipped_at(GetParam(), size);
+    const LaidOut picture = laid_out(scene);
+    Captions captions(picture.stage);
+    const auto placed = captions.places(picture.stage.first_camera);
     std::size_t labels = 0;
     for (const BodyDef& body : scene.bodies) labels += scene.look.show_labels && !body.label.empty() ? 1 : 0;
     EXPECT_EQ(placed.size(), labels) << "a caption was left out";
-    const PixelRect picture = {0, 0, size.width, size.height};
+    const PixelRect all = {0, 0, size.width, size.height};
     for (std::size_t i = 0; i < placed.size(); ++i) {
-      EXPECT_TRUE(placed[i].place.overlaps(picture));
+      EXPECT_TRUE(placed[i].place.overlaps(all));
       EXPECT_GE(placed[i].place.x, 0);
       EXPECT_LE(placed[i].place.right(), size.width);
       EXPECT_LE(placed[i].place.bottom(), size.height);
@@ -99,7 +236,7 @@ void expect_apart(const std::vector<PixelRect>& texts, const Size& size) {
 TEST_P(CaptionsOfScene, LeaveAllOtherTextsFree) {
   const std::string font = caption_font();
   if (font.empty()) GTEST_SKIP() << "no font is installed";
-  for (const Size size : {Size{640, 360}, Size{1280, 720}, Size{3840, 2160}}) {
+  for (const Size size : {Size{640, 360}, Size{1280, 720}, Size{3840, 2160}, Size{1080, 1920}}) {
     for (const bool notes : {false, true}) {
       std::vector<std::string> settings = {"output.width=" + std::to_string(size.width),
                                            "output.height=" + std::to_string(size.height), "field.quantity=speed"};

@@ -250,5 +250,36 @@ TEST(Visibility, WhatLiesBelowTheGroundIsNotSeen) {
   }
 }
 
+// Returns how many samples show the second of two meshes: a level cloth of a metre, seen from slightly above, and a bar
+// that lies across below it and of which an edge comes through by a height [m].
+int samples_of_bar(double through, bool cloth) {
+  std::vector<DrawMesh> meshes = {square_mesh(), square_mesh()};
+  for (DrawMesh& mesh : meshes) mesh.two_sided = true;
+  meshes[0].kept_clear = cloth;
+  for (const Vec3& corner : {Vec3(-0.5, 0.3, -0.5), Vec3(0.5, 0.3, 0.5)}) meshes[0].rest.include(corner);
+  const auto top = static_cast<float>(0.3 + through);
+  const std::vector<std::vector<float>> positions = {
+      {-0.5f, 0.3f, 0.5f, 0.5f, 0.3f, 0.5f, 0.5f, 0.3f, -0.5f, -0.5f, 0.3f, -0.5f},
+      square_at(-0.4f, 0.4f, 0.25f, top, 0)};
+  constexpr int fine_width = 800, fine_height = 500;
+  const Camera low = {Vec3(0, 0.9, 2.4), Vec3(0, 0.3, 0), 30};
+  Visibility visibility(fine_width, fine_height, 4, meshes);
+  visibility.find(meshes, positions, view_matrix(low, double(fine_width) / fine_height, Vec3::Zero(), 2),
+                  nearest_seen(low, Vec3::Zero(), 2), rays_through(low, fine_width, fine_height).up.norm());
+  int seen = 0;
+  for (std::size_t i = 0; i < visibility.surfaces().size(); ++i)
+    seen += visibility.tiles().marked(int(i / 2 % fine_width) / Tiles::edge, int(i / 2 / fine_width) / Tiles::edge) &&
+                    (visibility.surfaces()[i] & 0xffffffu) > 2
+                ? 1
+                : 0;
+  return seen;
+}
+
+TEST(Visibility, AClothIsSeenWhereItCutsALittleIntoWhatItLiesOn) {
+  EXPECT_EQ(samples_of_bar(0.0015, true), 0);
+  EXPECT_GT(samples_of_bar(0.0015, false), 100) << "the bar is too thin to be seen in any case";
+  EXPECT_GT(samples_of_bar(0.02, true), 1000) << "what stands out of a cloth is seen";
+}
+
 }  // namespace
 }  // namespace supple
