@@ -23,16 +23,10 @@ struct GraphLayout {
   int height() const { return top() + plot_height + line / 2 + pad; }
 };
 
-<<<<<<< HEAD
 GraphLayout layout_of(const GraphLook& graph, const Stage& stage) {
   GraphLayout layout{};
-  layout.em = std::max(9, static_cast<int>(std::lround(stage.height / 40.0)));
-=======
-Layout layout_of(const GraphLook& graph, const Stage& stage) {
-  Layout layout{};
   const int height = height_for_letters(stage.width, stage.height);
   layout.em = std::max(9, static_cast<int>(std::lround(height / 40.0)));
->>>>>>> 6b7f8815b6b512376d2c90cbed80e483e4706fd9
   layout.pad = std::max(4, layout.em / 2);
   const CaptionBitmap title = draw_caption(stage.font, graph.title, layout.em);
   layout.line = title.height;
