@@ -221,10 +221,10 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
   body.cloth = read_cloth(table);
   if (table.has("shape") + table.has("surface") + table.has("mesh") + table.has("box") + table.has("cloth") != 1)
     table.complain("a body needs exactly one of 'shape', 'surface', 'mesh', 'box' and 'cloth'");
-  body.vertices = table.integer(
-      {"vertices", "",
-       "of the tetrahedra made from a shape or a surface (within 3 %; 10 % where a surface is thin, 50 % where a shape is)"},
-      4000, Range::between(50, 500000));
+  body.vertices = table.integer({"vertices", "",
+                                 "of the tetrahedra made from a shape or a surface (within 3 %; 10 % where a surface "
+                                 "is thin, 50 % where a shape is)"},
+                                4000, Range::between(50, 500000));
   body.size = table.number_if_given({"size", "m", "longest side; without it the file's units are metres"},
                                     Range::above(0, 1e6));
   body.scale = table.number({"scale", "", "enlarges the body, after its units"}, 1.0, Range::above(0, 1e6));
