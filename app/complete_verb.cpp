@@ -12,16 +12,16 @@ namespace {
 
 constexpr const char* files_too = "/";  // a line of its own in the answer: names of files fit here as well
 
-using Words = std::vector<std::string>;
+using WordList = std::vector<std::string>;
 
 // Returns the words that an option or a positional argument can take. The name of a positional argument tells which of
 // the names that ship fit.
-Words values_of(const DescribedOption& option) {
+WordList values_of(const DescribedOption& option) {
   if (!option.choices.empty()) return option.choices;
-  Words words;
+  WordList words;
   for (const auto& [part, kind] : {std::pair("SCENE", "scenes"), {"REPLAY", "replays"}, {"SHAPE", "shapes"}}) {
     if (!option.place || option.names.front().find(part) == std::string::npos) continue;
-    const Words names = shipped_names(kind);
+    const WordList names = shipped_names(kind);
     words.insert(words.end(), names.begin(), names.end());
   }
   words.push_back(files_too);
@@ -37,8 +37,8 @@ const DescribedOption* option_named(const DescribedVerb& verb, const std::string
 }
 
 // Returns the words that can stand last on the line.
-Words fitting(const CommandLine& all, const Words& line) {
-  Words words;
+WordList fitting(const CommandLine& all, const WordList& line) {
+  WordList words;
   const std::vector<DescribedVerb> verbs = all.verbs();
   if (line.size() <= 1) {
     for (const DescribedVerb& verb : verbs) words.push_back(verb.name);
@@ -63,13 +63,13 @@ Words fitting(const CommandLine& all, const Words& line) {
   for (const DescribedOption& option : verb->options) {
     if (!option.offered) continue;
     if (option.place ? option_begun || place-- != 0 : !option_begun) continue;
-    const Words fits = option.place ? values_of(option) : option.names;
+    const WordList fits = option.place ? values_of(option) : option.names;
     words.insert(words.end(), fits.begin(), fits.end());
   }
   return words;
 }
 
-int complete(const CommandLine& all, const Words& line) {
+int complete(const CommandLine& all, const WordList& line) {
   const std::string begun = line.empty() ? "" : line.back();
   for (const std::string& word : fitting(all, line)) {
     if (word == files_too || word.starts_with(begun)) say(stdout, word + "\n");
@@ -84,11 +84,11 @@ void add_complete(CommandLine& line) {
   verb.hide();  // not for people
   verb.footer("Example: supple complete -- render squirrel --gl ''");
   // This option is declared so that the line may hold anything; the words are read from the command as it was called.
-  auto declared = std::make_shared<Words>();
+  auto declared = std::make_shared<WordList>();
   verb.option("WORDS", *declared, "the line after 'supple', the last word as far as it was typed");
-  const Words& called = line.words();
+  const WordList& called = line.words();
   const auto dashes = std::find(called.begin(), called.end(), "--");
-  const Words words(dashes == called.end() ? dashes : dashes + 1, called.end());
+  const WordList words(dashes == called.end() ? dashes : dashes + 1, called.end());
   verb.runs([&line, declared, words] { return complete(line, words); });
 }
 

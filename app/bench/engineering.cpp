@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/bench/least_time.h"
 #include "app/bench/sections.h"
 #include "base/timing.h"
 #include "baselines/post_projection.h"
@@ -13,18 +14,6 @@
 
 namespace supple {
 namespace {
-
-// Returns the least time of several runs [ms].
-template <class Body>
-double least_ms(int repeats, const Body& body) {
-  double least = 1e300;
-  for (int i = 0; i <= repeats; ++i) {
-    const Stopwatch watch;
-    body();
-    if (i > 0) least = std::min(least, watch.elapsed_ms());
-  }
-  return least;
-}
 
 // Computes energies and forces of a polynomial material element by element, as a straightforward program would: F, a
 // singular value decomposition, the slopes of mu (s - 1)^4, and forces added to vertices. The numbers are of type T.

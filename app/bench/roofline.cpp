@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "app/bench/counted.h"
+#include "app/bench/least_time.h"
 #include "app/bench/sections.h"
 #include "base/timing.h"
 #include "sim/model/element_view.h"
@@ -13,18 +14,6 @@
 
 namespace supple {
 namespace {
-
-// Returns the least time of several runs [ms].
-template <class Work>
-double least_ms(int repeats, const Work& work) {
-  double least = 1e300;
-  for (int i = 0; i <= repeats; ++i) {
-    const Stopwatch watch;
-    work();
-    if (i > 0) least = std::min(least, watch.elapsed_ms());
-  }
-  return least;
-}
 
 // Returns the operations of one core in a loop of fused multiplications and additions that stays in registers [1/s].
 // The compiler does not fuse by itself here, and would not use the widest registers.

@@ -9,23 +9,23 @@
 namespace supple {
 namespace {
 
-using Json = nlohmann::json;
+using SortedJson = nlohmann::json;
 
-Json numbers(const std::vector<double>& values) {
+SortedJson numbers(const std::vector<double>& values) {
   // JSON has no infinities, so they are stored as text.
-  Json list = Json::array();
+  SortedJson list = SortedJson::array();
   for (const double v : values) std::isfinite(v) ? list.push_back(v) : list.push_back(std::to_string(v));
   return list;
 }
 
-std::vector<double> numbers(const Json& list) {
+std::vector<double> numbers(const SortedJson& list) {
   std::vector<double> values;
-  for (const Json& v : list) values.push_back(v.is_number() ? v.get<double>() : std::stod(v.get<std::string>()));
+  for (const SortedJson& v : list) values.push_back(v.is_number() ? v.get<double>() : std::stod(v.get<std::string>()));
   return values;
 }
 
-Json json_of(const ReportPlot& plot) {
-  Json series = Json::array();
+SortedJson json_of(const ReportPlot& plot) {
+  SortedJson series = SortedJson::array();
   for (const PlotSeries& s : plot.series) {
     series.push_back({{"name", s.name},
                       {"x", numbers(s.x)},
@@ -46,7 +46,7 @@ Json json_of(const ReportPlot& plot) {
           {"series", series}};
 }
 
-ReportPlot plot_of(const Json& json) {
+ReportPlot plot_of(const SortedJson& json) {
   ReportPlot plot{json.at("name"), json.at("title"), json.at("note")};
   plot.x_label = json.at("x_label");
   plot.y_label = json.at("y_label");
@@ -57,7 +57,7 @@ ReportPlot plot_of(const Json& json) {
   plot.x_max = json.at("limits")[1];
   plot.y_min = json.at("limits")[2];
   plot.y_max = json.at("limits")[3];
-  for (const Json& s : json.at("series")) {
+  for (const SortedJson& s : json.at("series")) {
     plot.series.push_back(
         {s.at("name"), numbers(s.at("x")), numbers(s.at("y")), s.at("thick"), s.at("dashed"), s.at("look")});
   }
@@ -67,8 +67,8 @@ ReportPlot plot_of(const Json& json) {
 }  // namespace
 
 void write_section(const ReportSection& section, const std::string& made_with, const std::filesystem::path& file) {
-  Json json = {{"made_with", made_with}, {"name", section.name},    {"heading", section.heading},
-               {"text", section.text},   {"tables", Json::array()}, {"plots", Json::array()}};
+  SortedJson json = {{"made_with", made_with}, {"name", section.name},          {"heading", section.heading},
+                     {"text", section.text},   {"tables", SortedJson::array()}, {"plots", SortedJson::array()}};
   for (const ReportTable& table : section.tables) {
     json["tables"].push_back({{"name", table.name},
                               {"title", table.title},
@@ -85,14 +85,14 @@ std::optional<ReportSection> read_section(const std::filesystem::path& file, con
   std::ifstream stream(file);
   if (!stream) return std::nullopt;
   try {
-    const Json json = parsed_json<Json>(std::string{std::istreambuf_iterator<char>(stream), {}});
+    const SortedJson json = parsed_json<SortedJson>(std::string{std::istreambuf_iterator<char>(stream), {}});
     if (json.at("made_with") != made_with) return std::nullopt;
     ReportSection section{json.at("name"), json.at("heading"), json.at("text")};
-    for (const Json& table : json.at("tables")) {
+    for (const SortedJson& table : json.at("tables")) {
       section.tables.push_back({table.at("name"), table.at("title"), table.at("note"), table.at("columns"),
                                 table.at("rows"), table.at("page_columns")});
     }
-    for (const Json& plot : json.at("plots")) section.plots.push_back(plot_of(plot));
+    for (const SortedJson& plot : json.at("plots")) section.plots.push_back(plot_of(plot));
     return section;
   } catch (const std::exception&) {  // damaged: it is made again
     return std::nullopt;

@@ -108,7 +108,7 @@ ReportTable roll_table(std::span<const int> other_sizes, const BenchSetting& set
     };
     const TurningFilms films = play_films(rolling, "rolling ball: " + name_of(ball), setting);
     const MotionCurves speeds = curves_of(films, 0), angles = without_jumps(curves_of(films, 1));
-    Cells row = {ball.substance.name};
+    TableCells row = {ball.substance.name};
     append(row, cells_of(speeds, constant_unit(speeds, speed / 100)));
     append(row, cells_of(angles, constant_unit(angles, 1)));
     append(row, costs_of(films));
@@ -132,7 +132,7 @@ ReportTable slope_table(std::span<const int> other_sizes, const BenchSetting& se
     };
     const TurningFilms films = play_films(rolling, "ball on a slope: " + name_of(ball), setting);
     const MotionCurves speeds = curves_of(films, 0);
-    Cells row = {ball.substance.name};
+    TableCells row = {ball.substance.name};
     append(row, cells_of(speeds, constant_unit(speeds, std::abs(last_of(speeds.solved)) / 100)));
     append(row, costs_of(films));
     table.rows.push_back(std::move(row));
@@ -181,8 +181,8 @@ ReportTable topple_table(const BenchSetting& setting) {
     };
     const TurningFilms films = play_films(toppling, "toppling cube: " + substance.name, setting);
     const MotionCurves tilts = curves_of(films, 0);
-    Cells row = {substance.name, frames_until_flat(tilts.ours), frames_until_flat(tilts.papers),
-                 frames_until_flat(tilts.solved)};
+    TableCells row = {substance.name, frames_until_flat(tilts.ours), frames_until_flat(tilts.papers),
+                      frames_until_flat(tilts.solved)};
     append(row, cells_of(tilts, constant_unit(tilts, 1)));
     append(row, costs_of(films));
     table.rows.push_back(std::move(row));
@@ -246,7 +246,7 @@ ReportTable swing_table(const BenchSetting& setting) {
       const TurningFilms films =
           play_films(swinging, fmt::format("swinging bar, {}: {}", way, substance.name), setting);
       const MotionCurves angles = without_jumps(curves_of(films, 0));
-      Cells row = {way, substance.name};
+      TableCells row = {way, substance.name};
       append(row, cells_of(angles, constant_unit(angles, 1)));
       append(row, costs_of(films));
       table.rows.push_back(std::move(row));
@@ -314,7 +314,7 @@ ReportTable clamped_table(const BenchSetting& setting) {
     };
     const TurningFilms films =
         play_films(falling, fmt::format("clamped bar, {}: {}", bar.form, bar.substance.name), setting);
-    Cells row = {bar.form, bar.substance.name};
+    TableCells row = {bar.form, bar.substance.name};
     append(row, cells_of(curves_of(films, 1), percent_of_way(films.solved)));
     append(row, costs_of(films));
     table.rows.push_back(std::move(row));
@@ -359,7 +359,7 @@ ReportTable spin_table(const BenchSetting& setting) {
       spinning.spin = spin;
       const TurningFilms films = play_films(spinning, fmt::format("spinning {}: {}", name, substance.name), setting);
       const MotionCurves momenta = over_first(curves_of(films, 0));
-      Cells row = {name, substance.name};
+      TableCells row = {name, substance.name};
       append(row, cells_of(momenta, momenta.solved / 100));
       append(row, costs_of(films));
       table.rows.push_back(std::move(row));

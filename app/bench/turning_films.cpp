@@ -79,8 +79,8 @@ double worst_difference(const MotionCurve& curve, const MotionCurve& solved, con
   return ((curve - solved).abs() / unit).maxCoeff<Eigen::PropagateNaN>();
 }
 
-Cells columns_of(const Quantity& quantity) {
-  Cells columns;
+TableCells columns_of(const MotionQuantity& quantity) {
+  TableCells columns;
   for (const char* whose : {"ours", "paper's", "solved again"})
     columns.push_back(fmt::format("{}, {} from solved, worst [{}]", quantity.name, whose, quantity.unit_of_difference));
   for (const char* whose : {"ours", "paper's", "solved"})
@@ -88,8 +88,8 @@ Cells columns_of(const Quantity& quantity) {
   return columns;
 }
 
-const Cells cost_columns = {"vertices",          "ours, trials an iteration", "paper's, trials an iteration",
-                            "ours, a step [ms]", "paper's, a step [ms]",      "solved, largest error estimate"};
+const TableCells cost_columns = {"vertices",          "ours, trials an iteration", "paper's, trials an iteration",
+                                 "ours, a step [ms]", "paper's, a step [ms]",      "solved, largest error estimate"};
 
 }  // namespace
 
@@ -131,18 +131,18 @@ MotionCurve constant_unit(const MotionCurves& curves, double unit) {
   return MotionCurve::Constant(curves.solved.size(), unit);
 }
 
-void append(Cells& cells, const Cells& more) { cells.insert(cells.end(), more.begin(), more.end()); }
+void append(TableCells& cells, const TableCells& more) { cells.insert(cells.end(), more.begin(), more.end()); }
 
-ReportTable table_of(const std::string& name, const std::string& title, Cells columns,
-                     const std::vector<Quantity>& quantities) {
+ReportTable table_of(const std::string& name, const std::string& title, TableCells columns,
+                     const std::vector<MotionQuantity>& quantities) {
   ReportTable table{name, title};
   table.columns = std::move(columns);
-  for (const Quantity& quantity : quantities) append(table.columns, columns_of(quantity));
+  for (const MotionQuantity& quantity : quantities) append(table.columns, columns_of(quantity));
   append(table.columns, cost_columns);
   return table;
 }
 
-Cells cells_of(const MotionCurves& curves, const MotionCurve& unit) {
+TableCells cells_of(const MotionCurves& curves, const MotionCurve& unit) {
   return {number_text(worst_difference(curves.ours, curves.solved, unit)),
           number_text(worst_difference(curves.papers, curves.solved, unit)),
           number_text(worst_difference(curves.again, curves.solved, unit)),
@@ -151,7 +151,7 @@ Cells cells_of(const MotionCurves& curves, const MotionCurve& unit) {
           number_text(last_of(curves.solved), 4)};
 }
 
-Cells costs_of(const TurningFilms& films) {
+TableCells costs_of(const TurningFilms& films) {
   return {std::to_string(films.solved.vertices), number_text(films.ours.trials),
           number_text(films.papers.trials),      number_text(films.ours.step_ms),
           number_text(films.papers.step_ms),     number_text(films.solved.error_estimate)};

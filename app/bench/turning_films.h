@@ -60,21 +60,21 @@ double last_of(const MotionCurve& curve);
 
 MotionCurve constant_unit(const MotionCurves& curves, double unit);
 
-struct Quantity {
+struct MotionQuantity {
   std::string name, unit, unit_of_difference;
 };
 
-using Cells = std::vector<std::string>;
+using TableCells = std::vector<std::string>;
 
-void append(Cells& cells, const Cells& more);
+void append(TableCells& cells, const TableCells& more);
 
 // Makes an empty table: these columns, those of each quantity, and those of the costs.
-ReportTable table_of(const std::string& name, const std::string& title, Cells columns,
-                     const std::vector<Quantity>& quantities);
+ReportTable table_of(const std::string& name, const std::string& title, TableCells columns,
+                     const std::vector<MotionQuantity>& quantities);
 
 // Returns the cells of a quantity. unit: that of the differences, by frame.
-Cells cells_of(const MotionCurves& curves, const MotionCurve& unit);
+TableCells cells_of(const MotionCurves& curves, const MotionCurve& unit);
 
-Cells costs_of(const TurningFilms& films);
+TableCells costs_of(const TurningFilms& films);
 
 }  // namespace supple

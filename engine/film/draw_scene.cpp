@@ -56,9 +56,9 @@ std::optional<double> way_down(const Vec3& from, const Obstacle& obstacle, doubl
 }
 
 // Returns the collider on which a body comes down. meshes: as they are drawn, the colliders after the bodies.
-std::optional<Support> support_of(const Bounds& body, const std::vector<Obstacle>& obstacles,
-                                  const std::vector<DrawMesh>& meshes, std::size_t bodies) {
-  std::optional<Support> support;
+std::optional<Board> board_of(const Bounds& body, const std::vector<Obstacle>& obstacles,
+                              const std::vector<DrawMesh>& meshes, std::size_t bodies) {
+  std::optional<Board> board;
   const double near = 1e-3 * body.diagonal();
   double least = 1e300;
   for (std::size_t c = 0; c < obstacles.size(); ++c) {
@@ -71,20 +71,20 @@ std::optional<Support> support_of(const Bounds& body, const std::vector<Obstacle
     const Vec3 normal = pose.linear() * obstacles[c].def.shape.gradient(local, near).normalized();
     const Vec3 downhill = normal.y() * normal - Vec3::UnitY();
     constexpr double level = 0.05;  // the sine of an angle at which bodies rather stay than slide
-    support = Support{bodies + c, downhill.norm() > level ? downhill : Vec3(Vec3::Zero())};
+    board = Board{bodies + c, downhill.norm() > level ? downhill : Vec3(Vec3::Zero())};
   }
-  return support;
+  return board;
 }
 
 // Finds what bodies come down on. A collider that bears several is a ground to them.
 void find_supports(const std::vector<Obstacle>& obstacles, std::size_t bodies, std::vector<DrawMesh>& meshes) {
   std::vector<int> borne(meshes.size(), 0);
   for (std::size_t b = 0; b < bodies; ++b) {
-    meshes[b].support = support_of(meshes[b].rest, obstacles, meshes, bodies);
-    if (meshes[b].support) ++borne[meshes[b].support->mesh];
+    meshes[b].board = board_of(meshes[b].rest, obstacles, meshes, bodies);
+    if (meshes[b].board) ++borne[meshes[b].board->mesh];
   }
   for (std::size_t b = 0; b < bodies; ++b)
-    if (meshes[b].support && borne[meshes[b].support->mesh] > 1) meshes[b].support.reset();
+    if (meshes[b].board && borne[meshes[b].board->mesh] > 1) meshes[b].board.reset();
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace supple {
 namespace {
 
-using Json = nlohmann::json;  // whose keys are in order, so that texts of equal values are equal
+using SortedJson = nlohmann::json;  // whose keys are in order, so that texts of equal values are equal
 
 // Says what a run that takes a folder over would do to what is there.
 enum class Holds { nothing, same_film, another };
@@ -33,19 +33,19 @@ bool leaves_less(const FilmPlan& plan, const std::filesystem::path& run) {
 }
 
 // Returns all that tells one film from another.
-Json film_of(const Json& info) {
-  Json film;
+SortedJson film_of(const SortedJson& info) {
+  SortedJson film;
   for (const char* key : {"program", "scene", "replay", "meshes", "sweep_point"}) {
     if (info.contains(key)) film[key] = info[key];
   }
   return film;
 }
 
-Holds what_is_in(const std::filesystem::path& run, const FilmPlan& plan, const Json& info) {
+Holds what_is_in(const std::filesystem::path& run, const FilmPlan& plan, const SortedJson& info) {
   std::error_code error;
   if (!std::filesystem::exists(run / "run.json", error)) return Holds::nothing;
   std::ifstream file(run / "run.json");
-  const Json before = json_if_valid<Json>(file);
+  const SortedJson before = json_if_valid<SortedJson>(file);
   if (before.is_object() && !before.contains("ended")) return Holds::nothing;  // a run that had only begun
   if (!before.is_object()) return Holds::another;
   // An earlier preview is there to be replaced.
@@ -68,7 +68,7 @@ std::filesystem::path named(const std::filesystem::path& path) {
 
 RunPlace place_of_run(const std::filesystem::path& asked, const FilmPlan& plan, const RunInfo& info) {
   if (plan.force || plan.resume || plan.folder_is_locked) return {asked, "", true};
-  const Json now = json_if_valid<Json>(info_json(info));
+  const SortedJson now = json_if_valid<SortedJson>(info_json(info));
   std::filesystem::path path = asked;
   std::error_code error;
   for (int number = 2;; ++number) {

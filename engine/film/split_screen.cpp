@@ -15,7 +15,7 @@
 namespace supple {
 namespace {
 
-const Vec3 ink(0.2, 0.2, 0.21), soft_ink(0.38, 0.38, 0.4), paper(0.96, 0.95, 0.94);
+const Vec3 strip_ink(0.2, 0.2, 0.21), soft_ink(0.38, 0.38, 0.4), strip_paper(0.96, 0.95, 0.94);
 
 int even(int number) { return number + number % 2; }
 
@@ -65,7 +65,7 @@ Image blank(const Grid& grid) {
   Image image = {
       grid.width(), grid.height(), std::vector<std::uint8_t>(3 * std::size_t(grid.width()) * grid.height()), {}};
   Sticker background(image.width, image.height);
-  background.fill({0, 0, image.width, image.height}, paper);
+  background.fill({0, 0, image.width, image.height}, strip_paper);
   background.onto(image, 0, 0);
   return image;
 }
@@ -121,7 +121,7 @@ Image split_picture(const SplitScreen& screen, int picture, int frame) {
     const int y = static_cast<int>(p) / grid.columns * (grid.panel_height + grid.strip);
     paste(panel, image, x, y);
     Sticker strip(grid.panel_width, grid.strip);
-    write_line(strip, screen.font, screen.panels[p].name, grid.em, grid.em / 3, ink);
+    write_line(strip, screen.font, screen.panels[p].name, grid.em, grid.em / 3, strip_ink);
     write_line(strip, screen.font, figures_of(screen.panels[p].rows, frame), grid.small_em,
                grid.em / 3 + 3 * grid.em / 2, soft_ink);
     strip.onto(image, x, y + grid.panel_height);

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "base/hash.h"
+#include "geometry/numbered_surface.h"
 #include "geometry/refine_surface.h"
 #include "geometry/triangle_soup.h"
 
@@ -66,8 +67,6 @@ class TrianglesByPlace {
   std::unordered_map<std::array<std::uint64_t, 3>, std::int32_t, KeyHash> place_of_;
   std::unordered_map<std::array<std::int32_t, 3>, Eigen::Index, KeyHash> triangles_;
 };
-
-Vec3 corner(const TriMesh& mesh, Eigen::Index triangle, int k) { return mesh.points.row(mesh.triangles(triangle, k)); }
 
 SurfaceColor mean(const SurfaceColor* colors, const Vec3& weights) {
   SurfaceColor result = colors[0];

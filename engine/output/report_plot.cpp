@@ -233,7 +233,7 @@ Script plot_script(const ReportPlot& plot, const std::vector<Points>& points, co
   return script;
 }
 
-std::string read_text(const std::filesystem::path& path) {
+std::string drawn_text(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
 }
@@ -282,7 +282,7 @@ bool write_plot(const ReportPlot& plot, const std::filesystem::path& folder, std
   const Script script = plot_script(plot, points, part);
   write_whole_file(script_file, script.text);
   const auto drawn = run_program({"gnuplot", "--default-settings", file_word(script_file)});
-  const std::string picture = drawn && drawn->status == 0 ? named_svg(plot, script.groups, read_text(part)) : "";
+  const std::string picture = drawn && drawn->status == 0 ? named_svg(plot, script.groups, drawn_text(part)) : "";
   std::filesystem::remove(script_file, ignored);
   std::filesystem::remove(part, ignored);
   if (!drawn) return refuse("gnuplot is not installed (Debian: gnuplot-nox)");

@@ -25,7 +25,7 @@ Captions::Captions(const Stage& stage, std::vector<PixelRect> taken)
       around_(framed_at_start(stage)),
       taken_(std::move(taken)) {
   if (stage.camera_moves) first_camera_ = stage.first_camera;
-  for (const DrawMesh& mesh : stage.meshes) bodies_.push_back({mesh.label, mesh.rest, mesh.kept_clear, mesh.support});
+  for (const DrawMesh& mesh : stage.meshes) bodies_.push_back({mesh.label, mesh.rest, mesh.kept_clear, mesh.board});
 }
 
 void Captions::renew(std::size_t mesh, const std::string& label) {
@@ -63,10 +63,10 @@ Eigen::AlignedBox2d box_of(const std::vector<Outline>& outlines) {
 // Returns the place beside a body and the collider that bears it; nothing where it has none, or that is as large as a
 // floor, which the picture does not show to its end.
 std::optional<Captions::Anchor> Captions::beside_support(const Projection& project, const Body& body) const {
-  if (!body.support) return std::nullopt;
-  const Vec3 middle = body.rest.center(), ahead = middle + 0.5 * body.rest.diagonal() * body.support->downhill;
+  if (!body.board) return std::nullopt;
+  const Vec3 middle = body.rest.center(), ahead = middle + 0.5 * body.rest.diagonal() * body.board->downhill;
   const std::optional<Eigen::Vector2d> from = project(middle), to = project(ahead);
-  const Outline outline = project.outline(body.rest), bearing = project.outline(bodies_[body.support->mesh].rest);
+  const Outline outline = project.outline(body.rest), bearing = project.outline(bodies_[body.board->mesh].rest);
   if (!from || !to || outline.empty() || bearing.empty()) return std::nullopt;
   const Eigen::AlignedBox2d both = box_of({outline, bearing});
   // What slides down towards the lower edge of the picture would slide into a caption there.
@@ -154,7 +154,7 @@ void Captions::lay_out(const Camera& camera) {
   const int largest = std::max(9, static_cast<int>(std::lround(height / 32.0)));
   const int smallest = std::max(8, static_cast<int>(std::lround(height / 60.0)));
   const int step = std::max(1, largest / 12);
-  const bool supported = std::ranges::any_of(bodies_, [](const Body& body) { return body.support.has_value(); });
+  const bool supported = std::ranges::any_of(bodies_, [](const Body& body) { return body.board.has_value(); });
   bool done = false;
   // Small letters beside their body say more than large ones that could belong to another.
   for (const Demand& demand :

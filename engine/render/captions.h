@@ -42,7 +42,7 @@ class Captions {
     std::string label;
     Bounds rest;
     bool kept_clear = false;
-    std::optional<Support> support = {};
+    std::optional<Board> board = {};
   };
   // Holds the place beside which a caption stands.
   struct Anchor {

@@ -48,7 +48,7 @@ struct GraphCurve {
 constexpr float no_field = -1;
 
 // Describes the collider on which a body comes down.
-struct Support {
+struct Board {
   std::size_t mesh;  // of the collider
   Vec3 downhill;     // where its surface under the body falls; as long as the sine of its angle, zero where it is level
 };
@@ -69,13 +69,13 @@ struct DrawMesh {
   Vec3 color;                                            // sRGB colour of the uncovered surface
   double gloss = 0.25;                                   // gloss of the uncovered surface
   std::vector<PaintColor> layers;                        // at most 8
-  Bounds rest;                          // bounds at the start: captions stand below them, cameras frame them [m]
-  bool mapped = false;                  // whether it shows the field; its own colours are then not seen
-  bool wires = false;                   // whether the edges of its triangles are drawn
-  bool ghost = false;                   // whether it is half transparent, and casts no shadow
-  bool kept_clear = false;              // whether captions stay away from it
-  std::optional<Support> support = {};  // of a body; nothing where the collider bears others, too
-  bool framed = true;                   // whether lights, shadows and cameras cover it; false for planes without end
+  Bounds rest;                      // bounds at the start: captions stand below them, cameras frame them [m]
+  bool mapped = false;              // whether it shows the field; its own colours are then not seen
+  bool wires = false;               // whether the edges of its triangles are drawn
+  bool ghost = false;               // whether it is half transparent, and casts no shadow
+  bool kept_clear = false;          // whether captions stay away from it
+  std::optional<Board> board = {};  // of a body; nothing where the collider bears others, too
+  bool framed = true;               // whether lights, shadows and cameras cover it; false for planes without end
 };
 
 // Chooses what is seen behind the bodies.

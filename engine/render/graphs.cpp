@@ -10,8 +10,7 @@
 namespace supple {
 namespace {
 
-const Vec3 ink(0.16, 0.16, 0.17), paper(0.97, 0.97, 0.96), grid(0.72, 0.72, 0.71), line_color(0.70, 0.27, 0.07),
-    dot_color(0.10, 0.33, 0.58);
+const Vec3 grid(0.72, 0.72, 0.71), line_color(0.70, 0.27, 0.07), dot_color(0.10, 0.33, 0.58);
 constexpr double graph_opacity = 0.86;
 
 // Holds the sizes of a graph's parts [pixels].

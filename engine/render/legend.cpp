@@ -8,7 +8,6 @@
 namespace supple {
 namespace {
 
-const Vec3 ink(0.16, 0.16, 0.17), paper(0.97, 0.97, 0.96);
 constexpr double legend_opacity = 0.82;  // text stays legible on any background, and what lies behind can be guessed
 
 // Holds the sizes of a legend's parts [pixels].

@@ -24,6 +24,9 @@ struct PixelRect {
 // wide has those of a square one, because its width is the room that bodies and words share.
 inline int height_for_letters(int width, int height) { return width < height ? width : height; }
 
+// Colours of what is written on a picture, and of the plates behind it; sRGB.
+inline const Vec3 ink(0.16, 0.16, 0.17), paper(0.97, 0.97, 0.96);
+
 class Sticker {
  public:
   Sticker() = default;

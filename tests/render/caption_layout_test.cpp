@@ -179,7 +179,7 @@ TEST(Captions, OfBodiesThatShareAColliderStandBelowThem) {
       "[[body]]\nname = \"other\"\nbox = { extent = [0.2, 0.2, 0.2], cells = [1, 1, 1] }\nmaterial = \"rubber\"\n"
       "position = [0.25, 0.5, 0]\n";
   const LaidOut picture = laid_out(cube_at(0.5, other + table));
-  for (const DrawMesh& mesh : picture.stage.meshes) EXPECT_FALSE(mesh.support);
+  for (const DrawMesh& mesh : picture.stage.meshes) EXPECT_FALSE(mesh.board);
   EXPECT_EQ(picture.captions.size(), 2u);
 }
 
@@ -190,7 +190,7 @@ TEST(Captions, KeepToTheirBodyWhereTheColliderLeavesThePicture) {
       "[[collider]]\nname = \"floor\"\nshape = { box = { extent = [20, 2, 20] } }\nposition = [0, -0.5, 0]\n";
   const LaidOut with = laid_out(cube_at(0.5, floor + camera)), without = laid_out(cube_at(0.5, camera));
   ASSERT_EQ(with.captions.size(), 1u);
-  EXPECT_TRUE(with.stage.meshes[0].support);
+  EXPECT_TRUE(with.stage.meshes[0].board);
   EXPECT_EQ(with.captions[0].place.y, without.captions[0].place.y);
 }
 

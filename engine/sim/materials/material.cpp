@@ -7,24 +7,24 @@
 namespace supple {
 namespace {
 
-constexpr int order = 24;  // nodes a panel
+constexpr int nodes_a_panel = 24;
 
 // Finds the nodes and weights on [-1, 1] by Newton's method on the Legendre polynomial.
 struct GaussLegendre {
-  double node[order];
-  double weight[order];
+  double node[nodes_a_panel];
+  double weight[nodes_a_panel];
 
   GaussLegendre() {
-    for (int i = 0; i < order; ++i) {
-      double x = std::cos(std::numbers::pi * (i + 0.75) / (order + 0.5)), slope = 1;
+    for (int i = 0; i < nodes_a_panel; ++i) {
+      double x = std::cos(std::numbers::pi * (i + 0.75) / (nodes_a_panel + 0.5)), slope = 1;
       for (int step = 0; step < 20; ++step) {
         double previous = 1, value = x;
-        for (int n = 2; n <= order; ++n) {
+        for (int n = 2; n <= nodes_a_panel; ++n) {
           const double next = ((2 * n - 1) * x * value - (n - 1) * previous) / n;
           previous = value;
           value = next;
         }
-        slope = order * (x * value - previous) / (x * x - 1);
+        slope = nodes_a_panel * (x * value - previous) / (x * x - 1);
         x -= value / slope;
       }
       node[i] = x;
@@ -68,7 +68,7 @@ double fitted_stiffness(const Material& material, const StretchInterval& interva
   double numerator = 0, from = interval.start;
   for (const double to : panel_ends(material, interval)) {
     double sum = 0;
-    for (int i = 0; i < order; ++i) {
+    for (int i = 0; i < nodes_a_panel; ++i) {
       const double s = 0.5 * (from + to) + 0.5 * (to - from) * rule.node[i];
       sum += rule.weight[i] * (s - 1) * stress(s);
     }
