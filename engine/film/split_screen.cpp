@@ -96,8 +96,8 @@ std::string figures_of(const std::vector<FrameRow>& rows, int frame) {
       motion_error = std::max(motion_error, body.motion_error.value_or(0));
     }
   }
-  return fmt::format("{:.1f} ms, {} iteration{}, {} {:.1e}, of motion {:.1e}", row.step_ms, iterations,
-                     iterations == 1 ? "" : "s", measured ? "error" : "estimated error", measured ? error : estimate,
+  return fmt::format("{:.1f} ms, {} iteration{}, errors {}{:.0e}, {:.0e}", row.step_ms, iterations,
+                     iterations == 1 ? "" : "s", measured ? "" : "~ ", measured ? error : estimate,
                      measured ? motion_error : motion_estimate);
 }
 

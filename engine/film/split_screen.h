@@ -39,9 +39,9 @@ struct SplitScreen {
   std::optional<FieldLook> legend;  // of the field that all panels show
 };
 
-// Returns what the second line says of a frame of the run: time of its steps, iterations, and the last error that was
-// measured up to there, or else its estimate. Of several bodies it is the sum of the times and iterations, and the
-// largest error. Empty without rows.
+// Returns what the second line says of a frame of the run: time of its steps, iterations, and the last errors that were
+// measured up to there, of equation 12 and of motion, or else their estimates after a "~". Of several bodies it is the
+// sum of the times and iterations, and the largest errors. Empty without rows.
 std::string figures_of(const std::vector<FrameRow>& rows, int frame);
 
 // Composes picture number `picture` of all panels, which show this frame of the runs. Width and height are even. Throws

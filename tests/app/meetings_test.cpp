@@ -109,7 +109,7 @@ TEST_F(Meetings, AtTheStartAreToldByCheck) {
   EXPECT_EQ(list["warnings"][0]["kind"], "overlap");
   EXPECT_EQ(list["warnings"][0]["meant"], true);
   const std::string turned = "turn_deg = [0, 0, 45]\n";
-  EXPECT_EQ(run("check", cube("a", turned) + cube("b", turned + "position = [0.145, 0.145, 0]")).out.find("pass"),
+  EXPECT_EQ(run("check", cube("a", turned) + cube("b", turned + "position = [0.145, 0.145, 0]")).out.find("pass through"),
             std::string::npos)
       << "the boxes around them overlap, and they do not";
 }
