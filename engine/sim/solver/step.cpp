@@ -161,8 +161,11 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
     hopeless |= descend_from_staying(model, inputs, origin, w, rule);
   report.error_estimate = error_at_end(model, inputs, w, report.decrease + above_start);
   report.motion_estimate = motion_estimate(model, inputs, state.x, w);
-  if (origin.newton_follows && !report.failed && finish_by_newton(model, inputs, origin, w, hopeless))
-    report.motion_estimate = motion_estimate(model, inputs, state.x, w);
+  if (origin.newton_follows && !report.failed && finish_by_newton(model, inputs, origin, w, hopeless)) {
+    // Newton's method that ran out of iterations does not know how far it still was.
+    const double before = report.stop_reason == StopReason::iterations ? report.motion_estimate : 0;
+    report.motion_estimate = std::max(before, motion_estimate(model, inputs, state.x, w));
+  }
   const Positions& x = w.current.x;
   if (!report.failed && !x.allFinite()) fail(model, w, "step", std::numeric_limits<double>::quiet_NaN());
   if (!report.failed) {
