@@ -18,7 +18,8 @@ constexpr int rough_iterations = 4;
 FilmPlan rough_plan(const FilmPlan& plan) {
   FilmPlan rough = plan;
   rough.rough = rough.quiet = true;
-  // What needs another run is not seen here, nor is what holds the bodies.
+  // The pass draws nothing that needs another run (a field's reference, a ghost) and no supports: it looks at bodies
+  // alone.
   for (const char* setting : {"field.quantity=none", "field.reference=", "look.ghost=", "look.supports=false"})
     rough.settings.emplace_back(setting);
   return rough;

@@ -48,7 +48,7 @@ TEST(CheckPictures, NameTheBodyThatLeavesThemAndTheFirstFrame) {
   EXPECT_NE(out.find(" of 40 frames, first in frame "), std::string::npos) << out;
   EXPECT_EQ(out.find("body 'still' is out"), std::string::npos) << out;
 
-  // What it says is what render says of the film.
+  // The check uses the words with which render warns of the film.
   const std::size_t begin = out.find("body 'rising'");
   const std::string words = out.substr(begin, out.find('\n', begin) - begin);
   const test::Result rendered = run(folder.path, {"render", "s.toml", "--quiet", "--no-video", "--set",
