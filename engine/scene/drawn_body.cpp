@@ -10,6 +10,7 @@
 #include "geometry/refine_surface.h"
 #include "geometry/skin_stretch.h"
 #include "scene/body_mesh.h"
+#include "scene/body_surface.h"
 #include "scene/rotation.h"
 
 namespace supple {
@@ -68,7 +69,7 @@ SkinRequest request_for(const Body& body) {
 DrawnBody drawn_mesh(const Body& body) {
   DrawnBody drawn;
   const TetMesh& placed = body.description.mesh;
-  const Triangles surface = body.def.cloth ? body.cloth.surface.triangles : boundary_faces(placed.tets);
+  const Triangles surface = surface_of(body);
   // In the body's own directions, so that the print lies along its edges however it stands.
   drawn.skin = skin_of_surface(placed.rest * turn_of(body), surface, square_of(body), drawn.vertex_of);
   for (std::size_t v = 0; v < drawn.vertex_of.size(); ++v)

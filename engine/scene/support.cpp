@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "geometry/rounded_prism.h"
+#include "scene/body_surface.h"
 #include "scene/rotation.h"
 
 namespace supple {
@@ -47,7 +48,7 @@ Frame frame_of(const Body& body) {
   frame.places = mesh.rest * frame.turn;
   frame.box = bounds_of(frame.places);
   frame.size = frame.box.diagonal();
-  frame.surface = body.def.cloth ? body.cloth.surface.triangles : boundary_faces(mesh.tets);
+  frame.surface = surface_of(body);
   frame.on_surface.assign(std::size_t(mesh.rest.rows()), 0);
   double sum = 0;
   for (Eigen::Index t = 0; t < frame.surface.rows(); ++t) {
