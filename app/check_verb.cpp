@@ -7,14 +7,14 @@
 #include "base/console.h"
 #include "base/error.h"
 #include "base/text.h"
-#include "film/picture_words.h"
-#include "film/places.h"
+#include "film/pictures/picture_words.h"
+#include "film/plan/shipped_files.h"
 #include "film/progress.h"
 #include "film/rough_pictures.h"
-#include "output/json_text.h"
-#include "scene/script_trial.h"
-#include "scene/skin_report.h"
-#include "scene/sweep.h"
+#include "output/files/json_text.h"
+#include "scene/building/skin_report.h"
+#include "scene/reading/sweep.h"
+#include "scene/replay/script_trial.h"
 
 namespace supple {
 namespace {
@@ -44,9 +44,9 @@ Checked read_all(const CheckCommand& command) {
                        load_sweep(source, assets_folder(), command.settings));
   }
   {
-    MakingLine line(command.json);
-    checked.bodies = assemble(scene, making_with(!command.no_cache, line));
-    checked.drawn = drawn_bodies(checked.bodies, making_with(!command.no_cache, line));
+    SlowWorkLine line(command.json);
+    checked.bodies = assemble(scene, slow_work_with(!command.no_cache, line));
+    checked.drawn = drawn_bodies(checked.bodies, slow_work_with(!command.no_cache, line));
   }
   try_changes(checked.script, checked.bodies);
   FilmPlan plan;

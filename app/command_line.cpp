@@ -8,7 +8,7 @@
 
 #include "base/console.h"
 #include "base/text.h"
-#include "output/run_folder.h"
+#include "output/run/run_folder.h"
 
 namespace supple {
 namespace {

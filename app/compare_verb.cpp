@@ -6,10 +6,10 @@
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
-#include "output/json_text.h"
-#include "output/report_table.h"
-#include "output/run_comparison.h"
-#include "output/whole_file.h"
+#include "output/files/json_text.h"
+#include "output/files/whole_file.h"
+#include "output/pages/report_table.h"
+#include "output/run/run_comparison.h"
 
 namespace supple {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "app/verbs.h"
 #include "base/console.h"
-#include "film/places.h"
+#include "film/plan/shipped_files.h"
 
 namespace supple {
 namespace {

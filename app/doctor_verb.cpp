@@ -6,7 +6,7 @@
 #include "app/verbs.h"
 #include "base/console.h"
 #include "film/machine_findings.h"
-#include "output/json_text.h"
+#include "output/files/json_text.h"
 
 namespace supple {
 namespace {

@@ -17,14 +17,14 @@
 #include "base/read_file.h"
 #include "base/text.h"
 #include "base/timing.h"
-#include "film/film_stills.h"
+#include "film/pictures/film_stills.h"
 #include "film/progress.h"
-#include "film/redraw.h"
-#include "film/skin_files.h"
-#include "output/child_program.h"
-#include "output/png_file.h"
-#include "output/run_folder.h"
-#include "output/whole_file.h"
+#include "film/redraw/redraw.h"
+#include "film/redraw/skin_files.h"
+#include "output/files/child_program.h"
+#include "output/files/png_file.h"
+#include "output/files/whole_file.h"
+#include "output/run/run_folder.h"
 
 namespace supple {
 namespace {

@@ -12,14 +12,14 @@
 #include "base/interrupts.h"
 #include "base/text.h"
 #include "base/timing.h"
-#include "film/picture_words.h"
-#include "film/places.h"
+#include "film/pictures/picture_words.h"
+#include "film/plan/shipped_files.h"
 #include "film/rough_motion.h"
-#include "output/json_text.h"
-#include "output/run_page.h"
-#include "output/run_record.h"
-#include "output/whole_file.h"
-#include "scene/script_trial.h"
+#include "output/files/json_text.h"
+#include "output/files/whole_file.h"
+#include "output/pages/run_page.h"
+#include "output/run/run_record.h"
+#include "scene/replay/script_trial.h"
 
 namespace supple {
 namespace {

@@ -16,7 +16,7 @@ struct FilmCommand {
   FilmPlan plan;
   bool json = false;  // the result as one line of JSON
   bool table = true;  // the table of times at the end
-  bool page = false;  // a page of the run (output/run_page.h)
+  bool page = false;  // a page of the run (output/pages/run_page.h)
 };
 
 // Adds the options that every run of a scene has. --resume is not among them, because it is for single films only.

@@ -15,14 +15,14 @@
 #include "base/names.h"
 #include "base/text.h"
 #include "base/timing.h"
-#include "film/places.h"
-#include "output/child_program.h"
-#include "output/folder_lock.h"
-#include "output/gallery_page.h"
-#include "output/json_text.h"
-#include "output/whole_file.h"
+#include "film/plan/shipped_files.h"
+#include "output/files/child_program.h"
+#include "output/files/folder_lock.h"
+#include "output/files/json_text.h"
+#include "output/files/whole_file.h"
+#include "output/pages/gallery_page.h"
 #include "render/gl_context.h"
-#include "scene/script.h"
+#include "scene/replay/script.h"
 
 namespace supple {
 namespace {

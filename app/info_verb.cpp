@@ -9,9 +9,9 @@
 #include "base/console.h"
 #include "base/error.h"
 #include "base/near_files.h"
-#include "film/places.h"
-#include "geometry/mesh_file.h"
-#include "scene/model_scene.h"
+#include "film/plan/shipped_files.h"
+#include "geometry/files/mesh_file.h"
+#include "scene/reading/model_scene.h"
 
 namespace supple {
 namespace {

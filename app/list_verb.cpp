@@ -3,9 +3,9 @@
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/text.h"
-#include "film/places.h"
-#include "scene/scene_reader.h"
-#include "scene/script.h"
+#include "film/plan/shipped_files.h"
+#include "scene/reading/scene_reader.h"
+#include "scene/replay/script.h"
 
 namespace supple {
 namespace {

@@ -5,9 +5,9 @@
 #include "app/summary.h"
 #include "base/text.h"
 #include "base/timing.h"
-#include "film/places.h"
-#include "scene/assemble.h"
-#include "scene/script.h"
+#include "film/plan/shipped_files.h"
+#include "scene/building/assemble.h"
+#include "scene/replay/script.h"
 #include "sim/model/model_values.h"
 
 namespace supple {

@@ -7,11 +7,11 @@
 #include "base/near_files.h"
 #include "base/text.h"
 #include "base/timing.h"
-#include "film/places.h"
+#include "film/plan/shipped_files.h"
 #include "film/progress.h"
-#include "geometry/mesh_file.h"
-#include "scene/body_mesh.h"
-#include "scene/model_scene.h"
+#include "geometry/files/mesh_file.h"
+#include "scene/building/body_mesh.h"
+#include "scene/reading/model_scene.h"
 
 namespace supple {
 namespace {
@@ -31,7 +31,7 @@ int make_mesh(const std::string& input, const std::string& output, int vertices,
   const std::filesystem::path path = shape_file(input);
   TetMesh mesh;
   std::vector<std::string> notes;
-  MakingLine line(false);
+  SlowWorkLine line(false);
   if (is_mesh_file(path)) {
     MeshFile file = read_mesh(path);
     mesh = std::move(file.mesh);

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "app/summary.h"
-#include "geometry/source_file.h"
-#include "geometry/surface_file.h"
-#include "geometry/surface_pieces.h"
-#include "geometry/surface_thickness.h"
-#include "scene/body_pieces.h"
+#include "geometry/files/source_file.h"
+#include "geometry/files/surface_file.h"
+#include "geometry/solids/surface_pieces.h"
+#include "geometry/triangles/surface_thickness.h"
+#include "scene/reading/body_pieces.h"
 
 namespace supple {
 namespace {

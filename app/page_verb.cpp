@@ -4,8 +4,8 @@
 
 #include "app/verbs.h"
 #include "base/console.h"
-#include "output/run_page.h"
-#include "output/whole_file.h"
+#include "output/files/whole_file.h"
+#include "output/pages/run_page.h"
 
 namespace supple {
 

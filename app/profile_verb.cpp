@@ -12,12 +12,12 @@
 #include "base/interrupts.h"
 #include "base/text.h"
 #include "base/timing.h"
-#include "film/places.h"
-#include "output/child_program.h"
-#include "output/verdict.h"
-#include "output/whole_file.h"
-#include "output/zone_comparison.h"
-#include "output/zone_table.h"
+#include "film/plan/shipped_files.h"
+#include "output/files/child_program.h"
+#include "output/files/whole_file.h"
+#include "output/pages/zone_table.h"
+#include "output/run/verdict.h"
+#include "output/run/zone_comparison.h"
 
 namespace supple {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "app/summary.h"
 #include "base/text.h"
-#include "output/json_text.h"
-#include "output/run_folder.h"
+#include "output/files/json_text.h"
+#include "output/run/run_folder.h"
 
 namespace supple {
 namespace {

@@ -6,10 +6,10 @@
 #include "app/summary.h"
 #include "base/text.h"
 #include "film/frame_cost.h"
-#include "film/places.h"
-#include "output/profile.h"
-#include "scene/script.h"
-#include "scene/skin_report.h"
+#include "film/plan/shipped_files.h"
+#include "output/run/profile.h"
+#include "scene/building/skin_report.h"
+#include "scene/replay/script.h"
 
 namespace supple {
 namespace {
@@ -21,7 +21,7 @@ std::string cost_text(const SceneDef& scene, Body& body, Model& model, const Col
   const FrameCost cost =
       cost_of_frames(scene, body, model, set, all_solvers().steps, threads, std::min(tried_frames, scene.frames));
   if (!cost.failure.empty()) return cost.failure;
-  const bool free = !set.obstacles.empty() && !cost.touched;
+  const bool free = !set.scene_colliders.empty() && !cost.touched;
   return fmt::format("{:.2f} ms a frame (median of the first {}, {} threads{})", distribution_of(cost.frame_ms).p50,
                      cost.frame_ms.size(), threads.count(),
                      free ? "; it touches nothing in them, and contacts cost more" : "");

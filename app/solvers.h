@@ -1,7 +1,7 @@
 // Provides the solvers that the program offers, those of engine/baselines, to films and to estimates of cost.
 #pragma once
 
-#include "film/film_solvers.h"
+#include "film/plan/film_solvers.h"
 
 namespace supple {
 

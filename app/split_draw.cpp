@@ -10,12 +10,12 @@
 #include "base/interrupts.h"
 #include "base/text.h"
 #include "base/timing.h"
-#include "film/places.h"
+#include "film/plan/shipped_files.h"
 #include "film/progress.h"
-#include "output/json_text.h"
-#include "output/png_file.h"
-#include "output/run_folder.h"
-#include "output/run_record.h"
+#include "output/files/json_text.h"
+#include "output/files/png_file.h"
+#include "output/run/run_folder.h"
+#include "output/run/run_record.h"
 
 namespace supple {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "film/redraw.h"
-#include "film/split_screen.h"
-#include "output/video.h"
+#include "film/redraw/redraw.h"
+#include "film/redraw/split_screen.h"
+#include "output/video/video.h"
 
 namespace supple {
 

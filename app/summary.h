@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <string>
 
-#include "geometry/mesh.h"
-#include "output/run_record.h"
-#include "scene/scene_source.h"
+#include "geometry/meshes/mesh.h"
+#include "output/run/run_record.h"
+#include "scene/reading/scene_source.h"
 
 namespace supple {
 

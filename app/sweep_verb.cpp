@@ -9,8 +9,8 @@
 #include "base/console.h"
 #include "base/error.h"
 #include "base/text.h"
-#include "film/places.h"
-#include "scene/script.h"
+#include "film/plan/shipped_files.h"
+#include "scene/replay/script.h"
 
 namespace supple {
 namespace {

@@ -6,8 +6,8 @@
 #include <map>
 
 #include "app/bench/sections.h"
-#include "film/places.h"
-#include "scene/scene_reader.h"
+#include "film/plan/shipped_files.h"
+#include "scene/reading/scene_reader.h"
 
 namespace supple {
 std::vector<SubjectChoice> all_subjects() {

@@ -18,7 +18,7 @@
 #include "base/text.h"
 #include "base/timing.h"
 #include "base/variants.h"
-#include "output/run_folder.h"
+#include "output/run/run_folder.h"
 
 namespace supple {
 

@@ -8,7 +8,7 @@
 
 #include "app/bench/sections.h"
 #include "baselines/system_matrix.h"
-#include "film/places.h"
+#include "film/plan/shipped_files.h"
 #include "sim/solver/hessian_matrix.h"
 
 namespace supple {

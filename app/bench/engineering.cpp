@@ -8,7 +8,7 @@
 #include "app/bench/sections.h"
 #include "base/timing.h"
 #include "baselines/post_projection.h"
-#include "output/profile.h"
+#include "output/run/profile.h"
 #include "sim/model/element_view.h"
 #include "sim/model/measures.h"
 

@@ -3,8 +3,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "output/json_text.h"
-#include "output/whole_file.h"
+#include "output/files/json_text.h"
+#include "output/files/whole_file.h"
 
 namespace supple {
 namespace {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "output/report_page.h"
+#include "output/pages/report_page.h"
 
 namespace supple {
 

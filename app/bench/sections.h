@@ -4,7 +4,7 @@
 
 #include "app/bench/bench.h"
 #include "app/bench/comparison.h"
-#include "output/report_page.h"
+#include "output/pages/report_page.h"
 
 namespace supple {
 

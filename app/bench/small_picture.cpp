@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "output/png_file.h"
+#include "output/files/png_file.h"
 
 namespace supple {
 namespace {

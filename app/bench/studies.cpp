@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "app/bench/sections.h"
-#include "film/places.h"
+#include "film/plan/shipped_files.h"
 
 namespace supple {
 namespace {

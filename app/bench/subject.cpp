@@ -7,12 +7,12 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "baselines/make_rule.h"
-#include "film/checkpoint.h"
-#include "film/places.h"
-#include "film/state_file.h"
-#include "output/run_folder.h"
-#include "output/whole_file.h"
-#include "scene/scene_reader.h"
+#include "film/plan/shipped_files.h"
+#include "film/record/checkpoint.h"
+#include "film/record/state_file.h"
+#include "output/files/whole_file.h"
+#include "output/run/run_folder.h"
+#include "scene/reading/scene_reader.h"
 
 namespace supple {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "app/bench/sections.h"
-#include "film/places.h"
+#include "film/plan/shipped_files.h"
 
 namespace supple {
 namespace {

@@ -14,7 +14,7 @@
 
 #include "app/bench/sections.h"
 #include "app/bench/turning_films.h"
-#include "scene/rotation.h"
+#include "scene/definition/rotation.h"
 
 namespace supple {
 namespace {

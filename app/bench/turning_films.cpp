@@ -7,9 +7,9 @@
 
 #include "app/bench/sections.h"
 #include "base/interrupts.h"
-#include "film/places.h"
-#include "scene/obstacle.h"
-#include "scene/scene_reader.h"
+#include "film/plan/shipped_files.h"
+#include "scene/building/collision_set.h"
+#include "scene/reading/scene_reader.h"
 
 namespace supple {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/bench/bench.h"
-#include "output/report_page.h"
+#include "output/pages/report_page.h"
 #include "sim/model/model.h"
 #include "sim/model/state.h"
 

@@ -9,10 +9,10 @@
 #include "app/sweep/sweep_tables.h"
 #include "base/console.h"
 #include "base/error.h"
-#include "film/contact_sheet.h"
-#include "film/places.h"
-#include "output/report_page.h"
-#include "output/run_folder.h"
+#include "film/pictures/contact_sheet.h"
+#include "film/plan/shipped_files.h"
+#include "output/pages/report_page.h"
+#include "output/run/run_folder.h"
 
 namespace supple {
 namespace {

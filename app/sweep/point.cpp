@@ -9,10 +9,10 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/timing.h"
-#include "film/places.h"
-#include "output/folder_lock.h"
-#include "output/json_text.h"
-#include "output/whole_file.h"
+#include "film/plan/shipped_files.h"
+#include "output/files/folder_lock.h"
+#include "output/files/json_text.h"
+#include "output/files/whole_file.h"
 
 namespace supple {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "film/film_plan.h"
-#include "scene/sweep.h"
+#include "film/plan/film_plan.h"
+#include "scene/reading/sweep.h"
 
 namespace supple {
 

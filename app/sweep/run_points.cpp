@@ -14,9 +14,9 @@
 #include "base/interrupts.h"
 #include "base/text.h"
 #include "base/timing.h"
-#include "film/places.h"
-#include "output/child_program.h"
-#include "output/folder_lock.h"
+#include "film/plan/shipped_files.h"
+#include "output/files/child_program.h"
+#include "output/files/folder_lock.h"
 
 namespace supple {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "output/json_text.h"
+#include "output/files/json_text.h"
 
 namespace supple {
 namespace {

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "app/sweep/point.h"
-#include "output/profile.h"
-#include "output/report_table.h"
+#include "output/pages/report_table.h"
+#include "output/run/profile.h"
 
 namespace supple {
 

@@ -12,24 +12,24 @@
 #include "base/frame_time.h"
 #include "base/timing.h"
 #include "base/variants.h"
-#include "film/film_checks.h"
-#include "film/film_identity.h"
-#include "film/film_solvers.h"
-#include "film/film_stills.h"
 #include "film/frame_loop.h"
-#include "film/places.h"
-#include "film/preview.h"
+#include "film/pictures/film_stills.h"
+#include "film/pictures/reference_run.h"
+#include "film/plan/film_solvers.h"
+#include "film/plan/preview.h"
+#include "film/plan/shipped_files.h"
 #include "film/progress.h"
-#include "film/reference_run.h"
-#include "output/child_program.h"
-#include "output/chrome_trace.h"
-#include "output/json_text.h"
-#include "output/run_record.h"
-#include "output/verdict.h"
-#include "output/video.h"
-#include "output/whole_file.h"
-#include "scene/script_trial.h"
-#include "scene/warnings.h"
+#include "film/record/film_checks.h"
+#include "film/record/film_identity.h"
+#include "output/files/child_program.h"
+#include "output/files/json_text.h"
+#include "output/files/whole_file.h"
+#include "output/run/chrome_trace.h"
+#include "output/run/run_record.h"
+#include "output/run/verdict.h"
+#include "output/video/video.h"
+#include "scene/building/warnings.h"
+#include "scene/replay/script_trial.h"
 
 namespace supple {
 
@@ -67,8 +67,8 @@ LoadedFilm film_with(const FilmPlan& plan, const std::vector<std::string>& setti
       plan.threads > 0 ? plan.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   check_save_states(plan.save_states, film.script.scene(), {}, 0);
   zone.next("assemble meshes");
-  MakingLine tells(plan.quiet);
-  film.bodies = assemble(film.script.scene(), making_with(plan.cache, tells));
+  SlowWorkLine tells(plan.quiet);
+  film.bodies = assemble(film.script.scene(), slow_work_with(plan.cache, tells));
   for (const Body& body : film.bodies) {
     const TetMesh& mesh = body.description.mesh;
     const auto elements = static_cast<int>(mesh.tets.rows() + body.description.springs.size());
@@ -120,10 +120,10 @@ void build_models(const FilmPlan& plan, LoadedFilm& film) {
 
 void make_skins(const FilmPlan& plan, LoadedFilm& film) {
   const Zone zone("make skins");
-  MakingLine tells(plan.quiet);
+  SlowWorkLine tells(plan.quiet);
   const bool as_elements = film.script.scene().look.wireframe;
   film.drawn =
-      drawn_bodies(film.bodies, making_with(plan.cache, tells), as_elements ? DrawnAs::elements : DrawnAs::skin);
+      drawn_bodies(film.bodies, slow_work_with(plan.cache, tells), as_elements ? DrawnAs::elements : DrawnAs::skin);
 }
 
 namespace {

@@ -10,17 +10,17 @@
 #include <vector>
 
 #include "base/trace.h"
-#include "film/checkpoint.h"
-#include "film/film_plan.h"
-#include "film/repeated_cuts.h"
-#include "film/run_place.h"
-#include "film/state_record.h"
-#include "output/folder_lock.h"
-#include "output/frame_rows.h"
-#include "output/row_tally.h"
-#include "output/run_folder.h"
-#include "scene/drawn_body.h"
-#include "scene/script.h"
+#include "film/plan/film_plan.h"
+#include "film/plan/run_choice.h"
+#include "film/record/checkpoint.h"
+#include "film/record/repeated_cuts.h"
+#include "film/record/state_record.h"
+#include "output/files/folder_lock.h"
+#include "output/run/frame_rows.h"
+#include "output/run/row_tally.h"
+#include "output/run/run_folder.h"
+#include "scene/building/drawn_body.h"
+#include "scene/replay/script.h"
 
 namespace supple {
 
@@ -89,7 +89,7 @@ struct FilmResult {
 FilmResult make_film(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const RunFolder& folder,
                      const FilmSolvers& solvers);
 
-// Says which stage costs most, and what helps (output/verdict.h).
+// Says which stage costs most, and what helps (output/run/verdict.h).
 std::string verdict_on(const FilmResult& result);
 
 // Writes what is known of the film at its end into run.json and profile.json, and the trace where there is one. Returns

@@ -7,8 +7,8 @@
 #include "base/interrupts.h"
 #include "base/timing.h"
 #include "base/trace.h"
-#include "film/places.h"
-#include "scene/warnings.h"
+#include "film/plan/shipped_files.h"
+#include "scene/building/warnings.h"
 
 namespace supple {
 
@@ -29,7 +29,7 @@ FilmEnd FrameLoop::run(Progress& progress, std::string& message) {
     if (graphs_) graphed_.push_back(graph_point(row));
     log_.add(std::move(row));
     if (log_.wants_checkpoint(frame + 1)) add_checkpoint(frame + 1);
-    log_.settle(pictures());
+    log_.settle(written_pictures());
     progress.show(frame + 1);
   }
   return FilmEnd::done;
@@ -94,8 +94,8 @@ void FrameLoop::save_outputs(int frame, const FrameRow& row) {
   if (plan_.fields_every > 0 && frame % plan_.fields_every == 0) {
     for (const auto& body : filmed_) body->save_fields(frame);
   }
-  for (const Obstacle& obstacle : colliders_.obstacles)
-    poses_->add(frame, obstacle.def.name, obstacle.pose(row.time_s));
+  for (const SceneCollider& collider : colliders_.scene_colliders)
+    poses_->add(frame, collider.def.name, collider.pose(row.time_s));
 }
 
 // Hands the frame to the pictures. Returns false when they have failed.
@@ -160,7 +160,8 @@ FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
                                                    threads_, first_));
     if (!start.repeated.empty()) filmed_.back()->repeat(start.repeated[b]);
   }
-  if (!colliders_.obstacles.empty()) poses_.emplace(folder.colliders(), first_ * int(colliders_.obstacles.size()));
+  if (!colliders_.scene_colliders.empty())
+    poses_.emplace(folder.colliders(), first_ * int(colliders_.scene_colliders.size()));
   if (start.checkpoint) resume(*start.checkpoint);
   if (drawn_ && drawn_->needs_before()) {
     for (const auto& body : filmed_) last_motion_.push_back(body->present_motion());
@@ -208,7 +209,7 @@ void FrameLoop::apply(SceneDef scene, const std::vector<TimedChange>& changes) {
     filmed_[b]->driver().apply(cost_for(bodies_[b].def.name, changes));
   }
   CollisionSet now = collision_set(scene_);
-  now.earlier = std::move(colliders_.obstacles);
+  now.earlier = std::move(colliders_.scene_colliders);
   colliders_ = std::move(now);
   if (drawn_) drawn_->follow(changes, colliders_, bodies_);
 }
@@ -247,7 +248,7 @@ void FrameLoop::finish(FilmResult& result) {
     log_.add(checkpoint_before_);  // one at first_ is there already
   const bool at_end = result.end != FilmEnd::failed && log_.keeps_checkpoints() && !log_.wants_checkpoint(frames);
   if (at_end) add_checkpoint(frames);
-  log_.settle(pictures());
+  log_.settle(written_pictures());
 }
 
 }  // namespace supple

@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "film/drawn_film.h"
 #include "film/film.h"
-#include "film/film_log.h"
-#include "film/filmed_body.h"
-#include "film/pictures.h"
+#include "film/pictures/drawn_film.h"
+#include "film/pictures/pictures.h"
 #include "film/progress.h"
-#include "output/pose_table.h"
-#include "scene/body_meetings.h"
+#include "film/record/film_log.h"
+#include "film/record/filmed_body.h"
+#include "output/motion/pose_table.h"
+#include "scene/building/body_meetings.h"
 
 namespace supple {
 
@@ -49,7 +49,10 @@ class FrameLoop {
   Checkpoint checkpoint_after(int frames) const;
   void keep_checkpoint_before(int frame);
   void add_checkpoint(int frames);
-  Pictures* pictures() { return pictures_ ? &*pictures_ : nullptr; }
+  // Returns the frames whose pictures have been written since the last call.
+  std::vector<PictureTimes> written_pictures() {
+    return pictures_ ? pictures_->take_written() : std::vector<PictureTimes>();
+  }
 
   const FilmPlan& plan_;
   const Script& script_;

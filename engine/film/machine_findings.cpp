@@ -9,10 +9,10 @@
 #include "base/text.h"
 #include "base/user_cache.h"
 #include "base/variants.h"
-#include "film/places.h"
-#include "geometry/surface_file.h"
-#include "output/child_program.h"
-#include "output/run_folder.h"
+#include "film/plan/shipped_files.h"
+#include "geometry/files/surface_file.h"
+#include "output/files/child_program.h"
+#include "output/run/run_folder.h"
 #include "render/renderer.h"
 
 namespace supple {

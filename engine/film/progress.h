@@ -5,9 +5,9 @@
 #include <unistd.h>
 
 #include "base/console.h"
+#include "base/slow_work.h"
 #include "base/text.h"
 #include "base/timing.h"
-#include "scene/making.h"
 
 namespace supple {
 
@@ -41,12 +41,12 @@ class Progress {
 
 // Tells what is being made before a film starts: a line that is renewed on a terminal and wiped out at the end;
 // elsewhere a plain line for what takes long.
-class MakingLine {
+class SlowWorkLine {
  public:
-  explicit MakingLine(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
-  ~MakingLine() { end(); }
-  MakingLine(const MakingLine&) = delete;
-  MakingLine& operator=(const MakingLine&) = delete;
+  explicit SlowWorkLine(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
+  ~SlowWorkLine() { end(); }
+  SlowWorkLine(const SlowWorkLine&) = delete;
+  SlowWorkLine& operator=(const SlowWorkLine&) = delete;
 
   void show(const std::string& text) {
     const double elapsed = watch_.elapsed_ms() / 1000;
@@ -67,7 +67,7 @@ class MakingLine {
 };
 
 // line: must outlive the result.
-inline Making making_with(bool cache, MakingLine& line) {
+inline SlowWork slow_work_with(bool cache, SlowWorkLine& line) {
   return {cache ? UserCache::of_user() : UserCache(), [&line](const std::string& text) { line.show(text); }};
 }
 

@@ -8,9 +8,9 @@
 #include <cstring>
 
 #include "base/error.h"
-#include "output/obj_file.h"
-#include "output/point_cache.h"
-#include "output/run_record.h"
+#include "output/files/obj_file.h"
+#include "output/motion/point_cache.h"
+#include "output/run/run_record.h"
 
 namespace supple {
 namespace {

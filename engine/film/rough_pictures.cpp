@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "base/frame_time.h"
-#include "film/drawn_film.h"
 #include "film/film.h"
-#include "output/row_tally.h"
+#include "film/pictures/drawn_film.h"
+#include "output/run/row_tally.h"
 
 namespace supple {
 namespace {

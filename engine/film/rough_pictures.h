@@ -2,8 +2,8 @@
 // coarse as can be, few iterations, and no more steps than take about a second.
 #pragma once
 
-#include "film/film_plan.h"
-#include "film/film_solvers.h"
+#include "film/plan/film_plan.h"
+#include "film/plan/film_solvers.h"
 
 namespace supple {
 

@@ -1,5 +1,5 @@
 // Makes colour maps: sequences of colours along which equal steps of a value look equally large, and whose lightness
-// alone tells low from high. Not here: which value has which colour (film/surface_field.h).
+// alone tells low from high. Not here: which value has which colour (film/pictures/surface_field.h).
 #pragma once
 
 #include <vector>

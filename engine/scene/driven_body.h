@@ -1,15 +1,16 @@
 // Represents a body and all that drives it through a scene: the targets of its handles, the colliders' motions, the
 // solver's settings, and the handles that grab and release. Films, stored states, benchmarks and estimates of cost all
-// make their steps here, so that they agree to the last bit. Not here: what is recorded of a body (film/filmed_body.h).
+// make their steps here, so that they agree to the last bit. Not here: what is recorded of a body
+// (film/record/filmed_body.h).
 #pragma once
 
 #include <functional>
 #include <memory>
 #include <optional>
 
-#include "scene/assemble.h"
-#include "scene/live.h"
-#include "scene/obstacle.h"
+#include "scene/building/assemble.h"
+#include "scene/building/collision_set.h"
+#include "scene/replay/live_keys.h"
 #include "sim/model/model_values.h"
 #include "sim/solver/search_rule.h"
 

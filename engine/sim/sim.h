@@ -18,9 +18,9 @@
 
 #include <Eigen/Core>
 
-#include "geometry/mesh.h"            // TetMesh
-#include "geometry/shape.h"           // what a Collider is made of
-#include "geometry/tetrahedralize.h"  // meshes of shapes and boxes
+#include "geometry/meshes/mesh.h"                // TetMesh
+#include "geometry/shapes/shape.h"               // what a Collider is made of
+#include "geometry/tetrahedra/tetrahedralize.h"  // meshes of shapes and boxes
 #include "sim/materials/material.h"
 #include "sim/model/inputs.h"
 #include "sim/model/measures.h"  // stretch, penetration

@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-#include "output/profile.h"
+#include "output/run/profile.h"
 #include "support/bodies.h"
 #include "support/program.h"
 

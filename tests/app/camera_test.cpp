@@ -4,7 +4,7 @@
 #include <numbers>
 #include <random>
 
-#include "film/camera.h"
+#include "film/pictures/camera.h"
 #include "render/view.h"
 #include "support/scene_text.h"
 

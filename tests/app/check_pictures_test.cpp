@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "app/solvers.h"
-#include "film/places.h"
+#include "film/plan/shipped_files.h"
 #include "film/rough_pictures.h"
 #include "support/bodies.h"
 #include "support/program.h"

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "output/point_cache.h"
-#include "output/run_comparison.h"
+#include "output/motion/point_cache.h"
+#include "output/run/run_comparison.h"
 #include "support/bodies.h"
 #include "support/program.h"
 

@@ -6,9 +6,9 @@
 #include <future>
 #include <nlohmann/json.hpp>
 
-#include "output/png_file.h"
-#include "output/run_folder.h"
-#include "output/video.h"
+#include "output/files/png_file.h"
+#include "output/run/run_folder.h"
+#include "output/video/video.h"
 #include "support/bodies.h"
 #include "support/program.h"
 

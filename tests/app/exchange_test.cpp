@@ -6,10 +6,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "output/child_program.h"
-#include "output/obj_file.h"
-#include "output/point_cache.h"
-#include "output/vtu.h"
+#include "output/files/child_program.h"
+#include "output/files/obj_file.h"
+#include "output/files/vtu.h"
+#include "output/motion/point_cache.h"
 #include "support/bodies.h"
 #include "support/program.h"
 #include "support/vtu.h"

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "output/png_file.h"
+#include "output/files/png_file.h"
 #include "support/bodies.h"
 #include "support/places.h"
 #include "support/program.h"

@@ -10,9 +10,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "output/folder_lock.h"
-#include "output/png_file.h"
-#include "output/whole_file.h"
+#include "output/files/folder_lock.h"
+#include "output/files/png_file.h"
+#include "output/files/whole_file.h"
 #include "support/bodies.h"
 #include "support/places.h"
 #include "support/program.h"

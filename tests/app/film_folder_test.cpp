@@ -7,10 +7,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "output/child_program.h"
-#include "output/png_file.h"
-#include "output/run_folder.h"
-#include "output/video.h"
+#include "output/files/child_program.h"
+#include "output/files/png_file.h"
+#include "output/run/run_folder.h"
+#include "output/video/video.h"
 #include "support/bodies.h"
 #include "support/places.h"
 #include "support/program.h"

@@ -1,5 +1,5 @@
 // The rows of a film go to its folder as they come, and come back from there.
-#include "film/film_log.h"
+#include "film/record/film_log.h"
 
 #include <gtest/gtest.h>
 #include <malloc.h>
@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "base/error.h"
-#include "output/row_tally.h"
+#include "output/run/row_tally.h"
 #include "support/bodies.h"
 
 namespace supple {

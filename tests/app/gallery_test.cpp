@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "output/run_folder.h"
+#include "output/run/run_folder.h"
 #include "support/bodies.h"
 #include "support/program.h"
 

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "output/point_cache.h"
+#include "output/motion/point_cache.h"
 #include "support/bodies.h"
 #include "support/program.h"
 

@@ -10,7 +10,7 @@
 #include <set>
 #include <sstream>
 
-#include "output/child_program.h"
+#include "output/files/child_program.h"
 #include "support/bodies.h"
 #include "support/places.h"
 #include "support/program.h"

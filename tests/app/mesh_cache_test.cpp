@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "output/obj_file.h"
+#include "output/files/obj_file.h"
 #include "support/bodies.h"
 #include "support/program.h"
 #include "support/surfaces.h"

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "output/zones.h"
+#include "output/run/zones.h"
 #include "support/bodies.h"
 #include "support/places.h"
 #include "support/program.h"

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "output/png_file.h"
-#include "output/video.h"
+#include "output/files/png_file.h"
+#include "output/video/video.h"
 #include "support/bodies.h"
 #include "support/places.h"
 #include "support/program.h"

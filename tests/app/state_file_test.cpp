@@ -1,5 +1,5 @@
 // Tests the states that a run leaves: their content, that a step from them has the run's bits, and what is refused.
-#include "film/state_file.h"
+#include "film/record/state_file.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "output/npy.h"
-#include "output/whole_file.h"
+#include "output/files/npy.h"
+#include "output/files/whole_file.h"
 #include "support/film.h"
 #include "support/program.h"
 #include "support/stored_problem.h"

@@ -1,7 +1,7 @@
 // Compares the program's g and its gradient with those that a separate program would compute from the files of a state.
 #include <gtest/gtest.h>
 
-#include "film/state_file.h"
+#include "film/record/state_file.h"
 #include "sim/solver/step.h"
 #include "support/bodies.h"
 #include "support/stored_problem.h"

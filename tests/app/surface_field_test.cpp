@@ -1,12 +1,12 @@
 // Tests the values and the ranges of fields on surfaces, at poses whose fields are known.
-#include "film/surface_field.h"
+#include "film/pictures/surface_field.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "base/error.h"
-#include "geometry/cloth.h"
+#include "geometry/meshes/cloth.h"
 #include "sim/solver/fields.h"
 #include "support/film.h"
 #include "support/scene_text.h"

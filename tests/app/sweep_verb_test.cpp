@@ -10,10 +10,10 @@
 #include <set>
 #include <thread>
 
-#include "film/contact_sheet.h"
-#include "film/places.h"
-#include "output/png_file.h"
-#include "output/report_table.h"
+#include "film/pictures/contact_sheet.h"
+#include "film/plan/shipped_files.h"
+#include "output/files/png_file.h"
+#include "output/pages/report_table.h"
 #include "support/bodies.h"
 #include "support/program.h"
 

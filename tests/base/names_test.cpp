@@ -4,9 +4,9 @@
 
 #include <set>
 
-#include "film/film_plan.h"
+#include "film/plan/film_plan.h"
 #include "render/gl_context.h"
-#include "scene/sweep.h"
+#include "scene/reading/sweep.h"
 #include "sim/model/report.h"
 
 namespace supple {

@@ -1,7 +1,7 @@
 // Any bytes as a checkpoint. The hash at its end is made right, so that what lies between is read.
 #include "base/error.h"
 #include "base/hash.h"
-#include "film/checkpoint.h"
+#include "film/record/checkpoint.h"
 #include "fuzz/scratch_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

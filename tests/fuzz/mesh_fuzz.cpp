@@ -4,11 +4,11 @@
 
 #include "base/error.h"
 #include "fuzz/scratch_file.h"
-#include "geometry/announced_counts.h"
-#include "geometry/mesh_file.h"
-#include "geometry/mesh_formats.h"
-#include "output/npy.h"
-#include "scene/surface_tetrahedra.h"
+#include "geometry/files/announced_counts.h"
+#include "geometry/files/mesh_file.h"
+#include "geometry/files/mesh_formats.h"
+#include "geometry/tetrahedra/surface_tetrahedra.h"
+#include "output/files/npy.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace supple;

@@ -1,8 +1,8 @@
 // Any bytes as a record of states, and as the profile of a run.
 #include "base/error.h"
-#include "film/state_record.h"
+#include "film/record/state_record.h"
 #include "fuzz/scratch_file.h"
-#include "output/profile.h"
+#include "output/run/profile.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace supple;

@@ -1,6 +1,6 @@
 // Any text as a replay, with all its frames checked.
 #include "fuzz/scratch_file.h"
-#include "scene/script.h"
+#include "scene/replay/script.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace supple;

@@ -1,6 +1,6 @@
 // Any text as a scene: it is read, or refused with problems, and its document can be written as JSON.
 #include "fuzz/scratch_file.h"
-#include "scene/scene_reader.h"
+#include "scene/reading/scene_reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace supple;

@@ -1,6 +1,6 @@
 // Any text as a shape: its bounds and some distances are computed.
 #include "fuzz/scratch_file.h"
-#include "scene/shape_reader.h"
+#include "scene/reading/shape_reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace supple;

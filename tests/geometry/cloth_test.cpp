@@ -1,5 +1,5 @@
 // Tests cloth: which vertices are joined, on grids and on any triangle mesh, and surfaces read from files.
-#include "geometry/cloth.h"
+#include "geometry/meshes/cloth.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <set>
 
 #include "base/error.h"
-#include "geometry/mesh_file.h"
-#include "geometry/skin.h"
-#include "geometry/tetrahedralize.h"
+#include "geometry/files/mesh_file.h"
+#include "geometry/skins/skin.h"
+#include "geometry/tetrahedra/tetrahedralize.h"
 #include "support/bodies.h"
 
 namespace supple {

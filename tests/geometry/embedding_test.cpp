@@ -1,14 +1,14 @@
 // Tests how a skin follows the elements below it: exactly where it can, and boundedly where elements fail.
-#include "geometry/embedding.h"
+#include "geometry/skins/embedding.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <random>
 
-#include "geometry/boundary_walk.h"
-#include "geometry/skin_stretch.h"
-#include "geometry/tetrahedralize.h"
+#include "geometry/meshes/boundary_walk.h"
+#include "geometry/skins/skin_stretch.h"
+#include "geometry/tetrahedra/tetrahedralize.h"
 #include "support/surfaces.h"
 
 namespace supple {

@@ -4,10 +4,10 @@
 #include <map>
 
 #include "base/error.h"
-#include "geometry/bisected_lattice.h"
-#include "geometry/surface_thickness.h"
-#include "geometry/tetrahedralize.h"
-#include "scene/shape_reader.h"
+#include "geometry/tetrahedra/bisected_lattice.h"
+#include "geometry/tetrahedra/tetrahedralize.h"
+#include "geometry/triangles/surface_thickness.h"
+#include "scene/reading/shape_reader.h"
 
 namespace supple {
 namespace {

@@ -7,8 +7,8 @@
 #include <random>
 
 #include "base/error.h"
-#include "geometry/mesh_file.h"
-#include "geometry/tetrahedralize.h"
+#include "geometry/files/mesh_file.h"
+#include "geometry/tetrahedra/tetrahedralize.h"
 #include "support/bodies.h"
 
 namespace supple {

@@ -5,12 +5,12 @@
 #include <random>
 
 #include "base/error.h"
-#include "geometry/embedding.h"
-#include "geometry/lattice_probe.h"
-#include "geometry/mesh_file.h"
-#include "geometry/skin.h"
-#include "geometry/tetrahedralize.h"
-#include "scene/shape_reader.h"
+#include "geometry/files/mesh_file.h"
+#include "geometry/skins/embedding.h"
+#include "geometry/skins/skin.h"
+#include "geometry/tetrahedra/lattice_probe.h"
+#include "geometry/tetrahedra/tetrahedralize.h"
+#include "scene/reading/shape_reader.h"
 #include "support/bodies.h"
 #include "support/surfaces.h"
 

@@ -9,8 +9,9 @@
 #include <fstream>
 #include <limits>
 
-#include "geometry/surface_file.h"
-#include "geometry/surface_pieces.h"
+#include "geometry/files/surface_file.h"
+#include "geometry/solids/closed_surface.h"
+#include "geometry/solids/surface_pieces.h"
 #include "support/bodies.h"
 #include "support/odd_files.h"
 #include "support/surfaces.h"

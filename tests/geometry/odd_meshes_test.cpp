@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "geometry/mesh_file.h"
+#include "geometry/files/mesh_file.h"
 #include "support/bodies.h"
 #include "support/odd_files.h"
 

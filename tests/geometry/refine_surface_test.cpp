@@ -1,5 +1,5 @@
 // Tests that large triangles are refined without gaps, folds or a change of shape.
-#include "geometry/refine_surface.h"
+#include "geometry/triangles/refine_surface.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "geometry/rounded_prism.h"
+#include "geometry/shapes/rounded_prism.h"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <random>
 
-#include "geometry/shape.h"
-#include "geometry/skin.h"
+#include "geometry/shapes/shape.h"
+#include "geometry/skins/skin.h"
 #include "support/surfaces.h"
 
 namespace supple {

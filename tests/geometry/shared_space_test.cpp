@@ -1,12 +1,12 @@
 // Tests which meshes share space: partly, wholly, through edges alone; and that those that touch or are near do not.
-#include "geometry/shared_space.h"
+#include "geometry/meshes/shared_space.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 
-#include "geometry/cloth.h"
-#include "geometry/tetrahedralize.h"
+#include "geometry/meshes/cloth.h"
+#include "geometry/tetrahedra/tetrahedralize.h"
 
 namespace supple {
 namespace {

@@ -1,4 +1,4 @@
-#include "geometry/simplify.h"
+#include "geometry/skins/simplify.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // Tests that what a skin has outside all elements stretches no more than it may, and that nothing else moves.
-#include "geometry/skin_limit.h"
+#include "geometry/skins/skin_limit.h"
 
 #include <gtest/gtest.h>
 
-#include "geometry/tetrahedralize.h"
+#include "geometry/tetrahedra/tetrahedralize.h"
 #include "support/surfaces.h"
 
 namespace supple {

@@ -1,6 +1,7 @@
 // Tests how surfaces that are not closed become solids. What is enclosed is known by formula; boundaries must be closed
 // manifolds, and a surface that is closed already must not change by a bit.
-#include "geometry/solid_surface.h"
+#include "geometry/solids/solid_surface.h"
+#include "geometry/solids/closed_surface.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -11,10 +12,10 @@
 #include <random>
 
 #include "base/error.h"
-#include "geometry/surface_file.h"
-#include "geometry/triangle_solid.h"
-#include "geometry/triangle_soup.h"
-#include "geometry/wound_surface.h"
+#include "geometry/files/surface_file.h"
+#include "geometry/solids/triangle_solid.h"
+#include "geometry/solids/winding_solid.h"
+#include "geometry/triangles/triangle_soup.h"
 #include "support/surfaces.h"
 
 namespace supple {
@@ -205,7 +206,7 @@ TEST(SolidSurface, TheNumberOfThreadsChangesNoBit) {
   const TriMesh mesh = loose_box(nullptr);
   Numbered surface{mesh, std::vector<Eigen::Index>(std::size_t(mesh.triangles.rows()), 0)};
   Threads one(1), three(3);
-  const WoundSurface a = wound_surface(surface, "x", one), b = wound_surface(surface, "x", three);
+  const WindingSolid a = winding_solid(surface, "x", one), b = winding_solid(surface, "x", three);
   EXPECT_EQ(a.boundary.points, b.boundary.points);
   EXPECT_EQ(a.boundary.triangles, b.boundary.triangles);
   EXPECT_EQ(a.drawn.points, b.drawn.points);

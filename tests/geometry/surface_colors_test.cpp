@@ -1,17 +1,17 @@
 // Tests the colours of surfaces from files: what each format says of them, what is missing or too large, and how they
 // come along when a surface is repaired, refined and made coarser.
-#include "geometry/surface_colors.h"
+#include "geometry/skins/surface_colors.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
 #include <random>
 
-#include "geometry/refine_surface.h"
-#include "geometry/simplify.h"
-#include "geometry/surface_file.h"
-#include "output/child_program.h"
-#include "output/colored_obj.h"
+#include "geometry/files/surface_file.h"
+#include "geometry/skins/simplify.h"
+#include "geometry/triangles/refine_surface.h"
+#include "output/files/child_program.h"
+#include "output/files/colored_obj.h"
 #include "render/color.h"
 #include "support/bodies.h"
 #include "support/colored_files.h"

@@ -1,6 +1,7 @@
 // Tests surfaces as they come from outside: they are repaired, or refused with the name of the triangle. Files that are
 // broken in any way must neither end this process nor be accepted.
-#include "geometry/surface_file.h"
+#include "geometry/files/surface_file.h"
+#include "geometry/solids/closed_surface.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -16,8 +17,8 @@
 #include <random>
 
 #include "base/error.h"
-#include "geometry/reader_process.h"
-#include "geometry/triangle_solid.h"
+#include "geometry/files/reader_process.h"
+#include "geometry/solids/triangle_solid.h"
 #include "support/bodies.h"
 #include "support/surfaces.h"
 

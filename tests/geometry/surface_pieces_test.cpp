@@ -1,12 +1,12 @@
 // Tests which parts of a surface make one piece, and how thick solids are.
-#include "geometry/surface_pieces.h"
+#include "geometry/solids/surface_pieces.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "geometry/surface_thickness.h"
+#include "geometry/triangles/surface_thickness.h"
 #include "support/surfaces.h"
 
 namespace supple {

@@ -1,11 +1,11 @@
 // Tests where triangles lie deepest in shapes, and the pieces of shapes.
-#include "geometry/triangle_in_shape.h"
+#include "geometry/shapes/triangle_in_shape.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "geometry/shape_pieces.h"
+#include "geometry/shapes/shape_pieces.h"
 
 namespace supple {
 namespace {

@@ -1,5 +1,5 @@
 // Tests closest points against brute force, signs against formulas, and normals at all places where they could fail.
-#include "geometry/triangle_solid.h"
+#include "geometry/solids/triangle_solid.h"
 
 #include <gtest/gtest.h>
 

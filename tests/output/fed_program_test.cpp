@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "base/hash.h"
-#include "output/child_program.h"
+#include "output/files/child_program.h"
 #include "support/bodies.h"
 
 namespace supple {

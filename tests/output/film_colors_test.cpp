@@ -1,4 +1,4 @@
-#include "output/film_colors.h"
+#include "output/video/film_colors.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Tests the file that keeps the forces of colliders, whole, continued, cut short and damaged.
-#include "output/force_file.h"
+#include "output/motion/force_file.h"
 
 #include <gtest/gtest.h>
 

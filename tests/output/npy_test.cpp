@@ -1,4 +1,4 @@
-#include "output/npy.h"
+#include "output/files/npy.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "output/whole_file.h"
+#include "output/files/whole_file.h"
 #include "support/bodies.h"
 
 namespace supple {

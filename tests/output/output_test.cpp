@@ -5,13 +5,13 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "output/frame_rows.h"
-#include "output/png_file.h"
-#include "output/point_cache.h"
-#include "output/profile.h"
-#include "output/row_tally.h"
-#include "output/run_folder.h"
-#include "output/whole_file.h"
+#include "output/files/png_file.h"
+#include "output/files/whole_file.h"
+#include "output/motion/point_cache.h"
+#include "output/run/frame_rows.h"
+#include "output/run/profile.h"
+#include "output/run/row_tally.h"
+#include "output/run/run_folder.h"
 #include "support/bodies.h"
 
 namespace supple {

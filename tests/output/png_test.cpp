@@ -1,5 +1,5 @@
 // Tests PNG files that we write against libpng, which reads them.
-#include "output/png_file.h"
+#include "output/files/png_file.h"
 
 #include <gtest/gtest.h>
 

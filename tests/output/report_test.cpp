@@ -9,9 +9,9 @@
 #include <set>
 
 #include "base/error.h"
-#include "output/markup.h"
-#include "output/report_page.h"
-#include "output/whole_file.h"
+#include "output/files/markup.h"
+#include "output/files/whole_file.h"
+#include "output/pages/report_page.h"
 #include "support/bodies.h"
 
 namespace supple {

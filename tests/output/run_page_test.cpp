@@ -1,5 +1,5 @@
 // The page of a run.
-#include "output/run_page.h"
+#include "output/pages/run_page.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // Tests the line that names frames whose steps were not solved.
-#include "output/unsolved.h"
+#include "output/run/unsolved_steps.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "output/row_tally.h"
+#include "output/run/row_tally.h"
 #include "support/bodies.h"
 #include "support/program.h"
 

@@ -1,5 +1,5 @@
 // Tests the line that names the most expensive stage of a frame.
-#include "output/verdict.h"
+#include "output/run/verdict.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Tests the comparison of profiles that are generated with the noise of a shared machine.
-#include "output/zone_comparison.h"
+#include "output/run/zone_comparison.h"
 
 #include <gtest/gtest.h>
 

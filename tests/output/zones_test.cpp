@@ -1,5 +1,5 @@
 // Tests traces written for other programs, and zones summed from them.
-#include "output/zones.h"
+#include "output/run/zones.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "output/chrome_trace.h"
-#include "output/whole_file.h"
-#include "output/zone_table.h"
+#include "output/files/whole_file.h"
+#include "output/pages/zone_table.h"
+#include "output/run/chrome_trace.h"
 #include "support/bodies.h"
 
 namespace supple {

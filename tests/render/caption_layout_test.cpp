@@ -7,15 +7,15 @@
 #include <algorithm>
 
 #include "base/convex_hull.h"
-#include "film/camera.h"
-#include "film/draw_scene.h"
-#include "film/film_graphs.h"
-#include "film/places.h"
-#include "film/surface_field.h"
+#include "film/pictures/camera.h"
+#include "film/pictures/draw_scene.h"
+#include "film/pictures/film_graphs.h"
+#include "film/pictures/surface_field.h"
+#include "film/plan/shipped_files.h"
 #include "render/captions.h"
 #include "render/legend.h"
 #include "render/overlays.h"
-#include "scene/scene_reader.h"
+#include "scene/reading/scene_reader.h"
 #include "support/bodies.h"
 
 namespace supple {
@@ -81,8 +81,8 @@ struct LaidOut {
 LaidOut laid_out(const SceneDef& scene) {
   const std::vector<Body> bodies = assemble(scene);
   const CollisionSet set = collision_set(scene);
-  LaidOut result = {make_stage(scene, bodies, std::vector<DrawnBody>(bodies.size()), set.obstacles,
-                               collider_skins(set.obstacles, bodies), caption_font()),
+  LaidOut result = {make_stage(scene, bodies, std::vector<DrawnBody>(bodies.size()), set.scene_colliders,
+                               collider_skins(set.scene_colliders, bodies), caption_font()),
                     {}};
   result.stage.first_camera = camera_at(scene, result.stage, 0);
   result.captions = Captions(result.stage).places(result.stage.first_camera);
@@ -247,8 +247,8 @@ TEST_P(CaptionsOfScene, LeaveAllOtherTextsFree) {
       const SceneDef scene = load_scene(test::assets / "scenes" / (GetParam() + ".toml"), test::assets, settings);
       const std::vector<Body> bodies = assemble(scene);
       const CollisionSet set = collision_set(scene);
-      Stage stage = make_stage(scene, bodies, std::vector<DrawnBody>(bodies.size()), set.obstacles,
-                               collider_skins(set.obstacles, bodies), font);
+      Stage stage = make_stage(scene, bodies, std::vector<DrawnBody>(bodies.size()), set.scene_colliders,
+                               collider_skins(set.scene_colliders, bodies), font);
       stage.field = SurfaceField(scene, bodies).look();
       stage.first_camera = camera_at(scene, stage, 0);
       stage.graphs = graph_looks(scene, 888);
@@ -269,8 +269,8 @@ TEST_P(CaptionsOfScene, LeaveAllOtherTextsFree) {
 // Returns the places of a scene's legend and captions, with a legend that shows speeds.
 std::vector<PixelRect> texts_with_legend(const SceneDef& scene, const std::vector<Body>& bodies, Stage& stage) {
   const CollisionSet set = collision_set(scene);
-  stage = make_stage(scene, bodies, std::vector<DrawnBody>(bodies.size()), set.obstacles,
-                     collider_skins(set.obstacles, bodies), caption_font());
+  stage = make_stage(scene, bodies, std::vector<DrawnBody>(bodies.size()), set.scene_colliders,
+                     collider_skins(set.scene_colliders, bodies), caption_font());
   stage.field = SurfaceField(scene, bodies).look();
   stage.kept_free = legend_room(stage);
   stage.first_camera = camera_at(scene, stage, 0);

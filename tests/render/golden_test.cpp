@@ -12,12 +12,12 @@
 #include <functional>
 #include <span>
 
-#include "film/drawn_film.h"
-#include "film/split_screen.h"
-#include "output/obj_file.h"
-#include "output/png_file.h"
-#include "output/point_cache.h"
-#include "output/run_folder.h"
+#include "film/pictures/drawn_film.h"
+#include "film/redraw/split_screen.h"
+#include "output/files/obj_file.h"
+#include "output/files/png_file.h"
+#include "output/motion/point_cache.h"
+#include "output/run/run_folder.h"
 #include "render/renderer.h"
 #include "sim/solver/fields.h"
 #include "support/colored_files.h"

@@ -5,10 +5,10 @@
 #include <cstdlib>
 #include <set>
 
-#include "scene/assemble.h"
-#include "scene/scene_reader.h"
-#include "scene/skin_report.h"
-#include "scene/warnings.h"
+#include "scene/building/assemble.h"
+#include "scene/building/skin_report.h"
+#include "scene/building/warnings.h"
+#include "scene/reading/scene_reader.h"
 #include "sim/model/measures.h"
 #include "support/film.h"
 #include "support/objective_checks.h"

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "base/error.h"
-#include "scene/assemble.h"
+#include "scene/building/assemble.h"
 #include "support/bodies.h"
 #include "support/scene_text.h"
 

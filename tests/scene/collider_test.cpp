@@ -4,10 +4,10 @@
 
 #include <fstream>
 
-#include "scene/body_mesh.h"
-#include "scene/drawn_body.h"
-#include "scene/obstacle.h"
-#include "scene/scene_reader.h"
+#include "scene/building/body_mesh.h"
+#include "scene/building/collision_set.h"
+#include "scene/building/drawn_body.h"
+#include "scene/reading/scene_reader.h"
 #include "support/bodies.h"
 #include "support/scene_text.h"
 #include "support/surfaces.h"
@@ -22,8 +22,8 @@ const std::string body = "[[body]]\nbox = { extent = [1, 1, 1] }\nmaterial = \"j
 
 Messages problems_with(const std::string& text) { return test::problems_of(body + text); }
 
-Obstacle obstacle_of(const std::string& keys) {
-  return collision_set(test::scene_of(body + "[[collider]]\n" + keys)).obstacles.at(0);
+SceneCollider collider_of(const std::string& keys) {
+  return collision_set(test::scene_of(body + "[[collider]]\n" + keys)).scene_colliders.at(0);
 }
 
 template <class Kind>
@@ -71,7 +71,7 @@ color = [0.1, 0.2, 0.3]
 }
 
 TEST(ColliderFile, KeysThatAreLeftOutHaveDefaults) {
-  const ColliderDef c = obstacle_of("shape = { sphere = { radius = 0.5 } }").def;
+  const ColliderDef c = collider_of("shape = { sphere = { radius = 0.5 } }").def;
   EXPECT_EQ(c.name, "collider");
   EXPECT_EQ(c.position, Vec3(0, 0, 0));
   EXPECT_EQ(c.turn_deg, Vec3(0, 0, 0));
@@ -82,11 +82,11 @@ TEST(ColliderFile, KeysThatAreLeftOutHaveDefaults) {
 }
 
 TEST(ColliderFile, AShapeIsAPartAShapeFileOrASurface) {
-  EXPECT_EQ(primitive_of<Sphere>(obstacle_of("shape = { sphere = { radius = 0.5 } }").def).radius, 0.5);
-  const ColliderDef squirrel = obstacle_of("shape = \"shapes/squirrel.toml\"").def;
+  EXPECT_EQ(primitive_of<Sphere>(collider_of("shape = { sphere = { radius = 0.5 } }").def).radius, 0.5);
+  const ColliderDef squirrel = collider_of("shape = \"shapes/squirrel.toml\"").def;
   EXPECT_GT(squirrel.shape.root.parts.size(), 3u);
   EXPECT_GT(squirrel.shape.paint.size(), 0u);
-  const ColliderDef stairs = obstacle_of("shape = { surface = \"surfaces/stairs.obj\" }").def;
+  const ColliderDef stairs = collider_of("shape = { surface = \"surfaces/stairs.obj\" }").def;
   EXPECT_EQ(primitive_of<ClosedSurface>(stairs).solid->surface().points.rows(), 24);
   EXPECT_NEAR(stairs.shape.distance(Vec3(0, 1, 0)), 0.1, 1e-6);
 }
@@ -160,11 +160,11 @@ shape = { box = { extent = [1, 1, 1] } }
 }
 
 // Returns the position of the collider's point (1, 0, 0).
-Vec3 tip(const Obstacle& obstacle, double time) { return obstacle.pose(time) * Vec3(1, 0, 0); }
+Vec3 tip(const SceneCollider& collider, double time) { return collider.pose(time) * Vec3(1, 0, 0); }
 
-TEST(Obstacle, StandsAtItsPositionTurnedAboutItsOrigin) {
-  const Obstacle still =
-      obstacle_of("shape = { sphere = { radius = 1 } }\nposition = [1, 2, 3]\nturn_deg = [90, 0, 90]\n");
+TEST(SceneCollider, StandsAtItsPositionTurnedAboutItsOrigin) {
+  const SceneCollider still =
+      collider_of("shape = { sphere = { radius = 1 } }\nposition = [1, 2, 3]\nturn_deg = [90, 0, 90]\n");
   for (const double time : {0.0, 1.0, 100.0}) {
     EXPECT_LT((still.pose(time) * Vec3(0, 0, 0) - Vec3(1, 2, 3)).norm(), 1e-12);
     EXPECT_LT((tip(still, time) - Vec3(1, 3, 3)).norm(), 1e-12);
@@ -172,30 +172,32 @@ TEST(Obstacle, StandsAtItsPositionTurnedAboutItsOrigin) {
   }
 }
 
-TEST(Obstacle, KeysMoveItFromThereAndTurnItAboutItsOrigin) {
+TEST(SceneCollider, KeysMoveItFromThereAndTurnItAboutItsOrigin) {
   const std::string text = R"(shape = { sphere = { radius = 1 }, position = [5, 5, 5] }
 position = [1, 2, 3]
 turn_deg = [0, 90, 0]
 keys = [{ t = 1 }, { t = 2, move = [0, 1, 0], turn_deg = [0, 0, 180] }, { t = 3, move = [2, 1, 0], turn_deg = [0, 0, 180] }]
 )";
-  const Obstacle smooth = obstacle_of(text), linear = obstacle_of(text + "ease = \"linear\"\n");
-  const auto origin = [](const Obstacle& obstacle, double time) { return Vec3(obstacle.pose(time).translation()); };
-  for (const Obstacle& obstacle : {smooth, linear}) {
+  const SceneCollider smooth = collider_of(text), linear = collider_of(text + "ease = \"linear\"\n");
+  const auto origin = [](const SceneCollider& collider, double time) {
+    return Vec3(collider.pose(time).translation());
+  };
+  for (const SceneCollider& collider : {smooth, linear}) {
     for (const double time : {0.0, 1.0}) {
-      EXPECT_LT((origin(obstacle, time) - Vec3(1, 2, 3)).norm(), 1e-12) << time;
-      EXPECT_LT((tip(obstacle, time) - Vec3(1, 2, 2)).norm(), 1e-12) << time;
+      EXPECT_LT((origin(collider, time) - Vec3(1, 2, 3)).norm(), 1e-12) << time;
+      EXPECT_LT((tip(collider, time) - Vec3(1, 2, 2)).norm(), 1e-12) << time;
     }
-    EXPECT_LT((origin(obstacle, 1.5) - Vec3(1, 2.5, 3)).norm(), 1e-12);
-    EXPECT_LT((obstacle.pose(1.5) * Vec3(0, 1, 0) - Vec3(0, 2.5, 3)).norm(), 1e-12);
-    EXPECT_LT((origin(obstacle, 2) - Vec3(1, 3, 3)).norm(), 1e-12);
-    EXPECT_LT((obstacle.pose(2) * Vec3(0, 1, 0) - Vec3(1, 2, 3)).norm(), 1e-12);
-    for (const double time : {3.0, 7.0}) EXPECT_LT((origin(obstacle, time) - Vec3(3, 3, 3)).norm(), 1e-12) << time;
+    EXPECT_LT((origin(collider, 1.5) - Vec3(1, 2.5, 3)).norm(), 1e-12);
+    EXPECT_LT((collider.pose(1.5) * Vec3(0, 1, 0) - Vec3(0, 2.5, 3)).norm(), 1e-12);
+    EXPECT_LT((origin(collider, 2) - Vec3(1, 3, 3)).norm(), 1e-12);
+    EXPECT_LT((collider.pose(2) * Vec3(0, 1, 0) - Vec3(1, 2, 3)).norm(), 1e-12);
+    for (const double time : {3.0, 7.0}) EXPECT_LT((origin(collider, time) - Vec3(3, 3, 3)).norm(), 1e-12) << time;
   }
   EXPECT_NEAR(origin(linear, 1.25).y(), 2.25, 1e-12);
   EXPECT_NEAR(origin(smooth, 1.25).y(), 2 + 0.25 * 0.25 * 2.5, 1e-12);
 }
 
-TEST(Obstacle, AStepsMotionIsThePoseAtItsTwoEnds) {
+TEST(SceneCollider, AStepsMotionIsThePoseAtItsTwoEnds) {
   const CollisionSet set = collision_set(test::scene_of(body + R"([[collider]]
 name = "a"
 shape = { sphere = { radius = 1 } }
@@ -209,21 +211,21 @@ position = [7, 0, 0]
   std::vector<ColliderMotion> motions(5);
   collider_motions(set, {0.25, 0.5}, motions);
   ASSERT_EQ(motions.size(), 2u);
-  EXPECT_TRUE(motions[0].start.isApprox(set.obstacles[0].pose(0.25)));
-  EXPECT_TRUE(motions[0].end.isApprox(set.obstacles[0].pose(0.5)));
+  EXPECT_TRUE(motions[0].start.isApprox(set.scene_colliders[0].pose(0.25)));
+  EXPECT_TRUE(motions[0].end.isApprox(set.scene_colliders[0].pose(0.5)));
   EXPECT_LT((motions[0].start.translation() - Vec3(0, 0, 1)).norm(), 1e-12);
   EXPECT_LT((motions[0].end.translation() - Vec3(0, 0, 2)).norm(), 1e-12);
   EXPECT_LT((motions[1].start.translation() - Vec3(7, 0, 0)).norm(), 1e-12);
   EXPECT_TRUE(motions[1].end.isApprox(motions[1].start));
 }
 
-TEST(Obstacle, OnlyTheStillHalfSpaceBelowZeroIsTheGround) {
-  EXPECT_TRUE(is_ground(obstacle_of("shape = { half_space = { normal = [0, 2, 0] } }")));
-  EXPECT_TRUE(is_ground(obstacle_of("shape = { half_space = { normal = [0, 1, 0] } }\nposition = [3, 0, -2]")));
+TEST(SceneCollider, OnlyTheStillHalfSpaceBelowZeroIsTheGround) {
+  EXPECT_TRUE(is_ground(collider_of("shape = { half_space = { normal = [0, 2, 0] } }")));
+  EXPECT_TRUE(is_ground(collider_of("shape = { half_space = { normal = [0, 1, 0] } }\nposition = [3, 0, -2]")));
   EXPECT_TRUE(
-      is_ground(obstacle_of("shape = { half_space = { normal = [0, 1, 0], offset = 0.5 } }\n"
+      is_ground(collider_of("shape = { half_space = { normal = [0, 1, 0], offset = 0.5 } }\n"
                             "position = [0, -0.5, 0]")));
-  EXPECT_TRUE(is_ground(obstacle_of("shape = { half_space = { normal = [1, 0, 0] } }\nturn_deg = [0, 0, 90]")));
+  EXPECT_TRUE(is_ground(collider_of("shape = { half_space = { normal = [1, 0, 0] } }\nturn_deg = [0, 0, 90]")));
   for (const char* other :
        {"shape = { half_space = { normal = [0, -1, 0] } }", "shape = { half_space = { normal = [0.01, 1, 0] } }",
         "shape = { half_space = { normal = [0, 1, 0], offset = 0.1 } }",
@@ -231,7 +233,7 @@ TEST(Obstacle, OnlyTheStillHalfSpaceBelowZeroIsTheGround) {
         "shape = { half_space = { normal = [0, 1, 0] } }\nturn_deg = [1, 0, 0]",
         "shape = { half_space = { normal = [0, 1, 0] } }\nkeys = [{ t = 0, move = [0, 1, 0] }]",
         "shape = { box = { extent = [9, 9, 9] } }\nposition = [0, -4.5, 0]"})
-    EXPECT_FALSE(is_ground(obstacle_of(other))) << other;
+    EXPECT_FALSE(is_ground(collider_of(other))) << other;
 }
 
 Bounds around_bodies() {
@@ -241,12 +243,12 @@ Bounds around_bodies() {
   return box;
 }
 
-TEST(Obstacle, OfAHalfSpaceASquareIsDrawnThatReachesBeyondTheBodies) {
-  const Obstacle slope = obstacle_of(
+TEST(SceneCollider, OfAHalfSpaceASquareIsDrawnThatReachesBeyondTheBodies) {
+  const SceneCollider slope = collider_of(
       "shape = { half_space = { normal = [0, 1, 0] }, position = [0, 0.5, 0] }\nposition = [10, 0, 4]\n"
       "turn_deg = [0, 0, 20]\n");
   const Bounds around = around_bodies();
-  const Skin skin = drawn_obstacle(slope, around);
+  const Skin skin = drawn_collider(slope, around);
   ASSERT_GT(skin.rest.points.rows(), 3);
   EXPECT_EQ(skin.occlusion.size(), std::size_t(skin.rest.points.rows()));
   EXPECT_EQ(skin.paint.size(), std::size_t(skin.rest.points.rows()));
@@ -264,11 +266,11 @@ TEST(Obstacle, OfAHalfSpaceASquareIsDrawnThatReachesBeyondTheBodies) {
   }
 }
 
-TEST(Obstacle, OfABoxItsSurfaceIsDrawnWithEdges) {
-  const Obstacle box = obstacle_of(
+TEST(SceneCollider, OfABoxItsSurfaceIsDrawnWithEdges) {
+  const SceneCollider box = collider_of(
       "shape = { box = { extent = [0.2, 0.4, 0.8] }, position = [0, 0, 1] }\n"
       "position = [5, 5, 5]\n");
-  const Skin skin = drawn_obstacle(box, around_bodies());
+  const Skin skin = drawn_collider(box, around_bodies());
   const Bounds drawn = bounds_of(skin.rest.points);
   EXPECT_LT((drawn.lower - Vec3(-0.1, -0.2, 0.6)).norm(), 0.01);  // in the collider's own frame
   EXPECT_LT((drawn.upper - Vec3(0.1, 0.2, 1.4)).norm(), 0.01);
@@ -279,10 +281,10 @@ TEST(Obstacle, OfABoxItsSurfaceIsDrawnWithEdges) {
   EXPECT_EQ(skin.paint.size(), std::size_t(skin.rest.points.rows()));
 }
 
-TEST(Obstacle, OfASurfaceItsOwnTrianglesAreDrawn) {
-  const Obstacle stairs = obstacle_of(
+TEST(SceneCollider, OfASurfaceItsOwnTrianglesAreDrawn) {
+  const SceneCollider stairs = collider_of(
       "shape = { surface = \"surfaces/stairs.obj\", scale = 2, turn_deg = [0, 90, 0], position = [0, 0, 3] }");
-  const Skin skin = drawn_obstacle(stairs, around_bodies());
+  const Skin skin = drawn_collider(stairs, around_bodies());
   EXPECT_EQ(skin.rest.triangles.rows(), primitive_of<ClosedSurface>(stairs.def).solid->surface().triangles.rows());
   const Bounds drawn = bounds_of(skin.rest.points);
   EXPECT_LT((drawn.lower - Vec3(-1, 0, 1.6)).norm(), 1e-6);
@@ -290,11 +292,11 @@ TEST(Obstacle, OfASurfaceItsOwnTrianglesAreDrawn) {
   for (const auto& p : skin.rest.points.rowwise()) EXPECT_NEAR(stairs.def.shape.distance(p), 0, 1e-12);
 }
 
-TEST(Obstacle, OfTheGroundAndOfWhatIsInvisibleNothingIsDrawn) {
-  EXPECT_EQ(drawn_obstacle(obstacle_of("shape = { half_space = { normal = [0, 1, 0] } }"), around_bodies())
+TEST(SceneCollider, OfTheGroundAndOfWhatIsInvisibleNothingIsDrawn) {
+  EXPECT_EQ(drawn_collider(collider_of("shape = { half_space = { normal = [0, 1, 0] } }"), around_bodies())
                 .rest.points.rows(),
             0);
-  EXPECT_EQ(drawn_obstacle(obstacle_of("shape = { sphere = { radius = 1 } }\nvisible = false"), around_bodies())
+  EXPECT_EQ(drawn_collider(collider_of("shape = { sphere = { radius = 1 } }\nvisible = false"), around_bodies())
                 .rest.points.rows(),
             0);
 }

@@ -1,8 +1,8 @@
 // Tests whose colours a body from a surface has: its file's, or its own.
 #include <gtest/gtest.h>
 
-#include "scene/drawn_body.h"
-#include "scene/scene_reader.h"
+#include "scene/building/drawn_body.h"
+#include "scene/reading/scene_reader.h"
 #include "support/bodies.h"
 #include "support/colored_files.h"
 #include "support/places.h"

@@ -6,9 +6,9 @@
 #include <fstream>
 #include <numbers>
 
-#include "geometry/skin_stretch.h"
-#include "output/obj_file.h"
-#include "scene/drawn_body.h"
+#include "geometry/skins/skin_stretch.h"
+#include "output/files/obj_file.h"
+#include "scene/building/drawn_body.h"
 #include "support/film.h"
 #include "support/surfaces.h"
 

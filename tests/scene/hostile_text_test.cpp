@@ -1,8 +1,8 @@
 // Text that no scene would contain: it is refused with a place, and neither ends the program nor takes all its memory.
 #include <gtest/gtest.h>
 
-#include "scene/assemble.h"
-#include "scene/scene_reader.h"
+#include "scene/building/assemble.h"
+#include "scene/reading/scene_reader.h"
 #include "support/bodies.h"
 #include "support/scene_text.h"
 

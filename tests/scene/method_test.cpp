@@ -4,8 +4,8 @@
 #include <set>
 
 #include "baselines/make_rule.h"
-#include "scene/scene_reader.h"
-#include "scene/warnings.h"
+#include "scene/building/warnings.h"
+#include "scene/reading/scene_reader.h"
 #include "support/bodies.h"
 #include "support/scene_text.h"
 

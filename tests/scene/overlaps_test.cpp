@@ -1,11 +1,11 @@
 // Tests bodies that start inside colliders: what is said of them, and what becomes of them.
-#include "scene/overlaps.h"
+#include "scene/building/overlaps.h"
 
 #include <gtest/gtest.h>
 
-#include "scene/obstacle.h"
-#include "scene/scene_reader.h"
-#include "scene/warnings.h"
+#include "scene/building/collision_set.h"
+#include "scene/building/warnings.h"
+#include "scene/reading/scene_reader.h"
 #include "sim/contact/way_out.h"
 #include "sim/model/measures.h"
 #include "sim/solver/energies.h"
@@ -75,8 +75,8 @@ struct StillFilm {
     inputs.solver = body.def.solver.settings;
     inputs.targets.resize(0, 3);
     inputs.colliders = &set.colliders;
-    for (const Obstacle& obstacle : set.obstacles)
-      inputs.collider_motions.push_back({obstacle.pose(0), obstacle.pose(0)});
+    for (const SceneCollider& collider : set.scene_colliders)
+      inputs.collider_motions.push_back({collider.pose(0), collider.pose(0)});
   }
   Obstacles obstacles() const {
     std::vector<Eigen::Isometry3d> poses;

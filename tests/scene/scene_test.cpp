@@ -7,10 +7,10 @@
 #include <fstream>
 
 #include "base/text.h"
-#include "scene/assemble.h"
-#include "scene/scene_reader.h"
-#include "scene/shape_reader.h"
-#include "scene/warnings.h"
+#include "scene/building/assemble.h"
+#include "scene/building/warnings.h"
+#include "scene/reading/scene_reader.h"
+#include "scene/reading/shape_reader.h"
 #include "support/bodies.h"
 #include "support/places.h"
 #include "support/scene_text.h"

@@ -4,8 +4,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "scene/script.h"
-#include "scene/warnings.h"
+#include "scene/building/warnings.h"
+#include "scene/replay/script.h"
 #include "support/bodies.h"
 
 namespace supple {

@@ -1,12 +1,12 @@
 // Tests what is said of skins that their elements do not fill.
-#include "scene/skin_report.h"
+#include "scene/building/skin_report.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "film/draw_scene.h"
-#include "scene/scene_reader.h"
+#include "film/pictures/draw_scene.h"
+#include "scene/reading/scene_reader.h"
 #include "support/bodies.h"
 
 namespace supple {

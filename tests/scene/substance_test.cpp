@@ -8,12 +8,12 @@
 #include <numbers>
 
 #include "base/text.h"
-#include "geometry/mesh_file.h"
-#include "geometry/tetrahedralize.h"
-#include "scene/assemble.h"
-#include "scene/presets.h"
-#include "scene/scene_reader.h"
-#include "scene/warnings.h"
+#include "geometry/files/mesh_file.h"
+#include "geometry/tetrahedra/tetrahedralize.h"
+#include "scene/building/assemble.h"
+#include "scene/building/warnings.h"
+#include "scene/definition/presets.h"
+#include "scene/reading/scene_reader.h"
 #include "support/bodies.h"
 #include "support/scene_text.h"
 

@@ -1,12 +1,12 @@
 // Tests what is seen where handles hold bodies.
-#include "scene/support.h"
+#include "scene/building/support.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
 #include "base/error.h"
-#include "scene/scene_reader.h"
+#include "scene/reading/scene_reader.h"
 #include "support/bodies.h"
 
 namespace supple {

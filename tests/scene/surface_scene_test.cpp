@@ -4,14 +4,14 @@
 
 #include <fstream>
 
-#include "geometry/tetrahedralize.h"
-#include "scene/assemble.h"
-#include "scene/body_mesh.h"
-#include "scene/body_pieces.h"
-#include "scene/model_scene.h"
-#include "scene/obstacle.h"
-#include "scene/scene_reader.h"
-#include "scene/surface_tetrahedra.h"
+#include "geometry/tetrahedra/surface_tetrahedra.h"
+#include "geometry/tetrahedra/tetrahedralize.h"
+#include "scene/building/assemble.h"
+#include "scene/building/body_mesh.h"
+#include "scene/building/collision_set.h"
+#include "scene/reading/body_pieces.h"
+#include "scene/reading/model_scene.h"
+#include "scene/reading/scene_reader.h"
 #include "support/bodies.h"
 #include "support/scene_text.h"
 #include "support/surfaces.h"

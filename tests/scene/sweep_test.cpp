@@ -1,12 +1,12 @@
 // Tests sweeps as scene files describe them: their points, and where problems are reported.
-#include "scene/sweep.h"
+#include "scene/reading/sweep.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
 
-#include "scene/scene_reader.h"
-#include "scene/script.h"
+#include "scene/reading/scene_reader.h"
+#include "scene/replay/script.h"
 #include "support/bodies.h"
 #include "support/scene_text.h"
 

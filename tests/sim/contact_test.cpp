@@ -8,7 +8,7 @@
 #include <Eigen/Dense>
 
 #include "baselines/reference.h"
-#include "geometry/triangle_solid.h"
+#include "geometry/solids/triangle_solid.h"
 #include "sim/model/measures.h"
 #include "support/contact_scene.h"
 #include "support/surfaces.h"
@@ -109,18 +109,18 @@ TEST(Contact, MomentumChangesByTheImpulsesOfGravityAndContacts) {
 
 TEST(Contact, NothingGoesThroughAtAnySpeedUpToItsSizeAStep) {
   const double size = 0.2 * std::sqrt(3.0), fastest = size * 30;
-  struct Obstacle {
+  struct SceneCollider {
     std::string name;
     Shape shape;
     double top;  // height of its surface on the y axis
   };
-  const std::vector<Obstacle> obstacles = {
+  const std::vector<SceneCollider> obstacles = {
       {"plane", ground, 0},
       {"box", shape_of(Box{Vec3(1, 0.2, 1), 0}), 0.2},
       {"sphere", shape_of(Sphere{0.5}), 0.5},
       {"torus, onto its tube", shape_of(Torus{0.5, 0.2}), 0.2},
       {"plate of a hundredth", shape_of(Box{Vec3(1, 0.005 * size, 1), 0}), 0.005 * size}};
-  for (const Obstacle& obstacle : obstacles) {
+  for (const SceneCollider& obstacle : obstacles) {
     for (const double speed : {1.0, 2.0, 5.0, fastest}) {
       const double x = obstacle.name.starts_with("torus") ? 0.5 : 0.0;
       ContactScene scene(cube(3), {{obstacle.name, obstacle.shape}}, Vec3(x, obstacle.top + 0.13, 0.02));

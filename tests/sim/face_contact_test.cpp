@@ -5,7 +5,7 @@
 
 #include <Eigen/Dense>
 
-#include "geometry/cloth.h"
+#include "geometry/meshes/cloth.h"
 #include "support/contact_scene.h"
 
 namespace supple {

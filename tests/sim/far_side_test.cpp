@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "geometry/cloth.h"
+#include "geometry/meshes/cloth.h"
 #include "support/contact_scene.h"
 
 namespace supple {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "geometry/mesh.h"
+#include "geometry/meshes/mesh.h"
 #include "sim/solver/fields.h"
 #include "support/bodies.h"
 #include "support/deformations.h"

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <iostream>
 
-#include "geometry/tetrahedralize.h"
+#include "geometry/tetrahedra/tetrahedralize.h"
 #include "support/bodies.h"
 
 namespace supple {

@@ -9,7 +9,7 @@
 #include <Eigen/SVD>
 
 #include "baselines/reference.h"
-#include "geometry/tetrahedralize.h"
+#include "geometry/tetrahedra/tetrahedralize.h"
 #include "support/allocation_counter.h"
 #include "support/bodies.h"
 #include "support/contact_scene.h"

@@ -11,8 +11,8 @@
 #include "app/bench/subject.h"
 #include "baselines/make_rule.h"
 #include "baselines/reference.h"
-#include "film/places.h"
-#include "scene/scene_reader.h"
+#include "film/plan/shipped_files.h"
+#include "scene/reading/scene_reader.h"
 
 using namespace supple;
 

@@ -3,7 +3,7 @@
 // Usage: supple_moving_collider_study
 #include <fmt/format.h>
 
-#include "scene/presets.h"
+#include "scene/definition/presets.h"
 #include "support/impact.h"
 
 using namespace supple;

@@ -12,12 +12,12 @@
 #include "app/bench/subject.h"
 #include "base/timing.h"
 #include "base/trace.h"
-#include "film/camera.h"
-#include "film/draw_scene.h"
-#include "film/places.h"
-#include "output/png_file.h"
+#include "film/pictures/camera.h"
+#include "film/pictures/draw_scene.h"
+#include "film/plan/shipped_files.h"
+#include "output/files/png_file.h"
 #include "render/renderer.h"
-#include "scene/scene_reader.h"
+#include "scene/reading/scene_reader.h"
 
 using namespace supple;
 
@@ -50,12 +50,12 @@ Take simulate(const std::filesystem::path& path, int frames, const std::vector<s
   std::vector<Model> models;
   std::vector<DrawnBody> drawn = drawn_bodies(bodies);
   for (const Body& body : bodies) models.push_back(build_model(body.description));
-  const std::vector<Skin> colliders = collider_skins(set.obstacles, bodies);
+  const std::vector<Skin> colliders = collider_skins(set.scene_colliders, bodies);
   Take take;
-  const Stage fine = make_stage(scene, bodies, drawn, set.obstacles, colliders, caption_font());
+  const Stage fine = make_stage(scene, bodies, drawn, set.scene_colliders, colliders, caption_font());
   const Camera camera = camera_at(scene, fine, 0);
   fit_to_cameras(drawn, bodies, {camera}, scene.output.height);
-  take.stage = make_stage(scene, bodies, drawn, set.obstacles, colliders, caption_font());
+  take.stage = make_stage(scene, bodies, drawn, set.scene_colliders, colliders, caption_font());
   std::vector<std::unique_ptr<DrivenBody>> driven;
   for (std::size_t b = 0; b < bodies.size(); ++b)
     driven.push_back(std::make_unique<DrivenBody>(scene, bodies[b], models[b], set, scenes_own_solver(), &threads));
@@ -67,7 +67,7 @@ Take simulate(const std::filesystem::path& path, int frames, const std::vector<s
     for (std::size_t b = 0; b < bodies.size(); ++b)
       list.positions.push_back(
           skin_positions(drawn[b], bodies[b].description.mesh, in_input_order(models[b], driven[b]->state().x)));
-    add_colliders(set.obstacles, colliders, (frame + 1) / scene.fps, list);
+    add_colliders(set.scene_colliders, colliders, (frame + 1) / scene.fps, list);
     take.lists.push_back(std::move(list));
   }
   return take;

@@ -10,9 +10,9 @@
 
 #include "app/bench/subject.h"
 #include "baselines/reference.h"
-#include "film/places.h"
-#include "geometry/mesh_file.h"
-#include "geometry/tetrahedralize.h"
+#include "film/plan/shipped_files.h"
+#include "geometry/files/mesh_file.h"
+#include "geometry/tetrahedra/tetrahedralize.h"
 
 using namespace supple;
 

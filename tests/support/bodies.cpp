@@ -6,8 +6,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "geometry/cloth.h"
-#include "geometry/tetrahedralize.h"
+#include "geometry/meshes/cloth.h"
+#include "geometry/tetrahedra/tetrahedralize.h"
 
 namespace supple::test {
 

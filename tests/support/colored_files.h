@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "output/png_file.h"
+#include "output/files/png_file.h"
 #include "support/surfaces.h"
 
 namespace supple::test {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/tetrahedralize.h"
+#include "geometry/tetrahedra/tetrahedralize.h"
 #include "sim/solver/step.h"
 #include "support/bodies.h"
 

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/assemble.h"
-#include "scene/obstacle.h"
-#include "scene/scene_reader.h"
+#include "scene/building/assemble.h"
+#include "scene/building/collision_set.h"
+#include "scene/reading/scene_reader.h"
 #include "support/bodies.h"
 
 namespace supple::test {

@@ -5,7 +5,7 @@
 
 namespace supple::test {
 
-// Only places.cpp is compiled with these paths, so that all other units are the same in every checkout, and a
+// Only shipped_files.cpp is compiled with these paths, so that all other units are the same in every checkout, and a
 // compiler's cache can share them.
 extern const char* const source_folder_name;
 extern const char* const build_folder_name;

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "output/video.h"
+#include "output/video/video.h"
 #include "support/bodies.h"
 #include "support/program.h"
 

@@ -1,6 +1,6 @@
 #include "support/scene_text.h"
 
-#include "scene/scene_reader.h"
+#include "scene/reading/scene_reader.h"
 #include "support/bodies.h"
 
 namespace supple::test {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/scene_def.h"
+#include "scene/definition/scene_def.h"
 
 namespace supple::test {
 

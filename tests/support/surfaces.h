@@ -8,7 +8,7 @@
 #include <numbers>
 #include <string>
 
-#include "geometry/mesh.h"
+#include "geometry/meshes/mesh.h"
 
 namespace supple::test {
 

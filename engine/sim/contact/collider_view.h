@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "geometry/shape_probe.h"
+#include "geometry/shapes/shape_probe.h"
 #include "sim/model/inputs.h"
 
 namespace supple {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/triangle_in_shape.h"
+#include "geometry/shapes/triangle_in_shape.h"
 #include "sim/contact/reach.h"
 #include "sim/contact/usual_depth.h"
 

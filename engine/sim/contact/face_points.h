@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/threads.h"
-#include "geometry/shape_pieces.h"
+#include "geometry/shapes/shape_pieces.h"
 #include "sim/contact/collider_view.h"
 #include "sim/contact/contact_point.h"
 #include "sim/model/model.h"

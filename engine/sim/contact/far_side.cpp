@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/shape_probe.h"
+#include "geometry/shapes/shape_probe.h"
 
 namespace supple {
 namespace {

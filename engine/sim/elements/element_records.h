@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/types.h"
-#include "geometry/mesh.h"
+#include "geometry/meshes/mesh.h"
 #include "sim/elements/element.h"
 
 namespace supple {

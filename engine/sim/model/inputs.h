@@ -9,8 +9,8 @@
 #include <Eigen/Geometry>
 
 #include "base/names.h"
-#include "geometry/pose.h"
-#include "geometry/shape.h"
+#include "geometry/meshes/pose.h"
+#include "geometry/shapes/shape.h"
 #include "sim/model/budget_cuts.h"
 
 namespace supple {

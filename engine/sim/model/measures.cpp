@@ -7,8 +7,8 @@
 #include <numbers>
 #include <utility>
 
-#include "geometry/shape_pieces.h"
-#include "geometry/triangle_in_shape.h"
+#include "geometry/shapes/shape_pieces.h"
+#include "geometry/shapes/triangle_in_shape.h"
 #include "sim/elements/element_kernels.h"
 
 namespace supple {

@@ -23,7 +23,8 @@ Deformation deformation(const Model& model, const Positions& x);
 bool is_tangled(const Model& model, const Positions& x);
 
 // Returns how deep the deepest point of a surface lies below each collider's own (its thickness does not count) [m]; 0
-// when none. Edges and faces between vertices count (geometry/triangle_in_shape.h). triangles: vertices by row of x.
+// when none. Edges and faces between vertices count (geometry/shapes/triangle_in_shape.h). triangles: vertices by row
+// of x.
 std::vector<double> penetrations(const std::vector<Collider>& colliders, const std::vector<ColliderMotion>& motions,
                                  const Positions& x, const Triangles& triangles);
 // Returns the largest of these, which is found faster.

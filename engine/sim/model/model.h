@@ -8,7 +8,7 @@
 #include <string>
 
 #include "base/names.h"
-#include "geometry/mesh.h"
+#include "geometry/meshes/mesh.h"
 #include "sim/elements/element_kernels.h"
 #include "sim/elements/element_records.h"
 #include "sim/materials/material.h"

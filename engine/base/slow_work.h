@@ -1,0 +1,30 @@
+// Serves work that takes long, such as making a mesh or a skin: its results are kept from run to run, and somebody
+// hears of its progress.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "base/user_cache.h"
+
+namespace supple {
+
+struct SlowWork {
+  UserCache cache;                               // keeps the results; the default keeps nothing
+  std::function<void(const std::string&)> tell;  // hears what is being made, and how far it is; empty: nobody does
+};
+
+// Returns what is kept under the name, or makes it and keeps it. decode: from bytes to an optional result, of which
+// bytes_of makes the bytes.
+template <class Decode, class Make>
+auto kept_or_made(const UserCache& cache, const std::string& name, const Decode& decode, const Make& make) {
+  if (const auto bytes = cache.find(name)) {
+    if (auto result = decode(*bytes)) return std::move(*result);
+  }
+  auto result = make();
+  if (!cache.folder().empty()) cache.keep(name, bytes_of(result));
+  return result;
+}
+
+}  // namespace supple

@@ -1,0 +1,128 @@
+#include "film/pictures/camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "render/view.h"
+
+namespace supple {
+namespace {
+
+template <class T>
+T between(const T& from, const T& to, double s) {
+  return from + s * (to - from);
+}
+
+// Returns the value at a time of those keys that have it; `fallback` where none has.
+template <class T>
+T value_at(const CameraDef& camera, double time, std::optional<T> CameraKey::*member, const T& fallback) {
+  const CameraKey *before = nullptr, *after = nullptr;
+  for (const CameraKey& key : camera.keys) {
+    if (!(key.*member)) continue;
+    if (key.time <= time) before = &key;
+    if (key.time > time && after == nullptr) after = &key;
+  }
+  if (before == nullptr && after == nullptr) return fallback;
+  if (before == nullptr) return *(after->*member);
+  if (after == nullptr) return *(before->*member);
+  double s = (time - before->time) / (after->time - before->time);
+  if (camera.ease == Ease::smooth) s = s * s * (3 - 2 * s);
+  return between(*(before->*member), *(after->*member), s);
+}
+
+Vec3 mean_of(const std::vector<float>& points) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i + 2 < points.size(); i += 3) sum += Vec3(points[i], points[i + 1], points[i + 2]);
+  return sum / std::max(1.0, static_cast<double>(points.size() / 3));
+}
+
+// Returns the number of the mesh that the camera follows: bodies come first, then colliders.
+std::size_t followed_mesh(const SceneDef& scene) {
+  std::size_t mesh = 0;
+  for (const BodyDef& body : scene.bodies) {
+    if (body.name == scene.camera.follow) return mesh;
+    ++mesh;
+  }
+  for (const ColliderDef& collider : scene.colliders) {
+    if (collider.name == scene.camera.follow) return mesh;
+    ++mesh;
+  }
+  return mesh;
+}
+
+bool will_fall(const SceneDef& scene, const BodyDef& body) { return body.handles.empty() && scene.gravity.y() < 0; }
+
+}  // namespace
+
+Bounds framed_box(const SceneDef& scene, const Stage& stage) {
+  Bounds box;
+  if (stage.motion) {
+    box.include(stage.motion->lower);
+    box.include(stage.motion->upper);
+  }
+  for (std::size_t m = 0; m < stage.meshes.size(); ++m) {
+    const DrawMesh& mesh = stage.meshes[m];
+    if (!mesh.framed || (stage.motion && m < scene.bodies.size())) continue;
+    box.include(mesh.rest.lower);
+    box.include(mesh.rest.upper);
+    const bool falls = m < scene.bodies.size() && will_fall(scene, scene.bodies[m]) && mesh.rest.lower.y() > 0;
+    if (falls) box.include(Vec3(mesh.rest.lower.x(), 0, mesh.rest.lower.z()));  // the drawn ground is at y = 0
+  }
+  return box;
+}
+
+std::optional<Followed> followed_at(const SceneDef& scene, const Stage& stage,
+                                    const std::vector<std::vector<float>>& positions) {
+  if (scene.camera.follow.empty()) return std::nullopt;
+  const std::size_t mesh = followed_mesh(scene);
+  const bool known = mesh < positions.size() && !positions[mesh].empty();
+  return Followed{mesh, known ? Vec3(mean_of(positions[mesh]) - stage.meshes[mesh].rest.center()) : Vec3(Vec3::Zero())};
+}
+
+Camera camera_at(const SceneDef& scene, const Stage& stage, double time,
+                 const std::vector<std::vector<float>>& positions) {
+  const CameraDef& def = scene.camera;
+  const Bounds box = framed_box(scene, stage);
+  const double degree = std::numbers::pi / 180;
+  const double azimuth =
+      degree * (value_at(def, time, &CameraKey::azimuth_deg, def.azimuth_deg) + def.orbit_deg * time);
+  const double elevation = degree * value_at(def, time, &CameraKey::elevation_deg, def.elevation_deg);
+  const double fov = value_at(def, time, &CameraKey::fov_deg, def.fov_deg);
+  const Vec3 direction(std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+                       std::cos(azimuth) * std::cos(elevation));
+  // The legend may stand in the air around the bodies; only where that is too narrow they become smaller.
+  constexpr double least_air = 1.05;
+  const double narrower = std::min(1.0, def.margin * (1 - 2 * stage.kept_free) / least_air);
+  const double aspect = narrower * stage.width / stage.height;
+  Camera camera = framing(box, direction, fov, def.margin, aspect);
+  const double distance = (camera.eye - camera.target).norm();
+  camera.target = value_at<Vec3>(def, time, &CameraKey::target, def.target.value_or(camera.target));
+  camera.eye = camera.target + value_at(def, time, &CameraKey::distance, def.distance.value_or(distance)) * direction;
+  camera.eye = value_at<Vec3>(def, time, &CameraKey::position, def.position.value_or(camera.eye));
+  const std::optional<Followed> followed = followed_at(scene, stage, positions);
+  if (!followed) return camera;
+  const Vec3 center = stage.meshes[followed->mesh].rest.center() + followed->moved;
+  // A position stands in a fixed place to what is followed at rest.
+  camera.eye = center + (camera.eye - camera.target);
+  if (def.position) camera.eye = *def.position + followed->moved;
+  camera.target = center;
+  return camera;
+}
+
+double share_in_picture(const Camera& camera, const Stage& stage, const std::vector<float>& points) {
+  constexpr std::size_t enough = 2000;  // points tell the share
+  const Eigen::Matrix4d to_eye = look_at(camera.eye, camera.target).cast<double>();
+  const double high = std::tan(camera.fov_deg * std::numbers::pi / 360), wide = high * stage.width / stage.height;
+  const std::size_t step = std::max<std::size_t>(1, points.size() / 3 / enough);
+  int seen = 0, all = 0;
+  for (std::size_t i = 0; i + 2 < points.size(); i += 3 * step) {
+    const Vec3 from = Vec3(points[i], points[i + 1], points[i + 2]) - camera.eye;
+    const Vec3 at = to_eye.topLeftCorner<3, 3>() * from;  // to the right, up, and towards the eye
+    ++all;
+    seen += at.z() < 0 && std::abs(at.x()) <= -wide * at.z() && std::abs(at.y()) <= -high * at.z() ? 1 : 0;
+  }
+  return all > 0 ? double(seen) / all : 1;
+}
+
+}  // namespace supple

@@ -1,0 +1,82 @@
+// Holds the drawn part of a film: the skins of bodies and colliders, which are made when the film starts, and the draw
+// list of each frame.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "film/pictures/camera.h"
+#include "film/pictures/draw_scene.h"
+#include "film/pictures/drawn_supports.h"
+#include "film/pictures/surface_field.h"
+#include "scene/replay/script.h"
+
+namespace supple {
+
+class DrawnFilm {
+ public:
+  // The script tells all cameras of the film, to which the skins' resolution is fitted. The bodies must outlive the
+  // film. drawn: of each body.
+  DrawnFilm(const Script& script, const std::vector<Body>& bodies, std::vector<DrawnBody> drawn,
+            const CollisionSet& set, const std::string& font);
+
+  const Stage& stage() const { return stage_; }
+
+  // Makes the skins of colliders again when these changes of a replay have changed their shapes.
+  void follow(const std::vector<TimedChange>& changes, const CollisionSet& set, const std::vector<Body>& bodies);
+
+  // Makes the draw list of a frame: positions, and all that has changed since the last list. The pose holds the
+  // positions as motion/ holds them.
+  DrawList list(const SceneDef& scene, const FramePose& pose, const CollisionSet& set, Threads& threads);
+
+  // Returns the share of a body's surface that lies within the borders of a frame's picture.
+  double share_in_picture(std::size_t body, const DrawList& list) const {
+    return supple::share_in_picture(list.camera, stage_, list.positions[body]);
+  }
+  // Returns how far a body's skin is stretched beyond its elements in a list (draw_scene.h). now: the positions of its
+  // mesh [m].
+  std::optional<double> skin_excess_of(std::size_t body, const DrawList& list, const TetMesh& mesh,
+                                       const Positions& now) const {
+    return skin_excess(drawn_[body], list.positions[body], mesh, now);
+  }
+
+  // Tells whether a pose must have the positions of the frame before.
+  bool needs_before() const { return field_ && field_->needs_before(); }
+  // Tells whether a pose must have the forces of colliders.
+  bool needs_forces() const { return field_ && field_->needs_forces(); }
+  // Widens the range of the field to a frame of the film. The colours are those of the whole film once all frames have
+  // been included and settle_field() has been called, which must happen before the stage is used.
+  void include_in_field(const FramePose& pose, const CollisionSet& set, Threads& threads);
+  void settle_field();
+  // Returns the colours and the legend of the field, where there is one.
+  std::optional<FieldLook> field_look() const { return field_ ? std::optional(field_->look()) : std::nullopt; }
+  // Returns the range of the field, which the scene must have.
+  Eigen::Vector2d field_range() const { return field_->range(); }
+  // Leaves the legend to the caller. Must be called before the stage is used.
+  void hide_legend();
+  // Makes cameras frame this box over the whole film [m]. Must be called before the stage is used.
+  void frame_motion(const Bounds& motion);
+  // Gives the graph of times its scale, from all rows of the film. Must be called before the stage is used.
+  void know_times(std::span<const FrameRow> rows);
+
+ private:
+  void show_field();
+  void make_room();
+  void add_ghosts(const SceneDef& scene, const std::vector<Body>& bodies);
+  void follow_colors(const SceneDef& scene, DrawList& list);
+
+  const std::vector<Body>& bodies_;
+  SceneDef start_;  // of the film
+  std::vector<DrawnBody> drawn_;
+  std::vector<Skin> collider_skins_;
+  std::optional<DrawnSupports> supports_;  // where the scene shows them
+  std::optional<ReferenceRun> ghosts_;     // whose bodies are the stage's last meshes
+  std::optional<SurfaceField> field_;      // where the scene shows one
+  Stage stage_;
+  double longest_steps_ = 0;          // of the film's frames [ms]; 0: not known
+  std::vector<std::size_t> renewed_;  // colliders, since the last list
+};
+
+}  // namespace supple

@@ -1,0 +1,33 @@
+// Makes the small graphs that stand in a corner of the pictures, from the rows of the run's profile.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "output/run/profile.h"
+#include "render/draw_list.h"
+#include "scene/definition/scene_def.h"
+
+namespace supple {
+
+// Holds what the graphs show of a frame.
+struct GraphPoint {
+  double step_ms;   // of all bodies' steps [ms]
+  double estimate;  // the largest of the bodies' error estimates
+  double measured;  // the largest of their measured errors; NaN where none is measured
+};
+GraphPoint graph_point(const FrameRow& row);
+
+// Returns the largest time of a frame's steps [ms], of which the first one does not count where there are others; 0
+// without rows.
+double longest_steps(std::span<const FrameRow> rows);
+
+// Returns the graphs that a scene asks for. longest: of longest_steps(), which the scale of times spans [ms].
+std::vector<GraphLook> graph_looks(const SceneDef& scene, double longest);
+
+// Returns their curves up to a frame. earlier: the points of all frames before it; row: that of the frame (null where
+// it is not known, and then there is no curve).
+std::vector<GraphCurve> graph_curves(const TextDef& text, std::span<const GraphPoint> earlier, const FrameRow* row,
+                                     double longest);
+
+}  // namespace supple

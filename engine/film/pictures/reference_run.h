@@ -1,0 +1,31 @@
+// Gives the positions of another run's bodies, to which a picture compares.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "output/motion/point_cache.h"
+#include "scene/building/assemble.h"
+
+namespace supple {
+
+class ReferenceRun {
+ public:
+  // Throws InputError when the folder is not a run's, and when a body has another number of vertices there.
+  ReferenceRun(const std::filesystem::path& folder, const std::vector<Body>& bodies);
+
+  // Returns where the body is in a frame, by vertex of its mesh [m]. Throws InputError when the run does not have the
+  // frame.
+  Positions at(std::size_t body, int frame);
+
+ private:
+  std::filesystem::path folder_;
+  std::vector<PointCacheReader> motion_;  // by body
+  std::vector<Vec3> origin_;              // of the files of motion [m]
+};
+
+// Opens the runs to which a scene's pictures up to a frame compare, so that one that cannot be read or is too short is
+// refused before anything is written. Throws InputError as ReferenceRun does.
+void check_references(const SceneDef& scene, const std::vector<Body>& bodies, int last_frame);
+
+}  // namespace supple

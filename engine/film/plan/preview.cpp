@@ -1,0 +1,74 @@
+#include "film/plan/preview.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "scene/reading/body_pieces.h"
+
+namespace supple {
+namespace {
+
+constexpr int fewest_vertices = 250;
+
+constexpr int least_width = 480;  // of the pictures, below which faces and folds are not made out
+
+// Returns the width and height of the pictures: a quarter of the scene's, but not below the least width, unless the
+// scene's are narrower.
+std::pair<int, int> preview_size(const OutputDef& output) {
+  const int width = std::min(output.width, std::max(least_width, output.width / 4)) / 2 * 2;
+  const double share = static_cast<double>(width) / output.width;
+  return {std::max(16, width), std::max(16, static_cast<int>(std::lround(output.height * share / 2)) * 2)};
+}
+
+// Returns the table that a body comes from: pieces of a surface share one.
+std::string table_of(const BodyDef& body) {
+  if (!body.read_surface || body.read_surface->pieces.size() < 2) return body.name;
+  return body.name.substr(0, body.name.size() - fmt::format("_{}", body.piece + 1).size());
+}
+
+// Returns the vertices that the table of a body asks for: the sum over its pieces.
+int vertices_of_table(const SceneDef& scene, const std::string& table) {
+  int sum = 0;
+  for (const BodyDef& body : scene.bodies) sum += table_of(body) == table ? body.vertices : 0;
+  return sum;
+}
+
+// Returns the setting that makes the mesh of a body coarser; empty where nothing does.
+std::string coarser(const SceneDef& scene, const BodyDef& body, double share) {
+  const auto fewer = [](int cells, double factor) {
+    return std::min(cells, std::max(2, static_cast<int>(std::lround(cells * factor))));
+  };
+  if (body.box) {
+    const double side = std::cbrt(share);
+    const Eigen::Vector3i& cells = body.box->cells;
+    return fmt::format("body.{}.box.cells=[{}, {}, {}]", body.name, fewer(cells.x(), side), fewer(cells.y(), side),
+                       fewer(cells.z(), side));
+  }
+  if (body.cloth && body.cloth->mesh.empty()) {
+    const double side = std::sqrt(share);
+    const Eigen::Vector2i& cells = body.cloth->cells;
+    return fmt::format("body.{}.cloth.cells=[{}, {}]", body.name, fewer(cells.x(), side), fewer(cells.y(), side));
+  }
+  if (body.cloth || !body.mesh.empty() || body.piece > 0) return "";
+  const std::string table = table_of(body);
+  const int vertices = vertices_of_table(scene, table);
+  return fmt::format("body.{}.vertices={}", table,
+                     std::min(vertices, std::max(fewest_vertices, static_cast<int>(std::lround(vertices * share)))));
+}
+
+}  // namespace
+
+std::vector<std::string> preview_settings(const SceneDef& scene, double share) {
+  const auto [width, height] = preview_size(scene.output);
+  std::vector<std::string> settings = {fmt::format("output.width={}", width), fmt::format("output.height={}", height)};
+  for (const BodyDef& body : scene.bodies) {
+    const std::string setting = share < 1 ? coarser(scene, body, share) : "";
+    if (!setting.empty()) settings.push_back(setting);
+  }
+  return settings;
+}
+
+}  // namespace supple

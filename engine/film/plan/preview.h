@@ -1,0 +1,16 @@
+// Makes a scene cheaper, for a first look at it: pictures of a quarter of the width and height, and coarse meshes where
+// the scene says how fine they are. Mesh files stay as they are. Every other frame is drawn, at half the rate; all are
+// simulated, because fewer steps would move differently.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/definition/scene_def.h"
+
+namespace supple {
+
+// Returns settings over those of the scene. share: of the vertices of a solid, about; 1 leaves the meshes as they are.
+std::vector<std::string> preview_settings(const SceneDef& scene, double share);
+
+}  // namespace supple

@@ -1,0 +1,71 @@
+#include "film/plan/shipped_files.h"
+
+#include <algorithm>
+#include <system_error>
+
+#include "base/error.h"
+#include "base/near_files.h"
+#include "base/read_file.h"
+#include "scene/reading/model_scene.h"
+
+namespace supple {
+namespace {
+
+std::filesystem::path shared_folder() {
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  // The first way leads there from supple itself, the second from a program that it starts.
+  for (const char* way : {SUPPLE_SHARE_FROM_BIN, SUPPLE_SHARE_FROM_LIBEXEC}) {
+    const std::filesystem::path installed = (folder / way).lexically_normal();
+    if (std::filesystem::is_directory(installed / "shaders", error)) return installed;
+  }
+  return SUPPLE_SOURCE_FOLDER;
+}
+
+}  // namespace
+
+std::filesystem::path assets_folder() { return shared_folder() / "assets"; }
+std::filesystem::path shaders_folder() { return shared_folder() / "shaders"; }
+
+std::vector<std::string> shipped_names(const std::string& kind) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(assets_folder() / kind, error)) {
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string caption_font() {
+  for (const char* font :
+       {"/usr/share/fonts/truetype/lato/Lato-Regular.ttf", "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
+        "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf"}) {
+    std::error_code error;
+    if (std::filesystem::exists(font, error)) return font;
+  }
+  return "";
+}
+
+std::filesystem::path scene_file(const std::string& name) {
+  std::error_code error;
+  // A folder is not taken for the scene, because folders are often named after the scene that was filmed into them.
+  if (std::filesystem::exists(name, error) && !std::filesystem::is_directory(name, error)) return name;
+  for (const char* kind : {"scenes", "replays"}) {
+    const std::filesystem::path shipped = assets_folder() / kind / (name + ".toml");
+    if (std::filesystem::exists(shipped, error)) return shipped;
+  }
+  if (std::filesystem::exists(name, error)) return name;
+  std::vector<std::string> shipped = shipped_names("scenes");
+  for (std::string& replay : shipped_names("replays")) shipped.push_back(std::move(replay));
+  const auto is_input = [](const std::filesystem::path& file) { return file.extension() == ".toml" || is_model(file); };
+  throw InputError(name, "no such file" + meant_file(near_file(name, is_input, shipped)));
+}
+
+SceneSource scene_source(const std::string& name) {
+  constexpr std::uintmax_t largest = 1'000'000;  // as of a scene's file
+  if (name == "-") return {SceneSource::standard_input, read_standard_input(largest)};
+  return scene_file(name);
+}
+
+}  // namespace supple

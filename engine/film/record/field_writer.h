@@ -1,0 +1,33 @@
+// Writes a body's fields at chosen frames, for ParaView: fields/BODY-NNNNNN.vtu and the collection fields/BODY.pvd over
+// them. docs/exchange.md describes the fields.
+#pragma once
+
+#include "output/files/vtu.h"
+#include "output/run/run_folder.h"
+#include "scene/building/assemble.h"
+#include "sim/solver/objective.h"
+
+namespace supple {
+
+class FieldWriter {
+ public:
+  // Creates the folder; throws RunError when that fails. All that is passed must outlive the writer.
+  FieldWriter(const Body& body, const Model& model, const RunFolder& folder, double fps);
+
+  // Writes a frame and updates the collection, so that it can be opened while the film is made. In a film that was
+  // resumed, the collection also contains what was written before. workspace: that of the step that led to the state.
+  // Contact forces are written where there are colliders. Throws RunError.
+  void add(int frame, const State& state, const StepInputs& inputs, const Workspace& workspace);
+
+ private:
+  void find_earlier(int frame);
+  void write_collection() const;
+
+  const Body& body_;
+  const Model& model_;
+  const RunFolder& folder_;
+  double fps_;
+  std::vector<int> written_;  // frames
+};
+
+}  // namespace supple

@@ -1,0 +1,41 @@
+// Checks for reasons to refuse a film before anything in its folder is changed. All functions here throw InputError.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "film/record/checkpoint.h"
+#include "film/record/state_record.h"
+#include "output/run/run_folder.h"
+#include "scene/building/assemble.h"
+
+namespace supple {
+
+// Checks the frames of --save-state for a film that begins, or is resumed, with frame `start`.
+void check_save_states(const std::vector<int>& frames, const SceneDef& scene, const std::filesystem::path& run,
+                       int start);
+
+// Returns the checkpoint from which a film is resumed, if there is one yet, and prints a note about it. A complete film
+// without a checkpoint and a film of another scene or program do not count as a beginning of this one.
+std::optional<Checkpoint> checkpoint_in(const std::filesystem::path& run, const std::string& identity, int frames,
+                                        const RunInfo& info);
+
+// Checks what the first frames, which are not made again, have left. Their pictures have a function of their own.
+void check_rows_and_motion(const std::filesystem::path& run, const std::vector<Body>& bodies, int colliders,
+                           int frames);
+
+// Checks the pictures of frames that are not made again.
+void check_pictures(const std::filesystem::path& frames, int count);
+
+// Prints a note where pictures that are not made again have graphs of another length: those of a film that was begun
+// with another number of frames.
+void note_other_graphs(const SceneDef& scene, const std::filesystem::path& run, int kept_frames);
+
+// Checks the file for --record. It must be writable, and nothing of value may be overwritten: it must not be one of the
+// run's own files, an existing file must be a record, and that record must begin with the frames that are kept.
+void check_record(const std::filesystem::path& record, const std::filesystem::path& run, const RecordHead& head,
+                  int kept_frames);
+
+}  // namespace supple

@@ -1,0 +1,415 @@
+#include "film/redraw/redraw.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/frame_time.h"
+#include "base/interrupts.h"
+#include "base/text.h"
+#include "base/threads.h"
+#include "film/pictures/drawn_film.h"
+#include "film/pictures/reference_run.h"
+#include "film/plan/shipped_files.h"
+#include "film/record/film_identity.h"
+#include "output/files/json_text.h"
+#include "output/files/obj_file.h"
+#include "output/files/whole_file.h"
+#include "output/run/json_difference.h"
+#include "output/run/run_folder.h"
+#include "output/run/run_record.h"
+#include "render/renderer.h"
+
+namespace supple {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Lists the values of a scene that change what is seen and nothing else, by the names that generic_path() gives them. A
+// name also covers all values below it.
+constexpr std::array seen = {"title",
+                             "camera",
+                             "look",
+                             "field",
+                             "text",
+                             "output.width",
+                             "output.height",
+                             "output.samples",
+                             "body[].color",
+                             "body[].gloss",
+                             "body[].label",
+                             "body[].meant",
+                             "body[].pattern",
+                             "body[].pattern_size",
+                             "body[].skin_cells",
+                             "collider[].color",
+                             "collider[].visible"};
+
+bool is_seen(const std::string& path) {
+  const std::string generic = generic_path(path);
+  return std::ranges::any_of(seen, [&generic](const std::string& one) {
+    return generic == one || (generic.starts_with(one) && generic[one.size()] == '.');
+  });
+}
+
+std::string member_text(const Json& object, const char* key) {
+  return object.contains(key) ? json_text(object[key]) : std::string();
+}
+
+// Returns the plan of the run's film, with the drawing's settings after those of the run.
+FilmPlan plan_of_run(const DrawPlan& plan, const Json& info) {
+  const std::string source = (plan.run / "run.json").string();
+  const bool whole = info.contains("scene_file") && info["scene_file"].is_string() && info.contains("settings") &&
+                     info["settings"].is_array() && info.contains("scene");
+  if (!whole) throw InputError(source, "does not tell the run's scene and settings: an older program made the run");
+  FilmPlan film;
+  film.cache = plan.cache;
+  film.quiet = plan.quiet;
+  film.scene = plan.scene.empty() ? info["scene_file"].get<std::string>() : plan.scene.string();
+  std::error_code error;
+  if (plan.scene.empty() && info.contains("scene_text") && info["scene_text"].is_string()) {
+    film.scene_text = info["scene_text"].get<std::string>();
+  } else if (!std::filesystem::is_regular_file(film.scene, error)) {
+    throw InputError(film.scene, "the run's scene is no longer there; --scene FILE says where it is now");
+  }
+  for (const Json& setting : info["settings"]) film.settings.push_back(setting.get<std::string>());
+  film.settings.insert(film.settings.end(), plan.settings.begin(), plan.settings.end());
+  if (info.contains("sweep_point")) film.sweep_point = info["sweep_point"].get<std::size_t>();
+  return film;
+}
+
+// Keeps only those changes of a replay that change what is simulated.
+std::string simulated_part(const std::string& replay) {
+  Json json = json_if_valid<Json>(replay);
+  if (!json.is_object()) return replay;
+  json.erase("title");
+  if (!json.contains("change") || !json["change"].is_array()) return json_text(json);
+  Json kept = Json::array();
+  for (const Json& change : json["change"]) {
+    const bool drawn = change.is_object() && change.contains("path") && change["path"].is_string() &&
+                       is_seen(change["path"].get<std::string>());
+    if (!drawn) kept.push_back(change);
+  }
+  json["change"] = kept;
+  return json_text(json);
+}
+
+// Refuses a scene that would have moved in another way than the run did.
+void check_same_motion(const DrawPlan& plan, const Json& info, const LoadedFilm& film) {
+  std::vector<Problem> problems;
+  for (const JsonDifference& difference : differing_values(json_text(info["scene"]), film.info.scene_json)) {
+    if (is_seen(difference.path)) continue;
+    // One of the two may have no table [output]; of its keys, energy alone is not of what is seen.
+    const bool seen_output =
+        difference.path == "output" && (difference.a + difference.b).find("energy") == std::string::npos;
+    if (seen_output) continue;
+    problems.push_back(
+        {film.info.scene_file, 0, 0,
+         fmt::format("{} is {} here and was {} in the run: only what is seen may differ (camera, look, "
+                     "output's width, height and samples, colours, labels, patterns, colliders being visible)",
+                     difference.path, difference.b, difference.a)});
+  }
+  if (simulated_part(member_text(info, "replay")) != simulated_part(film.info.replay_json))
+    problems.push_back({film.info.scene_file, 0, 0, "the replay changes other values than it did in the run"});
+  Json meshes = Json::array();
+  for (const RunInfo::Mesh& mesh : film.info.meshes) meshes.push_back({mesh.body, mesh.hash});
+  Json then = Json::array();
+  for (const Json& mesh : info.value("meshes", Json::array())) then.push_back({mesh["body"], mesh["xxh64"]});
+  if (problems.empty() && meshes != then)
+    problems.push_back(
+        {plan.run.string(), 0, 0, "the run had other meshes: their files, or the program, have changed"});
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+std::vector<PointCacheReader> motion_of(const RunRecord& run, const LoadedFilm& film) {
+  std::vector<PointCacheReader> motion;
+  for (const Body& body : film.bodies) {
+    motion.emplace_back(run.motion(body.def.name));
+    const auto vertices = static_cast<int>(body.description.mesh.rest.rows());
+    if (motion.back().points() == vertices) continue;
+    throw InputError(run.motion(body.def.name).string(),
+                     fmt::format("has {} points, and the body has {} vertices", motion.back().points(), vertices));
+  }
+  return motion;
+}
+
+// Opens what the run kept of the colliders' forces, where the field shows them.
+std::vector<ForceFileReader> forces_of(const RunRecord& run, const LoadedFilm& film) {
+  std::vector<ForceFileReader> forces;
+  const SceneDef& scene = film.script.scene();
+  if (scene.field.quantity != FieldQuantity::force || scene.colliders.empty()) return forces;
+  for (const Body& body : film.bodies) {
+    const std::filesystem::path file = run.forces(body.def.name);
+    std::error_code error;
+    if (!std::filesystem::exists(file, error))
+      throw InputError(file.string(),
+                       "is missing, so contact forces cannot be shown: an older program made the run; film it again");
+    forces.emplace_back(file);
+    const auto vertices = static_cast<int>(body.description.mesh.rest.rows());
+    if (forces.back().vertices() != vertices)
+      throw InputError(file.string(), fmt::format("has the forces on {} vertices, and the body has {}",
+                                                  forces.back().vertices(), vertices));
+  }
+  return forces;
+}
+
+int frames_with_motion(const LoadedDrawing& drawing) {
+  int count = drawing.motion.front().frames();
+  for (const PointCacheReader& body : drawing.motion) count = std::min(count, body.frames());
+  for (const ForceFileReader& body : drawing.forces) count = std::min(count, body.frames());
+  return count;
+}
+
+std::vector<int> frames_of(const DrawPlan& plan, int count) {
+  if (count == 0) throw InputError(plan.run.string(), "has no frame yet");
+  const int last = plan.last < 0 ? count - 1 : plan.last;
+  if (last >= count)
+    throw InputError(fmt::format("--last {}", last), fmt::format("the run's last frame is {}", count - 1));
+  if (plan.first > last)
+    throw InputError(fmt::format("--first {}", plan.first), fmt::format("lies after the last frame, {}", last));
+  std::vector<int> frames;
+  for (int frame = plan.first; frame <= last; frame += plan.every) frames.push_back(frame);
+  return frames;
+}
+
+// Makes draw lists of chosen frames, in ascending order.
+class Drawing {
+ public:
+  explicit Drawing(LoadedDrawing& drawing)
+      : drawing_(drawing),
+        scene_(drawing.film.script.scene()),
+        set_(collision_set(scene_)),
+        drawn_(drawing.film.script, drawing.film.bodies, drawing.film.drawn, set_, caption_font()),
+        threads_(drawing.film.info.threads) {
+    drawn_.know_times(drawing.rows);
+    for (const FrameRow& row : drawing.rows) graphed_.push_back(graph_point(row));
+    const bool field = scene_.field.quantity != FieldQuantity::none && scene_.field.range_by == FieldRange::film;
+    const bool camera = scene_.camera.frames == Framed::film;
+    const std::optional<Bounds>& framed = drawing.film.info.framed;
+    if (camera && framed) drawn_.frame_motion(*framed);
+    if (field || (camera && !framed)) span_film(field, camera && !framed);
+  }
+
+  const Stage& stage() const { return drawn_.stage(); }
+  DrawnFilm& drawn() { return drawn_; }
+
+  DrawList list(int frame) {
+    follow_script(frame);
+    load(frame);
+    return drawn_.list(scene_, pose(frame), set_, threads_);
+  }
+
+ private:
+  // Finds the range of the field and the box of the motion over all frames of the run, so that each picture has the
+  // same colours and the same camera, whichever frames are drawn and in how many parts.
+  void span_film(bool field, bool camera) {
+    Bounds box;
+    for (int frame = 0; frame < drawing_.frame_count && !interrupted(); ++frame) {
+      follow_script(frame);
+      load(frame);
+      if (field) drawn_.include_in_field(pose(frame), set_, threads_);
+      for (const Positions& body : motion_) {
+        box.include(bounds_of(body).lower);
+        box.include(bounds_of(body).upper);
+      }
+    }
+    if (field) drawn_.settle_field();
+    if (camera) drawn_.frame_motion(box);
+    rewind();
+  }
+
+  // Goes back to the start of the film.
+  void rewind() {
+    followed_ = 0;
+    scene_ = drawing_.film.script.scene();
+    set_ = collision_set(scene_);
+    drawn_.follow(drawing_.film.script.changes(), set_, drawing_.film.bodies);
+    for (std::size_t b = 0; b < scene_.bodies.size(); ++b)
+      update_body(drawing_.film.bodies[b], scene_, scene_.bodies[b]);
+  }
+
+  Positions motion_at(std::size_t body, int frame) {
+    if (frame >= 0) return saved_positions(drawing_, body, frame);
+    const Vec3 origin = motion_origin(drawing_.film.bodies[body].description.mesh.rest);
+    const Positions first = first_positions(drawing_.film.bodies[body]).rowwise() - origin.transpose();
+    return as_cached(first).rowwise() + origin.transpose();
+  }
+
+  void load(int frame) {
+    motion_.clear();
+    before_.clear();
+    forces_.clear();
+    for (std::size_t b = 0; b < drawing_.motion.size(); ++b) {
+      motion_.push_back(motion_at(b, frame));
+      if (drawn_.needs_before()) before_.push_back(motion_at(b, frame - 1));
+    }
+    for (ForceFileReader& body : drawing_.forces) forces_.push_back(body.frame(frame));
+  }
+
+  FramePose pose(int frame) const {
+    FramePose pose{frame, frame_time(frame, scene_.fps), {}, {}};
+    for (const Positions& body : motion_) pose.motion.push_back(&body);
+    for (const Positions& body : before_) pose.before.push_back(&body);
+    for (const Positions& body : forces_) pose.forces.push_back(&body);
+    const std::vector<FrameRow>& rows = drawing_.rows;
+    pose.earlier = std::span(graphed_).first(std::min(graphed_.size(), std::size_t(frame)));
+    if (std::size_t(frame) < rows.size()) pose.row = &rows[std::size_t(frame)];
+    return pose;
+  }
+
+  // Advances the scene to the end of the frame.
+  void follow_script(int frame) {
+    const Script& script = drawing_.film.script;
+    std::vector<TimedChange> changes;
+    for (; followed_ <= frame; ++followed_) {
+      for (const TimedChange* change : script.at_work(followed_)) changes.push_back(*change);
+    }
+    if (changes.empty()) return;
+    scene_ = script.scene_at(frame);
+    set_ = collision_set(scene_);
+    // The stress of a field follows from the materials at that time.
+    for (std::size_t b = 0; b < scene_.bodies.size() && scene_.field.quantity != FieldQuantity::none; ++b)
+      update_body(drawing_.film.bodies[b], scene_, scene_.bodies[b]);
+    drawn_.follow(changes, set_, drawing_.film.bodies);
+  }
+
+  LoadedDrawing& drawing_;
+  SceneDef scene_;  // at the end of the last frame that was asked for
+  CollisionSet set_;
+  DrawnFilm drawn_;
+  Threads threads_;
+  std::vector<Positions> motion_, before_;  // of the frame that was loaded, and of the one before it [m]
+  std::vector<Positions> forces_;           // of colliders, where they are needed [N]
+  std::vector<GraphPoint> graphed_;         // of all frames
+  int followed_ = 0;                        // frames whose changes are in scene_
+};
+
+}  // namespace
+
+LoadedDrawing load_drawing(const DrawPlan& plan) {
+  const RunRecord run = read_run(plan.run);
+  const Json info = parsed_json<Json>(run.info_json);
+  const FilmPlan film = plan_of_run(plan, info);
+  LoadedDrawing drawing{load_film(film, {}), {}, {}, {}, 0, {}, 0, {}};
+  check_same_motion(plan, info, drawing.film);
+  drawing.film.info.framed = framed_in(run.info_json);
+  make_skins(film, drawing.film);
+  drawing.motion = motion_of(run, drawing.film);
+  drawing.rows = run.rows;
+  drawing.forces = forces_of(run, drawing.film);
+  drawing.frame_count = frames_with_motion(drawing);
+  drawing.frames = frames_of(plan, drawing.frame_count);
+  check_references(drawing.film.script.scene(), drawing.film.bodies, drawing.frames.back());
+  drawing.rate = plan.rate > 0 ? plan.rate : drawing.film.script.scene().fps / plan.every;
+  Json identity = {
+      {"program", program_version()},
+      {"run", std::filesystem::absolute(plan.run).lexically_normal().string()},
+      {"frames", {{"first", drawing.frames.front()}, {"every", plan.every}, {"count", drawing.frames.size()}}},
+      {"rate", drawing.rate},
+      {"gl", name_of(plan.gl)},
+      {"scene", json_if_valid<Json>(drawing.film.info.scene_json)}};
+  if (!drawing.film.info.replay_json.empty()) identity["replay"] = json_if_valid<Json>(drawing.film.info.replay_json);
+  drawing.identity = json_text(identity, 1) + "\n";
+  return drawing;
+}
+
+Positions saved_positions(LoadedDrawing& drawing, std::size_t body, int frame) {
+  const Vec3 origin = motion_origin(drawing.film.bodies[body].description.mesh.rest);
+  return drawing.motion[body].frame(frame).rowwise() + origin.transpose();
+}
+
+namespace {
+
+// Tells whether a folder holds nothing, or no more than what another process leaves while it begins a drawing there.
+bool is_new(const std::filesystem::path& folder) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (!entry.path().filename().string().starts_with("draw.json")) return false;
+  }
+  return !error;
+}
+
+}  // namespace
+
+// The record comes before all else: several processes that draw parts may begin at one time.
+void open_drawing(const std::filesystem::path& folder, const LoadedDrawing& drawing, bool keep) {
+  std::error_code error;
+  const std::filesystem::path record = folder / "draw.json";
+  const std::string source = "--out " + folder.string();
+  if (std::filesystem::exists(folder, error) && !std::filesystem::is_directory(folder, error))
+    throw InputError(source, "exists and is not a folder");
+  const bool fresh = !std::filesystem::exists(folder, error) || is_new(folder);
+  const bool known = std::filesystem::exists(record, error);
+  if (!known && !fresh)
+    throw InputError(source, "holds files that no drawing left there (no draw.json); choose another folder");
+  if (known && keep) {
+    std::ifstream file(record);
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    const std::vector<std::string> differences = json_differences(text, drawing.identity, 3);
+    if (!differences.empty())
+      throw InputError(source,
+                       "holds another drawing, which differs in " + fmt::format("{}", fmt::join(differences, "; ")));
+  }
+  const auto make = [&](const std::filesystem::path& made) {
+    std::filesystem::create_directories(made, error);
+    if (error) throw RunError(fmt::format("{}: cannot be made: {}", made.string(), error.message()));
+  };
+  make(folder);
+  if (!known || !keep) write_whole_file_together(record, drawing.identity);
+  make(folder / "frames");
+  if (known && !keep) {
+    remove_film(folder);
+    remove_pictures(folder / "frames", 0);
+  }
+}
+
+PictureRange part_of(const LoadedDrawing& drawing, int index, int count) {
+  const auto pictures = static_cast<long long>(drawing.frames.size());
+  return {static_cast<int>(pictures * index / count), static_cast<int>(pictures * (index + 1) / count)};
+}
+
+Eigen::Vector2d field_range(LoadedDrawing& drawing) { return Drawing(drawing).drawn().field_range(); }
+
+DrawResult draw_pictures(const DrawPlan& plan, LoadedDrawing& drawing, const std::filesystem::path& folder,
+                         PictureRange range, VideoEncoder* video, const std::function<void(int done)>& told) {
+  DrawResult result;
+  Drawing lists(drawing);
+  result.legend = lists.drawn().field_look();
+  if (plan.legend_apart && result.legend) lists.drawn().hide_legend();
+  Pictures pictures(lists.stage(), plan.gl, shaders_folder(), PictureTargets{folder / "frames", true, video, 0});
+  for (int picture = range.first; picture < range.last; ++picture) {
+    if (interrupted()) {
+      result.end = FilmEnd::interrupted;
+      break;
+    }
+    if (!pictures.put(picture, lists.list(drawing.frames[picture]))) break;
+    result.pictures += static_cast<int>(pictures.take_written().size());
+    told(result.pictures);
+  }
+  pictures.finish();
+  result.pictures += static_cast<int>(pictures.take_written().size());
+  told(result.pictures);
+  result.message = pictures.error();
+  if (!result.message.empty()) result.end = FilmEnd::failed;
+  return result;
+}
+
+Image draw_still(const DrawPlan& plan, LoadedDrawing& drawing, int frame) {
+  Drawing lists(drawing);
+  return Renderer(lists.stage(), plan.gl, shaders_folder()).draw(lists.list(frame));
+}
+
+std::vector<int> missing_pictures(const LoadedDrawing& drawing, const std::filesystem::path& folder) {
+  std::vector<int> missing;
+  std::error_code error;
+  for (int picture = 0; picture < static_cast<int>(drawing.frames.size()); ++picture) {
+    if (!std::filesystem::exists(picture_file(folder / "frames", picture), error)) missing.push_back(picture);
+  }
+  return missing;
+}
+
+}  // namespace supple

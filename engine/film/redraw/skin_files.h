@@ -1,0 +1,21 @@
+// Writes the skins that a film shows, with their motion, for other programs: of each body an OBJ file with the skin at
+// rest and a PC2 point cache, as motion/ has them of the simulated mesh. Nothing is simulated.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "film/redraw/redraw.h"
+
+namespace supple {
+
+// Creates the folder of the skins, or takes over one that earlier skins left. Throws InputError when it holds anything
+// else, and RunError when the disk refuses.
+void open_skins(const std::filesystem::path& folder, const LoadedDrawing& drawing);
+
+// Writes motion/BODY.obj and motion/BODY.pc2 of all bodies, at full resolution, with a sample for each chosen frame.
+// told: is called after each frame with the number that is done. Returns that number, which is smaller than that of the
+// chosen frames when the user interrupts.
+int write_skins(LoadedDrawing& drawing, const std::filesystem::path& folder, const std::function<void(int)>& told);
+
+}  // namespace supple

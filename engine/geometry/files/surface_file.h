@@ -1,0 +1,34 @@
+// Reads closed triangle surfaces from outside: OBJ, PLY, STL, glTF, OFF and any other format that assimp reads. A
+// broken file can end the process that reads it, so assimp runs in a program of its own, supple-read-surface, under
+// limits. MEDIT files are read by mesh_file.h.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "geometry/files/colored_surface.h"
+#include "geometry/solids/solid_surface.h"
+
+namespace supple {
+
+// Reads the triangles and colours of a file as they are there. Node transforms are applied; polygons are cut into
+// triangles; points and lines are left out; textures inside the file or beside it are read. Throws InputError as below,
+// but for surfaces that are not closed.
+ColoredSurface read_colored_surface(const std::filesystem::path& path);
+
+// Reads a file and returns its closed surface, without its colours. Remarks are added to `notes`, as by closed_surface
+// (geometry/solids/closed_surface.h).
+// Throws InputError when the file does not exist, has no triangles or is too large, when its reader crashed, took too
+// long or refused it, and when the surface is not closed.
+TriMesh read_closed_surface(const std::filesystem::path& path, std::vector<std::string>* notes);
+
+// The same for a surface that need not be closed: solid_surface makes a solid of it as the options say.
+SolidSurface read_solid_surface(const std::filesystem::path& path, const SurfaceOptions& options,
+                                std::vector<std::string>* notes);
+
+// Returns where the reading program is: beside the running program, where an installation puts it, or where the build
+// put it (for programs in other folders).
+std::filesystem::path surface_reader_program();
+
+}  // namespace supple

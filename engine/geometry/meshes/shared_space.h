@@ -1,0 +1,22 @@
+// Tells whether two meshes are partly in the same place. Edges that pass through triangles tell, and vertices inside
+// elements where one mesh lies whole within the other. Meshes that touch, on a face, an edge or a point, do not share
+// space. Not here: which bodies of a scene do, and since when (scene/building/body_meetings.h).
+#pragma once
+
+#include "geometry/meshes/mesh.h"
+
+namespace supple {
+
+// A mesh in a pose. What it refers to must outlive it.
+struct PosedMesh {
+  const Positions& points;   // n x 3 [m]
+  const Triangles& surface;  // m x 3, by row of points
+  const Tetrahedra& tets;    // by row of points; without rows for a cloth, which has no inside
+  Bounds box = bounds_of(points);
+};
+
+// A space that is thinner than a ten-millionth of the smaller mesh does not count. Of a mesh that fits into another
+// with less play than that on two sides, the answer is uncertain.
+bool share_space(const PosedMesh& a, const PosedMesh& b);
+
+}  // namespace supple

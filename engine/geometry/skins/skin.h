@@ -1,0 +1,47 @@
+// A skin is the drawn surface of a body: a contour of its shape that is finer than the elements, with layers of colour,
+// carried by the elements in which it lies. Lights and pixels are in render/, the shape's own description in shape.h.
+#pragma once
+
+#include <array>
+
+#include "base/names.h"
+#include "base/texture.h"
+#include "geometry/meshes/mesh.h"
+#include "geometry/shapes/shape.h"
+
+namespace supple {
+
+constexpr int max_paint_layers = 8;
+
+// Names what is printed on a body, in squares of one size, so that its strain can be seen.
+enum class Pattern { none, grid, checks };
+template <>
+struct Names<Pattern> {
+  static constexpr std::array table = {Name{Pattern::none, "none"}, Name{Pattern::grid, "grid"},
+                                       Name{Pattern::checks, "checks"}};
+};
+
+struct Skin {
+  TriMesh rest;                  // in the body's rest frame
+  std::vector<float> occlusion;  // share of the sky that the rest shape leaves open at each vertex, 0 to 1
+  std::vector<std::array<float, max_paint_layers>> paint;  // signed distance to each colour layer, by vertex [m]
+  std::vector<std::array<float, 2>> square;  // place in the printed pattern by vertex, in squares; empty without one
+  std::vector<SurfaceColor> color;           // of the file, by vertex; empty where it has none
+  // Numbers by vertex, if there are colours: vertices with the same one were one before colours split it, and have one
+  // normal.
+  std::vector<std::int32_t> smooth;
+};
+
+// Contours the shape with cells of the given size [m] (surface nets) and moves the vertices onto the zero set.
+TriMesh contour(const Shape& shape, double cell);
+
+// Adds to the contour the distances to its layers and the ambient occlusion of the rest shape.
+Skin skin_of(const Shape& shape, double cell);
+
+// Makes a skin without layers from triangles over a mesh's vertices. A vertex on a crease of the surface is split into
+// several, so that edges look sharp; vertex_of gives each skin vertex's mesh vertex. square: edge length of the printed
+// pattern's squares [m], laid along the two axes that the surface faces least; 0 prints no pattern.
+Skin skin_of_surface(const Positions& points, const Triangles& triangles, double square,
+                     std::vector<std::int32_t>& vertex_of);
+
+}  // namespace supple

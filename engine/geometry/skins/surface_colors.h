@@ -1,0 +1,32 @@
+// Carries the colours of a file's triangles to what is drawn of them: the surface is repaired, taken apart and refined
+// in between, and its triangles find their colours again by their places.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "geometry/files/colored_surface.h"
+#include "geometry/skins/skin.h"
+
+namespace supple {
+
+// Holds the colours of a surface.
+struct SurfaceColors {
+  std::vector<std::array<SurfaceColor, 3>> corners;  // by triangle
+  Textures textures;
+  std::uint64_t hash = 0;  // of all of this
+};
+
+// Returns the colours of a surface that was made from the file's triangles, in the same frame; null where the file has
+// none. A triangle with the corners of one of the file's has its colours. Others, such as those that close a hole, have
+// those of the nearest triangle.
+std::shared_ptr<const SurfaceColors> colors_on(const TriMesh& surface, const ColoredSurface& file);
+
+// Makes the skin of a coloured surface as skin_of_surface does, after it has been refined (refine_surface.h). Vertices
+// at which colours meet are split; those that were one keep one normal (Skin::smooth).
+Skin colored_skin(const TriMesh& surface, const SurfaceColors& colors, double longest, Eigen::Index most,
+                  double square);
+
+}  // namespace supple

@@ -1,0 +1,37 @@
+// Samples where triangles have an inside, on a grid, and makes a closed surface around that. The inside is where the
+// generalised winding number exceeds 1/2, so that holes, overlaps and triangles inside do not matter.
+#pragma once
+
+#include "base/threads.h"
+#include "geometry/triangles/triangle_soup.h"
+
+namespace supple {
+
+struct SignGrid {
+  Vec3 origin = Vec3::Zero();
+  double cell = 0;  // [m]
+  Eigen::Vector3i points = Eigen::Vector3i::Zero();
+  std::vector<char> inside;  // 1: inside; by point, x first
+
+  std::size_t at(int i, int j, int k) const {
+    return (std::size_t(k) * std::size_t(points.y()) + std::size_t(j)) * std::size_t(points.x()) + std::size_t(i);
+  }
+  Vec3 position(double i, double j, double k) const { return origin + cell * Vec3(i, j, k); }
+};
+
+// Returns an edge of the cells that puts some 40,000 of them on the triangles' area, within bounds for the whole grid.
+double suitable_cell(const TriMesh& mesh);
+
+// Samples every point near a triangle, and elsewhere those between which the side changes. At least two layers around
+// are outside.
+SignGrid sampled_signs(const TriangleSoup& soup, double cell, Threads& threads);
+
+// Adds points to the inside until its boundary is a manifold: no two of them touch along a grid's diagonal alone. Such
+// sets are called well-composed: Latecki, 3D well-composed pictures, Graphical Models and Image Processing 59, 1997.
+void make_well_composed(SignGrid& grid);
+
+// Returns the boundary of the inside as a closed manifold surface that faces outward, with one vertex in the middle of
+// each cell that it crosses (surface nets). The inside must be well-composed.
+TriMesh boundary_of(const SignGrid& grid);
+
+}  // namespace supple

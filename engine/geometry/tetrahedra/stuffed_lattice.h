@@ -1,0 +1,20 @@
+// Stuffs a body-centred cubic lattice of one spacing with tetrahedra up to a shape's surface (Labelle and Shewchuk
+// 2007, "Isosurface stuffing"): lattice points too close to the surface are moved onto it, and then the lattice is cut
+// there, so that the dihedral angles stay between about 10.7 and 165 degrees. Not here: which spacing gives how many
+// vertices (tetrahedralize.h).
+#pragma once
+
+#include <functional>
+
+#include "base/threads.h"
+#include "geometry/meshes/mesh.h"
+#include "geometry/shapes/shape.h"
+
+namespace supple {
+
+// Makes one connected manifold body without tags. spacing: of the lattice [m]. shift: of the lattice against the shape,
+// in spacings. swell: how far the body reaches beyond the shape [m]. heard: hears the share that is done, 0 to 1.
+TetMesh stuffed_lattice(const Shape& shape, double spacing, const Vec3& shift, double swell,
+                        const std::function<void(double)>& heard, Threads& threads);
+
+}  // namespace supple

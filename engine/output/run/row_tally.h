@@ -1,0 +1,94 @@
+// Sums up the rows of a run as they pass by, so that no more of them need be in memory than one: distributions of
+// times, what went wrong, and tables for people. Of each frame it keeps the few numbers that percentiles need.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "output/run/profile.h"
+#include "output/run/unsolved_steps.h"
+#include "output/run/verdict.h"
+
+namespace supple {
+
+// Tallies one stage of a frame.
+struct StageTally {
+  std::optional<double> first;  // of the first frame [ms]
+  std::vector<double> rest;     // of the others that have it [ms]
+  double sum = 0;               // of `rest`
+};
+
+// Tallies the figures of one body.
+struct BodyTally {
+  std::string name;
+  std::vector<double> step, collide, errors, motion_errors;
+  double trials = 0, iterations = 0, stretch = 0, deepest = 0, estimates = 0, motion_estimates = 0;
+  int contacts = 0, frames = 0;
+  std::optional<double> jiggle;
+  // Energy from nothing: where it first was much, and where most [J].
+  int first_gain = -1, worst_gain = -1;
+  double gained = 0, exchanged = 0;
+  double skin_excess = 0;  // the largest
+  int skin_frame = 0;
+  // Frames that were drawn, and of these: those in which it is out of the picture, and cut by its border.
+  int drawn = 0, out = 0, cut = 0;
+  int first_out = -1, first_cut = -1;
+  double least_in_picture = 1;
+  int inverted = 0, collapsed = 0;  // in the last frame
+};
+
+// Tallies what one collider did to one body.
+struct TouchTally {
+  std::string body, collider;
+  double deepest = 0;  // over the body's size
+  int deepest_frame = 0, deep_frames = 0;
+  double far_side = 0;  // the largest [m]
+  int first_far_frame = 0, far_frames = 0;
+  double force_sum = 0, largest_force = 0;  // [N]
+};
+
+// Tells since when two bodies pass through each other.
+struct MetTally {
+  std::array<std::string, 2> bodies;
+  int frame;
+};
+
+class RowTally {
+ public:
+  RowTally() = default;
+  explicit RowTally(const std::vector<FrameRow>& rows) {
+    for (const FrameRow& row : rows) add(row);
+  }
+
+  // Rows come in the order of their frames.
+  void add(const FrameRow& row);
+
+  int frames() const { return frames_; }
+  std::uint64_t last_hash() const { return last_hash_; }  // state_hash of the last row
+  const std::vector<UnsolvedStep>& unsolved() const { return unsolved_; }
+
+  // These functions give what those of the same purpose give for rows (profile.h, unsolved_steps.h, verdict.h).
+  std::vector<StageSummary> stages() const;
+  std::vector<std::string> warnings() const;
+  std::vector<std::string> penetrations() const;
+  std::vector<std::string> missing_in_pictures() const;
+  // Leaves out the bodies of which that is meant.
+  std::string unsolved_text(const std::vector<std::string>& meant = {}) const;
+  std::string table() const;
+  FrameWork work(double encoding) const;
+
+ private:
+  void add_body(const FrameRow& row, std::size_t body);
+  std::string touch_table() const;
+
+  int frames_ = 0;
+  bool measured_ = false, touching_ = false;
+  std::uint64_t last_hash_ = 0;
+  StageTally stages_[5];  // in the order of stage_names
+  std::vector<BodyTally> bodies_;
+  std::vector<TouchTally> touches_;
+  std::vector<MetTally> met_;
+  std::vector<UnsolvedStep> unsolved_;
+};
+
+}  // namespace supple

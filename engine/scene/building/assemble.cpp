@@ -1,0 +1,348 @@
+#include "scene/building/assemble.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.h"
+#include "scene/building/body_mesh.h"
+#include "scene/building/overlaps.h"
+#include "scene/definition/rotation.h"
+
+namespace supple {
+namespace {
+
+// Returns the map from the file's frame to the world: the body is rotated about the origin, scaled, and moved so that
+// the middle of its bottom is at `position`.
+Eigen::Affine3d placement(const BodyDef& def, const Positions& points) {
+  Eigen::Affine3d turned(rotation_from_degrees(def.turn_deg).toRotationMatrix());
+  Bounds box, untouched;
+  for (Eigen::Index v = 0; v < points.rows(); ++v) {
+    box.include(turned * Vec3(points.row(v)));
+    untouched.include(points.row(v).transpose());
+  }
+  const double scale = def.size ? *def.size / untouched.extent().maxCoeff() : def.scale;
+  const Vec3 foot(box.center().x(), box.lower.y(), box.center().z());
+  return Eigen::Translation3d(def.position) * Eigen::Scaling(scale) * Eigen::Translation3d(-foot) * turned;
+}
+
+void apply(const Eigen::Affine3d& place, Positions& points) {
+  for (Eigen::Index v = 0; v < points.rows(); ++v) points.row(v) = (place * Vec3(points.row(v))).transpose();
+}
+
+std::vector<std::int32_t> selected(const Selection& s, const TetMesh& mesh, const Positions& file_points,
+                                   const std::vector<std::string>& regions) {
+  // Coordinates are relative to the rest box before the body is rotated, so that a selection means the same part in
+  // every orientation of the body.
+  const Bounds box = bounds_of(file_points);
+  const Vec3 extent = box.extent().cwiseMax(1e-300);
+  std::vector<std::int32_t> result;
+  if (s.kind == Selection::Kind::region) {
+    const auto tag = std::find(regions.begin(), regions.end(), s.region) - regions.begin();
+    std::vector<char> in(mesh.rest.rows(), 0);
+    for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
+      if (mesh.regions[e] != tag) continue;
+      for (int k = 0; k < 4; ++k) in[mesh.tets(e, k)] = 1;
+    }
+    for (std::int32_t v = 0; v < mesh.rest.rows(); ++v) {
+      if (in[v]) result.push_back(v);
+    }
+    return result;
+  }
+  for (std::int32_t v = 0; v < mesh.rest.rows(); ++v) {
+    const Vec3 point = file_points.row(v);
+    const Vec3 relative = (point - box.lower).cwiseQuotient(extent);
+    const Vec3 away = point - (box.lower + s.center.cwiseProduct(extent));
+    bool in = false;
+    // The box has a tolerance of a millionth, because a box that ends at 1 is meant to include what lies at 1.
+    if (s.kind == Selection::Kind::box)
+      in = (relative.array() >= s.lower.array() - 1e-6).all() && (relative.array() <= s.upper.array() + 1e-6).all();
+    if (s.kind == Selection::Kind::sphere) in = away.norm() <= s.radius * box.extent().maxCoeff();
+    if (s.kind == Selection::Kind::plane) in = away.dot(s.normal.normalized()) >= -1e-6 * box.extent().maxCoeff();
+    if (in) result.push_back(v);
+  }
+  return result;
+}
+
+Problem at(const FilePlace& place, std::string message) { return {place, std::move(message)}; }
+
+// Near 1e16 sizes from the origin no number distinguishes the vertices of a body; elements lose digits long before
+// that.
+void check_distance(const Body& body, std::vector<Problem>& problems) {
+  const Positions& points = body.description.mesh.rest;
+  const double far = points.cwiseAbs().maxCoeff(), size = bounds_of(points).diagonal();
+  if (far <= 1e8 * size) return;
+  problems.push_back(
+      at(body.def.place, fmt::format("position of body '{}': {:.3g} m from the origin is more than 1e8 times "
+                                     "its size ({:.3g} m), where coordinates have too few digits",
+                                     body.def.name, far, size)));
+}
+
+// A film of a body that is very large or very small is hardly what was meant: units were mixed up.
+void note_size(Body& body) {
+  const double size = bounds_of(body.description.mesh.rest).extent().maxCoeff();
+  if (size <= 20 && size >= 1e-3) return;
+  body.notes.push_back(
+      fmt::format("body '{}' is {:.3g} m long; size = 0.5 makes it half a metre{}", body.def.name, size,
+                  body.def.surface.empty() ? "" : ", and units = \"mm\" takes the file's numbers for that"));
+}
+
+void set_substances(Body& body, std::vector<Problem>& problems) {
+  const BodyDef& def = body.def;
+  BodyDescription& description = body.description;
+  // The fibres' direction turns with the body.
+  const Mat3 turn = rotation_from_degrees(def.turn_deg).toRotationMatrix();
+  const auto turned = [&turn](Fibre fibre) {
+    const Vec3 direction = turn * Vec3(fibre.direction[0], fibre.direction[1], fibre.direction[2]);
+    for (int i = 0; i < 3; ++i) fibre.direction[i] = direction[i];
+    return fibre;
+  };
+  description.materials.assign(body.regions.size(), def.substance.material);
+  description.fibres.assign(body.regions.size(), turned(def.substance.fibre));
+  for (const RegionDef& region : def.regions) {
+    const auto known = std::find(body.regions.begin(), body.regions.end(), region.name);
+    if (known == body.regions.end()) {
+      const std::vector<std::string> names(body.regions.begin() + 1, body.regions.end());
+      const std::string nearest = did_you_mean(region.name, names);
+      // A body that uses another mesh than the one for which the scene was written may lack the region (it may have no
+      // teeth that could be stiff). That is noted and not refused.
+      if (!def.mesh.empty()) {
+        body.notes.push_back(fmt::format("there is no region '{}'; its material is not used", region.name));
+      } else {
+        problems.push_back(at(region.place, fmt::format("body '{}' has no region '{}'{}", def.name, region.name,
+                                                        names.empty()     ? "; it has no tags"
+                                                        : nearest.empty() ? "; there is " + word_list(names)
+                                                                          : nearest)));
+      }
+      continue;
+    }
+    description.materials[known - body.regions.begin()] = region.substance.material;
+    description.fibres[known - body.regions.begin()] = turned(region.substance.fibre);
+  }
+}
+
+// Makes the springs, with their rest lengths in the world, and the mass of the cloth at each vertex.
+void weave(Body& body) {
+  const BodyDef& def = body.def;
+  BodyDescription& description = body.description;
+  const ClothMesh& cloth = body.cloth;
+  description.springs.clear();
+  description.surface = cloth.surface.triangles;
+  const auto join = [&](const std::vector<VertexPair>& pairs, double stiffness) {
+    if (stiffness <= 0) return;
+    for (const auto& [from, to] : pairs) {
+      const double length = (description.mesh.rest.row(from) - description.mesh.rest.row(to)).norm();
+      description.springs.push_back({from, to, length, stiffness});
+    }
+  };
+  join(cloth.edges, def.cloth->stretch);
+  join(cloth.diagonals, def.cloth->shear);
+  join(cloth.bends, def.cloth->bend);
+  description.point_mass = vertex_areas({description.mesh.rest, cloth.surface.triangles});
+  double area = 0;
+  for (const double share : description.point_mass) area += share;
+  const double density = def.total_mass ? *def.total_mass / area : def.body_density();
+  for (double& mass : description.point_mass) mass *= density;
+}
+
+void add_handles(Body& body, const Loaded& loaded, std::vector<Problem>& problems) {
+  std::vector<char> taken(loaded.mesh.rest.rows(), 0);
+  Eigen::Index held = 0;
+  for (const HandleDef& def : body.def.handles) {
+    Handle handle{def.name, selected(def.select, loaded.mesh, loaded.mesh.rest, loaded.regions), def.stiffness,
+                  !def.grabs || def.holds_at(0)};
+    // When two handles overlap, the first one gets the vertices.
+    std::erase_if(handle.vertices, [&](std::int32_t v) { return taken[v] != 0; });
+    for (const std::int32_t v : handle.vertices) taken[v] = 1;
+    if (handle.vertices.empty()) {
+      const bool by_region = def.select.kind == Selection::Kind::region;
+      problems.push_back(
+          at(def.select.place,
+             fmt::format("handle '{}' of body '{}' selects no vertex{}", def.name, body.def.name,
+                         by_region ? fmt::format(": there is no region '{}'", def.select.region)
+                                   : "; boxes, spheres and planes are relative to the rest bounding box (0 to 1)")));
+    }
+    if (def.stiffness <= 0) held += static_cast<Eigen::Index>(handle.vertices.size());
+    if (def.stiffness <= 0 && held == loaded.mesh.rest.rows()) {
+      problems.push_back(at(def.select.place,
+                            fmt::format("with handle '{}' every vertex of body '{}' is held: nothing is left to move",
+                                        def.name, body.def.name)));
+    }
+    KeyedMotion motion{Vec3::Zero(), def.ease, def.keys};
+    Bounds box;
+    for (const std::int32_t v : handle.vertices) box.include(body.description.mesh.rest.row(v).transpose());
+    if (!box.empty()) motion.center = box.center();
+    body.description.handles.push_back(std::move(handle));
+    body.motions.push_back(std::move(motion));
+  }
+}
+
+// Sets all that follows from the definition once the mesh is in its place, except for the handles.
+void set_values(Body& body, const SceneDef& scene, std::vector<Problem>& problems) {
+  const BodyDef& def = body.def;
+  body.description.time_step = scene.time_step();
+  body.description.fit = def.solver.fit;
+  body.description.precision = def.solver.precision;
+  body.description.integrator = def.solver.integrator;
+  body.description.damping = def.solver.damping;
+  if (def.cloth) return weave(body);
+  body.description.density = def.total_mass ? *def.total_mass / body.volume : def.body_density();
+  set_substances(body, problems);
+}
+
+}  // namespace
+
+void update_body(Body& body, const SceneDef& scene, const BodyDef& def) {
+  std::vector<Problem> problems;
+  const std::vector<std::string> notes = body.notes;  // these were said when it was assembled
+  const auto starts_or_ends = [&](double ClothDef::*stiffness) {
+    return def.cloth && ((*def.cloth).*stiffness > 0) != ((*body.def.cloth).*stiffness > 0);
+  };
+  if (starts_or_ends(&ClothDef::shear) || starts_or_ends(&ClothDef::bend))
+    throw InputError({at(
+        def.place, fmt::format("shear and bend of the cloth of body '{}' cannot reach or leave 0 while the film runs",
+                               def.name))});
+  body.def = def;
+  set_values(body, scene, problems);
+  body.notes = notes;
+  body.earlier = body.motions;
+  for (std::size_t h = 0; h < def.handles.size(); ++h) {
+    Handle& handle = body.description.handles[h];
+    if ((handle.stiffness <= 0) != (def.handles[h].stiffness <= 0))
+      problems.push_back(at(def.handles[h].select.place,
+                            fmt::format("handle '{}' of body '{}': hard handles stay hard, and springs stay springs",
+                                        handle.name, def.name)));
+    handle.stiffness = def.handles[h].stiffness;
+    body.motions[h].ease = def.handles[h].ease;
+    body.motions[h].keys = def.handles[h].keys;
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+std::vector<Body> assemble(const SceneDef& scene, const SlowWork& work) {
+  std::vector<Body> bodies;
+  std::vector<Problem> problems;
+  MeshCache meshes(work);
+  for (const BodyDef& def : scene.bodies) {
+    try {
+      const Loaded& loaded = meshes.get(scene, def);
+      Body body;
+      body.def = def;
+      body.notes = loaded.notes;
+      body.source = loaded.source;
+      body.files = loaded.files;
+      body.seed = scene.seed;
+      body.skin = loaded.skin;
+      body.colors = loaded.colors;
+      body.shape = loaded.shape;
+      body.unplaced = loaded.mesh.rest;
+      body.description.name = def.name;
+      body.description.mesh = loaded.mesh;
+      // Pieces stay where they are in the whole, which is placed and scaled as one.
+      body.placement = placement(def, loaded.whole.rows() > 0 ? loaded.whole : loaded.mesh.rest);
+      apply(body.placement, body.description.mesh.rest);
+      check_distance(body, problems);
+      note_size(body);
+      body.regions = loaded.regions;
+      body.cloth = loaded.cloth;
+      if (!def.cloth) body.volume = quality(body.description.mesh).volume;
+      set_values(body, scene, problems);
+      if (def.pattern_size && *def.pattern_size < 1e-3 * bounds_of(body.description.mesh.rest).diagonal()) {
+        problems.push_back(
+            at(def.place, fmt::format("pattern_size of body '{}' is below a thousandth of its size", def.name)));
+      }
+      add_handles(body, loaded, problems);
+      bodies.push_back(std::move(body));
+    } catch (const InputError& error) {
+      problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+    }
+  }
+  find_overlaps(scene, bodies, problems);
+  std::vector<Problem> unique;
+  for (Problem& problem : problems) {
+    const bool seen =
+        std::any_of(unique.begin(), unique.end(), [&](const Problem& p) { return p.text() == problem.text(); });
+    if (!seen) unique.push_back(std::move(problem));
+  }
+  if (!unique.empty()) throw InputError(std::move(unique));
+  return bodies;
+}
+
+namespace {
+
+// Returns the places from which keys move handled vertices while nothing is grabbed, and which handles hold at the
+// start.
+Anchors rest_anchors(const Model& model, const Body& body) {
+  Anchors anchors;
+  anchors.points.resize(model.handled.size(), 3);
+  for (std::size_t i = 0; i < model.handled.size(); ++i)
+    anchors.points.row(i) = model.rest.row(model.handled[i].vertex);
+  for (const KeyedMotion& motion : body.motions) anchors.centers.push_back(motion.center);
+  for (const HandleDef& def : body.def.handles) anchors.holds.push_back(!def.grabs || def.holds_at(0));
+  return anchors;
+}
+
+}  // namespace
+
+Positions first_positions(const Body& body) {
+  const Positions& rest = body.description.mesh.rest;
+  Positions start = start_positions(body.def.start, rest, body.seed, body.description.name);
+  start.rowwise() += body.start_move.transpose();
+  for (std::size_t h = 0; h < body.description.handles.size(); ++h) {
+    if (body.def.handles[h].grabs) continue;
+    for (const std::int32_t v : body.description.handles[h].vertices) start.row(v) = rest.row(v);
+  }
+  return start;
+}
+
+State start_state(const Model& model, const Body& body) {
+  State state = rest_state(model);
+  const Positions start = first_positions(body);
+  for (int v = 0; v < model.vertices; ++v) {
+    state.x.row(v) = start.row(model.input_of[v]);
+    state.v.row(v) = body.def.velocity.transpose();
+  }
+  for (const auto& [vertex, handle] : model.handled) {
+    if (!body.def.handles[handle].grabs) state.v.row(vertex).setZero();
+  }
+  state.anchors = rest_anchors(model, body);
+  return state;
+}
+
+void grab(const Model& model, int handle, const Positions& x, Anchors& anchors) {
+  Bounds box;
+  for (std::size_t i = 0; i < model.handled.size(); ++i) {
+    if (model.handled[i].handle != handle) continue;
+    anchors.points.row(i) = x.row(model.handled[i].vertex);
+    box.include(anchors.points.row(i).transpose());
+  }
+  if (!box.empty()) anchors.centers[handle] = box.center();
+}
+
+namespace {
+
+void add_targets(const Model& model, std::vector<KeyedMotion> motions, const Anchors& anchors, double time,
+                 double weight, Positions& targets) {
+  std::vector<Eigen::Isometry3d> pose;
+  for (std::size_t h = 0; h < motions.size(); ++h) {
+    motions[h].center = anchors.centers[h];
+    pose.push_back(motions[h].at(time));
+  }
+  for (std::size_t i = 0; i < model.handled.size(); ++i)
+    targets.row(i) += weight * (pose[model.handled[i].handle] * Vec3(anchors.points.row(i))).transpose();
+}
+
+}  // namespace
+
+void handle_targets(const Model& model, const Body& body, const Anchors& anchors, double time, double change,
+                    Positions& targets) {
+  targets.setZero(model.handled.size(), 3);
+  const bool changing = !body.earlier.empty() && change < 1;
+  if (changing) add_targets(model, body.earlier, anchors, time, 1 - change, targets);
+  add_targets(model, body.motions, anchors, time, changing ? change : 1, targets);
+}
+
+void handle_targets(const Model& model, const Body& body, double time, Positions& targets) {
+  handle_targets(model, body, rest_anchors(model, body), time, 1, targets);
+}
+
+}  // namespace supple

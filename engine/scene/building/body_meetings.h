@@ -1,0 +1,35 @@
+// Finds the bodies of a scene that are in the same place. Bodies do not collide with each other, so that they pass
+// through each other where they meet, and whoever makes the film should know. Not here: what a body does with rigid
+// colliders (overlaps.h, sim/contact/).
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "scene/building/assemble.h"
+
+namespace supple {
+
+class BodyMeetings {
+ public:
+  // bodies: must outlive this object. One body costs nothing.
+  explicit BodyMeetings(const std::vector<Body>& bodies);
+
+  // Leaves a pair out from now on.
+  void leave_out(std::size_t a, std::size_t b);
+  bool none_left() const { return left_ == 0; }
+
+  // Returns the pairs that share space in these positions, the earlier body first, and leaves them out from now on.
+  // points: by body and vertex of its mesh [m].
+  std::vector<std::array<std::size_t, 2>> find(const std::vector<Positions>& points);
+
+ private:
+  const Triangles& surface_of(std::size_t body);
+
+  const std::vector<Body>& bodies_;
+  std::vector<Triangles> surfaces_;  // by body, once they are needed
+  std::vector<char> looked_for_;     // by pair
+  std::size_t left_ = 0;             // of the pairs
+};
+
+}  // namespace supple

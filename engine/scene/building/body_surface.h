@@ -1,0 +1,12 @@
+// Gives the surface of a body's mesh: the triangles of a cloth, or the boundary of a solid. Not here: the skin that is
+// drawn in its place (drawn_body.h).
+#pragma once
+
+#include "scene/building/assemble.h"
+
+namespace supple {
+
+// Returns its triangles, by vertex of the mesh.
+Triangles surface_of(const Body& body);
+
+}  // namespace supple

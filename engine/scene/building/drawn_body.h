@@ -1,0 +1,35 @@
+// Makes the drawn surfaces of bodies. They are made apart from the bodies, so that a run without images does not pay.
+#pragma once
+
+#include "geometry/skins/embedding.h"
+#include "geometry/skins/skin.h"
+#include "geometry/skins/skin_limit.h"
+#include "geometry/skins/surface_colors.h"
+#include "scene/building/assemble.h"
+
+namespace supple {
+
+// The drawn surface of a body: a skin carried by its elements, or (vertex_of) the mesh's own boundary.
+struct DrawnBody {
+  Skin skin;
+  Triangles casters;                    // of the skin, that cast its shadow; empty: all of them
+  Embedding embedding;                  // when the skin is finer than the mesh
+  std::optional<SkinLimit> limit;       // of the skin's stretch, once limit_stretch() has been called
+  std::vector<std::int32_t> vertex_of;  // when it is the boundary: mesh vertex by skin vertex
+  bool two_sided = false;
+  Vec3 color;
+  std::vector<PaintLayer> layers;  // colours only; their areas live in the skin
+  Textures textures;               // of the skin's colours
+};
+
+// Chooses the surface by which bodies are drawn.
+enum class DrawnAs {
+  skin,      // that of its shape or surface file, where it has one
+  elements,  // the boundary of its elements
+};
+
+// Makes what is drawn of each body. Bodies that are drawn alike share the work, and skins are kept from run to run.
+std::vector<DrawnBody> drawn_bodies(const std::vector<Body>& bodies, const SlowWork& work = {},
+                                    DrawnAs surface = DrawnAs::skin);
+
+}  // namespace supple

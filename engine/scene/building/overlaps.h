@@ -1,0 +1,16 @@
+// Finds the bodies that start inside colliders, and what is done about it. Not here: how a body that stays inside is
+// pushed out while the film runs (sim/contact/way_out.h).
+#pragma once
+
+#include "scene/building/assemble.h"
+
+namespace supple {
+
+// Sets Body::overlaps, and Body::start_move where the scene wants the body moved and a small move is enough. Adds a
+// problem for each overlap that the scene refuses.
+void find_overlaps(const SceneDef& scene, std::vector<Body>& bodies, std::vector<Problem>& problems);
+
+// Tells of a body's overlaps, and of what is done about them; empty where there are none.
+std::string overlap_text(const Body& body);
+
+}  // namespace supple

@@ -1,0 +1,40 @@
+// Warns about scenes that are legal but unwise.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/building/assemble.h"
+
+namespace supple {
+
+// Computes k h^2 / (rho L^2), with the stiffness of the body or its fibres: the square of the number of times that a
+// wave crosses the body in one step. When it is far above 1, ten iterations leave a visible error.
+double crossing_number(const Body& body);
+
+// Says what that number means to the solver: "soft for its time step", "firm ..." or "stiff ...".
+std::string stiffness_words(double crossing);
+
+struct Warning {
+  std::optional<WarningKind> kind;  // nothing: it is not about one body
+  Problem problem;                  // points to its place in the scene file
+  bool meant = false;               // the body says so, and it is not said
+};
+
+std::vector<Warning> warnings(const SceneDef& scene, const std::vector<Body>& bodies);
+
+// Tells whether a body says that such a warning is meant.
+bool is_meant(const BodyDef& body, WarningKind kind);
+
+// Returns what is to be said: all that is not meant.
+std::vector<Problem> said(std::vector<Warning> list);
+
+// Advises solver.untangle where it is off and a body starts with elements that are inverted or flat, of a material that
+// may stay folded from there (docs/stability.md); empty elsewhere.
+std::string untangle_advice(const Body& body);
+
+// Lists what the scene asks its pictures to show and no run can show while it is made: only drawings of a run can.
+std::vector<Problem> known_after_film(const SceneDef& scene);
+
+}  // namespace supple

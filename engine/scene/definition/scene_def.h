@@ -1,0 +1,355 @@
+// Defines a scene as its file describes it: plain nested structs with defaults, in SI units, with angles in degrees
+// where the name says so. The defaults here are those of the file format, but where a file must
+// give a value, or its default depends on other keys: the readers set those. Nothing is built yet (assemble.h), and
+// nothing here depends on scene files or TOML (scene_reader.h).
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/names.h"
+#include "geometry/shapes/shape.h"
+#include "geometry/skins/skin.h"
+#include "geometry/solids/solid_surface.h"
+#include "scene/definition/start_state.h"
+#include "scene/definition/warning_kinds.h"
+#include "sim/model/inputs.h"
+#include "sim/model/method.h"
+#include "sim/model/model.h"
+
+namespace supple {
+
+// Selects vertices of a body by a box, ball, half space or region. Coordinates are relative to the rest bounding box (0
+// to 1 along each axis).
+struct Selection {
+  enum class Kind { region, box, sphere, plane } kind = Kind::box;
+  std::string region;
+  Vec3 lower = Vec3(0, 0, 0), upper = Vec3(1, 1, 1);  // box
+  Vec3 center = Vec3(0, 0, 0);                        // sphere; a point of the plane
+  double radius = 0;                                  // sphere; relative to the longest side
+  Vec3 normal = Vec3(0, 1, 0);                        // plane: picks the side that it points to
+  FilePlace place;                                    // in the file, for messages once the mesh is known
+};
+
+template <>
+struct Names<Selection::Kind> {
+  using Kind = Selection::Kind;
+  static constexpr std::array table = {Name{Kind::region, "region"}, Name{Kind::box, "box"},
+                                       Name{Kind::sphere, "sphere"}, Name{Kind::plane, "plane"}};
+};
+
+struct MotionKey {
+  double time = 0;                // [s]
+  Vec3 move = Vec3(0, 0, 0);      // from rest [m]
+  Vec3 turn_deg = Vec3(0, 0, 0);  // about the handle's centre, or the collider's origin
+};
+
+enum class Ease { smooth, linear };
+template <>
+struct Names<Ease> {
+  static constexpr std::array table = {Name{Ease::smooth, "smooth"}, Name{Ease::linear, "linear"}};
+};
+
+struct HandleDef {
+  std::string name;
+  Selection select;
+  double stiffness = 0;  // of the spring from each vertex to its target, 0: hard [N/m]
+  // A handle that grabs holds its vertices from one time to another [s]. Its keys are relative to the vertices'
+  // positions when it begins to hold them.
+  bool grabs = false;
+  double from = 0, until = std::numeric_limits<double>::infinity();
+  Ease ease = Ease::smooth;
+  std::vector<MotionKey> keys;
+
+  // Tells whether the handle holds its vertices in a step that starts at a time [s].
+  bool holds_at(double time) const { return time >= from - 1e-9 && time < until - 1e-9; }
+};
+
+// Describes the material of a body or of one of its regions.
+struct SubstanceDef {
+  Material material = Polynomial{1};
+  Fibre fibre;                          // its direction in the frame of the mesh or shape
+  std::optional<double> usual_density;  // of a preset [kg/m^3]
+};
+
+struct RegionDef {
+  std::string name;
+  SubstanceDef substance;
+  FilePlace place;
+};
+
+// Describes a box that is cut into equal cells.
+struct BoxDef {
+  Vec3 extent = Vec3(1, 1, 1);  // [m]
+  Eigen::Vector3i cells = Eigen::Vector3i(1, 1, 1);
+};
+
+// Describes a cloth: a grid of springs, or the triangles of a mesh file.
+struct ClothDef {
+  std::filesystem::path mesh;                      // empty: a grid
+  Eigen::Vector2d extent = Eigen::Vector2d(1, 1);  // of the grid [m]
+  Eigen::Vector2i cells = Eigen::Vector2i(40, 40);
+  double stretch = 0, shear = 0, bend = 0;  // stiffness of a spring [N/m]
+};
+
+// Describes how the steps of a body are solved: the table [solver]. `settings` are part of every step's inputs and cost
+// nothing to change. The other members are built into the model (fit, precision, integrator, damping: assemble.cpp),
+// select the rule for directions (method), or are read by the body's driver (untangle). live_keys.cpp defines what a
+// change of each costs.
+struct SolverDef {
+  Method method = Method::quasi_newton;
+  SolverSettings settings;
+  StretchInterval fit;
+  Precision precision = Precision::single_precision;
+  Integrator integrator = Integrator::backward_euler;
+  double damping = 0;     // beta [s]
+  bool untangle = false;  // makes steps that start tangled those of a body as rigid as possible (driven_body.h)
+};
+
+// Chooses what is done about a body that starts inside a collider.
+enum class StartInside {
+  move,   // it is moved out when a small move is enough, or else pushed out
+  push,   // it is pushed out while the film runs
+  error,  // the scene is refused
+};
+template <>
+struct Names<StartInside> {
+  static constexpr std::array table = {Name{StartInside::move, "move"}, Name{StartInside::push, "push"},
+                                       Name{StartInside::error, "error"}};
+};
+
+// Tells which pieces of a surface become bodies.
+enum class Pieces {
+  join,     // those that overlap or touch are one body, all others have their own
+  largest,  // the largest after joining
+  bodies,   // each has its own
+};
+template <>
+struct Names<Pieces> {
+  static constexpr std::array table = {Name{Pieces::join, "join"}, Name{Pieces::largest, "largest"},
+                                       Name{Pieces::bodies, "bodies"}};
+};
+
+// Chooses where the colour of a body made from a surface comes from.
+enum class ColorSource {
+  usual,  // the file where it has colours and the body has none, else the body
+  file,   // the file where it has colours
+  body,   // the body's `color`
+};
+template <>
+struct Names<ColorSource> {
+  static constexpr std::array table = {Name{ColorSource::usual, "usual"}, Name{ColorSource::file, "file"},
+                                       Name{ColorSource::body, "body"}};
+};
+
+struct BodySurface;  // body_pieces.h
+
+struct BodyDef {
+  std::string name;
+  std::string label;
+  std::vector<WarningKind> meant;  // warnings that need not be said
+  // One of these five members gives the mesh. The regions of a mesh file are named by their reference numbers.
+  std::filesystem::path shape;
+  std::filesystem::path surface;
+  SurfaceOptions surface_options;
+  Pieces pieces = Pieces::join;                     // of the surface
+  std::shared_ptr<const BodySurface> read_surface;  // what was read of it; null: nothing yet
+  std::size_t piece = 0;                            // of that surface, which is this body
+  std::filesystem::path mesh;
+  std::optional<BoxDef> box;
+  std::optional<ClothDef> cloth;
+  int vertices = 0;               // of the tetrahedra made from a shape
+  std::optional<double> size;     // longest side; otherwise the file's units are metres [m]
+  double scale = 1;               // where there is no size
+  Vec3 position = Vec3(0, 0, 0);  // of the middle of the bounding box's bottom [m]
+  Vec3 turn_deg = Vec3(0, 0, 0);
+  std::optional<double> density;     // [kg/m^3]; of cloth [kg/m^2]
+  std::optional<double> total_mass;  // spread over the volume, of cloth over the area [kg]
+  SubstanceDef substance;            // of solids
+  StartDef start;
+  StartInside start_inside = StartInside::move;
+  Vec3 velocity = Vec3(0, 0, 0);  // at the start [m/s]
+  std::vector<RegionDef> regions;
+  std::vector<HandleDef> handles;
+  SolverDef solver;
+  Pattern pattern = Pattern::none;
+  std::optional<double> pattern_size;  // edge of its squares [m]
+  std::optional<Vec3> color;           // over the shape's own [sRGB]
+  ColorSource colors = ColorSource::usual;
+  std::optional<double> gloss;  // of the uncovered surface
+  double skin_cells = 0;        // cells of the drawn skin along the longest side
+  FilePlace place;
+
+  bool takes_colors_of_file() const { return colors == ColorSource::usual ? !color : colors == ColorSource::file; }
+  double body_density() const { return density.value_or(substance.usual_density.value_or(cloth ? 0.2 : 1000)); }
+};
+
+// Describes a rigid obstacle. Its shape is given in its own frame.
+struct ColliderDef {
+  std::string name;
+  Shape shape;
+  Vec3 position = Vec3(0, 0, 0);  // of its origin [m]
+  Vec3 turn_deg = Vec3(0, 0, 0);
+  double friction = 0;
+  double thickness = 0;  // [m]
+  Ease ease = Ease::smooth;
+  std::vector<MotionKey> keys;
+  bool visible = true;
+  std::optional<Vec3> color;  // [sRGB]
+  FilePlace place;
+};
+
+// A place of the camera on its way. Values that a key does not have come from the keys before and after it.
+struct CameraKey {
+  double time = 0;                                   // [s]
+  std::optional<Vec3> position, target;              // [m]
+  std::optional<double> azimuth_deg, elevation_deg;  // direction of the eye, as seen from the target
+  std::optional<double> distance;                    // [m]
+  std::optional<double> fov_deg;
+};
+
+// Names what a camera without a place of its own has in the picture.
+enum class Framed {
+  start,  // the bodies where they start, and the ground below those that will fall
+  film,   // their whole motion, which a rough first pass finds, or a drawing knows
+};
+template <>
+struct Names<Framed> {
+  static constexpr std::array table = {Name{Framed::start, "start"}, Name{Framed::film, "film"}};
+};
+
+// Without a position the eye stands in the direction of azimuth and elevation, as far away as it must to see all
+// bodies.
+struct CameraDef {
+  std::optional<Vec3> position, target;  // [m]
+  double azimuth_deg = 30, elevation_deg = 14;
+  std::optional<double> distance;  // [m]
+  double fov_deg = 30;             // vertical
+  Framed frames = Framed::start;
+  double margin = 1.25;  // air around the bodies when they are framed
+  double orbit_deg = 0;  // that the eye goes round the target [degrees/s]
+  std::string follow;    // the body or collider that it moves along with; empty: none
+  Ease ease = Ease::smooth;
+  std::vector<CameraKey> keys;  // in order of time
+
+  bool moves() const { return orbit_deg != 0 || !keys.empty(); }
+};
+
+// Names what is seen behind the bodies.
+enum class BackdropKind { ground, plain, transparent };
+template <>
+struct Names<BackdropKind> {
+  static constexpr std::array table = {Name{BackdropKind::ground, "ground"}, Name{BackdropKind::plain, "plain"},
+                                       Name{BackdropKind::transparent, "transparent"}};
+};
+
+// Names sets of lamps (render/light_rig.h).
+enum class LightKind { studio, sunset, overcast, dark };
+template <>
+struct Names<LightKind> {
+  static constexpr std::array table = {Name{LightKind::studio, "studio"}, Name{LightKind::sunset, "sunset"},
+                                       Name{LightKind::overcast, "overcast"}, Name{LightKind::dark, "dark"}};
+};
+
+struct LookDef {
+  LightKind light = LightKind::studio;
+  BackdropKind backdrop = BackdropKind::ground;
+  Vec3 ground = Vec3(0.914, 0.894, 0.863);      // sRGB
+  Vec3 background = Vec3(0.851, 0.871, 0.902);  // sRGB
+  double exposure = 1;
+  bool show_labels = true;
+  bool supports = true;         // what holds the bodies is seen
+  std::filesystem::path ghost;  // folder of a run whose bodies are seen through these; empty: none
+  bool marks = false;           // where handles hold vertices, and where vertices touch colliders
+  bool wireframe = false;       // bodies are drawn as their elements, with the elements' edges
+};
+
+// Names the field that the surfaces of bodies show.
+enum class FieldQuantity { none, stretch, compression, volume, energy, stress, speed, depth, force, distance };
+template <>
+struct Names<FieldQuantity> {
+  static constexpr std::array table = {Name{FieldQuantity::none, "none"},
+                                       Name{FieldQuantity::stretch, "stretch"},
+                                       Name{FieldQuantity::compression, "compression"},
+                                       Name{FieldQuantity::volume, "volume"},
+                                       Name{FieldQuantity::energy, "energy"},
+                                       Name{FieldQuantity::stress, "stress"},
+                                       Name{FieldQuantity::speed, "speed"},
+                                       Name{FieldQuantity::depth, "depth"},
+                                       Name{FieldQuantity::force, "force"},
+                                       Name{FieldQuantity::distance, "distance"}};
+};
+
+// Names how the range of a field is found where no numbers are given.
+enum class FieldRange {
+  usual,  // from the quantity and the bodies (film/pictures/surface_field.h)
+  film,   // from the whole film, which only a drawing from saved motion knows
+};
+template <>
+struct Names<FieldRange> {
+  static constexpr std::array table = {Name{FieldRange::usual, "usual"}, Name{FieldRange::film, "film"}};
+};
+
+// Names the colours of a field.
+enum class FieldColors { usual, viridis, blue_yellow, blue_orange };
+template <>
+struct Names<FieldColors> {
+  static constexpr std::array table = {Name{FieldColors::usual, "usual"}, Name{FieldColors::viridis, "viridis"},
+                                       Name{FieldColors::blue_yellow, "blue-yellow"},
+                                       Name{FieldColors::blue_orange, "blue-orange"}};
+};
+
+struct FieldDef {
+  FieldQuantity quantity = FieldQuantity::none;
+  FieldRange range_by = FieldRange::usual;
+  std::optional<Eigen::Vector2d> range;  // low and high, in the quantity's unit
+  FieldColors colors = FieldColors::usual;
+  bool legend = true;
+  std::filesystem::path reference;  // folder of the run to which distances are measured
+};
+
+// Chooses what pictures say in words; each part can be switched.
+struct TextDef {
+  // These stand in the upper left corner.
+  bool title = false, time = false;
+  // These stand below the caption of each body, and tell of its steps in the frame.
+  bool method = false, milliseconds = false, iterations = false, error = false;
+  bool notes() const { return method || milliseconds || iterations || error; }
+  // These are small graphs over the film so far, in a corner.
+  bool error_graph = false, time_graph = false;
+};
+
+struct OutputDef {
+  int width = 1280;
+  int height = 720;
+  int samples = 4;      // of antialiasing, a pixel
+  bool energy = false;  // kinetic, elastic and gravitational, each frame
+};
+
+struct SceneDef {
+  std::string name;  // of the file, without folder and ending
+  std::string title;
+  int frames = 120;
+  double fps = 30;
+  int substeps = 1;
+  Vec3 gravity = Vec3(0, -9.81, 0);
+  std::uint64_t seed = 1;  // of random start states
+  std::vector<BodyDef> bodies;
+  std::vector<ColliderDef> colliders;
+  CameraDef camera;
+  LookDef look;
+  FieldDef field;
+  TextDef text;
+  OutputDef output;
+  std::size_t sweep_points = 0;  // of the [sweep] table (sweep.h), which a scene that is run alone leaves aside
+  std::filesystem::path assets;
+
+  double time_step() const { return 1 / (fps * substeps); }
+};
+
+}  // namespace supple

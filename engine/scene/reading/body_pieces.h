@@ -1,0 +1,32 @@
+// Makes bodies of the pieces of a surface: one for each piece, with the settings of the table that names the surface.
+#pragma once
+
+#include "geometry/skins/surface_colors.h"
+#include "geometry/solids/surface_pieces.h"
+#include "scene/config/config.h"
+#include "scene/definition/scene_def.h"
+
+namespace supple {
+
+// Holds a surface as a scene's body uses it.
+struct BodySurface {
+  std::vector<SolidSurface> pieces;  // the largest first; those that are left out are not among them
+  std::vector<SourceFile> sources;   // of each piece
+  std::vector<double> volumes;       // of each piece [m^3]
+  std::vector<std::shared_ptr<const SurfaceColors>> colors;  // of each piece's skin; null where the file has none
+  std::string found;                                         // which colours the file has, in words; empty: none
+  std::vector<std::string> notes;
+  bool touching = false;  // whether parts of a piece are near each other without an overlap
+  Bounds box;             // of all that was read [m]
+  Positions whole;        // the vertices of all pieces together
+};
+
+// Reads a surface and takes it apart by the body's rule. Throws InputError.
+BodySurface read_body_surface(const BodyDef& body);
+
+// Returns the body itself, or where its surface has several pieces one body for each: they share its vertices by
+// volume, and are named after it with numbers. The surfaces of a scene are read once for a Config and its copies.
+// Problems are recorded in the table's Config.
+std::vector<BodyDef> bodies_of(const ConfigTable& table, BodyDef body);
+
+}  // namespace supple

@@ -1,0 +1,292 @@
+#include "scene/reading/body_reader.h"
+
+#include <algorithm>
+#include <set>
+
+#include "base/text.h"
+#include "scene/reading/material_reader.h"
+#include "scene/reading/model_scene.h"
+#include "scene/reading/solver_reader.h"
+#include "scene/reading/start_reader.h"
+#include "scene/reading/surface_reader.h"
+
+namespace supple {
+Ease read_ease(const ConfigTable& table) { return table.word<Ease>({"ease", "", "how keys are joined"}, Ease::smooth); }
+
+std::vector<MotionKey> read_keys(const ConfigTable& table, const char* turn) {
+  std::vector<MotionKey> keys;
+  for (const ConfigTable& row :
+       table.tables({"keys", "", "the motion; before the first key and after the last it stands still"})) {
+    MotionKey key;
+    key.time = row.number({"t", "s", "when"}, std::nullopt, Range::at_least(0));
+    key.move = row.vector({"move", "m", "displacement from rest"}, Vec3(0, 0, 0));
+    key.turn_deg = row.vector({"turn_deg", "degrees", turn}, Vec3(0, 0, 0));
+    if (!keys.empty() && key.time <= keys.back().time)
+      row.complain("t", fmt::format("t = {:g}: keys must stand in order of time (the one before is at {:g})", key.time,
+                                    keys.back().time));
+    keys.push_back(key);
+  }
+  return keys;
+}
+
+namespace {
+
+Selection read_selection(const ConfigTable& handle) {
+  Selection s;
+  s.place = handle.place("select");
+  const auto table =
+      handle.table({"select", "", "which vertices, by exactly one of region, box, sphere, plane"}, "required");
+  if (!table) {
+    if (!handle.has("select"))
+      handle.complain("'select' is missing: such as select = { box = [[0, 0, 0], [1, 0.1, 1]] }");
+    return s;
+  }
+  using Kind = Selection::Kind;
+  const auto key_of = [](Kind kind, const char* meaning) { return Key{name_of(kind).data(), "", meaning}; };
+  int given = 0;
+  const auto pick = [&](Kind kind) {
+    ++given;
+    s.kind = kind;
+  };
+  if (table->has(name_of(Kind::region).data())) {
+    pick(Kind::region);
+    s.region = table->text(key_of(Kind::region, "all vertices of elements with this tag"), std::nullopt);
+  }
+  if (table->has(name_of(Kind::box).data())) {
+    pick(Kind::box);
+    const std::vector<Vec3> corners =
+        table->vectors(key_of(Kind::box, "lower and upper corner, relative to the rest bounding box (0 to 1)"), 2);
+    if (corners.size() == 2) {
+      s.lower = corners[0];
+      s.upper = corners[1];
+      if ((s.lower.array() > s.upper.array()).any())
+        table->complain("box", "box: the first corner must be the lower one");
+    }
+  }
+  if (const auto sphere = table->table(key_of(Kind::sphere, "vertices in a ball"))) {
+    pick(Kind::sphere);
+    s.center = sphere->vector({"center", "", "relative to the rest bounding box (0 to 1)"}, std::nullopt);
+    s.radius = sphere->number({"radius", "", "relative to the longest side"}, std::nullopt, Range::positive());
+  }
+  if (const auto plane = table->table(key_of(Kind::plane, "vertices on one side of a plane"))) {
+    pick(Kind::plane);
+    s.center = plane->vector({"point", "", "relative to the rest bounding box (0 to 1)"}, std::nullopt);
+    s.normal = plane->vector({"normal", "", "points to the side that is picked"}, std::nullopt);
+    if (s.normal.norm() < 1e-9) plane->complain("normal", "normal: must not be zero");
+  }
+  if (given != 1) table->complain(fmt::format("a selection is one of {}", word_list(all_names<Kind>())));
+  return s;
+}
+
+HandleDef read_handle(const ConfigTable& table) {
+  HandleDef handle;
+  handle.name = table.text({"name", "", "addresses the handle in --set and in messages"}, std::nullopt);
+  handle.select = read_selection(table);
+  handle.stiffness =
+      table
+          .number_or_word({"stiffness", "N/m",
+                           "of each vertex's spring to its target; hard vertices are eliminated and follow exactly"},
+                          "hard", Range::positive())
+          .value_or(0);
+  handle.grabs = table.has("from") || table.has("until");
+  handle.from = table.number({"from", "s", "it grabs its vertices where they are then, and keys move them from there"},
+                             0.0, Range::at_least(0));
+  handle.until = table.number_if_given({"until", "s", "it lets go; the default is never"}, Range::positive())
+                     .value_or(handle.until);
+  if (handle.until <= handle.from) table.complain("until", "until: must be later than 'from'");
+  if (handle.grabs && handle.stiffness <= 0)
+    table.complain("stiffness", "a handle that grabs or lets go needs a number as its stiffness [N/m]");
+  handle.ease = read_ease(table);
+  handle.keys = read_keys(table, "rotation about the handle's centre: x, then y, then z");
+  return handle;
+}
+
+constexpr double most_vertices = 500000;  // of a body
+
+Eigen::Vector3i read_cells(const ConfigTable& table, const Key& key, const Vec3& fallback) {
+  const Vec3 cells = table.vector(key, fallback, Range::between(1, 1000));
+  if (cells != cells.array().round().matrix())
+    table.complain(key.name, fmt::format("{}: must be whole numbers", key.name));
+  return cells.cast<int>();
+}
+
+std::optional<BoxDef> read_box(const ConfigTable& body) {
+  const auto table = body.table({"box", "", "a box cut into equal cells of six tetrahedra"});
+  if (!table) return std::nullopt;
+  BoxDef box;
+  box.extent = table->vector({"extent", "m", "the three edges"}, std::nullopt, Range::above(0, 1e6));
+  box.cells = read_cells(*table, {"cells", "", "along each edge; at most 500000 vertices in all"}, Vec3(8, 8, 8));
+  const double vertices = (box.cells.cast<double>().array() + 1).prod();
+  if (vertices > most_vertices)
+    table->complain("cells", fmt::format("cells: would make {:.0f} vertices; at most {:.0f}", vertices, most_vertices));
+  return box;
+}
+
+std::optional<ClothDef> read_cloth(const ConfigTable& body) {
+  const auto table = body.table({"cloth", "", "springs along the edges of a grid, or of a mesh's triangles"});
+  if (!table) return std::nullopt;
+  ClothDef cloth;
+  cloth.mesh = table->file({"mesh", "", "the triangles of a MEDIT .mesh; without it a grid in the plane z = 0"});
+  if (!cloth.mesh.empty() && cloth.mesh.extension() != ".mesh" && is_model(cloth.mesh))
+    table->complain("mesh",
+                    fmt::format("mesh = '{}': cloth is made of the Triangles of a MEDIT .mesh, or of a grid (extent, "
+                                "cells), and of no other file; surface = '{}' in the body makes a solid of it",
+                                cloth.mesh.filename().string(), cloth.mesh.filename().string()));
+  if (cloth.mesh.empty()) {
+    cloth.extent = table->pair({"extent", "m", "width and height of the grid"}, Range::above(0, 1e6));
+    const Eigen::Vector2d cells =
+        table->pair({"cells", "", "of the grid, along its width and its height"}, Range::between(1, 2000));
+    if (cells != cells.array().round().matrix()) table->complain("cells", "cells: must be whole numbers");
+    const double vertices = (cells.array() + 1).prod();
+    if (vertices > most_vertices)
+      table->complain("cells",
+                      fmt::format("cells: would make {:.0f} vertices; at most {:.0f}", vertices, most_vertices));
+    cloth.cells = cells.cast<int>();
+  }
+  cloth.stretch =
+      table->number({"stretch", "N/m", "stiffness of the springs along edges"}, std::nullopt, Range::positive());
+  if (cloth.mesh.empty()) {
+    cloth.shear = table->number({"shear", "N/m", "of a grid's diagonals; the default is that of its edges"},
+                                cloth.stretch, Range::at_least(0));
+  } else {
+    for (const char* key : {"extent", "cells", "shear"}) {
+      if (table->has(key))
+        table->complain(key, fmt::format("{}: of a grid; the triangles of a mesh have their own", key));
+    }
+  }
+  cloth.bend = table->number({"bend", "N/m", "of the springs that skip a vertex"}, 0.0, Range::at_least(0));
+  return cloth;
+}
+
+// Reads the printed pattern. The default is a grid on boxes and checks on cloth.
+Pattern read_pattern(const ConfigTable& table, const BodyDef& body) {
+  const std::string usual = "usual";
+  std::vector<std::string> words = all_names<Pattern>();
+  words.insert(words.begin(), usual);
+  const std::string word =
+      table.choice({"pattern", "",
+                    "printed squares that show how it is strained; usual: a grid on boxes, checks on cloth, else none"},
+                   usual, {words});
+  if (word == usual) return body.box ? Pattern::grid : body.cloth ? Pattern::checks : Pattern::none;
+  const Pattern pattern = *value_named<Pattern>(word);
+  if (!body.shape.empty() && pattern != Pattern::none)
+    table.complain("pattern", "pattern: shapes have layers of paint instead");
+  return pattern;
+}
+
+void refuse_substances(const ConfigTable& table) {
+  for (const char* key : {"material", "fibre", "regions"}) {
+    if (table.has(key))
+      table.complain(key, fmt::format("{}: not of cloth, which has stretch, shear and bend in its table instead", key));
+  }
+}
+
+void read_substances(const ConfigTable& table, BodyDef& body) {
+  body.substance = read_substance(table);
+  const auto regions = table.table({"regions", "", "materials of tagged parts, by the name of the tag"});
+  if (!regions) return;
+  for (const std::string& name : regions->keys()) {
+    const auto region = regions->table({name.c_str(), "", "a tagged part"});
+    if (region) body.regions.push_back({name, read_substance(*region), regions->place(name.c_str())});
+  }
+}
+
+// Files are named after bodies, with up to 16 additional bytes, and file systems allow 255.
+void check_name(const ConfigTable& table, const std::string& name) {
+  constexpr std::size_t longest = 200;
+  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+  if (std::any_of(name.begin(), name.end(), is_control)) {
+    table.complain("name", "name: must be a word without control characters, spaces, dots and slashes");
+  } else if (name.empty() || name.find_first_of("./\\ ") != std::string::npos) {
+    table.complain("name", fmt::format("name = '{}': must be a word without spaces, dots and slashes", name));
+  } else if (name.size() > longest) {
+    table.complain("name", fmt::format("name: has {} bytes; files are named by it, so at most {} are allowed",
+                                       name.size(), longest));
+  }
+}
+
+}  // namespace
+
+BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
+  BodyDef body;
+  body.place = table.place(nullptr);
+  body.name = table.text({"name", "", "addresses the body in --set and in reports"}, "body");
+  check_name(table, body.name);
+  body.meant = table.words<WarningKind>({"meant", "", "warnings about the body that need not be said"});
+  body.label = table.text({"label", "", "caption in the film; the default is the name"}, body.name);
+  body.shape = table.file({"shape", "", "a shape file, to be meshed here"});
+  body.surface = table.file({"surface", "", "a triangle surface (OBJ, PLY, STL, glTF, OFF), to be meshed here"});
+  body.mesh = table.file({"mesh", "", "a tetrahedral mesh (MEDIT .mesh, Gmsh .msh, TetGen .ele, VTK .vtk or .vtu)"});
+  body.box = read_box(table);
+  body.cloth = read_cloth(table);
+  if (table.has("shape") + table.has("surface") + table.has("mesh") + table.has("box") + table.has("cloth") != 1)
+    table.complain("a body needs exactly one of 'shape', 'surface', 'mesh', 'box' and 'cloth'");
+  body.vertices = table.integer({"vertices", "",
+                                 "of the tetrahedra made from a shape or a surface (within 3 %; 10 % where a surface "
+                                 "is thin, 50 % where a shape is)"},
+                                4000, Range::between(50, 500000));
+  body.size = table.number_if_given({"size", "m", "longest side; without it the file's units are metres"},
+                                    Range::above(0, 1e6));
+  body.scale = table.number({"scale", "", "enlarges the body, after its units"}, 1.0, Range::above(0, 1e6));
+  if (body.size && table.has("scale")) table.complain("scale", "a body has a size or a scale, not both");
+  body.surface_options = read_surface_options(table);
+  body.pieces = table.word<Pieces>(
+      {"pieces", "",
+       "of a surface: join: those that overlap or touch are one body, others have their own; largest: one of these; "
+       "bodies: each has its own"},
+      body.pieces);
+  if (table.has("pieces") && !table.has("surface"))
+    table.complain("pieces", "pieces: of a 'surface'; there is none here");
+  // A thickness is one of the finished body, so that the surface must have its size before it is thickened.
+  if (body.surface_options.thickness > 0 && body.size) body.surface_options.size = *body.size;
+  body.surface_options.thickness /= body.scale;
+  body.position = table.vector({"position", "m", "of the middle of the bounding box's bottom"}, Vec3(0, 0, 0));
+  body.turn_deg =
+      table.vector({"turn_deg", "degrees", "rotation about x, then y, then z, before it is placed"}, Vec3(0, 0, 0));
+  body.density = table.number_if_given(
+      {"density", "kg/m^3", "mass by volume; of cloth by area [kg/m^2]; the preset's, 1000, or 0.2 for cloth"},
+      Range::positive());
+  body.total_mass = table.number_if_given({"total_mass", "kg", "spread evenly over the volume, or the area of cloth"},
+                                          Range::positive());
+  if (body.density && body.total_mass) table.complain("total_mass", "a body has a density or a total_mass, not both");
+  if (body.cloth) {
+    refuse_substances(table);
+  } else {
+    read_substances(table, body);
+  }
+  body.start = read_start(table);
+  body.start_inside = table.word<StartInside>(
+      {"start_inside", "",
+       "when it starts inside a collider: moved out if a tenth of its size is enough, else pushed out; pushed out; or "
+       "an error"},
+      StartInside::move);
+  body.velocity = table.vector({"velocity", "m/s", "at the start"}, Vec3(0, 0, 0));
+  std::set<std::string> names;
+  for (const ConfigTable& row : table.tables({"handles", "", "vertices that follow a motion from outside"})) {
+    body.handles.push_back(read_handle(row));
+    if (!names.insert(body.handles.back().name).second)
+      row.complain("name", fmt::format("two handles named '{}'", body.handles.back().name));
+  }
+  body.solver = defaults;
+  if (const auto solver = table.table({"solver", "", "this body's own, over the scene's"}))
+    body.solver = read_solver(*solver, defaults);
+  body.pattern = read_pattern(table, body);
+  body.pattern_size = table.number_if_given(
+      {"pattern_size", "m", "edge of its squares; a sixth of the middle side, of cloth a twentieth of the longest"},
+      Range::positive());
+  body.color = table.color_if_given({"color", "sRGB", "over the shape's own"});
+  body.colors = table.word<ColorSource>({"colors", "",
+                                         "whose colour is drawn: usual: those of the surface's file, unless there is a "
+                                         "color here; file: the file's where "
+                                         "it has some; body: color"},
+                                        body.colors);
+  if (table.has("colors") && !table.has("surface"))
+    table.complain("colors", "colors: of a 'surface'; there is none here");
+  body.gloss =
+      table.number_if_given({"gloss", "", "of the uncovered surface: 0 matt to 1 wet [0.25]"}, Range::between(0, 1));
+  body.skin_cells = table.number({"skin_cells", "", "cells of the drawn skin along the longest side of a shape"}, 72,
+                                 Range::between(8, 400));
+  return body;
+}
+
+}  // namespace supple

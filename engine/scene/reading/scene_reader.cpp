@@ -1,0 +1,106 @@
+#include "scene/reading/scene_reader.h"
+
+#include <algorithm>
+#include <set>
+
+#include "base/text.h"
+#include "scene/reading/body_pieces.h"
+#include "scene/reading/body_reader.h"
+#include "scene/reading/camera_reader.h"
+#include "scene/reading/collider_reader.h"
+#include "scene/reading/look_reader.h"
+#include "scene/reading/model_scene.h"
+#include "scene/reading/solver_reader.h"
+#include "scene/reading/sweep.h"
+
+namespace supple {
+
+const std::vector<std::set<std::string>>& exclusive_keys() {
+  static const std::vector<std::set<std::string>> groups = {{"shape", "surface", "mesh", "box", "cloth"},
+                                                            {"density", "total_mass"},
+                                                            {"position", "azimuth"},
+                                                            {"position", "elevation"},
+                                                            {"position", "distance"},
+                                                            {"position", "orbit"},
+                                                            {"target", "follow"}};
+  return groups;
+}
+
+SceneDef read_scene(Config& config) {
+  SceneDef scene;
+  scene.assets = config.assets();
+  scene.name = std::filesystem::path(config.name()).stem().string();
+  const ConfigTable root = config.root();
+  (void)root.integer({"version", "", "of this format"}, 1, Range::between(1, 1));
+  scene.title = root.text({"title", "", "for people"}, "");
+  scene.frames = root.integer({"frames", "", "length of the film"}, scene.frames, Range::between(1, 1000000));
+  scene.fps = root.number({"fps", "1/s", "frames a second"}, scene.fps, Range::between(1, 100000));
+  scene.substeps =
+      root.integer({"substeps", "", "steps a frame: h = 1 / (fps substeps)"}, scene.substeps, Range::between(1, 1000));
+  scene.gravity = root.vector({"gravity", "m/s^2", "acceleration of free fall"}, scene.gravity);
+  scene.seed =
+      static_cast<std::uint64_t>(root.integer({"seed", "", "of random start states"}, 1, Range::between(0, 2e9)));
+  SolverDef defaults;
+  if (const auto solver = root.table({"solver", "", "for all bodies"})) defaults = read_solver(*solver, defaults);
+  std::set<std::string> names;
+  for (const ConfigTable& table : root.tables({"body", "", "what moves"})) {
+    for (BodyDef& body : bodies_of(table, read_body(table, defaults))) {
+      if (!names.insert(body.name).second) table.complain("name", fmt::format("two bodies named '{}'", body.name));
+      scene.bodies.push_back(std::move(body));
+    }
+  }
+  // A body that is alone and has no name needs no caption.
+  const std::vector<ConfigTable> given = root.tables({"body", "", "what moves"});
+  if (given.size() == 1 && !given.front().has("name") && !given.front().has("label")) scene.bodies.front().label = "";
+  std::set<std::string> colliders;
+  for (const ConfigTable& table : root.tables({"collider", "", "rigid, and in the way"})) {
+    scene.colliders.push_back(read_collider(table));
+    if (!colliders.insert(scene.colliders.back().name).second)
+      table.complain("name", fmt::format("two colliders named '{}'", scene.colliders.back().name));
+  }
+  if (scene.bodies.empty()) root.complain("a scene needs at least one [[body]]");
+
+  if (const auto camera = root.table({"camera", "", "where the film is seen from"})) {
+    scene.camera = read_camera(*camera, scene.camera);
+    const bool known =
+        scene.camera.follow.empty() || names.contains(scene.camera.follow) || colliders.contains(scene.camera.follow);
+    std::vector<std::string> all(names.begin(), names.end());
+    all.insert(all.end(), colliders.begin(), colliders.end());
+    if (!known)
+      camera->complain("follow", fmt::format("follow: no body or collider is called '{}'{}", scene.camera.follow,
+                                             did_you_mean(scene.camera.follow, all)));
+  }
+  scene.look = read_look(root, scene.look);
+  scene.field = read_field(root);
+  scene.text = read_text(root);
+  if (const auto output = root.table({"output", "", "the pictures"})) {
+    scene.output.width = output->integer({"width", "pixels", "even, for the film's encoder"}, scene.output.width,
+                                         Range::between(16, 8192));
+    scene.output.height = output->integer({"height", "pixels", "even, for the film's encoder"}, scene.output.height,
+                                          Range::between(16, 8192));
+    if (scene.output.width % 2 != 0) output->complain("width", "width: must be even");
+    if (scene.output.height % 2 != 0) output->complain("height", "height: must be even");
+    scene.output.samples = output->integer({"samples", "", "antialiasing samples a pixel: 1, 2, 4 or 8"},
+                                           scene.output.samples, Range::between(1, 8));
+    if ((scene.output.samples & (scene.output.samples - 1)) != 0)
+      output->complain("samples", "samples: must be 1, 2, 4 or 8");
+    scene.output.energy = output->boolean(
+        {"energy", "", "kinetic, elastic and gravitational energy of each body, each frame, in profile.json"}, false);
+  }
+  scene.sweep_points = read_sweep(root).points();
+  return scene;
+}
+
+SceneDef load_scene(const std::filesystem::path& path, const std::filesystem::path& assets,
+                    const std::vector<std::string>& settings, std::string* resolved_json) {
+  Config config = load_document(path, assets);
+  if (config.root().has("scene"))
+    throw InputError(path.string(), "is a replay of a scene, not a scene: supple replay runs it");
+  for (const std::string& setting : settings) config.set(setting, exclusive_keys());
+  SceneDef scene = read_scene(config);
+  config.finish();
+  if (resolved_json != nullptr) *resolved_json = config.as_json();
+  return scene;
+}
+
+}  // namespace supple
