@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "film/pictures/picture_words.h"
 #include "film/plan/shipped_files.h"
-#include "film/progress.h"
+#include "film/plan/slow_work_line.h"
 #include "film/rough_pictures.h"
 #include "output/files/json_text.h"
 #include "scene/building/skin_report.h"

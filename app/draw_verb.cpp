@@ -59,7 +59,7 @@ int say_end(const DrawResult& result, const std::filesystem::path& folder) {
 }
 
 void make_sheet(const DrawCommand& command, const LoadedDrawing& drawing) {
-  const SceneDef& scene = drawing.film.script.scene();
+  const SceneDef& scene = drawing.film.world.script().scene();
   std::vector<double> times;
   for (const int frame : drawing.frames) times.push_back(frame_time(frame, scene.fps));
   const std::filesystem::path file = write_sheet(command.folder(), scene.title, times);
@@ -89,7 +89,7 @@ int finish_film(const DrawCommand& command, const LoadedDrawing& drawing, std::o
 
 // Starts the film, unless the pictures are all that is asked for.
 void begin_film(const DrawCommand& command, const LoadedDrawing& drawing, std::optional<VideoEncoder>& video) {
-  const SceneDef& scene = drawing.film.script.scene();
+  const SceneDef& scene = drawing.film.world.script().scene();
   const std::string file = film_file(command.coding.format);
   if (file.empty()) return;
   const bool transparent = scene.look.backdrop == BackdropKind::transparent;
@@ -214,8 +214,8 @@ int write_skin_files(const DrawCommand& command, LoadedDrawing& drawing) {
     return 130;
   }
   if (!command.quiet)
-    say(stdout,
-        fmt::format("  {} frames of {} in {}\n", count, count_text(int(drawing.film.bodies.size()), "skin"), where));
+    say(stdout, fmt::format("  {} frames of {} in {}\n", count,
+                            count_text(int(drawing.film.world.bodies().size()), "skin"), where));
   return 0;
 }
 

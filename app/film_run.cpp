@@ -26,16 +26,17 @@ namespace {
 
 // Prints warnings, and the notes from reading meshes.
 void say_remarks(const FilmPlan& plan, const LoadedFilm& film) {
-  const SceneDef& scene = film.script.scene();
+  const SceneDef& scene = film.world.script().scene();
   if (scene.sweep_points > 0) {
     say(stderr, fmt::format("note: the scene has a sweep of {} points, which this leaves aside: supple sweep runs it\n",
                             scene.sweep_points));
   }
-  for (const Problem& warning : said(all_warnings(film.script, film.bodies)))
+  for (const Problem& warning : said(all_warnings(film.world.script(), film.world.bodies())))
     say(stderr, fmt::format("warning: {}\n", warning.text()));
-  if (const auto letters = letters_warning(film.script, caption_font()); letters && plan.pictures != FilmPictures::none)
+  if (const auto letters = letters_warning(film.world.script(), caption_font());
+      letters && plan.pictures != FilmPictures::none)
     say(stderr, fmt::format("warning: {}\n", letters->text()));
-  for (const Body& body : film.bodies) {
+  for (const Body& body : film.world.bodies()) {
     for (const std::string& note : body.notes) say(stderr, fmt::format("note: {}: {}\n", body.source, note));
   }
   for (const ColliderDef& collider : scene.colliders) {
@@ -66,7 +67,7 @@ void say_coding(const FilmPlan& plan, const SceneDef& scene) {
 
 // Tells what a preview leaves out.
 void say_preview(const LoadedFilm& film) {
-  const SceneDef& scene = film.script.scene();
+  const SceneDef& scene = film.world.script().scene();
   std::string meshes;
   for (const RunInfo::Mesh& mesh : film.info.meshes)
     meshes += fmt::format("{}'{}' has {} vertices", meshes.empty() ? "" : ", ", mesh.body, mesh.vertices);
@@ -280,7 +281,7 @@ int run_film(const FilmCommand& command, const std::vector<std::string>& words, 
   if (plan.trace) start_trace();
   const Stopwatch setup;
   LoadedFilm film = load_film(plan, words);
-  const SceneDef& scene = film.script.scene();
+  const SceneDef& scene = film.world.script().scene();
   if (!plan.quiet) say_remarks(plan, film);
   build_models(plan, film);
   if (!plan.quiet) say_bodies(film.info);

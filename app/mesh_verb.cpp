@@ -8,7 +8,7 @@
 #include "base/text.h"
 #include "base/timing.h"
 #include "film/plan/shipped_files.h"
-#include "film/progress.h"
+#include "film/plan/slow_work_line.h"
 #include "geometry/files/mesh_file.h"
 #include "scene/building/body_mesh.h"
 #include "scene/reading/model_scene.h"

@@ -16,12 +16,11 @@ namespace {
 
 constexpr int tried_frames = 5;
 
-// Returns the median time of the first frames' steps, or why there is none.
-std::string cost_text(const SceneDef& scene, Body& body, Model& model, const CollisionSet& set, Threads& threads) {
-  const FrameCost cost =
-      cost_of_frames(scene, body, model, set, all_solvers().steps, threads, std::min(tried_frames, scene.frames));
+// Says what the first frames' steps cost, or why that is not known.
+std::string cost_text(const World& world, const FrameCost& cost, const Threads& threads) {
   if (!cost.failure.empty()) return cost.failure;
-  const bool free = !set.scene_colliders.empty() && !cost.touched;
+  if (cost.frame_ms.empty()) return "not known: another body's step fails in the first frame";
+  const bool free = !world.colliders().scene_colliders.empty() && !cost.touched;
   return fmt::format("{:.2f} ms a frame (median of the first {}, {} threads{})", distribution_of(cost.frame_ms).p50,
                      cost.frame_ms.size(), threads.count(),
                      free ? "; it touches nothing in them, and contacts cost more" : "");
@@ -54,10 +53,10 @@ std::string handle_text(const Body& body, std::size_t index) {
                      center.x(), center.y(), center.z(), times);
 }
 
-std::string body_text(const SceneDef& scene, Body& body, const DrawnBody& drawn, const CollisionSet& set,
-                      Threads& threads) {
+std::string body_text(const MovingBody& moving, const DrawnBody& drawn) {
+  const Body& body = moving.body();
+  const Model& model = moving.model();
   const TetMesh& mesh = body.description.mesh;
-  Model model = build_model(body.description);
   const Vec3 extent = bounds_of(mesh.rest).extent();
   std::string text = fmt::format("\nbody '{}'\n  made of         {}\n", body.def.name, printable(body.source));
   text += fmt::format("  size            {} vertices, {}\n", mesh.rest.rows(), substance_text(body));
@@ -75,7 +74,7 @@ std::string body_text(const SceneDef& scene, Body& body, const DrawnBody& drawn,
   text +=
       fmt::format("  solver          {}, {} iterations a step, {} numbers in the factor\n",
                   name_of(body.def.solver.method), body.def.solver.settings.iterations, model.factor.stored_numbers());
-  return text + fmt::format("  costs           {}\n", cost_text(scene, body, model, set, threads));
+  return text;
 }
 
 // Describes the value that a change leads to, and how it gets there.
@@ -112,23 +111,28 @@ std::string changes_text(const Script& script) {
 }  // namespace
 
 std::string scene_summary(const SceneSource& source, int thread_count) {
-  const Script script = Script::load(source, assets_folder(), {});
-  const SceneDef& scene = script.scene();
-  std::vector<Body> bodies = assemble(scene);
-  const CollisionSet set = collision_set(scene);
+  Script script = Script::load(source, assets_folder(), {});
+  std::vector<Body> bodies = assemble(script.scene());
+  World world(std::move(script), std::move(bodies));
   Threads threads(thread_count);
+  world.start(all_solvers().steps, &threads);
+  const SceneDef scene = world.scene();
   std::string text = fmt::format("scene           {}{}\n", printable(scene.name),
                                  scene.title.empty() ? "" : ": " + printable(scene.title));
   text += fmt::format("film            {} frames at {:g} a second ({}), {} of {} s a frame, {} x {} pixels\n",
                       scene.frames, scene.fps, duration_text(scene.frames / scene.fps),
                       scene.substeps == 1 ? "one step" : fmt::format("{} steps", scene.substeps),
                       fmt::format("{:.3g}", scene.time_step()), scene.output.width, scene.output.height);
-  if (script.is_replay()) text += changes_text(script);
+  if (world.script().is_replay()) text += changes_text(world.script());
   for (const ColliderDef& collider : scene.colliders)
     text += fmt::format("collider        '{}', friction {:g}{}\n", collider.name, collider.friction,
                         collider.keys.empty() ? "" : ", moves");
-  const std::vector<DrawnBody> drawn = drawn_bodies(bodies);
-  for (std::size_t b = 0; b < bodies.size(); ++b) text += body_text(scene, bodies[b], drawn[b], set, threads);
+  const std::vector<DrawnBody> drawn = drawn_bodies(world.bodies());
+  std::vector<std::string> of_bodies;
+  for (std::size_t b = 0; b < world.size(); ++b) of_bodies.push_back(body_text(world.body(b), drawn[b]));
+  const std::vector<FrameCost> costs = cost_of_frames(world, std::min(tried_frames, scene.frames));
+  for (std::size_t b = 0; b < world.size(); ++b)
+    text += of_bodies[b] + fmt::format("  costs           {}\n", cost_text(world, costs[b], threads));
   return text;
 }
 

@@ -35,7 +35,7 @@ DrawPlan plan_of_panel(const SplitCommand& command, const std::string& run, int 
   plan.run = run;
   plan.legend_apart = true;
   const LoadedDrawing whole = load_drawing(plan);
-  const OutputDef& output = whole.film.script.scene().output;
+  const OutputDef& output = whole.film.world.script().scene().output;
   const auto share = [columns](int size) { return std::max(16, size / columns / 2 * 2); };
   plan.settings.push_back(fmt::format("output.width={}", share(output.width)));
   // Panels in a row are narrow, so that they keep more of the height than of the width.
@@ -66,7 +66,8 @@ void draw_panel(const SplitCommand& command, const std::string& run, int columns
   drawn.screen.legend = drawn.result.legend;
   if (drawn.screen.panels.empty()) drawn.rate = drawing.rate;
   if (drawn.screen.panels.empty() || drawing.frames.size() < drawn.frames.size()) drawn.frames = drawing.frames;
-  drawn.screen.panels.push_back({folder / "frames", name_of_run(run, drawing.film.script.scene()), read_run(run).rows});
+  drawn.screen.panels.push_back(
+      {folder / "frames", name_of_run(run, drawing.film.world.script().scene()), read_run(run).rows});
 }
 
 int make_film_of(const SplitCommand& command, const Drawn& drawn) {
@@ -104,7 +105,7 @@ SplitCommand with_one_range(SplitCommand command) {
     DrawPlan plan = command.plan;
     plan.run = run;
     LoadedDrawing drawing = load_drawing(plan);
-    const FieldDef& field = drawing.film.script.scene().field;
+    const FieldDef& field = drawing.film.world.script().scene().field;
     if (field.quantity == FieldQuantity::none || field.range) return command;
     const Eigen::Vector2d range = field_range(drawing);
     all = all ? Eigen::Vector2d(std::min(all->x(), range.x()), std::max(all->y(), range.y())) : range;

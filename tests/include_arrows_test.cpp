@@ -18,9 +18,10 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"sim", {"sim", "geometry", "base"}},
     {"baselines", {"baselines", "sim", "geometry", "base"}},
     {"scene", {"scene", "sim", "geometry", "base"}},
+    {"world", {"world", "scene", "sim", "geometry", "base"}},
     {"render", {"render", "base"}},
     {"output", {"output", "geometry", "base"}},
-    {"film", {"film", "scene", "sim", "render", "output", "geometry", "base"}},
+    {"film", {"film", "world", "scene", "sim", "render", "output", "geometry", "base"}},
 };
 
 // Lists the rooms of the folders that have some, and those from which each may include, itself apart. A file that lies
@@ -55,11 +56,7 @@ const std::map<std::string, std::map<std::string, std::set<std::string>>> rooms 
       {"run", {"motion", "files"}},
       {"video", {"run", "files"}},
       {"pages", {"run", "files"}}}},
-    {"film",
-     {{"plan", {}},
-      {"record", {"plan"}},
-      {"pictures", {"plan"}},
-      {"redraw", {"pictures", "record", "plan", "corridor"}}}},
+    {"film", {{"plan", {}}, {"record", {"plan"}}, {"pictures", {"plan"}}, {"redraw", {"pictures", "record", "plan"}}}},
 };
 
 // Lists headers of third parties, and the files that may include them.

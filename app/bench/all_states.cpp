@@ -163,9 +163,9 @@ ReportSection bench_profiles(const BenchSetting& setting) {
   int bodies = 0, unsure = 0, states_in_all = 0;
   for (const SubjectChoice& choice : all_subjects()) {
     Subject subject(choice);
-    if (subject.model.vertices > most_vertices) continue;
+    if (subject.model().vertices > most_vertices) continue;
     ++bodies;
-    std::vector<MethodTimes>& list = groups[subject.set.colliders.empty() ? 0 : 1];
+    std::vector<MethodTimes>& list = groups[subject.world.colliders().colliders.empty() ? 0 : 1];
     say_doing(setting, fmt::format("{}, {} ({})", choice.scene, choice.body, subject.size_text()));
     SolverComparison comparison(subject, *setting.threads);
     std::vector<BenchState> states = states_of(subject, {6, 12, 18, 30, 42, 54, 66}, setting);
@@ -176,7 +176,7 @@ ReportSection bench_profiles(const BenchSetting& setting) {
     for (const BenchState& state : states) {
       const std::vector<Outcome> outcomes = comparison.run(state, entries, 1, 200);
       const Minimum lowest = comparison.reference(state, outcomes);
-      const double scale = subject.model.total_mass * std::pow(subject.model.size / subject.model.time_step, 2);
+      const double scale = subject.model().total_mass * std::pow(subject.model().size / subject.model().time_step, 2);
       if (!(lowest.below_y > 1e-12 * scale)) continue;  // at rest: nothing to solve
       ++states_in_all;
       unsure += !lowest.positive_definite;
@@ -257,7 +257,7 @@ ReportSection bench_scenes(const BenchSetting& setting) {
       curve.thick = outcome.label == "ours";
       plot.series.push_back(std::move(curve));
       std::vector<std::string> row = {choice.scene, choice.body, std::to_string(frame),
-                                      std::to_string(subject.model.vertices), outcome.label};
+                                      std::to_string(subject.model().vertices), outcome.label};
       for (const double ms : times_of(comparison, state, outcome, lowest)) row.push_back(number_text(ms));
       row.emplace_back(lowest.positive_definite ? "yes" : "no");
       table.rows.push_back(std::move(row));
@@ -301,7 +301,7 @@ ReportSection bench_minima(const BenchSetting& setting) {
       const std::vector<Outcome> outcomes = comparison.run(state, entries, 0);
       const Minimum lowest = comparison.reference(state, outcomes);
       for (const Outcome& outcome : outcomes) {
-        const double away = (outcome.x - lowest.x).rowwise().norm().maxCoeff() / subject.model.size;
+        const double away = (outcome.x - lowest.x).rowwise().norm().maxCoeff() / subject.model().size;
         const bool equal = !outcome.failed && away < 1e-8;
         // An outcome is at another minimum when a search that starts from it does not reach the lowest one.
         const bool elsewhere =

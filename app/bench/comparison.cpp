@@ -16,7 +16,7 @@ SearchRule& SolverComparison::rule_of(const SolverEntry& entry) {
   const auto same = [&](const Prepared& p) { return p.method == entry.method; };
   const auto at = std::find_if(prepared_.begin(), prepared_.end(), same);
   if (at != prepared_.end()) return *at->rule;
-  prepared_.push_back({entry.method, make_rule(entry.method, subject_.model)});
+  prepared_.push_back({entry.method, make_rule(entry.method, subject_.model())});
   return *prepared_.back().rule;
 }
 
@@ -54,10 +54,10 @@ std::vector<Outcome> SolverComparison::run(const BenchState& state, const std::v
       State after = state.before;
       workspace_.correction = {};  // no solver may use what another one learned of A^-1
       // The matrix that a film would have at hand here is.
-      prepare_matrix(subject_.model, inputs.solver, state.before, workspace_);
+      prepare_matrix(subject_.model(), inputs.solver, state.before, workspace_);
       if (repeat == 0)
         workspace_.watch = [&](const Positions& x) { outcome.moved.emplace_back((x - state.before.x).cast<float>()); };
-      const StepReport& report = step(subject_.model, inputs, after, workspace_, rule);
+      const StepReport& report = step(subject_.model(), inputs, after, workspace_, rule);
       workspace_.watch = nullptr;
       outcome.used_ms += report.step_ms;
       if (repeat > 0) {
@@ -75,7 +75,7 @@ std::vector<Outcome> SolverComparison::run(const BenchState& state, const std::v
       outcome.x = after.x;
       if (report.failed) continue;
       // The sum runs from the last iterate backwards, so that gains near the minimum keep their last digits.
-      double left = gained(subject_.model, inputs, state.before, outcome.x, reference_workspace_);
+      double left = gained(subject_.model(), inputs, state.before, outcome.x, reference_workspace_);
       outcome.gained.assign(outcome.records.size() + 1, left);
       for (std::size_t k = outcome.records.size(); k-- > 0;) {
         left -= outcome.records[k].decrease;
@@ -100,10 +100,10 @@ std::vector<Outcome> SolverComparison::run(const BenchState& state, const std::v
 // Puts the subject into a state. Whatever was prepared for other values of its model is prepared again.
 const StepInputs& SolverComparison::put(const BenchState& state) {
   const StepInputs& inputs = subject_.inputs(state);
-  if (prepared_for_ != subject_.model.id) {
+  if (prepared_for_ != subject_.model().id) {
     prepared_.clear();
-    lowest_.emplace(subject_.model);
-    prepared_for_ = subject_.model.id;
+    lowest_.emplace(subject_.model());
+    prepared_for_ = subject_.model().id;
   }
   return inputs;
 }
@@ -123,7 +123,7 @@ StepInputs SolverComparison::inputs_of(const BenchState& state, const SolverEntr
 
 Positions SolverComparison::prediction(const BenchState& state) {
   Positions y;
-  inertial_prediction(subject_.model, put(state), state.before, y);
+  inertial_prediction(subject_.model(), put(state), state.before, y);
   return y;
 }
 
@@ -132,7 +132,7 @@ std::vector<double> SolverComparison::motion_errors(const BenchState& state, con
   const Positions y = prediction(state);
   std::vector<double> errors;
   for (const Eigen::MatrixX3f& moved : outcome.moved)
-    errors.push_back(motion_error(subject_.model, state.before.x, y, state.before.x + moved.cast<double>(), solved));
+    errors.push_back(motion_error(subject_.model(), state.before.x, y, state.before.x + moved.cast<double>(), solved));
   return errors;
 }
 
@@ -143,7 +143,7 @@ Minimum SolverComparison::reference(const BenchState& state, const std::vector<O
   };
   const Outcome& best = *std::max_element(outcomes.begin(), outcomes.end(), better);
   const StepInputs inputs = put(state);
-  return lowest_->minimum(subject_.model, inputs, state.before, best.failed ? state.before.x : best.x,
+  return lowest_->minimum(subject_.model(), inputs, state.before, best.failed ? state.before.x : best.x,
                           reference_workspace_);
 }
 

@@ -49,7 +49,7 @@ class SolverComparison {
  public:
   // Both arguments must outlive this object.
   SolverComparison(Subject& subject, Threads& threads)
-      : subject_(subject), lowest_(subject.model), prepared_for_(subject.model.id) {
+      : subject_(subject), lowest_(subject.model()), prepared_for_(subject.model().id) {
     workspace_.threads = reference_workspace_.threads = &threads;
   }
 

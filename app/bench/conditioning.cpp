@@ -32,11 +32,11 @@ std::vector<Mat3> cube_rotations() {
 
 // Returns a state at rest in which the body is stretched along x by `stretch` and then rotated, both about its middle.
 BenchState released(const Subject& subject, double stretch, const Mat3& rotation) {
-  BenchState state{0, start_state(subject.model, subject.body), 0};
+  BenchState state{0, start_state(subject.model(), subject.body()), 0};
   state.before.v.setZero();
-  const Eigen::RowVector3d middle = subject.model.rest.colwise().mean();
+  const Eigen::RowVector3d middle = subject.model().rest.colwise().mean();
   const Mat3 f = rotation * Vec3(stretch, 1, 1).asDiagonal();
-  state.before.x = ((subject.model.rest.rowwise() - middle) * f.transpose()).rowwise() + middle;
+  state.before.x = ((subject.model().rest.rowwise() - middle) * f.transpose()).rowwise() + middle;
   return state;
 }
 
@@ -67,9 +67,9 @@ Dense ours_of(const Model& model) {
 
 Dense hessian_at(const Subject& subject, const Positions& x) {
   ElementMatrices elements;
-  HessianMatrix hessian(subject.model);
-  element_matrices(subject.model, nullptr, x, false, elements);
-  hessian.assemble(subject.model, elements, {}, 0, x);
+  HessianMatrix hessian(subject.model());
+  element_matrices(subject.model(), nullptr, x, false, elements);
+  hessian.assemble(subject.model(), elements, {}, 0, x);
   return dense_of(hessian.matrix());
 }
 
@@ -81,7 +81,7 @@ ReportSection bench_table2(const BenchSetting& setting) {
   const Mat3 quarter = Eigen::AngleAxisd(std::acos(-1) / 2, Vec3::UnitZ()).toRotationMatrix();
   const BenchState as_it_is = released(subject, stretch, Mat3::Identity());
   const BenchState turned = released(subject, stretch, quarter);
-  const Dense rest = hessian_at(subject, subject.model.rest), ours = ours_of(subject.model);
+  const Dense rest = hessian_at(subject, subject.model().rest), ours = ours_of(subject.model());
   const Dense first = hessian_at(subject, as_it_is.before.x), second = hessian_at(subject, turned.before.x);
 
   ReportSection section{"table2", "Table II and figure 9: a cube near rest, and the same turned"};

@@ -308,7 +308,7 @@ ReportSection bench_figure15(const BenchSetting& setting) {
     curves.whole = std::max(curves.whole, lowest.below_y);
     curves.motion_errors.push_back(comparison.motion_errors(*state, outcome, lowest.x));
     stiffnesses +=
-        fmt::format("{}{}: k = {:.4g}", stiffnesses.empty() ? "" : "; ", label, subject.model.stiffness[0].k);
+        fmt::format("{}{}: k = {:.4g}", stiffnesses.empty() ? "" : "; ", label, subject.model().stiffness[0].k);
     sizes = subject.size_text();
   }
   section.text =

@@ -59,7 +59,7 @@ ReportSection bench_ablation(const BenchSetting& setting) {
   const SubjectChoice ours{"squirrel", "polynomial"};
   const SubjectChoice choice = with_paper_mesh(setting, ours, "squirrel_modified.mesh").value_or(ours);
   Subject subject(choice);
-  const Model& model = subject.model;
+  const Model& model = subject.model();
   const BenchState state = states_of(subject, {35}, setting).front();
   const auto& material = std::get<Polynomial>(model.materials.front());
   std::vector<ElementView> elements;
@@ -120,9 +120,9 @@ ReportSection bench_ablation(const BenchSetting& setting) {
 
 ReportSection bench_contact(const BenchSetting& setting) {
   Subject subject({"bunny-torus", "bunny"});
-  const Model& model = subject.model;
+  const Model& model = subject.model();
   SolverComparison comparison(subject, *setting.threads);
-  Triangles surface = boundary_faces(subject.body.description.mesh.tets);
+  Triangles surface = boundary_faces(subject.body().description.mesh.tets);
   for (Eigen::Index i = 0; i < surface.size(); ++i) surface.data()[i] = model.internal_of[surface.data()[i]];
   struct Row {
     std::string label;
@@ -153,8 +153,9 @@ ReportSection bench_contact(const BenchSetting& setting) {
     outcomes.push_back(projected);
     for (std::size_t m = 0; m < rows.size(); ++m) {
       rows[m].error.push_back(last_error(outcomes[m], lowest.below_y));
-      rows[m].depth.push_back(penetration(subject.set.colliders, inputs.collider_motions, outcomes[m].x, surface) /
-                              model.size);
+      rows[m].depth.push_back(
+          penetration(subject.world.colliders().colliders, inputs.collider_motions, outcomes[m].x, surface) /
+          model.size);
       rows[m].ms.push_back(outcomes[m].step_ms);
       rows[m].trials.push_back(outcomes[m].trials);
       rows[m].inverted += deformation(model, outcomes[m].x).inverted;

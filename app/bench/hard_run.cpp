@@ -144,14 +144,10 @@ class HardRun {
         keeps_volume_(hard.keeps_volume && knows_volume(material.name)),
         turn_(rotation_from_degrees(variation.turn_deg).toRotationMatrix()),
         scene_(scene_of(text(hard, table_of(hard, material, 1), variation, turn_))),
-        body_(prepared(material, variation)),
-        model_(build_model(body_.description)),
-        set_(collision_set(scene_)),
-        driver_(scene_, body_, model_, set_, scenes_own_solver(), &threads) {
-    if (hard.turns_a_second > 0) driver_.restore(spinning(model_, driver_.state(), hard.turns_a_second, turn_));
+        world_(scene_, prepared(material, variation)) {
+    world_.start(scenes_own_solver(), &threads);
+    if (hard.turns_a_second > 0) body().restore(spinning(model(), body().state(), hard.turns_a_second, turn_));
   }
-  HardRun(const HardRun&) = delete;  // the driver refers to the other members
-  HardRun& operator=(const HardRun&) = delete;
 
   StabilityOutcome play(std::vector<Positions>* motion, WorstStep* worst);
   TabledErrors errors_of(const WorstStep& worst);
@@ -168,24 +164,28 @@ class HardRun {
     text = filled(text, "TURN", list_text(variation.turn_deg));
     return filled(text, "GRAVITY", list_text(turn * Vec3(0, -9.81, 0)));
   }
-  Body prepared(const NamedMaterial& material, const Variation& variation) const {
-    Body body = std::move(assemble(scene_).front());
+  std::vector<Body> prepared(const NamedMaterial& material, const Variation& variation) const {
+    std::vector<Body> bodies = assemble(scene_);
+    Body& body = bodies.front();
     if (hard_.has_second_part) add_second_part(body.description);
-    if (hard_.far_stiffness == 1 && hard_.near_stiffness == 1 && hard_.far_density == 1) return body;
+    if (hard_.far_stiffness == 1 && hard_.near_stiffness == 1 && hard_.far_density == 1) return bodies;
     std::vector<Material> materials;
     for (const double stiffer : {hard_.near_stiffness, hard_.far_stiffness}) {
       const SceneDef scene = scene_of(text(hard_, table_of(hard_, material, stiffer), variation, turn_));
       materials.push_back(scene.bodies.front().substance.material);
     }
     make_halves_differ(body.description, hard_, std::move(materials));
-    return body;
+    return bodies;
   }
-  // Returns the error of motion of the driver's last step, which began at `before`, against the step that more
+  MovingBody& body() { return world_.body(0); }
+  const MovingBody& body() const { return world_.body(0); }
+  const Model& model() const { return body().model(); }
+  // Returns the error of motion of the body's last step, which began at `before`, against the step that more
   // iterations solve.
   double motion_error_of_step(const State& before);
   // Returns the positions in the body's own frame: turned back, about the mean of its rest positions.
   Positions turned_back() const {
-    const Positions rest = in_input_order(model_, model_.rest), x = in_input_order(model_, driver_.state().x);
+    const Positions rest = in_input_order(model(), model().rest), x = in_input_order(model(), body().state().x);
     return (x.rowwise() - rest.colwise().mean()) * turn_;
   }
 
@@ -193,47 +193,47 @@ class HardRun {
   bool keeps_volume_;
   Mat3 turn_;
   SceneDef scene_;
-  Body body_;
-  Model model_;
-  CollisionSet set_;
-  DrivenBody driver_;
+  World world_;
   Workspace solving_;
 };
 
 double HardRun::motion_error_of_step(const State& before) {
   constexpr int enough = 200;
-  StepInputs inputs = driver_.inputs();
+  StepInputs inputs = body().inputs();
   inputs.solver.iterations = enough;
   State solved = before;
-  supple::step(model_, inputs, solved, solving_);
+  supple::step(model(), inputs, solved, solving_);
   Positions y;
-  inertial_prediction(model_, inputs, before, y);
-  return motion_error(model_, before.x, y, driver_.state().x, solved.x);
+  inertial_prediction(model(), inputs, before, y);
+  return motion_error(model(), before.x, y, body().state().x, solved.x);
 }
 
 StabilityOutcome HardRun::play(std::vector<Positions>* motion, WorstStep* worst) {
   StabilityOutcome outcome;
-  Workspace& workspace = driver_.workspace();
-  workspace.prepare(model_, driver_.inputs().solver);
+  Workspace& workspace = body().workspace();
+  workspace.prepare(model(), body().inputs().solver);
   EnergyBudget budget;
-  budget.start(model_, scene_.gravity, driver_.state(), workspace);
-  const Tetrahedra& tets = body_.description.mesh.tets;
-  const double volume = volume_of(body_.description.mesh.rest, tets);
-  outcome.start = in_input_order(model_, driver_.state().x);
+  budget.start(model(), scene_.gravity, body().state(), workspace);
+  const Tetrahedra& tets = body().body().description.mesh.tets;
+  const double volume = volume_of(body().body().description.mesh.rest, tets);
+  outcome.start = in_input_order(model(), body().state().x);
   bool unsolved = false;
   State before;
+  const StepWatch watch{[&](std::size_t, int) {
+                          if (!budget.knows_springs())
+                            budget.know_springs(model(), body().targets_at_start(), body().state());
+                          budget.before_step(model(), body().inputs(), body().state(), workspace);
+                          before = body().state();
+                        },
+                        {}};
   for (int frame = 0; frame < scene_.frames && outcome.finite; ++frame) {
-    driver_.prepare_step(frame, 0);
-    if (!budget.knows_springs()) budget.know_springs(model_, driver_.targets_at_start(), driver_.state());
-    budget.before_step(model_, driver_.inputs(), driver_.state(), workspace);
-    before = driver_.state();
-    const StepReport& report = driver_.step();
-    outcome.finite = !report.failed && driver_.state().x.allFinite();
+    outcome.finite = world_.play(frame, watch) && body().state().x.allFinite();
     if (!outcome.finite) break;
-    if (driver_.untangled()) {
-      budget.after_untangling(model_, driver_.inputs(), driver_.state(), workspace);
+    const StepReport& report = body().report();
+    if (body().untangled()) {
+      budget.after_untangling(model(), body().inputs(), body().state(), workspace);
     } else {
-      budget.after_step(model_, driver_.inputs(), before.x, driver_.state(), workspace);
+      budget.after_step(model(), body().inputs(), before.x, body().state(), workspace);
     }
     const EnergyBalance& balance = budget.balance();
     if (balance.exchanged > 0)
@@ -245,38 +245,39 @@ StabilityOutcome HardRun::play(std::vector<Positions>* motion, WorstStep* worst)
     unsolved = unsolved || is_unsolved(report);
     if (keeps_volume_)
       outcome.volume_change = std::max(
-          outcome.volume_change, std::abs(volume_of(in_input_order(model_, driver_.state().x), tets) / volume - 1));
+          outcome.volume_change, std::abs(volume_of(in_input_order(model(), body().state().x), tets) / volume - 1));
     if (motion != nullptr) motion->push_back(turned_back());
   }
-  const Deformation shape = deformation(model_, driver_.state().x);
+  const Deformation shape = deformation(model(), body().state().x);
   outcome.stretch = shape.stretch;
   outcome.inverted = shape.inverted;
   outcome.collapsed = shape.collapsed;
   outcome.told =
       !outcome.finite || outcome.from_nothing > much_energy || shape.inverted > 0 || shape.collapsed > 0 || unsolved;
-  outcome.end = in_input_order(model_, driver_.state().x);
+  outcome.end = in_input_order(model(), body().state().x);
   outcome.surface = boundary_faces(tets);
   return outcome;
 }
 
 // Makes the worst step again with more iterations, and by Newton's method, and looks for a minimum from each end.
 TabledErrors HardRun::errors_of(const WorstStep& worst) {
-  driver_.restore(worst.before);
-  driver_.prepare_step(worst.frame, 0);
-  const StepInputs inputs = driver_.inputs();
-  Reference reference(model_);
+  body().restore(worst.before);
+  world_.enter(worst.frame);
+  world_.prepare(0);
+  const StepInputs inputs = body().inputs();
+  Reference reference(model());
   Workspace workspace;
   std::vector<Minimum> minima;
   const auto add = [&](const Solvers& solvers, int iterations) {
     StepInputs more = inputs;
-    more.solver = solvers.settings(body_.def.solver);
+    more.solver = solvers.settings(body().body().def.solver);
     more.solver.iterations = iterations;
     more.solver.rounds = 1;
     State after = worst.before;
-    const auto rule = solvers.rule(body_.def.solver, model_);
-    const bool failed = step(model_, more, after, workspace, *rule).failed;
+    const auto rule = solvers.rule(body().body().def.solver, model());
+    const bool failed = step(model(), more, after, workspace, *rule).failed;
     Minimum minimum;
-    if (!failed) minimum = reference.minimum(model_, inputs, worst.before, after.x, workspace);
+    if (!failed) minimum = reference.minimum(model(), inputs, worst.before, after.x, workspace);
     if (failed) minimum.below_end = std::nan("");
     minima.push_back(std::move(minimum));
   };
@@ -284,7 +285,7 @@ TabledErrors HardRun::errors_of(const WorstStep& worst) {
   add(solver_instead(Method::newton, 50), 50);
   double whole = 0;
   for (const Minimum& minimum : minima) whole = std::max(whole, minimum.below_y);
-  const double noise = 2 * noise_of(model_, whole, worst.before.x.cwiseAbs().maxCoeff());
+  const double noise = 2 * noise_of(model(), whole, worst.before.x.cwiseAbs().maxCoeff());
   const auto error = [&](const Minimum& minimum) -> std::optional<double> {
     if (!(whole > noise)) return std::nullopt;
     return (minimum.below_end + (whole - minimum.below_y)) / whole;

@@ -22,18 +22,21 @@ constexpr int motion_iterations[] = {3, 5, 10};  // after which errors of motion
 PlayedFilm play_film(Subject& subject, Threads& threads, DirectionStart start, const std::vector<int>& frames) {
   PlayedFilm film;
   std::vector<double> renewing, examining;
-  DrivenBody driver(subject.scene, subject.body, subject.model, subject.set,
-                    solver_instead(Method::quasi_newton, 10, start), &threads);
+  World world = subject.new_world(solver_instead(Method::quasi_newton, 10, start), threads);
+  MovingBody& body = world.body(0);
   for (int frame = 0; frame < film_frames; ++frame) {
+    world.enter(frame);
     if (std::binary_search(frames.begin(), frames.end(), frame)) {
-      driver.prepare_step(frame, 0);
-      film.states.push_back({frame, driver.state(), state_hash(subject.model, driver.state())});
+      world.prepare(0);
+      film.states.push_back({frame, body.state(), state_hash(body.model(), body.state())});
     }
-    const StepReport& last = driver.make_frame(frame, [&](const StepReport& report) {
-      const bool first = renewing.empty() && examining.empty();  // made as a body is prepared, like A
-      (driver.workspace().renewed && !first ? renewing : examining).push_back(report.matrix_ms);
-    });
-    if (last.failed) throw RunError(fmt::format("{}: frame {} failed", subject.choice.scene, frame));
+    const bool made =
+        world.step({{}, [&](std::size_t, int) {
+                      const bool first = renewing.empty() && examining.empty();  // made as a body is
+                                                                                 // prepared, like A
+                      (body.workspace().renewed && !first ? renewing : examining).push_back(body.report().matrix_ms);
+                    }});
+    if (!made) throw RunError(fmt::format("{}: frame {} failed", subject.choice.scene, frame));
   }
   const auto sum_of_medians = [](std::vector<double> ms) {
     if (ms.empty()) return 0.0;
@@ -159,13 +162,13 @@ Candidate candidate_of(DirectionStart start) {
 
 void add_row(Candidate& candidate, const Subject& subject, const Score& papers, const Score& score,
              const PlayedFilm& film, double n) {
-  const int group = subject.set.colliders.empty() ? 0 : 1;
+  const int group = subject.world.colliders().colliders.empty() ? 0 : 1;
   Means& means = candidate.means[group];
   const auto mean = [n](double sum) { return number_text(std::exp(sum / n)); };
   const auto text = [&](const Score& s, std::size_t t) {
     return mean(s.log_ms[t]) + (s.missed[t] ? " (not all)" : "");
   };
-  std::vector<std::string> row = {subject.choice.scene, subject.choice.body, std::to_string(subject.model.vertices)};
+  std::vector<std::string> row = {subject.choice.scene, subject.choice.body, std::to_string(subject.model().vertices)};
   for (int i = 0; i < 2; ++i) {
     row.push_back(mean(papers.log_error[i]));
     row.push_back(mean(score.log_error[i]));
@@ -239,7 +242,7 @@ void compare(Candidate& candidate, Subject& subject, Estimates& papers_estimates
     entries[2].start = entries[3].start = candidate.start;
     std::vector<Outcome> outcomes = comparison.run(state, entries, 3, 1000);
     const Minimum lowest = comparison.reference(state, outcomes);
-    const double scale = subject.model.total_mass * std::pow(subject.model.size / subject.model.time_step, 2);
+    const double scale = subject.model().total_mass * std::pow(subject.model().size / subject.model().time_step, 2);
     if (!(lowest.below_y > 1e-12 * scale)) continue;  // at rest: nothing to solve
     ++states;
     if (candidate.start.matrix != SystemMatrix::constant) take_out_renewal(outcomes[2]);
@@ -266,7 +269,7 @@ ReportSection bench_matrix(const BenchSetting& setting) {
   Estimates papers_estimates;
   for (const SubjectChoice& choice : all_subjects()) {
     Subject subject(choice);
-    if (subject.model.vertices > most_vertices || subject.body.def.solver.method != Method::quasi_newton) continue;
+    if (subject.model().vertices > most_vertices || subject.body().def.solver.method != Method::quasi_newton) continue;
     say_doing(setting, fmt::format("{}, {} ({})", choice.scene, choice.body, subject.size_text()));
     for (Candidate& candidate : candidates) compare(candidate, subject, papers_estimates, setting);
   }

@@ -139,7 +139,7 @@ void add_rows(ReportTable& table, const Subject& subject, const std::vector<Stag
     const double rate = read_rate(stage.bytes), seconds = 1e-3 * stage.ms, peak = peaks.at(stage.precision);
     const double bound = std::max(stage.bytes / rate, stage.operations.value_or(0) / peak);
     const bool by_memory = stage.bytes / rate >= stage.operations.value_or(0) / peak;
-    table.rows.push_back({subject.choice.scene + ", " + subject.choice.body, number_text(subject.model.vertices),
+    table.rows.push_back({subject.choice.scene + ", " + subject.choice.body, number_text(subject.model().vertices),
                           stage.name, number_text(stage.ms), number_text(1e-6 * stage.bytes),
                           stage.operations ? number_text(1e-6 * *stage.operations) : "",
                           number_text(1e-9 * stage.bytes / seconds), number_text(1e-9 * rate),
@@ -176,8 +176,8 @@ ReportSection bench_roofline(const BenchSetting& setting) {
     const BenchState state = states_of(subject, {20}, setting).front();
     const StepInputs inputs = subject.inputs(state);
     Workspace w;
-    const Stage lbfgs = recursion(subject.model, inputs, state.before, w);
-    add_rows(table, subject, {evaluation(subject.model, w), solve(subject.model, w), lbfgs}, peak);
+    const Stage lbfgs = recursion(subject.model(), inputs, state.before, w);
+    add_rows(table, subject, {evaluation(subject.model(), w), solve(subject.model(), w), lbfgs}, peak);
   }
   section.tables.push_back(std::move(table));
   section.text = fmt::format(

@@ -76,18 +76,18 @@ Size measure(double vertices, const BenchSetting& setting) {
   const BenchState state = states_of(subject, {moving_frame}, setting).front();
   const StepInputs inputs = subject.inputs(state);
   Size size;
-  size.vertices = subject.model.vertices;
-  size.elements = subject.model.elements;
+  size.vertices = subject.model().vertices;
+  size.elements = subject.model().elements;
   const int repeats = vertices < 20000 ? 15 : 5;
   for (const int count : {1, 2}) {
     Threads threads(count);
     Workspace w;
     w.threads = &threads;
-    (count == 1 ? size.one : size.two) = quickest_step(subject.model, inputs, state.before, w, repeats);
-    size.memory = memory_of(subject.model, w);
+    (count == 1 ? size.one : size.two) = quickest_step(subject.model(), inputs, state.before, w, repeats);
+    size.memory = memory_of(subject.model(), w);
   }
   const Stopwatch watch;
-  const Model again = build_model(subject.body.description);
+  const Model again = build_model(subject.body().description);
   size.build_ms = watch.elapsed_ms();
   return size;
 }

@@ -19,15 +19,15 @@ struct ShakenRun {
 
 ShakenRun shake(Subject& subject, Method method, int iterations, int frames, Threads& threads) {
   ShakenRun result;
-  DrivenBody driver(subject.scene, subject.body, subject.model, subject.set, solver_instead(method, iterations),
-                    &threads);
+  World world = subject.new_world(solver_instead(method, iterations), threads);
+  const MovingBody& body = world.body(0);
   std::vector<double> times;
   for (int frame = 0; frame < frames && result.failed_at < 0; ++frame) {
-    const StepReport& last = driver.make_frame(frame, [&](const StepReport& report) {
-      if (!report.failed) times.push_back(report.step_ms);
-    });
-    if (!last.failed) result.stretch.push_back(deformation(subject.model, driver.state().x).stretch);
-    if (last.failed || !(result.stretch.back() < torn)) result.failed_at = frame;
+    const bool made = world.play(frame, {{}, [&](std::size_t, int) {
+                                           if (!body.report().failed) times.push_back(body.report().step_ms);
+                                         }});
+    if (made) result.stretch.push_back(deformation(body.model(), body.state().x).stretch);
+    if (!made || !(result.stretch.back() < torn)) result.failed_at = frame;
   }
   if (!times.empty()) {
     std::nth_element(times.begin(), times.begin() + static_cast<long>(times.size() / 2), times.end());

@@ -24,7 +24,7 @@ void add_point(ReportTable& table, ReportPlot& plot, const std::string& sweep, d
   const Minimum lowest = comparison.reference(state, outcomes);
   const std::vector<double> ours = errors_of(outcomes[0], lowest.below_y);
   const std::vector<double> newton = errors_of(outcomes[1], lowest.below_y);
-  std::vector<std::string> row = {sweep, number_text(value), std::to_string(subject.model.vertices),
+  std::vector<std::string> row = {sweep, number_text(value), std::to_string(subject.model().vertices),
                                   number_text(ours.size() > 10 ? ours[10] : last_error(outcomes[0], lowest.below_y)),
                                   number_text(newton.size() > 1 ? newton[1] : std::nan(""))};
   for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
@@ -64,18 +64,18 @@ struct Played {
 };
 
 Played play(Subject& subject, Method method, int iterations, int frames, Threads& threads, DirectionStart start = {}) {
-  DrivenBody driver(subject.scene, subject.body, subject.model, subject.set, solver_instead(method, iterations, start),
-                    &threads);
+  World world = subject.new_world(solver_instead(method, iterations, start), threads);
+  const MovingBody& body = world.body(0);
   Played played;
   for (int frame = 0; frame < frames; ++frame) {
-    const StepReport& last =
-        driver.make_frame(frame, [&](const StepReport& report) { played.ms_a_frame += report.step_ms / frames; });
-    if (last.failed) {
-      played.x.setConstant(subject.model.vertices, 3, std::nan(""));
+    const bool made =
+        world.play(frame, {{}, [&](std::size_t, int) { played.ms_a_frame += body.report().step_ms / frames; }});
+    if (!made) {
+      played.x.setConstant(subject.model().vertices, 3, std::nan(""));
       return played;
     }
   }
-  played.x = driver.state().x;
+  played.x = body.state().x;
   return played;
 }
 
@@ -150,8 +150,8 @@ ReportSection bench_substeps(const BenchSetting& setting) {
       const Positions solved = play(subject, Method::quasi_newton, 200, frames, *setting.threads).x;
       const Played played = play(subject, Method::quasi_newton, iterations, frames, *setting.threads);
       table.rows.push_back({choice.scene, fmt::format("{} x {}", substeps, iterations), number_text(played.ms_a_frame),
-                            number_text(rms(played.x, limit) / subject.model.size),
-                            number_text(rms(played.x, solved) / subject.model.size)});
+                            number_text(rms(played.x, limit) / subject.model().size),
+                            number_text(rms(played.x, solved) / subject.model().size)});
     }
   }
   section.text = fmt::format(
@@ -178,8 +178,8 @@ struct HangingBar {
 
   HangingBar(const std::vector<std::string>& settings, Threads& threads)
       : subject({(assets_folder() / "bench" / "hanging-bar.toml").string(), "bar", settings}) {
-    for (int v = 0; v < subject.model.vertices; ++v) {
-      if (subject.model.rest(v, 0) > subject.model.rest(tip, 0)) tip = v;
+    for (int v = 0; v < subject.model().vertices; ++v) {
+      if (subject.model().rest(v, 0) > subject.model().rest(tip, 0)) tip = v;
     }
     solved = play(subject, Method::quasi_newton, solving_iterations, hanging_frames, threads).x.row(tip);
   }

@@ -17,9 +17,14 @@
 namespace supple {
 namespace {
 
-Body body_named(std::vector<Body> bodies, const SubjectChoice& choice) {
-  for (Body& body : bodies) {
-    if (body.def.name == choice.body) return std::move(body);
+// Returns a world of one body of a scene.
+World world_of(SceneDef scene, const SubjectChoice& choice) {
+  for (Body& body : assemble(scene)) {
+    if (body.def.name != choice.body) continue;
+    std::erase_if(scene.bodies, [&choice](const BodyDef& def) { return def.name != choice.body; });
+    std::vector<Body> alone;
+    alone.push_back(std::move(body));
+    return {std::move(scene), std::move(alone)};
   }
   throw InputError(choice.scene, fmt::format("there is no body '{}'", choice.body));
 }
@@ -28,9 +33,9 @@ Body body_named(std::vector<Body> bodies, const SubjectChoice& choice) {
 std::string state_name(const Subject& subject, int frame) {
   std::uint64_t hash = program_identity();
   hash = hash_bytes(subject.resolved.data(), subject.resolved.size(), hash);
-  hash = hash_bytes(subject.model.rest.data(), sizeof(double) * subject.model.rest.size(), hash);
-  return fmt::format("{}-{}-{:08x}-{:06}", subject.scene.name, subject.body.def.name, static_cast<std::uint32_t>(hash),
-                     frame);
+  hash = hash_bytes(subject.model().rest.data(), sizeof(double) * subject.model().rest.size(), hash);
+  return fmt::format("{}-{}-{:08x}-{:06}", subject.scene().name, subject.body().def.name,
+                     static_cast<std::uint32_t>(hash), frame);
 }
 
 // The name of a state covers all that it depends on, so its file needs no further identity.
@@ -39,14 +44,15 @@ constexpr const char* snapshot_file = "snapshot";
 
 void write_snapshot(const Subject& subject, const BenchState& state, const StepInputs& inputs,
                     const std::filesystem::path& folder) {
-  write_state(folder, {subject.scene.name, subject.scene.title, state.frame, state.frame * subject.scene.substeps},
-              problem_of(subject.body.description, subject.model, inputs, state.before));
+  write_state(folder,
+              {subject.scene().name, subject.scene().title, state.frame, state.frame * subject.scene().substeps},
+              problem_of(subject.body().description, subject.model(), inputs, state.before));
   write_whole_file(folder / snapshot_file, checkpoint_bytes({state.frame, {state.before}}, snapshot_identity));
 }
 
 BenchState read_snapshot(const Subject& subject, int frame, const std::filesystem::path& folder) {
-  const Checkpoint read = read_checkpoint(folder / snapshot_file, snapshot_identity);
-  return {frame, read.bodies.front(), state_hash(subject.model, read.bodies.front())};
+  const WorldState read = read_checkpoint(folder / snapshot_file, snapshot_identity);
+  return {frame, read.bodies.front(), state_hash(subject.model(), read.bodies.front())};
 }
 
 }  // namespace
@@ -73,20 +79,25 @@ Solvers solver_instead(Method method, int iterations, DirectionStart start) {
 
 Subject::Subject(const SubjectChoice& chosen)
     : choice(chosen),
-      scene(load_scene(scene_file(chosen.scene), assets_folder(), chosen.settings, &resolved)),
-      body(body_named(assemble(scene), chosen)),
-      model(build_model(body.description)),
-      set(collision_set(scene)),
-      driver(scene, body, model, set, scenes_own_solver(), nullptr) {}
+      world(world_of(load_scene(scene_file(chosen.scene), assets_folder(), chosen.settings, &resolved), chosen)) {
+  world.start(scenes_own_solver(), nullptr);
+}
+
+World Subject::new_world(const Solvers& solvers, Threads& threads) const {
+  World other(scene(), world.bodies());
+  other.start(solvers, &threads);
+  return other;
+}
 
 const StepInputs& Subject::inputs(const BenchState& state) {
-  driver.restore(state.before);
-  driver.prepare_step(state.frame, 0);
-  return driver.inputs();
+  world.body(0).restore(state.before);
+  world.enter(state.frame);
+  world.prepare(0);
+  return world.body(0).inputs();
 }
 
 std::string Subject::size_text() const {
-  return fmt::format("{} vertices, {} elements", model.vertices, model.elements);
+  return fmt::format("{} vertices, {} elements", model().vertices, model().elements);
 }
 
 std::vector<BenchState> states_of(Subject& subject, const std::vector<int>& frames, const std::filesystem::path& folder,
@@ -101,18 +112,19 @@ std::vector<BenchState> states_of(Subject& subject, const std::vector<int>& fram
     for (const int frame : frames) states.push_back(read_snapshot(subject, frame, stored(frame)));
     return states;
   }
-  DrivenBody driver(subject.scene, subject.body, subject.model, subject.set, scenes_own_solver(), &threads);
+  World world = subject.new_world(scenes_own_solver(), threads);
+  const MovingBody& body = world.body(0);
   for (int frame = 0; frame <= frames.back(); ++frame) {
+    world.enter(frame);
     if (std::binary_search(frames.begin(), frames.end(), frame)) {
-      driver.prepare_step(frame, 0);
-      states.push_back({frame, driver.state(), state_hash(subject.model, driver.state())});
-      write_snapshot(subject, states.back(), driver.inputs(), stored(frame));
+      world.prepare(0);
+      states.push_back({frame, body.state(), state_hash(body.model(), body.state())});
+      write_snapshot(subject, states.back(), body.inputs(), stored(frame));
     }
     if (frame == frames.back()) break;
-    const StepReport& report = driver.make_frame(frame, [](const StepReport&) {});
-    if (report.failed)
+    if (!world.step())
       throw RunError(fmt::format("{}, body '{}': frame {} failed: {}", subject.choice.scene, subject.choice.body, frame,
-                                 report.failure.what));
+                                 body.report().failure.what));
   }
   return states;
 }

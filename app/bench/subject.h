@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/threads.h"
-#include "scene/driven_body.h"
 #include "sim/solver/step.h"
+#include "world/world.h"
 
 namespace supple {
 
@@ -36,20 +36,20 @@ struct BenchState {
   std::uint64_t hash = 0;
 };
 
-// Holds a body that is ready to run. Throws InputError as loading a scene does, and when there is no such body.
+// Holds one body of a scene, ready to run: a world of its own. Throws InputError as loading a scene does, and when
+// there is no such body.
 struct Subject {
   explicit Subject(const SubjectChoice& choice);
-  Subject(const Subject&) = delete;  // the driver refers to the other members
-  Subject& operator=(const Subject&) = delete;
 
   SubjectChoice choice;
   std::string resolved;  // the scene with all settings, as JSON
-  SceneDef scene;
-  Body body;
-  Model model;
-  CollisionSet set;
-  DrivenBody driver;  // by the scene's own solver
+  World world;           // started with the scene's own solver
 
+  const SceneDef& scene() const { return world.scene(); }
+  const Body& body() const { return world.bodies().front(); }
+  const Model& model() const { return world.body(0).model(); }
+  // Returns another world of this body, at the start of the film. Its model has the same order and the same values.
+  World new_world(const Solvers& solvers, Threads& threads) const;
   // Puts the body into a state, and returns the inputs of the step that starts there. Updates the model where handles
   // hold in another way than before.
   const StepInputs& inputs(const BenchState& state);

@@ -208,8 +208,8 @@ void add_row(ReportTable& table, ReportTable& by_start, const Row& row, const Su
   const bool holds = ratio > 1 && ours.mean < newton.mean;
   table.rows.push_back({row.model,
                         paper_mesh ? "the paper's" : "ours",
-                        std::to_string(subject.model.vertices),
-                        std::to_string(subject.model.elements),
+                        std::to_string(subject.model().vertices),
+                        std::to_string(subject.model().elements),
                         row.material,
                         std::to_string(states.size()),
                         number_text(trials),

@@ -38,24 +38,25 @@ State spun(const Model& model, State state, const Vec3& spin) {
 TurningFilm play(const TurningCase& turning, const std::vector<std::string>& settings, Threads& threads) {
   if (interrupted()) throw BenchInterrupted{};
   const SceneDef scene = scene_of(turning.scene, settings);
-  Body body = std::move(assemble(scene).front());
-  Model model = build_model(body.description);
-  const CollisionSet set = collision_set(scene);
-  DrivenBody driver(scene, body, model, set, scenes_own_solver(), &threads);
-  driver.restore(spun(model, driver.state(), turning.spin));
+  World world(scene, assemble(scene));
+  world.start(scenes_own_solver(), &threads);
+  MovingBody& body = world.body(0);
+  const Model& model = body.model();
+  body.restore(spun(model, body.state(), turning.spin));
   TurningFilm film;
   film.vertices = model.vertices;
-  film.seen.push_back(turning.observe(model, driver.state()));
+  film.seen.push_back(turning.observe(model, body.state()));
   int iterations = 0, trials = 0;
   for (int frame = 0; frame < scene.frames; ++frame) {
-    const StepReport& last = driver.make_frame(frame, [&](const StepReport& report) {
-      iterations += report.iterations;
-      trials += report.line_search;
-      film.step_ms += report.step_ms / (scene.frames * scene.substeps);
-      film.error_estimate = std::max(film.error_estimate, report.error_estimate);
-    });
-    if (last.failed) break;
-    film.seen.push_back(turning.observe(model, driver.state()));
+    const bool made = world.play(frame, {{}, [&](std::size_t, int) {
+                                           const StepReport& report = body.report();
+                                           iterations += report.iterations;
+                                           trials += report.line_search;
+                                           film.step_ms += report.step_ms / (scene.frames * scene.substeps);
+                                           film.error_estimate = std::max(film.error_estimate, report.error_estimate);
+                                         }});
+    if (!made) break;
+    film.seen.push_back(turning.observe(model, body.state()));
   }
   film.seen.resize(std::size_t(scene.frames) + 1, Vec3::Constant(std::nan("")));
   film.trials = double(trials) / std::max(iterations, 1);

@@ -33,99 +33,6 @@
 
 namespace supple {
 
-const char* text_of(FilmEnd end) {
-  switch (end) {
-    case FilmEnd::done: return "done";
-    case FilmEnd::interrupted: return "interrupted";
-    case FilmEnd::failed: break;
-  }
-  return "failed";
-}
-
-namespace {
-
-// Returns the scene of a plan as the reader takes it.
-SceneSource source_of(const FilmPlan& plan) {
-  return plan.scene_text ? SceneSource(plan.scene, *plan.scene_text) : SceneSource(scene_file(plan.scene));
-}
-
-LoadedFilm film_with(const FilmPlan& plan, const std::vector<std::string>& settings,
-                     const std::vector<std::string>& command) {
-  Zone zone("read scene");
-  const SceneSource source = source_of(plan);
-  LoadedFilm film{Script::load(source, assets_folder(), settings, plan.sweep_point), {}, {}, {}, {}};
-  film.info.command = command;
-  film.info.scene_file = std::filesystem::absolute(source.path).lexically_normal().string();
-  film.info.scene_text = source.text;
-  film.info.preview = plan.preview;
-  film.info.settings = settings;
-  film.info.sweep_point = plan.sweep_point;
-  film.info.scene_json = film.script.scene_json();
-  film.info.replay_json = film.script.replay_json();
-  film.info.kernel_variant = variant_name(best_variant());
-  film.info.threads =
-      plan.threads > 0 ? plan.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  check_save_states(plan.save_states, film.script.scene(), {}, 0);
-  zone.next("assemble meshes");
-  SlowWorkLine tells(plan.quiet);
-  film.bodies = assemble(film.script.scene(), slow_work_with(plan.cache, tells));
-  for (const Body& body : film.bodies) {
-    const TetMesh& mesh = body.description.mesh;
-    const auto elements = static_cast<int>(mesh.tets.rows() + body.description.springs.size());
-    film.info.meshes.push_back({body.def.name, body.source, mesh_hash(body), int(mesh.rest.rows()), elements});
-  }
-  return film;
-}
-
-// Loads the coarsest form of the scene that can be meshed: thin parts may want finer elements.
-LoadedFilm load_coarse(const FilmPlan& plan, const std::vector<std::string>& settings,
-                       const std::vector<std::string>& command) {
-  const SceneDef scene = Script::load(source_of(plan), assets_folder(), settings, plan.sweep_point).scene();
-  const auto with = [&](double share) {
-    std::vector<std::string> all = settings;
-    for (std::string& setting : preview_settings(scene, share)) all.push_back(std::move(setting));
-    return all;
-  };
-  for (const double share : plan.rough ? std::vector{0.06, 0.25, 0.5} : std::vector{0.25, 0.5}) {
-    try {
-      return film_with(plan, with(share), command);
-    } catch (const InputError&) {  // the last attempt says what is wrong
-    }
-  }
-  return film_with(plan, with(1), command);
-}
-
-}  // namespace
-
-LoadedFilm load_film(const FilmPlan& plan, const std::vector<std::string>& command) {
-  std::vector<std::string> settings = plan.settings;
-  if (plan.frames > 0) settings.push_back(fmt::format("frames={}", plan.frames));
-  if (plan.seed >= 0) settings.push_back(fmt::format("seed={}", plan.seed));
-  return plan.preview || plan.rough ? load_coarse(plan, settings, command) : film_with(plan, settings, command);
-}
-
-void build_models(const FilmPlan& plan, LoadedFilm& film) {
-  const Zone zone("build models");
-  try_changes(film.script, film.bodies);
-  std::future<void> skins;
-  if (plan.pictures != FilmPictures::none) {
-    skins = std::async(std::launch::async, [&plan, &film] {
-      name_thread("skins");
-      make_skins(plan, film);
-    });
-  }
-  for (const Body& body : film.bodies) film.models.push_back(build_model(body.description));
-  if (skins.valid()) skins.get();
-}
-
-void make_skins(const FilmPlan& plan, LoadedFilm& film) {
-  const Zone zone("make skins");
-  SlowWorkLine tells(plan.quiet);
-  const bool as_elements = film.script.scene().look.wireframe;
-  film.drawn =
-      drawn_bodies(film.bodies, slow_work_with(plan.cache, tells), as_elements ? DrawnAs::elements : DrawnAs::skin);
-}
-
 namespace {
 
 bool remembers_steps(const SceneDef& scene) {
@@ -151,9 +58,10 @@ std::vector<std::string> names_of(const std::vector<Body>& bodies) {
 
 // Checks that the folder holds all that is needed by a film that starts there.
 void check_folder(const FilmPlan& plan, const LoadedFilm& film, const FilmStart& start) {
-  const SceneDef& scene = film.script.scene();
+  const SceneDef& scene = film.world.script().scene();
   check_save_states(plan.save_states, scene, start.place.path, start.kept_frames());
-  check_rows_and_motion(start.place.path, film.bodies, static_cast<int>(scene.colliders.size()), start.kept_frames());
+  check_rows_and_motion(start.place.path, film.world.bodies(), static_cast<int>(scene.colliders.size()),
+                        start.kept_frames());
   if (plan.pictures == FilmPictures::all && !plan.film_only)
     check_pictures(start.place.path / "frames", start.kept_frames());
 }
@@ -174,8 +82,8 @@ std::filesystem::path asked_folder(const FilmPlan& plan, const SceneDef& scene) 
 
 // Refuses what a film cannot know before it has been made, and ways to film that contradict each other.
 void check_pictures_asked(const FilmPlan& plan, const LoadedFilm& film) {
-  const SceneDef& scene = film.script.scene();
-  if (plan.pictures != FilmPictures::none) check_references(scene, film.bodies, scene.frames - 1);
+  const SceneDef& scene = film.world.script().scene();
+  if (plan.pictures != FilmPictures::none) check_references(scene, film.world.bodies(), scene.frames - 1);
   std::vector<Problem> later = known_after_film(scene);
   if (!later.empty() && plan.pictures != FilmPictures::none) throw InputError(std::move(later));
   if (plan.film_only && plan.coding.format == FilmFormat::png)
@@ -188,12 +96,13 @@ void check_pictures_asked(const FilmPlan& plan, const LoadedFilm& film) {
 
 FilmStart check_film(const FilmPlan& plan, const LoadedFilm& film) {
   const Zone zone("begin folder");
-  const SceneDef& scene = film.script.scene();
+  const SceneDef& scene = film.world.script().scene();
   FilmStart start;
   start.place = place_of_run(asked_folder(plan, scene), plan, film.info);
-  start.identity = identity_of(film.info, film.script, film.bodies, plan);
-  start.checkpoint_every = remembers_steps(film.script) || plan.film_only || plan.preview ? 0 : plan.checkpoint_every;
-  start.record_head = record_head(film.info, film.bodies);
+  start.identity = identity_of(film.info, film.world.script(), film.world.bodies(), plan);
+  start.checkpoint_every =
+      remembers_steps(film.world.script()) || plan.film_only || plan.preview ? 0 : plan.checkpoint_every;
+  start.record_head = record_head(film.info, film.world.bodies());
   check_pictures_asked(plan, film);
   std::error_code ignored;
   if (!plan.folder_is_locked && std::filesystem::is_directory(start.place.path, ignored))
@@ -203,7 +112,7 @@ FilmStart check_film(const FilmPlan& plan, const LoadedFilm& film) {
   if (plan.pictures != FilmPictures::none) note_other_graphs(scene, start.place.path, start.kept_frames());
   check_records(plan, start);
   if (!plan.verify.empty()) start.verifier.emplace(plan.verify, start.record_head, plan.tolerance, start.kept_frames());
-  if (!plan.repeat.empty()) start.repeated = repeated_cuts(plan.repeat, names_of(film.bodies), scene.frames);
+  if (!plan.repeat.empty()) start.repeated = repeated_cuts(plan.repeat, names_of(film.world.bodies()), scene.frames);
   // A folder that does not exist yet is locked only now, so that a film that is refused leaves no trace.
   if (!plan.folder_is_locked && !start.lock) start.lock = std::make_unique<FolderLock>(start.place.path);
   return start;
@@ -238,7 +147,7 @@ bool make_frames(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, const
                  const FilmSolvers& solvers, VideoEncoder* video, FilmResult& result) {
   const Stopwatch setup;
   Stopwatch loop;
-  Progress progress(film.script.scene().frames, start.kept_frames(), plan.quiet);
+  Progress progress(film.world.script().scene().frames, start.kept_frames(), plan.quiet);
   std::optional<FilmLog> log;
   std::optional<FrameLoop> frames;
   const auto guarded = [&result](const auto& work) {
@@ -319,7 +228,7 @@ FilmResult make_film(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
                      const FilmSolvers& solvers) {
   FilmResult result;
   result.kept_frames = start.kept_frames();
-  const SceneDef scene = film.script.scene();
+  const SceneDef scene = film.world.script().scene();
   std::optional<VideoEncoder> video;
   if (plan.wants_video()) begin_video(plan, scene, folder, video);
   const bool begun = make_frames(plan, film, start, folder, solvers, video ? &*video : nullptr, result);

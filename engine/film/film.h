@@ -11,37 +11,19 @@
 
 #include "base/trace.h"
 #include "film/plan/film_plan.h"
+#include "film/plan/loaded_film.h"
 #include "film/plan/run_choice.h"
-#include "film/record/checkpoint.h"
 #include "film/record/repeated_cuts.h"
 #include "film/record/state_record.h"
 #include "output/files/folder_lock.h"
 #include "output/run/frame_rows.h"
 #include "output/run/row_tally.h"
 #include "output/run/run_folder.h"
-#include "scene/building/drawn_body.h"
-#include "scene/replay/script.h"
+#include "world/world_state.h"
 
 namespace supple {
 
 struct FilmSolvers;  // film_solvers.h
-
-// Holds a scene or replay that has been read and assembled.
-struct LoadedFilm {
-  Script script;
-  std::vector<Body> bodies;
-  std::vector<Model> models;     // by body, once build_models has made them
-  std::vector<DrawnBody> drawn;  // by body, once build_models has made them; empty without pictures
-  RunInfo info;                  // for run.json; filled in as the film goes along
-};
-
-// Reads the scene and its meshes. command: the command line with which the program was called. Throws InputError.
-LoadedFilm load_film(const FilmPlan& plan, const std::vector<std::string>& command);
-
-// Tries every change of the script, and builds the models, and with pictures what is drawn of them. Throws InputError.
-void build_models(const FilmPlan& plan, LoadedFilm& film);
-// Makes what is drawn of the bodies. build_models calls this, beside its other work.
-void make_skins(const FilmPlan& plan, LoadedFilm& film);
 
 // Describes how a film starts: where, and after which frames of an earlier run.
 struct FilmStart {
@@ -49,7 +31,7 @@ struct FilmStart {
   std::unique_ptr<FolderLock> lock;  // on it; null where the caller holds it
   std::string identity;              // of what a checkpoint belongs to
   int checkpoint_every = 0;          // frames; 0: never
-  std::optional<Checkpoint> checkpoint;
+  std::optional<WorldState> checkpoint;
   RecordHead record_head;
   std::optional<StateVerifier> verifier;
   std::vector<CutsByFrame> repeated;  // cuts by body of --repeat; empty without it
@@ -63,9 +45,6 @@ FilmStart check_film(const FilmPlan& plan, const LoadedFilm& film);
 
 // Takes the folder for this run and writes run.json into it. Throws InputError and RunError.
 RunFolder open_folder(FilmStart& start, LoadedFilm& film);
-
-enum class FilmEnd { done, interrupted, failed };
-const char* text_of(FilmEnd end);
 
 struct FilmResult {
   FilmEnd end = FilmEnd::done;

@@ -4,23 +4,23 @@
 
 namespace supple {
 
-FrameCost cost_of_frames(const SceneDef& scene, Body& body, Model& model, const CollisionSet& set,
-                         const Solvers& solvers, Threads& threads, int frames) {
-  DrivenBody driver(scene, body, model, set, solvers, &threads);
-  FrameCost cost;
-  int steps = 0;
-  for (int frame = 0; frame < frames && cost.failure.empty(); ++frame) {
-    double ms = 0;
-    driver.make_frame(frame, [&](const StepReport& report) {
-      if (report.failed) cost.failure = fmt::format("step {} fails: {}", steps, report.failure.what);
-      cost.touched = cost.touched || report.contacts.touching > 0;
-      ms += report.step_ms;
-      ++steps;
-    });
-    if (cost.failure.empty()) cost.frame_ms.push_back(ms);
+std::vector<FrameCost> cost_of_frames(World& world, int frames) {
+  std::vector<FrameCost> costs(world.size());
+  for (int frame = 0; frame < frames; ++frame) {
+    std::vector<double> ms(world.size());
+    const bool whole = world.play(frame, {{}, [&](std::size_t body, int substep) {
+                                            const StepReport& report = world.body(body).report();
+                                            const int step = frame * world.scene().substeps + substep;
+                                            if (report.failed)
+                                              costs[body].failure =
+                                                  fmt::format("step {} fails: {}", step, report.failure.what);
+                                            costs[body].touched |= report.contacts.touching > 0;
+                                            ms[body] += report.step_ms;
+                                          }});
+    if (!whole) break;
+    for (std::size_t b = 0; b < ms.size(); ++b) costs[b].frame_ms.push_back(ms[b]);
   }
-  cost.state = driver.state();
-  return cost;
+  return costs;
 }
 
 }  // namespace supple

@@ -1,5 +1,5 @@
-// Defines the loop that makes a film: it makes the steps of a frame and hands what is to be drawn to Pictures, whose
-// threads draw and compress meanwhile. Nothing that they do can change a result.
+// Defines the loop that makes a film. Each frame of the world is entered, stepped, recorded, listed to be drawn, and
+// logged; Pictures' threads draw and compress meanwhile. Nothing that they do can change a result.
 #pragma once
 
 #include <memory>
@@ -11,8 +11,8 @@
 #include "film/pictures/drawn_film.h"
 #include "film/pictures/pictures.h"
 #include "film/progress.h"
+#include "film/record/body_recorder.h"
 #include "film/record/film_log.h"
-#include "film/record/filmed_body.h"
 #include "output/motion/pose_table.h"
 #include "scene/building/body_meetings.h"
 
@@ -34,46 +34,41 @@ class FrameLoop {
 
  private:
   // These functions are the parts of a frame, in their order.
-  void apply_replay(int frame, FrameRow& row);
-  std::string step_bodies(int frame, FrameRow& row);
-  void find_meetings(FrameRow& row);
-  void save_outputs(int frame, const FrameRow& row);
+  void enter(int frame, FrameRow& row);
+  std::string step(int frame, FrameRow& row);
+  void record(int frame, FrameRow& row);
   bool show(int frame, FrameRow& row);
-  void keep_motion();
 
-  void resume(const Checkpoint& checkpoint);
-  void end_last_changes();
-  void apply(SceneDef scene, const std::vector<TimedChange>& changes);
+  std::string compare_with_record(int frame);
+  void save_outputs(int frame, const FrameRow& row);
+  void find_meetings(FrameRow& row);
+  void keep_motion();
   void look_for_meetings();
-  std::string step_body(int frame, FilmedBody& body, FrameRow& row);
-  Checkpoint checkpoint_after(int frames) const;
-  void keep_checkpoint_before(int frame);
-  void add_checkpoint(int frames);
+  void resume(const WorldState& checkpoint);
+  void keep_checkpoint_before();
+  void add_checkpoint();
   // Returns the frames whose pictures have been written since the last call.
   std::vector<PictureTimes> written_pictures() {
     return pictures_ ? pictures_->take_written() : std::vector<PictureTimes>();
   }
 
   const FilmPlan& plan_;
-  const Script& script_;
-  std::vector<Body>& bodies_;
+  World& world_;
   const RunFolder& folder_;
-  SceneDef scene_;          // of the frame in progress
-  CollisionSet colliders_;  // the colliders of the frame in progress
   Threads threads_;
   int first_;  // the first frame that this run makes; those before it are an earlier run's
   FilmLog& log_;
   bool graphs_;                         // whether the pictures have graphs
   std::vector<GraphPoint> graphed_;     // of the frames so far, where the pictures have graphs
   StateVerifier* verifier_;             // compares states for --verify; null without it
-  Checkpoint checkpoint_before_;        // taken before the frame in progress; empty when the film keeps none
+  WorldState checkpoint_before_;        // taken before the frame in progress; empty when the film keeps none
   std::optional<DrawnFilm> drawn_;      // only with pictures
   std::vector<Positions> last_motion_;  // of the bodies at the end of the last frame, where the pictures need it [m]
-  std::vector<std::unique_ptr<FilmedBody>> filmed_;
-  BodyMeetings meetings_;                 // that no earlier frame has had
-  std::optional<PoseTableWriter> poses_;  // only with colliders
-  std::optional<StateRecorder> recorder_;
-  std::optional<Pictures> pictures_;  // last, so that its threads end first
+  std::vector<std::unique_ptr<BodyRecorder>> recorders_;  // of each body
+  BodyMeetings meetings_;                                 // that no earlier frame has had
+  std::optional<PoseTableWriter> poses_;                  // only with colliders
+  std::optional<StateRecorder> states_;                   // for --record
+  std::optional<Pictures> pictures_;                      // last, so that its threads end first
 };
 
 }  // namespace supple

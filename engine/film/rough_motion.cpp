@@ -74,7 +74,7 @@ Bounds rough_motion(const FilmPlan& plan, const FilmSolvers& solvers, const Load
     box.include(bounds_of(points).lower);
     box.include(bounds_of(points).upper);
   };
-  for (const Body& body : film.bodies) {
+  for (const Body& body : film.world.bodies()) {
     const Positions& rest = body.description.mesh.rest;
     include(rest);
     PointCacheReader motion(folder.motion(body.def.name));
@@ -82,7 +82,7 @@ Bounds rough_motion(const FilmPlan& plan, const FilmSolvers& solvers, const Load
       include(motion.frame(frame).rowwise() + motion_origin(rest).transpose());
   }
   // Coarse bodies may lack the tips of ears and tails, which are seen where the bodies start.
-  for (const Body& body : whole.bodies) include(body.description.mesh.rest);
+  for (const Body& body : whole.world.bodies()) include(body.description.mesh.rest);
   for (const DrawnBody& body : whole.drawn) {
     if (body.skin.rest.points.rows() > 0) include(body.skin.rest.points);
   }
@@ -95,7 +95,7 @@ Bounds rough_motion(const FilmPlan& plan, const FilmSolvers& solvers, const Load
 }  // namespace
 
 void find_framing(const FilmPlan& plan, const FilmStart& start, const FilmSolvers& solvers, LoadedFilm& film) {
-  const bool asked = film.script.scene().camera.frames == Framed::film && plan.pictures != FilmPictures::none;
+  const bool asked = film.world.script().scene().camera.frames == Framed::film && plan.pictures != FilmPictures::none;
   if (!asked) return;
   if (start.kept_frames() > 0) film.info.framed = framed_in(read_run(start.place.path).info_json);
   if (!film.info.framed) film.info.framed = rough_motion(plan, solvers, film);

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "base/frame_time.h"
-#include "film/film.h"
 #include "film/pictures/drawn_film.h"
+#include "film/plan/loaded_film.h"
 #include "output/run/row_tally.h"
 
 namespace supple {
@@ -28,43 +28,56 @@ FilmPlan rough_plan(const FilmPlan& plan) {
 // Returns how many frames the first pass makes: none with changes of a replay, and none at all where a single one would
 // take too long.
 int frames_of_pass(const LoadedFilm& film) {
-  const SceneDef& scene = film.script.scene();
+  const SceneDef& scene = film.world.script().scene();
   long long vertices = 0;
-  for (const Body& body : film.bodies) vertices += body.description.mesh.rest.rows();
+  for (const Body& body : film.world.bodies()) vertices += body.description.mesh.rest.rows();
   const long long most = most_vertex_steps / std::max(1LL, vertices * scene.substeps);
   const int frames = static_cast<int>(std::min<long long>(most, scene.frames));
   for (int frame = 0; frame < frames; ++frame) {
-    if (!film.script.at_work(frame).empty()) return frame;
+    if (!film.world.script().at_work(frame).empty()) return frame;
   }
   return frames;
 }
 
-// Makes the frames of one body, and returns its positions after each, by vertex of its mesh [m]. Where a step fails,
-// there are no more.
-std::vector<Positions> rough_motion_of(const SceneDef& scene, Body& body, const CollisionSet& set,
-                                       const FilmSolvers& solvers, Threads& threads, int frames) {
+// Returns the same body, to be moved by a solver that is as quick as can be.
+Body quick(Body body) {
   SolverSettings& settings = body.def.solver.settings;
   settings.iterations = std::min(settings.iterations, rough_iterations);
   settings.rounds = 1;
   settings.newton = false;
   settings.budget_ms = 0;
   body.def.solver.method = Method::quasi_newton;
-  Model model = build_model(body.description);
-  DrivenBody driver(scene, body, model, set, solvers.steps, &threads);
-  std::vector<Positions> motion;
-  for (int frame = 0; frame < frames; ++frame) {
-    if (driver.make_frame(frame, [](const StepReport&) {}).failed) break;
-    motion.push_back(in_input_order(model, driver.state().x));
+  return body;
+}
+
+// Makes the first frames of a scene, and returns the positions of all bodies after each, by vertex of their meshes [m].
+// Where a step fails, there are no more. With no frames to make, returns the positions at the start.
+std::vector<std::vector<Positions>> rough_motion_of(const World& world, const FilmSolvers& solvers, Threads& threads,
+                                                    int frames) {
+  std::vector<std::vector<Positions>> motion;
+  if (frames == 0) {
+    motion.emplace_back();
+    for (const Body& body : world.bodies()) motion.back().push_back(first_positions(body));
+    return motion;
+  }
+  std::vector<Body> bodies;
+  for (const Body& body : world.bodies()) bodies.push_back(quick(body));
+  World rough(world.scene(), std::move(bodies));
+  rough.start(solvers.steps, &threads);
+  for (int frame = 0; frame < frames && rough.play(frame); ++frame) {
+    motion.emplace_back();
+    for (std::size_t b = 0; b < rough.size(); ++b)
+      motion.back().push_back(in_input_order(rough.body(b).model(), rough.body(b).state().x));
   }
   return motion;
 }
 
 Bounds box_around(const std::vector<std::vector<Positions>>& motion, const std::vector<Body>& bodies) {
   Bounds box = bounds_at_rest(bodies);
-  for (const std::vector<Positions>& body : motion) {
-    for (const Positions& frame : body) {
-      box.include(bounds_of(frame).lower);
-      box.include(bounds_of(frame).upper);
+  for (const std::vector<Positions>& frame : motion) {
+    for (const Positions& body : frame) {
+      box.include(bounds_of(body).lower);
+      box.include(bounds_of(body).upper);
     }
   }
   return box;
@@ -79,32 +92,26 @@ std::string pass_words(int frames, int whole) {
 }  // namespace
 
 std::vector<std::string> missing_in_rough_pictures(const FilmPlan& plan, const FilmSolvers& solvers) {
-  LoadedFilm film = load_film(rough_plan(plan), {});
-  const SceneDef& scene = film.script.scene();
-  const CollisionSet set = collision_set(scene);
+  const LoadedFilm film = load_film(rough_plan(plan), {});
+  const World& world = film.world;
+  const SceneDef& scene = world.scene();
   Threads threads(1);
-  int frames = frames_of_pass(film);
-  std::vector<std::vector<Positions>> motion;
-  for (Body& body : film.bodies) {
-    if (frames == 0) {
-      motion.push_back({first_positions(body)});
-      continue;
-    }
-    motion.push_back(rough_motion_of(scene, body, set, solvers, threads, frames));
-    frames = static_cast<int>(motion.back().size());
-    if (frames == 0) return {};  // its first step failed
-  }
-  DrawnFilm drawn(film.script, film.bodies, drawn_bodies(film.bodies, {}, DrawnAs::elements), set, "");
-  if (scene.camera.frames == Framed::film) drawn.frame_motion(box_around(motion, film.bodies));
+  const int wanted = frames_of_pass(film);
+  const std::vector<std::vector<Positions>> motion = rough_motion_of(world, solvers, threads, wanted);
+  if (motion.empty()) return {};  // its first step failed
+  const int frames = std::min(wanted, int(motion.size()));
+  DrawnFilm drawn(world.script(), world.bodies(), drawn_bodies(world.bodies(), {}, DrawnAs::elements),
+                  world.colliders(), "");
+  if (scene.camera.frames == Framed::film) drawn.frame_motion(box_around(motion, world.bodies()));
   RowTally tally;
   for (int frame = 0; frame < std::max(1, frames); ++frame) {
     FramePose pose{frame, frame_time(frame, scene.fps), {}, {}};
-    for (const std::vector<Positions>& body : motion) pose.motion.push_back(&body[std::size_t(frame)]);
-    const DrawList list = drawn.list(scene, pose, set, threads);
+    for (const Positions& body : motion[std::size_t(frame)]) pose.motion.push_back(&body);
+    const DrawList list = drawn.list(scene, pose, world.colliders(), threads);
     FrameRow row;
     row.frame = frame;
-    for (std::size_t b = 0; b < film.bodies.size(); ++b) {
-      row.bodies.emplace_back().name = film.bodies[b].def.name;
+    for (std::size_t b = 0; b < world.size(); ++b) {
+      row.bodies.emplace_back().name = world.bodies()[b].def.name;
       row.bodies.back().in_picture = drawn.share_in_picture(b, list);
     }
     tally.add(row);

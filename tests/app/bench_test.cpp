@@ -48,7 +48,7 @@ TEST(Bench, GainsByIterationAddUpToWhereTheMethodsEnd) {
   for (const Outcome& outcome : outcomes) {
     ASSERT_FALSE(outcome.failed);
     ASSERT_EQ(outcome.gained.size(), outcome.ms.size());
-    EXPECT_NEAR(outcome.gained.back(), gained(subject.model, subject.inputs(state), state.before, outcome.x, w),
+    EXPECT_NEAR(outcome.gained.back(), gained(subject.model(), subject.inputs(state), state.before, outcome.x, w),
                 1e-12 * lowest.below_y);
     const std::vector<double> errors = errors_of(outcome, lowest.below_y);
     for (std::size_t k = 1; k < errors.size(); ++k) {

@@ -40,7 +40,7 @@ TEST(FilmLog, MemoryDoesNotGrowWithTheNumberOfFrames) {
     long early = 0;
     for (int frame = 0; frame < 5000; ++frame) {
       log.add(row_of(frame));
-      log.settle(nullptr);
+      log.settle({});
       ASSERT_EQ(log.waiting_rows(), 0);
       if (frame == 500) early = bytes_in_use();
     }
@@ -63,7 +63,7 @@ TEST(FilmLog, RowsComeBackAsTheyWere) {
       log.add(row_of(frame));
     }
     EXPECT_EQ(log.waiting_rows(), 300);
-    log.settle(nullptr);
+    log.settle({});
     kept = log.whole_rows();
   }
   RowTally tally;
@@ -85,7 +85,7 @@ TEST(FilmLog, AFileThatLostRowsIsNamed) {
   const RunFolder run(folder.path / "run");
   FilmLog log(run, 1000, "{}", 0, {});
   for (int frame = 0; frame < 3; ++frame) log.add(row_of(frame));
-  log.settle(nullptr);
+  log.settle({});
   const FrameRows rows = log.whole_rows();
   std::filesystem::resize_file(run.rows(), 100);
   try {

@@ -3,9 +3,9 @@
 
 #include "base/hash.h"
 #include "baselines/make_rule.h"
-#include "scene/driven_body.h"
 #include "sim/model/measures.h"
 #include "support/scene_text.h"
+#include "world/world.h"
 
 namespace supple {
 namespace {
@@ -16,38 +16,32 @@ std::string cube(const std::string& model, const std::string& keys, const std::s
          "\", young = 3e4, poisson = 0.35 }\n" + keys;
 }
 
-// A body of a scene with all that makes its steps.
+// A scene of one body, with a step a frame.
 struct Played {
   explicit Played(const std::string& text, int count = 1)
-      : threads(count),
-        scene(test::scene_of(text)),
-        body(std::move(assemble(scene).front())),
-        model(build_model(body.description)),
-        set(collision_set(scene)),
-        driver(scene, body, model, set,
-               {[](const SolverDef& solver, const Model& m) { return make_rule(solver.method, m); },
-                [](const SolverDef& solver) { return settings_of(solver.method, solver.settings); }},
-               &threads) {}
+      : threads(count), world(test::scene_of(text), assemble(test::scene_of(text))) {
+    world.start({[](const SolverDef& solver, const Model& m) { return make_rule(solver.method, m); },
+                 [](const SolverDef& solver) { return settings_of(solver.method, solver.settings); }},
+                &threads);
+  }
 
   // Makes frames from `first` on; returns how many of them were untangled.
   int play(int first, int end) {
     int untangled = 0;
     for (int frame = first; frame < end; ++frame) {
-      driver.prepare_step(frame, 0);
-      EXPECT_FALSE(driver.step().failed);
-      untangled += driver.untangled() ? 1 : 0;
+      EXPECT_TRUE(world.play(frame));
+      untangled += body().untangled() ? 1 : 0;
     }
     return untangled;
   }
-  std::uint64_t hash() const { return state_hash(model, driver.state()); }
-  Deformation shape() const { return deformation(model, driver.state().x); }
+  MovingBody& body() { return world.body(0); }
+  const State& state() const { return world.body(0).state(); }
+  const Model& model() const { return world.body(0).model(); }
+  std::uint64_t hash() const { return world.hash(); }
+  Deformation shape() const { return deformation(model(), state().x); }
 
   Threads threads;
-  SceneDef scene;
-  Body body;
-  Model model;
-  CollisionSet set;
-  DrivenBody driver;
+  World world;
 };
 
 TEST(Untangle, BodiesComeToRestThatWouldStayFolded) {
@@ -58,7 +52,7 @@ TEST(Untangle, BodiesComeToRestThatWouldStayFolded) {
       const int untangled = played.play(0, 90);
       EXPECT_GE(untangled, 1) << model << start;
       EXPECT_LE(untangled, 15) << model << start;
-      EXPECT_FALSE(is_tangled(played.model, played.driver.state().x)) << model << start;
+      EXPECT_FALSE(is_tangled(played.model(), played.state().x)) << model << start;
       EXPECT_LT(played.shape().stretch, 1.06) << model << start;
     }
   }
@@ -79,11 +73,11 @@ TEST(Untangle, BitsDependNeitherOnThreadsNorOnWhereARunWasResumed) {
   const std::string scene = cube("st-venant-kirchhoff", "start = { stretch = [10, 10, 10] }");
   Played one(scene), two(scene, 2), resumed(scene);
   one.play(0, 1);
-  const State middle = one.driver.state();
+  const State middle = one.state();
   EXPECT_GE(one.play(1, 30), 1) << "the state in the middle is tangled";
   two.play(0, 30);
   EXPECT_EQ(one.hash(), two.hash());
-  resumed.driver.restore(middle);
+  resumed.body().restore(middle);
   resumed.play(1, 30);
   EXPECT_EQ(one.hash(), resumed.hash());
 }
@@ -94,8 +88,8 @@ TEST(Untangle, HeldVerticesStayHeld) {
       "1]] }\n";
   Played played(cube("neo-hookean", handle));
   EXPECT_GE(played.play(0, 90), 1);
-  for (int v = played.model.free; v < played.model.vertices; ++v)
-    EXPECT_EQ(played.driver.state().x.row(v), played.model.rest.row(v));
+  for (int v = played.model().free; v < played.model().vertices; ++v)
+    EXPECT_EQ(played.state().x.row(v), played.model().rest.row(v));
   EXPECT_LT(played.shape().stretch, 1.06);
 }
 

@@ -61,15 +61,15 @@ bool add_state(Subject& subject, const BenchState& state, std::vector<Candidate>
     own.solver = settings_of(list[c].method, own.solver);
     State after = state.before;
     workspace.correction = {};  // each candidate finds the columns of A^-1 that it needs itself
-    if (step(subject.model, own, after, workspace, *rules[c]).failed) continue;
-    gain[c] = gained(subject.model, inputs, state.before, after.x, workspace);
+    if (step(subject.model(), own, after, workspace, *rules[c]).failed) continue;
+    gain[c] = gained(subject.model(), inputs, state.before, after.x, workspace);
     if (gain[c] > most) {
       most = gain[c];
       best = after.x;
     }
   }
-  const double whole = reference.minimum(subject.model, inputs, state.before, best, workspace).below_y;
-  const double scale = subject.model.total_mass * std::pow(subject.model.size / subject.model.time_step, 2);
+  const double whole = reference.minimum(subject.model(), inputs, state.before, best, workspace).below_y;
+  const double scale = subject.model().total_mass * std::pow(subject.model().size / subject.model().time_step, 2);
   if (!(whole > 1e-12 * scale)) return false;
   for (std::size_t c = 0; c < list.size(); ++c) list[c].error.push_back(std::max((whole - gain[c]) / whole, 1e-15));
   return true;
@@ -133,16 +133,16 @@ int main(int count, char** arguments) {
   for (const std::filesystem::path& file : files) {
     for (const BodyDef& def : load_scene(file, assets_folder(), {}).bodies) {
       Subject subject({file.stem().string(), def.name});
-      if (subject.model.vertices > most_vertices) continue;
-      fmt::print(stderr, "{}, {} ({})\n", subject.scene.name, def.name, subject.size_text());
+      if (subject.model().vertices > most_vertices) continue;
+      fmt::print(stderr, "{}, {} ({})\n", subject.scene().name, def.name, subject.size_text());
       std::vector<std::unique_ptr<SearchRule>> rules;
-      for (const Candidate& candidate : list) rules.push_back(make_rule(candidate.method, subject.model));
-      Reference reference(subject.model);
+      for (const Candidate& candidate : list) rules.push_back(make_rule(candidate.method, subject.model()));
+      Reference reference(subject.model());
       Workspace workspace;
       workspace.threads = &threads;
       for (const BenchState& state : states_of(subject, frames, arguments[1], threads)) {
         if (add_state(subject, state, list, rules, reference, workspace))
-          states.push_back({subject.scene.name, def.name, state.frame});
+          states.push_back({subject.scene().name, def.name, state.frame});
       }
     }
   }

@@ -14,12 +14,12 @@
 #include "output/run/profile.h"
 #include "scene/building/assemble.h"
 #include "scene/building/collision_set.h"
-#include "scene/driven_body.h"
 #include "scene/reading/scene_reader.h"
 #include "sim/model/measures.h"
 #include "sim/solver/iterations.h"
 #include "sim/solver/lbfgs.h"
 #include "sim/solver/step.h"
+#include "world/world.h"
 
 using namespace supple;
 
@@ -216,19 +216,19 @@ void compare(const Start& start, std::vector<Variant>& list, Reference& lowest, 
 int main(int count, char** arguments) {
   if (count < 6) return 2;
   const SceneDef scene = load_scene(arguments[2], arguments[1], {arguments + 6, arguments + count});
-  std::vector<Body> bodies = assemble(scene);
-  const auto found =
-      std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.def.name == arguments[3]; });
-  if (found == bodies.end()) {
+  World world(scene, assemble(scene));
+  const auto found = std::find_if(world.bodies().begin(), world.bodies().end(),
+                                  [&](const Body& b) { return b.def.name == arguments[3]; });
+  if (found == world.bodies().end()) {
     fmt::print(stderr, "{} has no body '{}'\n", arguments[2], arguments[3]);
     return 2;
   }
-  Model model = build_model(found->description);
-  const CollisionSet set = collision_set(scene);
+  Threads threads(2);
+  world.start(scenes_own_solver(), &threads);
+  MovingBody& body = world.body(std::size_t(found - world.bodies().begin()));
+  const Model& model = body.model();
   Triangles surface = found->def.cloth ? found->cloth.surface.triangles : boundary_faces(found->description.mesh.tets);
   for (Eigen::Index i = 0; i < surface.size(); ++i) surface.data()[i] = model.internal_of[surface.data()[i]];
-  Threads threads(2);
-  DrivenBody driver(scene, *found, model, set, scenes_own_solver(), &threads);
   std::vector<Variant> list = variants(found->def.solver.settings);
   Workspace scratch;
   scratch.threads = &threads;
@@ -236,16 +236,14 @@ int main(int count, char** arguments) {
   Reference lowest(model);
   const int every = std::max(1, std::atoi(arguments[4]));
   for (int frame = 0; frame < std::atoi(arguments[5]); ++frame) {
-    driver.prepare_step(frame, 0);
-    const State before = driver.state();
-    const StepReport& report = driver.make_frame(frame, [](const StepReport&) {});
-    if (report.failed) return 1;
-    if (frame % every != 0 || report.contacts.touching == 0) continue;
-    const State after = driver.state();
-    driver.restore(before);
-    driver.prepare_step(frame, 0);
-    compare({model, driver.inputs(), before, surface}, list, lowest, scratch);
-    driver.restore(after);
+    const State before = body.state();
+    if (!world.play(frame)) return 1;
+    if (frame % every != 0 || body.report().contacts.touching == 0) continue;
+    const State after = body.state();
+    body.restore(before);
+    world.prepare(0);
+    compare({model, body.inputs(), before, surface}, list, lowest, scratch);
+    body.restore(after);
   }
   fmt::print("{}: {} vertices, {} states in contact\n\n", scene.name, model.vertices, list.front().error.size());
   if (!list.front().error.empty()) print(list);

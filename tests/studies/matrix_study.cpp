@@ -46,12 +46,12 @@ Run run_once(Subject& subject, const StepInputs& given, const State& before, con
   const StepReport* report = nullptr;
   w.correction = {};
   if (variant.age == -2) {
-    report = &step(subject.model, inputs, after, w);
+    report = &step(subject.model(), inputs, after, w);
   } else {
     static TangentSystem tangent;
     static Model copy;
-    tangent.make(subject.model, place, variant.shares, nullptr);
-    copy = subject.model;
+    tangent.make(subject.model(), place, variant.shares, nullptr);
+    copy = subject.model();
     static_cast<System&>(copy) = tangent.system();
     report = &step(copy, inputs, after, w);
   }
@@ -62,7 +62,7 @@ Run run_once(Subject& subject, const StepInputs& given, const State& before, con
   run.x = after.x;
   const std::vector<IterationRecord> records = report->records;
   Workspace scratch;
-  double left = gained(subject.model, inputs, before, run.x, scratch);
+  double left = gained(subject.model(), inputs, before, run.x, scratch);
   run.gained.assign(records.size() + 1, left);
   for (std::size_t k = records.size(); k-- > 0;) {
     left -= records[k].decrease;
@@ -74,15 +74,17 @@ Run run_once(Subject& subject, const StepInputs& given, const State& before, con
 // One line a state and age: how stale the matrix is, error and trials over those of the constant matrix.
 void study(const std::string& scene, const std::string& body, int most_vertices, Threads& threads) {
   Subject subject({scene, body, {"solver.matrix=constant"}});
-  if (subject.model.vertices > most_vertices) return;
-  const Model& model = subject.model;
-  DrivenBody driver(subject.scene, subject.body, subject.model, subject.set, scenes_own_solver(), &threads);
+  if (subject.model().vertices > most_vertices) return;
+  const Model& model = subject.model();
+  World world = subject.new_world(scenes_own_solver(), threads);
+  const MovingBody& moving = world.body(0);
   std::deque<Positions> places, starts;
   Reference reference(model);
   Workspace w, scratch;
   for (int frame = 0; frame <= 70; ++frame) {
-    driver.prepare_step(frame, 0);
-    const State before = driver.state();
+    world.enter(frame);
+    world.prepare(0);
+    const State before = moving.state();
     places.push_front(before.x + model.time_step * before.v);
     starts.push_front(before.x);
     if (places.size() > 17) {
@@ -94,7 +96,7 @@ void study(const std::string& scene, const std::string& body, int most_vertices,
       std::vector<std::string> labels;
       std::vector<double> stale;
       const auto add = [&](const std::string& label, const Variant& v, const Positions& place) {
-        runs.push_back(run_once(subject, driver.inputs(), before, v, place, w, 10));
+        runs.push_back(run_once(subject, moving.inputs(), before, v, place, w, 10));
         labels.push_back(label);
         TangentSystem made;
         if (v.age != -2) made.make(model, place, v.shares, nullptr);
@@ -114,7 +116,7 @@ void study(const std::string& scene, const std::string& body, int most_vertices,
       const Run* best = &runs[0];
       for (const Run& r : runs)
         if (!r.failed && r.gained.back() > best->gained.back()) best = &r;
-      const double whole = reference.minimum(model, driver.inputs(), before, best->x, scratch).below_y;
+      const double whole = reference.minimum(model, moving.inputs(), before, best->x, scratch).below_y;
       const double scale = model.total_mass * std::pow(model.size / model.time_step, 2);
       if (whole > 1e-12 * scale) {
         for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -126,7 +128,7 @@ void study(const std::string& scene, const std::string& body, int most_vertices,
         std::fflush(stdout);
       }
     }
-    driver.make_frame(frame, [](const StepReport&) {});
+    world.step();
   }
 }
 

@@ -44,29 +44,26 @@ struct Take {
 
 Take simulate(const std::filesystem::path& path, int frames, const std::vector<std::string>& settings) {
   const SceneDef scene = load_scene(path, assets_folder(), settings);
-  std::vector<Body> bodies = assemble(scene);
-  const CollisionSet set = collision_set(scene);
+  World world(scene, assemble(scene));
   Threads threads(2);
-  std::vector<Model> models;
+  world.start(scenes_own_solver(), &threads);
+  const std::vector<Body>& bodies = world.bodies();
+  const CollisionSet& set = world.colliders();
   std::vector<DrawnBody> drawn = drawn_bodies(bodies);
-  for (const Body& body : bodies) models.push_back(build_model(body.description));
   const std::vector<Skin> colliders = collider_skins(set.scene_colliders, bodies);
   Take take;
   const Stage fine = make_stage(scene, bodies, drawn, set.scene_colliders, colliders, caption_font());
   const Camera camera = camera_at(scene, fine, 0);
   fit_to_cameras(drawn, bodies, {camera}, scene.output.height);
   take.stage = make_stage(scene, bodies, drawn, set.scene_colliders, colliders, caption_font());
-  std::vector<std::unique_ptr<DrivenBody>> driven;
-  for (std::size_t b = 0; b < bodies.size(); ++b)
-    driven.push_back(std::make_unique<DrivenBody>(scene, bodies[b], models[b], set, scenes_own_solver(), &threads));
   for (int frame = 0; frame < frames; ++frame) {
-    for (auto& body : driven) body->make_frame(frame, [](const StepReport&) {});
+    world.play(frame);
     if (frame + 4 < frames) continue;
     DrawList list;
     list.camera = camera;
     for (std::size_t b = 0; b < bodies.size(); ++b)
-      list.positions.push_back(
-          skin_positions(drawn[b], bodies[b].description.mesh, in_input_order(models[b], driven[b]->state().x)));
+      list.positions.push_back(skin_positions(drawn[b], bodies[b].description.mesh,
+                                              in_input_order(world.body(b).model(), world.body(b).state().x)));
     add_colliders(set.scene_colliders, colliders, (frame + 1) / scene.fps, list);
     take.lists.push_back(std::move(list));
   }

@@ -88,24 +88,24 @@ struct Hung {
 // Films the body, and measures the error of every few steps where it is asked for.
 Hung hang(Subject& subject, const TetMesh& mesh, int iterations, DirectionStart start, bool with_errors,
           Threads& threads) {
-  DrivenBody driver(subject.scene, subject.body, subject.model, subject.set,
-                    solver_instead(Method::quasi_newton, iterations, start), &threads);
-  Reference reference(subject.model);
+  World world = subject.new_world(solver_instead(Method::quasi_newton, iterations, start), threads);
+  const MovingBody& body = world.body(0);
+  Reference reference(subject.model());
   Workspace scratch;
   Hung hung;
   for (int frame = 0; frame < film_frames; ++frame) {
-    const State before = driver.state();
-    const StepReport& last = driver.make_frame(frame, [&](const StepReport& report) {
-      hung.iterations += report.iterations;
-      hung.trials += report.line_search;
-    });
-    if (last.failed) {
+    const State before = body.state();
+    const bool made = world.play(frame, {{}, [&](std::size_t, int) {
+                                           hung.iterations += body.report().iterations;
+                                           hung.trials += body.report().line_search;
+                                         }});
+    if (!made) {
       hung.worst_error = hung.stretch = std::nan("");
       return hung;
     }
-    hung.stretch = std::max(hung.stretch, largest_edge_stretch(mesh, subject.model, driver.state().x));
+    hung.stretch = std::max(hung.stretch, largest_edge_stretch(mesh, body.model(), body.state().x));
     if (!with_errors || frame % measured_every != 0) continue;
-    const auto error = reference.step_error(subject.model, driver.inputs(), before, driver.state(), scratch);
+    const auto error = reference.step_error(subject.model(), body.inputs(), before, body.state(), scratch);
     if (!error) continue;
     hung.log_error += std::log(std::max(*error, 1e-15));
     hung.worst_error = std::max(hung.worst_error, *error);

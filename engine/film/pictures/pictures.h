@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/queue.h"
+#include "output/run/profile.h"
 #include "output/video/video.h"
 #include "render/renderer.h"
 

@@ -19,6 +19,9 @@ struct Names<FilmPictures> {
                                        Name{FilmPictures::all, "all"}};
 };
 
+enum class FilmEnd { done, interrupted, failed };  // how the making of a film ended
+const char* text_of(FilmEnd end);
+
 struct FilmPlan {
   std::string scene;                       // a file of a scene or replay, or the name of one that ships
   std::optional<std::string> scene_text;   // stands for that file, which need not exist

@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "scene/driven_body.h"
+#include "world/solvers.h"
 
 namespace supple {
 

@@ -60,7 +60,7 @@ class Reader {
 
 }  // namespace
 
-std::string checkpoint_bytes(const Checkpoint& checkpoint, const std::string& identity) {
+std::string checkpoint_bytes(const WorldState& checkpoint, const std::string& identity) {
   Json head = {{"identity", parsed_json<Json>(identity)}, {"frames", checkpoint.frames}, {"bodies", Json::array()}};
   for (const State& body : checkpoint.bodies) {
     Json holds = Json::array();
@@ -119,14 +119,14 @@ State read_body(const Json& body, Reader& reader) {
 
 }  // namespace
 
-Checkpoint read_checkpoint(const std::filesystem::path& path, const std::string& identity) {
+WorldState read_checkpoint(const std::filesystem::path& path, const std::string& identity) {
   const std::string bytes = read_file(path);
   Reader reader(bytes, path.string());
   if (bytes.size() < signature.size() + 16 || reader.take(signature.size()) != signature) reader.fail();
   std::uint64_t hash = 0;
   std::memcpy(&hash, bytes.data() + bytes.size() - sizeof hash, sizeof hash);
   if (hash != hash_bytes(bytes.data(), bytes.size() - sizeof hash)) reader.fail();
-  Checkpoint checkpoint;
+  WorldState checkpoint;
   try {
     const Json head = parsed_json<Json>(reader.take(reader.number()));
     check_identity(head.at("identity"), identity, path);

@@ -24,27 +24,6 @@ namespace supple {
 
 using Json = nlohmann::ordered_json;
 
-void check_save_states(const std::vector<int>& frames, const SceneDef& scene, const std::filesystem::path& run,
-                       int start) {
-  const auto is_there = [&](int frame) {
-    return std::all_of(scene.bodies.begin(), scene.bodies.end(), [&](const BodyDef& body) {
-      return std::filesystem::exists(run / "states" / fmt::format("{}-{:06}", body.name, frame) / "state.json");
-    });
-  };
-  for (const int frame : frames) {
-    if (frame < start && !is_there(frame))
-      throw InputError(fmt::format("--save-state {}", frame),
-                       fmt::format("the film goes on with frame {}; earlier states are gone, and only without --resume "
-                                   "they come again",
-                                   start));
-    if (frame < scene.frames) continue;
-    throw InputError(fmt::format("--save-state {}", frame),
-                     scene.frames == 1
-                         ? std::string("the film has one frame, 0")
-                         : fmt::format("the film has {} frames, 0 to {}", scene.frames, scene.frames - 1));
-  }
-}
-
 namespace {
 
 // Returns all that two runs must have in common for one to count as the beginning of the other, where no checkpoint
@@ -92,7 +71,7 @@ void check_nothing_is_lost(const std::filesystem::path& run, const RunInfo& info
 
 }  // namespace
 
-std::optional<Checkpoint> checkpoint_in(const std::filesystem::path& run, const std::string& identity, int frames,
+std::optional<WorldState> checkpoint_in(const std::filesystem::path& run, const std::string& identity, int frames,
                                         const RunInfo& info) {
   const std::filesystem::path file = RunFolder::checkpoint_of(run);
   std::error_code error;
@@ -102,7 +81,7 @@ std::optional<Checkpoint> checkpoint_in(const std::filesystem::path& run, const 
     say(stderr, fmt::format("note: {} has no checkpoint yet; starting with the first frame\n", run.string()));
     return std::nullopt;
   }
-  Checkpoint checkpoint = read_checkpoint(file, identity);
+  WorldState checkpoint = read_checkpoint(file, identity);
   if (checkpoint.frames > frames)
     throw InputError("--resume", fmt::format("the film in {} has {} frames already, which is more than {}",
                                              run.string(), checkpoint.frames, frames));

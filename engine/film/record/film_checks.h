@@ -13,13 +13,9 @@
 
 namespace supple {
 
-// Checks the frames of --save-state for a film that begins, or is resumed, with frame `start`.
-void check_save_states(const std::vector<int>& frames, const SceneDef& scene, const std::filesystem::path& run,
-                       int start);
-
 // Returns the checkpoint from which a film is resumed, if there is one yet, and prints a note about it. A complete film
 // without a checkpoint and a film of another scene or program do not count as a beginning of this one.
-std::optional<Checkpoint> checkpoint_in(const std::filesystem::path& run, const std::string& identity, int frames,
+std::optional<WorldState> checkpoint_in(const std::filesystem::path& run, const std::string& identity, int frames,
                                         const RunInfo& info);
 
 // Checks what the first frames, which are not made again, have left. Their pictures have a function of their own.

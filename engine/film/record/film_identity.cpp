@@ -49,17 +49,6 @@ nlohmann::ordered_json images_of(const FilmPlan& plan) {
 
 }  // namespace
 
-std::string mesh_hash(const Body& body) {
-  const TetMesh& mesh = body.description.mesh;
-  std::uint64_t hash = hash_bytes(mesh.rest.data(), sizeof(double) * mesh.rest.size());
-  hash = hash_bytes(mesh.tets.data(), sizeof(std::int32_t) * mesh.tets.size(), hash);
-  for (const Spring& spring : body.description.springs) {
-    const std::int32_t ends[] = {spring.from, spring.to};
-    hash = hash_bytes(ends, sizeof ends, hash);
-  }
-  return hash_text_form(hash);
-}
-
 std::string identity_of(const RunInfo& info, const Script& script, const std::vector<Body>& bodies,
                         const FilmPlan& plan) {
   nlohmann::ordered_json scene = parsed_json<nlohmann::ordered_json>(info.scene_json);

@@ -10,9 +10,6 @@
 
 namespace supple {
 
-// Returns the XXH64 of the points, elements and springs of a body.
-std::string mesh_hash(const Body& body);
-
 // Returns, as JSON, all that must be the same for two runs to give the same films and fields, except for their length.
 std::string identity_of(const RunInfo& info, const Script& script, const std::vector<Body>& bodies,
                         const FilmPlan& plan);

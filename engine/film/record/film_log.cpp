@@ -43,7 +43,7 @@ FilmLog::FilmLog(const RunFolder& folder, int every, std::string identity, int k
 
 FrameRows FilmLog::whole_rows() const { return {notes_, folder_.rows(), whole_}; }
 
-void FilmLog::add(const Checkpoint& checkpoint) {
+void FilmLog::add(const WorldState& checkpoint) {
   if (!waiting_.empty() && waiting_.back().first >= checkpoint.frames) return;
   waiting_.emplace_back(checkpoint.frames, checkpoint_bytes(checkpoint, identity_));
 }

@@ -37,7 +37,7 @@ class FilmLog {
   void add(FrameRow row) { rows_.push_back(std::move(row)); }
   // Adds a checkpoint, which waits in memory until the frames before it are whole. If the last one that waits has as
   // many frames or more, it is kept instead.
-  void add(const Checkpoint& checkpoint);
+  void add(const WorldState& checkpoint);
 
   // Takes note of what has reached the disk. written: the frames whose pictures did so since the last call, in their
   // order. Throws RunError when a file cannot be written.

@@ -127,7 +127,7 @@ void check_same_motion(const DrawPlan& plan, const Json& info, const LoadedFilm&
 
 std::vector<PointCacheReader> motion_of(const RunRecord& run, const LoadedFilm& film) {
   std::vector<PointCacheReader> motion;
-  for (const Body& body : film.bodies) {
+  for (const Body& body : film.world.bodies()) {
     motion.emplace_back(run.motion(body.def.name));
     const auto vertices = static_cast<int>(body.description.mesh.rest.rows());
     if (motion.back().points() == vertices) continue;
@@ -140,9 +140,9 @@ std::vector<PointCacheReader> motion_of(const RunRecord& run, const LoadedFilm& 
 // Opens what the run kept of the colliders' forces, where the field shows them.
 std::vector<ForceFileReader> forces_of(const RunRecord& run, const LoadedFilm& film) {
   std::vector<ForceFileReader> forces;
-  const SceneDef& scene = film.script.scene();
+  const SceneDef& scene = film.world.script().scene();
   if (scene.field.quantity != FieldQuantity::force || scene.colliders.empty()) return forces;
-  for (const Body& body : film.bodies) {
+  for (const Body& body : film.world.bodies()) {
     const std::filesystem::path file = run.forces(body.def.name);
     std::error_code error;
     if (!std::filesystem::exists(file, error))
@@ -181,14 +181,13 @@ class Drawing {
  public:
   explicit Drawing(LoadedDrawing& drawing)
       : drawing_(drawing),
-        scene_(drawing.film.script.scene()),
-        set_(collision_set(scene_)),
-        drawn_(drawing.film.script, drawing.film.bodies, drawing.film.drawn, set_, caption_font()),
+        world_(drawing.film.world),
+        drawn_(world_.script(), world_.bodies(), drawing.film.drawn, world_.colliders(), caption_font()),
         threads_(drawing.film.info.threads) {
     drawn_.know_times(drawing.rows);
     for (const FrameRow& row : drawing.rows) graphed_.push_back(graph_point(row));
-    const bool field = scene_.field.quantity != FieldQuantity::none && scene_.field.range_by == FieldRange::film;
-    const bool camera = scene_.camera.frames == Framed::film;
+    const bool field = scene().field.quantity != FieldQuantity::none && scene().field.range_by == FieldRange::film;
+    const bool camera = scene().camera.frames == Framed::film;
     const std::optional<Bounds>& framed = drawing.film.info.framed;
     if (camera && framed) drawn_.frame_motion(*framed);
     if (field || (camera && !framed)) span_film(field, camera && !framed);
@@ -198,9 +197,9 @@ class Drawing {
   DrawnFilm& drawn() { return drawn_; }
 
   DrawList list(int frame) {
-    follow_script(frame);
+    enter(frame);
     load(frame);
-    return drawn_.list(scene_, pose(frame), set_, threads_);
+    return drawn_.list(scene(), pose(frame), world_.colliders(), threads_);
   }
 
  private:
@@ -209,9 +208,9 @@ class Drawing {
   void span_film(bool field, bool camera) {
     Bounds box;
     for (int frame = 0; frame < drawing_.frame_count && !interrupted(); ++frame) {
-      follow_script(frame);
+      enter(frame);
       load(frame);
-      if (field) drawn_.include_in_field(pose(frame), set_, threads_);
+      if (field) drawn_.include_in_field(pose(frame), world_.colliders(), threads_);
       for (const Positions& body : motion_) {
         box.include(bounds_of(body).lower);
         box.include(bounds_of(body).upper);
@@ -224,18 +223,14 @@ class Drawing {
 
   // Goes back to the start of the film.
   void rewind() {
-    followed_ = 0;
-    scene_ = drawing_.film.script.scene();
-    set_ = collision_set(scene_);
-    drawn_.follow(drawing_.film.script.changes(), set_, drawing_.film.bodies);
-    for (std::size_t b = 0; b < scene_.bodies.size(); ++b)
-      update_body(drawing_.film.bodies[b], scene_, scene_.bodies[b]);
+    world_.rewind();
+    drawn_.follow(world_.script().changes(), world_.colliders(), world_.bodies());
   }
 
   Positions motion_at(std::size_t body, int frame) {
     if (frame >= 0) return saved_positions(drawing_, body, frame);
-    const Vec3 origin = motion_origin(drawing_.film.bodies[body].description.mesh.rest);
-    const Positions first = first_positions(drawing_.film.bodies[body]).rowwise() - origin.transpose();
+    const Vec3 origin = motion_origin(world_.bodies()[body].description.mesh.rest);
+    const Positions first = first_positions(world_.bodies()[body]).rowwise() - origin.transpose();
     return as_cached(first).rowwise() + origin.transpose();
   }
 
@@ -251,7 +246,7 @@ class Drawing {
   }
 
   FramePose pose(int frame) const {
-    FramePose pose{frame, frame_time(frame, scene_.fps), {}, {}};
+    FramePose pose{frame, frame_time(frame, scene().fps), {}, {}};
     for (const Positions& body : motion_) pose.motion.push_back(&body);
     for (const Positions& body : before_) pose.before.push_back(&body);
     for (const Positions& body : forces_) pose.forces.push_back(&body);
@@ -261,31 +256,20 @@ class Drawing {
     return pose;
   }
 
-  // Advances the scene to the end of the frame.
-  void follow_script(int frame) {
-    const Script& script = drawing_.film.script;
-    std::vector<TimedChange> changes;
-    for (; followed_ <= frame; ++followed_) {
-      for (const TimedChange* change : script.at_work(followed_)) changes.push_back(*change);
-    }
-    if (changes.empty()) return;
-    scene_ = script.scene_at(frame);
-    set_ = collision_set(scene_);
-    // The stress of a field follows from the materials at that time.
-    for (std::size_t b = 0; b < scene_.bodies.size() && scene_.field.quantity != FieldQuantity::none; ++b)
-      update_body(drawing_.film.bodies[b], scene_, scene_.bodies[b]);
-    drawn_.follow(changes, set_, drawing_.film.bodies);
+  // Advances the world to the end of the frame.
+  void enter(int frame) {
+    const std::vector<TimedChange> changes = world_.enter(frame);
+    if (!changes.empty()) drawn_.follow(changes, world_.colliders(), world_.bodies());
   }
+  const SceneDef& scene() const { return world_.scene(); }
 
   LoadedDrawing& drawing_;
-  SceneDef scene_;  // at the end of the last frame that was asked for
-  CollisionSet set_;
+  World& world_;  // its positions come from the files of the run
   DrawnFilm drawn_;
   Threads threads_;
   std::vector<Positions> motion_, before_;  // of the frame that was loaded, and of the one before it [m]
   std::vector<Positions> forces_;           // of colliders, where they are needed [N]
   std::vector<GraphPoint> graphed_;         // of all frames
-  int followed_ = 0;                        // frames whose changes are in scene_
 };
 
 }  // namespace
@@ -303,8 +287,8 @@ LoadedDrawing load_drawing(const DrawPlan& plan) {
   drawing.forces = forces_of(run, drawing.film);
   drawing.frame_count = frames_with_motion(drawing);
   drawing.frames = frames_of(plan, drawing.frame_count);
-  check_references(drawing.film.script.scene(), drawing.film.bodies, drawing.frames.back());
-  drawing.rate = plan.rate > 0 ? plan.rate : drawing.film.script.scene().fps / plan.every;
+  check_references(drawing.film.world.script().scene(), drawing.film.world.bodies(), drawing.frames.back());
+  drawing.rate = plan.rate > 0 ? plan.rate : drawing.film.world.script().scene().fps / plan.every;
   Json identity = {
       {"program", program_version()},
       {"run", std::filesystem::absolute(plan.run).lexically_normal().string()},
@@ -318,7 +302,7 @@ LoadedDrawing load_drawing(const DrawPlan& plan) {
 }
 
 Positions saved_positions(LoadedDrawing& drawing, std::size_t body, int frame) {
-  const Vec3 origin = motion_origin(drawing.film.bodies[body].description.mesh.rest);
+  const Vec3 origin = motion_origin(drawing.film.world.bodies()[body].description.mesh.rest);
   return drawing.motion[body].frame(frame).rowwise() + origin.transpose();
 }
 

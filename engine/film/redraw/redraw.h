@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "film/film.h"
 #include "film/pictures/pictures.h"
+#include "film/plan/loaded_film.h"
 #include "output/motion/force_file.h"
 #include "output/motion/point_cache.h"
 #include "output/run/profile.h"

@@ -43,7 +43,7 @@ void open_skins(const std::filesystem::path& folder, const LoadedDrawing& drawin
 }
 
 int write_skins(LoadedDrawing& drawing, const std::filesystem::path& folder, const std::function<void(int)>& told) {
-  const std::vector<Body>& bodies = drawing.film.bodies;
+  const std::vector<Body>& bodies = drawing.film.world.bodies();
   limit_stretch(drawing.film.drawn);
   std::vector<PointCacheWriter> caches;
   std::vector<Vec3> origins;

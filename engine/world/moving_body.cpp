@@ -1,4 +1,4 @@
-#include "scene/driven_body.h"
+#include "world/moving_body.h"
 
 #include "base/error.h"
 #include "base/trace.h"
@@ -7,7 +7,7 @@
 
 namespace supple {
 
-DrivenBody::DrivenBody(const SceneDef& scene, Body& body, Model& model, const CollisionSet& set, const Solvers& solvers,
+MovingBody::MovingBody(const SceneDef& scene, Body& body, Model& model, const CollisionSet& set, const Solvers& solvers,
                        Threads* threads)
     : scene_(scene), body_(body), model_(model), set_(set), solvers_(solvers), state_(start_state(model, body)) {
   inputs_.colliders = &set.colliders;
@@ -15,25 +15,25 @@ DrivenBody::DrivenBody(const SceneDef& scene, Body& body, Model& model, const Co
   apply({.factor = hold_as_state_says(), .rule = true});
 }
 
-void DrivenBody::apply(const ChangeCost& cost) {
+void MovingBody::apply(const ChangeCost& cost) {
   inputs_.gravity = scene_.gravity;
   inputs_.solver = solvers_.settings(body_.def.solver);
   if (cost.factor) renew_model();
   if (cost.rule || cost.factor) rule_ = solvers_.rule(body_.def.solver, model_);
 }
 
-void DrivenBody::renew_model() {
+void MovingBody::renew_model() {
   if (!values_) values_.emplace(model_, body_.description);
   values_->set(model_, body_.description);
 }
 
-void DrivenBody::restore(const State& state) {
+void MovingBody::restore(const State& state) {
   SUPPLE_CHECK(state.anchors.holds.size(), ==, body_.def.handles.size());
   state_ = state;
   if (hold_as_state_says()) apply({.factor = true});
 }
 
-bool DrivenBody::hold_as_state_says() {
+bool MovingBody::hold_as_state_says() {
   bool changed = false;
   for (std::size_t h = 0; h < body_.description.handles.size(); ++h) {
     const bool holds = state_.anchors.holds[h] != 0;
@@ -43,7 +43,7 @@ bool DrivenBody::hold_as_state_says() {
   return changed;
 }
 
-void DrivenBody::switch_handles(double time) {
+void MovingBody::switch_handles(double time) {
   for (std::size_t h = 0; h < body_.def.handles.size(); ++h) {
     const HandleDef& def = body_.def.handles[h];
     if (!def.grabs) continue;
@@ -56,7 +56,7 @@ void DrivenBody::switch_handles(double time) {
   if (hold_as_state_says()) apply({.factor = true});
 }
 
-void DrivenBody::prepare_step(int frame, int substep) {
+void MovingBody::prepare_step(int frame, int substep) {
   const Zone zone("inputs", body_.def.name);
   const double done = static_cast<double>(frame) * scene_.substeps + substep, share = 1.0 / scene_.substeps;
   span_ = {done * scene_.time_step(), (done + 1) * scene_.time_step(), substep * share, (substep + 1) * share};
@@ -69,20 +69,20 @@ void DrivenBody::prepare_step(int frame, int substep) {
   collider_motions(set_, span, inputs_.collider_motions);
 }
 
-Positions DrivenBody::targets_at_start() const {
+Positions MovingBody::targets_at_start() const {
   Positions targets;
   handle_targets(model_, body_, state_.anchors, span_.from, span_.change_from, targets);
   return targets;
 }
 
-void DrivenBody::repeat(const std::optional<BudgetCuts>& cuts) {
+void MovingBody::repeat(const std::optional<BudgetCuts>& cuts) {
   inputs_.repeated_cuts = cuts;
   inputs_.solver.budget_ms = 0;
 }
 
 // Returns the model of the same body with materials whose k (equation 11) is the same and that have no minimum but
 // rest.
-const Model& DrivenBody::rigid_model() {
+const Model& MovingBody::rigid_model() {
   if (rigid_for_ == model_.id) return *rigid_;
   BodyDescription description = body_.description;
   for (Material& material : description.materials)
@@ -92,21 +92,12 @@ const Model& DrivenBody::rigid_model() {
   return *rigid_;
 }
 
-const StepReport& DrivenBody::step() {
+const StepReport& MovingBody::step() {
   untangled_ = body_.def.solver.untangle && is_tangled(model_, state_.x);
   if (!untangled_) return supple::step(model_, inputs_, state_, workspace_, *rule_);
   StepInputs inputs = inputs_;
   inputs.solver.matrix = SystemMatrix::constant;
   return supple::step(rigid_model(), inputs, state_, workspace_);
-}
-
-const StepReport& DrivenBody::make_frame(int frame, const std::function<void(const StepReport&)>& observe) {
-  for (int substep = 0; substep < scene_.substeps; ++substep) {
-    prepare_step(frame, substep);
-    observe(step());
-    if (workspace_.report.failed) break;
-  }
-  return workspace_.report;
 }
 
 }  // namespace supple

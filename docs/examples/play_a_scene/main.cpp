@@ -1,0 +1,35 @@
+// Plays a scene or replay, and prints the number of each frame and the hash of its state.
+//
+//   play_a_scene /opt/supple/share/supple/assets/scenes/rolling.toml /opt/supple/share/supple/assets
+#include <base/error.h>
+#include <base/threads.h>
+#include <baselines/make_rule.h>
+#include <world/world.h>
+
+#include <cinttypes>
+#include <cstdio>
+
+int main(int count, char** arguments) {
+  using namespace supple;
+
+  if (count != 3) {
+    std::fprintf(stderr,
+                 "play_a_scene SCENE ASSETS: the second is the folder in which scenes look for shapes and meshes\n");
+    return 2;
+  }
+  // Solvers are passed in: these are all that a scene can name.
+  const Solvers solvers = {[](const SolverDef& def, const Model& model) { return make_rule(def.method, model); },
+                           [](const SolverDef& def) { return settings_of(def.method, def.settings); }};
+  try {
+    Script script = Script::load(std::filesystem::path(arguments[1]), arguments[2], {});
+    std::vector<Body> bodies = assemble(script.scene());
+    World world(std::move(script), std::move(bodies));
+    Threads threads(2);
+    world.start(solvers, &threads);
+    for (int frame = 0; frame < world.scene().frames && world.play(frame); ++frame)
+      std::printf("%d %016" PRIx64 "\n", frame, world.hash());
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}

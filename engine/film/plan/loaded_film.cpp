@@ -1,0 +1,152 @@
+#include "film/plan/loaded_film.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <future>
+#include <thread>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "base/trace.h"
+#include "base/variants.h"
+#include "film/plan/preview.h"
+#include "film/plan/shipped_files.h"
+#include "film/plan/slow_work_line.h"
+#include "scene/replay/script_trial.h"
+
+namespace supple {
+
+const char* text_of(FilmEnd end) {
+  switch (end) {
+    case FilmEnd::done: return "done";
+    case FilmEnd::interrupted: return "interrupted";
+    case FilmEnd::failed: break;
+  }
+  return "failed";
+}
+
+void check_save_states(const std::vector<int>& frames, const SceneDef& scene, const std::filesystem::path& run,
+                       int start) {
+  const auto is_there = [&](int frame) {
+    return std::all_of(scene.bodies.begin(), scene.bodies.end(), [&](const BodyDef& body) {
+      return std::filesystem::exists(run / "states" / fmt::format("{}-{:06}", body.name, frame) / "state.json");
+    });
+  };
+  for (const int frame : frames) {
+    if (frame < start && !is_there(frame))
+      throw InputError(fmt::format("--save-state {}", frame),
+                       fmt::format("the film goes on with frame {}; earlier states are gone, and only without --resume "
+                                   "they come again",
+                                   start));
+    if (frame < scene.frames) continue;
+    throw InputError(fmt::format("--save-state {}", frame),
+                     scene.frames == 1
+                         ? std::string("the film has one frame, 0")
+                         : fmt::format("the film has {} frames, 0 to {}", scene.frames, scene.frames - 1));
+  }
+}
+
+namespace {
+
+// Returns the scene of a plan as the reader takes it.
+SceneSource source_of(const FilmPlan& plan) {
+  return plan.scene_text ? SceneSource(plan.scene, *plan.scene_text) : SceneSource(scene_file(plan.scene));
+}
+
+// Returns the XXH64 of the points, elements and springs of a body.
+std::string mesh_hash(const Body& body) {
+  const TetMesh& mesh = body.description.mesh;
+  std::uint64_t hash = hash_bytes(mesh.rest.data(), sizeof(double) * mesh.rest.size());
+  hash = hash_bytes(mesh.tets.data(), sizeof(std::int32_t) * mesh.tets.size(), hash);
+  for (const Spring& spring : body.description.springs) {
+    const std::int32_t ends[] = {spring.from, spring.to};
+    hash = hash_bytes(ends, sizeof ends, hash);
+  }
+  return hash_text_form(hash);
+}
+
+RunInfo run_info(const FilmPlan& plan, const SceneSource& source, const World& world) {
+  RunInfo info;
+  info.scene_file = std::filesystem::absolute(source.path).lexically_normal().string();
+  info.scene_text = source.text;
+  info.preview = plan.preview;
+  info.sweep_point = plan.sweep_point;
+  info.scene_json = world.script().scene_json();
+  info.replay_json = world.script().replay_json();
+  info.kernel_variant = variant_name(best_variant());
+  info.threads = plan.threads > 0 ? plan.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  for (const Body& body : world.bodies()) {
+    const TetMesh& mesh = body.description.mesh;
+    const auto elements = static_cast<int>(mesh.tets.rows() + body.description.springs.size());
+    info.meshes.push_back({body.def.name, body.source, mesh_hash(body), int(mesh.rest.rows()), elements});
+  }
+  return info;
+}
+
+LoadedFilm film_with(const FilmPlan& plan, const std::vector<std::string>& settings,
+                     const std::vector<std::string>& command) {
+  Zone zone("read scene");
+  const SceneSource source = source_of(plan);
+  Script script = Script::load(source, assets_folder(), settings, plan.sweep_point);
+  check_save_states(plan.save_states, script.scene(), {}, 0);
+  zone.next("assemble meshes");
+  SlowWorkLine tells(plan.quiet);
+  std::vector<Body> bodies = assemble(script.scene(), slow_work_with(plan.cache, tells));
+  World world(std::move(script), std::move(bodies));
+  RunInfo info = run_info(plan, source, world);
+  info.command = command;
+  info.settings = settings;
+  return {std::move(world), {}, std::move(info)};
+}
+
+// Loads the coarsest form of the scene that can be meshed: thin parts may want finer elements.
+LoadedFilm load_coarse(const FilmPlan& plan, const std::vector<std::string>& settings,
+                       const std::vector<std::string>& command) {
+  const SceneDef scene = Script::load(source_of(plan), assets_folder(), settings, plan.sweep_point).scene();
+  const auto with = [&](double share) {
+    std::vector<std::string> all = settings;
+    for (std::string& setting : preview_settings(scene, share)) all.push_back(std::move(setting));
+    return all;
+  };
+  for (const double share : plan.rough ? std::vector{0.06, 0.25, 0.5} : std::vector{0.25, 0.5}) {
+    try {
+      return film_with(plan, with(share), command);
+    } catch (const InputError&) {  // the last attempt says what is wrong
+    }
+  }
+  return film_with(plan, with(1), command);
+}
+
+}  // namespace
+
+LoadedFilm load_film(const FilmPlan& plan, const std::vector<std::string>& command) {
+  std::vector<std::string> settings = plan.settings;
+  if (plan.frames > 0) settings.push_back(fmt::format("frames={}", plan.frames));
+  if (plan.seed >= 0) settings.push_back(fmt::format("seed={}", plan.seed));
+  return plan.preview || plan.rough ? load_coarse(plan, settings, command) : film_with(plan, settings, command);
+}
+
+void build_models(const FilmPlan& plan, LoadedFilm& film) {
+  const Zone zone("build models");
+  try_changes(film.world.script(), film.world.bodies());
+  std::future<void> skins;
+  if (plan.pictures != FilmPictures::none) {
+    skins = std::async(std::launch::async, [&plan, &film] {
+      name_thread("skins");
+      make_skins(plan, film);
+    });
+  }
+  film.world.build_models();
+  if (skins.valid()) skins.get();
+}
+
+void make_skins(const FilmPlan& plan, LoadedFilm& film) {
+  const Zone zone("make skins");
+  SlowWorkLine tells(plan.quiet);
+  const bool as_elements = film.world.script().scene().look.wireframe;
+  film.drawn = drawn_bodies(film.world.bodies(), slow_work_with(plan.cache, tells),
+                            as_elements ? DrawnAs::elements : DrawnAs::skin);
+}
+
+}  // namespace supple

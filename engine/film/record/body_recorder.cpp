@@ -1,0 +1,196 @@
+#include "film/record/body_recorder.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "base/frame_time.h"
+#include "base/trace.h"
+#include "film/record/state_file.h"
+#include "output/files/obj_file.h"
+#include "scene/building/body_surface.h"
+#include "sim/contact/far_side.h"
+#include "sim/model/measures.h"
+#include "sim/solver/fields.h"
+
+namespace supple {
+namespace {
+
+void add_up(BodyRow& row, const StepReport& report) {
+  row.step_ms += report.step_ms;
+  row.evaluate_ms += report.evaluate_ms;
+  row.solve_ms += report.solve_ms;
+  row.lbfgs_ms += report.lbfgs_ms;
+  row.matrix_ms += report.matrix_ms;
+  row.other_ms += report.other_ms;
+  row.iterations += report.iterations;
+  row.newton_iterations += report.newton_iterations;
+  row.line_search += report.line_search;
+  row.objective_start = report.objective.empty() ? 0 : report.objective.front();
+  row.objective_end = report.objective.empty() ? 0 : report.objective.back();
+  row.error_estimate = std::max(row.error_estimate, report.error_estimate);  // of the worst step of the frame
+  row.motion_estimate = std::max(row.motion_estimate, report.motion_estimate);
+  row.unsolved = row.unsolved || is_unsolved(report);
+  row.stop_reason = name_of(report.stop_reason);
+  if (!row.contact) return;
+  row.contact->collide_ms += report.collide_ms;
+  row.contact->contacts = report.contacts.touching;
+  row.contact->changes += report.contacts.changes;
+  row.contact->cycles += report.contacts.cycles;
+}
+
+bool has_time_budget(const StepInputs& inputs) {
+  return inputs.solver.budget_ms > 0 || inputs.repeated_cuts.has_value();
+}
+
+// Returns nothing for a step that had no budget in the earlier run.
+std::optional<BudgetCuts> cuts_at(const CutsByFrame& cuts, int frame, int substep) {
+  const std::vector<BudgetCuts>& of_frame = cuts.at(std::size_t(frame));
+  if (substep >= std::ssize(of_frame)) return std::nullopt;
+  return of_frame[std::size_t(substep)];
+}
+
+std::string failure_text(int frame, const std::string& body, const StepFailure& failure) {
+  return fmt::format("frame {}: body '{}' failed while in '{}': {} (vertex {} is furthest out)", frame, body,
+                     failure.during, failure.what, failure.vertex + 1);
+}
+
+}  // namespace
+
+BodyRecorder::BodyRecorder(World& world, std::size_t body, const RunFolder& folder, const FilmSolvers& solvers,
+                           Threads& threads, int kept_frames)
+    : world_(world),
+      body_(body),
+      folder_(folder),
+      solvers_(solvers),
+      threads_(threads),
+      motion_(folder.motion(world.bodies()[body].def.name), world.body(body).model().vertices, kept_frames),
+      origin_(motion_origin(world.bodies()[body].description.mesh.rest)) {
+  const Body& recorded = world.bodies()[body];
+  if (!world.colliders().colliders.empty())
+    forces_.emplace(folder.forces(recorded.def.name), model().vertices, kept_frames);
+  start_energy_balance({});
+  write_obj(folder.surface(recorded.def.name), recorded.description.mesh.rest, surface_of(recorded), origin_);
+}
+
+void BodyRecorder::start_energy_balance(const EnergyBalance& balance) {
+  Workspace& w = moving().workspace();
+  w.prepare(model(), moving().inputs().solver);
+  energy_budget_.start(model(), world_.scene().gravity, state(), w, balance);
+}
+
+void BodyRecorder::resume(const BodyRow& row) {
+  const BalanceRow before = row.balance.value_or(BalanceRow{});
+  start_energy_balance({before.total, before.put_in, before.from_nothing, before.exchanged});
+}
+
+void BodyRecorder::begin_frame(int frame, bool measure_error, BodyRow& row) {
+  frame_ = frame;
+  measures_error_ = measure_error;
+  row_ = &row;
+  row.name = body().def.name;
+  if (!world_.colliders().colliders.empty()) row.contact.emplace();
+}
+
+void BodyRecorder::before_step(int substep) {
+  const Zone zone("energy budget", body().def.name);
+  if (repeated_ != nullptr) moving().repeat(cuts_at(*repeated_, frame_, substep));
+  if (is_measured(substep)) before_ = state();
+  Workspace& w = moving().workspace();
+  w.prepare(model(), moving().inputs().solver);
+  if (!energy_budget_.knows_springs()) energy_budget_.know_springs(model(), moving().targets_at_start(), state());
+  energy_budget_.before_step(model(), moving().inputs(), state(), w);
+  start_of_step_ = state().x;
+}
+
+void BodyRecorder::after_step(int substep) {
+  const StepReport& report = moving().report();
+  if (!report.failed) {
+    const Zone zone("energy budget", body().def.name);
+    if (moving().untangled()) {
+      energy_budget_.after_untangling(model(), moving().inputs(), state(), moving().workspace());
+    } else {
+      energy_budget_.after_step(model(), moving().inputs(), start_of_step_, state(), moving().workspace());
+    }
+  }
+  add_up(*row_, report);
+  if (has_time_budget(moving().inputs())) row_->budget_cuts.push_back(report.cuts.after);
+  if (!report.failed && is_measured(substep)) measure_errors();
+}
+
+std::string BodyRecorder::failure() const {
+  const StepReport& report = moving().report();
+  return report.failed ? failure_text(frame_, body().def.name, report.failure) : "";
+}
+
+void BodyRecorder::measure_errors() {
+  row_->error_measured = true;
+  if (moving().untangled()) return;  // another energy has another minimum
+  const Zone zone("reference error", body().def.name);
+  if (metered_model_ != model().id) error_meter_ = solvers_.error_meter(model(), threads_);
+  metered_model_ = model().id;
+  const MeasuredErrors errors = error_meter_->step_errors(model(), moving().inputs(), before_, state());
+  row_->error = errors.error;
+  row_->motion_error = errors.motion;
+}
+
+void BodyRecorder::measure_contact() {
+  const std::vector<Collider>& colliders = world_.colliders().colliders;
+  const std::vector<ColliderMotion>& motions = moving().inputs().collider_motions;
+  const std::vector<double> depths = penetrations(colliders, motions, state().x, model().surface);
+  const std::vector<Vec3>& forces = moving().report().collider_forces;
+  ContactRow& row = *row_->contact;
+  for (std::size_t c = 0; c < colliders.size(); ++c) {
+    const double far_side = reach_on_far_side(model(), colliders[c], motions[c].end, state().x);
+    row.colliders.push_back({colliders[c].name, depths[c] / model().size, forces[c].norm(), far_side});
+    row.penetration = std::max(row.penetration, depths[c] / model().size);
+  }
+}
+
+void BodyRecorder::end_frame() {
+  const Zone zone("measure", body().def.name);
+  const Deformation shape = deformation(model(), state().x);
+  row_->stretch = shape.stretch;
+  row_->inverted = shape.inverted;
+  row_->collapsed = shape.collapsed;
+  if (row_->contact) measure_contact();
+  const EnergyBalance& balance = energy_budget_.balance();
+  row_->balance = {balance.total, balance.put_in, balance.from_nothing, balance.exchanged};
+  if (world_.scene().output.energy) {
+    const Energies& energy = energy_budget_.energies();
+    row_->energy = {energy.kinetic, energy.elastic, energy.gravitational, energy.springs, energy.contact};
+  }
+  if (!body().motions.empty() && !body().def.handles.front().grabs) {
+    const double time = frame_time(frame_, world_.scene().fps);
+    row_->jiggle = jiggle(model(), state().x, body().motions.front().at(time));
+  }
+}
+
+void BodyRecorder::save_motion() {
+  const Zone zone("motion files", body().def.name);
+  const Positions written = as_cached(in_input_order(model(), state().x).rowwise() - origin_.transpose());
+  motion_.add(written);
+  saved_motion_ = written.rowwise() + origin_.transpose();
+  if (!forces_) return;
+  saved_forces_ = as_kept_forces(contact_forces(model(), moving().workspace(), state().x));
+  forces_->add(saved_forces_);
+}
+
+Positions BodyRecorder::present_motion() const {
+  const Positions points = in_input_order(model(), state().x).rowwise() - origin_.transpose();
+  return as_cached(points).rowwise() + origin_.transpose();
+}
+
+void BodyRecorder::save_problem(int frame) {
+  const Zone zone("save state", body().def.name);
+  const SceneDef& scene = world_.scene();
+  write_state(folder_.state(body().def.name, frame), {scene.name, scene.title, frame, frame * scene.substeps},
+              problem_of(body().description, model(), moving().inputs(), state()));
+}
+
+void BodyRecorder::save_fields(int frame) {
+  if (!fields_) fields_.emplace(body(), model(), folder_, world_.scene().fps);
+  fields_->add(frame, state(), moving().inputs(), moving().workspace());
+}
+
+}  // namespace supple

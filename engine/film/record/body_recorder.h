@@ -1,0 +1,87 @@
+// Records a body of a world: its rows of the profile, its motion, its forces, its fields and its states. It looks at
+// the steps that the world makes, and makes none.
+#pragma once
+
+#include "film/plan/film_solvers.h"
+#include "film/record/field_writer.h"
+#include "film/record/repeated_cuts.h"
+#include "output/motion/force_file.h"
+#include "output/motion/point_cache.h"
+#include "output/run/profile.h"
+#include "output/run/run_folder.h"
+#include "sim/solver/energies.h"
+#include "world/world.h"
+
+namespace supple {
+
+class BodyRecorder {
+ public:
+  // The world must have been started; it and all that is passed by reference must outlive this object. kept_frames: the
+  // number of frames of an earlier run's motion, which stay and are continued.
+  BodyRecorder(World& world, std::size_t body, const RunFolder& folder, const FilmSolvers& solvers, Threads& threads,
+               int kept_frames = 0);
+
+  // Goes on after the frame of an earlier run that a row tells of, once the world has been restored.
+  void resume(const BodyRow& row);
+  // Lets the steps end where an earlier run's budgets ended them. cuts: must outlive this object.
+  void repeat(const CutsByFrame& cuts) { repeated_ = &cuts; }
+
+  // Begins the row of a frame, before its first step. measure_error: whether the errors of the frame's last step are
+  // measured. row: must stay where it is until the frame is over.
+  void begin_frame(int frame, bool measure_error, BodyRow& row);
+  // These two are called for each step of the body (StepWatch).
+  void before_step(int substep);
+  void after_step(int substep);
+  // Completes the row, after the frame's last step.
+  void end_frame();
+  // Says why the last step failed; empty where it did not.
+  std::string failure() const;
+
+  // Appends the frame to motion/: the positions, and the forces of colliders where there are any.
+  void save_motion();
+  // Returns the frame's positions as motion/ holds them, in the order of the input file [m].
+  const Positions& saved_motion() const { return saved_motion_; }
+  // Returns the forces of colliders on the vertices in the same way [N]; without rows where there are no colliders.
+  const Positions& saved_forces() const { return saved_forces_; }
+  // Returns the present positions as motion/ would hold them.
+  Positions present_motion() const;
+  // Writes the problem of a frame's first step, for which the world is prepared, into the folder of states. It changes
+  // no result.
+  void save_problem(int frame);
+  // Writes the frame's fields into fields/.
+  void save_fields(int frame);
+
+ private:
+  MovingBody& moving() { return world_.body(body_); }
+  const MovingBody& moving() const { return world_.body(body_); }
+  const Model& model() const { return moving().model(); }
+  const State& state() const { return moving().state(); }
+  const Body& body() const { return moving().body(); }
+  bool is_measured(int substep) const { return measures_error_ && substep + 1 == world_.scene().substeps; }
+  void start_energy_balance(const EnergyBalance& balance);
+  void measure_errors();
+  void measure_contact();
+
+  World& world_;
+  std::size_t body_;
+  const RunFolder& folder_;
+  const FilmSolvers& solvers_;
+  Threads& threads_;
+  const CutsByFrame* repeated_ = nullptr;  // null: the clock ends the steps that have a budget
+  int frame_ = 0;                          // in progress
+  bool measures_error_ = false;
+  BodyRow* row_ = nullptr;  // of the frame in progress
+  EnergyBudget energy_budget_;
+  Positions start_of_step_;                  // q [m]
+  State before_;                             // the step whose errors are measured
+  std::unique_ptr<ErrorMeter> error_meter_;  // once an error is asked for
+  std::uint64_t metered_model_ = 0;          // id of the model's values that the meter holds for
+  PointCacheWriter motion_;
+  std::optional<ForceFileWriter> forces_;  // where there are colliders
+  Vec3 origin_;                            // of the files of motion [m]
+  Positions saved_motion_;                 // in the world
+  Positions saved_forces_;                 // [N]
+  std::optional<FieldWriter> fields_;      // once fields are asked for
+};
+
+}  // namespace supple

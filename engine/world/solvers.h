@@ -1,0 +1,23 @@
+// Holds the solvers that scenes can name. Most of them are in a library that worlds do not depend on, so they are
+// passed in.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "scene/definition/scene_def.h"
+#include "sim/model/model.h"
+#include "sim/model/state.h"
+#include "sim/solver/search_rule.h"
+
+namespace supple {
+
+struct Solvers {
+  // Makes a rule for the directions of one body's steps. It is called again when the method or the model's values
+  // change.
+  std::function<std::unique_ptr<SearchRule>(const SolverDef&, const Model&)> rule;
+  // Returns the settings of a step: the scene's, except for those that the method fixes.
+  std::function<SolverSettings(const SolverDef&)> settings;
+};
+
+}  // namespace supple

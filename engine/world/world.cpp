@@ -1,0 +1,141 @@
+#include "world/world.h"
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "base/trace.h"
+#include "sim/solver/step.h"
+
+namespace supple {
+
+struct World::Parts {
+  std::optional<Script> script;
+  SceneDef start;  // the scene before any change
+  SceneDef scene;  // at the end of the frame that was entered last
+  std::vector<Body> bodies;
+  CollisionSet colliders;
+  std::vector<Model> models;                        // by body, once they are built
+  std::vector<std::unique_ptr<MovingBody>> moving;  // by body, once the world is started
+  int frame = -1;                                   // that was entered last
+
+  Parts(std::optional<Script> script, SceneDef at_start, std::vector<Body> bodies)
+      : script(std::move(script)),
+        start(std::move(at_start)),
+        scene(start),
+        bodies(std::move(bodies)),
+        colliders(collision_set(scene)) {}
+
+  // In the frame of a change, positions are interpolated over the substeps, from the values in `earlier` to the new
+  // ones. When that frame is over, only the new ones count.
+  void end_last_changes() {
+    colliders.earlier.clear();
+    for (Body& body : bodies) body.earlier.clear();
+  }
+  void apply(SceneDef changed, const std::vector<TimedChange>& changes);
+};
+
+void World::Parts::apply(SceneDef changed, const std::vector<TimedChange>& changes) {
+  const Zone zone("change");
+  scene = std::move(changed);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    update_body(bodies[b], scene, scene.bodies[b]);
+    if (!moving.empty()) moving[b]->apply(cost_for(bodies[b].def.name, changes));
+  }
+  CollisionSet now = collision_set(scene);
+  now.earlier = std::move(colliders.scene_colliders);
+  colliders = std::move(now);
+}
+
+World::World(Script script, std::vector<Body> bodies) {
+  SceneDef start = script.scene();
+  parts_ = std::make_unique<Parts>(std::move(script), std::move(start), std::move(bodies));
+}
+World::World(SceneDef scene, std::vector<Body> bodies)
+    : parts_(std::make_unique<Parts>(std::nullopt, std::move(scene), std::move(bodies))) {}
+World::World(World&&) noexcept = default;
+World::~World() = default;
+
+const Script& World::script() const { return parts_->script.value(); }
+const SceneDef& World::scene() const { return parts_->scene; }
+const std::vector<Body>& World::bodies() const { return parts_->bodies; }
+const CollisionSet& World::colliders() const { return parts_->colliders; }
+std::size_t World::size() const { return parts_->bodies.size(); }
+MovingBody& World::body(std::size_t index) { return *parts_->moving.at(index); }
+const MovingBody& World::body(std::size_t index) const { return *parts_->moving.at(index); }
+
+void World::build_models() {
+  if (!parts_->models.empty()) return;
+  parts_->models.reserve(size());
+  for (const Body& body : parts_->bodies) parts_->models.push_back(build_model(body.description));
+}
+
+void World::start(const Solvers& solvers, Threads* threads) {
+  Parts& parts = *parts_;
+  build_models();
+  parts.moving.clear();
+  const bool was_played = parts.frame >= 0;
+  if (was_played) rewind();
+  for (std::size_t b = 0; b < size(); ++b) {
+    parts.moving.push_back(
+        std::make_unique<MovingBody>(parts.scene, parts.bodies[b], parts.models[b], parts.colliders, solvers, threads));
+    if (was_played && parts.script) parts.moving[b]->apply(cost_for(parts.bodies[b].def.name, parts.script->changes()));
+  }
+}
+
+std::vector<TimedChange> World::enter(int frame) {
+  Parts& parts = *parts_;
+  parts.end_last_changes();
+  std::vector<TimedChange> changes;
+  for (int next = parts.frame + 1; parts.script && next <= frame; ++next) {
+    for (const TimedChange* change : parts.script->at_work(next)) changes.push_back(*change);
+  }
+  parts.frame = frame;
+  if (!changes.empty()) parts.apply(parts.script->scene_at(frame), changes);
+  return changes;
+}
+
+void World::rewind() {
+  Parts& parts = *parts_;
+  if (parts.script && !parts.script->changes().empty()) parts.apply(parts.start, parts.script->changes());
+  parts.end_last_changes();
+  parts.frame = -1;
+}
+
+void World::prepare(int substep) {
+  for (const auto& body : parts_->moving) body->prepare_step(parts_->frame, substep);
+}
+
+bool World::step(const StepWatch& watch) {
+  for (int substep = 0; substep < parts_->scene.substeps; ++substep) {
+    for (std::size_t b = 0; b < size(); ++b) {
+      MovingBody& body = *parts_->moving[b];
+      body.prepare_step(parts_->frame, substep);
+      if (watch.prepared) watch.prepared(b, substep);
+      const bool failed = body.step().failed;
+      if (watch.made) watch.made(b, substep);
+      if (failed) return false;
+    }
+  }
+  return true;
+}
+
+WorldState World::state() const {
+  WorldState state{parts_->frame + 1, {}};
+  for (const auto& body : parts_->moving) state.bodies.push_back(body->state());
+  return state;
+}
+
+void World::restore(const WorldState& state) {
+  SUPPLE_CHECK(state.bodies.size(), ==, size());
+  if (parts_->script && state.frames - 1 < parts_->frame) rewind();
+  enter(state.frames - 1);
+  parts_->end_last_changes();
+  for (std::size_t b = 0; b < size(); ++b) parts_->moving[b]->restore(state.bodies[b]);
+}
+
+std::uint64_t World::hash() const {
+  std::vector<std::uint64_t> hashes;
+  for (const auto& body : parts_->moving) hashes.push_back(state_hash(body->model(), body->state()));
+  return hashes.size() == 1 ? hashes.front() : hash_bytes(hashes.data(), sizeof(hashes.front()) * hashes.size());
+}
+
+}  // namespace supple

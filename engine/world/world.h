@@ -1,0 +1,88 @@
+// Represents a scene in time. A world owns its bodies, their models and states, the colliders, and what drives them; it
+// applies a replay's changes, makes the steps, and is saved and restored. Films, redrawn films, stored states,
+// benchmarks, estimates of cost and other programs all move a scene here, so that they agree to the last bit.
+//
+//   World world(Script::load(...), assemble(...));
+//   world.start(solvers, &threads);
+//   for (int frame = 0; frame < world.scene().frames; ++frame) {
+//     world.enter(frame);
+//     if (!world.step()) break;
+//   }
+//
+// Not here: what is recorded of a world, and what is drawn of it (film/).
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "scene/replay/script.h"
+#include "world/moving_body.h"
+#include "world/world_state.h"
+
+namespace supple {
+
+// Looks at a world while it makes the steps of a frame. Both functions may be empty. They are called for each step of
+// each body, with the number of the body and that of the substep.
+struct StepWatch {
+  std::function<void(std::size_t body, int substep)> prepared;  // the inputs are known, and the state is the one before
+  std::function<void(std::size_t body, int substep)> made;      // the step was made, or has failed
+};
+
+class World {
+ public:
+  // Takes the bodies of a scene as they are assembled (scene/building/assemble.h).
+  World(Script script, std::vector<Body> bodies);
+  // Does the same for a scene without changes; script() must not be called.
+  World(SceneDef scene, std::vector<Body> bodies);
+  World(World&&) noexcept;
+  ~World();
+
+  const Script& script() const;
+  const SceneDef& scene() const;  // at the end of the frame that was entered last
+  const std::vector<Body>& bodies() const;
+  const CollisionSet& colliders() const;
+
+  // Builds the models of all bodies, unless they are there. Throws RunError and InputError as build_model does. A world
+  // whose positions come from a file needs no models and is not started.
+  void build_models();
+  // Puts all bodies to the start of the film, with these solvers. threads: null where the calling thread does it all;
+  // they must outlive the world.
+  void start(const Solvers& solvers, Threads* threads);
+
+  // Begins a frame: applies the changes of the frames after the last one that was entered, up to this one, and returns
+  // them. Where there are none, an earlier frame can be entered too.
+  std::vector<TimedChange> enter(int frame);
+  // Goes back to the scene before its first frame. The states stay.
+  void rewind();
+
+  // Makes all steps of the frame that was entered. Returns false as soon as one has failed, whose report says why; the
+  // states are then in the middle of the frame.
+  bool step(const StepWatch& watch = {});
+  // Enters a frame and makes its steps.
+  bool play(int frame, const StepWatch& watch = {}) {
+    enter(frame);
+    return step(watch);
+  }
+  // Computes the inputs of one substep of the frame that was entered, for those who make the step themselves. Changes
+  // no result.
+  void prepare(int substep);
+
+  std::size_t size() const;  // number of bodies
+  MovingBody& body(std::size_t index);
+  const MovingBody& body(std::size_t index) const;
+
+  // Returns the state after the frame that was entered last, or before the first frame. A copy is a snapshot.
+  WorldState state() const;
+  // Returns to a state of this film, earlier or later: also to the scene at that time.
+  void restore(const WorldState& state);
+  // Returns the hash of a single body's state, or the XXH64 of all bodies' hashes in the order of the scene.
+  std::uint64_t hash() const;
+
+ private:
+  struct Parts;  // which do not move when the world does
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace supple

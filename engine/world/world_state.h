@@ -1,0 +1,15 @@
+// Holds the state of a world after some frames: all that is needed to continue as if it had never stopped.
+#pragma once
+
+#include <vector>
+
+#include "sim/model/state.h"
+
+namespace supple {
+
+struct WorldState {
+  int frames = 0;  // that are finished
+  std::vector<State> bodies;
+};
+
+}  // namespace supple
