@@ -51,8 +51,8 @@ SystemTerm unit_term(const ElementRecord& element) {
   return term;
 }
 
-// The Hessian of a stretched fibre along itself is kappa V (G^T d)(G^T d)^T. docs/results.md tells how much this term
-// in A gains.
+// The Hessian of a stretched fibre along itself is kappa V (G^T d)(G^T d)^T. How much this term in A gains is in
+// docs/lab/2026-11-22-films-of-the-paper.md ("Fibres in the system matrix").
 SystemTerm fibre_term(const ElementRecord& element, const Fibre& fibre) {
   std::array<std::array<double, 3>, most_corners> gradient;
   shape_gradients(element, gradient);

@@ -13,7 +13,7 @@ namespace supple {
 namespace {
 
 // The share of A in the matrix. It keeps the matrix positive definite and directions bounded where a material has no
-// stiffness as it is; more of it slows convergence (docs/method.md).
+// stiffness as it is; more of it slows convergence (docs/lab/2026-11-24-matrices.md).
 constexpr double share_of_constant = 0.02;
 
 // A strain limit has no stiffness until it acts, and then all of it at once: there the Hessian tells nothing of what a

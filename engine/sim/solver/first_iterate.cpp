@@ -180,11 +180,11 @@ bool spread_handles(Workspace& w) {
 // Sets a first iterate that fits the handles and turns what turns. The paper starts from y. With rows eliminated, y
 // tears the elements beside a handle apart by all that the handle did not do freely (its keyed motion, and the fall
 // that it did not take), often by more than their size. The handles' departure from y is therefore spread into the body
-// by the quadratic model that also gives the directions, A_ff d_f = -A_fh d_h: one solve. docs/results.md ("Error of
-// the polynomial head") tells what starting from y cost in earlier films. Where parts turn fast, y stretches them, and
-// the start has them turned instead (coarse/turning.h). This costs one additional evaluation, because y stays the first
-// iterate where it is the better one. Returns g(y), with the handles at their targets, when the first iterate is
-// another one.
+// by the quadratic model that also gives the directions, A_ff d_f = -A_fh d_h: one solve. What starting from y cost in
+// earlier films is in docs/lab/2026-11-22-films-of-the-paper.md ("Error of the polynomial head"). Where parts turn
+// fast, y stretches them, and the start has them turned instead (coarse/turning.h). This costs one additional
+// evaluation, because y stays the first iterate where it is the better one. Returns g(y), with the handles at their
+// targets, when the first iterate is another one.
 std::optional<double> leave_prediction(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
   find_turning(model, inputs, state, w);
   const bool spreads = spread_handles(w);

@@ -8,7 +8,7 @@
 namespace supple {
 namespace {
 
-// Departures up to this cost less than the renewal that would mend them. docs/method.md says how it was found.
+// Departures up to this cost less than the renewal that would mend them: docs/lab/2026-11-24-matrices.md.
 constexpr double most_departure = 0.1;
 constexpr TangentShares shares{};
 
