@@ -160,8 +160,8 @@ TEST_F(OneWorld, AWorldReturnsToAnyOfItsStates) {
   const test::Result film = test::run(folder_.path, {"replay", replay, "--no-images", "--quiet", "--out", "replayed"});
   ASSERT_EQ(film.status, 0) << film.err;
   std::vector<std::string> expected;
-  for (const auto& frame : test::profile_of(folder_.path / "replayed")["frames"])
-    expected.push_back(frame["state_hash"]);
+  const nlohmann::json profile = test::profile_of(folder_.path / "replayed");
+  for (const auto& frame : profile["frames"]) expected.push_back(frame["state_hash"]);
   ASSERT_EQ(expected.size(), 9u);
   EXPECT_NE(expected[4], hashes_[4]);
 
