@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "sim/solver/first_forces.h"
+#include "sim/solver/matrix_rule.h"
 #include "sim/solver/objective.h"
 
 namespace supple {
@@ -38,9 +39,8 @@ void begin_step(const Model& model, const StepInputs& inputs, const State& state
   SUPPLE_CHECK(state.v.rows(), ==, model.vertices);
   inertial_prediction(model, inputs, state, w.y);
   w.start_positions = &state.x;
-  w.system = w.correction.matrix = &model;
   w.correction.threads = w.threads;
-  w.hessian_serves = w.second_level_serves = false;
+  w.second_level_serves = false;
   w.correction.second = nullptr;
   w.is_bowed = false;
   if (needs_start(model)) w.start_copy = state.x;
@@ -49,8 +49,8 @@ void begin_step(const Model& model, const StepInputs& inputs, const State& state
   if (has_colliders(inputs)) {
     const TimedPhase timed(w.clock, Phase::collide, "begin contacts");
     begin_contacts(model, inputs, state.x, w.y, w.threads, w.contact);
-    begin_corrections(model, w.correction);
   }
+  put_in_force(model, inputs, model, w);
   if (has_colliders(inputs)) find_first_forces(model, inputs, state, w);
   w.current.x = w.y;
   set_targets(model, inputs, w);

@@ -101,7 +101,7 @@ void make_searches(StepContext& c) {
 
 // Changes the state to that at the end of the step.
 void take_answer(const StepContext& c, State& state) {
-  remember_matrix(c.model, c.inputs.solver, c.w, state);
+  remember_matrix(c.model, c.inputs.solver, c.w, state.memory);
   set_velocity(c.model, c.w.current.x, state);
   state.x = c.w.current.x;
   state.time += c.model.time_step;
