@@ -4,9 +4,11 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/solver/bow_search.h"
 #include "sim/solver/lbfgs.h"
 #include "sim/solver/line_search.h"
 #include "sim/solver/place_iterate.h"
+#include "sim/solver/unforeseen_contacts.h"
 
 namespace supple {
 namespace {
@@ -49,21 +51,6 @@ Descent next_direction(const Model& model, const StepInputs& inputs, Workspace& 
   }
 }
 
-// Bends the search into an arc where its direction turns parts of the body so far that a straight line would stretch
-// them by more than a share of what it promises.
-void bow_search(const Model& model, const StepInputs& inputs, double slope, Workspace& w) {
-  constexpr double small_share = 0.02;
-  w.is_bowed = false;
-  if (!w.second_level_serves) return;
-  const TimedPhase timed(w.clock, Phase::solve, "turn");
-  if (w.second_level.system().most_stretched(model, w.direction) < small_share * -slope) return;
-  w.turning.take_tangent(w.second_level.system(), w.current.x, w.direction);
-  w.is_bowed = w.turning.energy() > small_share * -slope;
-  if (!w.is_bowed) return;
-  w.turning.correct(model, w.second_level.system(), w.current.x, w.solve_scratch, w.bow);
-  keep_bow_on_planes(model, inputs.solver.contact, w.current.contacts, w.current.x, w.direction, w.correction, w.bow);
-}
-
 // Searches along the direction for the next iterate, and leaves it in the trial iterate. A search that meets contacts
 // which it did not foresee is repeated, a few times, along a direction that knows them: adding constraints where an
 // iterate violates them, and solving again, is the exchange method of semi-infinite programs (Hettich and Kortanek
@@ -78,7 +65,6 @@ Search find_next(const Model& model, const StepInputs& inputs, Workspace& w, Sea
     find_contacts_of(model, inputs, w, w.trial);
     return Search::found;
   }
-  constexpr int most_lessons = 3;
   int lessons = 0;
   for (;;) {
     bow_search(model, inputs, slope, w);
