@@ -7,7 +7,6 @@
 #include "app/bench/least_time.h"
 #include "app/bench/sections.h"
 #include "base/timing.h"
-#include "baselines/post_projection.h"
 #include "output/run/profile.h"
 #include "sim/model/element_view.h"
 #include "sim/model/measures.h"
@@ -135,22 +134,10 @@ ReportSection bench_contact(const BenchSetting& setting) {
                                             {"Newton, 5 iterations", Method::newton, 5}};
   std::vector<Row> rows;
   for (const SolverEntry& entry : entries) rows.push_back({entry.label});
-  rows.push_back({"projected after the step"});
-  Workspace workspace;
-  workspace.threads = setting.threads;
   for (const BenchState& state : states_of(subject, {56, 64, 72, 80, 88}, setting)) {
     const StepInputs inputs = subject.inputs(state);
-    std::vector<Outcome> outcomes = comparison.run(state, entries, 3);
+    const std::vector<Outcome> outcomes = comparison.run(state, entries, 3);
     const Minimum lowest = comparison.reference(state, outcomes);
-    State after = state.before;
-    Outcome projected;
-    projected.step_ms = least_ms(2, [&] {
-      after = state.before;
-      projected.trials = step_then_project(model, inputs, after, workspace).line_search;
-    });
-    projected.x = after.x;
-    projected.gained = {gained(model, inputs, state.before, after.x, workspace)};
-    outcomes.push_back(projected);
     for (std::size_t m = 0; m < rows.size(); ++m) {
       rows[m].error.push_back(last_error(outcomes[m], lowest.below_y));
       rows[m].depth.push_back(
@@ -165,7 +152,7 @@ ReportSection bench_contact(const BenchSetting& setting) {
   section.text = fmt::format(
       "Bunny through the torus, five states in contact ({}). Error is equation 12 with the contacts found at the point "
       "where it is evaluated. Contacts in the matrix: a spring at each touching vertex, factored anew when the set "
-      "changes; projection: a step without collider, then every vertex inside onto the surface.",
+      "changes.",
       subject.size_text());
   ReportTable table{"contact", "Five states"};
   table.columns = {"how",

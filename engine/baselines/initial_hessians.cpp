@@ -65,35 +65,69 @@ void IdentityInverse::apply(const Model& model, const StepInputs&, Workspace&, P
   for (int v = 0; v < model.free; ++v) z.row(v) = h2 / model.mass[v] * r.row(v);
 }
 
-RestInverse::RestInverse(const Model& model) {
-  HessianMatrix hessian = rest_hessian(model);
-  factor_.analyze(hessian.matrix());
-  factorize_projected(hessian, factor_);
+HessianInverse::HessianInverse(const Model& model, const HessianSource& source) : source_(source), hessian_(model) {
+  if (source.elements == HessianSource::Elements::at_rest) hessian_ = rest_hessian(model);
+  factor_.analyze(hessian_.matrix());
+  if (source.elements == HessianSource::Elements::at_rest) factorize_projected(hessian_, factor_);
+  if (source.elements == HessianSource::Elements::turned_rest) {
+    element_matrices(model, nullptr, model.rest, true, rest_);
+    turned_ = rest_;
+  }
+  if (source.turning != HessianSource::Turning::none) made_.assign(model.free, Mat3::Identity());
 }
 
-void RestInverse::apply(const Model&, const StepInputs&, Workspace&, Positions& r, Positions& z) {
-  factor_.solve(r.data(), z.data());
+void HessianInverse::begin(const Model& model, const StepInputs&, Workspace& w) {
+  const bool turns = source_.turning != HessianSource::Turning::none;
+  const bool from_start = source_.turning == HessianSource::Turning::to_start;
+  if (turns) vertex_rotations(model, from_start ? *w.start_positions : w.current.x, now_);
+  if (source_.searches > 0 && searches_++ % source_.searches == 0) renew(model, w);
+  warp_.resize(now_.size());
+  for (std::size_t v = 0; v < now_.size(); ++v) warp_[v] = now_[v] * made_[v].transpose();
 }
 
-void WarpedInverse::begin(const Model& model, const StepInputs&, Workspace& w) {
-  vertex_rotations(model, w.current.x, rotation_);
-}
-
-void WarpedInverse::apply(const Model& model, const StepInputs& inputs, Workspace& w, Positions& r, Positions& z) {
-  turn(rotation_, true, r);
-  RestInverse::apply(model, inputs, w, r, z);
-  turn(rotation_, false, z);
-}
-
-FrameInverse::FrameInverse(const Model& model) : hessian_(model) { factor_.analyze(hessian_.matrix()); }
-
-void FrameInverse::begin(const Model& model, const StepInputs&, Workspace& w) {
-  hessian_.assemble(model, w, true);
+void HessianInverse::renew(const Model& model, Workspace& w) {
+  if (source_.elements == HessianSource::Elements::turned_rest) {
+    turn_elements(model, *w.start_positions);
+    hessian_.assemble(model, turned_, w.current.contacts, w.contact.stick_length, w.current.x);
+  } else {
+    hessian_.assemble(model, w, true);
+  }
   factorize_projected(hessian_, factor_);
+  made_ = now_;
 }
 
-void FrameInverse::apply(const Model&, const StepInputs&, Workspace&, Positions& r, Positions& z) {
+// Turns the rest pose's stiffness of each tetrahedron by its rotation at x.
+void HessianInverse::turn_elements(const Model& model, const Positions& x) {
+  const auto index = [](int i, int j) { return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i; };
+  std::size_t chunk = 0;
+  for_each_element(model, [&](const ElementView& element) {
+    if (element.kind != ElementKind::tetrahedron) return;
+    while (element.lane >= (model.chunks[chunk].first_block + model.chunks[chunk].blocks) * block_width) ++chunk;
+    const std::size_t at =
+        rest_.first[chunk] + std::size_t(element.lane - model.chunks[chunk].first_block * block_width) *
+                                 stiffness_numbers(ElementKind::tetrahedron);
+    const double* from = &rest_.numbers[at];
+    double* to = &turned_.numbers[at];
+    const Mat3 rotation = rotation_of(deformation_gradient(x, element));
+    for (int a = 0; a < 3; ++a) {
+      for (int b = 0; b <= a; ++b) {
+        Mat3 block;
+        for (int i = 0; i < 3; ++i) {
+          for (int j = 0; j < 3; ++j) block(i, j) = from[index(3 * a + i, 3 * b + j)];
+        }
+        block = rotation * block * rotation.transpose();
+        for (int i = 0; i < 3; ++i) {
+          for (int j = 0; j < (a == b ? i + 1 : 3); ++j) to[index(3 * a + i, 3 * b + j)] = block(i, j);
+        }
+      }
+    }
+  });
+}
+
+void HessianInverse::apply(const Model&, const StepInputs&, Workspace&, Positions& r, Positions& z) {
+  if (!warp_.empty()) turn(warp_, true, r);
   factor_.solve(r.data(), z.data());
+  if (!warp_.empty()) turn(warp_, false, z);
 }
 
 FrameCgInverse::FrameCgInverse(const Model& model, Preconditioner preconditioner, int iterations)
@@ -137,53 +171,6 @@ void SystemCgInverse::apply(const Model& model, const StepInputs&, Workspace&, P
       },
       [&](const Eigen::VectorXd& b, Eigen::VectorXd& x) { x = inverse_diagonal_.cwiseProduct(b); }, scratch_);
   vector_of(z) = solution_;
-}
-
-HechtInverse::HechtInverse(const Model& model) : hessian_(model) {
-  element_matrices(model, nullptr, model.rest, true, rest_);
-  turned_ = rest_;
-  factor_.analyze(hessian_.matrix());
-}
-
-void HechtInverse::begin(const Model& model, const StepInputs&, Workspace& w) {
-  vertex_rotations(model, *w.start_positions, now_);
-  if (steps_++ % 2 == 0) {
-    factored_ = now_;
-    std::size_t chunk = 0;
-    for_each_element(model, [&](const ElementView& element) {
-      if (element.kind != ElementKind::tetrahedron) return;
-      while (element.lane >= (model.chunks[chunk].first_block + model.chunks[chunk].blocks) * block_width) ++chunk;
-      const std::size_t at =
-          rest_.first[chunk] + std::size_t(element.lane - model.chunks[chunk].first_block * block_width) *
-                                   stiffness_numbers(ElementKind::tetrahedron);
-      const double* from = &rest_.numbers[at];
-      double* to = &turned_.numbers[at];
-      const auto index = [](int i, int j) { return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i; };
-      const Mat3 rotation = rotation_of(deformation_gradient(*w.start_positions, element));
-      for (int a = 0; a < 3; ++a) {
-        for (int b = 0; b <= a; ++b) {
-          Mat3 block;
-          for (int i = 0; i < 3; ++i) {
-            for (int j = 0; j < 3; ++j) block(i, j) = from[index(3 * a + i, 3 * b + j)];
-          }
-          block = rotation * block * rotation.transpose();
-          for (int i = 0; i < 3; ++i) {
-            for (int j = 0; j < (a == b ? i + 1 : 3); ++j) to[index(3 * a + i, 3 * b + j)] = block(i, j);
-          }
-        }
-      }
-    });
-    hessian_.assemble(model, turned_, w.current.contacts, w.contact.stick_length, w.current.x);
-    factorize_projected(hessian_, factor_);
-  }
-  warp_.resize(now_.size());
-  for (std::size_t v = 0; v < now_.size(); ++v) warp_[v] = now_[v] * factored_[v].transpose();
-}
-
-void HechtInverse::apply(const Model&, const StepInputs&, Workspace&, Positions& r, Positions& z) {
-  turn(warp_, true, r);
-  factor_.solve(r.data(), z.data());
-  turn(warp_, false, z);
 }
 
 ContactMatrixInverse::ContactMatrixInverse(const Model& model)

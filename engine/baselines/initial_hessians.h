@@ -24,42 +24,55 @@ class IdentityInverse final : public InitialInverse {
   double scale_ = 0;  // [m/N]; 0: no pair yet
 };
 
-// Applies the inverse of M/h^2 + the Hessian of the rest pose, which is factored once.
-class RestInverse : public InitialInverse {
- public:
-  explicit RestInverse(const Model& model);
-  void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
-
- private:
-  ChangingFactor factor_;
+// Describes a Hessian that is factored: of which elements it is the sum, when it is made again, and how it turns with
+// the body in between.
+struct HessianSource {
+  enum class Elements {
+    at_rest,      // the projected ones of the rest pose, without contacts
+    turned_rest,  // the same, each turned by its element's rotation at the start of the step, and contacts
+    in_pose,      // the projected ones of the first iterate, and contacts
+  } elements;
+  int searches;  // searches between two of its kind; 0: it is made once
+  // By the rotation of the elements around each vertex since it was made.
+  enum class Turning { none, to_first_iterate, to_start } turning;
 };
 
-// Applies the same inverse, rotated at each vertex by the rotation of the elements around it at the start of a step
-// (Mueller, Dorsey, McMillan, Jagnow, Cutler 2002, "Stable real-time deformations"): z = R H^-1 R^T r.
-class WarpedInverse final : public RestInverse {
+// The Hessian of the rest pose.
+inline constexpr HessianSource rest_hessian_source = {HessianSource::Elements::at_rest, 0,
+                                                      HessianSource::Turning::none};
+// The same, turned: z = R H^-1 R^T r (Mueller, Dorsey, McMillan, Jagnow, Cutler 2002, "Stable real-time deformations").
+inline constexpr HessianSource warped_hessian_source = {HessianSource::Elements::at_rest, 0,
+                                                        HessianSource::Turning::to_first_iterate};
+// The Hessian at the first iterate of each search.
+inline constexpr HessianSource frame_hessian_source = {HessianSource::Elements::in_pose, 1,
+                                                       HessianSource::Turning::none};
+// Sum R_e K_e R_e^T of linear corotated elements, made again in every other search and turned in between (Hecht, Lee,
+// Shewchuk, O'Brien 2012, "Updated sparse Cholesky factors for corotational elastodynamics", with all of the mesh
+// updated).
+inline constexpr HessianSource hecht_hessian_source = {HessianSource::Elements::turned_rest, 2,
+                                                       HessianSource::Turning::to_start};
+
+// Applies the inverse of M/h^2 + such a Hessian, by Cholesky.
+class HessianInverse final : public InitialInverse {
  public:
-  using RestInverse::RestInverse;
+  HessianInverse(const Model& model, const HessianSource& source);
   void begin(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
   void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
 
  private:
-  std::vector<Mat3> rotation_;  // by free vertex
-};
+  void renew(const Model& model, Workspace& workspace);
+  void turn_elements(const Model& model, const Positions& x);
 
-// Applies the inverse of the projected Hessian at the first iterate of each step, by Cholesky.
-class FrameInverse final : public InitialInverse {
- public:
-  explicit FrameInverse(const Model& model);
-  void begin(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
-  void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
-
- private:
+  HessianSource source_;
+  ElementMatrices rest_, turned_;  // empty unless the elements are turned ones
   HessianMatrix hessian_;
   ChangingFactor factor_;
+  std::vector<Mat3> made_, now_, warp_;  // by free vertex; empty unless it turns
+  long searches_ = 0;
 };
 
-// Applies the same inverse by conjugate gradients with an incomplete Cholesky factor of the rest pose's Hessian or of
-// M/h^2 + L.
+// Applies the inverse of the Hessian at the first iterate of each search by conjugate gradients with an incomplete
+// Cholesky factor of the rest pose's Hessian or of M/h^2 + L.
 class FrameCgInverse final : public InitialInverse {
  public:
   FrameCgInverse(const Model& model, Preconditioner preconditioner, int iterations);
@@ -88,23 +101,6 @@ class SystemCgInverse final : public InitialInverse {
   Eigen::VectorXd inverse_diagonal_;
   CgScratch scratch_;
   Eigen::VectorXd right_, solution_;
-};
-
-// Applies the inverse of Sum R_e K_e R_e^T of linear corotated elements, which is renewed every other step. In between
-// it is rotated at each vertex by the rotation of the elements around it since then (Hecht, Lee, Shewchuk, O'Brien
-// 2012, "Updated sparse Cholesky factors for corotational elastodynamics", with all of the mesh updated).
-class HechtInverse final : public InitialInverse {
- public:
-  explicit HechtInverse(const Model& model);
-  void begin(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
-  void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
-
- private:
-  ElementMatrices rest_, turned_;
-  HessianMatrix hessian_;
-  ChangingFactor factor_;
-  std::vector<Mat3> factored_, now_, warp_;  // by free vertex
-  long steps_ = 0;
 };
 
 // Applies the inverse of M/h^2 + L with a spring of 2 k_c at each touching vertex. It is factored again when the set of

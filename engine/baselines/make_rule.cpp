@@ -19,12 +19,12 @@ std::unique_ptr<InitialInverse> initial_inverse(const Method& method, const Mode
       if (cg) return std::make_unique<SystemCgInverse>(model, method.inner_iterations);
       return std::make_unique<SystemInverse>();
     case StartMatrix::identity: return std::make_unique<IdentityInverse>();
-    case StartMatrix::rest_hessian: return std::make_unique<RestInverse>(model);
-    case StartMatrix::warped_rest_hessian: return std::make_unique<WarpedInverse>(model);
+    case StartMatrix::rest_hessian: return std::make_unique<HessianInverse>(model, rest_hessian_source);
+    case StartMatrix::warped_rest_hessian: return std::make_unique<HessianInverse>(model, warped_hessian_source);
     case StartMatrix::frame_hessian:
       if (cg) return std::make_unique<FrameCgInverse>(model, method.preconditioner, method.inner_iterations);
-      return std::make_unique<FrameInverse>(model);
-    case StartMatrix::hecht: return std::make_unique<HechtInverse>(model);
+      return std::make_unique<HessianInverse>(model, frame_hessian_source);
+    case StartMatrix::hecht: return std::make_unique<HessianInverse>(model, hecht_hessian_source);
     case StartMatrix::contact: return std::make_unique<ContactMatrixInverse>(model);
     case StartMatrix::hessian:
     case StartMatrix::vertex_blocks: break;  // their rules hold them; no pairs of L-BFGS correct them

@@ -88,6 +88,9 @@ TEST_F(ResumedFilm, RefusesTheCheckpointOfAnotherFilm) {
   bytes[bytes.size() / 2] ^= 1;
   std::ofstream(folder_.path / "a" / "checkpoint" / "state", std::ios::binary) << bytes;
   EXPECT_NE(refused({"--no-images"}).find("is damaged"), std::string::npos);
+  bytes[std::string_view("supple checkpoint ").size()] = '3';  // as an earlier version wrote it
+  std::ofstream(folder_.path / "a" / "checkpoint" / "state", std::ios::binary) << bytes;
+  EXPECT_NE(refused({"--no-images"}).find("not a checkpoint of this version"), std::string::npos);
 }
 
 // Returns two tetrahedra with a region each.

@@ -43,7 +43,7 @@ TEST(MatrixRule, TheConstantMatrixIsThePapersToTheLastBit) {
       step(model, inputs, state, w);
       step(model, inputs, plain, other, rule);
       EXPECT_EQ(state_hash(model, state), state_hash(model, plain)) << "step " << i;
-      EXPECT_EQ(state.matrix_made_at.rows(), 0);
+      EXPECT_EQ(state.memory.matrix_made_at.rows(), 0);
     }
   }
 }
@@ -76,7 +76,7 @@ TEST(MatrixRule, ABodyThatHardlyMovesRenewsNothing) {
   for (int i = 0; i < 10; ++i) {
     step(model, inputs, state, w);
     EXPECT_EQ(w.renewed, i == 0) << "step " << i;
-    EXPECT_EQ(state.matrix_made_at, model.rest);
+    EXPECT_EQ(state.memory.matrix_made_at, model.rest);
   }
 }
 
@@ -102,10 +102,10 @@ TEST(MatrixRule, AStateHoldsAllThatTheNextStepDependsOn) {
     const BodyDescription body = bar(material, Held::hard_end, Precision::single_precision, 4);
     const StepInputs inputs = inputs_with(build_model(body), matrix);
     test::expect_states_to_hold_all(body, inputs, [](const State& one, const State& other) {
-      EXPECT_EQ(one.matrix_made_at, other.matrix_made_at);
-      EXPECT_EQ(one.matrix_age, other.matrix_age);
-      EXPECT_EQ(one.hessian_progress, other.hessian_progress);
-      EXPECT_EQ(one.constant_progress, other.constant_progress);
+      EXPECT_EQ(one.memory.matrix_made_at, other.memory.matrix_made_at);
+      EXPECT_EQ(one.memory.matrix_age, other.memory.matrix_age);
+      EXPECT_EQ(one.memory.hessian_progress, other.memory.hessian_progress);
+      EXPECT_EQ(one.memory.constant_progress, other.memory.constant_progress);
     });
   }
 }
@@ -137,10 +137,10 @@ TEST_P(ByMatrix, NewValuesOfAModelMakeTheMatrixAnew) {
 TEST_P(ByMatrix, IsForgottenByTheConstantMatrixAndBeginsAnew) {
   const Model model = build_model(bar(NeoHookean{1e4, 4e4}, Held::hard_end, Precision::single_precision, 2));
   State state = test::moving_state(model, inputs_with(model, GetParam()), 3);
-  EXPECT_EQ(state.matrix_made_at.rows(), model.vertices);
+  EXPECT_EQ(state.memory.matrix_made_at.rows(), model.vertices);
   Workspace w;
   step(model, inputs_with(model, SystemMatrix::constant), state, w);
-  EXPECT_EQ(state.matrix_made_at.rows(), 0);
+  EXPECT_EQ(state.memory.matrix_made_at.rows(), 0);
   step(model, inputs_with(model, GetParam()), state, w);
   EXPECT_TRUE(w.renewed);
 }
@@ -177,7 +177,7 @@ TEST(MatrixRule, TheHessianComesMuchNearerInTheSameIterations) {
   for (const auto& [material, most] : cases) {
     const Model model = build_model(bar(material, Held::hard_end, Precision::single_precision, 3));
     const State before = test::moving_state(model, inputs_with(model, SystemMatrix::hessian), 8);
-    ASSERT_EQ(before.matrix_age, 7);  // the matrix is that of the first step
+    ASSERT_EQ(before.memory.matrix_age, 7);  // the matrix is that of the first step
     double error[2];
     Reference reference(model);
     Workspace w, scratch;
@@ -233,8 +233,8 @@ TEST(MatrixRule, TheHessianServesOnlyWhatTouchesNothing) {
     State resumed = states[from];
     for (int i = from; i < 24; ++i) step(scene.model, scene.inputs, resumed, other);
     EXPECT_EQ(state_hash(scene.model, resumed), state_hash(scene.model, state)) << from;
-    EXPECT_EQ(resumed.matrix_made_at, state.matrix_made_at);
-    EXPECT_EQ(resumed.matrix_age, state.matrix_age);
+    EXPECT_EQ(resumed.memory.matrix_made_at, state.memory.matrix_made_at);
+    EXPECT_EQ(resumed.memory.matrix_age, state.memory.matrix_age);
   }
 }
 
@@ -244,7 +244,29 @@ TEST(MatrixRule, SpringsAloneKeepTheConstantMatrix) {
   Workspace w;
   step(model, inputs_with(model, SystemMatrix::hessian), state, w);
   EXPECT_FALSE(w.hessian_serves);
-  EXPECT_EQ(state.matrix_made_at.rows(), 0);
+  EXPECT_EQ(state.memory.matrix_made_at.rows(), 0);
+}
+
+TEST(SolverMemory, IsTheSameAfterAWayThroughBytes) {
+  const SolverMemory memory{Positions::Random(5, 3), 7, 0.25, 0.125};
+  const std::string bytes = bytes_of(memory);
+  const std::optional<SolverMemory> again = memory_from(bytes, 5);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->matrix_made_at, memory.matrix_made_at);
+  EXPECT_EQ(again->matrix_age, 7);
+  EXPECT_EQ(again->hessian_progress, 0.25);
+  EXPECT_EQ(again->constant_progress, 0.125);
+  const std::optional<SolverMemory> nothing = memory_from(bytes_of(SolverMemory{}), 5);
+  ASSERT_TRUE(nothing);
+  EXPECT_EQ(nothing->matrix_made_at.rows(), 0);
+}
+
+TEST(SolverMemory, IsNotTakenFromBytesOfAnotherBody) {
+  const std::string bytes = bytes_of(SolverMemory{Positions::Random(5, 3), 7, 0.25, 0.125});
+  EXPECT_FALSE(memory_from(bytes, 6));
+  EXPECT_FALSE(memory_from(bytes.substr(1), 5));
+  EXPECT_FALSE(memory_from(bytes.substr(0, 5), 5));
+  EXPECT_FALSE(memory_from("", 5));
 }
 
 }  // namespace

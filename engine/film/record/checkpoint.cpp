@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view signature = "supple checkpoint 3\n";
+constexpr std::string_view signature = "supple checkpoint 4\n";
 
 void append(std::string& bytes, const Positions& rows) {
   bytes.append(reinterpret_cast<const char*>(rows.data()), sizeof(double) * static_cast<std::size_t>(rows.size()));
@@ -70,10 +70,7 @@ std::string checkpoint_bytes(const WorldState& checkpoint, const std::string& id
                               {"handles", body.anchors.centers.size()},
                               {"holds", holds},
                               {"time_s", body.time},
-                              {"matrix_vertices", body.matrix_made_at.rows()},
-                              {"matrix_age", body.matrix_age},
-                              {"hessian_progress", body.hessian_progress},
-                              {"constant_progress", body.constant_progress}});
+                              {"memory_bytes", bytes_of(body.memory).size()}});
   }
   const std::string text = exact_json_text(head);
   std::string bytes(signature);
@@ -84,7 +81,7 @@ std::string checkpoint_bytes(const WorldState& checkpoint, const std::string& id
     append(bytes, body.v);
     append(bytes, body.anchors.points);
     for (const Vec3& center : body.anchors.centers) append(bytes, center.transpose());
-    append(bytes, body.matrix_made_at);
+    bytes += bytes_of(body.memory);
   }
   append_number(bytes, hash_text(bytes));
   return bytes;
@@ -109,10 +106,9 @@ State read_body(const Json& body, Reader& reader) {
   state.anchors.points = reader.rows(body.at("handled"));
   const Positions centers = reader.rows(body.at("handles"));
   for (Eigen::Index h = 0; h < centers.rows(); ++h) state.anchors.centers.push_back(centers.row(h).transpose());
-  state.matrix_made_at = reader.rows(body.at("matrix_vertices"));
-  state.matrix_age = body.at("matrix_age");
-  state.hessian_progress = body.at("hessian_progress");
-  state.constant_progress = body.at("constant_progress");
+  const std::optional<SolverMemory> memory = memory_from(reader.take(body.at("memory_bytes")), state.x.rows());
+  if (!memory) reader.fail();
+  state.memory = *memory;
   for (const Json& held : body.at("holds")) state.anchors.holds.push_back(held.get<bool>());
   return state;
 }

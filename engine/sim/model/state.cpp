@@ -6,9 +6,7 @@
 
 namespace supple {
 
-State rest_state(const Model& model) {
-  return {model.rest, Positions::Zero(model.vertices, 3), 0, {}, {}, 0, 0, 0};
-}
+State rest_state(const Model& model) { return {model.rest, Positions::Zero(model.vertices, 3), 0, {}, {}}; }
 
 Positions in_input_order(const Model& model, const Positions& rows) {
   Positions result(model.vertices, 3);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "sim/model/solver_memory.h"
 
 namespace supple {
 
@@ -19,19 +20,14 @@ struct Anchors {
 };
 
 // All that a body's future depends on, unless its SearchRule remembers earlier steps (solver/step.h). A copy is a
-// snapshot. step() changes x, v, time, and what is said of its matrix; DrivenBody changes the anchors, and
-// replaces the whole when it restores one.
+// snapshot. step() changes x, v, time, and the memory; DrivenBody changes the anchors, and replaces the
+// whole when it restores one.
 struct State {
-  Positions x;      // positions, n x 3, in the model's order [m]
-  Positions v;      // velocities, n x 3 [m/s]
-  double time = 0;  // [s]
-  Anchors anchors;  // may stay empty where only steps are made: they do not read them
-  Positions
-      matrix_made_at;  // where the matrix of directions was made (solver/matrix_rule.h), n x 3; empty: none was [m]
-  int matrix_age = 0;  // steps since
-  // The factor by which one evaluation reduced the error (its estimate to the power of one over their number) in the
-  // last step that started directions from the Hessian, and in the last that started them from A; 0: not known.
-  double hessian_progress = 0, constant_progress = 0;
+  Positions x;          // positions, n x 3, in the model's order [m]
+  Positions v;          // velocities, n x 3 [m/s]
+  double time = 0;      // [s]
+  Anchors anchors;      // may stay empty where only steps are made: they do not read them
+  SolverMemory memory;  // what its solver remembers of earlier steps; empty: nothing
 };
 
 // Returns the state of a model that is at rest where it was built.

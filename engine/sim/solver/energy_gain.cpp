@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "sim/solver/objective.h"
+#include "sim/solver/search_rule.h"
 
 namespace supple {
 
@@ -101,15 +102,18 @@ double share_from_nothing(const Model& model, const StepInputs& inputs, const St
 
 }  // namespace
 
-bool gains_energy(const Model& model, const StepInputs& inputs, const State& state, double above_start, Workspace& w,
-                  bool has_gradient) {
-  constexpr double much = 0.01;
-  const StepReport& report = w.report;
-  const bool hard = report.line_search > 2 * report.iterations;
-  const bool unsolved = -report.slope > 1e-4 * (report.decrease + above_start);  // of the last direction
-  if (!hard && !(unsolved && has_gradient && may_gain_energy(model, inputs, state, w, much))) return false;
-  const TimedPhase timed(w.clock, Phase::evaluate, "check energy");
-  return share_from_nothing(model, inputs, state, w) > much;
+bool gains_energy(const StepContext& c) {
+  constexpr double much = 0.01;       // share of the energies that the step exchanges
+  constexpr int usual_trials = 2;     // points that an iteration tries, unless it has a hard time
+  constexpr double much_left = 1e-4;  // share of what the step has gained: steps that come nearer have a small gradient
+  const StepReport& report = c.w.report;
+  const bool hard = report.line_search > usual_trials * report.iterations;
+  const bool unsolved = -report.slope > much_left * (report.decrease + c.above_start);  // by the last direction
+  const bool has_gradient = c.rule.needs_gradient() || c.inputs.solver.line_search != LineSearch::none;
+  const bool may_gain = hard || (unsolved && has_gradient && may_gain_energy(c.model, c.inputs, c.state, c.w, much));
+  if (!may_gain) return false;
+  const TimedPhase timed(c.w.clock, Phase::evaluate, "check energy");
+  return share_from_nothing(c.model, c.inputs, c.state, c.w) > much;
 }
 
 }  // namespace supple

@@ -4,8 +4,7 @@
 // that was left far from its minimum can, again and again, without bound.
 #pragma once
 
-#include "sim/model/state.h"
-#include "sim/solver/workspace.h"
+#include "sim/solver/step_context.h"
 
 namespace supple {
 
@@ -21,9 +20,6 @@ double work_from_outside(const Model& model, const Positions& q, Workspace& work
 // Tells whether the step, left at the current iterate, would gain more than a hundredth of the energies that it
 // exchanges, and of that of a fall of two steps, from nothing. That costs an evaluation at q, so only steps are
 // examined whose iterations had a hard time, or whose gradient leaves it possible while there was still much to gain.
-// state: where the step began; above_start: g(y) - g of its first iterate, where that is known [J]; has_gradient:
-// whether the current iterate has one.
-bool gains_energy(const Model& model, const StepInputs& inputs, const State& state, double above_start,
-                  Workspace& workspace, bool has_gradient);
+bool gains_energy(const StepContext& c);
 
 }  // namespace supple

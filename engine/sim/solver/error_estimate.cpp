@@ -5,8 +5,8 @@
 
 #include "sim/contact/contact.h"
 #include "sim/model/measures.h"
-#include "sim/solver/first_iterate.h"
 #include "sim/solver/line_search.h"
+#include "sim/solver/place_iterate.h"
 
 namespace supple {
 

@@ -6,6 +6,7 @@
 
 #include "sim/solver/first_iterate.h"
 #include "sim/solver/iterations.h"
+#include "sim/solver/lbfgs.h"
 
 namespace supple {
 namespace {
@@ -41,8 +42,11 @@ bool press_once(const Model& model, const StepInputs& inputs, const State& state
   w.report = {};
   begin_step(model, inputs, state, w);
   w.contact.pressed_at_first = pressed;
-  set_first_iterate(model, inputs, state, w);
-  minimize(model, inputs, w);
+  SystemInverse system;
+  LbfgsRule rule(system);
+  StepContext context{model, inputs, state, w, rule};
+  set_first_iterate(context);
+  minimize(model, inputs, w, rule);
   if (w.report.failed || !w.current.x.allFinite()) return false;
   pressed.assign(touches.size(), 0);
   for (const Contact& contact : w.current.contacts) {

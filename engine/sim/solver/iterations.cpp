@@ -4,12 +4,11 @@
 #include <cmath>
 #include <utility>
 
-#include "base/unsolved_step.h"
-#include "sim/solver/energy_gain.h"
-#include "sim/solver/error_estimate.h"
-#include "sim/solver/first_iterate.h"
+#include "sim/solver/bow_search.h"
 #include "sim/solver/lbfgs.h"
 #include "sim/solver/line_search.h"
+#include "sim/solver/place_iterate.h"
+#include "sim/solver/unforeseen_contacts.h"
 
 namespace supple {
 namespace {
@@ -52,21 +51,6 @@ Descent next_direction(const Model& model, const StepInputs& inputs, Workspace& 
   }
 }
 
-// Bends the search into an arc where its direction turns parts of the body so far that a straight line would stretch
-// them by more than a share of what it promises.
-void bow_search(const Model& model, const StepInputs& inputs, double slope, Workspace& w) {
-  constexpr double small_share = 0.02;
-  w.is_bowed = false;
-  if (!w.second_level_serves) return;
-  const TimedPhase timed(w.clock, Phase::solve, "turn");
-  if (w.second_level.system().most_stretched(model, w.direction) < small_share * -slope) return;
-  w.turning.take_tangent(w.second_level.system(), w.current.x, w.direction);
-  w.is_bowed = w.turning.energy() > small_share * -slope;
-  if (!w.is_bowed) return;
-  w.turning.correct(model, w.second_level.system(), w.current.x, w.solve_scratch, w.bow);
-  keep_bow_on_planes(model, inputs.solver.contact, w.current.contacts, w.current.x, w.direction, w.correction, w.bow);
-}
-
 // Searches along the direction for the next iterate, and leaves it in the trial iterate. A search that meets contacts
 // which it did not foresee is repeated, a few times, along a direction that knows them: adding constraints where an
 // iterate violates them, and solving again, is the exchange method of semi-infinite programs (Hettich and Kortanek
@@ -81,7 +65,6 @@ Search find_next(const Model& model, const StepInputs& inputs, Workspace& w, Sea
     find_contacts_of(model, inputs, w, w.trial);
     return Search::found;
   }
-  constexpr int most_lessons = 3;
   int lessons = 0;
   for (;;) {
     bow_search(model, inputs, slope, w);
@@ -144,82 +127,114 @@ void fail(const Model& model, Workspace& w, const char* phase, double objective)
       std::isfinite(objective) ? "the objective has grown beyond all bounds" : "a number is no longer finite";
 }
 
-bool run_iterations(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, const Limits& limits,
-                    const Origin* origin) {
-  const SolverSettings& solver = inputs.solver;
-  StepReport& report = w.report;
-  const std::size_t first = report.objective.size() - 1;
-  const double start = w.current.g;
-  report.remaining_estimate = 0;
-  if (!std::isfinite(start)) {
-    fail(model, w, "evaluate", start);
-    return false;
+Iterations::Iterations(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule,
+                       const SearchOrigin& origin)
+    : model_(model),
+      inputs_(inputs),
+      w_(w),
+      rule_(rule),
+      origin_(origin),
+      first_(w.report.objective.size() - 1),
+      start_(w.current.g),
+      tried_(w.report.line_search) {
+  w.report.remaining_estimate = 0;
+  if (!std::isfinite(start_)) {
+    fail(model, w, "evaluate", start_);
+    return;
   }
   w.second_level_serves = w.is_bowed = false;
   w.correction.second = nullptr;
   rule.begin(model, inputs, w);
+  w.report.stop_reason = StopReason::iterations;
+  w.report.decrement = 0;
+  w.report.iterations = 0;
+}
 
-  report.stop_reason = StopReason::iterations;
-  report.decrement = 0;
-  report.iterations = 0;
-  const double above_start = origin != nullptr ? origin->above_start : 0;
-  const Positions* const q = origin != nullptr ? &origin->state.x : nullptr;
-  Decrements decrements;
-  const int tried = report.line_search;
-  bool hopeless = false;
-  for (int most = limits.iterations;;) {
-    const bool late = limits.budget != nullptr && limits.budget->is_spent(report.iterations);
-    hopeless = limits.newton_follows && is_unsolved(0, most, report.line_search - tried);
-    bool spent = late || hopeless || report.iterations >= most;
-    if (late) report.stop_reason = StopReason::budget;
-    if (spent && !late && !hopeless && origin != nullptr && most < limits.iterations_of_rounds &&
-        gains_energy(model, inputs, origin->state, above_start, w, rule.needs_gradient())) {
-      most += solver.iterations;
-      spent = false;
-    }
-    if (spent && !rule.measures_last_iterate()) break;
-    const Descent descent = next_direction(model, inputs, w, rule);
-    if (!std::isfinite(descent.slope)) {
-      fail(model, w, "solve", descent.slope);
-      break;
-    }
-    report.decrement = descent.done ? 0 : -0.5 * descent.slope;
-    if (rule.measures_last_iterate()) report.remaining_estimate = decrements.left(2 * report.decrement);
-    const bool has_enough = -descent.slope <= limits.enough && !(limits.finishing && report.iterations == 0);
-    if (descent.done || has_enough) {
-      report.stop_reason = StopReason::round_off;
-      hopeless = false;
-      break;
-    }
-    if (spent) break;
-    if (rule.measures_last_iterate() && is_near_enough(model, inputs, q, above_start, w)) {
-      report.stop_reason = StopReason::target_error;
-      break;
-    }
-    Change change{};
-    IterationRecord record;
-    const double before = w.current.g;
-    const Search search = find_next(model, inputs, w, rule, descent.slope, change, record);
-    if (search != Search::found && (search != Search::worse || limits.finishing)) {
-      // A first search that finds nothing above round-off leaves nothing to gain, and nothing to compare it with.
-      if (search == Search::exhausted && report.iterations == 0) report.remaining_estimate = 0;
-      report.stop_reason = search == Search::exhausted ? StopReason::round_off : StopReason::line_search_failed;
-      break;
-    }
-    accept(model, inputs, w, rule, before, change, record);
-    decrements.add(-descent.slope, record.decrease);
-    if (absurd(model, w.current.g, start)) {
-      fail(model, w, "line search", w.current.g);
-      break;
-    }
-    if (rule.measures_last_iterate()) continue;
-    report.remaining_estimate = left_by_decreases(report.objective, first);
-    if (is_near_enough(model, inputs, nullptr, above_start, w)) {
-      report.stop_reason = StopReason::target_error;
-      break;
-    }
+void Iterations::run(const SearchLimits& limits) {
+  if (w_.report.failed) return;
+  while (!reaches(limits)) {
+    if (advance(limits)) continue;
+    end_ = SearchEnd::settled;
+    return;
   }
-  return hopeless;
+}
+
+void Iterations::look_further(const SearchLimits& limits) {
+  if (end_ == SearchEnd::settled || !rule_.measures_last_iterate()) return;
+  if (!has_direction(limits)) end_ = SearchEnd::settled;
+}
+
+// Tells whether the search has come to one of its limits, and notes which one.
+bool Iterations::reaches(const SearchLimits& limits) {
+  StepReport& report = w_.report;
+  if (limits.budget != nullptr && limits.budget->is_spent(report.iterations)) {
+    report.stop_reason = StopReason::budget;
+    end_ = SearchEnd::time;
+  } else if (report.line_search - tried_ > limits.trials) {
+    end_ = SearchEnd::trials;
+  } else if (report.iterations >= limits.iterations) {
+    end_ = SearchEnd::iterations;
+  } else {
+    return false;
+  }
+  return true;
+}
+
+// Sets the direction at the current iterate, and estimates what is left there. Returns false where the search ends
+// because it promises too little, or failed.
+bool Iterations::has_direction(const SearchLimits& limits) {
+  StepReport& report = w_.report;
+  const Descent descent = next_direction(model_, inputs_, w_, rule_);
+  if (!std::isfinite(descent.slope)) {
+    fail(model_, w_, "solve", descent.slope);
+    return false;
+  }
+  report.decrement = descent.done ? 0 : -0.5 * descent.slope;
+  if (rule_.measures_last_iterate()) report.remaining_estimate = decrements_.left(2 * report.decrement);
+  const bool has_enough = -descent.slope <= limits.enough && report.iterations >= limits.least_iterations;
+  if (!descent.done && !has_enough) return true;
+  report.stop_reason = StopReason::round_off;
+  return false;
+}
+
+// Makes one iteration. Returns false where the search ends.
+bool Iterations::advance(const SearchLimits& limits) {
+  StepReport& report = w_.report;
+  if (!has_direction(limits)) return false;
+  if (rule_.measures_last_iterate() && is_near_enough(model_, inputs_, origin_.q, origin_.above_start, w_)) {
+    report.stop_reason = StopReason::target_error;
+    return false;
+  }
+  Change change{};
+  IterationRecord record;
+  const double before = w_.current.g, slope = report.slope;
+  const Search found = find_next(model_, inputs_, w_, rule_, slope, change, record);
+  const bool is_taken = found == Search::worse && limits.worse_iterate == WorseIterate::taken;
+  if (found != Search::found && !is_taken) {
+    // A first search that finds nothing above round-off leaves nothing to gain, and nothing to compare it with.
+    if (found == Search::exhausted && report.iterations == 0) report.remaining_estimate = 0;
+    report.stop_reason = found == Search::exhausted ? StopReason::round_off : StopReason::line_search_failed;
+    return false;
+  }
+  accept(model_, inputs_, w_, rule_, before, change, record);
+  decrements_.add(-slope, record.decrease);
+  if (absurd(model_, w_.current.g, start_)) {
+    fail(model_, w_, "line search", w_.current.g);
+    return false;
+  }
+  if (rule_.measures_last_iterate()) return true;
+  report.remaining_estimate = left_by_decreases(report.objective, first_);
+  if (!is_near_enough(model_, inputs_, nullptr, origin_.above_start, w_)) return true;
+  report.stop_reason = StopReason::target_error;
+  return false;
+}
+
+SearchEnd run_search(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule,
+                     const SearchLimits& limits, const SearchOrigin& origin) {
+  Iterations iterations(model, inputs, w, rule, origin);
+  iterations.run(limits);
+  iterations.look_further(limits);
+  return iterations.end();
 }
 
 void minimize(const Model& model, const StepInputs& inputs, Workspace& w, double enough) {
@@ -230,7 +245,7 @@ void minimize(const Model& model, const StepInputs& inputs, Workspace& w, double
 
 void minimize(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, double enough) {
   evaluate_start(model, inputs, w);
-  run_iterations(model, inputs, w, rule, {inputs.solver.iterations, 0, enough});
+  run_search(model, inputs, w, rule, {.iterations = inputs.solver.iterations, .enough = enough});
 }
 
 }  // namespace supple

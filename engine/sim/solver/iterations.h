@@ -2,33 +2,84 @@
 // spent, near enough, or come to nothing. Which searches a step makes, and in what order, is told in step.cpp.
 #pragma once
 
-#include "sim/model/state.h"
+#include <limits>
+
+#include "sim/solver/error_estimate.h"
 #include "sim/solver/search_rule.h"
+#include "sim/solver/step_context.h"
 #include "sim/solver/time_budget.h"
 
 namespace supple {
 
-// Tells what a step began with.
-struct Origin {
-  const State& state;
-  double above_start;   // g(y) - g of its first iterate, where that is known [J]
-  bool newton_follows;  // where the iterations come to nothing
+// Tells what a search does with an iterate that contacts make worse which were found only there, and which the iterate
+// before could not learn.
+enum class WorseIterate {
+  taken,    // the iterations after it know the contacts
+  refused,  // it ends the search: g never rises
 };
 
 // Tells where a search ends at the latest.
-struct Limits {
-  int iterations;
-  int iterations_of_rounds;      // where the answer so far gains energy from nothing
-  double enough = 0;             // a direction that promises less ends the search, -tr(grad^T d) [J]
+struct SearchLimits {
+  int iterations = 0;                            // iterations at most, counted from where the search began
+  int trials = std::numeric_limits<int>::max();  // points that its line searches may try; beyond, it gives up
+  double enough = 0;                             // promise of a direction below which it ends, -tr(grad^T d) [J]
+  int least_iterations = 0;                      // iterations that it makes whatever they promise
+  WorseIterate worse_iterate = WorseIterate::taken;
   TimeBudget* budget = nullptr;  // null: time has no bound
-  bool newton_follows = false;   // the search ends where it tries too many points: Newton's method does better there
-  bool finishing = false;        // it makes one iteration at least, and ends where contacts make the next iterate worse
 };
 
-// Runs the iterations from the current iterate, which has been evaluated. origin: of the step that the search begins;
-// null for other searches, which make no more rounds. Returns whether it gave up because of its trials.
-bool run_iterations(const Model& model, const StepInputs& inputs, Workspace& workspace, SearchRule& rule,
-                    const Limits& limits, const Origin* origin = nullptr);
+// Tells why a search ended.
+enum class SearchEnd {
+  iterations,  // it has made all that it may
+  time,        // no further one fits into the budget of time
+  trials,      // it gave up: its line searches have tried more points than they may
+  settled,     // there is nothing more to gain here: see StepReport::stop_reason; or the step has failed
+};
+
+// Tells what a step has done before a search, for estimates of its errors.
+struct SearchOrigin {
+  const Positions* q = nullptr;  // start of the step, n x 3 [m]; null: the error of motion is of no interest
+  double above_start = 0;        // g(y) - g of the first iterate, where that is known [J]
+};
+
+inline SearchOrigin origin_of(const StepContext& c) { return {&c.state.x, c.above_start}; }
+
+// Goes from iterate to iterate. The report's iterations are this search's; its decrease is the sum over all searches.
+class Iterations {
+ public:
+  // Begins a search at workspace.current, which has been evaluated.
+  Iterations(const Model& model, const StepInputs& inputs, Workspace& workspace, SearchRule& rule,
+             const SearchOrigin& origin = {});
+
+  // Iterates until the search ends. A search that was ended by its limits goes on when it is called with further ones.
+  void run(const SearchLimits& limits);
+
+  // Asks for the direction at the last iterate, where the rule is for that: it tells what is left to gain, and may find
+  // that there is nothing. To be called after the last run(); does nothing to a search that has settled.
+  void look_further(const SearchLimits& limits);
+
+  SearchEnd end() const { return end_; }
+
+ private:
+  bool reaches(const SearchLimits& limits);
+  bool has_direction(const SearchLimits& limits);
+  bool advance(const SearchLimits& limits);
+
+  const Model& model_;
+  const StepInputs& inputs_;
+  Workspace& w_;
+  SearchRule& rule_;
+  SearchOrigin origin_;
+  SearchEnd end_ = SearchEnd::settled;
+  std::size_t first_;  // place of the search's first iterate in the report's objectives
+  double start_;       // g there [J]
+  int tried_;          // points that earlier searches tried
+  Decrements decrements_;
+};
+
+// Runs a search to its end, and looks further. Returns why it ended.
+SearchEnd run_search(const Model& model, const StepInputs& inputs, Workspace& workspace, SearchRule& rule,
+                     const SearchLimits& limits, const SearchOrigin& origin = {});
 
 // Minimises g from workspace.current.x; adds to the report's decrease, and sets its slope and stop reason. Also stops
 // once a direction promises less than `enough` [J]. It serves references.

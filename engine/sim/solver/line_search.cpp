@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/solver/first_iterate.h"
+#include "sim/solver/place_iterate.h"
 #include "sim/solver/unforeseen_contacts.h"
 
 namespace supple {

@@ -26,9 +26,9 @@ constexpr double share_of_renewals = 0.2;
 constexpr double evaluations_a_step = 11;
 
 // Makes the matrix in force: the one that the state says, or a new one. False where there is none: then A serves.
-bool make_tangent(const Model& model, const State& state, Workspace& w) {
+bool make_tangent(const Model& model, const SolverMemory& memory, Workspace& w) {
   const bool known =
-      state.matrix_made_at.rows() == model.vertices && w.tangent.make(model, state.matrix_made_at, shares, w.threads);
+      memory.matrix_made_at.rows() == model.vertices && w.tangent.make(model, memory.matrix_made_at, shares, w.threads);
   if (known && w.tangent.departure(model, w.next_matrix_at) <= most_departure) return true;
   w.renewed = w.tangent.make(model, w.next_matrix_at, shares, w.threads);
   return w.renewed;
@@ -39,13 +39,13 @@ int least_age(const Model& model, const HessianSystem& hessian) {
 }
 
 // Likewise; A serves too where the Hessian is poor and too young to be renewed.
-bool make_hessian(const Model& model, const State& state, Workspace& w) {
-  if (state.matrix_made_at.rows() == model.vertices && w.hessian.make(model, state.matrix_made_at, w.threads)) {
-    const double others = state.constant_progress > 0 ? state.constant_progress : usual_progress;
+bool make_hessian(const Model& model, const SolverMemory& memory, Workspace& w) {
+  if (memory.matrix_made_at.rows() == model.vertices && w.hessian.make(model, memory.matrix_made_at, w.threads)) {
+    const double others = memory.constant_progress > 0 ? memory.constant_progress : usual_progress;
     const bool poor =
-        state.hessian_progress > others || w.hessian.departure(model, w.next_matrix_at) > most_departure_of_hessian;
-    const bool worn = poor || state.hessian_progress > worn_progress;
-    if (!worn || state.matrix_age < least_age(model, w.hessian)) return !poor;
+        memory.hessian_progress > others || w.hessian.departure(model, w.next_matrix_at) > most_departure_of_hessian;
+    const bool worn = poor || memory.hessian_progress > worn_progress;
+    if (!worn || memory.matrix_age < least_age(model, w.hessian)) return !poor;
   }
   w.renewed = w.hessian.make(model, w.next_matrix_at, w.threads);
   return w.renewed;
@@ -59,9 +59,16 @@ bool has_tetrahedra(const Model& model) {
 }  // namespace
 
 void prepare_matrix(const Model& model, const SolverSettings& solver, const State& state, Workspace& w) {
-  if (state.matrix_made_at.rows() != model.vertices) return;
-  if (solver.matrix == SystemMatrix::tangent) w.tangent.make(model, state.matrix_made_at, shares, w.threads);
-  if (solver.matrix == SystemMatrix::hessian) w.hessian.make(model, state.matrix_made_at, w.threads);
+  const SolverMemory& memory = state.memory;
+  if (memory.matrix_made_at.rows() != model.vertices) return;
+  if (solver.matrix == SystemMatrix::tangent) w.tangent.make(model, memory.matrix_made_at, shares, w.threads);
+  if (solver.matrix == SystemMatrix::hessian) w.hessian.make(model, memory.matrix_made_at, w.threads);
+}
+
+void put_in_force(const Model& model, const StepInputs& inputs, const System& system, Workspace& w) {
+  w.system = w.correction.matrix = &system;
+  w.hessian_serves = false;
+  if (has_colliders(inputs)) begin_corrections(model, w.correction);
 }
 
 void choose_matrix(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
@@ -71,9 +78,7 @@ void choose_matrix(const Model& model, const StepInputs& inputs, const State& st
   if (inputs.solver.matrix != SystemMatrix::tangent || model.integrator != Integrator::backward_euler) return;
   const TimedPhase timed(w.clock, Phase::matrix, "matrix");
   w.next_matrix_at = state.x + model.time_step * state.v;
-  if (!make_tangent(model, state, w)) return;
-  w.system = w.correction.matrix = &w.tangent.system();
-  if (has_colliders(inputs)) begin_corrections(model, w.correction);
+  if (make_tangent(model, state.memory, w)) put_in_force(model, inputs, w.tangent.system(), w);
 }
 
 // A body without tetrahedra has A: springs alone do not tell how far it has turned.
@@ -82,7 +87,7 @@ void choose_hessian(const Model& model, const StepInputs& inputs, const State& s
   if (!w.current.contacts.empty() || !has_tetrahedra(model)) return;
   const TimedPhase timed(w.clock, Phase::matrix, "matrix");
   w.next_matrix_at = state.x + model.time_step * state.v;
-  w.hessian_serves = make_hessian(model, state, w);
+  w.hessian_serves = make_hessian(model, state.memory, w);
   if (w.hessian_serves) w.hessian.turn_to(w.current.x, w.threads);
 }
 
@@ -95,32 +100,33 @@ double progress_of(const StepReport& report) {
   return std::pow(left, 1.0 / std::max(report.line_search, 1));
 }
 
-void remember_progress(const Workspace& w, State& state) {
+void remember_progress(const Workspace& w, SolverMemory& memory) {
   if (w.hessian_serves) {
-    state.hessian_progress = progress_of(w.report);
-    if (state.constant_progress > 0) state.constant_progress += forgetting * (usual_progress - state.constant_progress);
+    memory.hessian_progress = progress_of(w.report);
+    if (memory.constant_progress > 0)
+      memory.constant_progress += forgetting * (usual_progress - memory.constant_progress);
   } else if (w.current.contacts.empty()) {
-    state.constant_progress = progress_of(w.report);
+    memory.constant_progress = progress_of(w.report);
   }
 }
 
 }  // namespace
 
-void remember_matrix(const Model& model, const SolverSettings& solver, const Workspace& w, State& state) {
+void remember_matrix(const Model& model, const SolverSettings& solver, const Workspace& w, SolverMemory& memory) {
   const bool of_hessian = solver.matrix == SystemMatrix::hessian;
   if (w.renewed) {
-    state.matrix_made_at = w.next_matrix_at;
-    state.matrix_age = 0;
+    memory.matrix_made_at = w.next_matrix_at;
+    memory.matrix_age = 0;
   } else if (of_hessian) {
-    state.matrix_age = std::min(state.matrix_age + 1, longest_age);
+    memory.matrix_age = std::min(memory.matrix_age + 1, longest_age);
   } else if (w.system == static_cast<const System*>(&model)) {
-    state.matrix_made_at.resize(0, 3);
-    state.matrix_age = 0;
+    memory.matrix_made_at.resize(0, 3);
+    memory.matrix_age = 0;
   }
   if (of_hessian) {
-    remember_progress(w, state);
+    remember_progress(w, memory);
   } else {
-    state.hessian_progress = state.constant_progress = 0;
+    memory.hessian_progress = memory.constant_progress = 0;
   }
 }
 

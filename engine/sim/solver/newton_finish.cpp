@@ -1,9 +1,11 @@
 #include "sim/solver/newton_finish.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "sim/solver/energy_gain.h"
 #include "sim/solver/error_estimate.h"
+#include "sim/solver/iterations.h"
 
 namespace supple {
 
@@ -26,37 +28,61 @@ class NewtonDirections final : public SearchRule {
   }
 };
 
-}  // namespace
+// Returns where Newton's method ends. gained: what the step has gained [J].
+SearchLimits limits_of(const StepContext& c, Hardness hardness, double gained) {
+  constexpr double small_share = 1e-4,
+                   smaller_share = 1e-8;  // the smaller one: energy from nothing and turning need it
+  constexpr int most_to_turn = 30;        // iterations; docs/method.md ("Hard steps") has the cube that needs some 20
+  const int most = (c.inputs.solver.rounds - 1) * c.inputs.solver.iterations;
+  return {.iterations = hardness == Hardness::far_in_motion ? std::min(most, most_to_turn) : most,
+          .enough = (hardness == Hardness::far_in_energy ? small_share : smaller_share) * gained,
+          .least_iterations = 1,
+          .worse_iterate = WorseIterate::refused};
+}
 
-bool finish_by_newton(const Model& model, const StepInputs& inputs, const Origin& origin, Workspace& w, bool hopeless) {
-  constexpr double small_share = 1e-4, smaller_share = 1e-8;  // energy from nothing and turning need few of them
-  constexpr int most_to_turn = 30;
-  StepReport& report = w.report;
-  const bool gains = gains_energy(model, inputs, origin.state, origin.above_start, w, true);
-  const bool far_in_energy = hopeless || is_unsolved(report.error_estimate, report.iterations, report.line_search);
-  const bool far_in_motion = inputs.solver.levels > 1 && is_unsolved(report);
-  if (!gains && !far_in_energy && !far_in_motion) return false;
-  const double gained = gained_in_all(model, inputs, w, report.decrease + origin.above_start);
-  const double left = report.remaining_estimate;
-  const int iterations = report.iterations;
-  NewtonDirections newton;
-  const bool turns = !gains && !far_in_energy;
-  const int most = (inputs.solver.rounds - 1) * inputs.solver.iterations;
-  Limits limits{turns ? std::min(most, most_to_turn) : most, 0,
-                (gains || turns ? smaller_share : small_share) * gained};
-  limits.finishing = true;
-  run_iterations(model, inputs, w, newton, limits);
-  report.newton_iterations = report.iterations;
-  report.iterations += iterations;
+// Sets what is left to gain, after Newton's method. before: what was left before it [J].
+void estimate_what_is_left(double before, StepReport& report) {
   if (!(report.slope < 0)) {
-    report.remaining_estimate = left;  // there was no direction downhill
+    report.remaining_estimate = before;  // there was no direction downhill
   } else if (report.stop_reason == StopReason::iterations) {
     report.remaining_estimate = std::max(report.remaining_estimate, report.decrement);
   } else if (report.stop_reason != StopReason::target_error) {
     report.remaining_estimate = report.decrement;
   }
-  report.error_estimate = error_at_end(model, inputs, w, report.decrease + origin.above_start);
-  return true;
+}
+
+}  // namespace
+
+int trials_before_newton(const StepContext& c, int iterations) {
+  return may_finish_by_newton(c.model, c.inputs) ? most_trials_an_iteration * iterations
+                                                 : std::numeric_limits<int>::max();
+}
+
+Hardness hardness_of(const StepContext& c) {
+  const StepReport& report = c.w.report;
+  if (report.failed || !may_finish_by_newton(c.model, c.inputs)) return Hardness::none;
+  if (gains_energy(c)) return Hardness::gains_energy;
+  if (c.gave_up || is_unsolved(report.error_estimate, report.iterations, report.line_search))
+    return Hardness::far_in_energy;
+  // With one level, which is the paper's method, nearly every step of a stiff body would be hard by its motion.
+  return c.inputs.solver.levels > 1 && is_unsolved(report) ? Hardness::far_in_motion : Hardness::none;
+}
+
+void finish_by_newton(StepContext& c, Hardness hardness) {
+  Workspace& w = c.w;
+  StepReport& report = w.report;
+  const double gained = gained_in_all(c.model, c.inputs, w, report.decrease + c.above_start);
+  const double left = report.remaining_estimate;
+  const int iterations = report.iterations;
+  NewtonDirections newton;
+  run_search(c.model, c.inputs, w, newton, limits_of(c, hardness, gained));
+  report.newton_iterations = report.iterations;
+  report.iterations += iterations;
+  estimate_what_is_left(left, report);
+  report.error_estimate = error_at_end(c.model, c.inputs, w, report.decrease + c.above_start);
+  // Newton's method that ran out of iterations does not know how far it still was.
+  const double before = report.stop_reason == StopReason::iterations ? report.motion_estimate : 0;
+  report.motion_estimate = std::max(before, motion_estimate(c.model, c.inputs, c.state.x, w));
 }
 
 }  // namespace supple

@@ -1,9 +1,9 @@
 // Finishes steps that the quasi-Newton iterations left far from their minimum: by Newton's method, whose directions
 // know what the one stiffness of A does not, such as elements that are pressed nearly flat. Hard steps are few, so they
-// may be dear.
+// may be dear. Other steps pay nothing, or the evaluation of gains_energy() (energy_gain.h).
 #pragma once
 
-#include "sim/solver/iterations.h"
+#include "sim/solver/step_context.h"
 
 namespace supple {
 
@@ -13,10 +13,21 @@ namespace supple {
 // gained energy).
 bool may_finish_by_newton(const Model& model, const StepInputs& inputs);
 
-// Goes on where the iterations of a step gave up (hopeless), left it far from its minimum by one of the estimates of
-// the report, or gained energy from nothing, until a direction promises next to nothing of what the step has gained,
-// but never uphill. Returns whether it did.
-bool finish_by_newton(const Model& model, const StepInputs& inputs, const Origin& origin, Workspace& workspace,
-                      bool hopeless);
+// Returns how many points the line searches of a search with so many iterations may try before it gives up, because
+// Newton's method does better there; without bound where Newton's method does not follow.
+int trials_before_newton(const StepContext& c, int iterations);
+
+// Tells why a step is hard.
+enum class Hardness {
+  none,           // it is not, or Newton's method is not for this body
+  gains_energy,   // it gains energy from nothing
+  far_in_energy,  // a search gave up, or the error of equation 12 is large, or the searches tried many points
+  far_in_motion,  // the error of motion alone is large: impacts that turn a stiff body
+};
+Hardness hardness_of(const StepContext& c);
+
+// Goes on from the current iterate, but never uphill, until a direction promises next to nothing of what the step has
+// gained. Estimates the errors of the step again.
+void finish_by_newton(StepContext& c, Hardness hardness);
 
 }  // namespace supple

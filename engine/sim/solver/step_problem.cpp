@@ -1,7 +1,7 @@
 #include "sim/solver/step_problem.h"
 
 #include "base/error.h"
-#include "sim/solver/first_iterate.h"
+#include "sim/solver/begin_step.h"
 
 namespace supple {
 

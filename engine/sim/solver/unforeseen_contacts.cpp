@@ -4,7 +4,7 @@
 #include <iterator>
 
 #include "sim/contact/contact_order.h"
-#include "sim/solver/first_iterate.h"
+#include "sim/solver/place_iterate.h"
 
 namespace supple {
 namespace {

@@ -1,10 +1,15 @@
-// Deals with contacts that a search along a direction did not foresee, because they were found only where it led.
+// Deals with contacts that a search along a direction did not foresee, because they were found only where it led. It
+// costs another direction for each such search, and nothing where contacts refuse no trial iterate.
 #pragma once
 
 #include "sim/model/inputs.h"
 #include "sim/solver/workspace.h"
 
 namespace supple {
+
+// The number of directions that may be asked for an iteration because of such contacts; after them, steps are
+// shortened.
+inline constexpr int most_lessons = 3;
 
 // Adds to the current iterate's contacts the planes that a refused trial iterate met and that the current one had not
 // found: those ahead of it, and those of points of edges and faces that were chosen on the way. Corrects the objective

@@ -1,0 +1,38 @@
+#include "sim/model/solver_memory.h"
+
+#include <cstring>
+
+namespace supple {
+namespace {
+
+// The numbers that stand before the positions.
+struct Head {
+  std::int64_t age;
+  double hessian_progress, constant_progress;
+};
+
+std::size_t size_of(const Positions& rows) { return sizeof(double) * static_cast<std::size_t>(rows.size()); }
+
+}  // namespace
+
+std::string bytes_of(const SolverMemory& memory) {
+  const Head head{memory.matrix_age, memory.hessian_progress, memory.constant_progress};
+  std::string bytes(reinterpret_cast<const char*>(&head), sizeof head);
+  bytes.append(reinterpret_cast<const char*>(memory.matrix_made_at.data()), size_of(memory.matrix_made_at));
+  return bytes;
+}
+
+std::optional<SolverMemory> memory_from(std::string_view bytes, Eigen::Index vertices) {
+  Head head;
+  if (bytes.size() < sizeof head) return std::nullopt;
+  std::memcpy(&head, bytes.data(), sizeof head);
+  SolverMemory memory{Positions(0, 3), static_cast<int>(head.age), head.hessian_progress, head.constant_progress};
+  bytes.remove_prefix(sizeof head);
+  if (bytes.empty()) return memory;
+  if (bytes.size() != 3 * sizeof(double) * static_cast<std::size_t>(vertices)) return std::nullopt;
+  memory.matrix_made_at.resize(vertices, 3);
+  std::memcpy(memory.matrix_made_at.data(), bytes.data(), bytes.size());
+  return memory;
+}
+
+}  // namespace supple

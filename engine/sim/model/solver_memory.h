@@ -1,0 +1,28 @@
+// Holds what the solver remembers of the earlier steps of a body, as a part of its State. Only the rule of the matrix
+// (solver/matrix_rule.h) reads and writes what is in it; everybody else copies it, and files keep its bytes.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "base/types.h"
+
+namespace supple {
+
+struct SolverMemory {
+  Positions matrix_made_at;  // where the matrix of directions was made, n x 3; empty: none was [m]
+  int matrix_age = 0;        // steps since then
+  // The factor by which one evaluation reduced the error (its estimate to the power of one over their number) in the
+  // last step that started directions from the Hessian, and in the last that started them from A; 0: not known.
+  double hessian_progress = 0, constant_progress = 0;
+};
+
+// Returns the memory as bytes, for files that a program of the same version reads on a machine with the same order of
+// bytes.
+std::string bytes_of(const SolverMemory& memory);
+
+// Returns the memory of a body with so many vertices from such bytes; nothing where they are not of such a body.
+std::optional<SolverMemory> memory_from(std::string_view bytes, Eigen::Index vertices);
+
+}  // namespace supple

@@ -1,0 +1,17 @@
+// Begins a step: computes y, moves the handles to their targets, and puts the matrix of the model in force.
+#pragma once
+
+#include "sim/model/inputs.h"
+#include "sim/model/state.h"
+#include "sim/solver/workspace.h"
+
+namespace supple {
+
+// Computes y = q + h v + f h^2 M^-1 f_ext of every vertex, in the model's order [m].
+void inertial_prediction(const Model& model, const StepInputs& inputs, const State& state, Positions& y);
+
+// Makes the first part of step(): writes y, and the targets of handles in place of their y, into the workspace. Also
+// leaves the current iterate's x = y.
+void begin_step(const Model& model, const StepInputs& inputs, const State& state, Workspace& workspace);
+
+}  // namespace supple

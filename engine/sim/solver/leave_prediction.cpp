@@ -1,0 +1,125 @@
+#include "sim/solver/leave_prediction.h"
+
+#include <Eigen/SVD>
+#include <utility>
+
+#include "sim/solver/place_iterate.h"
+
+namespace supple {
+namespace {
+
+// The rigid motion of what hard handles hold, over a step: from rotation * (q - from) to a place relative to `to`.
+struct HandleMotion {
+  Vec3 from, to;
+  Eigen::AngleAxisd turn;
+};
+
+// Fits a rigid motion to the held vertices (Kabsch 1976, "A solution for the best rotation to relate two sets of
+// vectors").
+HandleMotion motion_of_handles(const Model& model, const State& state, const Workspace& w) {
+  const int held = model.vertices - model.free;
+  const auto before = state.x.bottomRows(held), after = w.current.x.bottomRows(held);
+  const Eigen::RowVector3d from = before.colwise().mean(), to = after.colwise().mean();
+  const Mat3 moments = (after.rowwise() - to).transpose() * (before.rowwise() - from);
+  const Eigen::JacobiSVD<Mat3> svd(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Mat3 u = svd.matrixU();
+  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;
+  return {from.transpose(), to.transpose(), Eigen::AngleAxisd(Mat3(u * svd.matrixV().transpose()))};
+}
+
+// Finds how what turns departs from the straight motions h v, and whether that matters: straight motions stretch it.
+void find_turning(StepContext& c) {
+  const Model& model = c.model;
+  Workspace& w = c.w;
+  constexpr double little = 1e-5;  // of the kinetic energy of what the body would do freely
+  w.turns = false;
+  if (c.inputs.solver.levels < 2) return;
+  const TimedPhase timed(w.clock, Phase::matrix, "turn");
+  w.second_level.prepare(model);
+  double way = 0;
+  for (int v = 0; v < model.free; ++v) way += model.mass[v] * (w.y.row(v) - c.state.x.row(v)).squaredNorm();
+  const double energy = little * way / (2 * model.time_step * model.time_step);
+  w.motion = model.time_step * c.state.v;
+  w.turning.take_velocity(w.second_level.system(), c.state.x, w.motion);
+  w.turns = w.turning.energy() > energy;
+  if (w.turns) w.turning.correct(model, w.second_level.system(), c.state.x, w.solve_scratch, w.turned);
+}
+
+// Sets the direction to that from y which spreads the handles' departure from y. Returns false where they do not
+// depart.
+bool spread_handles(Workspace& w) {
+  Positions& right = w.scratch;
+  right.setZero();
+  for (const System::Coupling& entry : w.system->couplings) {
+    right.row(entry.free) -= entry.value * (w.current.x.row(entry.held) - w.y.row(entry.held));
+  }
+  if (right.isZero(0)) return false;
+  const TimedPhase timed(w.clock, Phase::solve, "solve");
+  w.system->factor.solve(right.data(), w.direction.data(), w.solve_scratch.data());
+  return true;
+}
+
+}  // namespace
+
+bool leaves_prediction(StepContext& c) {
+  find_turning(c);
+  c.spreads_handles = spread_handles(c.w);
+  return c.spreads_handles || c.w.turns;
+}
+
+void fit_handles_and_turning(StepContext& c) {
+  Workspace& w = c.w;
+  if (!c.spreads_handles) w.direction.setZero();
+  if (w.turns) w.direction += w.turned;
+  const TimedPhase timed(w.clock, Phase::evaluate, "leave prediction");
+  find_contacts_of(c.model, c.inputs, w, w.current);
+  evaluate(c.model, w, w.current, Wanted::value);
+  c.at_prediction = w.current.g;
+  set_trial(c.model, w, 1);
+  std::swap(w.current, w.trial);
+  evaluate_start(c.model, c.inputs, w);
+}
+
+bool handles_turn_far(const StepContext& c) {
+  constexpr double least_turn = 0.3;  // [rad]; below, what straight ways do to the elements is soon undone
+  return c.spreads_handles && !(motion_of_handles(c.model, c.state, c.w).turn.angle() < least_turn);
+}
+
+void turn_with_handles(StepContext& c) {
+  const Model& model = c.model;
+  Workspace& w = c.w;
+  const HandleMotion motion = motion_of_handles(model, c.state, w);
+  TimedPhase timed(w.clock, Phase::solve, "solve");
+  Positions& shares = w.scratch;
+  shares.setZero();
+  for (const Model::Coupling& entry : model.couplings) shares(entry.free, 0) -= entry.value;
+  model.factor.solve(shares.data(), w.direction.data(), w.solve_scratch.data());
+  shares = w.direction;
+  timed.next(Phase::evaluate, "turn with handles");
+  for (const bool wholly : {false, true}) {
+    for (int v = 0; v < model.free; ++v) {
+      const double share = wholly ? 1 : shares(v, 0);
+      const Vec3 q = c.state.x.row(v), free_way = w.y.row(v) - c.state.x.row(v);
+      w.trial.x.row(v) = (Eigen::AngleAxisd(share * motion.turn.angle(), motion.turn.axis()) * (q - motion.from) +
+                          motion.from + share * (motion.to - motion.from) + (1 - share) * free_way)
+                             .transpose();
+    }
+    find_contacts_of(model, c.inputs, w, w.trial);
+    evaluate(model, w, w.trial, Wanted::gradient);
+    if (!(w.trial.g < w.current.g)) continue;
+    std::swap(w.current, w.trial);
+    w.report.objective.back() = w.current.g;
+    forget_counts(w.contact);
+    if (has_colliders(c.inputs)) count_contacts(w.trial.contacts, w.current.contacts, w.contact);
+  }
+}
+
+bool is_worse_than_prediction(const StepContext& c) { return c.at_prediction && !(c.w.current.g <= *c.at_prediction); }
+
+void return_to_prediction(StepContext& c) {
+  c.w.current.x.topRows(c.model.free) = c.w.y.topRows(c.model.free);
+  c.at_prediction.reset();
+  forget_start(c.w);
+}
+
+}  // namespace supple

@@ -1,0 +1,36 @@
+#include "sim/solver/place_iterate.h"
+
+namespace supple {
+
+void find_contacts_of(const Model& model, const StepInputs& inputs, Workspace& w, Iterate& iterate) {
+  if (!has_colliders(inputs)) return;
+  const TimedPhase timed(w.clock, Phase::collide, "find contacts");
+  find_contacts(model, inputs, iterate.x, w.threads, w.contact, iterate.contacts);
+}
+
+void set_trial(const Model& model, Workspace& w, double alpha) {
+  w.trial.x.topRows(model.free) = w.current.x.topRows(model.free) + alpha * w.direction;
+  if (w.is_bowed) w.trial.x.topRows(model.free) += alpha * alpha * w.bow;
+}
+
+void move_rigidly(const Model& model, const Eigen::Isometry3d& motion, Positions& x) {
+  for (int v = 0; v < model.free; ++v) x.row(v) = (motion * Vec3(x.row(v))).transpose();
+}
+
+void evaluate_start(const Model& model, const StepInputs& inputs, Workspace& w) {
+  const TimedPhase timed(w.clock, Phase::evaluate, "evaluate start");
+  if (has_colliders(inputs)) {
+    w.trial.contacts.swap(w.current.contacts);
+    find_contacts_of(model, inputs, w, w.current);
+    count_contacts(w.trial.contacts, w.current.contacts, w.contact);
+  }
+  evaluate(model, w, w.current, Wanted::gradient);
+  w.report.objective.push_back(w.current.g);
+}
+
+void forget_start(Workspace& w) {
+  w.report.objective.clear();
+  forget_counts(w.contact);
+}
+
+}  // namespace supple

@@ -1,0 +1,25 @@
+// Places and evaluates iterates, for everything in a step that tries one.
+#pragma once
+
+#include "sim/model/inputs.h"
+#include "sim/solver/objective.h"
+
+namespace supple {
+
+// Finds the contacts of an iterate; does nothing without colliders.
+void find_contacts_of(const Model& model, const StepInputs& inputs, Workspace& workspace, Iterate& iterate);
+
+// Evaluates workspace.current with the contacts found there, and appends the value to the report's objectives.
+void evaluate_start(const Model& model, const StepInputs& inputs, Workspace& workspace);
+
+// Drops what was counted and noted of a first iterate that was evaluated, because the step does not start from it.
+void forget_start(Workspace& workspace);
+
+// Moves the free vertices by a rigid motion.
+void move_rigidly(const Model& model, const Eigen::Isometry3d& motion, Positions& x);
+
+// Sets workspace.trial.x = x + alpha d for the free vertices, bent by the search's arc where it has one; handled ones
+// stay at their targets.
+void set_trial(const Model& model, Workspace& workspace, double alpha);
+
+}  // namespace supple
