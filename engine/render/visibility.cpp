@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
+#include "base/disjoint_sets.h"
 #include "base/error.h"
 
 namespace supple {
@@ -27,20 +27,16 @@ constexpr float ground = -1e-4f;
 // of vertices. A crease has separate vertices on its two sides, so such a patch is smooth. Vertices that colours split
 // belong together.
 std::vector<std::uint32_t> smooth_patches(const DrawMesh& mesh) {
-  std::vector<std::uint32_t> parent(mesh.occlusion.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&parent](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  DisjointSets joined(mesh.occlusion.size());
   for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
-    for (std::size_t k = 1; k < 3; ++k) parent[root(mesh.triangles[t + k])] = root(mesh.triangles[t]);
+    for (std::size_t k = 1; k < 3; ++k) joined.join(mesh.triangles[t + k], mesh.triangles[t]);
   }
   std::map<std::uint32_t, std::uint32_t> first_of;  // by number of DrawMesh::smooth
   for (std::uint32_t v = 0; v < mesh.smooth.size(); ++v)
-    parent[root(v)] = root(first_of.try_emplace(mesh.smooth[v], v).first->second);
+    joined.join(v, first_of.try_emplace(mesh.smooth[v], v).first->second);
   std::vector<std::uint32_t> patches;
-  for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) patches.push_back(root(mesh.triangles[t]));
+  for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3)
+    patches.push_back(std::uint32_t(joined.of(mesh.triangles[t])));
   return patches;
 }
 

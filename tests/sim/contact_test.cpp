@@ -34,6 +34,19 @@ struct ContactScene : test::ContactScene {
   }
 };
 
+// Frozen pairs hold their share of the contacts, so that directions have none to add.
+TEST(Contact, StepsWithFrozenPairsAreMadeWithAnyDirection) {
+  for (const auto& direction : Names<ContactDirection>::table) {
+    SCOPED_TRACE(direction.text);
+    ContactScene scene(cube(3), {{"ground", ground, 0, 0.3}}, Vec3(0, 0.12, 0));
+    scene.inputs.solver.contact.history = ContactHistory::frozen;
+    scene.inputs.solver.contact.direction = direction.value;
+    int touching = 0;
+    for (int step = 0; step < 12; ++step) touching += scene.advance().contacts.touching;
+    EXPECT_GT(touching, 0);
+  }
+}
+
 TEST(Contact, GradientIsTheDerivativeOfTheEnergyWithPlanesAsTheyStand) {
   ContactScene scene(cube(2), {{"ball", shape_of(Sphere{0.3}), 0.01, 0.4}}, Vec3(0, 0.405, 0));
   scene.state.v.rowwise() = Eigen::RowVector3d(2, -1.5, 1);

@@ -9,6 +9,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "base/disjoint_sets.h"
+
 namespace supple {
 namespace {
 
@@ -48,14 +50,6 @@ std::vector<FaceUse> sorted_faces(const Tetrahedra& tets) {
   for (std::size_t v = 0; v + 1 < begin.size(); ++v)
     std::sort(uses.begin() + std::ptrdiff_t(begin[v]), uses.begin() + std::ptrdiff_t(begin[v + 1]), before);
   return uses;
-}
-
-int find_root(std::vector<int>& parent, int i) {
-  while (parent[static_cast<std::size_t>(i)] != i) {
-    parent[static_cast<std::size_t>(i)] = parent[static_cast<std::size_t>(parent[static_cast<std::size_t>(i)])];
-    i = parent[static_cast<std::size_t>(i)];
-  }
-  return i;
 }
 
 }  // namespace
@@ -139,21 +133,18 @@ std::vector<char> inside_elements(const TetMesh& mesh, const Positions& points) 
 }
 
 std::vector<int> face_connected_pieces(const Tetrahedra& tets) {
-  std::vector<int> parent(static_cast<std::size_t>(tets.rows()));
-  std::iota(parent.begin(), parent.end(), 0);
+  DisjointSets pieces(static_cast<std::size_t>(tets.rows()));
   const std::vector<FaceUse> uses = sorted_faces(tets);
   for (std::size_t i = 1; i < uses.size(); ++i) {
-    if (uses[i].key != uses[i - 1].key) continue;
-    const int a = find_root(parent, uses[i - 1].element);
-    const int b = find_root(parent, uses[i].element);
-    parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    if (uses[i].key == uses[i - 1].key)
+      pieces.join(static_cast<std::size_t>(uses[i - 1].element), static_cast<std::size_t>(uses[i].element));
   }
-  std::vector<int> label(parent.size(), -1);
+  std::vector<int> label(pieces.size(), -1);
   int count = 0;
-  for (std::size_t e = 0; e < parent.size(); ++e) {
-    const auto root = static_cast<std::size_t>(find_root(parent, static_cast<int>(e)));
-    if (label[root] < 0) label[root] = count++;
-    label[e] = label[root];
+  for (std::size_t e = 0; e < pieces.size(); ++e) {
+    const std::size_t first = pieces.of(e);
+    if (label[first] < 0) label[first] = count++;
+    label[e] = label[first];
   }
   return label;
 }

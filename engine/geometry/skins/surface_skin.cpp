@@ -1,8 +1,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <map>
-#include <numeric>
 
+#include "base/disjoint_sets.h"
 #include "geometry/skins/skin.h"
 
 namespace supple {
@@ -18,12 +18,7 @@ struct Corner {
 // Groups the corners at one vertex: faces that share an edge there without a crease belong together. Returns a label
 // for each corner.
 std::vector<int> groups_of(const std::vector<Corner>& corners, const Triangles& triangles, const Positions& normals) {
-  std::vector<int> label(corners.size());
-  std::iota(label.begin(), label.end(), 0);
-  const auto root = [&label](int i) {
-    while (label[i] != i) i = label[i];
-    return i;
-  };
+  DisjointSets groups(corners.size());
   std::map<std::int32_t, std::vector<int>> by_neighbour;  // from the edge's other end to its corners
   for (std::size_t i = 0; i < corners.size(); ++i) {
     for (int step = 1; step <= 2; ++step)
@@ -32,10 +27,11 @@ std::vector<int> groups_of(const std::vector<Corner>& corners, const Triangles& 
   for (const auto& [neighbour, sharing] : by_neighbour) {
     for (std::size_t k = 1; k < sharing.size(); ++k) {
       if (normals.row(corners[sharing[0]].face).dot(normals.row(corners[sharing[k]].face)) > crease)
-        label[root(sharing[k])] = root(sharing[0]);
+        groups.join(std::size_t(sharing[k]), std::size_t(sharing[0]));
     }
   }
-  for (std::size_t i = 0; i < corners.size(); ++i) label[i] = root(static_cast<int>(i));
+  std::vector<int> label;
+  for (std::size_t i = 0; i < corners.size(); ++i) label.push_back(static_cast<int>(groups.of(i)));
   return label;
 }
 

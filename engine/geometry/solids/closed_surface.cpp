@@ -10,6 +10,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "base/disjoint_sets.h"
 #include "base/error.h"
 #include "geometry/solids/triangle_solid.h"
 #include "geometry/triangles/numbered_surface.h"
@@ -39,18 +40,15 @@ std::vector<Hole> holes(const TriMesh& mesh, const Neighbours& next, const Compo
     for (const int end : {k, (k + 1) % 3}) vertices.push_back(mesh.triangles(t, end));
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  std::vector<std::size_t> parent(vertices.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](std::int32_t vertex) {
-    auto i = std::size_t(std::lower_bound(vertices.begin(), vertices.end(), vertex) - vertices.begin());
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
+  DisjointSets rims(vertices.size());
+  const auto number = [&](std::int32_t vertex) {
+    return std::size_t(std::lower_bound(vertices.begin(), vertices.end(), vertex) - vertices.begin());
   };
-  for (const auto& [t, k] : open) parent[root(mesh.triangles(t, k))] = root(mesh.triangles(t, (k + 1) % 3));
+  for (const auto& [t, k] : open) rims.join(number(mesh.triangles(t, k)), number(mesh.triangles(t, (k + 1) % 3)));
 
-  std::vector<Hole> by_root(vertices.size()), result;
+  std::vector<Hole> by_rim(vertices.size()), result;
   for (const auto& [t, k] : open) {
-    Hole& hole = by_root[root(mesh.triangles(t, k))];
+    Hole& hole = by_rim[rims.of(number(mesh.triangles(t, k)))];
     const Vec3 a = corner(mesh, t, k), b = corner(mesh, t, (k + 1) % 3);
     ++hole.edges;
     hole.triangle = t;
@@ -58,11 +56,11 @@ std::vector<Hole> holes(const TriMesh& mesh, const Neighbours& next, const Compo
     hole.rim_sum += 0.5 * (b - a).norm() * (a + b);
   }
   for (const auto& [t, k] : open) {
-    Hole& hole = by_root[root(mesh.triangles(t, k))];
+    Hole& hole = by_rim[rims.of(number(mesh.triangles(t, k)))];
     const Vec3 a = corner(mesh, t, k) - hole.middle(), b = corner(mesh, t, (k + 1) % 3) - hole.middle();
     hole.area += 0.5 * a.cross(b).norm();
   }
-  for (const Hole& hole : by_root)
+  for (const Hole& hole : by_rim)
     if (hole.edges > 0) result.push_back(hole);
   return result;
 }

@@ -2,7 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numeric>
+
+#include "base/disjoint_sets.h"
 
 namespace supple {
 namespace {
@@ -22,21 +23,14 @@ std::vector<std::array<Eigen::Index, 3>> continuations(const Neighbours& next, c
   return result;
 }
 
-std::size_t root_of(std::vector<std::size_t>& parent, std::size_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
-// CornerNames the corners, three for each triangle, so that only those have one name that edges connect around a
+// Names the corners, three for each triangle, so that only those have one name that edges connect around a
 // vertex.
 CornerNames corner_names(const Triangles& triangles, const std::vector<std::array<Eigen::Index, 3>>& next,
                          std::int32_t& count) {
-  std::vector<std::size_t> parent(at(3 * triangles.rows()));
-  std::iota(parent.begin(), parent.end(), std::size_t(0));
+  DisjointSets corners(at(3 * triangles.rows()));
   const auto join = [&](Eigen::Index t, int k, Eigen::Index other) {
     for (int j = 0; j < 3; ++j)
-      if (triangles(other, j) == triangles(t, k))
-        parent[root_of(parent, at(3 * t + k))] = root_of(parent, at(3 * other + j));
+      if (triangles(other, j) == triangles(t, k)) corners.join(at(3 * t + k), at(3 * other + j));
   };
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
     for (int k = 0; k < 3; ++k) {
@@ -45,10 +39,10 @@ CornerNames corner_names(const Triangles& triangles, const std::vector<std::arra
       join(t, (k + 1) % 3, next[at(t)][at(k)]);
     }
   }
-  CornerNames name(parent.size(), -1), result(parent.size());
+  CornerNames name(corners.size(), -1), result(corners.size());
   count = 0;
-  for (std::size_t i = 0; i < parent.size(); ++i) {
-    std::int32_t& own = name[root_of(parent, i)];
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    std::int32_t& own = name[corners.of(i)];
     if (own < 0) own = count++;
     result[i] = own;
   }

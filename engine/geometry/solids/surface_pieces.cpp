@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "base/disjoint_sets.h"
 #include "geometry/solids/united_volume.h"
 #include "geometry/triangles/numbered_surface.h"
 #include "geometry/triangles/triangle_soup.h"
@@ -40,18 +40,13 @@ TriMesh own_mesh(const TriMesh& mesh, const std::vector<Eigen::Index>& triangles
 
 // Parts share vertices, not only edges: what a clean-up joined in one point stays together.
 std::vector<Part> parts_of(const TriMesh& mesh) {
-  std::vector<std::int32_t> parent(at(mesh.points.rows()));
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](std::int32_t v) {
-    while (parent[at(v)] != v) v = parent[at(v)] = parent[at(parent[at(v)])];
-    return v;
-  };
+  DisjointSets joined(at(mesh.points.rows()));
   for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t)
-    for (int k = 1; k < 3; ++k) parent[at(root(mesh.triangles(t, k)))] = root(mesh.triangles(t, 0));
+    for (int k = 1; k < 3; ++k) joined.join(at(mesh.triangles(t, k)), at(mesh.triangles(t, 0)));
   std::vector<int> label(at(mesh.points.rows()), -1);
   std::vector<Part> parts;
   for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
-    int& own = label[at(root(mesh.triangles(t, 0)))];
+    int& own = label[joined.of(at(mesh.triangles(t, 0)))];
     if (own < 0) {
       own = int(parts.size());
       parts.emplace_back();
@@ -162,28 +157,23 @@ std::vector<TriMesh> closed_parts(const TriMesh& boundary) {
 SurfacePieces pieces_of(SolidSurface surface, Joining joining, double gap) {
   std::vector<Part> parts = parts_of(surface.boundary);
   SurfacePieces result;
-  std::vector<std::size_t> piece_of(parts.size());
-  std::iota(piece_of.begin(), piece_of.end(), std::size_t(0));
-  const auto root = [&](std::size_t i) {
-    while (piece_of[i] != i) i = piece_of[i] = piece_of[piece_of[i]];
-    return i;
-  };
+  DisjointSets pieces(parts.size());
   for (std::size_t a = 0; a < parts.size(); ++a) {
     for (std::size_t b = a + 1; b < parts.size(); ++b) {
-      if (root(a) == root(b)) continue;
+      if (pieces.of(a) == pieces.of(b)) continue;
       if (joining == Joining::cavities && parts[a].volume > 0 && parts[b].volume > 0) continue;
       const Link link = link_between(parts[a], parts[b], gap);
       if (link == Link::none) continue;
       result.touching |= link == Link::touch;
-      piece_of[std::max(root(a), root(b))] = std::min(root(a), root(b));
+      pieces.join(a, b);
     }
   }
   std::vector<std::vector<Eigen::Index>> triangles(parts.size());
   std::vector<std::vector<const Part*>> parts_of_piece(parts.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    auto& own = triangles[root(i)];
+    auto& own = triangles[pieces.of(i)];
     own.insert(own.end(), parts[i].triangles.begin(), parts[i].triangles.end());
-    parts_of_piece[root(i)].push_back(&parts[i]);
+    parts_of_piece[pieces.of(i)].push_back(&parts[i]);
   }
   std::erase_if(triangles, [](const auto& list) { return list.empty(); });
   std::erase_if(parts_of_piece, [](const auto& list) { return list.empty(); });

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
+#include "base/disjoint_sets.h"
 #include "geometry/shapes/rounded_prism.h"
 #include "scene/building/body_surface.h"
 #include "scene/definition/rotation.h"
@@ -71,13 +71,8 @@ using Part = std::vector<std::int32_t>;  // vertices of a handle that hang toget
 
 // Parts are in the order of their first vertices.
 std::vector<Part> parts_of(const Body& body, const Handle& handle, Frame& frame) {
-  std::vector<std::int32_t> parent(frame.on_surface.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&parent](std::int32_t v) {
-    while (parent[std::size_t(v)] != v) v = parent[std::size_t(v)] = parent[std::size_t(parent[std::size_t(v)])];
-    return v;
-  };
-  frame.held.assign(parent.size(), 0);
+  DisjointSets joined(frame.on_surface.size());
+  frame.held.assign(joined.size(), 0);
   for (const std::int32_t v : handle.vertices) frame.held[std::size_t(v)] = 1;
   const auto join = [&](const auto& elements) {
     for (Eigen::Index e = 0; e < elements.rows(); ++e) {
@@ -85,15 +80,14 @@ std::vector<Part> parts_of(const Body& body, const Handle& handle, Frame& frame)
         for (Eigen::Index k = 0; k < i; ++k) {
           const std::int32_t a = elements(e, i), b = elements(e, k);
           if (frame.held[std::size_t(a)] == 0 || frame.held[std::size_t(b)] == 0) continue;
-          const std::int32_t p = root(a), q = root(b);
-          parent[std::size_t(std::max(p, q))] = std::min(p, q);
+          joined.join(std::size_t(a), std::size_t(b));
         }
       }
     }
   };
   body.def.cloth ? join(frame.surface) : join(body.description.mesh.tets);
-  std::map<std::int32_t, Part> parts;
-  for (const std::int32_t v : handle.vertices) parts[root(v)].push_back(v);
+  std::map<std::size_t, Part> parts;
+  for (const std::int32_t v : handle.vertices) parts[joined.of(std::size_t(v))].push_back(v);
   std::vector<Part> result;
   for (auto& [first, part] : parts) result.push_back(std::move(part));
   return result;

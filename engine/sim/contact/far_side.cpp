@@ -3,30 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "base/disjoint_sets.h"
 #include "geometry/shapes/shape_probe.h"
 
 namespace supple {
 namespace {
-
-// The parts of a surface that hang together by edges which pass through nothing, by vertex.
-class Parts {
- public:
-  explicit Parts(int vertices) : parent_(std::size_t(vertices)) { std::iota(parent_.begin(), parent_.end(), 0); }
-
-  int of(int vertex) {
-    while (parent_[vertex] != vertex) vertex = parent_[vertex] = parent_[parent_[vertex]];
-    return vertex;
-  }
-  void join(int a, int b) { parent_[std::max(of(a), of(b))] = std::min(of(a), of(b)); }
-
- private:
-  std::vector<int> parent_;
-};
 
 // A plate in its own frame, and what is known of a body's vertices near it.
 class Plate {
@@ -120,7 +105,7 @@ double reach_on_far_side(const Model& model, const Collider& collider, const Eig
     if (!closest[v]) closest[v] = plate.closest(place(v));
     return *closest[v];
   };
-  Parts parts(model.vertices);
+  DisjointSets parts(std::size_t(model.vertices));  // that hang together by edges which pass through nothing
   std::vector<std::array<int, 2>> cut;
   for (Eigen::Index t = 0; t < model.surface.rows(); ++t) {
     for (int k = 0; k < 3; ++k) {
@@ -128,22 +113,22 @@ double reach_on_far_side(const Model& model, const Collider& collider, const Eig
       if (near[a] != 0 && near[b] != 0 && plate.divides(closest_to(a), closest_to(b), place(a), place(b))) {
         cut.push_back({a, b});
       } else {
-        parts.join(a, b);
+        parts.join(std::size_t(a), std::size_t(b));
       }
     }
   }
   if (cut.empty()) return 0;
 
   std::vector<int> size(near.size(), 0);  // of the part that a vertex stands for
-  for (int v = 0; v < model.vertices; ++v) ++size[parts.of(v)];
+  for (int v = 0; v < model.vertices; ++v) ++size[parts.of(std::size_t(v))];
   std::vector<char> is_far(near.size(), 0);
   for (const auto& [a, b] : cut) {
-    const int one = parts.of(a), other = parts.of(b);
+    const std::size_t one = parts.of(std::size_t(a)), other = parts.of(std::size_t(b));
     if (one != other) is_far[size[one] < size[other] ? one : other] = 1;
   }
   double furthest = 0;
   for (int v = 0; v < model.vertices; ++v)
-    if (is_far[parts.of(v)] != 0) furthest = std::max(furthest, closest_to(v).distance);
+    if (is_far[parts.of(std::size_t(v))] != 0) furthest = std::max(furthest, closest_to(v).distance);
   return furthest;
 }
 

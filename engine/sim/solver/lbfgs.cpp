@@ -84,6 +84,7 @@ class ContactPairs {
 
   // Returns K s_i . z.
   double dot(int i, const Positions& z) const {
+    if (count_ == 0) return 0;
     double sum = 0;
     for (std::size_t k = 0; k < directions_; ++k) {
       const StiffDirection& stiff = correction_.wanted[k];
