@@ -1,7 +1,6 @@
 // Bends a search into an arc where its direction turns parts of the body so far that a straight line would stretch them
-// (coarse/turning.h): that costs a stiff body more energy than all else in a step.
-// Directions with one level pay nothing; others a look at the body's clusters, and a solve with A where the arc may
-// matter.
+// (coarse/turning.h): that costs a stiff body more energy than all else in a step. Directions with one level pay
+// nothing; others pay a look at the body's clusters, and a solve with A where the arc matters.
 #pragma once
 
 #include "sim/model/inputs.h"
