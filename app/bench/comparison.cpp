@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/interrupts.h"
-#include "sim/model/measures.h"
+#include "sim/model/motion_error.h"
 #include "sim/solver/first_iterate.h"
 #include "sim/solver/matrix_rule.h"
 

@@ -8,8 +8,8 @@
 #include "app/bench/sections.h"
 #include "base/timing.h"
 #include "output/run/profile.h"
+#include "sim/measures/measures.h"
 #include "sim/model/element_view.h"
-#include "sim/model/measures.h"
 
 namespace supple {
 namespace {

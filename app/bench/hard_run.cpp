@@ -11,8 +11,9 @@
 #include "film/plan/shipped_files.h"
 #include "scene/definition/rotation.h"
 #include "scene/reading/scene_reader.h"
-#include "sim/model/measures.h"
-#include "sim/solver/energies.h"
+#include "sim/measures/energies.h"
+#include "sim/measures/measures.h"
+#include "sim/model/motion_error.h"
 #include "sim/solver/first_iterate.h"
 
 namespace supple {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "app/bench/sections.h"
-#include "sim/model/measures.h"
+#include "sim/measures/measures.h"
 
 namespace supple {
 namespace {

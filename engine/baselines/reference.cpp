@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "baselines/newton.h"
-#include "sim/model/measures.h"
+#include "sim/model/motion_error.h"
 #include "sim/solver/iterations.h"
 
 namespace supple {

@@ -33,7 +33,7 @@ class Reference {
   // Holds the errors of a step.
   struct StepErrors {
     std::optional<double> error;  // of equation 12; empty where g(y) - g* is round-off
-    double motion = 0;            // the error of motion (sim/model/measures.h)
+    double motion = 0;            // the error of motion (sim/measures/measures.h)
   };
   // Computes error(x_k) = (g(x_k) - g*) / (g(y) - g*). `before` and `after` are the states around the step. g* is what
   // minimum() finds when it continues from x_k. Both differences are sums of small ones, so that small errors keep

@@ -22,8 +22,8 @@
 #include "geometry/shapes/shape.h"               // what a Collider is made of
 #include "geometry/tetrahedra/tetrahedralize.h"  // meshes of shapes and boxes
 #include "sim/materials/material.h"
+#include "sim/measures/measures.h"  // stretch, penetration
 #include "sim/model/inputs.h"
-#include "sim/model/measures.h"  // stretch, penetration
 #include "sim/model/model.h"
 #include "sim/model/report.h"
 #include "sim/model/state.h"

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/trace.h"
-#include "sim/model/measures.h"
+#include "sim/measures/measures.h"
 #include "sim/solver/step.h"
 
 namespace supple {

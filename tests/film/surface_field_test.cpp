@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "geometry/meshes/cloth.h"
-#include "sim/solver/fields.h"
+#include "sim/measures/fields.h"
 #include "support/film.h"
 #include "support/scene_text.h"
 

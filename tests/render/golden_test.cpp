@@ -19,7 +19,7 @@
 #include "output/motion/point_cache.h"
 #include "output/run/run_folder.h"
 #include "render/renderer.h"
-#include "sim/solver/fields.h"
+#include "sim/measures/fields.h"
 #include "support/colored_files.h"
 #include "support/film.h"
 #include "support/places.h"

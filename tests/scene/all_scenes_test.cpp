@@ -9,7 +9,7 @@
 #include "scene/building/skin_report.h"
 #include "scene/building/warnings.h"
 #include "scene/reading/scene_reader.h"
-#include "sim/model/measures.h"
+#include "sim/measures/measures.h"
 #include "support/film.h"
 #include "support/objective_checks.h"
 

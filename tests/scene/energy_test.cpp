@@ -5,8 +5,8 @@
 
 #include <fstream>
 
-#include "sim/model/measures.h"
-#include "sim/solver/energies.h"
+#include "sim/measures/energies.h"
+#include "sim/measures/measures.h"
 #include "support/film.h"
 #include "support/places.h"
 

@@ -3,7 +3,7 @@
 
 #include "base/hash.h"
 #include "baselines/make_rule.h"
-#include "sim/model/measures.h"
+#include "sim/measures/measures.h"
 #include "support/scene_text.h"
 #include "world/world.h"
 

@@ -9,7 +9,7 @@
 
 #include "baselines/reference.h"
 #include "geometry/solids/triangle_solid.h"
-#include "sim/model/measures.h"
+#include "sim/measures/measures.h"
 #include "support/contact_scene.h"
 #include "support/surfaces.h"
 

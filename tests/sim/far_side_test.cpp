@@ -1,6 +1,6 @@
 // Tests what counts as a part of a body on the far side of a thin collider, and that lying on it, hanging over its rim
 // and reaching around that do not.
-#include "sim/contact/far_side.h"
+#include "sim/measures/far_side.h"
 
 #include <cmath>
 #include <memory>

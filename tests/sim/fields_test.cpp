@@ -1,11 +1,11 @@
 // Tests fields against closed forms, and against the numbers that the solver itself uses.
-#include "sim/solver/fields.h"
+#include "sim/measures/fields.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "sim/model/measures.h"
+#include "sim/measures/measures.h"
 #include "support/bodies.h"
 
 namespace supple {

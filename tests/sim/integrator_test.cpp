@@ -2,8 +2,8 @@
 // agree, and they must show the physics for which they are chosen.
 #include <gtest/gtest.h>
 
-#include "sim/model/measures.h"
-#include "sim/solver/energies.h"
+#include "sim/measures/energies.h"
+#include "sim/measures/measures.h"
 #include "support/bodies.h"
 #include "support/objective_checks.h"
 

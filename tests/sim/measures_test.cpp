@@ -1,4 +1,4 @@
-#include "sim/model/measures.h"
+#include "sim/measures/measures.h"
 #include "base/variants.h"
 
 #include <gtest/gtest.h>

@@ -1,12 +1,12 @@
 // Tests the quantities of elements that pictures show, against closed forms and against the fields of a model.
-#include "sim/solver/pose_elements.h"
+#include "sim/measures/pose_elements.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "geometry/meshes/mesh.h"
-#include "sim/solver/fields.h"
+#include "sim/measures/fields.h"
 #include "support/bodies.h"
 #include "support/deformations.h"
 

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "baselines/reference.h"
-#include "sim/model/measures.h"
+#include "sim/measures/measures.h"
 #include "sim/solver/first_iterate.h"
 #include "sim/solver/lbfgs.h"
 #include "support/contact_scene.h"

@@ -15,7 +15,7 @@
 #include "scene/building/assemble.h"
 #include "scene/building/collision_set.h"
 #include "scene/reading/scene_reader.h"
-#include "sim/model/measures.h"
+#include "sim/measures/measures.h"
 #include "sim/solver/iterations.h"
 #include "sim/solver/lbfgs.h"
 #include "sim/solver/step.h"

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "sim/model/measures.h"
-#include "sim/solver/energies.h"
+#include "sim/measures/energies.h"
+#include "sim/measures/measures.h"
 #include "support/contact_scene.h"
 
 namespace supple::test {

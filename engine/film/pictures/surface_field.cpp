@@ -10,7 +10,7 @@
 #include "geometry/meshes/cloth.h"
 #include "render/color_map.h"
 #include "scene/building/body_surface.h"
-#include "sim/solver/fields.h"
+#include "sim/measures/fields.h"
 
 namespace supple {
 namespace {

@@ -1,6 +1,6 @@
 // Computes the field that surfaces show in colours: which value each vertex of a body has, and what range the colours
 // span. Everything follows from positions and from the scene, so that a film has the same colours when it is drawn
-// again. Not here: the formulas of elements (sim/solver/pose_elements.h), and how colours are drawn (render/).
+// again. Not here: the formulas of elements (sim/measures/pose_elements.h), and how colours are drawn (render/).
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@
 #include "render/draw_list.h"
 #include "scene/building/collision_set.h"
 #include "scene/building/drawn_body.h"
-#include "sim/solver/pose_elements.h"
+#include "sim/measures/pose_elements.h"
 
 namespace supple {
 

@@ -14,7 +14,7 @@ namespace supple {
 struct MeasuredErrors {
   // This is the error of equation 12; it is empty where the start's objective is above its minimum by round-off alone.
   std::optional<double> error;
-  double motion = 0;  // the error of motion (sim/model/measures.h)
+  double motion = 0;  // the error of motion (sim/measures/measures.h)
 };
 
 // Measures the errors of one body's steps against the converged solution.

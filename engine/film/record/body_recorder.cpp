@@ -9,9 +9,9 @@
 #include "film/record/state_file.h"
 #include "output/files/obj_file.h"
 #include "scene/building/body_surface.h"
-#include "sim/contact/far_side.h"
-#include "sim/model/measures.h"
-#include "sim/solver/fields.h"
+#include "sim/measures/far_side.h"
+#include "sim/measures/fields.h"
+#include "sim/measures/measures.h"
 
 namespace supple {
 namespace {

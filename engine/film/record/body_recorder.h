@@ -9,7 +9,7 @@
 #include "output/motion/point_cache.h"
 #include "output/run/profile.h"
 #include "output/run/run_folder.h"
-#include "sim/solver/energies.h"
+#include "sim/measures/energies.h"
 #include "world/world.h"
 
 namespace supple {

@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "base/floats.h"
 #include "base/frame_time.h"
-#include "sim/solver/fields.h"
+#include "sim/measures/fields.h"
 
 namespace supple {
 namespace {

@@ -31,7 +31,7 @@ struct ContactRow {
   std::vector<ColliderRow> colliders = {};
 };
 
-// Holds what a body has and what it was given since the film began (sim/solver/energies.h) [J].
+// Holds what a body has and what it was given since the film began (sim/measures/energies.h) [J].
 struct BalanceRow {
   double total = 0, put_in = 0, from_nothing = 0, exchanged = 0;
 };

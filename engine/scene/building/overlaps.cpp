@@ -8,7 +8,7 @@
 #include "scene/building/collision_set.h"
 #include "sim/contact/usual_depth.h"
 #include "sim/contact/way_out.h"
-#include "sim/model/measures.h"
+#include "sim/measures/measures.h"
 
 namespace supple {
 namespace {

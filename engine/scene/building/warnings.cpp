@@ -10,7 +10,7 @@
 #include "scene/building/collision_set.h"
 #include "scene/building/overlaps.h"
 #include "scene/building/thin_bodies.h"
-#include "sim/model/measures.h"
+#include "sim/measures/measures.h"
 
 namespace supple {
 namespace {

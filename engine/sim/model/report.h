@@ -62,7 +62,7 @@ struct StepReport {
   double decrease = 0;                   // g(start) - g(end), summed without cancellation [J]
   double remaining_estimate = 0;         // g(end) - g*, from the decrement or from how decreases shrank [J]
   double error_estimate = 0;             // of equation 12, from that
-  double motion_estimate = 0;            // of the error of motion (measures.h), from the last direction
+  double motion_estimate = 0;            // of the error of motion (motion_error.h), from the last direction
   double slope = 0;                      // tr(grad^T d) of the last direction [J]
   double decrement = 0;                  // half of that at the end, downhill: what a quadratic g would still lose [J]
   StopReason stop_reason = StopReason::iterations;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "sim/contact/contact.h"
-#include "sim/model/measures.h"
+#include "sim/model/motion_error.h"
 #include "sim/solver/line_search.h"
 #include "sim/solver/place_iterate.h"
 

@@ -1,4 +1,4 @@
-#include "sim/solver/pose_elements.h"
+#include "sim/measures/pose_elements.h"
 
 #include <Eigen/LU>
 
@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "sim/elements/tetrahedron.h"
-#include "sim/solver/fields.h"
+#include "sim/measures/fields.h"
 
 namespace supple {
 namespace {

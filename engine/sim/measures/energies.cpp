@@ -1,4 +1,4 @@
-#include "sim/solver/energies.h"
+#include "sim/measures/energies.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "sim/solver/fields.h"
+#include "sim/measures/fields.h"
 
 #include <Eigen/Dense>
 

@@ -1,4 +1,4 @@
-#include "sim/contact/far_side.h"
+#include "sim/measures/far_side.h"
 
 #include <algorithm>
 #include <array>
