@@ -10,7 +10,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace include_arrows_test {
 
 const std::map<std::string, std::set<std::string>> allowed = {
     {"base", {"base"}},
@@ -184,5 +184,5 @@ TEST(House, ThirdPartiesStayInTheirCages) {
   EXPECT_GE(seen, static_cast<int>(cages.size()));
 }
 
-}  // namespace
+}  // namespace include_arrows_test
 }  // namespace supple

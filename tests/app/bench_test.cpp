@@ -15,7 +15,7 @@
 #include "support/program.h"
 
 namespace supple {
-namespace {
+namespace bench_test {
 
 using test::TemporaryFolder;
 
@@ -158,5 +158,5 @@ TEST(BenchProgram, SaysWhatToBuildWhereItIsMissing) {
             "supple: bench: its program, supple-bench, has not been built: cmake --build build/release\n");
 }
 
-}  // namespace
+}  // namespace bench_test
 }  // namespace supple

@@ -8,7 +8,7 @@
 #include "support/program.h"
 
 namespace supple {
-namespace {
+namespace budget_test {
 
 using test::Result;
 using test::run;
@@ -112,5 +112,5 @@ TEST_F(FilmWithBudget, RefusesToRepeatARunThatHasNoCutsOrTooFewFrames) {
   EXPECT_FALSE(std::filesystem::exists(folder_.path / "again")) << "a film that is refused leaves no trace";
 }
 
-}  // namespace
+}  // namespace budget_test
 }  // namespace supple

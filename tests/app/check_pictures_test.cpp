@@ -10,7 +10,7 @@
 #include "support/program.h"
 
 namespace supple {
-namespace {
+namespace check_pictures_test {
 
 using test::run;
 
@@ -103,5 +103,5 @@ TEST(CheckPictures, OfAllScenesThatShipShowTheirBodies) {
   }
 }
 
-}  // namespace
+}  // namespace check_pictures_test
 }  // namespace supple

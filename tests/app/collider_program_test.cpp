@@ -12,7 +12,7 @@
 #include "support/program.h"
 
 namespace supple {
-namespace {
+namespace collider_program_test {
 
 using test::profile_of;
 using test::Result;
@@ -233,5 +233,5 @@ TEST(ColliderProgram, RefusesBrokenSurfacesInOneLineAndLeavesTheRunBeforeAlone) 
   }
 }
 
-}  // namespace
+}  // namespace collider_program_test
 }  // namespace supple

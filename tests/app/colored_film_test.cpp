@@ -9,7 +9,7 @@
 #include "support/program.h"
 
 namespace supple {
-namespace {
+namespace colored_film_test {
 
 std::string bytes_of_file(const std::filesystem::path& path) {
   std::ostringstream text;
@@ -68,5 +68,5 @@ TEST_F(ColoredFilm, WhatIsMissingIsSaid) {
   EXPECT_NE(check.out.find("texture 'squares.png' is missing"), std::string::npos) << check.out;
 }
 
-}  // namespace
+}  // namespace colored_film_test
 }  // namespace supple

@@ -14,7 +14,7 @@
 #include "support/program.h"
 
 namespace supple {
-namespace {
+namespace compare_test {
 
 using test::Result;
 using test::run;
@@ -307,5 +307,5 @@ select = { box = [[0, 0, 0], [0.1, 1, 1]] }
   EXPECT_FALSE(json["same_states"].get<bool>());
 }
 
-}  // namespace
+}  // namespace compare_test
 }  // namespace supple

@@ -13,7 +13,7 @@
 #include "support/program.h"
 
 namespace supple {
-namespace {
+namespace draw_test {
 
 using test::read_file;
 using test::Result;
@@ -458,5 +458,5 @@ TEST_F(DrawnRun, KeepsOtherFoldersAsTheyAre) {
   EXPECT_EQ(pictures("run"), frames);
 }
 
-}  // namespace
+}  // namespace draw_test
 }  // namespace supple

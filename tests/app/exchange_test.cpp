@@ -15,7 +15,7 @@
 #include "support/vtu.h"
 
 namespace supple {
-namespace {
+namespace exchange_test {
 
 using test::read_vtu;
 using test::Result;
@@ -321,5 +321,5 @@ TEST(Skins, LeaveOtherFoldersAlone) {
     EXPECT_EQ(run(folder.path, {"draw", film.string(), "--skins", "--quiet", "--out", "s"}).status, 0);
 }
 
-}  // namespace
+}  // namespace exchange_test
 }  // namespace supple

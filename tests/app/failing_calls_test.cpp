@@ -13,7 +13,7 @@
 #include "support/program.h"
 
 namespace supple {
-namespace {
+namespace failing_calls_test {
 
 using test::Result;
 
@@ -147,5 +147,5 @@ TEST_F(FailingCalls, Write) { fail_each("write", film, 8); }
 TEST_F(FailingCalls, Fsync) { fail_each("fsync", film, 8); }
 TEST_F(FailingCalls, Rename) { fail_each("rename", film, 6); }
 
-}  // namespace
+}  // namespace failing_calls_test
 }  // namespace supple

@@ -18,7 +18,7 @@
 #include "support/program.h"
 
 namespace supple {
-namespace {
+namespace faults_test {
 
 using test::Result;
 using test::run;
@@ -215,5 +215,5 @@ TEST_F(Faults, AFolderThatAnotherRunWritesIntoIsLeftAlone) {
   expect_refused("out/bar-sweep", points);
 }
 
-}  // namespace
+}  // namespace faults_test
 }  // namespace supple

@@ -16,7 +16,7 @@
 #include "support/program.h"
 
 namespace supple {
-namespace {
+namespace film_folder_test {
 
 using test::read_file;
 using test::Result;
@@ -269,5 +269,5 @@ TEST_F(FilmFolder, HasAPosterAndASheet) {
   EXPECT_FALSE(std::filesystem::exists(out("bar") / "sheet.png"));
 }
 
-}  // namespace
+}  // namespace film_folder_test
 }  // namespace supple

@@ -19,7 +19,7 @@
 #include "support/program.h"
 
 namespace supple {
-namespace {
+namespace film_test {
 
 using test::read_file;
 using test::Result;
@@ -295,5 +295,5 @@ TEST_F(FilmOfABar, GoesOnFromTheFilesOfItsFrames) {
   EXPECT_FALSE(std::filesystem::exists(video("cut")));
 }
 
-}  // namespace
+}  // namespace film_test
 }  // namespace supple

@@ -11,7 +11,7 @@
 #include "support/program.h"
 
 namespace supple {
-namespace {
+namespace gallery_test {
 
 using test::read_file;
 using test::Result;
@@ -126,5 +126,5 @@ TEST_F(Gallery, RefusesFoldersThatAreNotItsOwn) {
   EXPECT_EQ(gallery({"--frames", "0"}).status, 2);
 }
 
-}  // namespace
+}  // namespace gallery_test
 }  // namespace supple

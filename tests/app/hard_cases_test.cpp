@@ -9,7 +9,7 @@
 #include "support/program.h"
 
 namespace supple {
-namespace {
+namespace hard_cases_test {
 
 using test::profile_of;
 using test::Result;
@@ -284,5 +284,5 @@ TEST_F(HardCases, ClothHasNoInvertedElements) {
   EXPECT_EQ(last()["collapsed"], 0);
 }
 
-}  // namespace
+}  // namespace hard_cases_test
 }  // namespace supple

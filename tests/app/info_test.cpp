@@ -10,7 +10,7 @@
 #include "support/surfaces.h"
 
 namespace supple {
-namespace {
+namespace info_test {
 
 using test::Result;
 using test::run;
@@ -222,5 +222,5 @@ TEST(Info, TellsOfAMeshAndRefusesTheRest) {
   EXPECT_EQ(run(folder.path, {"info", "empty"}).status, 2);
 }
 
-}  // namespace
+}  // namespace info_test
 }  // namespace supple

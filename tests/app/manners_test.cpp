@@ -16,7 +16,7 @@
 #include "support/program.h"
 
 namespace supple {
-namespace {
+namespace manners_test {
 
 using test::Result;
 using test::run;
@@ -277,5 +277,5 @@ TEST(Doctor, MissesWhatIsNotInPath) {
   EXPECT_NE(result.out.find("A film needs what is missing above."), std::string::npos) << result.out;
 }
 
-}  // namespace
+}  // namespace manners_test
 }  // namespace supple

@@ -11,7 +11,7 @@
 #include "support/program.h"
 
 namespace supple {
-namespace {
+namespace meetings_test {
 
 using test::Result;
 
@@ -119,5 +119,5 @@ TEST_F(Meetings, OfABodyAloneAreNot) {
   EXPECT_FALSE(profile()["frames"][0].contains("met"));
 }
 
-}  // namespace
+}  // namespace meetings_test
 }  // namespace supple

@@ -11,7 +11,7 @@
 #include "support/surfaces.h"
 
 namespace supple {
-namespace {
+namespace mesh_cache_test {
 
 namespace fs = std::filesystem;
 using test::Result;
@@ -144,5 +144,5 @@ TEST_F(MeshCacheTest, IsNotNeeded) {
   home.empty() ? unsetenv("HOME") : setenv("HOME", home.c_str(), 1);
 }
 
-}  // namespace
+}  // namespace mesh_cache_test
 }  // namespace supple

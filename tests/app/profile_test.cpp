@@ -12,7 +12,7 @@
 #include "support/program.h"
 
 namespace supple {
-namespace {
+namespace profile_test {
 
 using test::Result;
 using test::run;
@@ -183,5 +183,5 @@ TEST(Profile, ComparisonsRefuseWhatCannotBeCompared) {
             "profile --compare: --frames has no meaning with it\n");
 }
 
-}  // namespace
+}  // namespace profile_test
 }  // namespace supple

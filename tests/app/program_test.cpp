@@ -13,7 +13,7 @@
 #include "support/program.h"
 
 namespace supple {
-namespace {
+namespace program_test {
 
 using test::profile_of;
 using test::Result;
@@ -166,5 +166,5 @@ TEST(Program, TakesThePapersSquirrelInThePlaceOfOurs) {
   EXPECT_NE(result.err.find("polynomial: 8395 vertices, 23645 elements"), std::string::npos) << result.err;
 }
 
-}  // namespace
+}  // namespace program_test
 }  // namespace supple

@@ -10,7 +10,7 @@
 #include "support/replayed_film.h"
 
 namespace supple {
-namespace {
+namespace replay_test {
 
 using test::read_file;
 using test::ReplayedFilm;
@@ -145,5 +145,5 @@ value = 30
   EXPECT_FALSE(std::filesystem::exists(folder_.path / "out"));
 }
 
-}  // namespace
+}  // namespace replay_test
 }  // namespace supple

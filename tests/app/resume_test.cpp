@@ -12,7 +12,7 @@
 #include "support/replayed_film.h"
 
 namespace supple {
-namespace {
+namespace resume_test {
 
 using test::read_file;
 using test::Result;
@@ -224,5 +224,5 @@ TEST_F(ResumedFilm, StartsAnewInAFolderThatARunHadOnlyBegunToTake) {
   EXPECT_EQ(hashes("a").size(), 3u);
 }
 
-}  // namespace
+}  // namespace resume_test
 }  // namespace supple

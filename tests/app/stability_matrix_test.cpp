@@ -7,7 +7,7 @@
 #include "app/bench/stability_matrix.h"
 
 namespace supple {
-namespace {
+namespace stability_matrix_test {
 
 std::vector<StabilityOutcome> outcomes_of(const std::string& hard, const std::string& material, bool errors = false) {
   const std::vector<HardCase> cases = hard_cases(std::nullopt);
@@ -118,5 +118,5 @@ TEST(StabilityMatrix, NothingFailsInSilence) {
   }
 }
 
-}  // namespace
+}  // namespace stability_matrix_test
 }  // namespace supple

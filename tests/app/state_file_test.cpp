@@ -16,7 +16,7 @@
 #include "support/stored_problem.h"
 
 namespace supple {
-namespace {
+namespace state_file_test {
 
 using test::profile_of;
 using test::Result;
@@ -315,5 +315,5 @@ TEST(Documentation, NamesEveryKeyAndFileOfAState) {
   for (const std::string& name : names) EXPECT_NE(page.find("`" + name + "`"), std::string::npos) << name;
 }
 
-}  // namespace
+}  // namespace state_file_test
 }  // namespace supple

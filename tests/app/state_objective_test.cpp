@@ -7,7 +7,7 @@
 #include "support/stored_problem.h"
 
 namespace supple {
-namespace {
+namespace state_objective_test {
 
 using test::StoredProblem;
 
@@ -115,5 +115,5 @@ TEST(StoredObjective, AgreesWithTheProgramsForEveryMaterialSpringsFibresAndInteg
   EXPECT_GT(agreement.crushed, agreement.inverted + 100);  // upright ones that log J is continued for as well
 }
 
-}  // namespace
+}  // namespace state_objective_test
 }  // namespace supple

@@ -18,7 +18,7 @@
 #include "support/program.h"
 
 namespace supple {
-namespace {
+namespace sweep_verb_test {
 
 using test::Result;
 using test::run;
@@ -342,5 +342,5 @@ TEST(ContactSheet, ShowsTheValueAloneWhereItsNameDoesNotFit) {
   EXPECT_NE(sheet_with("g = [0, -9, 0]"), value);
 }
 
-}  // namespace
+}  // namespace sweep_verb_test
 }  // namespace supple

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 namespace supple {
-namespace {
+namespace console_test {
 
 TEST(Console, MarksTheWordsThatTroubleBeginsWith) {
   EXPECT_EQ(highlighted("supple: no\n"), "\033[1;31msupple:\033[0m no\n");
@@ -51,5 +51,5 @@ TEST(Console, SaysItInColourOnATerminalAndPlainlyWithNoColor) {
   unsetenv("NO_COLOR");
 }
 
-}  // namespace
+}  // namespace console_test
 }  // namespace supple

@@ -10,7 +10,7 @@
 #include "sim/model/report.h"
 
 namespace supple {
-namespace {
+namespace names_test {
 
 template <class E>
 class NameTables : public testing::Test {};
@@ -31,5 +31,5 @@ TYPED_TEST(NameTables, GiveEveryValueBackByItsName) {
   EXPECT_EQ(value_named<TypeParam>(""), std::nullopt);
 }
 
-}  // namespace
+}  // namespace names_test
 }  // namespace supple

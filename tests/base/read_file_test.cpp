@@ -9,7 +9,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace read_file_test {
 
 std::string refusal_of(const std::filesystem::path& path, std::uintmax_t most_bytes = usual_most_bytes) {
   try {
@@ -52,5 +52,5 @@ TEST(ReadFile, RefusesWhatHasNoEndOrCannotBeRead) {
   EXPECT_EQ(refusal_of(folder.path / "long", 4), name + "/long: is larger than 4 bytes");
 }
 
-}  // namespace
+}  // namespace read_file_test
 }  // namespace supple

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace supple {
-namespace {
+namespace text_test {
 
 TEST(Text, SizesAreInThousands) {
   EXPECT_EQ(bytes_text(0), "0 bytes");
@@ -42,5 +42,5 @@ TEST(Text, WordsAreQuotedWhereAShellWouldSplitOrReplaceThem) {
   EXPECT_EQ(shell_word("$it's"), "'$it'\\''s'");
 }
 
-}  // namespace
+}  // namespace text_test
 }  // namespace supple

@@ -8,7 +8,7 @@
 #include "base/text.h"
 
 namespace supple {
-namespace {
+namespace threads_test {
 
 TEST(Threads, RunEveryChunkOnceHoweverOftenTheyAreAsked) {
   for (const int count : {1, 2, 4}) {
@@ -41,5 +41,5 @@ TEST(Text, FindsTheWordThatWasMeant) {
   EXPECT_EQ(word_list({"a", "b", "c"}), "a, b or c");
 }
 
-}  // namespace
+}  // namespace threads_test
 }  // namespace supple

@@ -8,7 +8,7 @@
 #include "support/allocation_counter.h"
 
 namespace supple {
-namespace {
+namespace trace_test {
 
 const ThreadTrace* thread_named(const std::vector<ThreadTrace>& threads, const std::string& name, int number = 0) {
   for (const ThreadTrace& thread : threads) {
@@ -148,5 +148,5 @@ TEST(Trace, WorkersSayForWhichZoneTheyWork) {
   EXPECT_STREQ(worker->events[0].name, "evaluate");
 }
 
-}  // namespace
+}  // namespace trace_test
 }  // namespace supple

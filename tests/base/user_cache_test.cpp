@@ -10,7 +10,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace user_cache_test {
 
 namespace fs = std::filesystem;
 
@@ -135,5 +135,5 @@ TEST(UserCache, LiesWhereTheUserWantsIt) {
   EXPECT_EQ(folder(nullptr, ""), "");
 }
 
-}  // namespace
+}  // namespace user_cache_test
 }  // namespace supple

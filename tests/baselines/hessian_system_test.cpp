@@ -11,7 +11,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace hessian_system_test {
 
 using test::bar;
 using test::Held;
@@ -198,5 +198,5 @@ TEST(VertexRotations, TurnMultiplyAndTurnBack) {
   for (int v = 0; v < model.free; ++v) EXPECT_LT((rotation_at(second, v) - other_turn).norm(), 1e-12);
 }
 
-}  // namespace
+}  // namespace hessian_system_test
 }  // namespace supple

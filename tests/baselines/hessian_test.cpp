@@ -18,7 +18,7 @@
 #include "support/deformations.h"
 
 namespace supple {
-namespace {
+namespace hessian_test {
 
 using test::Held;
 
@@ -365,5 +365,5 @@ TEST(LineSearch, WolfeStepsSatisfyBothConditions) {
   }
 }
 
-}  // namespace
+}  // namespace hessian_test
 }  // namespace supple

@@ -18,7 +18,7 @@
 #include "support/deformations.h"
 
 namespace supple {
-namespace {
+namespace local_methods_test {
 
 using test::Held;
 
@@ -244,5 +244,5 @@ TEST(LocalMethods, HaveTheSameBitsOnAnyNumberOfThreads) {
   }
 }
 
-}  // namespace
+}  // namespace local_methods_test
 }  // namespace supple

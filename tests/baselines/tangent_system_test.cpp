@@ -10,7 +10,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace tangent_system_test {
 
 using test::Held;
 
@@ -161,5 +161,5 @@ TEST(TangentSystem, HasTheSameBitsOnAnyNumberOfThreadsAndAfterOtherMatrices) {
   }
 }
 
-}  // namespace
+}  // namespace tangent_system_test
 }  // namespace supple

@@ -9,7 +9,7 @@
 #include "support/scene_text.h"
 
 namespace supple {
-namespace {
+namespace camera_test {
 
 const std::string cube = R"(
 [[body]]
@@ -132,5 +132,5 @@ TEST(Camera, TellsHowMuchOfABodyIsInThePicture) {
   EXPECT_NEAR(share_in_picture(camera, stage, {0, 0, 0, 0, 5, 0, 5, 0, 0, 0, 0, -1}), 0.5, 1e-12);
 }
 
-}  // namespace
+}  // namespace camera_test
 }  // namespace supple

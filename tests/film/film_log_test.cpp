@@ -11,7 +11,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace film_log_test {
 
 FrameRow row_of(int frame) {
   FrameRow row;
@@ -96,5 +96,5 @@ TEST(FilmLog, AFileThatLostRowsIsNamed) {
   }
 }
 
-}  // namespace
+}  // namespace film_log_test
 }  // namespace supple

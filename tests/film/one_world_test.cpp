@@ -17,7 +17,7 @@
 #include "support/program.h"
 
 namespace supple {
-namespace {
+namespace one_world_test {
 
 // In this scene, implicit midpoint needs targets halfway, substeps need inputs of their own, one handle grabs in frame
 // 3 and releases in frame 6, and the ball pushes from below.
@@ -190,5 +190,5 @@ TEST_F(OneWorld, AWorldReturnsToAnyOfItsStates) {
   }
 }
 
-}  // namespace
+}  // namespace one_world_test
 }  // namespace supple

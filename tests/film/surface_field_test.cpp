@@ -12,7 +12,7 @@
 #include "support/scene_text.h"
 
 namespace supple {
-namespace {
+namespace surface_field_test {
 
 // Holds a bar, a cloth and a ground, with one quantity.
 struct Fixture {
@@ -232,5 +232,5 @@ TEST(SurfaceField, RefusesARangeThatRunsBackwards) {
   }
 }
 
-}  // namespace
+}  // namespace surface_field_test
 }  // namespace supple

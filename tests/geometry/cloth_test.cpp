@@ -13,7 +13,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace cloth_test {
 
 TEST(Cloth, GridsAlternateTheirDiagonalsAndSkipOneVertexToBend) {
   const ClothMesh cloth = cloth_grid({8, 6}, {4, 3});
@@ -97,5 +97,5 @@ TEST(Skin, KeepsCreasesSharpAndPrintsSquaresAlongTheFaces) {
   EXPECT_EQ(skin_of_surface(cloth.surface.points, cloth.surface.triangles, 0, vertex_of).rest.points.rows(), 16);
 }
 
-}  // namespace
+}  // namespace cloth_test
 }  // namespace supple

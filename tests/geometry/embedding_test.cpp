@@ -12,7 +12,7 @@
 #include "support/surfaces.h"
 
 namespace supple {
-namespace {
+namespace embedding_test {
 
 Shape shape_of(const Primitive& primitive) {
   Shape shape;
@@ -205,5 +205,5 @@ TEST(SkinStretch, IsThatOfTheLongestEdgeAndOfTheElements) {
   EXPECT_EQ(most_stretched_edge(ball.skin, longer, 10).from, -1);
 }
 
-}  // namespace
+}  // namespace embedding_test
 }  // namespace supple

@@ -10,7 +10,7 @@
 #include "scene/reading/shape_reader.h"
 
 namespace supple {
-namespace {
+namespace graded_stuffing_test {
 
 TetMesh mesh_of(const BisectedLattice& lattice) {
   TetMesh mesh;
@@ -167,5 +167,5 @@ TEST(GradedStuffing, RefusesWhatIsTooSlenderForItsSamples) {
   EXPECT_THROW(graded_tetrahedralize(shape, 500, "hair", sampled_thickness(bar), 1.5), InputError);
 }
 
-}  // namespace
+}  // namespace graded_stuffing_test
 }  // namespace supple

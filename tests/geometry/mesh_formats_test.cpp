@@ -12,7 +12,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace mesh_formats_test {
 
 TetMesh tagged_box() {
   TetMesh mesh = box_mesh(Vec3(0.3, 0.2, 0.1), Eigen::Vector3i(3, 2, 2));
@@ -196,5 +196,5 @@ TEST_F(MeshFormats, MutatedFilesEndInAnErrorOrAMesh) {
   }
 }
 
-}  // namespace
+}  // namespace mesh_formats_test
 }  // namespace supple

@@ -15,7 +15,7 @@
 #include "support/surfaces.h"
 
 namespace supple {
-namespace {
+namespace mesh_test {
 
 Shape shape_of(const Primitive& primitive) {
   Shape shape;
@@ -318,5 +318,5 @@ TEST(Skin, IsClosedAndOutward) {
   EXPECT_NEAR(volume / (4.0 / 3 * M_PI), 1, 0.02);
 }
 
-}  // namespace
+}  // namespace mesh_test
 }  // namespace supple

@@ -17,7 +17,7 @@
 #include "support/surfaces.h"
 
 namespace supple {
-namespace {
+namespace odd_files_test {
 
 using test::mark;
 using test::OddFile;
@@ -668,5 +668,5 @@ TEST_F(OddFiles, OfSurfacesAreReadAsWhatTheySayOrRefusedInWords) {
   EXPECT_LT(used.ru_maxrss, 2'000'000);  // kB
 }
 
-}  // namespace
+}  // namespace odd_files_test
 }  // namespace supple

@@ -9,7 +9,7 @@
 #include "support/odd_files.h"
 
 namespace supple {
-namespace {
+namespace odd_meshes_test {
 
 using test::mark;
 using test::OddFile;
@@ -172,5 +172,5 @@ TEST_F(OddMeshes, OfTetGenAreReadAsWhatTheySayOrRefusedInWords) {
   says(node_text(), replaced(ele_text(), "1 4 0", "2 4 0"), "2 elements announced, but the file ends after 1");
 }
 
-}  // namespace
+}  // namespace odd_meshes_test
 }  // namespace supple

@@ -9,7 +9,7 @@
 #include "support/surfaces.h"
 
 namespace supple {
-namespace {
+namespace refine_surface_test {
 
 Vec3 area(const TriMesh& mesh, Eigen::Index t) {
   const auto corner = [&](int k) -> Vec3 { return mesh.points.row(mesh.triangles(t, k)); };
@@ -56,5 +56,5 @@ TEST(RefinedSurface, LeavesSmallTrianglesAloneAndKeepsItsLimit) {
   EXPECT_GT(some.mesh.triangles.rows(), 1000);
 }
 
-}  // namespace
+}  // namespace refine_surface_test
 }  // namespace supple

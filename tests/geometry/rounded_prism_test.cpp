@@ -7,7 +7,7 @@
 #include <numbers>
 
 namespace supple {
-namespace {
+namespace rounded_prism_test {
 
 // Returns the volume that a surface encloses; negative where its triangles look inward.
 double volume_of(const TriMesh& mesh) {
@@ -74,5 +74,5 @@ TEST(RoundedPrism, EqualPointsAreOne) {
   EXPECT_LT((bounds_of(ball.points).extent() - Vec3(0.2, 0.2, 0.2)).norm(), 1e-12);
 }
 
-}  // namespace
+}  // namespace rounded_prism_test
 }  // namespace supple

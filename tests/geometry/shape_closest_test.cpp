@@ -13,7 +13,7 @@
 #include "support/surfaces.h"
 
 namespace supple {
-namespace {
+namespace shape_closest_test {
 
 struct NamedShape {
   std::string name;
@@ -441,5 +441,5 @@ TEST(ShapeClosest, IsFiniteAndOnTheSurfaceOfSmoothAndEdgedShapesToo) {
   }
 }
 
-}  // namespace
+}  // namespace shape_closest_test
 }  // namespace supple

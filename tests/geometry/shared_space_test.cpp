@@ -9,7 +9,7 @@
 #include "geometry/tetrahedra/tetrahedralize.h"
 
 namespace supple {
-namespace {
+namespace shared_space_test {
 
 // A mesh with its surface.
 struct Solid {
@@ -97,5 +97,5 @@ TEST(SharedSpace, IsWhatAClothHasThatPassesThroughABodyOrAnotherCloth) {
   EXPECT_FALSE(share_space(posed, {across, cloth.surface.triangles, none}));
 }
 
-}  // namespace
+}  // namespace shared_space_test
 }  // namespace supple

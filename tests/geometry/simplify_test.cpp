@@ -7,7 +7,7 @@
 #include "support/surfaces.h"
 
 namespace supple {
-namespace {
+namespace simplify_test {
 
 Skin skin_of(const TriMesh& mesh) {
   Skin skin;
@@ -85,5 +85,5 @@ TEST(Simplify, UnusedVerticesGoAndTheOthersKeepTheirValues) {
   }
 }
 
-}  // namespace
+}  // namespace simplify_test
 }  // namespace supple

@@ -7,7 +7,7 @@
 #include "support/surfaces.h"
 
 namespace supple {
-namespace {
+namespace skin_limit_test {
 
 // Makes a ball with so few vertices that most of its skin lies outside. The skin's first vertex is in it twice, as at a
 // crease.
@@ -107,5 +107,5 @@ TEST(SkinLimit, IsNotThereWhereAllLiesInElements) {
   EXPECT_FALSE(skin_limit(ball.skin, ball.embedding));
 }
 
-}  // namespace
+}  // namespace skin_limit_test
 }  // namespace supple

@@ -19,7 +19,7 @@
 #include "support/surfaces.h"
 
 namespace supple {
-namespace {
+namespace solid_surface_test {
 
 using Lines = std::vector<std::string>;
 
@@ -273,5 +273,5 @@ TEST(TriangleSoup, RaysAndNearestPointsAreThoseOfTheSphere) {
   EXPECT_EQ(soup.closest(Vec3(0, 0, 1.5), 0.4, Vec3(0, 0, 0)).triangle, -1);
 }
 
-}  // namespace
+}  // namespace solid_surface_test
 }  // namespace supple

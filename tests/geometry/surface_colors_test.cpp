@@ -17,7 +17,7 @@
 #include "support/colored_files.h"
 
 namespace supple {
-namespace {
+namespace surface_colors_test {
 
 class ColoredFiles : public ::testing::Test {
  protected:
@@ -428,5 +428,5 @@ TEST(SurfaceColors, KeepTheTrianglesThatCarryThem) {
   EXPECT_EQ(left_of(skin), all);
 }
 
-}  // namespace
+}  // namespace surface_colors_test
 }  // namespace supple

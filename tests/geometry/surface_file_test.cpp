@@ -23,7 +23,7 @@
 #include "support/surfaces.h"
 
 namespace supple {
-namespace {
+namespace surface_file_test {
 
 using Notes = std::vector<std::string>;
 
@@ -401,5 +401,5 @@ TEST_F(SurfaceFile, AReaderThatCrashesHangsFailsOrFloodsIsRefusedAndGone) {
   EXPECT_EQ(errno, ECHILD);
 }
 
-}  // namespace
+}  // namespace surface_file_test
 }  // namespace supple

@@ -10,7 +10,7 @@
 #include "support/surfaces.h"
 
 namespace supple {
-namespace {
+namespace surface_pieces_test {
 
 TriMesh box_at(double x, double half) { return test::moved(test::box_surface(Vec3(half, half, half)), Vec3(x, 0, 0)); }
 
@@ -91,5 +91,5 @@ TEST(SurfaceThickness, SpacingAndVerticesBelongTogether) {
     EXPECT_NEAR(vertices_for(0.3, 4, spacing_for(0.3, 4, vertices)) / vertices, 1, 1e-6);
 }
 
-}  // namespace
+}  // namespace surface_pieces_test
 }  // namespace supple

@@ -8,7 +8,7 @@
 #include "geometry/shapes/shape_pieces.h"
 
 namespace supple {
-namespace {
+namespace triangle_in_shape_test {
 
 Shape shape_of(const Primitive& primitive) {
   Shape shape;
@@ -140,5 +140,5 @@ TEST(ShapePieces, AreTheShapeTogether) {
   EXPECT_EQ(pieces_of(shape)[0].bulge, 0);
 }
 
-}  // namespace
+}  // namespace triangle_in_shape_test
 }  // namespace supple

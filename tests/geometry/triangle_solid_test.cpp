@@ -12,7 +12,7 @@
 #include "support/surfaces.h"
 
 namespace supple {
-namespace {
+namespace triangle_solid_test {
 
 // The plain version follows Ericson, Real-Time Collision Detection, 2005, section 5.1.5, region by region.
 Vec3 closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -402,5 +402,5 @@ TEST(TriangleSolid, AWayEntersWhereTheDistanceFirstVanishes) {
   }
 }
 
-}  // namespace
+}  // namespace triangle_solid_test
 }  // namespace supple

@@ -12,7 +12,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace fed_program_test {
 
 const std::vector<std::uint8_t>& three_megabytes() {
   static const std::vector<std::uint8_t> bytes = [] {
@@ -86,5 +86,5 @@ TEST(FedProgram, EndsWithItsObjectAndWithTheThreadThatStartedIt) {
   EXPECT_FALSE(std::filesystem::exists(folder.path / "b"));
 }
 
-}  // namespace
+}  // namespace fed_program_test
 }  // namespace supple

@@ -7,7 +7,7 @@
 #include <random>
 
 namespace supple {
-namespace {
+namespace film_colors_test {
 
 using Color = std::array<double, 3>;
 
@@ -61,5 +61,5 @@ TEST(FilmColors, WeighThePixelsAroundEachPlaceOfChroma) {
   }
 }
 
-}  // namespace
+}  // namespace film_colors_test
 }  // namespace supple

@@ -9,7 +9,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace force_file_test {
 
 constexpr int vertices = 6;
 
@@ -98,5 +98,5 @@ TEST_F(ForceFile, RefusesWhatIsDamaged) {
   EXPECT_EQ(ForceFileReader(path()).frames(), 0);
 }
 
-}  // namespace
+}  // namespace force_file_test
 }  // namespace supple

@@ -12,7 +12,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace npy_test {
 
 // Makes a file with this dictionary, padded as NumPy does, and some bytes of values.
 std::string file_of(const std::string& dictionary, std::size_t value_bytes) {
@@ -135,5 +135,5 @@ TEST(Npy, SaysWhenThereIsNoFile) {
   }
 }
 
-}  // namespace
+}  // namespace npy_test
 }  // namespace supple

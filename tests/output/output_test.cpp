@@ -15,7 +15,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace output_test {
 
 TEST(Png, GivesBackItsPixelsAndLeavesNoTemporaryFile) {
   const test::TemporaryFolder folder;
@@ -287,5 +287,5 @@ TEST(RunFolder, TakesOverWhatARunThatWasKilledAtItsBeginningLeft) {
   EXPECT_THROW(RunFolder{run}, InputError);
 }
 
-}  // namespace
+}  // namespace output_test
 }  // namespace supple

@@ -11,7 +11,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace png_test {
 
 std::vector<std::uint8_t> picture(int width, int height, int noise) {
   std::mt19937 dice(7);
@@ -55,5 +55,5 @@ TEST(Png, ThatIsDamagedIsRefused) {
   EXPECT_THROW(read_png(file), InputError);
 }
 
-}  // namespace
+}  // namespace png_test
 }  // namespace supple

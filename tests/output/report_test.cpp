@@ -15,7 +15,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace report_test {
 
 using Records = std::vector<std::vector<std::string>>;
 
@@ -382,5 +382,5 @@ TEST(ReportPage, RefusesNamesThatWouldShareAFile) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path));
 }
 
-}  // namespace
+}  // namespace report_test
 }  // namespace supple

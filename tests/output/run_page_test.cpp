@@ -12,7 +12,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace run_page_test {
 
 // A run of two bodies, one of which touches something, with a warning and names that HTML must not take for its own.
 RunRecord small_run(const std::filesystem::path& folder, int frames) {
@@ -146,5 +146,5 @@ TEST(RunPage, TellsWhatWasRunBeforeThereAreFrames) {
   EXPECT_EQ(page.find("class=\"area\""), std::string::npos);
 }
 
-}  // namespace
+}  // namespace run_page_test
 }  // namespace supple

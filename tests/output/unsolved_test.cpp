@@ -11,7 +11,7 @@
 #include "support/program.h"
 
 namespace supple {
-namespace {
+namespace unsolved_test {
 
 FrameRow row_of(int frame, double estimate, int iterations, int trials) {
   FrameRow row;
@@ -87,5 +87,5 @@ TEST(Unsolved, SaysNothingOfStepsWhoseContactsAreFoundOnTheWay) {
   EXPECT_GE(measured, 20);
 }
 
-}  // namespace
+}  // namespace unsolved_test
 }  // namespace supple

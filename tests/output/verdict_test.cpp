@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 namespace supple {
-namespace {
+namespace verdict_test {
 
 TEST(Verdict, NamesTheDearestStageAndWhatHelps) {
   EXPECT_EQ(
@@ -66,5 +66,5 @@ TEST(Verdict, OfAProfileAveragesTheRepeatsToo) {
   EXPECT_DOUBLE_EQ(work.encoding, 0);
 }
 
-}  // namespace
+}  // namespace verdict_test
 }  // namespace supple

@@ -8,7 +8,7 @@
 #include <random>
 
 namespace supple {
-namespace {
+namespace zone_comparison_test {
 
 constexpr int frames = 60, repeats = 5;
 
@@ -172,5 +172,5 @@ TEST(ZoneComparison, SaysWhatKeepsTwoRunsFromBeingCompared) {
             std::vector<std::string>{"the scenes differ at /body/0/material/lambda: absent and 3"});
 }
 
-}  // namespace
+}  // namespace zone_comparison_test
 }  // namespace supple

@@ -14,7 +14,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace zones_test {
 
 TraceEvent event(const char* name, int depth, double begin_ms, double end_ms, int number = -1) {
   const auto ns = [](double ms) { return 1000000000 + std::int64_t(ms * 1e6); };
@@ -186,5 +186,5 @@ TEST(ChromeTrace, IsJsonWhoseZonesNestWithinTheirTracks) {
   EXPECT_TRUE(json["traceEvents"][4]["args"]["body"].get<std::string>().starts_with("b\"ody"));
 }
 
-}  // namespace
+}  // namespace zones_test
 }  // namespace supple

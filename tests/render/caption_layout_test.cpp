@@ -19,7 +19,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace caption_layout_test {
 
 const Outline square = {{100, 100}, {200, 100}, {200, 200}, {100, 200}};
 
@@ -328,5 +328,5 @@ TEST(Captions, ABodyThatIsAloneAndHasNoNameHasNone) {
   EXPECT_EQ(label_of("label = \"soft\"\n"), "soft");
 }
 
-}  // namespace
+}  // namespace caption_layout_test
 }  // namespace supple

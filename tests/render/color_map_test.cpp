@@ -6,7 +6,7 @@
 #include <algorithm>
 
 namespace supple {
-namespace {
+namespace color_map_test {
 
 std::vector<Vec3> in_oklab(ColorMap map, int count) {
   std::vector<Vec3> result;
@@ -59,5 +59,5 @@ TEST(ColorMap, TheMapAroundAMeanIsNeutralThereAndEquallyDarkAtItsEnds) {
   EXPECT_GT(colors[16].x(), colors.front().x() + 0.4);
 }
 
-}  // namespace
+}  // namespace color_map_test
 }  // namespace supple

@@ -25,7 +25,7 @@
 #include "support/places.h"
 
 namespace supple {
-namespace {
+namespace golden_test {
 
 constexpr double mean_allowed = 1.5;     // of 255
 constexpr int clearly_off = 24;          // of 255, in some channel
@@ -489,5 +489,5 @@ TEST(Renderer, AMeshThatIsRenewedWithPaintLooksAsIfItHadBeenThereFromTheStart) {
   EXPECT_EQ(after.rgb, draw(painted).rgb);
 }
 
-}  // namespace
+}  // namespace golden_test
 }  // namespace supple

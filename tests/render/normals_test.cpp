@@ -4,7 +4,7 @@
 #include "render/view.h"
 
 namespace supple {
-namespace {
+namespace normals_test {
 
 // Two sides of a roof, whose ridge has vertices 0 and 1 on the left side and 3 and 4 on the right one.
 const std::vector<float> roof = {0, 1, 0, 0, 1, 1, -1, 0, 0, 0, 1, 0, 0, 1, 1, 1, 0, 0};
@@ -24,5 +24,5 @@ TEST(Normals, VerticesThatColoursSplitHaveOne) {
     for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(shared[4 * v + k], own[4 * v + k]);
 }
 
-}  // namespace
+}  // namespace normals_test
 }  // namespace supple

@@ -9,7 +9,7 @@
 #include "support/places.h"
 
 namespace supple {
-namespace {
+namespace shadow_test {
 
 // Holds meshes that are written by hand, and their positions.
 struct Scenery {
@@ -137,5 +137,5 @@ TEST(Shadow, LiesInNarrowFoldsAsWell) {
   EXPECT_LT(bright, pixels / 100);
 }
 
-}  // namespace
+}  // namespace shadow_test
 }  // namespace supple

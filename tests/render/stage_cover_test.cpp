@@ -6,7 +6,7 @@
 #include "support/places.h"
 
 namespace supple {
-namespace {
+namespace stage_cover_test {
 
 constexpr double edge = 0.2;  // of a cube that stands on the ground [m]
 const Vec3 to_light = Vec3(-0.4, 1, 0.5).normalized();
@@ -109,5 +109,5 @@ TEST(StageCover, LeavesOutWhatIsNotSeen) {
   EXPECT_EQ(frame.shadow_center, cover.at_rest().shadow_center);
 }
 
-}  // namespace
+}  // namespace stage_cover_test
 }  // namespace supple

@@ -8,7 +8,7 @@
 #include "render/color.h"
 
 namespace supple {
-namespace {
+namespace texture_buffer_test {
 
 Texture noise(int width, int height) {
   Texture texture{"noise", width, height, Wrap::repeat, Wrap::repeat, {}};
@@ -48,5 +48,5 @@ TEST(TextureBuffer, EachLevelHasTheMeanOfTheFinerOneAlsoWithOddSides) {
   }
 }
 
-}  // namespace
+}  // namespace texture_buffer_test
 }  // namespace supple

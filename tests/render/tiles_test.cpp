@@ -8,7 +8,7 @@
 #include "render/view.h"
 
 namespace supple {
-namespace {
+namespace tiles_test {
 
 constexpr int width = 640, height = 360;
 const Camera camera = {Vec3(0.4, 0.8, 4), Vec3(0, 0.2, 0), 35};
@@ -135,5 +135,5 @@ TEST(Rays, LeadThroughThePixelsOfTheViewMatrix) {
   }
 }
 
-}  // namespace
+}  // namespace tiles_test
 }  // namespace supple

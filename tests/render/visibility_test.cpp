@@ -7,7 +7,7 @@
 #include "render/view.h"
 
 namespace supple {
-namespace {
+namespace visibility_test {
 
 constexpr int width = 97, height = 61;
 constexpr int parts = SampleBuffer::parts;
@@ -281,5 +281,5 @@ TEST(Visibility, AClothIsSeenWhereItCutsALittleIntoWhatItLiesOn) {
   EXPECT_GT(samples_of_bar(0.02, true), 1000) << "what stands out of a cloth is seen";
 }
 
-}  // namespace
+}  // namespace visibility_test
 }  // namespace supple

@@ -14,7 +14,7 @@
 #include "support/objective_checks.h"
 
 namespace supple {
-namespace {
+namespace all_scenes_test {
 
 int frames_to_run() {
   const char* wanted = std::getenv("SUPPLE_SCENE_FRAMES");
@@ -92,5 +92,5 @@ TEST(Scenes, HaveNothingToWarnOf) {
   }
 }
 
-}  // namespace
+}  // namespace all_scenes_test
 }  // namespace supple

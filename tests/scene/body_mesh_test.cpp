@@ -10,7 +10,7 @@
 #include "support/scene_text.h"
 
 namespace supple {
-namespace {
+namespace body_mesh_test {
 
 // Makes a rod of about so many vertices.
 Body rod(int vertices) {
@@ -47,5 +47,5 @@ TEST(BodyMesh, OfASlenderShapeIsRefusedWhereNoNumberIsNear) {
   }
 }
 
-}  // namespace
+}  // namespace body_mesh_test
 }  // namespace supple

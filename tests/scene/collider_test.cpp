@@ -13,7 +13,7 @@
 #include "support/surfaces.h"
 
 namespace supple {
-namespace {
+namespace collider_test {
 
 using Messages = std::vector<std::string>;
 
@@ -331,5 +331,5 @@ TEST(SurfaceBody, IsMeshedWithItsNotesItsRegionsAndItsSkin) {
   EXPECT_NEAR(bounds_of(drawn.skin.rest.points).center().y(), placed.center().y(), 0.02);
 }
 
-}  // namespace
+}  // namespace collider_test
 }  // namespace supple

@@ -9,7 +9,7 @@
 #include "support/scene_text.h"
 
 namespace supple {
-namespace {
+namespace colored_body_test {
 
 class ColoredBody : public ::testing::Test {
  protected:
@@ -76,5 +76,5 @@ TEST_F(ColoredBody, OtherWordsAndOtherBodiesAreRefused) {
   EXPECT_NE(problem("box = { extent = [1, 1, 1] }\ncolors = 3\n").find("colors"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace colored_body_test
 }  // namespace supple

@@ -11,7 +11,7 @@
 #include "support/places.h"
 
 namespace supple {
-namespace {
+namespace energy_test {
 
 // Returns kinetic plus elastic plus gravitational energy, by frame.
 std::vector<double> energy_of(const std::string& body, const std::vector<std::string>& settings, int frames) {
@@ -52,5 +52,5 @@ TEST(Energy, IsLostByBackwardEulerKeptByAWellSolvedMidpointAndPumpedIntoABadlySo
   EXPECT_GT(midpoint.back(), -3 * lowest);
 }
 
-}  // namespace
+}  // namespace energy_test
 }  // namespace supple

@@ -13,7 +13,7 @@
 #include "support/surfaces.h"
 
 namespace supple {
-namespace {
+namespace falling_skin_test {
 
 struct Fall {
   double ratio = 0;    // the largest stretch of a skin's edge over that of the elements, of all frames
@@ -112,5 +112,5 @@ TEST(FallingSkin, OfAGearThatFallsFlatAndOfACubeOfTwelveTrianglesStaysWholeAndBe
   EXPECT_GT(cube.skin_vertices, 200);
 }
 
-}  // namespace
+}  // namespace falling_skin_test
 }  // namespace supple

@@ -7,7 +7,7 @@
 #include "support/scene_text.h"
 
 namespace supple {
-namespace {
+namespace hostile_text_test {
 
 std::string refusal_of(const std::string& text) {
   try {
@@ -91,5 +91,5 @@ TEST(HostileText, ABodySoFarAwayThatItsVerticesCoincideIsRefused) {
   }
 }
 
-}  // namespace
+}  // namespace hostile_text_test
 }  // namespace supple

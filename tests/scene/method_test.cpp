@@ -10,7 +10,7 @@
 #include "support/scene_text.h"
 
 namespace supple {
-namespace {
+namespace method_test {
 
 // Returns a scene of one body with these lines in [solver].
 Config scene_with(const std::string& lines) {
@@ -155,5 +155,5 @@ TEST(Chebyshev, WithoutAnIterationLeftToAccelerateIsWarnedOf) {
   EXPECT_EQ(warning("chebyshev_delay = 10"), "nothing");
 }
 
-}  // namespace
+}  // namespace method_test
 }  // namespace supple

@@ -14,7 +14,7 @@
 #include "support/scene_text.h"
 
 namespace supple {
-namespace {
+namespace overlaps_test {
 
 constexpr double gravity = 9.81;
 
@@ -202,5 +202,5 @@ TEST(DrawnGround, ABodyThatFallsThroughItIsNamed) {
   EXPECT_EQ(said("velocity = [0, 40, 0]\n"), "");  // it does not come down in these two seconds
 }
 
-}  // namespace
+}  // namespace overlaps_test
 }  // namespace supple

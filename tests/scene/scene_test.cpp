@@ -16,7 +16,7 @@
 #include "support/scene_text.h"
 
 namespace supple {
-namespace {
+namespace scene_test {
 
 using test::problems_of;
 
@@ -329,5 +329,5 @@ TEST(Documentation, ListsEveryKeyOfScenesAndShapesWithItsDefault) {
   }
 }
 
-}  // namespace
+}  // namespace scene_test
 }  // namespace supple

@@ -9,7 +9,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace script_test {
 
 class Replay : public testing::Test {
  protected:
@@ -374,5 +374,5 @@ TEST_F(Replay, ListsWhatCanChange) {
   for (const LiveKey& key : live) EXPECT_TRUE(cost_of_change(key.key.path)) << key.key.path;
 }
 
-}  // namespace
+}  // namespace script_test
 }  // namespace supple

@@ -10,7 +10,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace skin_report_test {
 
 std::vector<Body> bodies_of(const std::filesystem::path& folder, const std::string& keys) {
   std::ofstream(folder / "s.toml") << "[[body]]\nname = \"it\"\nsize = 0.4\nmaterial = \"jelly\"\n" << keys;
@@ -88,5 +88,5 @@ TEST(DrawnSkin, IsStretchedHardlyMoreThanItsElements) {
   EXPECT_LT(excess(fitted[0]), 1.5);
 }
 
-}  // namespace
+}  // namespace skin_report_test
 }  // namespace supple

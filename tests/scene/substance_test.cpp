@@ -18,7 +18,7 @@
 #include "support/scene_text.h"
 
 namespace supple {
-namespace {
+namespace substance_test {
 
 using test::problems_of;
 using test::scene_of;
@@ -358,5 +358,5 @@ TEST(Substances, ShellsOfTooFewElementsAcrossAreWarnedOf) {
   EXPECT_EQ(pipe(3), "");
 }
 
-}  // namespace
+}  // namespace substance_test
 }  // namespace supple

@@ -10,7 +10,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace support_test {
 
 const std::string bar =
     "box = { extent = [2, 0.2, 0.2], cells = [20, 2, 2] }\nposition = [0, 1, 0]\nmaterial = \"rubber\"\n";
@@ -152,5 +152,5 @@ TEST(Support, TheKeyTakesTrueAndFalseAlone) {
   }
 }
 
-}  // namespace
+}  // namespace support_test
 }  // namespace supple

@@ -17,7 +17,7 @@
 #include "support/surfaces.h"
 
 namespace supple {
-namespace {
+namespace surface_scene_test {
 
 using test::obj_text;
 
@@ -228,5 +228,5 @@ TEST_F(SurfaceScene, AModelsFileAloneIsASceneOfIt) {
   EXPECT_THROW(load_scene(folder_.path / "none.obj", test::assets, {}), InputError);
 }
 
-}  // namespace
+}  // namespace surface_scene_test
 }  // namespace supple

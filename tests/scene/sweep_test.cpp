@@ -11,7 +11,7 @@
 #include "support/scene_text.h"
 
 namespace supple {
-namespace {
+namespace sweep_test {
 
 constexpr const char* bar = R"([[body]]
 name = "bar"
@@ -184,5 +184,5 @@ TEST_F(Sweep, RefusesSettingsOfWhatItVariesAndFilesWithoutASweep) {
       "scene.toml: has no [sweep] table; one can also be given, as in --set 'sweep.values.solver.iterations=[5, 10]'");
 }
 
-}  // namespace
+}  // namespace sweep_test
 }  // namespace supple

@@ -8,7 +8,7 @@
 #include "world/world.h"
 
 namespace supple {
-namespace {
+namespace untangle_test {
 
 std::string cube(const std::string& model, const std::string& keys, const std::string& untangle = "true") {
   return "gravity = [0, 0, 0]\n[solver]\nuntangle = " + untangle +
@@ -93,5 +93,5 @@ TEST(Untangle, HeldVerticesStayHeld) {
   EXPECT_LT(played.shape().stretch, 1.06);
 }
 
-}  // namespace
+}  // namespace untangle_test
 }  // namespace supple

@@ -8,7 +8,7 @@
 #include "support/sparse_matrices.h"
 
 namespace supple {
-namespace {
+namespace changing_factor_test {
 
 using test::block_matrix;
 using test::dense;
@@ -115,5 +115,5 @@ TEST(ChangingFactor, SolvesInSinglePrecisionToItsRoundOff) {
   }
 }
 
-}  // namespace
+}  // namespace changing_factor_test
 }  // namespace supple

@@ -14,7 +14,7 @@
 #include "support/sparse_matrices.h"
 
 namespace supple {
-namespace {
+namespace cholesky_test {
 
 using test::dense;
 using test::grid_matrix;
@@ -218,5 +218,5 @@ TEST(Cholesky, SolvesTheSystemOfABodyInBothPrecisions) {
   EXPECT_LT((product - b).norm(), 1e-10 * b.norm());
 }
 
-}  // namespace
+}  // namespace cholesky_test
 }  // namespace supple

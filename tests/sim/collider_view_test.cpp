@@ -6,7 +6,7 @@
 #include "support/contact_scene.h"
 
 namespace supple {
-namespace {
+namespace collider_view_test {
 
 // A bar along z, 16 mm wide and high, whose top is at y = 0.008.
 struct Bar {
@@ -48,5 +48,5 @@ TEST(ColliderView, AVertexOutsideHasTheClosestSide) {
   EXPECT_EQ(bar.holding(Vec3(0.02, 0, 0), Vec3(0.009, 0.001, 0)), Vec3::UnitX());
 }
 
-}  // namespace
+}  // namespace collider_view_test
 }  // namespace supple

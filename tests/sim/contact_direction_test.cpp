@@ -9,7 +9,7 @@
 #include "support/contact_scene.h"
 
 namespace supple {
-namespace {
+namespace contact_direction_test {
 
 using test::bar;
 using test::ContactScene;
@@ -169,5 +169,5 @@ TEST(Contact, DirectionsOfALargePatchAreSymmetricAndPositiveAndHoldTheVertices) 
   EXPECT_LT(held, 0.25 * unheld);
 }
 
-}  // namespace
+}  // namespace contact_direction_test
 }  // namespace supple

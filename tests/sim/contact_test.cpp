@@ -14,7 +14,7 @@
 #include "support/surfaces.h"
 
 namespace supple {
-namespace {
+namespace contact_test {
 
 using test::cube;
 using test::Held;
@@ -377,5 +377,5 @@ TEST(Contact, APlateOfAMillimetreThrowsBackWhatIsFast) {
   }
 }
 
-}  // namespace
+}  // namespace contact_test
 }  // namespace supple

@@ -17,7 +17,7 @@
 #include "support/places.h"
 
 namespace supple {
-namespace {
+namespace derivative_table_test {
 
 using test::kinds;
 using test::random_rotation;
@@ -227,5 +227,5 @@ TEST(Derivatives, NetForceAndTorqueOfAWholeBodyVanishAtEveryIteration) {
   }
 }
 
-}  // namespace
+}  // namespace derivative_table_test
 }  // namespace supple

@@ -10,7 +10,7 @@
 #include "support/contact_scene.h"
 
 namespace supple {
-namespace {
+namespace error_estimate_test {
 
 // Follows iterations after each of which what is left, `over` times the decrement, is `ratio` of what was left before.
 Decrements even_iterations(int count, double decrement, double over, double ratio) {
@@ -101,5 +101,5 @@ TEST(ErrorEstimate, CountsFromThePredictionInContactToo) {
   EXPECT_LT(std::abs(sum / count), 0.7);
 }
 
-}  // namespace
+}  // namespace error_estimate_test
 }  // namespace supple

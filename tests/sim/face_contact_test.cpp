@@ -9,7 +9,7 @@
 #include "support/contact_scene.h"
 
 namespace supple {
-namespace {
+namespace face_contact_test {
 
 using test::cube;
 using test::shaken;
@@ -259,5 +259,5 @@ TEST(FaceContact, SameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(hashes(nullptr), hashes(&three));
 }
 
-}  // namespace
+}  // namespace face_contact_test
 }  // namespace supple

@@ -9,7 +9,7 @@
 #include "support/contact_scene.h"
 
 namespace supple {
-namespace {
+namespace far_side_test {
 
 using test::moved_to;
 using test::shape_of;
@@ -115,5 +115,5 @@ TEST(FarSide, HasNothingOfAClothThatHangsOverARim) {
   EXPECT_NEAR(reach_on_far_side(model, standing, moved_to({0.051, 0, 0}), flat), 0.149 - 0.5 * thickness, 1e-9);
 }
 
-}  // namespace
+}  // namespace far_side_test
 }  // namespace supple

@@ -9,7 +9,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace fields_test {
 
 Positions mapped(const Positions& rest, const Mat3& f) { return rest * f.transpose(); }
 
@@ -99,5 +99,5 @@ TEST(Fields, StretchesOfTrianglesAreThoseInTheirPlane) {
   EXPECT_TRUE(std::isnan(triangle_stretches(Positions::Zero(3, 3), rest, triangle)[0][0]));
 }
 
-}  // namespace
+}  // namespace fields_test
 }  // namespace supple

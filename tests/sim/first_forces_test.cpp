@@ -10,7 +10,7 @@
 #include "support/contact_scene.h"
 
 namespace supple {
-namespace {
+namespace first_forces_test {
 
 using test::ContactScene;
 using test::cube;
@@ -82,5 +82,5 @@ TEST(FirstForces, AreNotAskedForInTheAirWithoutFrictionAndInLaterSteps) {
   }
 }
 
-}  // namespace
+}  // namespace first_forces_test
 }  // namespace supple

@@ -10,7 +10,7 @@
 #include "sim/linear/linear_kernels.h"
 
 namespace supple {
-namespace {
+namespace front_kernels_test {
 
 // Holds a dense front in the kernels' storage, and finds its numbers there.
 struct StoredFront {
@@ -143,5 +143,5 @@ TEST(Kernels, SolveWithDenseFronts) {
   }
 }
 
-}  // namespace
+}  // namespace front_kernels_test
 }  // namespace supple

@@ -8,7 +8,7 @@
 #include "support/objective_checks.h"
 
 namespace supple {
-namespace {
+namespace integrator_test {
 
 using test::bar;
 using test::Held;
@@ -236,5 +236,5 @@ TEST(Fibres, StiffenTheirDirectionAndNoOther) {
   EXPECT_LT(along, 0.2 * across);
 }
 
-}  // namespace
+}  // namespace integrator_test
 }  // namespace supple

@@ -14,7 +14,7 @@
 #include "support/deformations.h"
 
 namespace supple {
-namespace {
+namespace material_test {
 
 using test::all_materials;
 using test::deformation;
@@ -242,5 +242,5 @@ TEST(Kernels, EveryVariantAgreesWithThePlainFormulas) {
   }
 }
 
-}  // namespace
+}  // namespace material_test
 }  // namespace supple

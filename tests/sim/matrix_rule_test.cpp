@@ -12,7 +12,7 @@
 #include "support/snapshots.h"
 
 namespace supple {
-namespace {
+namespace matrix_rule_test {
 
 using test::bar;
 using test::Held;
@@ -269,5 +269,5 @@ TEST(SolverMemory, IsNotTakenFromBytesOfAnotherBody) {
   EXPECT_FALSE(memory_from("", 5));
 }
 
-}  // namespace
+}  // namespace matrix_rule_test
 }  // namespace supple

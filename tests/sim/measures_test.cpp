@@ -9,7 +9,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace measures_test {
 
 // Compares, for every instruction set, the largest stretch and the volume of each element with those of a singular
 // value decomposition.
@@ -65,5 +65,5 @@ TEST(Measures, OfSpringsByTheirLengths) {
   EXPECT_EQ(deformation(model, x).inverted, 0);
 }
 
-}  // namespace
+}  // namespace measures_test
 }  // namespace supple

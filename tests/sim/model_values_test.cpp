@@ -5,7 +5,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace model_values_test {
 
 // Returns the hash after one step from a shaken rest state.
 std::uint64_t hash_of_step(const Model& model) {
@@ -81,5 +81,5 @@ TEST(ModelValues, AHandleThatLetGoPullsAtNothing) {
   EXPECT_EQ(hash_of_step(let_go), hash_of_step(never_held));
 }
 
-}  // namespace
+}  // namespace model_values_test
 }  // namespace supple

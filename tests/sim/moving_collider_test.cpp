@@ -7,7 +7,7 @@
 #include "support/impact.h"
 
 namespace supple {
-namespace {
+namespace moving_collider_test {
 
 using test::FilmMeasures;
 using test::Flies;
@@ -110,5 +110,5 @@ TEST(MovingCollider, AHandleThatTurnsFarInAStepLeavesTheBodyWhole) {
   }
 }
 
-}  // namespace
+}  // namespace moving_collider_test
 }  // namespace supple

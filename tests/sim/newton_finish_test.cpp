@@ -13,7 +13,7 @@
 #include "support/contact_scene.h"
 
 namespace supple {
-namespace {
+namespace newton_finish_test {
 
 using test::cube;
 using test::shape_of;
@@ -170,5 +170,5 @@ TEST(NewtonSystem, SolvesWithTheHessianAndThePlanesAhead) {
   EXPECT_LT((full * d + r).norm(), 1e-9 * r.norm());
 }
 
-}  // namespace
+}  // namespace newton_finish_test
 }  // namespace supple

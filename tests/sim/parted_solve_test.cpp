@@ -14,7 +14,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace parted_solve_test {
 
 using test::bar;
 using test::Held;
@@ -160,5 +160,5 @@ TEST(Kernels, MultiplyTheCommonEndsOfVectors) {
   }
 }
 
-}  // namespace
+}  // namespace parted_solve_test
 }  // namespace supple

@@ -11,7 +11,7 @@
 #include "support/deformations.h"
 
 namespace supple {
-namespace {
+namespace pose_elements_test {
 
 std::vector<double> evaluated(const BodyDescription& body, ElementQuantity quantity, const Positions& x,
                               Threads* threads = nullptr) {
@@ -100,5 +100,5 @@ TEST(PoseElements, HaveNoStressWhereTheVolumeIsGone) {
   for (const double value : evaluated(body, ElementQuantity::compression, flat)) EXPECT_NEAR(value, 1, 1e-12);
 }
 
-}  // namespace
+}  // namespace pose_elements_test
 }  // namespace supple

@@ -12,7 +12,7 @@
 #include "support/sparse_matrices.h"
 
 namespace supple {
-namespace {
+namespace second_level_test {
 
 using test::bar;
 using test::cube;
@@ -353,5 +353,5 @@ TEST(SecondLevel, ABallRolls) {
   }
 }
 
-}  // namespace
+}  // namespace second_level_test
 }  // namespace supple

@@ -9,7 +9,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace statics_test {
 
 constexpr double gravity = 9.81;
 
@@ -114,5 +114,5 @@ TEST(Statics, ACantileverConvergesToTimoshenkosBeam) {
   EXPECT_LT(locked4, u4);
 }
 
-}  // namespace
+}  // namespace statics_test
 }  // namespace supple

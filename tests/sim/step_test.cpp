@@ -16,7 +16,7 @@
 #include "support/objective_checks.h"
 
 namespace supple {
-namespace {
+namespace step_test {
 
 using test::bar;
 using test::Held;
@@ -414,5 +414,5 @@ TEST(Step, StartsWithTheHandlesDepartureSpreadIntoTheBody) {
   EXPECT_LT(report.objective.front(), 0.5 * at_y);
 }
 
-}  // namespace
+}  // namespace step_test
 }  // namespace supple

@@ -13,7 +13,7 @@
 #include "support/places.h"
 
 namespace supple {
-namespace {
+namespace stress_test {
 
 using Function = std::function<double(double)>;
 
@@ -263,5 +263,5 @@ TEST(Stress, CurvesAreWrittenForThePlot) {
   EXPECT_NEAR(f(1, 1.5), f(0, 1.5), 0.1);
 }
 
-}  // namespace
+}  // namespace stress_test
 }  // namespace supple

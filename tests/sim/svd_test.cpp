@@ -12,7 +12,7 @@
 #include "base/types.h"
 
 namespace supple {
-namespace {
+namespace svd_test {
 
 using V = xsimd::batch<double>;
 constexpr int lanes = static_cast<int>(V::size);
@@ -137,5 +137,5 @@ TEST(Svd, TheSmallestValueCarriesTheSignOfTheDeterminant) {
   }
 }
 
-}  // namespace
+}  // namespace svd_test
 }  // namespace supple

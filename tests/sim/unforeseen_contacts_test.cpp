@@ -6,7 +6,7 @@
 #include "support/contact_scene.h"
 
 namespace supple {
-namespace {
+namespace unforeseen_contacts_test {
 
 using test::cube;
 using test::shape_of;
@@ -54,5 +54,5 @@ TEST(UnforeseenContacts, AreLearnedByTheCurrentIterate) {
   }
 }
 
-}  // namespace
+}  // namespace unforeseen_contacts_test
 }  // namespace supple

@@ -11,7 +11,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace worked_example_test {
 
 TEST(WorkedExample, StandsOnThePageAsItIsCompiled) {
   const std::string page = test::read_file(test::source_folder / "docs" / "adding-a-material.md");
@@ -58,5 +58,5 @@ TEST(WorkedExample, HasSecondDerivativesThroughDualNumbers) {
   EXPECT_NEAR(slope.xx.d[0], 2 * 3 + 30 * 50 * std::pow(0.3, 4), 1e-12);
 }
 
-}  // namespace
+}  // namespace worked_example_test
 }  // namespace supple

@@ -10,7 +10,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace {
+namespace shader_program_test {
 
 std::string message_for(const test::TemporaryFolder& folder) {
   try {
@@ -50,5 +50,5 @@ TEST(Program, AnErrorBehindAnIncludeThatIsLeftOutHasItsLine) {
   EXPECT_NE(message.find((folder.path / "broken.frag").string() + ":7"), std::string::npos) << message;
 }
 
-}  // namespace
+}  // namespace shader_program_test
 }  // namespace supple
