@@ -4,7 +4,7 @@
 #include "film.glsl"
 #include "lighting.glsl"
 uniform vec3 stage;  // centre x, z; radius
-uniform float key_share, sky_share;  // of the light on the open ground
+uniform float key_share, sky_share;  // shares of the key light and of the sky on the open ground
 out vec4 pixel;
 #ifdef SHADED
 uniform sampler2D arriving;  // key light and open sky, at half the resolution

@@ -2,11 +2,11 @@
 // thing that casts it and softens with the distance from there (Fernando 2005, "Percentage-closer soft shadows").
 uniform mat4 light_matrix;
 uniform sampler2D shadow_map;
-uniform float shadow_offset;    // along the normal, so that a surface does not shade itself [m]
-uniform int map_texels;         // along each edge
+uniform float shadow_offset;    // offset of a point along its normal, so that a surface does not shade itself [m]
+uniform int map_texels;         // texels along each edge of the map
 uniform float widest_penumbra;  // radius of the widest border of a shadow, in texels
 uniform float penumbra_slope;   // radius of a border in texels over the difference in depth to what casts it
-uniform int most_taps;          // that the border of a shadow takes
+uniform int most_taps;          // taps that the border of a shadow takes at most
 
 #ifndef GL_ARB_derivative_control
 #define dFdxFine dFdx
@@ -19,7 +19,7 @@ const vec2 around[8] = vec2[8](vec2(0.2500, 0.0000), vec2(-0.3193, 0.2925), vec2
 
 float depth_at(vec2 texel) { return texelFetch(shadow_map, clamp(ivec2(floor(texel)), ivec2(0), ivec2(map_texels - 1)), 0).r; }
 
-// What share of the light passes the four texels around a place, weighted by how near they are.
+// Returns the share of the light that passes the four texels around a place, weighted by how near they are.
 float passing(vec2 texel, float depth) {
   vec4 there = textureGather(shadow_map, texel / float(map_texels));
   vec2 part = fract(texel - 0.5);
@@ -35,6 +35,7 @@ vec4 block_mean(vec4 value, vec2 inward) {
   return value + 0.5 * inward.y * dFdyFine(value);
 }
 
+// Returns the share of the key light that reaches a point of a surface.
 // in_map: 1 for surfaces that cast shadows themselves, 0 for others. in_step: whether all pixels of a block are here at
 // the same time, so that they can share what they find.
 float light_reaching(vec3 position, vec3 normal, float in_map, bool in_step) {

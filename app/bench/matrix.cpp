@@ -80,7 +80,7 @@ void add(Score& score, const Outcome& whole_run, const Outcome& ten, double lowe
   }
 }
 
-// estimates: of the error of motion after ten iterations, over the error.
+// estimates: the estimates of the error of motion after ten iterations, over the error.
 void add_motion(Score& score, const Outcome& whole_run, const Outcome& ten, const std::vector<double>& errors,
                 std::vector<double>& estimates) {
   const auto after = [&](int iterations) {

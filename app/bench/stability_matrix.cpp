@@ -84,7 +84,7 @@ class Returns {
   Returns(const std::vector<NamedMaterial>& materials, Threads& threads)
       : materials_(materials), threads_(threads), plain_(materials.size()), untangled_(materials.size()) {}
 
-  // outcomes: of the case's runs with one material
+  // outcomes: the outcomes of the case's runs with one material
   void add(const HardCase& hard, std::size_t material, const std::vector<StabilityOutcome>& outcomes) {
     if (!hard.is_start) return;
     HardCase mended = hard;

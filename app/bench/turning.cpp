@@ -84,7 +84,7 @@ std::vector<Ball> balls(std::span<const int> other_sizes) {
   return list;
 }
 
-// center: where the ball's centre is at the start.
+// center: the place of the ball's centre at the start.
 std::string ball_text(const Ball& ball, int frames, const Vec3& center, double speed) {
   return fmt::format(
       "frames = {}\n[[body]]\nname = \"ball\"\nshape = \"shapes/sphere.toml\"\nscale = {:g}\nvertices = {}\nposition = "

@@ -9,7 +9,7 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() 
 
 }  // namespace
 
-// By Andrew's monotone chain (1979).
+// Uses Andrew's monotone chain (1979).
 std::vector<Eigen::Vector2d> hull_of(std::vector<Eigen::Vector2d> points) {
   std::ranges::sort(points,
                     [](const auto& a, const auto& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); });

@@ -9,7 +9,7 @@
 namespace supple {
 
 inline std::vector<float> as_floats(std::span<const double> values) { return {values.begin(), values.end()}; }
-// All coordinates, row by row.
+// Returns all coordinates, row by row.
 inline std::vector<float> as_floats(const Positions& values) {
   return as_floats(std::span<const double>(values.data(), std::size_t(values.size())));
 }

@@ -14,7 +14,7 @@ inline std::uint64_t hash_text(std::string_view text) { return hash_bytes(text.d
 // Writes the hash as sixteen hexadecimal digits.
 std::string hash_text_form(std::uint64_t hash);
 
-// XXH64 of the running program's file, so that every build has another one.
+// Returns the XXH64 of the running program's file, which differs from build to build.
 std::uint64_t program_identity();
 
 }  // namespace supple

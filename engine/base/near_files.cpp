@@ -12,8 +12,9 @@ namespace supple {
 std::filesystem::path near_file(const std::filesystem::path& missing,
                                 const std::function<bool(const std::filesystem::path&)>& fits,
                                 const std::vector<std::string>& names) {
-  constexpr std::size_t most_entries = 10000;                                          // of a folder that are looked at
-  const std::filesystem::path path = (missing / "").lexically_normal().parent_path();  // without a slash at its end
+  constexpr std::size_t most_entries = 10000;  // number of a folder's entries that are looked at
+  const std::filesystem::path path =
+      (missing / "").lexically_normal().parent_path();  // the path without a slash at its end
   const std::filesystem::path folder = path.parent_path();
   std::vector<std::filesystem::path> shown(names.begin(), names.end());
   std::error_code error;

@@ -9,7 +9,7 @@
 namespace supple {
 
 // Returns the entry of the path's folder whose name without its ending is nearest to the path's; empty where none is
-// near. fits: tells which entries count. names: words without a folder that count as well.
+// near. fits: a function that tells which entries count. names: further words, without a folder, that count as well.
 std::filesystem::path near_file(const std::filesystem::path& missing,
                                 const std::function<bool(const std::filesystem::path&)>& fits,
                                 const std::vector<std::string>& names = {});

@@ -15,8 +15,8 @@ struct SlowWork {
   std::function<void(const std::string&)> tell;  // hears what is being made, and how far it is; empty: nobody does
 };
 
-// Returns what is kept under the name, or makes it and keeps it. decode: from bytes to an optional result, of which
-// bytes_of makes the bytes.
+// Returns what is kept under the name, or makes it and keeps it. decode: a function from bytes to an optional result,
+// of which bytes_of makes the bytes.
 template <class Decode, class Make>
 auto kept_or_made(const UserCache& cache, const std::string& name, const Decode& decode, const Make& make) {
   if (const auto bytes = cache.find(name)) {

@@ -41,8 +41,8 @@ class Threads {
   std::unique_ptr<Workers> workers_;
 };
 
-// Runs chunks on the threads (null: on the calling one) where there is enough work to be worth waking them. work: a
-// rough count of operations.
+// Runs chunks on threads where there is enough work to be worth waking them. threads: the threads to use; null for the
+// calling one alone. work: a rough count of operations.
 template <class Body>
 void run_chunks(Threads* threads, int chunks, long work, const Body& body) {
   constexpr long worth_sharing = 40000;  // of the order of 20 microseconds; below, waking a thread costs as much

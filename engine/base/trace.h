@@ -17,7 +17,7 @@ namespace supple {
 struct TraceEvent {
   const char* name;
   std::int64_t begin_ns, end_ns;  // of the steady clock
-  std::int32_t depth;             // number of zones of this thread that it lies in
+  std::int32_t depth;             // number of zones of the same thread around this one
   std::int32_t number;            // the frame, or -1
   std::array<char, 32> subject;   // name of the body, cut to fit; ends with a zero
 };
@@ -42,8 +42,8 @@ void name_thread(const char* name, int number = 0);
 // Returns the name of the calling thread's innermost zone, or "work" when it is in none.
 const char* current_zone();
 
-// This is the only state that all threads share: zones lie in code of every layer, and no caller could pass a recorder
-// down to all of them.
+// Tells all threads whether zones are recorded. It is global because zones lie in code of every layer, and no caller
+// could pass a recorder down to all of them.
 inline std::atomic<bool> trace_is_on{false};
 
 class Zone {

@@ -55,7 +55,7 @@ std::optional<std::string> read_whole(const fs::path& path) {
   return bytes;
 }
 
-// The content of an entry's file; nothing where the file is damaged or has another name.
+// Returns the content of an entry's file; nothing where the file is damaged or has another name.
 std::optional<std::string> content_of(std::string bytes, std::string_view name) {
   constexpr std::size_t number = sizeof(std::uint64_t);
   const std::size_t before = signature.size() + 2 * number + name.size();
@@ -81,7 +81,7 @@ struct Entry {
   std::uintmax_t bytes;
 };
 
-// All files of a cache, those of writers that were killed included.
+// Lists all files of a cache, those of writers that were killed included.
 std::vector<Entry> entries_in(const fs::path& folder) {
   std::vector<Entry> entries;
   std::error_code error;
@@ -95,7 +95,7 @@ std::vector<Entry> entries_in(const fs::path& folder) {
   return entries;
 }
 
-// A folder that a variable names; the specification has relative paths ignored.
+// Returns the folder that a variable names. A relative path does not count, as the specification wants it.
 fs::path folder_in(const char* variable) {
   const char* value = std::getenv(variable);
   const fs::path path = value == nullptr ? "" : value;

@@ -16,11 +16,11 @@ class UserCache {
  public:
   UserCache() = default;  // keeps nothing and finds nothing
   // The folder is made when the first entry is kept. Where the entries together take more than most_bytes, those that
-  // have not been used for longest are removed. An entry that is larger than half of it is not kept.
+  // have not been used for longest are removed. An entry that is larger than half of most_bytes is not kept.
   UserCache(std::filesystem::path folder, std::uintmax_t most_bytes);
 
-  // $XDG_CACHE_HOME/supple, or ~/.cache/supple (XDG Base Directory Specification 0.8), with half a gigabyte. Without
-  // these variables, it keeps nothing.
+  // Returns the user's cache in $XDG_CACHE_HOME/supple, or ~/.cache/supple (XDG Base Directory Specification 0.8), with
+  // half a gigabyte. Without these variables, it keeps nothing.
   static UserCache of_user();
 
   const std::filesystem::path& folder() const { return folder_; }  // empty: nothing is kept
@@ -32,7 +32,7 @@ class UserCache {
   // Keeps a content, in the place of an earlier one of this name. Other programs see either of them whole.
   void keep(std::string_view name, std::string_view content) const;
 
-  // The space that all entries take now.
+  // Returns the space that all entries take now [bytes].
   std::uintmax_t used_bytes() const;
 
  private:

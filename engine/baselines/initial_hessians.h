@@ -28,19 +28,20 @@ class IdentityInverse final : public InitialInverse {
 // the body in between.
 struct HessianSource {
   enum class Elements {
-    at_rest,      // the projected ones of the rest pose, without contacts
-    turned_rest,  // the same, each turned by its element's rotation at the start of the step, and contacts
-    in_pose,      // the projected ones of the first iterate, and contacts
+    at_rest,      // the projected Hessians of the elements in the rest pose, without contacts
+    turned_rest,  // the same, each turned by its element's rotation at the step's start, with contacts
+    in_pose,      // the projected Hessians of the elements at the first iterate, with contacts
   } elements;
-  int searches;  // searches between two of its kind; 0: it is made once
-  // By the rotation of the elements around each vertex since it was made.
+  int searches;  // number of searches from one factorisation to the next; 0: it is made once
+  // How it turns: by the rotation that the elements around each vertex have made since it was made.
   enum class Turning { none, to_first_iterate, to_start } turning;
 };
 
 // The Hessian of the rest pose.
 inline constexpr HessianSource rest_hessian_source = {HessianSource::Elements::at_rest, 0,
                                                       HessianSource::Turning::none};
-// The same, turned: z = R H^-1 R^T r (Mueller, Dorsey, McMillan, Jagnow, Cutler 2002, "Stable real-time deformations").
+// The Hessian of the rest pose, turned with the body: z = R H^-1 R^T r (Mueller, Dorsey, McMillan, Jagnow, Cutler 2002,
+// "Stable real-time deformations").
 inline constexpr HessianSource warped_hessian_source = {HessianSource::Elements::at_rest, 0,
                                                         HessianSource::Turning::to_first_iterate};
 // The Hessian at the first iterate of each search.
@@ -52,7 +53,7 @@ inline constexpr HessianSource frame_hessian_source = {HessianSource::Elements::
 inline constexpr HessianSource hecht_hessian_source = {HessianSource::Elements::turned_rest, 2,
                                                        HessianSource::Turning::to_start};
 
-// Applies the inverse of M/h^2 + such a Hessian, by Cholesky.
+// Applies the inverse of M/h^2 + the Hessian that a source describes, by Cholesky.
 class HessianInverse final : public InitialInverse {
  public:
   HessianInverse(const Model& model, const HessianSource& source);
@@ -67,7 +68,7 @@ class HessianInverse final : public InitialInverse {
   ElementMatrices rest_, turned_;  // empty unless the elements are turned ones
   HessianMatrix hessian_;
   ChangingFactor factor_;
-  std::vector<Mat3> made_, now_, warp_;  // by free vertex; empty unless it turns
+  std::vector<Mat3> made_, now_, warp_;  // rotations of the free vertices; empty unless it turns
   long searches_ = 0;
 };
 

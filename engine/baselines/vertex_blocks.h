@@ -13,7 +13,7 @@ namespace supple {
 // Blocks of elements that are not positive semi-definite are projected, so that each system of a vertex is definite.
 class VertexBlockRule final : public SearchRule {
  public:
-  // accelerated: by Chebyshev's semi-iterative method, but for vertices in contact.
+  // accelerated: whether Chebyshev's semi-iterative method moves all vertices that are not in contact.
   VertexBlockRule(const Model& model, bool accelerated);
 
   void begin(const Model&, const StepInputs&, Workspace&) override { iteration_ = 0; }

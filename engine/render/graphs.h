@@ -13,7 +13,8 @@ std::vector<PixelRect> graph_sizes(const Stage& stage);
 
 class Graphs {
  public:
-  // places: of the stage's graphs, with their sizes; empty where they have no room, and then nothing is drawn.
+  // places: the places of the stage's graphs, with their sizes; empty where they have no room, and then nothing is
+  // drawn.
   Graphs(const Stage& stage, std::vector<PixelRect> places);
 
   // Draws the curves over a picture.

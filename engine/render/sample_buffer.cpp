@@ -44,8 +44,8 @@ struct Edge {
     value = by_y * (y - a.y) + by_x * (x - a.x) - (owns ? 0 : 1);
   }
 
-  // Narrows a range of pixels of a row to those in which the function may reach zero. value: at the lower left of the
-  // pixel `left`. A pixel more on each side makes up for rounding.
+  // Narrows a range of pixels of a row to those in which the function may reach zero. value: the function's value at
+  // the lower left of the pixel `left`. A pixel more on each side makes up for rounding.
   void narrow(int left, int& from, int& to) const {
     constexpr int parts = SampleBuffer::parts;
     if (by_x == 0) return;

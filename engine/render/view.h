@@ -7,8 +7,8 @@
 
 namespace supple {
 
-// Returns a camera that has all of the box in view, with some space around it (margin: 1 is none). direction: of length
-// one, from what is seen to the eye. aspect: width over height of the picture.
+// Returns a camera that has all of the box in view, with some space around it (margin: 1 is none). direction: the
+// direction of the view, of length one, from what is seen to the eye. aspect: width over height of the picture.
 Camera framing(const Bounds& box, const Vec3& direction, double fov_deg, double margin, double aspect);
 
 // Maps world to eye coordinates: the eye looks at the target, and up is y.
@@ -29,8 +29,8 @@ struct Rays {
 Rays rays_through(const Camera& camera, int width, int height);
 
 // Computes smooth normals (x y z and a zero by vertex): each vertex's normal is the sum of its triangles' normals,
-// weighted by area. smooth: by vertex; vertices with the same number have one normal, that of all their triangles.
-// Empty: each has its own.
+// weighted by area. smooth: a number for each vertex; vertices with the same number have one normal, that of all their
+// triangles. Empty: each has its own.
 void compute_normals(const std::vector<float>& positions, const std::vector<std::uint32_t>& triangles,
                      const std::vector<std::uint32_t>& smooth, float* normals);
 

@@ -10,12 +10,12 @@ namespace supple {
 // it; otherwise the bodies at the start, and the ground below those that will fall on it.
 Bounds framed_box(const SceneDef& scene, const Stage& stage);
 
-// Returns what the camera follows, and how far that has moved. positions: by mesh, as in a DrawList.
+// Returns what the camera follows, and how far that has moved. positions: the positions of each mesh, as in a DrawList.
 std::optional<Followed> followed_at(const SceneDef& scene, const Stage& stage,
                                     const std::vector<std::vector<float>>& positions);
 
-// Returns the camera at a time [s]. positions: by mesh, as in a DrawList; the camera moves along with the mesh that it
-// follows. Without them it stands where it would if that mesh were at rest.
+// Returns the camera at a time [s]. positions: the positions of each mesh, as in a DrawList; the camera moves along
+// with the mesh that it follows. Without them it stands where it would if that mesh were at rest.
 Camera camera_at(const SceneDef& scene, const Stage& stage, double time,
                  const std::vector<std::vector<float>>& positions = {});
 

@@ -55,7 +55,7 @@ std::optional<double> way_down(const Vec3& from, const SceneCollider& collider, 
   return std::nullopt;
 }
 
-// Returns the collider on which a body comes down. meshes: as they are drawn, the colliders after the bodies.
+// Returns the collider on which a body comes down. meshes: the drawn meshes of the bodies, then those of the colliders.
 std::optional<Board> board_of(const Bounds& body, const std::vector<SceneCollider>& colliders,
                               const std::vector<DrawMesh>& meshes, std::size_t bodies) {
   std::optional<Board> board;

@@ -18,7 +18,7 @@ namespace supple {
 class DrawnFilm {
  public:
   // The script tells all cameras of the film, to which the skins' resolution is fitted. The bodies must outlive the
-  // film. drawn: of each body.
+  // film. drawn: the drawn mesh of each body.
   DrawnFilm(const Script& script, const std::vector<Body>& bodies, std::vector<DrawnBody> drawn,
             const CollisionSet& set, const std::string& font);
 

@@ -22,7 +22,8 @@ GraphPoint graph_point(const FrameRow& row);
 // without rows.
 double longest_steps(std::span<const FrameRow> rows);
 
-// Returns the graphs that a scene asks for. longest: of longest_steps(), which the scale of times spans [ms].
+// Returns the graphs that a scene asks for. longest: the result of longest_steps(), which the scale of times spans
+// [ms].
 std::vector<GraphLook> graph_looks(const SceneDef& scene, double longest);
 
 // Returns their curves up to a frame. earlier: the points of all frames before it; row: that of the frame (null where

@@ -8,8 +8,8 @@
 namespace supple {
 
 // Writes sheet.png into the folder of a film, on which up to a dozen of the pictures in frames/ stand with their times.
-// times: of each picture [s]. Returns the file. Throws InputError where a picture cannot be read, RunError where the
-// sheet cannot be written.
+// times: the time of each picture [s]. Returns the file. Throws InputError where a picture cannot be read, RunError
+// where the sheet cannot be written.
 std::filesystem::path write_sheet(const std::filesystem::path& folder, const std::string& title,
                                   const std::vector<double>& times);
 

@@ -15,7 +15,7 @@ namespace supple {
 std::vector<double> depths_in(const Positions& x, const CollisionSet& set, double time, double reach, Threads* threads);
 
 // Appends x y z [m] and 0 for each vertex that a handle holds at the time [s], 1 for each that lies within a thousandth
-// of the body's size of a collider. motion: by vertex of the body's mesh [m].
+// of the body's size of a collider. motion: the positions of the body's mesh, n x 3 [m].
 void append_marks(const Body& body, const Positions& motion, const CollisionSet& set, double time, Threads* threads,
                   std::vector<std::array<float, 4>>& marks);
 

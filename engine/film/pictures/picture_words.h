@@ -9,13 +9,13 @@
 
 namespace supple {
 
-// Returns the line at the top; empty where the scene asks for none. time: of the film [s].
+// Returns the line at the top; empty where the scene asks for none. time: the time of the film [s].
 std::string headline_text(const SceneDef& scene, double time);
 
 // Returns a headline as wide as any of the film.
 std::string longest_headline(const SceneDef& scene);
 
-// Returns the note below a body; empty where the scene asks for none. row: of the body's steps in the frame; null where
+// Returns the note below a body; empty where the scene asks for none. row: the body's row of the frame; null where
 // they are not known, and then only the method is.
 std::string note_text(const TextDef& text, const BodyDef& body, const BodyRow* row);
 

@@ -17,7 +17,7 @@ struct RunPlace {
   bool is_as_asked = true;  // the folder is that of the plan
 };
 
-// Chooses among `asked` and its numbered neighbours. info: of this run, as run.json will hold it. Changes nothing.
+// Chooses among `asked` and its numbered neighbours. info: what run.json will say of this run. Changes nothing.
 RunPlace place_of_run(const std::filesystem::path& asked, const FilmPlan& plan, const RunInfo& info);
 
 }  // namespace supple

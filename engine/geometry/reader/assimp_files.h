@@ -11,7 +11,7 @@ namespace supple {
 
 class AssimpFiles : public Assimp::DefaultIOSystem {
  public:
-  // bytes: of `file`, which must live as long as assimp reads; empty: it is read as it is.
+  // bytes: the bytes of `file`, which must live as long as assimp reads; empty: the file is read as it is.
   AssimpFiles(std::string file, std::string_view bytes) : file_(std::move(file)), bytes_(bytes) {}
 
   bool Exists(const char* file) const override;

@@ -10,8 +10,8 @@ namespace supple {
 // surface [m]. No triangle becomes longer than about `longest` [m], so that the surface can still bend where the
 // elements below it do. Triangles on the border of a colour layer stay as they are, because they carry the border.
 //
-// colors: by vertex of the skin, or empty. Triangles stay as they are where a colour would change by more than a
-// shade, or a texture would move by more than `error`.
+// colors: the colour of each vertex of the skin; empty: it has none. Triangles stay as they are where a colour would
+// change by more than a shade, or a texture would move by more than `error`.
 Triangles simplified(const Skin& skin, double error, double longest, const std::vector<PaintLayer>& layers,
                      const std::vector<SurfaceColor>& colors = {});
 

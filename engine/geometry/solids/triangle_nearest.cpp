@@ -83,8 +83,8 @@ void TriangleSolid::nearest_in_leaf(const Vec3& p, std::int32_t index, Nearest& 
 
 // Searches by branch and bound, the nearer child first. A leaf that is likely to be near saves most of the search. Of
 // triangles that are equally near, the first one is taken, and boxes are left out only where they are further by more
-// than round-off, so that the answer does not depend on where the search begins. most: only triangles nearer than this
-// are found.
+// than round-off, so that the answer does not depend on where the search begins. most: the distance below which
+// triangles are found.
 TriangleSolid::Nearest TriangleSolid::nearest(const Vec3& p, std::int32_t likely, double most) const {
   struct Entry {
     double squared;

@@ -14,11 +14,11 @@
 
 namespace supple {
 
-// Makes one connected manifold body without tags. spacing: of the lattice where the shape is thick [m]; where it is
-// thin, half of that. shift: of the lattice against the shape, in spacings. thickness: samples of all of the surface.
-// swollen_to: where the shape is thinner than this many spacings of the elements there, it is swollen to as many: a
-// plate needs about 1 to hold a layer of elements, a rod in any direction 1.5. heard: hears the share that is done, 0
-// to 1.
+// Makes one connected manifold body without tags. spacing: the spacing of the lattice where the shape is thick [m];
+// where it is thin, half of that. shift: the shift of the lattice against the shape, in spacings. thickness: samples of
+// all of the surface. swollen_to: where the shape is thinner than this many spacings of the elements there, it is
+// swollen to as many: a plate needs about 1 to hold a layer of elements, a rod in any direction 1.5. heard: a function
+// that is told the share that is done, 0 to 1.
 TetMesh graded_stuffing(const Shape& shape, double spacing, const Vec3& shift,
                         const std::vector<ThicknessSample>& thickness, double swollen_to,
                         const std::function<void(double)>& heard, Threads& threads);

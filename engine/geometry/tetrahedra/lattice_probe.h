@@ -27,7 +27,7 @@ class LatticeProbe {
   // Asks about places on a straight way, which is short.
   class Way {
    public:
-    // distance: at the way's start. The probe and the memory must outlive this.
+    // distance: the field's value at the way's start. The probe and the memory must outlive this.
     Way(const LatticeProbe& probe, const Vec3& start, double length, Memory& near);
     // ahead: how far from p the places lie, at most, that are asked about after it.
     double distance(const Vec3& p, double ahead);

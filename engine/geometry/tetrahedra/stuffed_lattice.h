@@ -12,8 +12,9 @@
 
 namespace supple {
 
-// Makes one connected manifold body without tags. spacing: of the lattice [m]. shift: of the lattice against the shape,
-// in spacings. swell: how far the body reaches beyond the shape [m]. heard: hears the share that is done, 0 to 1.
+// Makes one connected manifold body without tags. spacing: the spacing of the lattice [m]. shift: the shift of the
+// lattice against the shape, in spacings. swell: how far the body reaches beyond the shape [m]. heard: a function that
+// is told the share that is done, 0 to 1.
 TetMesh stuffed_lattice(const Shape& shape, double spacing, const Vec3& shift, double swell,
                         const std::function<void(double)>& heard, Threads& threads);
 

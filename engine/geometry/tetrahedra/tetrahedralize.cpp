@@ -128,7 +128,8 @@ double most_cells_of_all_attempts(int vertices) { return std::max(1.2e7, 400.0 *
 }
 
 // Makes meshes until one has about the wanted number, and leaves the spacing of the mesh that it returns in the search.
-// make: of a spacing and a shift, see stuffed_lattice.h. Throws InputError where no mesh comes near enough.
+// make: a function that makes the mesh of a spacing and a shift (stuffed_lattice.h). Throws InputError where no mesh
+// comes near enough.
 TetMesh nearest_mesh(Search& search, int vertices, const std::string& source, const MeshingListener& listener,
                      const std::function<TetMesh(double, const Vec3&, const std::function<void(double)>&)>& make) {
   // A lattice much finer than that has more points than are wanted in the volume alone: what keeps most of them out of

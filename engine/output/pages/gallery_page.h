@@ -16,8 +16,8 @@ struct GalleryScene {
   std::string trouble;           // why there is no whole film; empty where there is one
 };
 
-// Returns the page. heading: above the cards. note: in the line below it. Throws InputError where a run's records are
-// damaged.
+// Returns the page. heading: the text above the cards. note: the text of the line below it. Throws InputError where a
+// run's records are damaged.
 std::string gallery_page(const std::string& heading, const std::string& note, const std::vector<GalleryScene>& scenes);
 
 }  // namespace supple

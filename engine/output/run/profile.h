@@ -105,7 +105,7 @@ class FrameRows;  // frame_rows.h
 class RowTally;   // row_tally.h
 
 // Writes rows as text (profile_json.cpp): all rows of a run, in pieces or at once, or one row as a line of its own.
-// tally: of the same rows. verdict: the verdict on the whole run (verdict.h); empty: none.
+// tally: the tally of the same rows. verdict: the verdict on the whole run (verdict.h); empty: none.
 void write_profile(const FrameRows& rows, const RowTally& tally, const std::string& verdict, const TakesText& take);
 std::string profile_json(const std::vector<FrameRow>& rows, const std::string& verdict = "");
 std::string row_line(const FrameRow& row);

@@ -17,7 +17,7 @@ constexpr double red_share = 0.2126, blue_share = 0.0722, green_share = 1 - red_
 
 constexpr int fixed(double weight) { return static_cast<int>(weight * 65536 + (weight < 0 ? -0.5 : 0.5)); }
 
-// scale: from the steps of a byte to those of the signal.
+// scale: the factor from the steps of a byte to those of the signal.
 constexpr Weights weights_of(double red, double green, double blue, double scale) {
   return {fixed(red * scale), fixed(green * scale), fixed(blue * scale)};
 }

@@ -20,7 +20,7 @@ class BodyMeetings {
   bool none_left() const { return left_ == 0; }
 
   // Returns the pairs that share space in these positions, the earlier body first, and leaves them out from now on.
-  // points: by body and vertex of its mesh [m].
+  // points: the positions of each body's mesh, n x 3 [m].
   std::vector<std::array<std::size_t, 2>> find(const std::vector<Positions>& points);
 
  private:

@@ -108,7 +108,7 @@ struct SolverDef {
   Precision precision = Precision::single_precision;
   Integrator integrator = Integrator::backward_euler;
   double damping = 0;     // beta [s]
-  bool untangle = false;  // makes steps that start tangled those of a body as rigid as possible (driven_body.h)
+  bool untangle = false;  // makes steps that start tangled those of a body as rigid as possible (moving_body.h)
 };
 
 // Chooses what is done about a body that starts inside a collider.

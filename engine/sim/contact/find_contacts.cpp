@@ -184,7 +184,7 @@ class Planes {
     if (surface) add(*surface, way, field, 0, near, contact, list);
   }
 
-  // number: of the point among those of faces in this step.
+  // number: the number of the point among those of faces in this step.
   void of_face(FacePoint& face, std::int32_t number, std::vector<Contact>& list) const {
     const Way way = view_.way(face.point.at(start_), face.point.at(x_));
     const double reach = reach_of(way.length, view_.length_to(face.point.at(prediction_), way));

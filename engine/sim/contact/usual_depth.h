@@ -8,7 +8,7 @@
 
 namespace supple {
 
-// Returns the depth in a collider that is thick beside the body [m]. size: of the body [m].
+// Returns the depth in a collider that is thick beside the body [m]. size: the size of the body [m].
 inline double usual_depth(double size) { return 0.004 * size; }
 
 // Returns the depth in any collider, whose thin ones allow a quarter of half their thickness [m]. half_thickness: of

@@ -42,7 +42,7 @@ struct VertexSearch {
   }
 
   // Tells whether a vertex whose distance at the start is known is so far away that its way need not be followed
-  // through the collider's frame. collider_move: of the collider's own points near it.
+  // through the collider's frame. collider_move: how far the collider's own points near it move.
   bool is_clear_from_afar(const ColliderView& view, std::size_t c, int v, double collider_move) const {
     const double field = work.clearance[c * model.free + v];
     if (std::isnan(field)) return false;

@@ -1,5 +1,5 @@
 // Declares the loops over elements, as a table of functions that is compiled once for each instruction set
-// (base/variants.h). All take plain arrays. Not here: the uses of the loops (solver/objective.h, model/measures.h).
+// (base/variants.h). All take plain arrays. Not here: the uses of the loops (solver/objective.h, measures/measures.h).
 #pragma once
 
 #include <cstdint>

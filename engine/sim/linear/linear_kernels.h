@@ -33,7 +33,7 @@ struct LinearKernels {
 
   // These functions solve the part of one front in L x = b, in place, and in L^T x = b. The triangle on the diagonal of
   // each strip is inverted (invert_triangles in changing_factor.h). `own`: x at the front's first
-  // pivot; rows: for each row below the pivots, its index in x. scratch: as many numbers as the front has padded rows,
+  // pivot; rows: the index in x of each row below the pivots. scratch: as many numbers as the front has padded rows,
   // aligned like the columns.
   template <class T>
   using FrontStep = void (*)(FrontShape front, const T* columns, const std::int32_t* rows, T* own, T* x, T* scratch);

@@ -24,7 +24,7 @@ class PoseElements {
   explicit PoseElements(const BodyDescription& body);
 
   // Writes the quantity of each element. NaN where it is not defined: in elements without volume at rest, and stress
-  // where det F = 0. x: by vertex of the mesh, n x 3 [m]. threads: null where the calling thread does it all.
+  // where det F = 0. x: the positions of the mesh, n x 3 [m]. threads: null where the calling thread does it all.
   void evaluate(ElementQuantity quantity, const Positions& x, Threads* threads, std::vector<double>& values) const;
 
   // Writes for each vertex the mean over its elements, weighted by their rest volumes. Elements with NaN do not count;

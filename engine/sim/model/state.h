@@ -20,7 +20,7 @@ struct Anchors {
 };
 
 // All that a body's future depends on, unless its SearchRule remembers earlier steps (solver/step.h). A copy is a
-// snapshot. step() changes x, v, time, and the memory; DrivenBody changes the anchors, and replaces the
+// snapshot. step() changes x, v, time, and the memory; MovingBody (world/) changes the anchors, and replaces the
 // whole when it restores one.
 struct State {
   Positions x;          // positions, n x 3, in the model's order [m]

@@ -44,9 +44,9 @@ double gained_in_all(const Model& model, const StepInputs& inputs, Workspace& wo
 // trial iterate.
 double error_at_end(const Model& model, const StepInputs& inputs, Workspace& workspace, double gained);
 
-// Estimates the error of motion (model/measures.h) of a step from q to the current iterate, where the direction begins,
-// from the length of that direction: it leads to the minimum of its quadratic model. On the first level alone that
-// model resists turning; the second adds what it misses. 0 where the rule does not look beyond its last iterate.
+// Estimates the error of motion (model/motion_error.h) of a step from q to the current iterate, where the direction
+// begins, from the length of that direction: it leads to the minimum of its quadratic model. On the first level alone
+// that model resists turning; the second adds what it misses. 0 where the rule does not look beyond its last iterate.
 // Overwrites the trial iterate.
 double motion_estimate(const Model& model, const StepInputs& inputs, const Positions& q, Workspace& workspace);
 
