@@ -4,20 +4,15 @@
 
 #include <algorithm>
 #include <exception>
-#include <future>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "base/error.h"
 #include "base/frame_time.h"
 #include "base/timing.h"
-#include "base/variants.h"
 #include "film/frame_loop.h"
 #include "film/pictures/film_stills.h"
 #include "film/pictures/reference_run.h"
 #include "film/plan/film_solvers.h"
-#include "film/plan/preview.h"
-#include "film/plan/shipped_files.h"
 #include "film/progress.h"
 #include "film/record/film_checks.h"
 #include "film/record/film_identity.h"
@@ -29,7 +24,6 @@
 #include "output/run/verdict.h"
 #include "output/video/video.h"
 #include "scene/building/warnings.h"
-#include "scene/replay/script_trial.h"
 
 namespace supple {
 
