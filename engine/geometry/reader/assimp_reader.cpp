@@ -129,7 +129,7 @@ std::string append(const aiMesh& mesh, Soup& soup) {
 
 template <class T>
 void write(const T* values, std::size_t count) {
-  std::fwrite(values, sizeof(T), count, stdout);
+  if (count > 0) std::fwrite(values, sizeof(T), count, stdout);
 }
 
 void write_textures(const std::vector<supple::Texture>& textures) {

@@ -94,8 +94,9 @@ void ForceFileWriter::add(const Positions& forces) {
     if (!force.isZero(0)) entries.push_back({static_cast<std::int32_t>(v), {force[0], force[1], force[2]}});
   }
   const auto count = static_cast<std::int32_t>(entries.size());
+  const bool is_empty = entries.empty();  // nothing touches, and there is no memory to write from
   if (std::fwrite(&count, sizeof count, 1, file_.get()) != 1 ||
-      std::fwrite(entries.data(), sizeof(Entry), entries.size(), file_.get()) != entries.size() ||
+      (!is_empty && std::fwrite(entries.data(), sizeof(Entry), entries.size(), file_.get()) != entries.size()) ||
       std::fflush(file_.get()) != 0) {
     fail("be written");
   }
