@@ -12,11 +12,11 @@ namespace supple {
 
 struct RawMesh {
   TetMesh mesh;
-  std::vector<int> lines;  // of the elements; empty where the format has none
+  std::vector<int> lines;  // the line of each element in the file; empty where the format has none
   std::vector<std::string> notes;
 };
 
-inline constexpr long long largest_reference = 1'000'000;  // of an element
+inline constexpr long long largest_reference = 1'000'000;  // the largest region tag of an element
 
 // Returns a file's text without a byte-order mark; lines that end with \r alone end with \n.
 std::string mesh_text(const std::filesystem::path& path);

@@ -29,8 +29,8 @@ class TextRows {
   const std::vector<RowWord>& words() const { return words_; }
   // The line without its end, with comments; a continued line in parts has only its first one here.
   std::string_view raw() const { return raw_; }
-  int line() const { return line_; }          // of the words; at the end, the last one
-  std::size_t offset() const { return at_; }  // of what follows the line
+  int line() const { return line_; }          // the line number of the words; at the end, that of the last line
+  std::size_t offset() const { return at_; }  // where the text after the line begins
 
   [[noreturn]] void refuse(const std::string& message) const;
   [[noreturn]] void refuse(int line, int column, const std::string& message) const;

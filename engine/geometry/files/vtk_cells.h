@@ -7,14 +7,15 @@ namespace supple {
 
 struct VtkCells {
   Positions rest;
-  std::vector<long long> points;   // of all cells, one cell after the other
-  std::vector<long long> ends;     // of each cell in `points`
-  std::vector<long long> types;    // of each cell
-  std::vector<long long> regions;  // of each cell; empty: all 0
+  std::vector<long long> points;   // the point numbers of all cells, one cell after the other
+  std::vector<long long> ends;     // where each cell ends in `points`
+  std::vector<long long> types;    // the VTK type of each cell
+  std::vector<long long> regions;  // the region tag of each cell; empty: all are 0
   std::vector<int> lines;          // of each cell; empty where there are none
 };
 
-// Leaves out all other cells. Throws InputError where counts or indices do not fit together.
+// Returns the mesh of the tetrahedra, without all other cells. Throws InputError where counts or indices do not fit
+// together.
 RawMesh tetrahedra_of(VtkCells cells, const std::string& name);
 
 }  // namespace supple

@@ -11,8 +11,8 @@
 namespace supple {
 
 struct BoundaryPoint {
-  std::int32_t face = -1;   // of BoundaryWalk::faces(); -1: none was found
-  Vec3 weights;             // of the face's three corners; none is negative, and they sum to 1
+  std::int32_t face = -1;   // the row in BoundaryWalk::faces(); -1: none was found
+  Vec3 weights;             // the weights of the face's three corners; none is negative, and they sum to 1
   Vec3 point;               // [m]
   double distance = 1e300;  // from the point that was asked for [m]
 };

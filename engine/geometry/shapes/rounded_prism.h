@@ -10,9 +10,9 @@ namespace supple {
 
 // Describes a prism over the plane of the first two coordinates [m].
 struct RoundedPrism {
-  std::vector<Eigen::Vector2d> points;  // whose convex hull it stands on; at least one
-  double margin = 0;                    // by which it is wider than that hull, all around
-  double low = 0, high = 1;             // of the third coordinate
+  std::vector<Eigen::Vector2d> points;  // the prism stands on their convex hull; at least one
+  double margin = 0;                    // how far the prism reaches beyond that hull, all around
+  double low = 0, high = 1;             // the range of the third coordinate
   double bevel = 0;                     // radius of its upper and lower edges: at most the margin and half the height
 };
 

@@ -16,8 +16,8 @@ namespace supple {
 struct SurfaceBody {
   const SolidSurface& solid;
   bool touching;       // whether parts are near each other without an overlap, and so may fall apart
-  int vertices;        // wanted
-  std::string source;  // its name in messages
+  int vertices;        // the number of vertices that is wanted
+  std::string source;  // the name of the surface in messages
 };
 
 struct SurfaceMesh {
