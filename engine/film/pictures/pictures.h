@@ -71,7 +71,7 @@ class Pictures {
   std::thread drawing_, writing_;
   std::vector<std::thread> compressing_;
   std::mutex mutex_;
-  std::string error_;                  // a lock guards this and the next member
+  std::string error_;                  // mutex_ guards this and the next member
   std::vector<PictureTimes> written_;  // frames that take_written() has not returned yet
 };
 
