@@ -87,8 +87,8 @@ double jiggle(const Model& model, const Positions& x, const Eigen::Isometry3d& m
 
 namespace {
 
-// Tells whether no point of a triangle is deeper in a shape than `known`, as the distances of places in it show: of its
-// centre and, down to some level, of the centres of its quarters. certainty: Shape::certainty.
+// Tells whether no point of a triangle is deeper in a shape than `known`. The distances at the triangle's centre and,
+// down to some level, at the centres of its quarters show that. certainty: Shape::certainty.
 bool certainly_no_deeper(const ShapeProbe& probe, double certainty, const Vec3& a, const Vec3& b, const Vec3& c,
                          double known, int levels, QueryMemory& near) {
   const Vec3 center = (a + b + c) / 3;
@@ -113,7 +113,8 @@ void visit_deep_triangles(const Shape& shape, const Eigen::Isometry3d& pose, con
   const std::vector<ShapePiece> pieces = pieces_of(shape);
   std::vector<ShapeProbe> probes;
   std::vector<double> certainties;
-  std::vector<int> levels;  // of quarters; near holes of a surface, inside and outside are told apart less surely
+  std::vector<int>
+      levels;  // levels of quarters; near holes of a surface, inside and outside are told apart less surely
   for (const ShapePiece& piece : pieces) {
     probes.emplace_back(piece.shape);
     certainties.push_back(piece.shape.certainty());
