@@ -26,8 +26,7 @@ const DirectionStart two_levels = {SystemMatrix::constant, 2}, tangent = {System
 
 double at_iteration(const std::vector<double>& errors, int k) {
   if (std::size_t(k) < errors.size()) return errors[k];
-  return !errors.empty() && errors.back() < 1e-11 ? errors.back()
-                                                  : std::nan("");  // the run stopped at round-off, or too early
+  return !errors.empty() && errors.back() < 1e-11 ? errors.back() : std::nan("");  // stopped at round-off, or too early
 }
 
 // Holds what solvers achieved on one state: errors of motion by solver and iteration, and g(y) - g* [J].

@@ -26,9 +26,8 @@ namespace supple {
 // Looks at a world while it makes the steps of a frame. Both functions may be empty. They are called for each step of
 // each body, with the number of the body and that of the substep.
 struct StepWatch {
-  std::function<void(std::size_t body, int substep)>
-      prepared;                                             // the inputs are known; the state is that before the step
-  std::function<void(std::size_t body, int substep)> made;  // the step was made, or has failed
+  std::function<void(std::size_t body, int substep)> prepared;  // the inputs are known, the step is not made
+  std::function<void(std::size_t body, int substep)> made;      // the step was made, or has failed
 };
 
 class World {

@@ -38,8 +38,7 @@ FilmLog::FilmLog(const RunFolder& folder, int every, std::string identity, int k
   if (!notes_ || ftruncate(fileno(notes_.get()), off_t(noted.bytes)) != 0 || std::fseek(notes_.get(), 0, SEEK_END) != 0)
     throw RunError(fmt::format("{}: cannot be written: {}", source, std::strerror(errno)));
   std::error_code ignored;
-  if (every_ == 0 && kept == 0)
-    std::filesystem::remove(folder.rows(), ignored);  // the open file lives on without a name
+  if (every_ == 0 && kept == 0) std::filesystem::remove(folder.rows(), ignored);  // it stays open without a name
 }
 
 FrameRows FilmLog::whole_rows() const { return {notes_, folder_.rows(), whole_}; }

@@ -56,8 +56,7 @@ class FilmLog {
   int every_;
   std::string identity_;
   std::filesystem::path record_;
-  std::filesystem::file_time_type synced_ =
-      std::filesystem::file_time_type::min();  // files older than this are safely on the disk
+  std::filesystem::file_time_type synced_ = std::filesystem::file_time_type::min();  // older files are on the disk
   FrameRow last_kept_;
   std::deque<FrameRow> rows_;  // rows after those of the whole frames
   int whole_ = 0;

@@ -20,9 +20,8 @@ struct SceneCollider {
 // Holds all that bodies can collide with.
 struct CollisionSet {
   std::vector<SceneCollider> scene_colliders;
-  std::vector<SceneCollider>
-      earlier;                      // the scene's colliders before a change that is spread over this frame; else empty
-  std::vector<Collider> colliders;  // the scene's colliders in the form that the solver needs
+  std::vector<SceneCollider> earlier;  // those before a change that is spread over this frame; else empty
+  std::vector<Collider> colliders;     // the scene's colliders in the form that the solver needs
 };
 CollisionSet collision_set(const SceneDef& scene);
 

@@ -21,12 +21,11 @@ constexpr double thinnest_plate = 0.012, thickest_plate = 0.03;
 constexpr double over_skin = 0.6;        // least radius of a pin over an element whose skin is finer
 constexpr double plate_by_face = 0.12;   // thickness over the face's size
 constexpr double margin_by_plate = 0.4;  // by how much a plate is wider than its face, over its thickness
-constexpr double inside_by_plate =
-    0.3;  // how far a plate reaches over the body, over its thickness, so that its face shows no seam
-constexpr double below_ground = 0.1;  // how far a plate lies below a standing body, over its thickness
-constexpr double widest_ring = 0.12;  // over the body's length
-constexpr double least_fill = 0.6;    // least held share of the hull that a clamp on cloth covers
-constexpr std::size_t most_pins = 6;  // in a part that neither a plate nor a ring would fit
+constexpr double inside_by_plate = 0.3;  // how far a plate reaches over the body, to hide the seam
+constexpr double below_ground = 0.1;     // how far a plate lies below a standing body, over its thickness
+constexpr double widest_ring = 0.12;     // over the body's length
+constexpr double least_fill = 0.6;       // least held share of the hull that a clamp on cloth covers
+constexpr std::size_t most_pins = 6;     // in a part that neither a plate nor a ring would fit
 
 // Holds what supports are made from: the body at rest in the directions of its file.
 struct Frame {

@@ -416,8 +416,7 @@ std::filesystem::path ConfigTable::file(const Key& key) const {
   };
   std::filesystem::path near = near_file(beside, same_ending);
   if (near.empty()) near = near_file(asset, same_ending);
-  if (!near.empty())
-    near = std::filesystem::path(*value).replace_filename(near.filename());  // in the form that the scene uses
+  if (!near.empty()) near = std::filesystem::path(*value).replace_filename(near.filename());  // as the scene writes it
   config_->complain(
       node, fmt::format("{} = '{}': no such file (looked for {}){}", key.name, *value, places, meant_file(near)));
   return {};

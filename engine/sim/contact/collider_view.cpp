@@ -126,8 +126,7 @@ std::optional<ColliderView::Entry> ColliderView::entry(const Way& way, double fi
 bool ColliderView::leads_through(const Way& way, double field_at_a, double field_at_b) const {
   const double to_a = field_at_a + collider_.thickness, to_b = field_at_b + collider_.thickness;
   if (to_a <= 0 || to_b <= 0) return true;
-  if (to_a + to_b > (1 + 1e-9) * way.length)
-    return false;  // the way lies in balls around its ends that hold no triangles
+  if (to_a + to_b > (1 + 1e-9) * way.length) return false;  // the balls without triangles around both ends cover it
   return shape_.entry(way.a, way.b).has_value();
 }
 

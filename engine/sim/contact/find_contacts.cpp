@@ -217,8 +217,7 @@ class Planes {
   void add(const SurfacePoint& surface, const Way& way, double field, double slack, QueryMemory& near, Contact& contact,
            std::vector<Contact>& list) const {
     contact.normal = view_.end().linear() * surface.normal;
-    if (is_leaving() && contact.normal.dot(way_out_) < 0.5)
-      return;  // the other points, which leave, pull this one through
+    if (is_leaving() && contact.normal.dot(way_out_) < 0.5) return;  // the points that leave pull it through
     const double deep = field < -push_out_ ? std::max(0.0, -view_.closest(way.a, near).distance - push_out_) : 0;
     contact.offset = contact.normal.dot(view_.end() * surface.point) - std::max(slack, deep);
     contact.depth = std::max(0.0, -gap(contact, x_));

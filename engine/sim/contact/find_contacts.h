@@ -18,9 +18,8 @@ namespace supple {
 // Remembers what queries for a body's vertices have found on a collider that is one closed surface, also from earlier
 // steps: this saves work and changes no answer.
 struct VertexMemories {
-  std::shared_ptr<const TriangleSolid>
-      solid;                           // null: the collider is not one closed surface, and nothing is remembered
-  std::vector<QueryMemory> by_vertex;  // by free vertex; empty without a solid
+  std::shared_ptr<const TriangleSolid> solid;  // null: the collider is not one closed surface
+  std::vector<QueryMemory> by_vertex;          // by free vertex; empty without a solid
 };
 
 // Holds the memory of the search for contacts within a step, and its scratch memory; empty while there are no

@@ -60,8 +60,7 @@ class EnergyBudget {
   double most_ = 0;    // the largest sum of the parts that are never negative
   double moved_ = 0;   // sum of all work, each as positive
   std::uint64_t model_ = 0;
-  bool knows_springs_ =
-      false;  // whether the springs' energy at the end of the last step, or before the first, is known
+  bool knows_springs_ = false;  // whether parts_.springs is the springs' present energy
 };
 
 }  // namespace supple

@@ -105,8 +105,7 @@ double reach_on_far_side(const Model& model, const Collider& collider, const Eig
     if (!closest[v]) closest[v] = plate.closest(place(v));
     return *closest[v];
   };
-  DisjointSets parts(
-      std::size_t(model.vertices));  // sets of vertices that hang together by edges which pass through nothing
+  DisjointSets parts(std::size_t(model.vertices));  // vertices joined by edges that pass through nothing
   std::vector<std::array<int, 2>> cut;
   for (Eigen::Index t = 0; t < model.surface.rows(); ++t) {
     for (int k = 0; k < 3; ++k) {

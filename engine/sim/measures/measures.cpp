@@ -113,8 +113,7 @@ void visit_deep_triangles(const Shape& shape, const Eigen::Isometry3d& pose, con
   const std::vector<ShapePiece> pieces = pieces_of(shape);
   std::vector<ShapeProbe> probes;
   std::vector<double> certainties;
-  std::vector<int>
-      levels;  // levels of quarters; near holes of a surface, inside and outside are told apart less surely
+  std::vector<int> levels;  // of quarters; near holes of a surface, inside and outside are told apart less surely
   for (const ShapePiece& piece : pieces) {
     probes.emplace_back(piece.shape);
     certainties.push_back(piece.shape.certainty());

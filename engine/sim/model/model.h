@@ -20,9 +20,8 @@ namespace supple {
 struct Handle {
   std::string name;
   std::vector<std::int32_t> vertices;  // of the mesh, in its own numbering; one vertex belongs to one handle
-  double stiffness =
-      0;              // of the spring from each vertex to its target [N/m]; 0: a hard handle, whose rows are eliminated
-  bool holds = true;  // false: the springs have been let go and do not pull
+  double stiffness = 0;  // of the spring from each vertex to its target [N/m]; 0: hard, the rows are eliminated
+  bool holds = true;     // false: the springs have been let go and do not pull
 };
 
 enum class Integrator { backward_euler, implicit_midpoint };
@@ -87,8 +86,7 @@ struct Model : System {
   // Elements are stored in blocks of block_width; the layouts are those of ElementChunk.
   int elements = 0;
   int blocks = 0;
-  std::vector<std::int32_t>
-      element_of_lane;  // by lane: number of the element among the input's of its kind; -1 for padding
+  std::vector<std::int32_t> element_of_lane;  // by lane: number among the input's elements of this kind; -1: padding
   std::vector<std::uint16_t> corner;
   AlignedVector<double> field;
   std::vector<std::int32_t> chunk_vertex;  // all chunks' lists, one after the other

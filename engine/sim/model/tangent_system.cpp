@@ -13,8 +13,7 @@ namespace supple {
 namespace {
 
 constexpr std::uint64_t tangent_ids = std::uint64_t(1) << 63;  // tells the ids of tangents from those of models
-constexpr std::int32_t nowhere =
-    std::numeric_limits<std::int32_t>::min();  // place of a pair of held vertices, and of padding
+constexpr std::int32_t nowhere = std::numeric_limits<std::int32_t>::min();  // of two held vertices, or padding
 
 }  // namespace
 
