@@ -66,7 +66,7 @@ std::string text_of(const Goal& goal) {
   return fmt::format("{:g}{}", goal.tolerance, goal.of_motion ? " in motion" : "");
 }
 
-// Returns the times at which an outcome reaches the goals; infinity: it does not [ms].
+// Returns the times at which an outcome reaches the goals; infinity for a goal that it does not reach [ms].
 std::vector<double> times_of(SolverComparison& comparison, const BenchState& state, const Outcome& outcome,
                              const Minimum& lowest) {
   const std::vector<double> motion = comparison.motion_errors(state, outcome, lowest.x);
@@ -172,7 +172,7 @@ ReportSection bench_profiles(const BenchSetting& setting) {
     std::vector<SolverEntry> entries;
     for (const MethodTimes& method : list) entries.push_back(method.entry);
     train_chebyshev(comparison, states[1], entries);
-    states.erase(states.begin() + 1);  // it was for training
+    states.erase(states.begin() + 1);  // the state for training
     for (const BenchState& state : states) {
       const std::vector<Outcome> outcomes = comparison.run(state, entries, 1, 200);
       const Minimum lowest = comparison.reference(state, outcomes);
@@ -208,7 +208,7 @@ ReportSection bench_profiles(const BenchSetting& setting) {
       " Ours, Projective Dynamics and Chebyshev's method correct directions for contacts, Newton's kin have those that "
       "touch in the Hessian, the others learn of them from L-BFGS pairs alone: these rows compare that, too.";
   for (std::size_t t = 0; t < std::size(goals); ++t) section.plots.push_back(profile_plot(groups[0], t));
-  write_csv(raw, setting.out);  // too long for the page
+  write_csv(raw, setting.out);  // the table is too long for the page
   section.text += " The times of every state are in profiles-states.csv.";
   return section;
 }

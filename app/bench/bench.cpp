@@ -118,7 +118,7 @@ int run_benchmarks(const std::vector<std::string>& names, const BenchSetting& se
     std::optional<ReportSection> section;
     if (!fresh || !wanted(b)) section = read_section(file, made_with);
     if (!wanted(b)) {
-      if (section) sections.push_back(std::move(*section));  // of an earlier call: the page keeps it
+      if (section) sections.push_back(std::move(*section));  // a section of an earlier call, which the page keeps
       continue;
     }
     ++number;

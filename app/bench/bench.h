@@ -16,7 +16,7 @@ struct BenchSetting {
   std::filesystem::path out;                          // folder of the report
   std::optional<std::filesystem::path> paper_meshes;  // folder with the paper's meshes
   Threads* threads = nullptr;                         // of the solvers
-  bool quiet = true;                                  // says nothing of what is being measured
+  bool quiet = true;                                  // whether nothing is said of what is being measured
 };
 
 // Runs the named benchmarks in order, writes the page after each, and skips those that an earlier call with the same

@@ -33,14 +33,14 @@ void add_times(Outcome& outcome, const StepReport& report) {
     outcome.ms = ms;
     return;
   }
-  SUPPLE_CHECK(ms.size(), ==, outcome.ms.size());  // the same bits each time
+  SUPPLE_CHECK(ms.size(), ==, outcome.ms.size());  // each run gives the same bits
   for (std::size_t k = 0; k < ms.size(); ++k) outcome.ms[k] = std::min(outcome.ms[k], ms[k]);
 }
 
 }  // namespace
 
-// The repeats are the outer loop, so that whatever slows the machine for a while slows all solvers. The first round
-// warms the caches and gives the results; its times do not count.
+// The repeats are the outer loop, so that a disturbance that slows the machine for a while slows all solvers. The first
+// round warms the caches and gives the results; its times do not count.
 std::vector<Outcome> SolverComparison::run(const BenchState& state, const std::vector<SolverEntry>& entries,
                                            int repeats, double budget_ms) {
   std::vector<Outcome> outcomes(entries.size());
@@ -53,7 +53,7 @@ std::vector<Outcome> SolverComparison::run(const BenchState& state, const std::v
       SearchRule& rule = rule_of(entries[m]);
       State after = state.before;
       workspace_.correction = {};  // no solver may use what another one learned of A^-1
-      // The matrix that a film would have at hand here is.
+      // The run is given the matrix that a film would already have at this step.
       prepare_matrix(subject_.model(), inputs.solver, state.before, workspace_);
       if (repeat == 0)
         workspace_.watch = [&](const Positions& x) { outcome.moved.emplace_back((x - state.before.x).cast<float>()); };
@@ -97,7 +97,7 @@ std::vector<Outcome> SolverComparison::run(const BenchState& state, const std::v
   return outcomes;
 }
 
-// Puts the subject into a state. Whatever was prepared for other values of its model is prepared again.
+// Puts the subject into a state. Solvers that were prepared for other values of its model are prepared again.
 const StepInputs& SolverComparison::put(const BenchState& state) {
   const StepInputs& inputs = subject_.inputs(state);
   if (prepared_for_ != subject_.model().id) {

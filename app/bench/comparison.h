@@ -18,33 +18,33 @@ struct SolverEntry {
   int history = 5;
   LineSearch line_search = LineSearch::armijo;
   ChebyshevSettings chebyshev = {};
-  DirectionStart start = {};  // of quasi-Newton
+  DirectionStart start = {};  // where directions of quasi-Newton start
 };
 
 // Holds the result of one solver on one state. Lists go by iteration, with the first iterate first.
 struct Outcome {
   std::string label;
   std::vector<double> gained;  // g(y) - g(x_k) [J]
-  std::vector<double> ms;      // since the step was entered, the least of all timed runs
+  std::vector<double> ms;      // time since the step was entered, the least of all timed runs
   std::vector<IterationRecord> records;
-  double step_ms = 0, median_ms = 0;               // of the whole step, least and median
-  double overhead_ms = 0;                          // of L-BFGS without its solve
-  double matrix_ms = 0;                            // of making the matrix, least: in all of `ms`
-  double error_estimate = 0, motion_estimate = 0;  // the solver's own
+  double step_ms = 0, median_ms = 0;               // time of the whole step, least and median
+  double overhead_ms = 0;                          // time of L-BFGS without its solve
+  double matrix_ms = 0;                            // least time of making the matrix, which is contained in `ms`
+  double error_estimate = 0, motion_estimate = 0;  // the solver's own estimates
   int iterations = 0, trials = 0;
   bool failed = false;
   StopReason stop_reason = StopReason::iterations;
   Positions x;
-  std::vector<Eigen::MatrixX3f> moved;   // from the state before [m]
+  std::vector<Eigen::MatrixX3f> moved;   // iterates less the positions before the step [m]
   std::vector<double> steps, overheads;  // of each timed run [ms]
-  double used_ms = 0;                    // by all runs
+  double used_ms = 0;                    // time of all runs
 };
 
 // This is thrown between two runs when a signal has asked the program to end.
 struct BenchInterrupted {};
 
-// Keeps the prepared solvers of one subject. Patterns and constant factors are computed once, outside of what is
-// measured.
+// Keeps the prepared solvers of one subject. Patterns and constant factors are computed once, outside of the measured
+// time.
 class SolverComparison {
  public:
   // Both arguments must outlive this object.
@@ -82,7 +82,7 @@ class SolverComparison {
     std::unique_ptr<SearchRule> rule;
   };
   std::vector<Prepared> prepared_;
-  std::uint64_t prepared_for_;  // id of the values of the subject's model
+  std::uint64_t prepared_for_;  // id of the values of the subject's model for which solvers are prepared
 };
 
 // Evaluates equation 12 for each iteration: 1 - gained / whole. The list is empty when the run failed.
@@ -93,7 +93,7 @@ double last_error(const Outcome& outcome, double whole);
 
 // Returns the first time at which the error is at most `tolerance`, or infinity when it never is [ms].
 double time_to(const Outcome& outcome, double whole, double tolerance);
-// The same for errors by iteration.
+// Does the same with an error for each iteration.
 double time_to(const Outcome& outcome, const std::vector<double>& errors, double tolerance);
 
 // Finds the radius with which a method that Chebyshev's semi-iterative method accelerates comes closest to the minimum

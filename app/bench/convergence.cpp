@@ -16,7 +16,7 @@ SubjectChoice twisting_bar(const BenchSetting& setting) {
 
 constexpr int example_frame = 130;
 
-// Ours with what goes past the paper, for figures whose other curves are the paper's.
+// Returns our method with what goes beyond the paper, for figures whose other curves are the paper's.
 SolverEntry started(DirectionStart start) {
   SolverEntry entry{"ours, " + text_of(start), Method::quasi_newton, 100};
   entry.start = start;
@@ -26,7 +26,7 @@ const DirectionStart two_levels = {SystemMatrix::constant, 2}, tangent = {System
 
 double at_iteration(const std::vector<double>& errors, int k) {
   if (std::size_t(k) < errors.size()) return errors[k];
-  return !errors.empty() && errors.back() < 1e-11 ? errors.back() : std::nan("");  // it stopped at round-off, or early
+  return !errors.empty() && errors.back() < 1e-11 ? errors.back() : std::nan("");  // stopped at round-off, or too early
 }
 
 // Holds what solvers achieved on one state: errors of motion by solver and iteration, and g(y) - g* [J].
@@ -300,7 +300,7 @@ ReportSection bench_figure15(const BenchSetting& setting) {
     choice.settings.push_back(fmt::format("solver.fit_to={:g}", 1 + half));
     Subject subject(choice);
     SolverComparison comparison(subject, *setting.threads);
-    if (!state) state = states_of(subject, {example_frame}, setting).front();  // the same for all
+    if (!state) state = states_of(subject, {example_frame}, setting).front();  // all methods start from the same state
     const std::string label = fmt::format("[{:g}, {:g}]", 1 - half, 1 + half);
     curves.outcomes.push_back(comparison.run(*state, {{label, Method::quasi_newton, 100}}, 5).front());
     const Outcome& outcome = curves.outcomes.back();

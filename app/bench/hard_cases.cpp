@@ -104,7 +104,7 @@ void add_motions(Cases& list) {
        held_end});
 }
 
-// Bodies whose halves differ, that consist of two parts, or that spin; and one case that is turned as a whole.
+// Adds bodies whose halves differ, that consist of two parts, or that spin; and one case that is turned as a whole.
 void add_unlike_parts(Cases& list) {
   const auto unlike = [&](const std::string& name, double HardCase::*ratio, double value, std::string_view density) {
     add(list, name, StableEnd::whole, {two_seconds, bar(joined({density, held_end}))});
@@ -135,7 +135,7 @@ void add_unlike_parts(Cases& list) {
   list.back().turns_a_second = 1;
 }
 
-// Stiff bodies whose motion is turning, which costs them nothing.
+// Adds stiff bodies that move by turning, which costs no elastic energy.
 void add_turning(Cases& list) {
   const std::size_t first = list.size();
   constexpr std::string_view rough_ground =
@@ -163,7 +163,8 @@ void add_turning(Cases& list) {
   }
 }
 
-// The meshes of the paper have slivers: elements with volumes of 1e-6 of the mean and dihedral angles below a degree.
+// Adds meshes of the paper that have slivers: elements with volumes of 1e-6 of the mean and dihedral angles below a
+// degree.
 void add_slivers(Cases& list, const std::filesystem::path& meshes) {
   for (const char* mesh : {"bunny", "ditto", "hippo", "squirrel_modified"}) {
     for (const char* axis : {"x", "y", "z"}) {

@@ -21,7 +21,7 @@ namespace {
 
 constexpr double usual_young = 3e4, usual_poisson = 0.35;
 constexpr double much_motion = 0.05;  // error of motion of a step
-constexpr double much_energy = 0.2;   // from nothing, over what was exchanged: where a run warns
+constexpr double much_energy = 0.2;   // energy from nothing over the exchanged energy, above which a run warns
 constexpr double much_volume = 0.05, far_apart = 1e-3;
 
 SceneDef scene_of(const std::string& text) {
@@ -38,7 +38,7 @@ std::string filled(std::string text, const std::string& word, const std::string&
 
 }  // namespace
 
-// The strain limits have no force up to 1.05, and the polynomial hardly any.
+// A body at rest may keep some stretch: the strain limits have no force up to 1.05, and the polynomial hardly any.
 bool StabilityOutcome::is_at_rest() const {
   constexpr double rest_stretch = 1.06;
   return finite && inverted == 0 && collapsed == 0 && stretch <= rest_stretch;
@@ -122,8 +122,8 @@ State spinning(const Model& model, State state, double turns_a_second, const Mat
   return state;
 }
 
-// Tells whether a material's energy has J itself. That of the corotated model and of St. Venant-Kirchhoff has traces of
-// strains, which are the change of volume for small strains alone.
+// Tells whether a material's energy depends on J itself. The energies of the corotated model and of St.
+// Venant-Kirchhoff depend on traces of strains, which are the change of volume only for small strains.
 bool knows_volume(const std::string& material) { return material != "corotated" && material != "st-venant-kirchhoff"; }
 
 // Tells how one run of a case differs from its scene's text.
@@ -260,7 +260,8 @@ StabilityOutcome HardRun::play(std::vector<Positions>* motion, WorstStep* worst)
   return outcome;
 }
 
-// Makes the worst step again with more iterations, and by Newton's method, and looks for a minimum from each end.
+// Makes the worst step again with more iterations, and by Newton's method, and looks for a minimum from where each of
+// these runs ends.
 TabledErrors HardRun::errors_of(const WorstStep& worst) {
   body().restore(worst.before);
   world_.enter(worst.frame);
@@ -297,7 +298,7 @@ TabledErrors HardRun::errors_of(const WorstStep& worst) {
   return errors;
 }
 
-// Spreads turns over all directions; the first one is none.
+// Returns the turn of a copy. Turns are spread over all directions; the first copy is not turned.
 Vec3 turn_of_copy(int copy) {
   const auto part = [copy](double step) { return 360 * std::fmod(copy * step, 1.0); };
   return Vec3(part(0.618033988749895), part(0.754877666246693), part(0.569840290998053));

@@ -9,16 +9,17 @@
 namespace supple {
 namespace {
 
-constexpr int film_frames = 66;  // of which renewals are counted
+constexpr int film_frames = 66;  // frames of a film in which renewals are counted
 const std::vector<int> sampled_frames = {18, 30, 42, 54, 65};
 constexpr int most_iterations = 60;
 constexpr double tolerances[] = {1e-4, 1e-6};
 constexpr double motion_tolerances[] = {1e-2, 1e-3};
-constexpr int motion_iterations[] = {3, 5, 10};  // after which errors of motion are compared
+constexpr int motion_iterations[] = {3, 5, 10};  // iterations after which errors of motion are compared
 
 }  // namespace
 
-// Medians, of examinations and of renewals each for itself: what else the machine did in a frame does not count.
+// Times are medians, taken apart for examinations and for renewals, so that other work of the machine in some frame
+// does not count.
 PlayedFilm play_film(Subject& subject, Threads& threads, DirectionStart start, const std::vector<int>& frames) {
   PlayedFilm film;
   std::vector<double> renewing, examining;
@@ -56,10 +57,10 @@ struct Score {
   double log_error[2] = {};  // after five iterations and after ten
   double trials = 0, iterations = 0;
   double log_iterations[std::size(tolerances)] = {};        // to each tolerance
-  double log_ms[std::size(tolerances)] = {};                // likewise, with the film's mean of renewals
+  double log_ms[std::size(tolerances)] = {};                // time to each tolerance, with the film's mean of renewals
   bool missed[std::size(tolerances)] = {};                  // some state was not solved to it
   double log_motion[std::size(motion_iterations)] = {};     // errors of motion
-  double log_motion_ms[std::size(motion_tolerances)] = {};  // to each of their tolerances
+  double log_motion_ms[std::size(motion_tolerances)] = {};  // time to each tolerance of the error of motion
   bool missed_motion[std::size(motion_tolerances)] = {};    // some state was not solved to it
 };
 
@@ -80,7 +81,8 @@ void add(Score& score, const Outcome& whole_run, const Outcome& ten, double lowe
   }
 }
 
-// estimates: the estimates of the error of motion after ten iterations, over the error.
+// Adds the errors of motion of a state to a score. estimates: the estimates of the error of motion after ten
+// iterations, over the error.
 void add_motion(Score& score, const Outcome& whole_run, const Outcome& ten, const std::vector<double>& errors,
                 std::vector<double>& estimates) {
   const auto after = [&](int iterations) {
@@ -96,13 +98,13 @@ void add_motion(Score& score, const Outcome& whole_run, const Outcome& ten, cons
   }
 }
 
-// Where the step itself made a matrix, its time is in the times of that state already, and all others are as if none
-// were ever made; so it is taken out, and each state gets the film's average in its place.
+// Where a step made a matrix, the times of its state contain the time of that, while the times of other states contain
+// none. So this time is taken out, and each state gets the film's average in its place.
 void take_out_renewal(Outcome& outcome) {
   for (double& ms : outcome.ms) ms -= outcome.matrix_ms;
 }
 
-// Holds estimates after ten iterations over what they estimate, by state.
+// Holds estimates after ten iterations over the true errors, by state.
 struct Estimates {
   std::vector<double> error = {}, motion = {};
 };

@@ -9,7 +9,7 @@ namespace supple {
 struct BenchmarkName {
   std::string_view name;
   std::string_view meaning;  // one line
-  double minutes;            // about, on two cores of 2023, to tell how much is left
+  double minutes;            // rough time on two cores of 2023, to tell how much is left
 };
 
 inline constexpr std::array benchmark_names = {

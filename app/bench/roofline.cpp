@@ -22,7 +22,7 @@ double peak_rate() {
   using Register = typename Eigen::internal::packet_traits<Number>::type;
   constexpr int registers = 12, rounds = 200000;  // enough to hide the latency of an operation
   constexpr int lanes = Eigen::internal::packet_traits<Number>::size;
-  volatile Number unknown = Number(1e-6);  // to the compiler
+  volatile Number unknown = Number(1e-6);  // unknown to the compiler
   const Number little = unknown;
   const auto factor = Eigen::internal::pset1<Register>(1 + little), addend = Eigen::internal::pset1<Register>(little);
   Register sum[registers];
@@ -37,7 +37,7 @@ double peak_rate() {
   return 2.0 * lanes * registers * rounds / (1e-3 * ms);
 }
 
-// Returns how fast one core reads so many bytes again and again, from where they then are [bytes/s].
+// Returns how fast one core reads so many bytes again and again, from the cache or memory that holds them [bytes/s].
 double read_rate(double bytes) {
   const auto count = std::max<Eigen::Index>(512, Eigen::Index(bytes / sizeof(double)));
   const Eigen::ArrayXd numbers = Eigen::ArrayXd::Constant(count, 1.5);
@@ -65,7 +65,7 @@ std::optional<double> operations_of(const M& material, const ElementView& elemen
   }
 }
 
-// Returns the mean over the elements of a body.
+// Returns the mean number of operations over the elements of a body.
 std::optional<double> operations_an_element(const Model& model, const Positions& x) {
   double sum = 0;
   bool known = true;

@@ -8,8 +8,8 @@
 
 namespace supple {
 
-// made_with: describes the program, the build, the machine and the options. A section that was made with others is not
-// read back.
+// Writes a section. made_with: describes the program, the build, the machine and the options; a section that was made
+// with others is not read back.
 void write_section(const ReportSection& section, const std::string& made_with, const std::filesystem::path& file);
 std::optional<ReportSection> read_section(const std::filesystem::path& file, const std::string& made_with);
 

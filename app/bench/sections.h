@@ -47,11 +47,11 @@ ReportSection bench_roofline(const BenchSetting& setting);
 
 // Holds what was counted in a film that is played with ten iterations a step.
 struct PlayedFilm {
-  double renewals = 0;                  // of the matrix, by frame
-  double renewal_ms = 0;                // what they cost by frame, with the examination of whether one is due
-  std::vector<BenchState> states = {};  // of the film before some of its frames
+  double renewals = 0;                  // renewals of the matrix a frame
+  double renewal_ms = 0;                // time a frame for renewals, and for examining whether one is due
+  std::vector<BenchState> states = {};  // states of the film before the wanted frames
 };
-// frames: those whose states are wanted, ascending.
+// Plays a subject's film. frames: the frames whose states are wanted, ascending.
 PlayedFilm play_film(Subject& subject, Threads& threads, DirectionStart start, const std::vector<int>& frames = {});
 
 constexpr int most_vertices = 4000;  // of subjects that are solved to the end in many states
@@ -59,7 +59,7 @@ constexpr int most_vertices = 4000;  // of subjects that are solved to the end i
 // Writes a vector as scenes have it, "[x, y, z]".
 std::string list_text(const Vec3& v);
 
-// All bodies of all scenes that ship, by scene.
+// Returns all bodies of all scenes that ship, by scene.
 std::vector<SubjectChoice> all_subjects();
 
 // Returns the states of a subject before these frames: simulates them, or reads them back from the report's folder.

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint8_t paper = 250;
 
-// Rows: to the right, up, and towards the eye.
+// Returns the axes of the view as rows: to the right, up, and towards the eye.
 Mat3 view_axes() {
   const Vec3 eye = Vec3(0.5, 0.35, 1).normalized(), right = Vec3(0, 1, 0).cross(eye).normalized();
   Mat3 axes;

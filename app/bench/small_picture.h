@@ -9,15 +9,15 @@
 
 namespace supple {
 
-// A picture of panels beside each other.
+// Holds a picture of panels beside each other.
 class PanelPicture {
  public:
   // panels: how many; edge: width and height of each [pixels]
   PanelPicture(int panels, int edge);
 
-  // Draws a surface into a panel, seen from the front, right and above. What is seen of a triangle from behind is red:
-  // there the body is inside out. view: what fills the panel; what is outside is cut off. Positions that are not finite
-  // leave the panel empty.
+  // Draws a surface into a panel, seen from the front, right and above. Triangles that are seen from behind are red:
+  // there the body is inside out. view: the box that fills the panel; all outside of it is cut off. Positions that are
+  // not finite leave the panel empty.
   void draw(int panel, const Positions& x, const Triangles& surface, const Bounds& view);
 
   // Throws RunError when the file cannot be written.

@@ -12,8 +12,8 @@ namespace {
 constexpr double torn = 1000;  // a stretch beyond which nothing is left to save
 
 struct ShakenRun {
-  std::vector<double> stretch;  // by frame; shorter than asked when it failed
-  int failed_at = -1;           // the frame in which it failed or was torn
+  std::vector<double> stretch;  // by frame; shorter than asked when a step failed
+  int failed_at = -1;           // the frame in which a step failed or the body was torn
   double ms = 0;                // median of a step
 };
 

@@ -23,7 +23,7 @@ const char* rule_name(StableEnd end) {
   return "bounded";
 }
 
-// Describes what the runs of a case ended as, in a cell: the first rule that was broken, or what a run warns of.
+// Describes in a cell how the runs of a case ended: the first rule that was broken, or what a run warns of.
 std::string text_of(const std::vector<StabilityOutcome>& outcomes) {
   const auto broken = [](const StabilityOutcome& outcome) { return !outcome.passed(); };
   if (const auto count = std::count_if(outcomes.begin(), outcomes.end(), broken); count > 0) {
@@ -65,7 +65,7 @@ std::string errors_text(const std::vector<StabilityOutcome>& outcomes) {
   return text + "| " + number(errors.newton);
 }
 
-// Draws the first run's start, and what it ends as with each material.
+// Draws the start of the first run, and its end with each material.
 void draw_case(const std::vector<std::vector<StabilityOutcome>>& by_material, const std::filesystem::path& file) {
   PanelPicture picture(int(by_material.size()) + 1, panel_edge);
   bool started = false;
@@ -78,7 +78,8 @@ void draw_case(const std::vector<std::vector<StabilityOutcome>>& by_material, co
   picture.write(file);
 }
 
-// Tells of how many runs of the starts come to rest, whatever their rule, by material; as they are and untangled.
+// Counts, for each material, how many runs of the starts come to rest, whatever their rule: without and with
+// untangling.
 class Returns {
  public:
   Returns(const std::vector<NamedMaterial>& materials, Threads& threads)
@@ -125,7 +126,7 @@ struct Counts {
   }
 };
 
-// The three tables of the section, which have the same columns.
+// Holds the three tables of the section, which have the same columns.
 struct Tables {
   ReportTable ends{"stability", "What each case ends as"};
   ReportTable errors{"stability-errors", "Error of the worst step after 10, 50 and 200 iterations, and by Newton"};

@@ -59,7 +59,7 @@ double rms(const Positions& a, const Positions& b) {
 }
 
 struct Played {
-  Positions x;  // after the last frame; not numbers where a step failed
+  Positions x;  // positions after the last frame; NaN where a step failed
   double ms_a_frame = 0;
 };
 
@@ -170,7 +170,7 @@ constexpr int hanging_frames = 60;
 // projects the Hessian, is at an error of 1e-4 after thirty.
 constexpr int solving_iterations = 400;
 
-// Holds a hanging bar and where its tip is in the end when every step is solved.
+// Holds a hanging bar, and the place where its tip ends when every step is solved.
 struct HangingBar {
   Subject subject;
   int tip = 0;  // the vertex furthest along x

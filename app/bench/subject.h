@@ -32,7 +32,7 @@ Solvers solver_instead(Method method, int iterations, DirectionStart start = {})
 // Describes one step to be made.
 struct BenchState {
   int frame = 0;
-  State before;  // of the frame's first step; handles have grabbed and let go already
+  State before;  // the state before the frame's first step; handles have grabbed and let go already
   std::uint64_t hash = 0;
 };
 
@@ -50,15 +50,15 @@ struct Subject {
   const Model& model() const { return world.body(0).model(); }
   // Returns another world of this body, at the start of the film. Its model has the same order and the same values.
   World new_world(const Solvers& solvers, Threads& threads) const;
-  // Puts the body into a state, and returns the inputs of the step that starts there. Updates the model where handles
-  // hold in another way than before.
+  // Puts the body into a state, and returns the inputs of the step that starts there. Updates the model where other
+  // handles hold than before.
   const StepInputs& inputs(const BenchState& state);
   std::string size_text() const;  // "3472 vertices, 10441 elements"
 };
 
-// Simulates the scene with its own settings and keeps the states before these frames (ascending). A folder stores them
-// for the next time, each with its problem (docs/states.md). A state that is already there and belongs to this body is
-// read back instead.
+// Simulates the scene with its own settings and keeps the states before these frames (ascending). `folder` stores the
+// states for the next time, each with its problem (docs/states.md). A state that is already in the folder and belongs
+// to this body is read back instead.
 std::vector<BenchState> states_of(Subject& subject, const std::vector<int>& frames, const std::filesystem::path& folder,
                                   Threads& threads);
 

@@ -134,11 +134,12 @@ const std::vector<Row>& rows() {
   return list;
 }
 
-// Sets what goes past the paper against ten iterations of the paper's.
+// Compares our method with what goes beyond the paper against ten iterations of the paper's.
 struct BesidePapers {
   DirectionStart start;
   PlayedFilm film;
-  // By state: errors after ten iterations, of equation 12 and of motion, and times to the paper's.
+  // For each state: errors after ten iterations (of equation 12 and of motion), and times until they are as small as
+  // the paper's.
   std::vector<double> error = {}, ms_to_same = {}, motion_error = {}, ms_to_same_motion = {};
 };
 
@@ -325,7 +326,7 @@ ReportSection bench_table1(const BenchSetting& setting) {
     add_row(table, by_start, row, row.choice, false, setting);
     if (row.mesh.empty()) continue;
     Row own = row;
-    if (row.mesh == "bunny.mesh") {  // which needs a motion of its own
+    if (row.mesh == "bunny.mesh") {  // the bunny needs a motion of its own
       own.choice.scene = (assets_folder() / "bench" / "paper-bunny-torus.toml").string();
       own.frames = {30, 45, 60, 75, 90};
     }

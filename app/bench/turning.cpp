@@ -23,7 +23,7 @@ constexpr double degree = std::numbers::pi / 180;
 constexpr double friction = 0.5;
 
 struct Substance {
-  std::string name, keys;  // of a body
+  std::string name, keys;  // keys of a body's table
 };
 
 Substance preset(const std::string& name) { return {name, fmt::format("material = \"{}\"\n", name)}; }
@@ -192,18 +192,18 @@ ReportTable topple_table(const BenchSetting& setting) {
 
 // Bars.
 
-// box: the corners of what a hard handle holds, relative to the body's box at rest.
+// Returns a hard handle. box: the corners of the box that it holds, relative to the body's box at rest.
 std::string held(const char* box) {
   return fmt::format("[[body.handles]]\nname = \"held\"\nselect = {{ box = {} }}\n", box);
 }
 
-// Returns a bar of one metre along x. Its cells are cubes, so many across.
+// Returns a bar of one metre along x. Its cells are cubes. across: the number of cells across the bar.
 std::string bar_text(double thickness, int across, const Substance& substance) {
   return fmt::format("[[body]]\nname = \"bar\"\nbox = {{ extent = [1, {0:g}, {0:g}], cells = [{1}, {2}, {2}] }}\n{3}",
                      thickness, std::lround(across / thickness), across, substance.keys);
 }
 
-// Returns where the end of the body that lies furthest in a direction at rest is now: the mean of its vertices.
+// Returns the present place of one end of the body: the mean of the vertices that lie furthest in a direction at rest.
 Vec3 tip_of(const Model& model, const Positions& x, const Vec3& direction) {
   const Eigen::VectorXd along = model.rest * direction;
   const double end = along.maxCoeff() - 1e-6 * model.size;
@@ -289,7 +289,7 @@ std::vector<Cantilever> cantilevers() {
 
 // Returns one percent of the way that the solved tip has gone, frame by frame [m].
 MotionCurve percent_of_way(const TurningFilm& solved) {
-  constexpr double least_way = 1e-4;  // [m]; a shorter way would make percents of what nobody sees
+  constexpr double least_way = 1e-4;  // [m]; a percent of a shorter way is too small to be seen
   MotionCurve unit(Eigen::Index(solved.seen.size()));
   double way = 0;
   for (std::size_t k = 0; k < solved.seen.size(); ++k) {

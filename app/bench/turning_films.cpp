@@ -14,7 +14,7 @@
 namespace supple {
 namespace {
 
-// These "path=value" settings make the films of a case. Ours has what a scene has that sets nothing.
+// These "path=value" settings make the films of a case. Our method has the settings of a scene that sets nothing.
 std::vector<std::string> our_settings() { return {}; }
 std::vector<std::string> paper_settings() { return {"solver.levels=1"}; }
 std::vector<std::string> solved_settings() { return {"solver.iterations=200"}; }
@@ -75,7 +75,7 @@ MotionCurve without_jumps(MotionCurve angle) {
   return angle;
 }
 
-// Returns the largest difference of all frames, in a unit that may differ from frame to frame; NaN of failed films.
+// Returns the largest difference of all frames, in a unit that may differ from frame to frame; NaN for failed films.
 double worst_difference(const MotionCurve& curve, const MotionCurve& solved, const MotionCurve& unit) {
   return ((curve - solved).abs() / unit).maxCoeff<Eigen::PropagateNaN>();
 }

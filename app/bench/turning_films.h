@@ -17,14 +17,14 @@ namespace supple {
 using Observe = std::function<Vec3(const Model& model, const State& state)>;
 
 struct TurningCase {
-  std::string scene;  // its text, with one body
+  std::string scene;  // text of a scene with one body
   Observe observe;
   Vec3 spin = Vec3::Zero();  // angular velocity at the start, of a body that nothing holds [rad/s]
 };
 
 struct TurningFilm {
   std::vector<Vec3> seen;     // what was observed before the first frame and after each; NaN once a step has failed
-  double trials = 0;          // evaluations by iteration
+  double trials = 0;          // evaluations an iteration
   double step_ms = 0;         // mean
   double error_estimate = 0;  // the largest of all steps
   int vertices = 0;
@@ -32,7 +32,7 @@ struct TurningFilm {
 
 struct TurningFilms {
   TurningFilm ours, papers, solved;
-  TurningFilm again;  // solved with twice the iterations: how well the film of the body is determined at all
+  TurningFilm again;  // the film solved with twice the iterations, which tells how well the motion is determined at all
 };
 
 TurningFilms play_films(const TurningCase& turning, const std::string& name, const BenchSetting& setting);
@@ -40,17 +40,17 @@ TurningFilms play_films(const TurningCase& turning, const std::string& name, con
 // Returns the mean of rows by vertex (n x 3), weighted with the vertices' masses.
 Vec3 mass_mean(const Model& model, const Positions& rows);
 
-// Holds a number by frame; the first is that before the first frame.
+// Holds one number before the first frame, and one for each frame.
 using MotionCurve = Eigen::ArrayXd;
 
 struct MotionCurves {
   MotionCurve ours, papers, solved, again;
 };
 
-// Returns a coordinate of what was observed.
+// Returns the curves of one coordinate of the observed numbers.
 MotionCurves curves_of(const TurningFilms& films, int coordinate);
 
-// Makes angles that are known up to whole turns go on from frame to frame without jumps [degrees].
+// Adds whole turns to angles so that they go on from frame to frame without jumps [degrees].
 MotionCurves without_jumps(const MotionCurves& angles);
 
 // Divides every curve by its first number.
@@ -68,11 +68,11 @@ using TableCells = std::vector<std::string>;
 
 void append(TableCells& cells, const TableCells& more);
 
-// Makes an empty table: these columns, those of each quantity, and those of the costs.
+// Makes an empty table with these columns, the columns of each quantity, and the columns of the costs.
 ReportTable table_of(const std::string& name, const std::string& title, TableCells columns,
                      const std::vector<MotionQuantity>& quantities);
 
-// Returns the cells of a quantity. unit: that of the differences, by frame.
+// Returns the cells of a quantity. unit: the unit of the differences, for each frame.
 TableCells cells_of(const MotionCurves& curves, const MotionCurve& unit);
 
 TableCells costs_of(const TurningFilms& films);

@@ -50,7 +50,7 @@ std::vector<std::string> names_of(const std::vector<Body>& bodies) {
   return names;
 }
 
-// Checks that the folder holds all that is needed by a film that starts there.
+// Checks that the folder holds all that a film needs which starts at this frame.
 void check_folder(const FilmPlan& plan, const LoadedFilm& film, const FilmStart& start) {
   const SceneDef& scene = film.world.script().scene();
   check_save_states(plan.save_states, scene, start.place.path, start.kept_frames());
@@ -74,7 +74,8 @@ std::filesystem::path asked_folder(const FilmPlan& plan, const SceneDef& scene) 
   return std::filesystem::path("out") / (scene.name + (plan.preview ? "-preview" : ""));
 }
 
-// Refuses what a film cannot know before it has been made, and ways to film that contradict each other.
+// Refuses pictures of values that are known only after the film has been made, and ways to film that contradict each
+// other.
 void check_pictures_asked(const FilmPlan& plan, const LoadedFilm& film) {
   const SceneDef& scene = film.world.script().scene();
   if (plan.pictures != FilmPictures::none) check_references(scene, film.world.bodies(), scene.frames - 1);

@@ -10,8 +10,8 @@ namespace supple {
 
 // Holds the cost of one body.
 struct FrameCost {
-  std::vector<double> frame_ms;  // of the steps of each frame that was whole
-  bool touched = false;          // a collider, at the end of any step
+  std::vector<double> frame_ms;  // time of the steps of each frame that was finished
+  bool touched = false;          // the body touched a collider at the end of some step
   std::string failure;           // why a step failed; empty: none did
 };
 

@@ -43,7 +43,7 @@ void FrameLoop::enter(int frame, FrameRow& row) {
   row.change_ms = watch.elapsed_ms();
 }
 
-// Makes the steps of the frame. Returns why it failed, or nothing when it did not.
+// Makes the steps of the frame. Returns why a step failed; empty when none did.
 std::string FrameLoop::step(int frame, FrameRow& row) {
   const bool measure_error = plan_.error_every > 0 && frame % plan_.error_every == 0;
   row.bodies.resize(recorders_.size());
@@ -61,7 +61,7 @@ std::string FrameLoop::step(int frame, FrameRow& row) {
   return "";
 }
 
-// Compares the states with those of another run. Returns how they differ, or nothing.
+// Compares the states with those of another run. Returns how they differ; empty where they do not.
 std::string FrameLoop::compare_with_record(int frame) {
   std::string difference;
   for (std::size_t b = 0; verifier_ != nullptr && b < world_.size() && difference.empty(); ++b)
@@ -215,7 +215,7 @@ void FrameLoop::finish(FilmResult& result) {
   const int frames = log_.frames();
   // After a failure the bodies may be in the middle of a frame, so the checkpoint before that frame is kept.
   if (result.end == FilmEnd::failed && checkpoint_before_.frames > first_)
-    log_.add(checkpoint_before_);  // one at first_ is there already
+    log_.add(checkpoint_before_);  // a checkpoint at first_ is there already
   const bool at_end = result.end != FilmEnd::failed && log_.keeps_checkpoints() && !log_.wants_checkpoint(frames);
   if (at_end) add_checkpoint();
   log_.settle(written_pictures());

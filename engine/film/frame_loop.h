@@ -1,5 +1,5 @@
 // Defines the loop that makes a film. Each frame of the world is entered, stepped, recorded, listed to be drawn, and
-// logged; Pictures' threads draw and compress meanwhile. Nothing that they do can change a result.
+// logged; the threads of Pictures draw and compress meanwhile. Nothing that these threads do can change a result.
 #pragma once
 
 #include <memory>
@@ -59,13 +59,13 @@ class FrameLoop {
   int first_;  // the first frame that this run makes; those before it are an earlier run's
   FilmLog& log_;
   bool graphs_;                         // whether the pictures have graphs
-  std::vector<GraphPoint> graphed_;     // of the frames so far, where the pictures have graphs
+  std::vector<GraphPoint> graphed_;     // points of the frames so far, where the pictures have graphs
   StateVerifier* verifier_;             // compares states for --verify; null without it
   WorldState checkpoint_before_;        // taken before the frame in progress; empty when the film keeps none
   std::optional<DrawnFilm> drawn_;      // only with pictures
   std::vector<Positions> last_motion_;  // of the bodies at the end of the last frame, where the pictures need it [m]
   std::vector<std::unique_ptr<BodyRecorder>> recorders_;  // of each body
-  BodyMeetings meetings_;                                 // that no earlier frame has had
+  BodyMeetings meetings_;                                 // finds meetings that no earlier frame has had
   std::optional<PoseTableWriter> poses_;                  // only with colliders
   std::optional<StateRecorder> states_;                   // for --record
   std::optional<Pictures> pictures_;                      // last, so that its threads end first

@@ -118,7 +118,7 @@ Finding cache() {
   const UserCache cache = UserCache::of_user();
   const char* purpose = "keeps meshes and skins from run to run";
   if (cache.folder().empty()) return {"cache", false, false, "neither XDG_CACHE_HOME nor HOME is set", purpose, ""};
-  std::filesystem::path place = cache.folder();  // or the first folder above it that is there
+  std::filesystem::path place = cache.folder();  // or the nearest folder above it that exists
   std::error_code error;
   while (!std::filesystem::exists(place, error) && place.has_relative_path()) place = place.parent_path();
   const bool writable = access(place.c_str(), W_OK) == 0;

@@ -15,7 +15,7 @@
 namespace supple {
 namespace {
 
-constexpr double air = 0.02;  // around the box, because finer bodies move a little differently; by its diagonal
+constexpr double air = 0.02;  // room around the box, over its diagonal, because finer bodies move a little differently
 
 class ScratchFolder {
  public:
@@ -68,7 +68,7 @@ Bounds rough_motion(const FilmPlan& plan, const FilmSolvers& solvers, const Load
   build_models(rough, film);
   FilmStart start = check_film(rough, film);
   const RunFolder folder = open_folder(start, film);
-  (void)make_film(rough, film, start, folder, solvers);  // a pass that fails tells of the frames before
+  (void)make_film(rough, film, start, folder, solvers);  // a pass that fails still gives the frames before its failure
   Bounds box;
   const auto include = [&box](const Positions& points) {
     box.include(bounds_of(points).lower);
@@ -81,7 +81,7 @@ Bounds rough_motion(const FilmPlan& plan, const FilmSolvers& solvers, const Load
     for (int frame = 0; frame < motion.frames(); ++frame)
       include(motion.frame(frame).rowwise() + motion_origin(rest).transpose());
   }
-  // Coarse bodies may lack the tips of ears and tails, which are seen where the bodies start.
+  // Coarse bodies may lack the tips of ears and tails, so the box also contains the real bodies at rest.
   for (const Body& body : whole.world.bodies()) include(body.description.mesh.rest);
   for (const DrawnBody& body : whole.drawn) {
     if (body.skin.rest.points.rows() > 0) include(body.skin.rest.points);

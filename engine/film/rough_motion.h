@@ -8,7 +8,7 @@
 namespace supple {
 
 // Finds the box of the bodies' motion, where the scene's camera asks for it and pictures are made. A film that is
-// resumed takes that of its beginning. Throws InputError and RunError.
+// resumed takes the box that it was begun with. Throws InputError and RunError.
 void find_framing(const FilmPlan& plan, const FilmStart& start, const FilmSolvers& solvers, LoadedFilm& film);
 
 }  // namespace supple

@@ -25,8 +25,8 @@ FilmPlan rough_plan(const FilmPlan& plan) {
   return rough;
 }
 
-// Returns how many frames the first pass makes: none with changes of a replay, and none at all where a single one would
-// take too long.
+// Returns how many frames the first pass makes: only those before a replay's first change, and none where a single one
+// would take too long.
 int frames_of_pass(const LoadedFilm& film) {
   const SceneDef& scene = film.world.script().scene();
   long long vertices = 0;
@@ -51,7 +51,7 @@ Body quick(Body body) {
 }
 
 // Makes the first frames of a scene, and returns the positions of all bodies after each, by vertex of their meshes [m].
-// Where a step fails, there are no more. With no frames to make, returns the positions at the start.
+// Where a step fails, the list ends. With no frames to make, returns the positions at the start.
 std::vector<std::vector<Positions>> rough_motion_of(const World& world, const FilmSolvers& solvers, Threads& threads,
                                                     int frames) {
   std::vector<std::vector<Positions>> motion;
@@ -98,7 +98,7 @@ std::vector<std::string> missing_in_rough_pictures(const FilmPlan& plan, const F
   Threads threads(1);
   const int wanted = frames_of_pass(film);
   const std::vector<std::vector<Positions>> motion = rough_motion_of(world, solvers, threads, wanted);
-  if (motion.empty()) return {};  // its first step failed
+  if (motion.empty()) return {};  // the first step failed
   const int frames = std::min(wanted, int(motion.size()));
   DrawnFilm drawn(world.script(), world.bodies(), drawn_bodies(world.bodies(), {}, DrawnAs::elements),
                   world.colliders(), "");

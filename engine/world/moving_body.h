@@ -27,20 +27,21 @@ class MovingBody {
   const State& state() const { return state_; }
   const StepInputs& inputs() const { return inputs_; }  // of the step that was prepared last
   const CollisionSet& colliders() const { return set_; }
-  // Gives the scratch of the body's steps, which is free between two steps. It holds the last step's report.
+  // Gives the workspace of the body's steps, which is free for other use between two steps. It holds the last step's
+  // report.
   Workspace& workspace() { return workspace_; }
   const StepReport& report() const { return workspace_.report; }  // of the last step
 
-  // Returns where the targets of handles are as the step that was prepared begins, in the order of Model::handled [m].
+  // Returns the targets of handles at the beginning of the prepared step, in the order of Model::handled [m].
   Positions targets_at_start() const;
-  // Makes the prepared step end where an earlier run's budget of time ended it, whatever budget this run has. Nothing:
-  // the earlier run had none for this step.
+  // Makes the prepared step end where an earlier run's budget of time ended it, whatever budget this run has. cuts:
+  // nothing where the earlier run had no budget for this step.
   void repeat(const std::optional<BudgetCuts>& cuts);
   // Tells whether the last step was made with the as-rigid-as-possible material.
   bool untangled() const { return untangled_; }
 
-  // Puts the body into one of its states, earlier or later. The model's values are recomputed where handles hold in
-  // another way than at present; Model::id shows that they were.
+  // Puts the body into one of its states, earlier or later. The model's values are recomputed where other handles hold
+  // than at present; Model::id then changes.
   void restore(const State& state);
 
  private:
@@ -58,7 +59,7 @@ class MovingBody {
   const StepReport& step();
 
   void switch_handles(double time);
-  // Makes the description's handles hold as the state says. Returns false when they did so already.
+  // Makes the description's handles hold as the state says. Returns false when they held so already.
   bool hold_as_state_says();
   void renew_model();
   const Model& rigid_model();
@@ -73,9 +74,9 @@ class MovingBody {
   StepSpan span_{};  // of the step that was prepared last
   std::unique_ptr<SearchRule> rule_;
   Workspace workspace_;
-  std::optional<ModelValues> values_;  // once the model has changed
-  std::optional<Model> rigid_;         // as rigid as possible; once it was needed
-  std::uint64_t rigid_for_ = 0;        // id of the model that it was made for
+  std::optional<ModelValues> values_;  // made when the model first changes
+  std::optional<Model> rigid_;         // the as-rigid-as-possible model; made when it is first needed
+  std::uint64_t rigid_for_ = 0;        // id of the model that rigid_ was made for
   bool untangled_ = false;
 };
 

@@ -10,7 +10,7 @@ namespace supple {
 struct World::Parts {
   std::optional<Script> script;
   SceneDef start;  // the scene before any change
-  SceneDef scene;  // at the end of the frame that was entered last
+  SceneDef scene;  // the scene at the end of the frame that was entered last
   std::vector<Body> bodies;
   CollisionSet colliders;
   std::vector<Model> models;                        // by body, once they are built

@@ -1,6 +1,6 @@
-// Represents a scene in time. A world owns its bodies, their models and states, the colliders, and what drives them; it
-// applies a replay's changes, makes the steps, and is saved and restored. Films, redrawn films, stored states,
-// benchmarks, estimates of cost and other programs all move a scene here, so that they agree to the last bit.
+// Represents a scene in time. A world owns its bodies, their models and states, the colliders, and their motions from
+// outside; it applies a replay's changes, makes the steps, and is saved and restored. Films, redrawn films, stored
+// states, benchmarks, estimates of cost and other programs all move a scene here, so that they agree to the last bit.
 //
 //   World world(Script::load(...), assemble(...));
 //   world.start(solvers, &threads);
@@ -26,7 +26,7 @@ namespace supple {
 // Looks at a world while it makes the steps of a frame. Both functions may be empty. They are called for each step of
 // each body, with the number of the body and that of the substep.
 struct StepWatch {
-  std::function<void(std::size_t body, int substep)> prepared;  // the inputs are known, and the state is the one before
+  std::function<void(std::size_t body, int substep)> prepared;  // the inputs are known, the step is not made
   std::function<void(std::size_t body, int substep)> made;      // the step was made, or has failed
 };
 
@@ -34,31 +34,31 @@ class World {
  public:
   // Takes the bodies of a scene as they are assembled (scene/building/assemble.h).
   World(Script script, std::vector<Body> bodies);
-  // Does the same for a scene without changes; script() must not be called.
+  // Takes the bodies of a scene without changes; script() must then not be called.
   World(SceneDef scene, std::vector<Body> bodies);
   World(World&&) noexcept;
   ~World();
 
   const Script& script() const;
-  const SceneDef& scene() const;  // at the end of the frame that was entered last
+  const SceneDef& scene() const;  // the scene at the end of the frame that was entered last
   const std::vector<Body>& bodies() const;
   const CollisionSet& colliders() const;
 
   // Builds the models of all bodies, unless they are there. Throws RunError and InputError as build_model does. A world
   // whose positions come from a file needs no models and is not started.
   void build_models();
-  // Puts all bodies to the start of the film, with these solvers. threads: null where the calling thread does it all;
-  // they must outlive the world.
+  // Puts all bodies to the start of the film, with these solvers. threads: null for the calling thread alone; they must
+  // outlive the world.
   void start(const Solvers& solvers, Threads* threads);
 
-  // Begins a frame: applies the changes of the frames after the last one that was entered, up to this one, and returns
-  // them. Where there are none, an earlier frame can be entered too.
+  // Begins a frame: applies the changes of all frames since the one that was entered last, this one included, and
+  // returns them. In a scene without changes, an earlier frame can be entered too.
   std::vector<TimedChange> enter(int frame);
   // Goes back to the scene before its first frame. The states stay.
   void rewind();
 
-  // Makes all steps of the frame that was entered. Returns false as soon as one has failed, whose report says why; the
-  // states are then in the middle of the frame.
+  // Makes all steps of the frame that was entered. Returns false as soon as a step has failed, and the report of that
+  // step says why; the states are then in the middle of the frame.
   bool step(const StepWatch& watch = {});
   // Enters a frame and makes its steps.
   bool play(int frame, const StepWatch& watch = {}) {
@@ -81,7 +81,7 @@ class World {
   std::uint64_t hash() const;
 
  private:
-  struct Parts;  // which do not move when the world does
+  struct Parts;  // on the heap, so that they stay in place when the world is moved
   std::unique_ptr<Parts> parts_;
 };
 

@@ -8,7 +8,7 @@
 namespace supple {
 
 struct WorldState {
-  int frames = 0;  // that are finished
+  int frames = 0;  // number of finished frames
   std::vector<State> bodies;
 };
 

@@ -91,7 +91,7 @@ Camera camera_at(const SceneDef& scene, const Stage& stage, double time,
   const double fov = value_at(def, time, &CameraKey::fov_deg, def.fov_deg);
   const Vec3 direction(std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
                        std::cos(azimuth) * std::cos(elevation));
-  // The legend may stand in the air around the bodies; only where that is too narrow they become smaller.
+  // The legend may stand in the air around the bodies. Only where the air is too narrow, the bodies become smaller.
   constexpr double least_air = 1.05;
   const double narrower = std::min(1.0, def.margin * (1 - 2 * stage.kept_free) / least_air);
   const double aspect = narrower * stage.width / stage.height;
@@ -103,7 +103,7 @@ Camera camera_at(const SceneDef& scene, const Stage& stage, double time,
   const std::optional<Followed> followed = followed_at(scene, stage, positions);
   if (!followed) return camera;
   const Vec3 center = stage.meshes[followed->mesh].rest.center() + followed->moved;
-  // A position stands in a fixed place to what is followed at rest.
+  // A given position keeps the place that it has relative to the followed object at rest.
   camera.eye = center + (camera.eye - camera.target);
   if (def.position) camera.eye = *def.position + followed->moved;
   camera.target = center;
@@ -111,7 +111,7 @@ Camera camera_at(const SceneDef& scene, const Stage& stage, double time,
 }
 
 double share_in_picture(const Camera& camera, const Stage& stage, const std::vector<float>& points) {
-  constexpr std::size_t enough = 2000;  // points tell the share
+  constexpr std::size_t enough = 2000;  // points are enough for the share
   const Eigen::Matrix4d to_eye = look_at(camera.eye, camera.target).cast<double>();
   const double high = std::tan(camera.fov_deg * std::numbers::pi / 360), wide = high * stage.width / stage.height;
   const std::size_t step = std::max<std::size_t>(1, points.size() / 3 / enough);

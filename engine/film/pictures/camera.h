@@ -10,7 +10,8 @@ namespace supple {
 // it; otherwise the bodies at the start, and the ground below those that will fall on it.
 Bounds framed_box(const SceneDef& scene, const Stage& stage);
 
-// Returns what the camera follows, and how far that has moved. positions: the positions of each mesh, as in a DrawList.
+// Returns the object that the camera follows, and how far it has moved. positions: the positions of each mesh, as in a
+// DrawList.
 std::optional<Followed> followed_at(const SceneDef& scene, const Stage& stage,
                                     const std::vector<std::vector<float>>& positions);
 

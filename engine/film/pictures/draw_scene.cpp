@@ -15,7 +15,7 @@ namespace {
 
 constexpr double collider_gloss = 0.35;
 
-// Edges of a skin of which a part lies outside all elements are drawn together when they are stretched more than this
+// Where a part of a skin lies outside all elements, its edges are drawn together when they are stretched more than this
 // many times the largest stretch of the elements (at least 1).
 constexpr double most_skin_stretch = 1.4;
 
@@ -41,9 +41,9 @@ Positions at_pose(const Positions& points, const Eigen::Isometry3d& pose) {
   return (points * pose.linear().transpose()).rowwise() + pose.translation().transpose();
 }
 
-// Returns how far it is from a point straight down to a collider at the start of the film; nothing where it does not
-// lie between the point and the drawn ground. The field's values are steps that lead through no surface (sphere
-// tracing, Hart 1996). near: how close to the surface counts as on it [m].
+// Returns the distance from a point straight down to a collider at the start of the film; nothing where the collider
+// does not lie between the point and the drawn ground. The field's values are steps that lead through no surface
+// (sphere tracing, Hart 1996). near: how close to the surface counts as on it [m].
 std::optional<double> way_down(const Vec3& from, const SceneCollider& collider, double near) {
   const Eigen::Isometry3d to_local = collider.pose(0).inverse();
   const double certainty = collider.def.shape.certainty();
@@ -70,13 +70,13 @@ std::optional<Board> board_of(const Bounds& body, const std::vector<SceneCollide
     const Vec3 local = pose.inverse() * Vec3(body.center() - least * Vec3::UnitY());
     const Vec3 normal = pose.linear() * colliders[c].def.shape.gradient(local, near).normalized();
     const Vec3 downhill = normal.y() * normal - Vec3::UnitY();
-    constexpr double level = 0.05;  // the sine of an angle at which bodies rather stay than slide
+    constexpr double level = 0.05;  // the sine of an angle at which bodies stay rather than slide
     board = Board{bodies + c, downhill.norm() > level ? downhill : Vec3(Vec3::Zero())};
   }
   return board;
 }
 
-// Finds what bodies come down on. A collider that bears several is a ground to them.
+// Finds the colliders on which bodies come down. A collider that bears several bodies is a ground to them.
 void find_supports(const std::vector<SceneCollider>& colliders, std::size_t bodies, std::vector<DrawMesh>& meshes) {
   std::vector<int> borne(meshes.size(), 0);
   for (std::size_t b = 0; b < bodies; ++b) {
@@ -234,7 +234,7 @@ std::optional<double> skin_excess(const DrawnBody& drawn, const std::vector<floa
                                   const Positions& now) {
   if (!drawn.vertex_of.empty()) return std::nullopt;
   constexpr double unremarkable = 1.5;
-  constexpr double shortest = 1e-4;  // edge that counts, over the body's size: the positions are floats
+  constexpr double shortest = 1e-4;  // shorter edges do not count, over the body's size: the positions are floats
   const Positions at = Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>>(
                            skin.data(), Eigen::Index(skin.size() / 3), 3)
                            .cast<double>();

@@ -135,7 +135,7 @@ void DrawnFilm::follow_colors(const SceneDef& scene, DrawList& list) {
     DrawMesh& mesh = stage_.meshes[b];
     const Vec3 color = scene.bodies[b].color.value_or(drawn_[b].color);
     const double gloss = scene.bodies[b].gloss.value_or(DrawMesh{}.gloss);
-    const bool takes_own = !scene.bodies[b].takes_colors_of_file();  // since a change of its color
+    const bool takes_own = !scene.bodies[b].takes_colors_of_file();  // true once a change has set the body's color
     if (mesh.color == color && mesh.gloss == gloss && !(takes_own && !mesh.surface_colors.empty())) continue;
     if (takes_own) mesh.surface_colors.clear();
     mesh.color = color;

@@ -24,11 +24,11 @@ class DrawnFilm {
 
   const Stage& stage() const { return stage_; }
 
-  // Makes the skins of colliders again when these changes of a replay have changed their shapes.
+  // Makes the skins of the colliders again whose shapes these changes of a replay have changed.
   void follow(const std::vector<TimedChange>& changes, const CollisionSet& set, const std::vector<Body>& bodies);
 
-  // Makes the draw list of a frame: positions, and all that has changed since the last list. The pose holds the
-  // positions as motion/ holds them.
+  // Makes the draw list of a frame: positions, and all that has changed since the last list. pose: the positions with
+  // the digits that the files in motion/ keep.
   DrawList list(const SceneDef& scene, const FramePose& pose, const CollisionSet& set, Threads& threads);
 
   // Returns the share of a body's surface that lies within the borders of a frame's picture.
@@ -54,7 +54,7 @@ class DrawnFilm {
   std::optional<FieldLook> field_look() const { return field_ ? std::optional(field_->look()) : std::nullopt; }
   // Returns the range of the field, which the scene must have.
   Eigen::Vector2d field_range() const { return field_->range(); }
-  // Leaves the legend to the caller. Must be called before the stage is used.
+  // Takes the legend off the pictures; the caller shows it. Must be called before the stage is used.
   void hide_legend();
   // Makes cameras frame this box over the whole film [m]. Must be called before the stage is used.
   void frame_motion(const Bounds& motion);
@@ -72,11 +72,11 @@ class DrawnFilm {
   std::vector<DrawnBody> drawn_;
   std::vector<Skin> collider_skins_;
   std::optional<DrawnSupports> supports_;  // where the scene shows them
-  std::optional<ReferenceRun> ghosts_;     // whose bodies are the stage's last meshes
+  std::optional<ReferenceRun> ghosts_;     // the run whose bodies are the stage's last meshes
   std::optional<SurfaceField> field_;      // where the scene shows one
   Stage stage_;
-  double longest_steps_ = 0;          // of the film's frames [ms]; 0: not known
-  std::vector<std::size_t> renewed_;  // colliders, since the last list
+  double longest_steps_ = 0;          // the longest time of a frame's steps in the film [ms]; 0: not known
+  std::vector<std::size_t> renewed_;  // colliders whose skins were made again since the last list
 };
 
 }  // namespace supple

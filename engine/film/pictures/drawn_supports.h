@@ -14,8 +14,8 @@ class DrawnSupports {
   // Adds the meshes to the stage, after all that it has. The bodies must outlive this object.
   DrawnSupports(const std::vector<Body>& bodies, Stage& stage);
 
-  // Adds the meshes' positions to a list that already holds those of the bodies and colliders. Nothing is seen of what
-  // holds nothing at the time.
+  // Adds the meshes' positions to a list that already holds those of the bodies and colliders. A support whose handle
+  // holds nothing at the time is not seen.
   void add_to(DrawList& list, const SceneDef& scene, const FramePose& pose) const;
 
  private:

@@ -18,16 +18,16 @@ struct GraphPoint {
 };
 GraphPoint graph_point(const FrameRow& row);
 
-// Returns the largest time of a frame's steps [ms], of which the first one does not count where there are others; 0
-// without rows.
+// Returns the largest time of a frame's steps [ms]; the first frame does not count where there are others. 0 without
+// rows.
 double longest_steps(std::span<const FrameRow> rows);
 
 // Returns the graphs that a scene asks for. longest: the result of longest_steps(), which the scale of times spans
 // [ms].
 std::vector<GraphLook> graph_looks(const SceneDef& scene, double longest);
 
-// Returns their curves up to a frame. earlier: the points of all frames before it; row: that of the frame (null where
-// it is not known, and then there is no curve).
+// Returns the curves of the graphs up to a frame. earlier: the points of all frames before it; row: the row of the
+// frame (null where it is not known, and then there is no curve).
 std::vector<GraphCurve> graph_curves(const TextDef& text, std::span<const GraphPoint> earlier, const FrameRow* row,
                                      double longest);
 

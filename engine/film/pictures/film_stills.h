@@ -7,9 +7,9 @@
 
 namespace supple {
 
-// Writes sheet.png into the folder of a film, on which up to a dozen of the pictures in frames/ stand with their times.
-// times: the time of each picture [s]. Returns the file. Throws InputError where a picture cannot be read, RunError
-// where the sheet cannot be written.
+// Writes sheet.png into the folder of a film: up to a dozen of the pictures in frames/, with their times. times: the
+// time of each picture [s]. Returns the file. Throws InputError where a picture cannot be read, RunError where the
+// sheet cannot be written.
 std::filesystem::path write_sheet(const std::filesystem::path& folder, const std::string& title,
                                   const std::vector<double>& times);
 

@@ -11,13 +11,13 @@
 namespace supple {
 namespace {
 
-// Words that pictures show, and where they are from.
+// Holds words that pictures show, and the place in the file that they are from.
 struct ShownWords {
   std::string words, what;
   FilePlace place;
 };
 
-// Appends those of a scene as it is at one time. The title stands on the contact sheet in any case.
+// Appends the words of a scene as it is at one time. The title stands on the contact sheet in any case.
 void add_words(const SceneDef& scene, std::vector<ShownWords>& list) {
   list.push_back({scene.title, "the title", {"title"}});
   for (const BodyDef& body : scene.bodies)

@@ -15,15 +15,16 @@ std::string headline_text(const SceneDef& scene, double time);
 // Returns a headline as wide as any of the film.
 std::string longest_headline(const SceneDef& scene);
 
-// Returns the note below a body; empty where the scene asks for none. row: the body's row of the frame; null where
-// they are not known, and then only the method is.
+// Returns the note below a body; empty where the scene asks for none. row: the body's row of the frame; null where it
+// is not known, and then the note names only the method.
 std::string note_text(const TextDef& text, const BodyDef& body, const BodyRow* row);
 
 // Returns a note that is as long as any of the scene's, so that captions can keep room for it.
 std::string longest_note(const SceneDef& scene);
 
 // Warns of characters in the title and in the captions, at any time of the film, for which the font has no glyph: the
-// pictures show boxes in their place. font: its file; empty where there is none, and then there are no captions.
+// pictures show boxes in their place. font: the font's file; empty where there is no font, and then there are no
+// captions.
 std::optional<Problem> letters_warning(const Script& script, const std::string& font);
 
 }  // namespace supple

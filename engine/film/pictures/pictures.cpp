@@ -15,7 +15,7 @@
 namespace supple {
 namespace {
 
-constexpr std::size_t frames_in_flight = 3;  // between two stages
+constexpr std::size_t frames_in_flight = 3;  // frames that may wait between two stages
 
 // Frames are independent, so a second thread halves the time where compression is the slowest stage; elsewhere it
 // sleeps.
@@ -111,14 +111,14 @@ bool Pictures::pass_on(Picture picture) {
 
 void Pictures::compress_all(int number) {
   name_thread("compress", number);
-  while (auto task = drawn_.pop()) (*task)();  // an error is the future's, and so its writer's
+  while (auto task = drawn_.pop()) (*task)();  // the future passes an error on to the thread that writes
 }
 
 // Adds a frame to the film. When the encoder fails, the files stay valid. Without files the frame would be lost, so the
 // pictures fail.
 void Pictures::add_to_film(const Image& image) {
   if (targets_.film == nullptr) return;
-  // A film has no coverage: what is not covered has the colour of the background.
+  // A film has no transparency: pixels that nothing covers have the colour of the background.
   if (targets_.film->add(image.alpha.empty() ? image.rgb : over(image, background_)) || targets_.files) return;
   throw RunError("the film's encoder takes no more frames, and there are no files of them");
 }

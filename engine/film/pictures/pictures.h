@@ -23,7 +23,7 @@ struct PictureTargets {
   std::filesystem::path frames;  // the folder of the files
   bool files = true;             // frames become PNG files
   VideoEncoder* film = nullptr;  // null: there is no film
-  int kept_frames = 0;           // of an earlier run: files with which the film begins
+  int kept_frames = 0;           // frames of an earlier run, with whose files the film begins
 };
 
 class Pictures {
@@ -67,12 +67,12 @@ class Pictures {
   const Vec3 background_;  // sRGB
   BoundedQueue<std::pair<int, DrawList>> lists_;
   BoundedQueue<std::packaged_task<Picture()>> drawn_;  // to be compressed
-  BoundedQueue<std::future<Picture>> pictures_;        // the same, in the order in which they are written
+  BoundedQueue<std::future<Picture>> pictures_;        // all pictures, in the order in which they are written
   std::thread drawing_, writing_;
   std::vector<std::thread> compressing_;
   std::mutex mutex_;
-  std::string error_;                  // guarded, as what follows
-  std::vector<PictureTimes> written_;  // and not yet taken
+  std::string error_;                  // mutex_ guards this and the next member
+  std::vector<PictureTimes> written_;  // frames that take_written() has not returned yet
 };
 
 }  // namespace supple

@@ -1,4 +1,4 @@
-// Gives the positions of another run's bodies, to which a picture compares.
+// Gives the positions of another run's bodies, with which a picture compares its own.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,8 @@ namespace supple {
 
 class ReferenceRun {
  public:
-  // Throws InputError when the folder is not a run's, and when a body has another number of vertices there.
+  // Opens the files of motion of a run. Throws InputError when the folder is not a run's, and when a body has another
+  // number of vertices there.
   ReferenceRun(const std::filesystem::path& folder, const std::vector<Body>& bodies);
 
   // Returns where the body is in a frame, by vertex of its mesh [m]. Throws InputError when the run does not have the
@@ -24,8 +25,8 @@ class ReferenceRun {
   std::vector<Vec3> origin_;              // of the files of motion [m]
 };
 
-// Opens the runs to which a scene's pictures up to a frame compare, so that one that cannot be read or is too short is
-// refused before anything is written. Throws InputError as ReferenceRun does.
+// Opens the runs with which a scene's pictures up to a frame compare, so that a run that cannot be read or is too short
+// is refused before anything is written. Throws InputError as ReferenceRun does.
 void check_references(const SceneDef& scene, const std::vector<Body>& bodies, int last_frame);
 
 }  // namespace supple

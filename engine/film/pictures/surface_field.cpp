@@ -17,8 +17,8 @@ namespace {
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
-// Describes a quantity: its name and unit in the legend, and its value at rest, where the range begins. Around a mean
-// the range reaches equally far to both sides.
+// Describes a quantity: its name and unit in the legend, and its value at rest, where the range begins. Where the value
+// at rest is in the middle, the range reaches equally far to both sides.
 struct QuantityTraits {
   const char* title;
   const char* unit;
@@ -67,9 +67,9 @@ double weight_of(const Body& body, const SceneDef& scene) {
   return mass * std::max(scene.gravity.norm(), 1.0);
 }
 
-// Returns how far the usual range of a body reaches from the value at rest. Strains reach to a half or to the double,
-// stress and energy to those of a strain of 0.3, speed to that of a fall over the body's size, contact to a multiple of
-// what the body's weight presses where it rests, and lengths to a share of the body.
+// Returns how far the usual range of a body reaches from the value at rest. Strains reach to half or double the length,
+// stress and energy to the values at a strain of 0.3, speed to that of a fall over the body's size, contact to a
+// multiple of the pressure of the body's weight where it rests, and lengths to a share of the body's size.
 double usual_reach(FieldQuantity quantity, const Body& body, const SceneDef& scene) {
   constexpr double strain = 0.3, depth_share = 0.01, distance_share = 0.05, weight_share = 0.05;
   const double size = bounds_of(body.description.mesh.rest).diagonal();
@@ -129,7 +129,7 @@ std::vector<double> surface_areas(const Body& body) {
   return vertex_areas({mesh.rest, surface_of(body)});
 }
 
-// Returns the contact force on each vertex over its area; 0 where it has none.
+// Returns the contact force on each vertex over the vertex's area; 0 for a vertex without area.
 std::vector<double> per_area(const Positions& forces, const std::vector<double>& areas) {
   std::vector<double> result = lengths(forces, 1);
   for (std::size_t v = 0; v < result.size(); ++v) result[v] = areas[v] > 0 ? result[v] / areas[v] : 0;
@@ -150,7 +150,7 @@ std::vector<std::pair<double, std::string>> ticks_between(double low, double hig
   const double step = rounded_up((high - low) / 5);
   std::vector<std::pair<double, std::string>> ticks;
   for (double n = std::ceil(low / step - 1e-6); n * step <= high + 1e-6 * step; ++n) {
-    const double value = n == 0 ? 0 : n * step;  // no minus before a zero
+    const double value = n == 0 ? 0 : n * step;  // avoids a minus before a zero
     ticks.emplace_back((value - low) / (high - low), fmt::format("{:.6g}", value * scale));
   }
   return ticks;
@@ -209,7 +209,7 @@ void SurfaceField::include(const std::vector<std::vector<double>>& values) {
   std::vector<double> away;
   for (const std::vector<double>& body : values) {
     for (const double value : body) {
-      // Few vertices touch anything, and those that do not say nothing of how hard others are pressed.
+      // Few vertices touch anything, and those without a force would hide how hard the others are pressed.
       if (def_.quantity == FieldQuantity::force && value == 0) continue;
       if (!std::isnan(value)) away.push_back(around_mean ? std::abs(value - rest) : value - rest);
     }

@@ -26,11 +26,11 @@ struct FramePose {
   // These lists have one entry for each body, by vertex of its mesh [m]. `before` is empty where the field does not
   // need it.
   std::vector<const Positions*> motion, before;
-  // The forces of colliders at the end of the frame, in the same form [N]; empty where the field does not need them or
-  // where there are no colliders.
+  // The forces of colliders at the end of the frame: for each body, by vertex of its mesh [N]. Empty where the field
+  // does not need them or where there are no colliders.
   std::vector<const Positions*> forces = {};
-  const FrameRow* row = nullptr;             // of the frame in the run's profile; null where it is not known
-  std::span<const GraphPoint> earlier = {};  // of all frames before it; empty where the pictures have no graphs
+  const FrameRow* row = nullptr;             // row of the frame in the run's profile; null where it is not known
+  std::span<const GraphPoint> earlier = {};  // points of all earlier frames; empty where the pictures have no graphs
 };
 
 class SurfaceField {
@@ -48,8 +48,8 @@ class SurfaceField {
   // InputError when the reference run does not have the frame.
   std::vector<std::vector<double>> values(const FramePose& pose, const CollisionSet& set, Threads* threads);
 
-  // Widens the range of the whole film to these values of one of its frames: so far that a hundredth of the vertices
-  // (of contact forces: of those with a force) lies above it. The range begins at the value at rest.
+  // Widens the range of the whole film for the values of one frame: only a hundredth of the vertices may lie above it
+  // (for contact forces, a hundredth of the vertices with a force). The range begins at the value at rest.
   void include(const std::vector<std::vector<double>>& values);
   // Ends the search for the range of the whole film: rounds it to a number that reads well.
   void settle();
@@ -67,11 +67,11 @@ class SurfaceField {
   double fps_;
   const std::vector<Body>& bodies_;
   std::vector<bool> shown_;
-  std::vector<std::optional<PoseElements>> elements_;  // of solids, for quantities of elements
+  std::vector<std::optional<PoseElements>> elements_;  // by body: elements of solids, for quantities of elements
   std::vector<std::vector<double>> areas_;             // of the surface at rest, by vertex, for forces [m^2]
-  std::optional<ReferenceRun> reference_;              // to which distances are measured
+  std::optional<ReferenceRun> reference_;              // the run to which distances are measured
   Eigen::Vector2d range_ = Eigen::Vector2d(0, 1);
-  double furthest_ = 0;  // from the value at rest, over the frames that were included
+  double furthest_ = 0;  // the furthest from the value at rest, in all frames that were included
 };
 
 // Returns the places of a legend's numbers between low and high, from 0 to 1, and the numbers. `scale` multiplies them.

@@ -24,15 +24,15 @@ const char* text_of(FilmEnd end);
 
 struct FilmPlan {
   std::string scene;                       // a file of a scene or replay, or the name of one that ships
-  std::optional<std::string> scene_text;   // stands for that file, which need not exist
-  std::optional<std::size_t> sweep_point;  // of the scene's sweep; otherwise the scene as it stands
-  std::vector<std::string> settings;       // path=value over the scene's
+  std::optional<std::string> scene_text;   // the text of the scene's file, which then need not exist
+  std::optional<std::size_t> sweep_point;  // point of the scene's sweep; nothing: the scene as it stands
+  std::vector<std::string> settings;       // path=value, in place of the scene's values
   int frames = 0;                          // length of the film; 0: the scene's
   long long seed = -1;                     // of random start states; negative: the scene's
 
   std::string out;                // folder of the run; empty: out/NAME
   bool folder_is_locked = false;  // the caller already holds the lock on `out`
-  bool resume = false;            // from the folder's checkpoint
+  bool resume = false;            // go on from the folder's checkpoint
   bool force = false;             // overwrite another run in the folder; otherwise a numbered folder is taken
   int checkpoint_every = 60;      // frames; 0: never
 
@@ -51,15 +51,15 @@ struct FilmPlan {
   bool trace = false;            // write where every thread's time went
 
   std::string record;               // file for the states of all frames; empty: none
-  std::string verify;               // file of such states to compare with; empty: none
-  std::optional<double> tolerance;  // of that comparison, over a body's size; nothing: the same bits
+  std::string verify;               // file of recorded states to compare with; empty: none
+  std::optional<double> tolerance;  // for `verify`, over a body's size; nothing: the bits must be the same
 
-  std::string repeat;  // folder of a run whose steps end after as many iterations; empty: where their budgets say
+  std::string repeat;  // folder of a run after whose numbers of iterations steps end; empty: budgets decide
 
   bool cache = true;   // meshes and skins are kept under the user's cache folder (base/user_cache.h)
   bool quiet = false;  // no progress and no remarks
 
-  // Every how many frames a picture is drawn.
+  // Returns every how many frames a picture is drawn.
   int pictures_every() const { return preview ? 2 : 1; }
   bool wants_video() const { return pictures == FilmPictures::all && video && coding.format != FilmFormat::png; }
 };

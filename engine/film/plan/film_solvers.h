@@ -1,5 +1,5 @@
-// Holds the solvers that a film uses. They are passed in, because this library does not depend on the one that contains
-// them.
+// Holds the solvers that a film uses. They are passed in, because this library does not depend on the library that
+// contains them.
 #pragma once
 
 #include <functional>
@@ -12,9 +12,9 @@ namespace supple {
 
 // Holds the measured errors of a step.
 struct MeasuredErrors {
-  // This is the error of equation 12; it is empty where the start's objective is above its minimum by round-off alone.
+  // The error of equation 12; nothing where the start's objective is above its minimum by round-off alone.
   std::optional<double> error;
-  double motion = 0;  // the error of motion (sim/measures/measures.h)
+  double motion = 0;  // the error of motion (sim/model/motion_error.h)
 };
 
 // Measures the errors of one body's steps against the converged solution.
@@ -29,7 +29,7 @@ class ErrorMeter {
 
 struct FilmSolvers {
   Solvers steps;
-  // A meter is valid as long as the model's values do not change.
+  // Makes a meter, which is valid as long as the model's values do not change.
   std::function<std::unique_ptr<ErrorMeter>(const Model&, Threads&)> error_meter;
 };
 

@@ -23,7 +23,7 @@ std::pair<int, int> preview_size(const OutputDef& output) {
   return {std::max(16, width), std::max(16, static_cast<int>(std::lround(output.height * share / 2)) * 2)};
 }
 
-// Returns the table that a body comes from: pieces of a surface share one.
+// Returns the table that a body comes from. Pieces of one surface share a table.
 std::string table_of(const BodyDef& body) {
   if (!body.read_surface || body.read_surface->pieces.size() < 2) return body.name;
   return body.name.substr(0, body.name.size() - fmt::format("_{}", body.piece + 1).size());

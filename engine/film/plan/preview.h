@@ -10,8 +10,8 @@
 
 namespace supple {
 
-// Returns settings over those of the scene. share: the share of its vertices that a solid keeps, about; 1 leaves the
-// meshes as they are.
+// Returns settings that replace those of the scene. share: roughly the share of its vertices that a solid keeps; 1
+// leaves the meshes as they are.
 std::vector<std::string> preview_settings(const SceneDef& scene, double share);
 
 }  // namespace supple

@@ -10,9 +10,9 @@
 namespace supple {
 namespace {
 
-using SortedJson = nlohmann::json;  // whose keys are in order, so that texts of equal values are equal
+using SortedJson = nlohmann::json;  // its keys are sorted, so that equal values have equal texts
 
-// Says what a run that takes a folder over would do to what is there.
+// Says what a folder holds that a run would take over.
 enum class Holds { nothing, same_film, another };
 
 bool has_files(const std::filesystem::path& folder) {

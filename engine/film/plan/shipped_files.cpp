@@ -14,7 +14,7 @@ namespace {
 std::filesystem::path shared_folder() {
   std::error_code error;
   const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-  // The first way leads there from supple itself, the second from a program that it starts.
+  // The first way leads to the files from supple itself, the second from a program that supple starts.
   for (const char* way : {SUPPLE_SHARE_FROM_BIN, SUPPLE_SHARE_FROM_LIBEXEC}) {
     const std::filesystem::path installed = (folder / way).lexically_normal();
     if (std::filesystem::is_directory(installed / "shaders", error)) return installed;
@@ -63,7 +63,7 @@ std::filesystem::path scene_file(const std::string& name) {
 }
 
 SceneSource scene_source(const std::string& name) {
-  constexpr std::uintmax_t largest = 1'000'000;  // as of a scene's file
+  constexpr std::uintmax_t largest = 1'000'000;  // the same bound as for a scene's file
   if (name == "-") return {SceneSource::standard_input, read_standard_input(largest)};
   return scene_file(name);
 }

@@ -21,13 +21,14 @@ class BodyRecorder {
   BodyRecorder(World& world, std::size_t body, const RunFolder& folder, const FilmSolvers& solvers, Threads& threads,
                int kept_frames = 0);
 
-  // Goes on after the frame of an earlier run that a row tells of, once the world has been restored.
+  // Goes on after a frame of an earlier run, once the world has been restored. row: the body's row of that frame.
   void resume(const BodyRow& row);
-  // Lets the steps end where an earlier run's budgets ended them. cuts: must outlive this object.
+  // Lets the steps end where an earlier run's budgets ended them. cuts: the cuts of that run; they must outlive this
+  // object.
   void repeat(const CutsByFrame& cuts) { repeated_ = &cuts; }
 
   // Begins the row of a frame, before its first step. measure_error: whether the errors of the frame's last step are
-  // measured. row: must stay where it is until the frame is over.
+  // measured. row: the row to be filled in; it must stay where it is until the frame is over.
   void begin_frame(int frame, bool measure_error, BodyRow& row);
   // These two are called for each step of the body (StepWatch).
   void before_step(int substep);
@@ -41,7 +42,8 @@ class BodyRecorder {
   void save_motion();
   // Returns the frame's positions as motion/ holds them, in the order of the input file [m].
   const Positions& saved_motion() const { return saved_motion_; }
-  // Returns the forces of colliders on the vertices in the same way [N]; without rows where there are no colliders.
+  // Returns the forces of colliders on the vertices as motion/ holds them, in the order of the input file [N]; without
+  // rows where there are no colliders.
   const Positions& saved_forces() const { return saved_forces_; }
   // Returns the present positions as motion/ would hold them.
   Positions present_motion() const;
@@ -70,18 +72,18 @@ class BodyRecorder {
   const CutsByFrame* repeated_ = nullptr;  // null: the clock ends the steps that have a budget
   int frame_ = 0;                          // in progress
   bool measures_error_ = false;
-  BodyRow* row_ = nullptr;  // of the frame in progress
+  BodyRow* row_ = nullptr;  // the body's row of the frame in progress
   EnergyBudget energy_budget_;
   Positions start_of_step_;                  // q [m]
-  State before_;                             // the step whose errors are measured
-  std::unique_ptr<ErrorMeter> error_meter_;  // once an error is asked for
-  std::uint64_t metered_model_ = 0;          // id of the model's values that the meter holds for
+  State before_;                             // the state before the step whose errors are measured
+  std::unique_ptr<ErrorMeter> error_meter_;  // made when an error is first asked for
+  std::uint64_t metered_model_ = 0;          // id of the model's values for which the meter is valid
   PointCacheWriter motion_;
   std::optional<ForceFileWriter> forces_;  // where there are colliders
   Vec3 origin_;                            // of the files of motion [m]
   Positions saved_motion_;                 // in the world
   Positions saved_forces_;                 // [N]
-  std::optional<FieldWriter> fields_;      // once fields are asked for
+  std::optional<FieldWriter> fields_;      // made when fields are first asked for
 };
 
 }  // namespace supple

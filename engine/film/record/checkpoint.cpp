@@ -128,7 +128,7 @@ WorldState read_checkpoint(const std::filesystem::path& path, const std::string&
     check_identity(head.at("identity"), identity, path);
     checkpoint.frames = head.at("frames");
     for (const Json& body : head.at("bodies")) checkpoint.bodies.push_back(read_body(body, reader));
-  } catch (const Json::exception&) {  // its hash is right, so somebody wrote it so
+  } catch (const Json::exception&) {  // the hash is right, so the file was written like this
     reader.fail();
   }
   return checkpoint;

@@ -12,8 +12,8 @@ namespace supple {
 // Returns the content of a checkpoint's file. identity: JSON of all that must be the same for the film to be resumed.
 std::string checkpoint_bytes(const WorldState& checkpoint, const std::string& identity);
 
-// Throws InputError when there is no such file, when it is damaged, or when it has another identity; the message then
-// lists the differences.
+// Reads a checkpoint. Throws InputError when there is no such file, when it is damaged, or when it has another
+// identity, whose differences the message then lists.
 WorldState read_checkpoint(const std::filesystem::path& path, const std::string& identity);
 
 }  // namespace supple

@@ -15,8 +15,8 @@ class FieldWriter {
   FieldWriter(const Body& body, const Model& model, const RunFolder& folder, double fps);
 
   // Writes a frame and updates the collection, so that it can be opened while the film is made. In a film that was
-  // resumed, the collection also contains what was written before. workspace: that of the step that led to the state.
-  // Contact forces are written where there are colliders. Throws RunError.
+  // resumed, the collection also contains the frames that were written before. workspace: the workspace of the step
+  // that led to the state. Contact forces are written where there are colliders. Throws RunError.
   void add(int frame, const State& state, const StepInputs& inputs, const Workspace& workspace);
 
  private:

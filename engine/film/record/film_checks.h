@@ -18,14 +18,14 @@ namespace supple {
 std::optional<WorldState> checkpoint_in(const std::filesystem::path& run, const std::string& identity, int frames,
                                         const RunInfo& info);
 
-// Checks what the first frames, which are not made again, have left. Their pictures have a function of their own.
+// Checks the rows and the motion of the first frames, which are not made again. check_pictures() checks their pictures.
 void check_rows_and_motion(const std::filesystem::path& run, const std::vector<Body>& bodies, int colliders,
                            int frames);
 
 // Checks the pictures of frames that are not made again.
 void check_pictures(const std::filesystem::path& frames, int count);
 
-// Prints a note where pictures that are not made again have graphs of another length: those of a film that was begun
+// Prints a note where the pictures that are not made again have graphs of another length, because the film was begun
 // with another number of frames.
 void note_other_graphs(const SceneDef& scene, const std::filesystem::path& run, int kept_frames);
 

@@ -38,7 +38,7 @@ FilmLog::FilmLog(const RunFolder& folder, int every, std::string identity, int k
   if (!notes_ || ftruncate(fileno(notes_.get()), off_t(noted.bytes)) != 0 || std::fseek(notes_.get(), 0, SEEK_END) != 0)
     throw RunError(fmt::format("{}: cannot be written: {}", source, std::strerror(errno)));
   std::error_code ignored;
-  if (every_ == 0 && kept == 0) std::filesystem::remove(folder.rows(), ignored);  // it lives on without a name
+  if (every_ == 0 && kept == 0) std::filesystem::remove(folder.rows(), ignored);  // it stays open without a name
 }
 
 FrameRows FilmLog::whole_rows() const { return {notes_, folder_.rows(), whole_}; }
@@ -78,7 +78,7 @@ void FilmLog::note_rows(const std::vector<PictureTimes>& written) {
   };
   settle_undrawn();
   for (const PictureTimes& frame : written) {
-    if (rows_.empty()) break;  // drawn, but its row never came
+    if (rows_.empty()) break;  // the frame was drawn, but its row never came
     rows_.front().render_ms = frame.render_ms;
     rows_.front().compress_ms = frame.compress_ms;
     note_row();

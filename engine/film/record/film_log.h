@@ -12,8 +12,8 @@
 
 namespace supple {
 
-// Describes the rows of a run's first frames in the file in which the run noted them: the last of them, and the number
-// of their bytes there. noted_rows() throws InputError where there are fewer rows.
+// Describes the rows of a run's first frames in the run's file of rows: the last of these rows, and how many bytes of
+// the file they take. noted_rows() throws InputError where there are fewer rows.
 struct NotedRows {
   FrameRow last;
   std::int64_t bytes = 0;
@@ -29,18 +29,18 @@ class FilmLog {
 
   int frames() const { return whole_ + waiting_rows(); }
   int waiting_rows() const { return int(rows_.size()); }    // rows in memory
-  const FrameRow& last_kept() const { return last_kept_; }  // of the earlier run
+  const FrameRow& last_kept() const { return last_kept_; }  // last row of the earlier run
   bool keeps_checkpoints() const { return every_ > 0; }
   bool wants_checkpoint(int frames) const { return every_ > 0 && frames % every_ == 0; }
 
   // Adds a frame whose steps are done. A frame that is not drawn is whole once the frames before it are.
   void add(FrameRow row) { rows_.push_back(std::move(row)); }
-  // Adds a checkpoint, which waits in memory until the frames before it are whole. If the last one that waits has as
-  // many frames or more, it is kept instead.
+  // Adds a checkpoint, which waits in memory until the frames before it are whole. If the last waiting checkpoint has
+  // as many frames or more, that one is kept instead.
   void add(const WorldState& checkpoint);
 
-  // Takes note of what has reached the disk. written: the frames whose pictures did so since the last call, in their
-  // order. Throws RunError when a file cannot be written.
+  // Takes note of what has reached the disk. written: the frames whose pictures reached it since the last call, in
+  // their order. Throws RunError when a file cannot be written.
   void settle(const std::vector<PictureTimes>& written);
 
   // Returns the number of frames that are whole, whatever happens from now on.
@@ -58,11 +58,11 @@ class FilmLog {
   std::filesystem::path record_;
   std::filesystem::file_time_type synced_ = std::filesystem::file_time_type::min();  // older files are on the disk
   FrameRow last_kept_;
-  std::deque<FrameRow> rows_;  // after the whole ones
+  std::deque<FrameRow> rows_;  // rows after those of the whole frames
   int whole_ = 0;
   bool broken_ = false;                              // the disk has refused a row
   std::shared_ptr<std::FILE> notes_;                 // the whole rows, a line each
-  std::deque<std::pair<int, std::string>> waiting_;  // checkpoints by frames
+  std::deque<std::pair<int, std::string>> waiting_;  // checkpoints that wait, with their numbers of frames
 };
 
 }  // namespace supple

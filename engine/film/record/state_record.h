@@ -30,7 +30,8 @@ struct RecordHead {
 // any version.
 bool may_be_recorded_over(const std::filesystem::path& path);
 
-// Throws InputError when the file is not a record that begins with the first frames of the film.
+// Checks a record that is to be continued. Throws InputError when the file is not a record that begins with the first
+// frames of the film.
 void check_kept_record(const std::filesystem::path& path, const RecordHead& head, int kept_frames);
 
 class StateRecorder {
@@ -58,8 +59,8 @@ class StateVerifier {
   StateVerifier(const std::filesystem::path& path, const RecordHead& now, std::optional<double> tolerance,
                 int skipped_frames);
 
-  // Returns a note to be printed before the run: that the scene is not the recorded one, and how it differs. Empty
-  // where it is the same.
+  // Returns a note to be printed before the run that says how the scene differs from the recorded one; empty where it
+  // is the same.
   const std::string& remark() const { return remark_; }
 
   // Takes the states body by body, frame by frame. Returns a description of the difference; empty where there is none,
@@ -76,9 +77,9 @@ class StateVerifier {
   RecordHead head_;
   std::optional<double> tolerance_;
   std::size_t next_body_ = 0;
-  int first_frame_;  // that is compared
+  int first_frame_;  // the first frame that is compared
   int recorded_frames_ = 0;
-  double furthest_ = 0;  // over the size
+  double furthest_ = 0;  // largest distance of a vertex from the record, over the body's size
   std::string remark_;
 };
 

@@ -103,7 +103,7 @@ void check_same_motion(const DrawPlan& plan, const Json& info, const LoadedFilm&
   std::vector<Problem> problems;
   for (const JsonDifference& difference : differing_values(json_text(info["scene"]), film.info.scene_json)) {
     if (is_seen(difference.path)) continue;
-    // One of the two may have no table [output]; of its keys, energy alone is not of what is seen.
+    // One of the two may have no table [output]; of its keys, only `energy` does not concern what is seen.
     const bool seen_output =
         difference.path == "output" && (difference.a + difference.b).find("energy") == std::string::npos;
     if (seen_output) continue;
@@ -269,7 +269,7 @@ class Drawing {
   Threads threads_;
   std::vector<Positions> motion_, before_;  // of the frame that was loaded, and of the one before it [m]
   std::vector<Positions> forces_;           // of colliders, where they are needed [N]
-  std::vector<GraphPoint> graphed_;         // of all frames
+  std::vector<GraphPoint> graphed_;         // points of all frames
 };
 
 }  // namespace
@@ -319,7 +319,7 @@ bool is_new(const std::filesystem::path& folder) {
 
 }  // namespace
 
-// The record comes before all else: several processes that draw parts may begin at one time.
+// draw.json is written first, because several processes that draw parts may begin at one time.
 void open_drawing(const std::filesystem::path& folder, const LoadedDrawing& drawing, bool keep) {
   std::error_code error;
   const std::filesystem::path record = folder / "draw.json";

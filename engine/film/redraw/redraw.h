@@ -20,9 +20,9 @@ namespace supple {
 // Describes what to draw.
 struct DrawPlan {
   std::filesystem::path run;            // the folder of the run
-  std::filesystem::path scene;          // its scene's file, where that is no longer where the run found it; else empty
-  std::vector<std::string> settings;    // path=value over the run's, of what is seen and not simulated
-  int first = 0, last = -1, every = 1;  // frames of the run; a negative last one is the run's
+  std::filesystem::path scene;          // the scene's file, where it is not where the run found it; else empty
+  std::vector<std::string> settings;    // path=value, in place of the run's values; only of what is seen
+  int first = 0, last = -1, every = 1;  // frames of the run; last < 0: the run's last frame
   double rate = 0;                      // frames a second of the film; 0: as fast as it happened
   GlChoice gl = GlChoice::automatic;
   bool legend_apart = false;  // pictures have no legend; the result holds it
@@ -34,7 +34,7 @@ struct DrawPlan {
 struct LoadedDrawing {
   LoadedFilm film;  // without models
   std::vector<PointCacheReader> motion;
-  std::vector<ForceFileReader> forces;  // of colliders on each body; empty where the drawing does not need them
+  std::vector<ForceFileReader> forces;  // forces of colliders on each body; empty where the drawing does not need them
   std::vector<FrameRow> rows;           // of the run's profile; empty while it goes on
   int frame_count = 0;                  // of the run
   std::vector<int> frames;              // of the run, one for each picture
@@ -46,7 +46,7 @@ struct LoadedDrawing {
 // when the scene differs from the run's in more than what is seen, and when a mesh is not the run's.
 LoadedDrawing load_drawing(const DrawPlan& plan);
 
-// Returns the positions of a body's mesh that the run saved of a frame [m].
+// Returns the positions of a body's mesh that the run saved for a frame [m].
 Positions saved_positions(LoadedDrawing& drawing, std::size_t body, int frame);
 
 // Creates the folder of a drawing, or takes over one that an earlier drawing left. The earlier pictures and film are
@@ -64,7 +64,7 @@ PictureRange part_of(const LoadedDrawing& drawing, int index, int count);
 struct DrawResult {
   FilmEnd end = FilmEnd::done;
   std::string message;                   // why it failed
-  int pictures = 0;                      // that are whole
+  int pictures = 0;                      // number of pictures that are whole
   std::optional<FieldLook> legend = {};  // of the field, where there is one
 };
 
@@ -72,7 +72,7 @@ struct DrawResult {
 Eigen::Vector2d field_range(LoadedDrawing& drawing);
 
 // Draws pictures into the folder's frames/, and hands them to `video` where there is one. Calls told(done) from time to
-// time.
+// time with the number of pictures done.
 DrawResult draw_pictures(const DrawPlan& plan, LoadedDrawing& drawing, const std::filesystem::path& folder,
                          PictureRange range, VideoEncoder* video, const std::function<void(int done)>& told);
 

@@ -25,7 +25,7 @@ int columns_of(Layout layout, int panels);
 
 // Describes one run of a split screen.
 struct Panel {
-  std::filesystem::path frames;  // its pictures, all of one size
+  std::filesystem::path frames;  // the folder of its pictures, which all have one size
   std::string name;              // in the first line below it
   std::vector<FrameRow> rows;    // of the run's profile; empty where it has none
 };
@@ -39,9 +39,9 @@ struct SplitScreen {
   std::optional<FieldLook> legend;  // of the field that all panels show
 };
 
-// Returns what the second line says of a frame of the run: time of its steps, iterations, and the last errors that were
-// measured up to there, of equation 12 and of motion, or else their estimates after a "~". Of several bodies it is the
-// sum of the times and iterations, and the largest errors. Empty without rows.
+// Returns the second line below a panel for a frame of its run: the time of its steps, its iterations, and the last
+// errors measured up to that frame (of equation 12 and of motion), or else their estimates after a "~". Times and
+// iterations are sums over all bodies, errors the largest of any body. Empty without rows.
 std::string figures_of(const std::vector<FrameRow>& rows, int frame);
 
 // Composes picture number `picture` of all panels, which show this frame of the runs. Width and height are even. Throws

@@ -53,7 +53,7 @@ std::vector<std::int32_t> selected(const Selection& s, const TetMesh& mesh, cons
     const Vec3 relative = (point - box.lower).cwiseQuotient(extent);
     const Vec3 away = point - (box.lower + s.center.cwiseProduct(extent));
     bool in = false;
-    // The box has a tolerance of a millionth, because a box that ends at 1 is meant to include what lies at 1.
+    // The box has a tolerance of a millionth, because a box that ends at 1 is meant to include vertices at 1.
     if (s.kind == Selection::Kind::box)
       in = (relative.array() >= s.lower.array() - 1e-6).all() && (relative.array() <= s.upper.array() + 1e-6).all();
     if (s.kind == Selection::Kind::sphere) in = away.norm() <= s.radius * box.extent().maxCoeff();
@@ -65,8 +65,8 @@ std::vector<std::int32_t> selected(const Selection& s, const TetMesh& mesh, cons
 
 Problem at(const FilePlace& place, std::string message) { return {place, std::move(message)}; }
 
-// Near 1e16 sizes from the origin no number distinguishes the vertices of a body; elements lose digits long before
-// that.
+// Refuses a body that is too far from the origin. Near 1e16 of its sizes away, no number distinguishes its vertices;
+// elements lose digits long before that.
 void check_distance(const Body& body, std::vector<Problem>& problems) {
   const Positions& points = body.description.mesh.rest;
   const double far = points.cwiseAbs().maxCoeff(), size = bounds_of(points).diagonal();
@@ -77,7 +77,7 @@ void check_distance(const Body& body, std::vector<Problem>& problems) {
                                      body.def.name, far, size)));
 }
 
-// A film of a body that is very large or very small is hardly what was meant: units were mixed up.
+// Notes that a body is very large or very small, which is rarely meant: units may have been mixed up.
 void note_size(Body& body) {
   const double size = bounds_of(body.description.mesh.rest).extent().maxCoeff();
   if (size <= 20 && size >= 1e-3) return;
@@ -193,7 +193,7 @@ void set_values(Body& body, const SceneDef& scene, std::vector<Problem>& problem
 
 void update_body(Body& body, const SceneDef& scene, const BodyDef& def) {
   std::vector<Problem> problems;
-  const std::vector<std::string> notes = body.notes;  // these were said when it was assembled
+  const std::vector<std::string> notes = body.notes;  // these notes were printed when the body was assembled
   const auto starts_or_ends = [&](double ClothDef::*stiffness) {
     return def.cloth && ((*def.cloth).*stiffness > 0) != ((*body.def.cloth).*stiffness > 0);
   };
@@ -269,8 +269,8 @@ std::vector<Body> assemble(const SceneDef& scene, const SlowWork& work) {
 
 namespace {
 
-// Returns the places from which keys move handled vertices while nothing is grabbed, and which handles hold at the
-// start.
+// Returns the places from which keys move handled vertices while nothing is grabbed, and tells which handles hold at
+// the start.
 Anchors rest_anchors(const Model& model, const Body& body) {
   Anchors anchors;
   anchors.points.resize(model.handled.size(), 3);

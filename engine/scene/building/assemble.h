@@ -13,7 +13,7 @@
 namespace supple {
 
 struct Body {
-  // A collider that the body starts in, and how deep [m].
+  // Names a collider that the body starts in, and tells how deep the body is in it [m].
   struct Overlap {
     std::string collider;
     double depth;
@@ -23,20 +23,20 @@ struct Body {
   BodyDef def;
   BodyDescription description;       // the mesh as placed, and its handles
   std::vector<KeyedMotion> motions;  // by handle
-  std::vector<KeyedMotion> earlier;  // the same before a change that is spread over this frame; else empty
+  std::vector<KeyedMotion> earlier;  // the motions before a change that is spread over this frame; else empty
   std::vector<std::string> notes;    // what reading the mesh had to say
   std::string source;                // the mesh or shape file, or what it is made of
-  std::vector<SourceFile> files;     // that its mesh and looks were read from
+  std::vector<SourceFile> files;     // the files from which its mesh and looks were read
   std::vector<std::string> regions;  // names by tag
   double volume = 0;                 // of its tetrahedra at rest [m^3]
   ClothMesh cloth;
-  TriMesh skin;                                 // of a body made from a surface, in the file's frame
-  std::shared_ptr<const SurfaceColors> colors;  // of that skin; null where it has the body's own
-  Shape shape;                                  // of a body made from a shape, in the file's frame
+  TriMesh skin;                                 // the surface of a body made from one, in the file's frame
+  std::shared_ptr<const SurfaceColors> colors;  // colours of `skin`; null where it has the body's own
+  Shape shape;                                  // the shape of a body made from one, in the file's frame
   Positions unplaced;                           // the rest positions of the mesh in the file's frame
   std::uint64_t seed = 0;                       // of its random start
   std::vector<Overlap> overlaps;                // at the start; what the scene does about them is in its definition
-  Vec3 start_move = Vec3(0, 0, 0);              // out of the colliders that it would start in [m]
+  Vec3 start_move = Vec3(0, 0, 0);              // the move out of colliders that the body would start in [m]
   Eigen::Affine3d placement = no_placement();   // from the file's frame to the world: turned, scaled, moved
 };
 
@@ -56,8 +56,8 @@ State start_state(const Model& model, const Body& body);
 // Makes a handle grab its vertices at their present positions, from which its keys then move them.
 void grab(const Model& model, int handle, const Positions& x, Anchors& anchors);
 
-// Computes the targets of all handled vertices, in the order of model.handled. change: the share of a change that is
-// done, 0 to 1, where the change is spread over the frame.
+// Computes the targets of all handled vertices, in the order of model.handled. change: how much is done of a change
+// that is spread over the frame, 0 to 1.
 void handle_targets(const Model& model, const Body& body, const Anchors& anchors, double time, double change,
                     Positions& targets);
 // Does the same for a body whose handles grab nothing and whose definition does not change.

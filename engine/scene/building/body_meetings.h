@@ -1,6 +1,6 @@
-// Finds the bodies of a scene that are in the same place. Bodies do not collide with each other, so that they pass
-// through each other where they meet, and whoever makes the film should know. Not here: what a body does with rigid
-// colliders (overlaps.h, sim/contact/).
+// Finds the bodies of a scene that are in the same place. Bodies do not collide with each other: where they meet, they
+// pass through each other, and whoever makes the film should know that. Not here: what a body does with rigid colliders
+// (overlaps.h, sim/contact/).
 #pragma once
 
 #include <array>
@@ -12,10 +12,10 @@ namespace supple {
 
 class BodyMeetings {
  public:
-  // bodies: must outlive this object. One body costs nothing.
+  // bodies: the bodies of the scene; they must outlive this object. With one body nothing is computed.
   explicit BodyMeetings(const std::vector<Body>& bodies);
 
-  // Leaves a pair out from now on.
+  // Leaves a pair out of find() from now on.
   void leave_out(std::size_t a, std::size_t b);
   bool none_left() const { return left_ == 0; }
 
@@ -27,9 +27,9 @@ class BodyMeetings {
   const Triangles& surface_of(std::size_t body);
 
   const std::vector<Body>& bodies_;
-  std::vector<Triangles> surfaces_;  // by body, once they are needed
+  std::vector<Triangles> surfaces_;  // surface of each body, once they are needed
   std::vector<char> looked_for_;     // by pair
-  std::size_t left_ = 0;             // of the pairs
+  std::size_t left_ = 0;             // number of pairs that find() still looks for
 };
 
 }  // namespace supple

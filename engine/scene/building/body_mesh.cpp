@@ -55,7 +55,7 @@ Loaded loaded_surface(const BodyDef& def, const SlowWork& work) {
   loaded.mesh = std::move(made.mesh);
   loaded.notes.insert(loaded.notes.end(), made.notes.begin(), made.notes.end());
   if (def.takes_colors_of_file()) loaded.colors = read.colors[def.piece];
-  // What is drawn depends on the colours, the tetrahedra above do not.
+  // The drawn skin depends on the colours; the tetrahedra above do not.
   if (loaded.colors) loaded.files.push_back({def.surface, loaded.colors->hash});
   if (def.colors == ColorSource::file && !loaded.colors)
     loaded.notes.push_back("the file has no colours (colors = \"file\"): the body's own is drawn");

@@ -11,16 +11,16 @@
 namespace supple {
 
 struct Loaded {
-  TetMesh mesh;                      // of cloth only its vertices
+  TetMesh mesh;                      // only the vertices, if the body is cloth
   std::vector<std::string> regions;  // names by tag
   std::vector<std::string> notes;
   std::string source;
   std::vector<SourceFile> files;
   ClothMesh cloth;
-  TriMesh skin;                                 // of a body made from a surface, as it was read
-  std::shared_ptr<const SurfaceColors> colors;  // of that skin; null where it has the body's own
-  Positions whole;  // of a body that is one of several pieces: the vertices of all of them; else empty
-  Shape shape;      // of a body made from a shape
+  TriMesh skin;                                 // the surface of a body made from one, as it was read
+  std::shared_ptr<const SurfaceColors> colors;  // colours of `skin`; null where it has the body's own
+  Positions whole;                              // the vertices of all pieces, if the body is one of several; else empty
+  Shape shape;                                  // the shape of a body made from one
 };
 
 // Reads or makes each mesh once, also when several bodies share it. Meshes that take long to make are kept from run to
@@ -37,7 +37,7 @@ class MeshCache {
   std::map<std::string, Loaded> loaded_;
 };
 
-// Names what files say, whatever their places are.
+// Returns a name for the content of files, which does not depend on where they are.
 std::string content_name(const std::vector<SourceFile>& files);
 
 }  // namespace supple

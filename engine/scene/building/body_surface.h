@@ -6,7 +6,7 @@
 
 namespace supple {
 
-// Returns its triangles, by vertex of the mesh.
+// Returns the triangles of a body's surface, by vertex of its mesh.
 Triangles surface_of(const Body& body);
 
 }  // namespace supple

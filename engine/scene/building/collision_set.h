@@ -20,13 +20,13 @@ struct SceneCollider {
 // Holds all that bodies can collide with.
 struct CollisionSet {
   std::vector<SceneCollider> scene_colliders;
-  std::vector<SceneCollider> earlier;  // the same before a change that is spread over this frame; else empty
-  std::vector<Collider> colliders;     // the same, as the solver wants them
+  std::vector<SceneCollider> earlier;  // those before a change that is spread over this frame; else empty
+  std::vector<Collider> colliders;     // the scene's colliders in the form that the solver needs
 };
 CollisionSet collision_set(const SceneDef& scene);
 
-// Describes a part of the frame in progress: from one time to another [s], and for each of them the share of a change
-// that is done, 0 to 1, where the change is spread over the frame.
+// Describes a part of the frame in progress: two times [s], and how much is done at each of them of a change that is
+// spread over the frame, 0 to 1.
 struct StepSpan {
   double from, to;
   double change_from = 1, change_to = 1;
@@ -35,8 +35,8 @@ struct StepSpan {
 // Computes the motions of all colliders over one step.
 void collider_motions(const CollisionSet& set, const StepSpan& span, std::vector<ColliderMotion>& motions);
 
-// Makes what is drawn of a collider, in its own frame. A half space becomes a square that reaches well beyond `around`
-// (in the world). The result is empty when it is the ground that every film has.
+// Makes the skin of a collider, in its own frame. A half space becomes a square that reaches well beyond `around` (in
+// the world). The skin is empty for the ground that every film has.
 Skin drawn_collider(const SceneCollider& collider, const Bounds& around);
 
 // Tells whether a collider is a half space and nothing else.

@@ -20,7 +20,7 @@ Mat3 turn_of(const Body& body) { return rotation_from_degrees(body.def.turn_deg)
 
 double scale_of(const Body& body) { return std::cbrt(body.placement.linear().determinant()); }
 
-// The edge of the printed squares [m]; 0: nothing is printed.
+// Returns the edge of the printed squares [m]; 0: nothing is printed.
 double square_of(const Body& body) {
   if (body.def.pattern == Pattern::none) return 0;
   if (body.def.pattern_size) return *body.def.pattern_size;
@@ -29,8 +29,8 @@ double square_of(const Body& body) {
   return body.def.cloth ? extent[2] / 20 : extent[1] / 6;
 }
 
-// A skin in the file's frame and the elements that carry it: the same for all bodies that differ in their place, size
-// and substance alone. The number is the edge of the skin's cells or of the printed squares, in the file's units.
+// Describes a skin in the file's frame and the elements that carry it, which bodies share that differ only in place,
+// size and substance. The edge of the skin's cells, or of the printed squares, is in the file's units.
 struct SkinRequest {
   const Body& body;
   double number;
@@ -43,9 +43,9 @@ struct SkinRequest {
     return carried;
   }
 
-  // Triangles become so small that they can bend where the elements do, or stay as they are where they are small.
+  // Cuts triangles until they are small enough to bend where the elements do; small ones stay as they are.
   Skin of_surface(const TetMesh& mesh) const {
-    constexpr double edges = 1.5;             // of the elements, that a triangle's edge may be long
+    constexpr double edges = 1.5;             // longest edge of a triangle, over the elements' mean edge
     constexpr Eigen::Index most = 2'000'000;  // triangles
     const double longest = edges * mean_edge(mesh);
     if (body.colors) return colored_skin(body.skin, *body.colors, longest, most, number);
@@ -54,7 +54,7 @@ struct SkinRequest {
     return skin_of_surface(surface.points, surface.triangles, number, vertex_of);
   }
 
-  // Says all that the skin depends on.
+  // Returns a name that contains all on which the skin depends.
   std::string name() const {
     return fmt::format("skin {:a} over {} vertices from {}", number, body.def.vertices, content_name(body.files));
   }
@@ -70,7 +70,7 @@ DrawnBody drawn_mesh(const Body& body) {
   DrawnBody drawn;
   const TetMesh& placed = body.description.mesh;
   const Triangles surface = surface_of(body);
-  // In the body's own directions, so that the print lies along its edges however it stands.
+  // The skin is made in the body's own directions, so that the print lies along its edges however the body stands.
   drawn.skin = skin_of_surface(placed.rest * turn_of(body), surface, square_of(body), drawn.vertex_of);
   for (std::size_t v = 0; v < drawn.vertex_of.size(); ++v)
     drawn.skin.rest.points.row(v) = placed.rest.row(drawn.vertex_of[v]);

@@ -9,13 +9,13 @@
 
 namespace supple {
 
-// The drawn surface of a body: a skin carried by its elements, or (vertex_of) the mesh's own boundary.
+// Holds the drawn surface of a body: a skin that its elements carry, or (vertex_of) the mesh's own boundary.
 struct DrawnBody {
   Skin skin;
-  Triangles casters;                    // of the skin, that cast its shadow; empty: all of them
-  Embedding embedding;                  // when the skin is finer than the mesh
-  std::optional<SkinLimit> limit;       // of the skin's stretch, once limit_stretch() has been called
-  std::vector<std::int32_t> vertex_of;  // when it is the boundary: mesh vertex by skin vertex
+  Triangles casters;                    // the skin's triangles that cast its shadow; empty: all of them
+  Embedding embedding;                  // how elements carry a skin that is not the boundary
+  std::optional<SkinLimit> limit;       // limit of the skin's stretch, once limit_stretch() has been called
+  std::vector<std::int32_t> vertex_of;  // for the mesh's boundary: mesh vertex by skin vertex
   bool two_sided = false;
   Vec3 color;
   std::vector<PaintLayer> layers;  // colours only; their areas live in the skin
@@ -24,7 +24,7 @@ struct DrawnBody {
 
 // Chooses the surface by which bodies are drawn.
 enum class DrawnAs {
-  skin,      // that of its shape or surface file, where it has one
+  skin,      // the surface of the body's shape or surface file, where there is one
   elements,  // the boundary of its elements
 };
 

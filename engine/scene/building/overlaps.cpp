@@ -13,8 +13,8 @@
 namespace supple {
 namespace {
 
-constexpr double tolerated = 1e-4;  // depth that is none, over the body's size
-constexpr double small_move = 0.1;  // a move that nobody minds, over the body's size
+constexpr double tolerated = 1e-4;  // depth that does not count, over the body's size
+constexpr double small_move = 0.1;  // the largest move that is still small, over the body's size
 
 bool lies_in(const Bounds& box, const Vec3& point) {
   return (point.array() >= box.lower.array()).all() && (point.array() <= box.upper.array()).all();
@@ -71,7 +71,7 @@ void append(Positions& points, const std::vector<Vec3>& places) {
 }
 
 // Finds a small move that brings a body out of the colliders, also between its vertices: places that are inside after a
-// move count with the others in the next attempt. Nothing where some attempts have not found one.
+// move count with the others in the next attempt. Returns nothing where several attempts have found no such move.
 std::optional<Vec3> small_way_out(const CollisionSet& set, const Obstacles& obstacles, const Body& body,
                                   const Positions& vertices, Positions points, double furthest) {
   constexpr int attempts = 8;

@@ -1,5 +1,5 @@
-// Finds the bodies that start inside colliders, and what is done about it. Not here: how a body that stays inside is
-// pushed out while the film runs (sim/contact/way_out.h).
+// Finds the bodies that start inside colliders, and decides what is done about each. Not here: how a body that stays
+// inside is pushed out while the film runs (sim/contact/way_out.h).
 #pragma once
 
 #include "scene/building/assemble.h"

@@ -10,7 +10,7 @@ namespace supple {
 namespace {
 
 // A part of a skin that is further from its elements than this many of their edges is about as thick as an element: it
-// follows, and does not bend by itself.
+// follows the elements, and does not bend by itself.
 constexpr double far_outside = 1;
 
 }  // namespace

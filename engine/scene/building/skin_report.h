@@ -9,7 +9,7 @@
 
 namespace supple {
 
-// Says how a drawn skin lies to its elements, in words; empty where the mesh's own boundary is drawn.
+// Says in words how well the elements fill a drawn skin; empty where the mesh's own boundary is drawn.
 std::string skin_words(const Body& body, const DrawnBody& drawn);
 
 // Returns how many vertices a drawn skin has and how much of it lies outside all elements; empty where the mesh's own

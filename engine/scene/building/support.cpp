@@ -21,24 +21,24 @@ constexpr double thinnest_plate = 0.012, thickest_plate = 0.03;
 constexpr double over_skin = 0.6;        // least radius of a pin over an element whose skin is finer
 constexpr double plate_by_face = 0.12;   // thickness over the face's size
 constexpr double margin_by_plate = 0.4;  // by how much a plate is wider than its face, over its thickness
-constexpr double inside_by_plate = 0.3;  // how far it reaches over the body, so that its face shows no seam
-constexpr double below_ground = 0.1;     // how far it lies below a body that stands, over its thickness
+constexpr double inside_by_plate = 0.3;  // how far a plate reaches over the body, to hide the seam
+constexpr double below_ground = 0.1;     // how far a plate lies below a standing body, over its thickness
 constexpr double widest_ring = 0.12;     // over the body's length
-constexpr double least_fill = 0.6;       // of the hull of what is held of a cloth: a clamp hides no more than that
+constexpr double least_fill = 0.6;       // least held share of the hull that a clamp on cloth covers
 constexpr std::size_t most_pins = 6;     // in a part that neither a plate nor a ring would fit
 
 // Holds what supports are made from: the body at rest in the directions of its file.
 struct Frame {
-  Mat3 turn;         // from there to the world
+  Mat3 turn;         // from the file's directions to the world's
   Positions places;  // by vertex [m]
   Bounds box;
-  double size = 0;               // its diagonal [m]
-  double edge = 0;               // the mean one of its surface [m]
-  double pin = 0, rod = 0;       // their radii [m]
+  double size = 0;               // diagonal of the box [m]
+  double edge = 0;               // mean edge of the surface [m]
+  double pin = 0, rod = 0;       // radii of pins and rods [m]
   std::vector<char> on_surface;  // by vertex
-  Triangles surface;             // that is seen
-  bool finer_skin = false;       // than the mesh is drawn
-  std::vector<char> held = {};   // by vertex, by the handle that is looked at
+  Triangles surface;             // the surface that is seen
+  bool finer_skin = false;       // whether a skin finer than the mesh is drawn
+  std::vector<char> held = {};   // by vertex: whether the present handle holds it
 };
 
 Frame frame_of(const Body& body) {
@@ -69,7 +69,7 @@ Frame frame_of(const Body& body) {
 
 using Part = std::vector<std::int32_t>;  // vertices of a handle that hang together by edges
 
-// Parts are in the order of their first vertices.
+// Returns the parts of a handle, in the order of their first vertices.
 std::vector<Part> parts_of(const Body& body, const Handle& handle, Frame& frame) {
   DisjointSets joined(frame.on_surface.size());
   frame.held.assign(joined.size(), 0);
@@ -99,7 +99,7 @@ Bounds box_of(const Frame& frame, const Part& part) {
   return box;
 }
 
-// Turns coordinates of which the third one is along an axis of the frame back into the frame's. [m]
+// Turns a mesh whose third coordinate is along an axis of the frame back into the frame's coordinates [m].
 TriMesh stood_along(int axis, TriMesh mesh) {
   const Positions flat = mesh.points;
   mesh.points.col((axis + 1) % 3) = flat.col(0);
@@ -122,7 +122,7 @@ double plate_thickness(const Frame& frame, const Bounds& part, int axis) {
                     thickest_plate * frame.size);
 }
 
-// Makes a plate, ring or clamp along an axis around what is held.
+// Makes a plate, ring or clamp along an axis around the held vertices of a part.
 TriMesh prism_around(const Frame& frame, const Part& part, int axis, double low, double high, double thickness) {
   const double margin = margin_by_plate * thickness;
   return stood_along(
@@ -158,7 +158,7 @@ TriMesh rod_between(const Vec3& from, const Vec3& to, double radius) {
   return mesh;
 }
 
-// Returns the axis along which a part is an end of its body, and on which side; nothing where it is none.
+// Describes an end of a body: the axis along which a part is the end, and on which side.
 struct End {
   int axis;
   bool high;
@@ -207,7 +207,7 @@ TriMesh plate_on(const Frame& frame, const Part& part, const Bounds& box, const 
                       side + (end.high ? outside : inside), thickness);
 }
 
-// Returns the axis along which a part is a slice of the body, in which nothing else lies; nothing where it is none.
+// Returns the axis along which a part is a whole slice of the body; nothing where it is not one.
 std::optional<int> slice_of(const Frame& frame, const Bounds& part) {
   for (int axis = 0; axis < 3; ++axis) {
     const double near = 1e-6 * frame.size;

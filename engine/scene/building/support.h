@@ -2,8 +2,8 @@
 // edges, pins in single vertices. They are for the eye alone; nothing touches them. Not here: how they are drawn
 // (film/pictures/drawn_supports.h).
 //
-// Supports are chosen by the vertices that a handle holds, at rest, in the directions of the body's file. What lies
-// inside a body, where nothing of it would be seen, has none.
+// Supports are chosen by the vertices that a handle holds, at rest, in the directions of the body's file. Held vertices
+// inside a body have no support, because it would not be seen.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@
 
 namespace supple {
 
-// The support of vertices that hang together and that one handle holds.
+// Holds the support of vertices that hang together and that one handle holds.
 struct Support {
   std::size_t handle;  // of the body
   TriMesh surface;     // where the body is at rest [m]

@@ -10,7 +10,7 @@
 namespace supple {
 namespace {
 
-constexpr double slender = 5;  // length over thickness, from which on bending is most of what a body does
+constexpr double slender = 5;  // length over thickness from which on a body mostly bends
 
 // Linear tetrahedra shear where they should bend: the tip of a clamped bar with 1, 2 and 4 cells across sank by 2.95,
 // 6.1 and 8.6 mm where beam theory has 10, so it is 1 + 2.5 / cells^2 times as stiff as it should be.
@@ -28,8 +28,8 @@ std::string text_of_box(const Body& body) {
 
 // Holds what share of a mesh's volume is in elements at its surface.
 struct Layers {
-  double inner = 0;  // in elements that have no vertex on it: there are three across
-  double outer = 0;  // in elements that have all vertices on it, as all have where there is one across
+  double inner = 0;  // share in elements without a vertex on the surface: there are three or more across
+  double outer = 0;  // share in elements with all vertices on the surface, as where one is across
 };
 
 Layers layers_of(const TetMesh& mesh, const Triangles& surface) {
@@ -48,7 +48,7 @@ Layers layers_of(const TetMesh& mesh, const Triangles& surface) {
   return {layers.inner / volume, layers.outer / volume};
 }
 
-// Returns the thickness that half of a surface has less than.
+// Returns the median thickness of a body, by the area of its surface.
 double middle_thickness(const TriMesh& boundary) {
   std::vector<ThicknessSample> samples = sampled_thickness(boundary);
   return samples.empty() ? HUGE_VAL : samples[samples.size() / 2].thickness;

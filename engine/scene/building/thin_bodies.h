@@ -7,8 +7,8 @@
 
 namespace supple {
 
-// Tells of a slender body that is one or two elements across; empty for all others, for cloth too. What is thin about a
-// body that is compact in the main, such as an ear, does not count.
+// Tells of a slender body that is one or two elements across; empty for all others, for cloth too. A thin part of a
+// body that is compact otherwise, such as an ear, does not count.
 std::string thinness_text(const Body& body);
 
 }  // namespace supple

@@ -19,8 +19,8 @@ Warning at(WarningKind kind, const FilePlace& place, std::string message) {
   return {kind, {place, std::move(message)}};
 }
 
-constexpr double stiff_crossing = 300;  // above it, ten iterations leave a visible error
-constexpr double soft_crossing = 1;     // below it, no wave crosses the body in a step
+constexpr double stiff_crossing = 300;  // above this number, ten iterations leave a visible error
+constexpr double soft_crossing = 1;     // below this number, no wave crosses the body in a step
 
 // Tells whether a body starts as a line or a point and has a material whose forces cannot restore it: laws in F alone
 // and springs have no force across a body that is flat in two directions.
@@ -32,7 +32,7 @@ bool stays_flat(const Body& body) {
 }
 
 // Warns of a solid that its own weight stretches or squashes by more than its size: rho g L / k, where it hangs or
-// stands. No material here means such strains, and ten iterations do not find them.
+// stands. No material here is meant for such strains, and ten iterations do not reach them.
 void warn_of_weight(const SceneDef& scene, const Body& body, const Bounds& box, std::vector<Warning>& list) {
   if (body.def.cloth || (body.def.handles.empty() && scene.colliders.empty()) || scene.gravity.isZero(0)) return;
   const double k =
@@ -111,7 +111,7 @@ bool comes_back_from_folds(const Material& material) {
          std::holds_alternative<StrainLimiting>(material);
 }
 
-// Tells whether a collider may stop what falls down a shaft of this width and depth, at any time.
+// Tells whether a collider may stop a body that falls down this shaft, at any time.
 bool may_stop_a_fall(const SceneCollider& collider, const Bounds& shaft) {
   if (is_half_space(collider)) return true;
   std::vector<double> times = {0};

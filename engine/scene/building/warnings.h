@@ -13,28 +13,29 @@ namespace supple {
 // wave crosses the body in one step. When it is far above 1, ten iterations leave a visible error.
 double crossing_number(const Body& body);
 
-// Says what that number means to the solver: "soft for its time step", "firm ..." or "stiff ...".
+// Says what a crossing number means to the solver: "soft for its time step", "firm ..." or "stiff ...".
 std::string stiffness_words(double crossing);
 
 struct Warning {
-  std::optional<WarningKind> kind;  // nothing: it is not about one body
+  std::optional<WarningKind> kind;  // nothing: the warning is not about one body
   Problem problem;                  // points to its place in the scene file
-  bool meant = false;               // the body says so, and it is not said
+  bool meant = false;               // the body says that it is meant, so it is not printed
 };
 
 std::vector<Warning> warnings(const SceneDef& scene, const std::vector<Body>& bodies);
 
-// Tells whether a body says that such a warning is meant.
+// Tells whether a body's definition says that a kind of warning is meant.
 bool is_meant(const BodyDef& body, WarningKind kind);
 
-// Returns what is to be said: all that is not meant.
+// Returns the problems of the warnings that are to be printed: those that are not meant.
 std::vector<Problem> said(std::vector<Warning> list);
 
 // Advises solver.untangle where it is off and a body starts with elements that are inverted or flat, of a material that
 // may stay folded from there (docs/stability.md); empty elsewhere.
 std::string untangle_advice(const Body& body);
 
-// Lists what the scene asks its pictures to show and no run can show while it is made: only drawings of a run can.
+// Lists what the scene asks its pictures to show but is known only after the film: drawings of a finished run can show
+// it, the run itself cannot.
 std::vector<Problem> known_after_film(const SceneDef& scene);
 
 }  // namespace supple

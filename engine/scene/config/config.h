@@ -52,7 +52,7 @@ struct Range {
 // Lists the words that a key may have.
 struct Words {
   std::vector<std::string> allowed;
-  // These are the words of earlier versions, each with what replaces it now.
+  // These are the words of earlier versions, each with the word that replaces it now.
   std::vector<std::pair<std::string, std::string>> former = {};
 };
 
@@ -71,7 +71,7 @@ struct KnownKey {
   std::string path;     // as --set takes it: body.soft.material.mu
   std::string generic;  // as in DocumentedKey
   std::string type, allowed, unit, meaning;
-  std::string value;  // what the file gives, or the default
+  std::string value;  // the value in the file, or the default
 };
 
 // Selects how a value goes from one number to another.
@@ -88,7 +88,7 @@ struct Names<RampRule> {
 class ConfigValue {
  public:
   std::string text() const;        // shortened so that it fits into a message
-  std::string whole_text() const;  // all of it, as people read it: words without quotes
+  std::string whole_text() const;  // the whole value as people read it: words without quotes
   bool is_list_or_number() const;
   // Tells whether a ramp can lead from one value to the other: both must be numbers, or lists (of lists, ...) of
   // numbers with the same structure; a colour "#rrggbb" counts as the list of its channels.
@@ -110,7 +110,7 @@ class ConfigValue {
 // Holds one value of a list, which will be put into another place.
 struct ListedValue {
   ConfigValue value;
-  std::string text;  // whole, as people read it: words without quotes
+  std::string text;  // the whole value as people read it: words without quotes
   FilePlace place;   // where it stands
 };
 
@@ -141,10 +141,10 @@ class Config {
   // body.soft.material.mu. Setting one key of an exclusive group removes the others. Throws InputError.
   void set(const std::string& assignment, const std::vector<std::set<std::string>>& exclusive);
 
-  // Does the same with a value of another file. Messages about the path point to `place`.
+  // Does what set() does, with a value of another file. Messages about the path point to `place`.
   void put(const std::string& path, const ConfigValue& value, const FilePlace& place,
            const std::vector<std::set<std::string>>& exclusive);
-  // Returns nothing when no value has this path.
+  // Returns the value at a path, or nothing when no value has this path.
   std::optional<ConfigValue> value_at(const std::string& path) const;
   // Appends a table of another file to a list of tables, which is created when it does not exist.
   void append(const std::string& list_path, const ConfigValue& table, const FilePlace& place);
@@ -187,8 +187,8 @@ class ConfigTable {
   // Returns the keys in the order of the file, for tables whose keys are names that the user chose.
   std::vector<std::string> keys() const;
 
-  // Each of these functions returns the value. When the key is absent or wrong, it returns the default and records the
-  // problem if there is one. A key without a default is required.
+  // Each of these functions returns the value of a key. When the key is absent or wrong, it returns the default, and
+  // records the problem if there is one. A key without a default is required.
   double number(const Key& key, std::optional<double> fallback, const Range& range) const;
   int integer(const Key& key, std::optional<int> fallback, const Range& range) const;
   bool boolean(const Key& key, bool fallback) const;
@@ -201,7 +201,8 @@ class ConfigTable {
     if (fallback) usual = name_of(*fallback);
     return *value_named<E>(choice(key, std::move(usual), {all_names<E>()}));
   }
-  // Returns nothing when the key is absent or wrong. `fallback`: the default in words, for the documentation.
+  // Returns the value of an enum that the key names; nothing when the key is absent or wrong. fallback: the default in
+  // words, for the documentation.
   template <Named E>
   std::optional<E> word_if_given(const Key& key, const char* fallback) const {
     return value_named<E>(choice_if_given(key, fallback, {all_names<E>()}));

@@ -122,17 +122,18 @@ void ConfigTable::wrong(const Key& key, const toml::node& node, const std::strin
 
 namespace {
 
-// Formulas raise numbers to the fourth power and multiply several of them; far beyond what any unit needs, their
-// products would leave the range of a double in a place that no longer knows the key.
+// The largest number that a file may give, far more than any unit needs. Formulas raise numbers to the fourth power and
+// multiply several of them; with larger numbers they would leave the range of a double in a place that no longer knows
+// the key.
 constexpr double most_of_any = 1e30;
 
-bool is_usable(double value) { return std::abs(value) <= most_of_any; }  // false for what is not finite
+bool is_usable(double value) { return std::abs(value) <= most_of_any; }  // false for infinities and NaN
 
 std::string usable_text(double value) {
   return std::isfinite(value) ? fmt::format("between {:g} and {:g}", -most_of_any, most_of_any) : "finite";
 }
 
-// Says what the numbers of a list must be, by the first that is none of that.
+// Says what the numbers of a list must be, by the first number that is not.
 std::string all_usable(const toml::node& node) {
   std::string text = "finite";
   walk(node, [&text](const toml::node& inner) {

@@ -1,4 +1,4 @@
-// How a text becomes a document: what the parser does not refuse by itself, or not in words, is found here.
+// Makes a document of a text, and finds the errors that the parser does not refuse by itself, or not in clear words.
 #include "scene/config/toml_document.h"
 
 #include <algorithm>
@@ -19,8 +19,8 @@ namespace {
   throw InputError({Problem{{name, int(line) + 1, int(column) + 1}, "not TOML: " + message}});
 }
 
-// Returns where a string that begins at `at` ends, or the text's end. One that is not closed ends with its line; the
-// parser refuses it there.
+// Returns where a string that begins at `at` ends, or the text's end. A string that is not closed ends with its line;
+// the parser refuses it there.
 std::size_t end_of_string(std::string_view text, std::size_t at) {
   const char quote = text[at];
   const std::string three(3, quote);

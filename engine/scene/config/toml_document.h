@@ -4,9 +4,9 @@
 
 #include <cstdint>  // the parser uses it and does not include it
 
-// The parser takes its assertions for a part of handling malformed files, and without them promises the compiler that
-// they hold. They stay in any build, and throw: parsed_toml() reports what they find as an error of syntax. None of
-// those that a file can reach stands in a function or a destructor that must not throw.
+// The parser relies on its assertions to handle malformed files; in a build without them it promises the compiler that
+// they hold. So they stay in any build, and throw: parsed_toml() reports a failed one as an error of syntax. None of
+// the assertions that a file can reach is in a function or a destructor that must not throw.
 #undef NDEBUG
 namespace supple {
 struct TomlAssertion {};
@@ -15,8 +15,8 @@ struct TomlAssertion {};
 #define TOML_ASSERT(expr) ((expr) ? static_cast<void>(0) : ::supple::toml_assertion_failed())
 // Documents are walked, copied and destroyed by recursion, so their depth is bounded.
 #define TOML_MAX_NESTED_VALUES 32
-// Letters beyond ASCII in the place of a key reach what the parser's tables of characters call unreachable, which is
-// undefined behaviour. There, such a letter is none of the characters that are asked for.
+// Letters beyond ASCII in the place of a key reach code that the parser marks as unreachable, which is undefined
+// behaviour. Here that code answers that the letter is not one of the characters asked for.
 #include <toml++/impl/preprocessor.h>
 #undef TOML_UNREACHABLE
 #define TOML_UNREACHABLE return false
@@ -42,7 +42,7 @@ struct Config::Content {
   std::map<const toml::table*, std::vector<std::string>> asked;  // the keys that readers asked for, by table
   std::vector<DocumentedKey> documented;
   std::vector<KnownKey> known;
-  std::unordered_set<std::string> known_paths, documented_keys;  // what the two lists hold, to look it up
+  std::unordered_set<std::string> known_paths, documented_keys;  // the contents of the two lists, for looking up
   std::shared_ptr<KnownSurfaces> surfaces;
   // Holds the places of the originals of copied nodes, because the parser does not copy them.
   std::map<const toml::node*, toml::source_region> moved;
@@ -95,7 +95,7 @@ void walk(const toml::node& node, const Visit& visit) {
 toml::table parsed_toml(std::string_view text, const std::string& name);
 inline constexpr std::size_t most_words = 32;
 
-// Reads a colour that is written as "#rrggbb" [sRGB, 0 to 1]; nothing where the text is something else.
+// Reads a colour that is written as "#rrggbb" [sRGB, 0 to 1]; returns nothing for any other text.
 std::optional<Vec3> hex_color(const std::string& text);
 
 // Writes a value as messages show it.

@@ -9,7 +9,7 @@ namespace supple {
 
 // Moves an object that the scene file places at rest.
 struct KeyedMotion {
-  Vec3 center = Vec3(0, 0, 0);  // what keys turn about [m]
+  Vec3 center = Vec3(0, 0, 0);  // the point that keys turn about [m]
   Ease ease = Ease::smooth;
   std::vector<MotionKey> keys;
 

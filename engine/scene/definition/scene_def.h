@@ -1,7 +1,7 @@
 // Defines a scene as its file describes it: plain nested structs with defaults, in SI units, with angles in degrees
-// where the name says so. The defaults here are those of the file format, but where a file must
-// give a value, or its default depends on other keys: the readers set those. Nothing is built yet (assemble.h), and
-// nothing here depends on scene files or TOML (scene_reader.h).
+// where the name says so. The defaults here are those of the file format, except for values that a file must give and
+// defaults that depend on other keys: the readers set those. Nothing is built yet (assemble.h), and nothing here
+// depends on scene files or TOML (scene_reader.h).
 #pragma once
 
 #include <filesystem>
@@ -99,8 +99,8 @@ struct ClothDef {
 
 // Describes how the steps of a body are solved: the table [solver]. `settings` are part of every step's inputs and cost
 // nothing to change. The other members are built into the model (fit, precision, integrator, damping: assemble.cpp),
-// select the rule for directions (method), or are read by the body's driver (untangle). live_keys.cpp defines what a
-// change of each costs.
+// select the rule for directions (method), or are read by MovingBody (untangle). live_keys.cpp defines what a change of
+// each costs.
 struct SolverDef {
   Method method = Method::quasi_newton;
   SolverSettings settings;
@@ -113,8 +113,8 @@ struct SolverDef {
 
 // Chooses what is done about a body that starts inside a collider.
 enum class StartInside {
-  move,   // it is moved out when a small move is enough, or else pushed out
-  push,   // it is pushed out while the film runs
+  move,   // the body is moved out when a small move is enough, or else pushed out
+  push,   // the body is pushed out while the film runs
   error,  // the scene is refused
 };
 template <>
@@ -125,9 +125,9 @@ struct Names<StartInside> {
 
 // Tells which pieces of a surface become bodies.
 enum class Pieces {
-  join,     // those that overlap or touch are one body, all others have their own
-  largest,  // the largest after joining
-  bodies,   // each has its own
+  join,     // pieces that overlap or touch are one body; any other piece is a body of its own
+  largest,  // only the largest piece, after joining, becomes a body
+  bodies,   // each piece is a body of its own
 };
 template <>
 struct Names<Pieces> {
@@ -158,18 +158,18 @@ struct BodyDef {
   std::filesystem::path surface;
   SurfaceOptions surface_options;
   Pieces pieces = Pieces::join;                     // of the surface
-  std::shared_ptr<const BodySurface> read_surface;  // what was read of it; null: nothing yet
-  std::size_t piece = 0;                            // of that surface, which is this body
+  std::shared_ptr<const BodySurface> read_surface;  // what was read of `surface`; null: nothing yet
+  std::size_t piece = 0;                            // number of the surface's piece that is this body
   std::filesystem::path mesh;
   std::optional<BoxDef> box;
   std::optional<ClothDef> cloth;
   int vertices = 0;               // of the tetrahedra made from a shape
   std::optional<double> size;     // longest side; otherwise the file's units are metres [m]
-  double scale = 1;               // where there is no size
+  double scale = 1;               // used where no size is given
   Vec3 position = Vec3(0, 0, 0);  // of the middle of the bounding box's bottom [m]
   Vec3 turn_deg = Vec3(0, 0, 0);
   std::optional<double> density;     // [kg/m^3]; of cloth [kg/m^2]
-  std::optional<double> total_mass;  // spread over the volume, of cloth over the area [kg]
+  std::optional<double> total_mass;  // spread over the volume, or over the area of cloth [kg]
   SubstanceDef substance;            // of solids
   StartDef start;
   StartInside start_inside = StartInside::move;
@@ -178,8 +178,8 @@ struct BodyDef {
   std::vector<HandleDef> handles;
   SolverDef solver;
   Pattern pattern = Pattern::none;
-  std::optional<double> pattern_size;  // edge of its squares [m]
-  std::optional<Vec3> color;           // over the shape's own [sRGB]
+  std::optional<double> pattern_size;  // edge of the pattern's squares [m]
+  std::optional<Vec3> color;           // replaces the shape's own colours [sRGB]
   ColorSource colors = ColorSource::usual;
   std::optional<double> gloss;  // of the uncovered surface
   double skin_cells = 0;        // cells of the drawn skin along the longest side
@@ -204,7 +204,7 @@ struct ColliderDef {
   FilePlace place;
 };
 
-// A place of the camera on its way. Values that a key does not have come from the keys before and after it.
+// Describes a place of the camera on its way. Values that a key does not have come from the keys before and after it.
 struct CameraKey {
   double time = 0;                                   // [s]
   std::optional<Vec3> position, target;              // [m]
@@ -216,15 +216,15 @@ struct CameraKey {
 // Names what a camera without a place of its own has in the picture.
 enum class Framed {
   start,  // the bodies where they start, and the ground below those that will fall
-  film,   // their whole motion, which a rough first pass finds, or a drawing knows
+  film,   // the bodies' whole motion, which a rough first pass finds, or a drawing knows
 };
 template <>
 struct Names<Framed> {
   static constexpr std::array table = {Name{Framed::start, "start"}, Name{Framed::film, "film"}};
 };
 
-// Without a position the eye stands in the direction of azimuth and elevation, as far away as it must to see all
-// bodies.
+// Describes the camera. Without a position, the eye stands in the direction of azimuth and elevation, just far enough
+// away to see all bodies.
 struct CameraDef {
   std::optional<Vec3> position, target;  // [m]
   double azimuth_deg = 30, elevation_deg = 14;
@@ -232,8 +232,8 @@ struct CameraDef {
   double fov_deg = 30;             // vertical
   Framed frames = Framed::start;
   double margin = 1.25;  // air around the bodies when they are framed
-  double orbit_deg = 0;  // that the eye goes round the target [degrees/s]
-  std::string follow;    // the body or collider that it moves along with; empty: none
+  double orbit_deg = 0;  // how fast the eye goes round the target [degrees/s]
+  std::string follow;    // the body or collider that the camera moves along with; empty: none
   Ease ease = Ease::smooth;
   std::vector<CameraKey> keys;  // in order of time
 
@@ -315,9 +315,9 @@ struct FieldDef {
 
 // Chooses what pictures say in words; each part can be switched.
 struct TextDef {
-  // These stand in the upper left corner.
+  // The title and the time stand in the upper left corner.
   bool title = false, time = false;
-  // These stand below the caption of each body, and tell of its steps in the frame.
+  // These numbers stand below the caption of each body, and tell of its steps in the frame.
   bool method = false, milliseconds = false, iterations = false, error = false;
   bool notes() const { return method || milliseconds || iterations || error; }
   // These are small graphs over the film so far, in a corner.
@@ -328,7 +328,7 @@ struct OutputDef {
   int width = 1280;
   int height = 720;
   int samples = 4;      // of antialiasing, a pixel
-  bool energy = false;  // kinetic, elastic and gravitational, each frame
+  bool energy = false;  // whether kinetic, elastic and gravitational energy are computed each frame
 };
 
 struct SceneDef {
@@ -346,7 +346,7 @@ struct SceneDef {
   FieldDef field;
   TextDef text;
   OutputDef output;
-  std::size_t sweep_points = 0;  // of the [sweep] table (sweep.h), which a scene that is run alone leaves aside
+  std::size_t sweep_points = 0;  // points of the [sweep] table (sweep.h), which a scene that is run alone ignores
   std::filesystem::path assets;
 
   double time_step() const { return 1 / (fps * substeps); }

@@ -9,20 +9,20 @@ namespace supple {
 
 enum class WarningKind {
   slivers,    // flat elements
-  handle,     // it jumps when it grabs, or is soft for its load
+  handle,     // a handle jumps when it grabs, or is soft for its load
   turning,    // one level keeps the body from turning
-  stiffness,  // more than the iterations solve
+  stiffness,  // the body is stiffer than the iterations can solve
   inside,     // the body starts inside a collider
-  fall,       // through the ground that the film shows
-  material,   // without force, or softening, where the body is
-  weight,     // strains the body
-  size,       // small for its steps
-  regions,    // of stiffnesses that are far apart
+  fall,       // the body falls through the ground that the film shows
+  material,   // it gives no force, or softens, in the body's state
+  weight,     // the body's weight strains it much
+  size,       // the body is small for its steps
+  regions,    // their stiffnesses are far apart
   thin,       // a bar or a plate with few elements across
-  delay,      // of chebyshev, which leaves no iteration
-  overlap,    // of two bodies
-  skin,       // reaches far beyond the elements
-  unsolved,   // steps, known at the end of a film
+  delay,      // chebyshev's delay leaves no iteration to accelerate
+  overlap,    // two bodies are in the same place
+  skin,       // the skin reaches far beyond the elements
+  unsolved,   // steps are left unsolved; known at the end of a film
 };
 template <>
 struct Names<WarningKind> {

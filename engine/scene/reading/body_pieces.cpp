@@ -12,8 +12,8 @@
 namespace supple {
 namespace {
 
-constexpr double touching_gap = 0.005;  // nearer parts touch; by the diagonal of the whole
-constexpr double crumb = 0.005;         // smaller pieces are left out; by the volume of all
+constexpr double touching_gap = 0.005;  // parts with a smaller gap touch; over the diagonal of the whole
+constexpr double crumb = 0.005;         // smaller pieces are left out; over the volume of all pieces
 
 std::vector<std::string> text_of_pieces(const SurfacePieces& found, std::size_t kept, Pieces rule) {
   const std::size_t count = found.pieces.size();

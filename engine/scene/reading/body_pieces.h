@@ -1,4 +1,5 @@
-// Makes bodies of the pieces of a surface: one for each piece, with the settings of the table that names the surface.
+// Makes bodies of the pieces of a surface: one body for each piece, with the settings of the table that names the
+// surface.
 #pragma once
 
 #include "geometry/skins/surface_colors.h"
@@ -17,16 +18,16 @@ struct BodySurface {
   std::string found;                                         // which colours the file has, in words; empty: none
   std::vector<std::string> notes;
   bool touching = false;  // whether parts of a piece are near each other without an overlap
-  Bounds box;             // of all that was read [m]
+  Bounds box;             // box of all that was read [m]
   Positions whole;        // the vertices of all pieces together
 };
 
 // Reads a surface and takes it apart by the body's rule. Throws InputError.
 BodySurface read_body_surface(const BodyDef& body);
 
-// Returns the body itself, or where its surface has several pieces one body for each: they share its vertices by
-// volume, and are named after it with numbers. The surfaces of a scene are read once for a Config and its copies.
-// Problems are recorded in the table's Config.
+// Returns the body itself. Where its surface has several pieces, returns one body for each: these share its number of
+// vertices by volume, and have its name with a number. The surfaces of a scene are read once for a Config and its
+// copies. Problems are recorded in the table's Config.
 std::vector<BodyDef> bodies_of(const ConfigTable& table, BodyDef body);
 
 }  // namespace supple

@@ -237,7 +237,7 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
       body.pieces);
   if (table.has("pieces") && !table.has("surface"))
     table.complain("pieces", "pieces: of a 'surface'; there is none here");
-  // A thickness is one of the finished body, so that the surface must have its size before it is thickened.
+  // A thickness is given for the finished body, so the surface must get its size before it is thickened.
   if (body.surface_options.thickness > 0 && body.size) body.surface_options.size = *body.size;
   body.surface_options.thickness /= body.scale;
   body.position = table.vector({"position", "m", "of the middle of the bounding box's bottom"}, Vec3(0, 0, 0));

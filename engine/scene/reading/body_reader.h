@@ -11,7 +11,7 @@ Ease read_ease(const ConfigTable& table);
 // Reads the list `keys`, in the order of time. `turn`: the meaning of the key turn_deg, for the documentation.
 std::vector<MotionKey> read_keys(const ConfigTable& table, const char* turn);
 
-// `defaults`: the defaults of the body's solver, from the scene's table.
+// Reads the table of a body. defaults: the defaults of the body's solver, from the scene's table.
 BodyDef read_body(const ConfigTable& table, const SolverDef& defaults);
 
 }  // namespace supple

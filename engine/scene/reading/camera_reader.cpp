@@ -75,7 +75,7 @@ CameraDef read_camera(const ConfigTable& table, CameraDef camera) {
   camera.frames = table.word<Framed>(
       {"frames", "", "what is in the picture: the bodies as they start, or their whole motion, by a first pass"},
       camera.frames);
-  // The box of the whole motion is larger than what is seen of it, so that less air is enough.
+  // The box of the whole motion is larger than the bodies are at any one time, so less air is enough.
   if (camera.frames == Framed::film) camera.margin = 1.05;
   camera.margin = table.number({"margin", "",
                                 "air around the bodies, 1.05 for the whole motion; without position and "

@@ -6,7 +6,8 @@
 
 namespace supple {
 
-// Records problems in the table's Config: keys that contradict each other, and a motion out of order.
+// Reads the table. Records problems in its Config: keys that contradict each other, and keys of a motion that are not
+// in order of time.
 CameraDef read_camera(const ConfigTable& table, CameraDef camera);
 
 }  // namespace supple

@@ -7,7 +7,7 @@
 
 namespace supple {
 
-// Records problems in the config. The result may be used only if there are none.
+// Reads the scene. Records problems in the config; the result may be used only if there are none.
 SceneDef read_scene(Config& config);
 
 // Loads a file, applies the "path=value" settings in order, and reads the scene. Throws InputError with all problems.

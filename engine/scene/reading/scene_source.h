@@ -13,8 +13,8 @@ namespace supple {
 struct SceneSource {
   static constexpr const char* standard_input = "<stdin>";  // in the place of a file's name
 
-  std::filesystem::path path;       // messages name it, and files that the scene names lie beside it
-  std::optional<std::string> text;  // nothing: the file's
+  std::filesystem::path path;       // the file that messages name, and beside which files lie that the scene names
+  std::optional<std::string> text;  // the scene's text; nothing: the text is in the file
 
   template <std::convertible_to<std::filesystem::path> Path>
   SceneSource(const Path& file) : path(file) {}  // NOLINT: a file's name is a source

@@ -48,7 +48,7 @@ ClosedSurface known_surface(Config& config, const std::filesystem::path& file, c
   return at->second.surface;
 }
 
-// A body has a size and a place of its own; a part has them in the shape's frame.
+// Reads the surface of a part, which has its size and place in the shape's frame; a body has its own.
 SurfaceOptions read_part_surface(const ConfigTable& part) {
   SurfaceOptions options = read_surface_options(part);
   options.size =
@@ -125,7 +125,7 @@ std::optional<Primitive> read_primitive(const ConfigTable& part, Shape& shape, i
   return result;
 }
 
-// Refuses a first part that cuts or intersects: there is no solid yet that it could be applied to.
+// Refuses a first part that cuts or intersects: there is no solid yet to which it could be applied.
 void need_solid(const ConfigTable& table, const ShapePart& first) {
   if (first.combine != Combine::add)
     table.complain("op", "op: the first part must be added; there is nothing to cut or intersect yet");

@@ -6,7 +6,7 @@
 
 namespace supple {
 
-// Keys that are absent keep their defaults.
+// Reads the table. Keys that are absent keep their defaults.
 SolverDef read_solver(const ConfigTable& table, const SolverDef& defaults);
 
 }  // namespace supple

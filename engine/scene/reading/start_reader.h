@@ -6,7 +6,7 @@
 
 namespace supple {
 
-// Returns a start at rest when the body has no such table.
+// Reads how a body starts: at rest when it has no such table.
 StartDef read_start(const ConfigTable& body);
 
 }  // namespace supple

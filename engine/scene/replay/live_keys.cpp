@@ -7,7 +7,7 @@ namespace supple {
 namespace {
 
 struct LivePattern {
-  std::string_view path;  // covers itself and all that is below it
+  std::string_view path;  // the pattern, which covers this path and all below it
   ChangeCost cost;
 };
 
@@ -121,7 +121,7 @@ std::vector<LiveKey> live_keys(const Config& config) {
   std::vector<LiveKey> result;
   for (const KnownKey& key : config.known()) {
     if (key.type == "table" || key.type == "list of tables") continue;  // their keys are listed one by one
-    if (names_no_entry(key.path)) continue;  // keys and parts of a shape: their list changes as a whole
+    if (names_no_entry(key.path)) continue;  // keys of motions and parts of shapes, whose list changes as a whole
     if (key.generic == "body[].handles[].stiffness" && key.value.find("hard") != std::string::npos)
       continue;  // a hard handle stays hard
     const auto cost = cost_of_change(key.path);

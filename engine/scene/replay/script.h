@@ -12,8 +12,8 @@ namespace supple {
 struct TimedChange {
   std::string path;    // as --set takes it
   std::string object;  // the name of the body or collider that the value belongs to; empty: the whole scene
-  double at = 0;       // when it begins [s]
-  double over = 0;     // how long it takes; 0: a jump [s]
+  double at = 0;       // when the change begins [s]
+  double over = 0;     // how long the change takes; 0: a jump [s]
   Ease ease = Ease::smooth;
   RampRule by = RampRule::difference;
   bool whole = false;  // the values of a ramp are rounded to whole numbers
@@ -26,7 +26,7 @@ struct TimedChange {
   std::optional<double> done_at(double time) const;
 };
 
-// Combines what these changes require to be recomputed for one body or collider.
+// Returns all that these changes require to be recomputed for one body or collider.
 ChangeCost cost_for(const std::string& name, const std::vector<TimedChange>& changes);
 
 class Script {

@@ -145,7 +145,7 @@ void Script::Parts::check_at(double time, const std::string& when, Reported& rep
     try {
       made = beyond(found, problems_of(document_at(time, changes.size(), i)));
     } catch (const InputError&) {
-      continue;  // the paths of other changes lead into the value of this one
+      continue;  // the paths of other changes lead into the value of this change
     }
     if (made.empty()) continue;
     for (const Problem& problem : made) reported.texts.insert(problem.text());
@@ -155,8 +155,8 @@ void Script::Parts::check_at(double time, const std::string& when, Reported& rep
   for (Problem& problem : found) report(std::move(problem), when, reported);
 }
 
-// Checks the frames in which changes are at work: all of them up to most_checked, and of longer films those that are
-// spread evenly, with those between where one is found to be wrong.
+// Checks the frames in which changes are at work. Where there are more than most_checked, checks evenly spread ones,
+// and those between where one of them is wrong.
 void Script::Parts::check_frames(Reported& reported) {
   std::vector<int> frames;
   for (int frame = 0; frame < start.frames; ++frame) {

@@ -56,7 +56,7 @@ void open_tables(Config& document);
 // Returns the table that a path leads into; empty at the top.
 std::string table_of(const std::string& path);
 
-// Does the same for the table that a path leads into, where it can be there.
+// Adds the table that a path leads into, where a scene may have such a table.
 void open_table_of(Config& document, const std::string& path);
 
 }  // namespace supple

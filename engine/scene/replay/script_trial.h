@@ -12,7 +12,7 @@ namespace supple {
 // InputError with all that the bodies refuse.
 void try_changes(const Script& script, std::vector<Body> bodies);
 
-// Lists what is legal but unwise in a scene and its changes.
+// Lists what is legal but unwise in a scene and its changes, as warnings.
 std::vector<Warning> all_warnings(const Script& script, const std::vector<Body>& bodies);
 
 }  // namespace supple

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double unreached = std::numeric_limits<double>::infinity();
 
-// Of equal distances the first counts, also where round-off makes them differ: a body that is turned as a whole has the
-// same clusters.
+// Tells whether a distance is less by more than round-off. Of equal distances the first one counts, so a body that is
+// turned as a whole has the same clusters.
 bool is_clearly_less(double a, double b) { return a < b * (1 - 1e-9); }
 
 // Holds the edges of the tetrahedra around each vertex.
@@ -71,7 +71,8 @@ using Distances = std::vector<std::vector<double>>;
 
 bool has_tetrahedra(const EdgeGraph& graph, std::int32_t v) { return graph.begin[v] < graph.begin[v + 1]; }
 
-// Returns the vertex with the largest of these distances, which may be infinite; those without tetrahedra are left out.
+// Returns the vertex with the largest of these distances, which may be infinite; vertices without tetrahedra are left
+// out.
 std::int32_t furthest_vertex(const EdgeGraph& graph, const std::vector<double>& distance) {
   std::int32_t furthest = -1;
   for (std::int32_t v = 0; v < std::ssize(distance); ++v) {
@@ -152,15 +153,15 @@ void set_weights(const Distances& distances, std::size_t v, Clusters& clusters) 
     clusters.of[v][k] = near[k].second;
     sum += clusters.weight[v][k] = share * share;
   }
-  // All centres at the same distance leave no weight; they then share alike.
+  // Centres that are all at the same distance get no weight by the formula; they then share alike.
   for (int k = 0; k < count; ++k) clusters.weight[v][k] = sum > 0 ? clusters.weight[v][k] / sum : 1.0 / count;
 }
 
 }  // namespace
 
-// A body of a thousand vertices whose parts are as thick as they are long has eight. Slender ones have up to four times
-// as many: a bar bends between its ends. A cluster of fewer than a dozen vertices would hardly differ from the first
-// level.
+// A body of a thousand vertices whose parts are as thick as they are long has eight clusters. Slender bodies have up to
+// four times as many, because a bar bends between its ends. A cluster of fewer than a dozen vertices would hardly
+// differ from the first level.
 int wanted_clusters(const Model& model) {
   constexpr int vertices_a_cluster = 100, least_vertices_a_cluster = 12, least = 4, most = 12;
   double volume = 0;

@@ -17,8 +17,8 @@ struct Clusters {
   static constexpr int most_of_vertex = 3;
 
   std::vector<std::int32_t> center;  // by cluster: the vertex at its centre
-  // By vertex, held ones too: clusters and weights, which add up to 1; a vertex that belongs to fewer has weights of 0,
-  // and one that no centre reaches has nothing else.
+  // These list the clusters of each vertex (held ones too) and their weights, which add up to 1. Where a vertex belongs
+  // to fewer than most_of_vertex clusters, the other weights are 0; if no centre reaches it, all are.
   std::vector<std::array<std::int32_t, most_of_vertex>> of;
   std::vector<std::array<double, most_of_vertex>> weight;
 

@@ -1,5 +1,5 @@
-// The part of CoarseSystem that steps use: its matrices in a pose, forces and motions of clusters, and their turns.
-// What a model has for good is in coarse_system.cpp.
+// Implements the part of CoarseSystem that steps use: its matrices in a pose, forces and motions of clusters, and their
+// turns. The parts that do not change with the pose are in coarse_system.cpp.
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <Eigen/SVD>
@@ -104,7 +104,7 @@ Four cross(const Four& a, const Four& b) {
          __builtin_shuffle(a, last) * __builtin_shuffle(b, next);
 }
 
-constexpr int cluster_numbers = 8;  // of sums: a force and a torque, or a shift and a turn, each with a fourth number
+constexpr int cluster_numbers = 8;  // a force and a torque, or a shift and a turn, each with a fourth number
 
 }  // namespace
 

@@ -12,7 +12,7 @@ namespace supple {
 namespace {
 
 constexpr int functions = 4;                // of a cluster: w_c, and w_c (X - O)_j
-constexpr int coordinates = 3 * functions;  // of displacements that are made of these functions
+constexpr int coordinates = 3 * functions;  // coordinates of displacements that are made of these functions
 constexpr int motions = CoarseSystem::motions_of_cluster;
 
 using FunctionBlock = Eigen::Matrix<double, coordinates, coordinates>;
@@ -29,8 +29,8 @@ Eigen::Matrix<double, coordinates, motions> motions_by_functions() {
   return p;
 }
 
-// Returns the cluster with the largest sum of weights at the corners of an element, the first of those that are equal
-// but for round-off.
+// Returns the cluster with the largest sum of weights at the corners of an element, or the first of several that are
+// equal but for round-off.
 std::int32_t strongest(const Clusters& clusters, const ElementView& element) {
   std::map<std::int32_t, double> sums;
   for (const std::int32_t v : element.corner) {
@@ -197,17 +197,17 @@ void CoarseSystem::add_gradients(const Model& model) {
 
 namespace {
 
-// Holds what the energies of a region are at rest: mu |e|^2 + lambda/2 tr^2 e + kappa/2 (d . e d)^2 with the strain e
-// and the fibres' direction d, beside grad u : grad u K / 2 of the paper's L.
+// Holds the stiffness of a region at rest. Its energy is mu |e|^2 + lambda/2 tr^2 e + kappa/2 (d . e d)^2 with the
+// strain e and the fibres' direction d; the energy of the paper's L is grad u : grad u K / 2.
 struct RegionStiffness {
-  RestModuli moduli;  // with the share of k that keeps materials without stiffness at rest from having none [Pa]
+  RestModuli moduli;  // with a share of k, so that no material is without stiffness [Pa]
   double kappa = 0;   // [Pa]
   Vec3 fibre = Vec3::Zero();
   Mat3 constant = Mat3::Zero();  // K [Pa]
 };
 
-// A material may have no stiffness at rest, as the polynomial, but a step meets some: a tenth is that of k, which is
-// fitted over an interval, in a form that costs nothing where an element turns.
+// A material such as the polynomial has no stiffness at rest, but resists within a step. So a tenth of the stiffness is
+// that of k, which is fitted over an interval, in a form that costs no energy where an element turns.
 RegionStiffness stiffness_of(const Model& model, int region) {
   constexpr double share_of_constant = 0.1;
   const double k = model.stiffness[region].k;
@@ -251,7 +251,7 @@ FunctionBlock rest_stiffness(const FunctionBlock& gradients, const RegionStiffne
   return result;
 }
 
-// Returns what is the same for x, y and z, by pairs of functions: masses and springs of handles.
+// Returns the stiffness of masses and springs of handles, by pairs of functions; it is the same for x, y and z.
 FunctionBlock point_stiffness(const Eigen::Ref<const Eigen::Matrix<double, functions, functions>>& products) {
   FunctionBlock result;
   for (int i = 0; i < functions; ++i) {

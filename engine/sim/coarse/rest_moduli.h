@@ -9,7 +9,7 @@ struct RestModuli {
   double mu = 0, lambda = 0;  // of mu |e|^2 + lambda/2 tr^2 e [Pa]
 };
 
-// Both are 0 where the material has no stiffness at rest, as the polynomial.
+// Returns the moduli of a material. Both are 0 where it has no stiffness at rest, like the polynomial.
 RestModuli rest_moduli(const Material& material);
 
 }  // namespace supple

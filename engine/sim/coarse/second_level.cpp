@@ -2,8 +2,8 @@
 
 namespace supple {
 
-// A motion that hardly moves any free vertex has next to no inertia. The same little stiffness is added to both
-// matrices, so that it is taken out again.
+// A motion that hardly moves any free vertex has next to no inertia. So that both matrices can be inverted, the same
+// small stiffness is added to both; it cancels in D.
 bool SecondLevel::begin(const Model& model, const Positions& x) {
   ++pose_;
   system_.make(model);

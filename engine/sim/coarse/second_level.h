@@ -19,12 +19,12 @@ class SecondLevel {
   void prepare(const Model& model) { system_.make(model); }
   const CoarseSystem& system() const { return system_; }
 
-  // Computes D for a search that starts at x. Returns false where there is none: the body has no tetrahedra, or is far
-  // from its rest shape.
+  // Computes D for a search that starts at x. Returns false where there is no D, because the body has no tetrahedra or
+  // is far from its rest shape.
   bool begin(const Model& model, const Positions& x);
 
-  // Moves Z, but not D, to the positions of another iterate: the motions by which parts turn are those about where they
-  // are. With Z where the search began, stiff cubes that were thrown with spin turned 20 to 300 % wrong in an impact.
+  // Moves Z, but not D, to the positions of another iterate: parts turn about the places where they are now. With Z
+  // left where the search began, stiff cubes that were thrown with spin turned 20 to 300 % wrong in an impact.
   void move_to(const Positions& x) {
     ++pose_;
     x_ = x;

@@ -11,7 +11,7 @@ namespace {
 // Returns the direction of an angle, as a cross product.
 Mat3 axis_of(const Vec3& angle) { return cross_matrix(angle / angle.norm()); }
 
-constexpr double least_angle = 1e-8;  // [rad]; what it stretches is round-off
+constexpr double least_angle = 1e-8;  // [rad]; a smaller turn stretches by no more than round-off
 
 }  // namespace
 

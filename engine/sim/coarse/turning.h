@@ -4,9 +4,9 @@
 //
 //   1/2 |e|^2_M / h^2 + 1/2 sum over edges of -L_ij |e_i - e_j - C_ij (x_i - x_j)|^2,   C_ij = R_ij - 1 - [theta_ij]x
 //
-// which is the global step of Projective Dynamics (Bouaziz, Martin, Liu, Kavan, Pauly 2014) with the rotations R that
-// the motion tells in place of those that elements have, and takes one solve with A. theta: by what the clusters of
-// the body turn in the motion (coarse_system.h).
+// which is the global step of Projective Dynamics (Bouaziz, Martin, Liu, Kavan, Pauly 2014) with rotations R that are
+// read from the motion in place of those of the elements, and takes one solve with A. theta is the angle by which the
+// clusters of the body turn in the motion (coarse_system.h).
 #pragma once
 
 #include "sim/coarse/coarse_system.h"
@@ -16,19 +16,19 @@ namespace supple {
 
 class Turning {
  public:
-  // Allocates memory for a model, so that what follows allocates nothing.
+  // Allocates memory for a model, so that the other functions allocate nothing.
   void prepare(const Model& model) {
     by_vertex_.resize(model.vertices);
     right_.resize(model.free, 3);
   }
 
-  // Takes the motion h v from the start of a step. The velocities of backward Euler are those of the chord of the step
-  // before: where a part turned, they seem to widen it, too, which is taken out again.
+  // Takes the motion h v from the start of a step. Backward Euler's velocities are along the chord of the step before.
+  // Where a part turned, they also seem to widen it; this widening is taken out again.
   void take_velocity(const CoarseSystem& system, const Positions& x, const Positions& motion);
-  // Takes a motion from x that is to be a tangent.
+  // Takes a motion from x as the tangent of the turning.
   void take_tangent(const CoarseSystem& system, const Positions& x, const Positions& motion);
 
-  // Returns about the energy that the straight motion takes by stretching what turns [J].
+  // Returns roughly the energy that it takes to stretch the turning parts along the straight motion [J].
   double energy() const { return energy_; }
 
   // Computes e (n_free x 3).

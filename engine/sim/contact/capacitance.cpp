@@ -7,7 +7,7 @@
 namespace supple {
 namespace {
 
-constexpr std::size_t most_axes = 8;  // of a list, before all directions count as coupled with it
+constexpr std::size_t most_axes = 8;  // axes of a list; beyond, all directions count as coupled with it
 constexpr double right_angle = 1e-7;  // cosine below which directions are uncoupled in single precision
 
 // Compares points, of which most are vertices.
@@ -21,8 +21,8 @@ bool alike(const StiffDirection& s, const StiffDirection& t) {
          std::abs(s.stiffness - t.stiffness) <= 0.1 * s.stiffness;
 }
 
-// Takes from `left`, which is sorted by first vertex, the direction that is like another one. Returns whether there is
-// one; those that were taken are marked.
+// Takes the direction that is like `wanted` from `left`, which is sorted by first vertex, and marks it in `taken`.
+// Returns whether there is one.
 bool take_alike(const std::vector<StiffDirection>& left, const StiffDirection& wanted, std::vector<bool>& taken) {
   const std::int32_t first = wanted.point.vertex[0];
   auto at = std::lower_bound(left.begin(), left.end(), first,
@@ -78,8 +78,9 @@ void Capacitance::begin_step(const System& system) {
   if (entries_.stored_numbers() > system.factor.stored_numbers()) entries_.clear();
 }
 
-// Directions that the system has already stay where they are, and new ones are added at the end: what is before the
-// first one that has gone keeps its factor. The contacts for which the last direction was bent are such new ones.
+// Directions that the system has already stay where they are, and new ones are added at the end: all directions before
+// the first one that has gone keep their factor. The contacts for which the last direction was bent give such new
+// directions.
 bool Capacitance::set(const System& system, const std::vector<StiffDirection>& wanted, Threads* threads) {
   std::vector<StiffDirection> before, ordered;
   std::vector<CoupledDirections> lists_before;
@@ -144,7 +145,7 @@ bool Capacitance::append(const System& system, const std::vector<StiffDirection>
   return false;
 }
 
-// Returns the entry of A^-1 between two points: the mean of those among their vertices, by both points' weights.
+// Returns the entry of A^-1 between two points: the mean of the entries among their vertices, by both points' weights.
 float Capacitance::entry(const ContactPoint& a, const ContactPoint& b) const {
   if (a.is_vertex() && b.is_vertex()) return entries_.entry(a.vertex[0], b.vertex[0]);
   double sum = 0;

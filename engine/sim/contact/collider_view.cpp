@@ -6,7 +6,7 @@
 namespace supple {
 namespace {
 
-constexpr int most_marches_of_ray = 200;  // of a ray; one that needs more only grazes the surface
+constexpr int most_marches_of_ray = 200;  // a ray that needs more only grazes the surface
 // Below this angle, the arc through a turning frame leaves its chord by less than 0.13 % of the distance to the axis.
 constexpr double least_bend = 0.1;
 
@@ -15,10 +15,10 @@ bool opposite(const Vec3& a, const Vec3& b) { return a.dot(b) < -0.5; }
 // Tells whether two normals belong to one smooth side.
 bool on_one_side(const Vec3& a, const Vec3& b) { return a.dot(b) > 0.5; }
 
-// Tells whether a place inside belongs to the surface by which its way entered, and not to the closest one: where they
-// are two sides of a wall or, for what was outside, two sides of an edge, unless it is ten times as deep below the
-// former. A vertex that falls on a thin bar beside its edge would otherwise be thrown off sideways. What was inside
-// already may slide around the edge.
+// Tells whether a place inside belongs to the surface by which its way entered, and not to the closest one. That is so
+// where the two are sides of a wall or, for a vertex that was outside, sides of an edge, unless the place is ten times
+// as deep below the entered surface. A vertex that falls on a thin bar beside its edge would otherwise be thrown off
+// sideways. A vertex that was inside already may slide around the edge.
 bool is_held_by(const SurfacePoint& entered, const SurfacePoint& closest, const Way& way, bool was_outside) {
   constexpr double far_deeper = 10;
   if (opposite(closest.normal, entered.normal)) return true;
@@ -126,7 +126,7 @@ std::optional<ColliderView::Entry> ColliderView::entry(const Way& way, double fi
 bool ColliderView::leads_through(const Way& way, double field_at_a, double field_at_b) const {
   const double to_a = field_at_a + collider_.thickness, to_b = field_at_b + collider_.thickness;
   if (to_a <= 0 || to_b <= 0) return true;
-  if (to_a + to_b > (1 + 1e-9) * way.length) return false;  // the balls without triangles around the ends hold the way
+  if (to_a + to_b > (1 + 1e-9) * way.length) return false;  // the balls without triangles around both ends cover it
   return shape_.entry(way.a, way.b).has_value();
 }
 

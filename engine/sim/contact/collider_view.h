@@ -21,7 +21,7 @@ struct ColliderTraits {
 struct Way {
   Vec3 q, x;      // in the world [m]
   Vec3 a, b;      // its ends in the collider's frame [m]
-  double length;  // of the way, or more [m]
+  double length;  // the way's length, or a bound above it [m]
 };
 
 class ColliderView {
@@ -45,7 +45,7 @@ class ColliderView {
 
   // Returns where a way is after a share of the step.
   Vec3 at(const Way& way, double share) const;
-  // Returns how fast it leads there, in metres a step.
+  // Returns the velocity of a point on its way after a share of the step, in metres a step.
   Vec3 pace(const Way& way, double share) const;
   // Returns the motion of the collider in the rest of the step.
   Eigen::Isometry3d motion_after(double share) const;
@@ -60,7 +60,8 @@ class ColliderView {
   // than closest(), and when it finds nothing, the sign of the distance is the same within the bound. Surfaces with
   // holes do not have this: the sign changes there without a triangle nearby.
   bool knows_bounds() const { return shape_.is_exact(); }
-  // Does the same as closest(), but returns nothing where it is certainly further away than `most`, outside or inside.
+  // Returns what closest() returns, but nothing where the surface is certainly further away than `most`, outside or
+  // inside.
   std::optional<SurfacePoint> closest_within(const Vec3& p, double most, QueryMemory& near) const;
 
   // Returns a bound below the distance of p to the layer that follows from earlier answers; minus infinity where
@@ -107,8 +108,8 @@ class ColliderView {
   Eigen::Isometry3d start_, end_, to_start_, to_end_;
   ColliderTraits traits_;
   bool moves_ = false;
-  bool bends_ = false;        // whether it turns so far that ways are arcs
-  Vec3 turn_ = Vec3::Zero();  // in a step, about the world's axes, where it bends ways [rad]
+  bool bends_ = false;        // whether the collider turns so far that ways are arcs
+  Vec3 turn_ = Vec3::Zero();  // the collider's turn in a step, about the world's axes, where it bends ways [rad]
 };
 
 }  // namespace supple

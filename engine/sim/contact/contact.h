@@ -21,11 +21,11 @@ struct Contact {
   Vec3 normal;              // away from the collider
   double offset;            // the plane n . x = offset [m]
   double stiffness;         // k_c [N/m]
-  double depth;             // below the plane where it was found; 0: near, not touching [m]
-  std::int32_t number = 0;  // of the point, within the step: the vertex, or beyond all vertices
+  double depth;             // of the point below the plane when found; 0: it was near, not touching [m]
+  std::int32_t number = 0;  // of the point in this step: a vertex, or above all vertices' numbers
   // Friction is lagged; it opposes x - origin along the plane.
   double friction = 0;         // coefficient times normal force [N]
-  Vec3 origin = Vec3::Zero();  // where the point would be had it moved with the collider [m]
+  Vec3 origin = Vec3::Zero();  // where the point would be if it had moved with the collider [m]
 };
 
 // Returns how far a contact's point is above its plane, negative below [m].

@@ -13,7 +13,7 @@ void find_stiff_directions(const Model& model, const std::vector<Contact>& conta
     if (contact.depth > 0) stiff.push_back({contact.point, contact.normal, 2 * contact.stiffness});
   }
   for (const Contact& contact : contacts) {
-    if (contact.friction <= 0) continue;  // it is lagged: a point may have left and still be rubbed
+    if (contact.friction <= 0) continue;  // friction is lagged: a point may have left and still be rubbed
     const double along = friction_stiffness(contact, x, stick_length);
     // Inertia is the limit even where the elements around the point are stiffer, because together they hold a body
     // that would slide as a whole.
@@ -96,7 +96,7 @@ double diagonal_at(const System& system, const ContactPoint& point) {
   return sum / point.weights_squared();
 }
 
-// Returns the share of a motion that remains to a point in a direction of the rest.
+// Returns the share of its motion along a direction of the rest that a point keeps, sqrt(a / (a + k)).
 double share(const System& system, const StiffDirection& s) {
   const double a = diagonal_at(system, s.point);
   return std::sqrt(a / (a + s.point.weights_squared() * s.stiffness));
@@ -154,7 +154,7 @@ void couple_levels(ContactCorrection& c) {
                  c.second->difference() * c.system.between());
 }
 
-// Solves with that matrix, in place.
+// Solves with the matrix of couple_levels(), in place.
 void solve_coupled(ContactCorrection& c) {
   c.system.solve(c.answer);
   if (c.second == nullptr) return;
@@ -232,8 +232,9 @@ double gap_after(const Contact& contact, const Positions& x, const Positions& di
   return contact.normal.dot(contact.point.at(x) + contact.point.of_free(direction)) - contact.offset;
 }
 
-// Adds to a motion what minimises the quadratic model again when the motion has come off the planes of the system by
-// `off`, in the order of its directions, and would lead through more planes by these gaps [m].
+// Adds the correction to a motion that minimises the quadratic model again. off: how far the motion has come off the
+// planes of the system, in the order of its directions [m]; ahead, gaps: further planes, and how far the motion would
+// lead through them [m].
 void bend(const Model& model, const Eigen::VectorXf& off, const std::vector<StiffDirection>& ahead,
           const std::vector<float>& gaps, ContactCorrection& c, Positions& motion) {
   const Eigen::Index before = off.size();

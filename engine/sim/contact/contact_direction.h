@@ -27,15 +27,15 @@ namespace supple {
 
 // Holds the scratch memory of the corrections; it is empty until a contact occurs.
 struct ContactCorrection {
-  const System* matrix = nullptr;              // A here: the matrix in force, of the step; null: the model's own
-  Threads* threads = nullptr;                  // null: the calling one alone
-  std::vector<StiffDirection> wanted;          // those of the contacts in force: normals, then tangents
-  std::vector<StiffDirection> together, rest;  // how they are treated
+  const System* matrix = nullptr;              // called A here: the step's matrix in force; null: the model's A
+  Threads* threads = nullptr;                  // null: the calling thread works alone
+  std::vector<StiffDirection> wanted;          // stiff directions of the contacts in force: normals, then tangents
+  std::vector<StiffDirection> together, rest;  // those that `system` couples, and those scaled by themselves
   Capacitance system;
   PartedSolve solve;
-  FactorPart part;                      // what the system's vertices have to do with in the factor
+  FactorPart part;                      // the part of the factor that the system's vertices involve
   Eigen::VectorXf answer;               // by direction of the system
-  std::vector<double> along, products;  // of L-BFGS steps: by stiff direction and pair; by pair and pair
+  std::vector<double> along, products;  // for L-BFGS steps s: n . s, and s_i . K s_j
   Positions push, back;                 // n_free x 3 [N], [m]
   Positions unbent;                     // the direction before foresee_contacts [m]
   // The second level of directions (coarse/second_level.h); null: there is none.
@@ -54,7 +54,7 @@ void find_stiff_directions(const Model& model, const std::vector<Contact>& conta
 // Makes a step independent of earlier ones.
 void begin_corrections(const Model& model, ContactCorrection& correction);
 
-// Computes z = H r for these directions. Overwrites r.
+// Computes z = H r, with H for the directions in correction.wanted. Overwrites r.
 void apply_inverse(const Model& model, const ContactSettings& settings, ContactCorrection& correction,
                    SolveScratch& scratch, Positions& r, Positions& z);
 
@@ -67,8 +67,8 @@ bool foresee_contacts(const Model& model, const ContactSettings& settings, const
                       const Positions& x, ContactCorrection& correction, Positions& direction);
 
 // Corrects the arc of a search (coarse/turning.h) that is to be added to this direction, so that it leads the body
-// along the planes as the direction does: by what it departs from those that the direction takes into account, and by
-// what it would go through others.
+// along the planes as the direction does. Takes out of the arc what departs from the planes that the direction takes
+// into account, and what would go through other planes.
 void keep_bow_on_planes(const Model& model, const ContactSettings& settings, const std::vector<Contact>& contacts,
                         const Positions& x, const Positions& direction, ContactCorrection& correction, Positions& bow);
 

@@ -14,12 +14,12 @@ struct ContactPoint {
   std::array<std::int32_t, 3> vertex;     // ascending
   std::array<double, 3> weight{1, 0, 0};  // of the vertices, above 0 where they count
   std::int32_t count = 1;                 // vertices: 1 to 3
-  std::int32_t free = 1;                  // of these, those that the solver moves; they come first
+  std::int32_t free = 1;                  // vertices that the solver moves; they come first
 
   static ContactPoint at_vertex(std::int32_t v) { return {{v, v, v}}; }
   bool is_vertex() const { return count == 1; }
 
-  // Returns where it is, or the mean of other vectors by vertex, which must have rows for all of its vertices.
+  // Returns where the point is, or the mean of other vectors by vertex. x must have rows for all vertices of the point.
   Vec3 at(const Positions& x) const {
     Vec3 mean = weight[0] * x.row(vertex[0]);
     for (int k = 1; k < count; ++k) mean += weight[k] * x.row(vertex[k]).transpose();

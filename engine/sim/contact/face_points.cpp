@@ -15,7 +15,7 @@ constexpr int face_groups_a_chunk = 4;   // a thread takes so many; fixed, so th
 constexpr double least_weight = 1e-3;    // a point with a smaller one belongs to the opposite edge
 constexpr double same_place = 2;         // points nearer to each other than this, over the slack, are one
 constexpr double same_weight = 0.1;      // points whose weights differ by less are one
-constexpr int most_points = 8;           // of one triangle or edge in a step
+constexpr int most_points = 8;           // most points of one triangle or edge in a step
 constexpr double unheld = 1.1;           // depth at which an iterate needs further points, over the slack
 constexpr double seen_from = 2;          // distance from which the surface beside a point is seen, over the slack
 constexpr double least_alignment = 0.3;  // cosine between a surface's normal and the directions across a face or edge
@@ -44,8 +44,8 @@ bool is_finer(const FacePoints::Piece& piece, double thickness, double edge_squa
   return edge_squared > 6 * (piece.piece.bulge + thickness) * piece.slack;
 }
 
-// Returns the point of a triangle with these weights: of the triangle, an edge or a vertex, without those that are next
-// to nothing.
+// Returns the point of a triangle with these weights: of the triangle, an edge or a vertex, after weights that are next
+// to nothing have been left out.
 ContactPoint contact_point(const Model& model, Eigen::Index triangle, const Vec3& weights) {
   std::array<std::pair<std::int32_t, double>, 3> parts;
   int count = 0;
@@ -70,8 +70,8 @@ ContactPoint contact_point(const Model& model, Eigen::Index triangle, const Vec3
 }
 
 // Returns the direction from a place straight out of the collider: the part of the surface's normal at right angles to
-// the face or edge that the place, with these weights of the corners, lies in. Where that is next to nothing, it
-// returns the normal.
+// the face or edge that the place, with these weights of the corners, lies in. Where this part is next to nothing,
+// returns the normal itself.
 Vec3 straight_out(const TriangleCorners& corners, const Vec3& weights, const Vec3& normal) {
   int other = -1, count = 0;
   for (int k = 0; k < 3; ++k) {
@@ -119,13 +119,13 @@ struct TriangleSearch {
     return freely + reach_of(0, freely);
   }
 
-  // Returns the distance from a piece beyond which a place needs no point; what is below 0 is a depth.
+  // Returns the distance from a piece beyond which a place needs no point; a negative distance is a depth.
   double furthest(double reach, const FacePoints::Piece& piece) const {
     return faces.thickness + (at_start ? reach - piece.slack : -unheld * piece.slack);
   }
 
   // Returns the normal of the surface that holds a place which an iterate has led into the collider. Beyond the middle
-  // of a thin bar, the surface that is closest is not the one through which it came.
+  // of a thin bar, the closest surface is not the one through which the place came.
   Vec3 normal_at(const ContactPoint& point, const TrianglePlace& place) const {
     QueryMemory near;
     const Way way = view.way(point.at(q), point.at(x));
@@ -184,7 +184,7 @@ struct TriangleSearch {
 };
 
 // Tells whether there is a point of the same edge or face so near that it may stand for this one, or there are enough
-// of them. What is thin needs points closer to each other than what is round.
+// of them. A thin piece needs points closer to each other than a round one.
 bool is_known(const FacePoints& faces, const FacePoints::Candidate& candidate, const Positions& q) {
   const ContactPoint& point = candidate.point;
   const double edge = (q.row(point.vertex[1]) - q.row(point.vertex[0])).norm();

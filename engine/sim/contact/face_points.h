@@ -20,10 +20,10 @@ namespace supple {
 struct FacePoint {
   ContactPoint point;
   double slack;          // depth below which contact begins [m]
-  Vec3 out;              // to the place from which its distance is measured, in the collider's frame [m]
+  Vec3 out;              // from the point to where its distance is measured, in the collider's frame [m]
   double field;          // distance at the start of the step, negative inside [m]
-  QueryMemory near;      // of its queries
-  std::int32_t earlier;  // the point before it whose first vertex is the same; -1: there is none
+  QueryMemory near;      // memory of the point's queries
+  std::int32_t earlier;  // the previous point with the same first vertex; -1: none
 };
 
 // Holds the points for one collider in one step, and what is needed to find more; it is empty where the collider is
@@ -34,12 +34,12 @@ struct FacePoints {
     double slack;  // [m]
     Bounds box;    // around it, in the collider's frame
   };
-  std::vector<Piece> pieces;          // of the collider, that may be finer than the surface
+  std::vector<Piece> pieces;          // parts of the collider that may be finer than the surface
   double thickness = 0;               // of the collider's layer [m]
   std::vector<double> distance;       // least signed distance of a group's triangles at the start [m]
-  std::vector<double> collider_move;  // of the collider's own points near a group [m]
+  std::vector<double> collider_move;  // how far the collider's own points near a group move [m]
   std::vector<FacePoint> points;
-  std::vector<std::int32_t> newest;  // of points, by first vertex; -1: there is none
+  std::vector<std::int32_t> newest;  // the newest point of each first vertex; -1: none
 
   struct Candidate {
     ContactPoint point;
@@ -55,7 +55,7 @@ struct FacePoints {
 void begin_face_points(const Model& model, const Collider& collider, const ColliderView& view, const Positions& q,
                        const Positions& y, Threads* threads, FacePoints& faces);
 
-// Adds the points that triangles need at x (n x 3): where they are deeper than those that were found already allow.
+// Adds the points that triangles need at x (n x 3), where a triangle is deeper than the points found so far allow.
 void find_face_points(const Model& model, const ColliderView& view, const Positions& q, const Positions& x,
                       const Positions& y, Threads* threads, FacePoints& faces);
 

@@ -16,16 +16,16 @@ namespace {
 
 constexpr int vertex_groups_a_chunk = 8;  // a thread takes so many; fixed, so that results do not depend on threads
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double furthest_way_out = 100;  // that is looked for, over the body's size
+constexpr double furthest_way_out = 100;  // the longest way out that is looked for, over the body's size
 
-// The way that a point may make out of an overlap in one step [m].
+// Returns how far a point may move out of an overlap in one step [m].
 double push_out_of(const Model& model, const StepInputs& inputs) {
   return inputs.solver.contact.push_out * model.size * model.time_step;
 }
 
 // Returns k_c over m / h^2 for a collider. The depth of a vertex is inversely proportional to it.
 double stiffness_of(const Model& model, const StepInputs& inputs, const ContactWork& work, std::size_t collider) {
-  constexpr double most = 1000;  // times as stiff as for a thick one
+  constexpr double most = 1000;  // times the stiffness for a thick collider
   const double share =
       usual_depth(model.size, (*inputs.colliders)[collider], work.traits[collider].usual_half_thickness) /
       usual_depth(model.size);
@@ -33,7 +33,8 @@ double stiffness_of(const Model& model, const StepInputs& inputs, const ContactW
 }
 
 // Sets the plane of a point that started inside a collider which the body leaves by a common way: at the end of the
-// step it lies as much further along that way as it may go, or as it has left to go. It slides out without friction.
+// step the plane lies further along that way, by as much as the point may go in a step or has left to go. The point
+// slides out without friction.
 void leave(const ColliderView& view, const Way& way, const Vec3& way_out, double field, double push_out,
            QueryMemory& near, Contact& contact) {
   const Eigen::Isometry3d motion = view.motion_after(0);
@@ -83,7 +84,7 @@ void find_way_out(const Model& model, const StepInputs& inputs, ContactWork& wor
   for (const std::size_t c : deep) work.way_out[c] = way ? way->direction : Vec3::Zero();
 }
 
-// Keeps what was remembered of the same solids for as many vertices.
+// Keeps the memories of solids that are the same as before, if the number of vertices is the same.
 void remember_vertices(const Model& model, const std::vector<Collider>& colliders, ContactWork& work) {
   work.memories.resize(colliders.size());
   for (std::size_t c = 0; c < colliders.size(); ++c) {
@@ -184,7 +185,7 @@ class Planes {
     if (surface) add(*surface, way, field, 0, near, contact, list);
   }
 
-  // number: the number of the point among those of faces in this step.
+  // Adds the contact of a face's point. number: the number of the point among the faces' points in this step.
   void of_face(FacePoint& face, std::int32_t number, std::vector<Contact>& list) const {
     const Way way = view_.way(face.point.at(start_), face.point.at(x_));
     const double reach = reach_of(way.length, view_.length_to(face.point.at(prediction_), way));
@@ -216,7 +217,7 @@ class Planes {
   void add(const SurfacePoint& surface, const Way& way, double field, double slack, QueryMemory& near, Contact& contact,
            std::vector<Contact>& list) const {
     contact.normal = view_.end().linear() * surface.normal;
-    if (is_leaving() && contact.normal.dot(way_out_) < 0.5) return;  // the others, which leave, pull it through
+    if (is_leaving() && contact.normal.dot(way_out_) < 0.5) return;  // the points that leave pull it through
     const double deep = field < -push_out_ ? std::max(0.0, -view_.closest(way.a, near).distance - push_out_) : 0;
     contact.offset = contact.normal.dot(view_.end() * surface.point) - std::max(slack, deep);
     contact.depth = std::max(0.0, -gap(contact, x_));

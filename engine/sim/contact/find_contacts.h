@@ -18,8 +18,8 @@ namespace supple {
 // Remembers what queries for a body's vertices have found on a collider that is one closed surface, also from earlier
 // steps: this saves work and changes no answer.
 struct VertexMemories {
-  std::shared_ptr<const TriangleSolid> solid;  // null: another collider, of which nothing is remembered
-  std::vector<QueryMemory> by_vertex;          // free vertices; empty without a solid
+  std::shared_ptr<const TriangleSolid> solid;  // null: the collider is not one closed surface
+  std::vector<QueryMemory> by_vertex;          // by free vertex; empty without a solid
 };
 
 // Holds the memory of the search for contacts within a step, and its scratch memory; empty while there are no
@@ -28,13 +28,13 @@ struct ContactWork {
   std::vector<std::vector<Contact>> by_chunk;
   std::vector<double> clearance;         // signed distance at the start, colliders x free; NaN: not asked yet [m]
   std::vector<VertexMemories> memories;  // by collider
-  QueryMemory no_memory;                 // stands for those of colliders of which nothing is remembered
+  QueryMemory no_memory;                 // used for colliders of which nothing is remembered
   std::vector<double> group_distance;    // least distance of a group's vertices at the start, colliders x groups [m]
-  std::vector<double> group_move;        // largest of a group's vertices, start to iterate [m]
+  std::vector<double> group_move;        // largest move of a group's vertices, start to iterate [m]
   std::vector<double> group_free_move;   // the same, start to prediction [m]
-  std::vector<double> collider_move;     // of the collider's own points near a group, colliders x groups [m]
+  std::vector<double> collider_move;     // how far a collider's own points near a group move, colliders x groups [m]
   std::vector<ColliderTraits> traits;    // by collider
-  std::vector<Vec3> way_out;             // by collider: of a body that starts deep inside it; zero: it does not
+  std::vector<Vec3> way_out;             // by collider: the way out of it; zero: the body does not start deep inside
   Positions start;                       // q of the free vertices [m]
   std::vector<FacePoints> faces;         // by collider
   // How deep the vertices that touch are pressed into colliders when a film begins, colliders x free; empty in every
@@ -55,7 +55,7 @@ void begin_contacts(const Model& model, const StepInputs& inputs, const Position
 void find_contacts(const Model& model, const StepInputs& inputs, const Positions& x, Threads* threads,
                    ContactWork& work, std::vector<Contact>& found);
 
-// The share of a step after which a point is deeper in a collider than it may be, and which collider that is.
+// Holds the share of a step after which a point is deeper in a collider than it may be, and that collider.
 struct Impact {
   double share = 1;
   int collider = -1;  // -1: there is none
@@ -75,7 +75,7 @@ int most_touched(const std::vector<Contact>& contacts, std::size_t colliders);
 // Counts what changed between the contacts of two iterates, the later of which has just been accepted.
 void count_contacts(const std::vector<Contact>& before, const std::vector<Contact>& now, ContactWork& work);
 
-// Makes the next iterate the first one that counts.
+// Forgets the counts of the step so far: counting begins with the next iterate.
 void forget_counts(ContactWork& work);
 
 }  // namespace supple

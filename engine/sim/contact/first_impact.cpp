@@ -5,9 +5,9 @@
 namespace supple {
 namespace {
 
-// Returns which share of a way a point may go before it is deeper than `allowed` [m]; 1 also where that is no less than
-// `least`. A point that touches already is stopped only by a collider that comes to it: one that rests would be stopped
-// on every step by its own weight.
+// Returns which share of a way a point may go before it is deeper than `allowed` [m]; 1 also where the share is no less
+// than `least`. A point that touches already is stopped only by a collider that comes to it: one that rests would be
+// stopped on every step by its own weight.
 double share_to_impact(const ColliderView& view, const Way& way, double field, double allowed, double least,
                        QueryMemory& near) {
   if (field <= 0) {
@@ -21,7 +21,7 @@ double share_to_impact(const ColliderView& view, const Way& way, double field, d
   if (view.clear(field) > furthest) return 1;
   const std::optional<ColliderView::Entry> entered = view.entry(way, field, near, furthest / way.length);
   if (!entered) return 1;
-  // Towards the surface, over a whole step.
+  // The way of the point towards the surface over a whole step [m].
   const double falls = -entered->surface.normal.dot(view.pace(way, entered->way));
   return falls * (1 - entered->way) > allowed ? entered->way + allowed / falls : 1;
 }

@@ -11,8 +11,8 @@ namespace supple {
 // Returns the depth in a collider that is thick beside the body [m]. size: the size of the body [m].
 inline double usual_depth(double size) { return 0.004 * size; }
 
-// Returns the depth in any collider, whose thin ones allow a quarter of half their thickness [m]. half_thickness: of
-// its shape [m]; 0 where it is not known.
+// Returns the depth in any collider; a thin one allows a quarter of half its thickness, layer included [m].
+// half_thickness: half the thickness of the collider's shape [m]; 0 where it is not known.
 inline double usual_depth(double size, const Collider& collider, double half_thickness) {
   if (half_thickness <= 0) return usual_depth(size);
   return std::min(usual_depth(size), 0.25 * (half_thickness + collider.thickness));

@@ -33,8 +33,8 @@ struct VertexSearch {
     return of_collider[v];
   }
 
-  // Tells whether a place is certainly further out than `most`, without asking how far. is_outside: what is known of
-  // it.
+  // Tells whether a place is certainly further out than `most`, without asking how far. is_outside: whether the place
+  // is known to be outside.
   static bool is_certainly_clear(const ColliderView& view, const Vec3& p, double most, bool is_outside,
                                  QueryMemory& near) {
     return most < view.certain_distance(p, near) ||

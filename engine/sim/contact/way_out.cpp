@@ -7,8 +7,8 @@ namespace supple {
 namespace {
 
 constexpr std::size_t most_asked = 64;    // points whose normals are tried as directions
-constexpr int most_marches_inside = 100;  // through the inside of a collider
-constexpr int most_rounds = 6;            // of going further because other points have come in
+constexpr int most_marches_inside = 100;  // steps of a march through the inside of a collider
+constexpr int most_rounds = 6;            // rounds of going further because other points have come inside
 
 // Adds a direction, unless one is there that differs by less than 15 degrees.
 void add_direction(const Vec3& v, std::vector<Vec3>& directions) {
@@ -45,8 +45,8 @@ std::vector<Vec3> directions_from(const Obstacles& obstacles, const std::vector<
   return directions;
 }
 
-// Returns how far points that are inside must go, beyond `gone`, until they are out; more than `furthest` when that is
-// not within it.
+// Returns how far points that are inside must go, beyond `gone`, until they are out; more than `furthest` when they are
+// not out within it.
 double further(const Obstacles& obstacles, const std::vector<Point>& points, const Vec3& direction, double gone,
                double tolerated, double furthest) {
   double most = gone;

@@ -16,7 +16,7 @@ class Obstacles {
   std::size_t size() const { return colliders_.size(); }
   // Returns the signed distance to a collider's layer, in the world [m].
   double distance(std::size_t collider, const Vec3& point) const;
-  // Returns the least of these; a point is inside where it is negative.
+  // Returns the least signed distance to any collider's layer [m]; a point is inside where it is negative.
   double distance(const Vec3& point) const;
   // Returns the normal of the closest surface of the collider that a point is deepest in.
   Vec3 normal(const Vec3& point) const;

@@ -18,9 +18,9 @@ constexpr int block_width = 8;
 struct ElementChunk {
   ElementKind kind;
   const Material* material;  // of tetrahedra
-  const Fibre* fibre;        // of tetrahedra; null: none
+  const Fibre* fibre;        // of tetrahedra; null: no fibres
   int blocks;
-  int vertices;                 // of the list
+  int vertices;                 // length of the chunk's list
   const std::int32_t* vertex;   // the list: mesh vertices
   const std::uint16_t* corner;  // blocks x corners x block_width indices into the list
   const double* field;          // blocks x fields x block_width: what the kind needs to know of an element

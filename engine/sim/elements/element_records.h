@@ -13,13 +13,13 @@ namespace supple {
 
 struct Spring {
   std::int32_t from, to;  // vertices of the mesh, in its own numbering
-  double length;          // at rest [m]
+  double length;          // the rest length [m]
   double stiffness;       // [N/m]
 };
 
 struct ElementRecord {
   ElementKind kind;
-  int region;          // of tetrahedra
+  int region;          // of a tetrahedron: the region of the mesh that it belongs to
   std::int32_t input;  // index among the input's elements of this kind
   std::array<std::int32_t, most_corners> corner{};
   std::array<double, most_fields> field{};

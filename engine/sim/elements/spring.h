@@ -24,7 +24,8 @@ struct SpringElement {
     return V(0.5) * stiffness * excess * excess;
   }
 
-  // The stretch is the current length over the rest length (1 where the rest length is 0); a spring cannot be inverted.
+  // Writes the stretch, which is the current length over the rest length (1 where the rest length is 0). A spring
+  // cannot be inverted, so its volume ratio is 1.
   template <class V>
   void stretch(const V (&x)[2][3], const V (&field)[fields], V& largest, V& volume) const {
     using std::sqrt;
@@ -52,8 +53,8 @@ struct SpringElement {
     }
   }
 
-  // A third of the trace of that, projected: k (1 + 2 (1 - r/l)) / 3 [N/m]. A net of springs, whose directions differ
-  // from one to the next, needs no more along each.
+  // Writes a third of the trace of the projected stiffness matrix: k (1 + 2 (1 - r/l)) / 3 [N/m]. In a net of springs,
+  // whose directions differ from one to the next, no spring needs more along its own direction.
   template <class V>
   void scalar_stiffness(const V (&x)[2][3], const V (&field)[fields], const V&, V (&out)[1]) const {
     using std::max;

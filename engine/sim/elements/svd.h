@@ -30,8 +30,8 @@ struct Columns {
   V v[3][3];
 };
 
-// Rotates columns p and q so that those of F V become orthogonal; returns true when in some lane they were not
-// orthogonal yet.
+// Rotates columns p and q so that the two columns of F V become orthogonal; returns true when they were not orthogonal
+// yet in some lane.
 template <class V>
 bool turn(Columns<V>& columns, int p, int q) {
   using std::sqrt;
@@ -152,7 +152,7 @@ Svd3<V> svd(const Matrix3<V>& f) {
   return result;
 }
 
-// U diag(d) V^T
+// Returns U diag(d) V^T.
 template <class V>
 Matrix3<V> recomposed(const Svd3<V>& svd, const V (&d)[3]) {
   Matrix3<V> m;

@@ -148,7 +148,8 @@ void add_flips_and_twists(const StretchDerivatives<V>& at, const SingularBasis<V
   }
 }
 
-// second: second derivatives of the density with respect to the stretches, already projected where that is wanted [Pa].
+// Adds the part of the Hessian over the stretches. second: second derivatives of the density with respect to the
+// stretches, already projected where that is wanted [Pa].
 template <class V>
 void add_stretches(const V (&second)[3][3], const SingularBasis<V>& basis, const V& volume, V* out) {
   V stretch[3][9];

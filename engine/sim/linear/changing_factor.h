@@ -1,6 +1,6 @@
-// Computes a sparse Cholesky factor again for each matrix of one pattern, for one right-hand side at a time: for
-// matrices that couple coordinates and change. It uses fronts of our own (multifrontal.h), like CholeskyFactor, which
-// serves three right-hand sides at once.
+// Computes a sparse Cholesky factor anew for each of several matrices that have one pattern, and solves for one
+// right-hand side at a time. It serves matrices that couple coordinates and change. It uses fronts of our own
+// (multifrontal.h), like CholeskyFactor, which serves three right-hand sides at once.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ class ChangingFactor {
   // then solves nothing until another matrix has one.
   bool factorize(const Eigen::SparseMatrix<double>& matrix);
 
-  // x = A^-1 b; both have as many numbers as the matrix has rows, and may be the same.
+  // Computes x = A^-1 b. x and b have as many numbers as the matrix has rows, and may be the same.
   void solve(const double* b, double* x);
 
   // Counts the numbers of the factor's columns, including the zeros that merging and padding store.
@@ -44,7 +44,7 @@ class ChangingFactor {
   void solve_in_place(const AlignedVector<T>& columns, T* x, T* scratch) const;
 
   Precision precision_;
-  std::unique_ptr<Elimination> elimination_;  // where the fronts can go on seeing it when this is moved
+  std::unique_ptr<Elimination> elimination_;  // on the heap, so that fronts_ still finds it when this object is moved
   std::unique_ptr<Multifrontal> fronts_;
   std::vector<std::int64_t> first_number_;  // by node, into the columns
   // Columns of L, node after node (front_layout.h), in the precision of the solves.

@@ -48,7 +48,8 @@ class CholeskyFactor {
   // the column when the matrix is not positive definite; the factor then solves nothing.
   void factorize(const Eigen::SparseMatrix<double>& matrix, Precision precision);
 
-  // Room for factoring anew, which then allocates nothing. It belongs to one factor, which must stay where it is.
+  // Provides memory for factoring anew, so that renew() allocates nothing. It belongs to one factor, which must stay
+  // where it is.
   class Room {
    public:
     Room();
@@ -70,7 +71,7 @@ class CholeskyFactor {
   // Counts the multiplications and additions of one factorisation.
   double operations() const { return elimination_.operations(); }
 
-  // x = A^-1 b for b and x with `size` rows, interleaved. scratch: 4 * size doubles.
+  // Computes x = A^-1 b for b and x with `size` rows, interleaved. scratch: 4 * size doubles.
   void solve(const double* b, double* x, double* scratch) const;
 
   // Returns the panels by which systems are solved (linear_kernels.h), for code that solves in parts (parted_solve.h).

@@ -83,7 +83,8 @@ void find_supernodes(const ColumnPatterns& columns, Elimination& out) {
   }
 }
 
-// Finds a postorder, and how much is on the stacks of update matrices while the fronts are eliminated in that order.
+// Finds a postorder, and how many numbers the stacks of update matrices hold at most while the fronts are eliminated in
+// that order.
 void find_order(Elimination& out) {
   const int count = static_cast<int>(out.nodes.size());
   std::vector<int> first_child(count, -1), next_sibling(count, -1), pending;
@@ -110,7 +111,7 @@ void find_order(Elimination& out) {
   for (auto s = out.order.rbegin(); s != out.order.rend(); ++s) {
     if (out.nodes[*s].parent >= 0) out.nodes[*s].level = out.nodes[out.nodes[*s].parent].level + 1;
   }
-  std::vector<std::int64_t> waiting(count, 0);  // by node: what its children left
+  std::vector<std::int64_t> waiting(count, 0);  // by node: numbers of its children's update matrices
   std::int64_t stacked[2] = {0, 0};
   for (const std::int32_t s : out.order) {
     const Supernode& node = out.nodes[s];

@@ -33,13 +33,14 @@ struct Elimination {
   std::vector<Supernode> nodes;  // by columns
   std::vector<std::int32_t> rows;
   std::vector<std::int32_t> order;  // of the nodes: children right before their parent, last child last (a postorder)
-  std::int64_t most_column_numbers = 0;    // of one front
-  std::int64_t deepest_stack[2] = {0, 0};  // numbers of update matrices that wait at one time, of even and odd levels
+  std::int64_t most_column_numbers = 0;    // of the largest front
+  std::int64_t deepest_stack[2] = {0, 0};  // most numbers of update matrices that wait at once, by even and odd level
 
-  // Counts the multiplications and additions that it takes.
+  // Counts the multiplications and additions that the elimination takes.
   double operations() const;
 
-  // Takes the pattern of the lower triangle, whose unknowns are eliminated in their order; ignores what is above it.
+  // Returns the elimination of a matrix by the pattern of its lower triangle, with the unknowns in their order; ignores
+  // entries above the diagonal.
   static Elimination of(const Eigen::SparseMatrix<double>& matrix);
 };
 

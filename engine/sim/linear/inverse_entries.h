@@ -32,9 +32,9 @@ class InverseEntries {
 
  private:
   struct Column {
-    std::int32_t panel;            // of its unknown
+    std::int32_t panel;            // panel of the column's unknown
     std::int32_t size;             // numbers from the panel's first unknown to the root's last one
-    AlignedVector<float> numbers;  // these, at the end of whole cache lines
+    AlignedVector<float> numbers;  // the numbers of the column, at the end of whole cache lines
     const float* end() const { return numbers.data() + numbers.size(); }
   };
   static std::size_t first_product(std::int32_t slot) { return std::size_t(slot) * (slot + 1) / 2; }
@@ -49,7 +49,7 @@ class InverseEntries {
   std::vector<std::int32_t> to_root_;  // by panel: unknowns on the path from it to the root
   std::vector<Column> columns_;        // by slot
   std::vector<float> products_;        // by slot and earlier slot or itself; NaN: not known
-  std::vector<std::int32_t> slots_;    // those of the last call, ascending: their products are known
+  std::vector<std::int32_t> slots_;    // slots of the last call, ascending: their products are known
   std::int64_t stored_ = 0;
   // Scratch memory
   std::vector<std::int32_t> fresh_, asked_;

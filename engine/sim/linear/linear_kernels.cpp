@@ -190,7 +190,7 @@ struct Four {
     return f;
   }
   void store(T* p) const { __builtin_memcpy(p, &v, sizeof v); }
-  // this -= a * x
+  // Subtracts a times x from this.
   void subtract_scaled(T a, const Four& x) {
 #if defined(__FMA__)
     if constexpr (sizeof(T) == 4) {

@@ -48,7 +48,7 @@ struct LinearKernels {
   void (*down_double)(const PanelsView& panels, const std::int32_t* list, int count, double* x);
   void (*up_double)(const PanelsView& panels, const std::int32_t* list, int count, double* x);
 
-  // The same as down_float for columns_together interleaved right-hand sides, on a list of panels. x is aligned to
+  // Does what down_float does for columns_together interleaved right-hand sides, on a list of panels. x is aligned to
   // cache lines.
   void (*down_many_float)(const PanelsView& panels, const std::int32_t* list, int count, float* x);
   void (*down_many_double)(const PanelsView& panels, const std::int32_t* list, int count, double* x);

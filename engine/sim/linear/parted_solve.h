@@ -1,8 +1,8 @@
-// Solves A x = b in parts, for right-hand sides to which an amount is added at a few unknowns that depends on x at a
-// few unknowns. These unknowns involve only the panels on their paths to the root of the elimination tree (Gilbert
-// 1994, "Predicting structure in sparse matrix computations"; Davis 2006, "Direct methods for sparse linear systems",
-// section 3.2). Reading x there and adding to b therefore cost as much as this part of the factor, and the whole solve
-// is made once.
+// Solves A x = b in parts, where an amount is added to b at a few unknowns, and this amount depends on x at a few
+// unknowns. These unknowns involve only the panels on their paths to the root of the elimination tree (Gilbert 1994,
+// "Predicting structure in sparse matrix computations"; Davis 2006, "Direct methods for sparse linear systems", section
+// 3.2). Reading x and adding to b at these unknowns therefore cost as much as this part of the factor, and the whole
+// solve is made once.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@
 
 namespace supple {
 
-// Lists panels of a factor, ascending, among which all paths from them to the root stay.
+// Lists panels of a factor, ascending. The list contains the whole path of each of its panels to the root.
 using FactorPart = std::vector<std::int32_t>;
 
 // Returns the panels on the paths from these unknowns to the root.

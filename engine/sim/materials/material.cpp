@@ -87,7 +87,7 @@ SystemStiffness system_stiffness(const Material& material, const StretchInterval
       },
       material);
   if (demanded) return {*demanded, false};
-  constexpr double floor = 1e-3;  // of the steepest secant of f through rest
+  constexpr double floor = 1e-3;  // least k, over the steepest secant of f through rest
   constexpr int samples = 32;
   double steepest = 0;
   for (int i = 0; i <= samples; ++i) {

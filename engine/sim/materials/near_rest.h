@@ -1,6 +1,7 @@
 // Keeps the digits of energies near rest. Densities in I_C = tr C, II_C and J = det F have terms of first order in the
-// strain that cancel; summed as they stand they leave eps times a modulus, however small the energy is, and a line
-// search at rest compares nothing but that. With D = C - 1, det C = J^2 gives the first orders in terms of second ones:
+// strain that cancel; summed as they stand, they leave a round-off of eps times a modulus, however small the energy is,
+// and a line search at rest compares nothing but this round-off. With D = C - 1, det C = J^2 gives the first orders in
+// terms of second ones:
 //   (I_C - 3)/2 - (J - 1)   = ((J - 1)^2 - II_D - det D) / 2
 //   (II_C - 3)/2 - 2 (J - 1) = (J - 1)^2 - II_D/2 - det D
 // where II_D is the sum of the principal 2 x 2 minors. Far from rest the right sides cancel in their turn, and the left

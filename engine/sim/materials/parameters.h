@@ -1,7 +1,7 @@
 // Every material has a name, needs, parameters(), density() and axial_stress(s). The last is f = a' + 2 b' + c' of
-// equation 10: the stress along the axis of a sample at F = diag(s, 1, 1), whose sides are held. Because it declares
-// these itself, scene files, stiffness fits and kernels use a new one without further changes. For tests and pages,
-// docs/adding-a-material.md lists the places that must name it.
+// equation 10: the stress along the axis of a sample at F = diag(s, 1, 1), whose sides are held. Because a material
+// declares these itself, scene files, stiffness fits and kernels use a new one without further changes. For tests and
+// pages, docs/adding-a-material.md lists the places that must name it.
 //
 // A material may also have these members, each of which is used where it exists:
 //   static M from(const Lame&)          from Young's modulus and Poisson's ratio
@@ -27,7 +27,7 @@ enum class Needs {
   singular_values,       // s of F = U diag(s) V^T: density(s, dPsi/ds), and P = U diag(dPsi/ds) V^T
 };
 
-// Tells which values a parameter may have. One that may be 0 is 0 where the file does not give it.
+// Tells which values a parameter may have. A parameter that may be 0 is 0 where the file does not give it.
 enum class Sign { positive, not_negative, any };
 
 // Describes one number of a material as a scene file gives it.
@@ -38,13 +38,13 @@ struct Parameter {
   const char* meaning;
   double M::*value;
   Sign sign;
-  std::optional<double> fallback = std::nullopt;  // when the file does not give it
+  std::optional<double> fallback = std::nullopt;  // the value when the file gives none
 };
 
 // Holds Lame's parameters of small strains.
 struct Lame {
   double mu, lambda;  // [Pa]
-  // Computes them from Young's modulus [Pa] and Poisson's ratio (below 0.5).
+  // Computes Lame's parameters from Young's modulus [Pa] and Poisson's ratio (below 0.5).
   static Lame from_young(double young, double poisson) {
     return {young / (2 * (1 + poisson)), young * poisson / ((1 + poisson) * (1 - 2 * poisson))};
   }

@@ -68,7 +68,7 @@ SplineCurve::SplineCurve(std::vector<ControlPoint> points) : points_(std::move(p
   count_from_rest();
 }
 
-// The same polynomial with t counted from another place.
+// Returns the same polynomial with t counted from another place.
 SplineCurve::Piece SplineCurve::Piece::about(double x) const {
   const double t = x - from;
   return {{c[0] + t * (c[1] + t * (c[2] + t * c[3])), c[1] + t * (2 * c[2] + 3 * t * c[3]), c[2] + 3 * t * c[3], c[3]},
@@ -76,7 +76,7 @@ SplineCurve::Piece SplineCurve::Piece::about(double x) const {
           energy + integral(t)};
 }
 
-// Makes the energies those of beyond_linear(), and lets the pieces that reach 1 count from there.
+// Makes the energies those of beyond_linear(), and lets the pieces that reach 1 count from 1.
 void SplineCurve::count_from_rest() {
   const std::size_t n = points_.size();
   const auto begin = [&](std::size_t piece) { return piece == 0 ? -HUGE_VAL : points_[piece - 1].at; };

@@ -31,7 +31,7 @@ class SplineCurve {
   bool empty() const { return points_.empty(); }
   const std::vector<ControlPoint>& points() const { return points_; }
 
-  // The curve at 1 [Pa].
+  // Returns the curve's value at 1 [Pa].
   double slope_at_rest() const { return at_rest_; }
 
   // Returns the integral from 1 to x of the curve less its value at 1; `slope` becomes the curve itself.
@@ -54,8 +54,8 @@ class SplineCurve {
   }
 
  private:
-  // The curve c0 + c1 t + c2 t^2 + c3 t^3 with t = x - from, and its integral beyond_linear() at `from`. The first
-  // piece lies before the first point. Those that reach 1 count from there, so that nothing cancels.
+  // Holds one piece of the curve, c0 + c1 t + c2 t^2 + c3 t^3 with t = x - from, and the integral beyond_linear() at
+  // `from`. The first piece lies before the first point. In pieces that reach 1, `from` is 1, so that nothing cancels.
   struct Piece {
     std::array<double, 4> c;
     double from, energy;

@@ -1,9 +1,9 @@
 // Defines two strain-limiting constraints of Projective Dynamics (Bouaziz et al. 2014, section 5.1): each pulls F to
 // the nearest matrix whose stretches lie in an interval, Psi = sum_i mu_i |F - clamp_i(F)|^2, that is a = sum_i mu_i (s
-// - clamp_i(s))^2 in the stretches. There is no energy between the limits. Two of them are the paper's piecewise linear
-// substitute for the polynomial material (figure 11). A solver that Projective Dynamics has prefactored gives a
-// constraint its full weight even while it is inactive: system_stiffness() does the same, and the damping in figure 11
-// comes from that.
+// - clamp_i(s))^2 in the stretches. There is no energy between the limits. Two such constraints are the paper's
+// piecewise linear substitute for the polynomial material (figure 11). The prefactored matrix of Projective Dynamics
+// gives a constraint its full weight even while it is inactive: system_stiffness() does the same, and the damping in
+// figure 11 comes from that.
 #pragma once
 
 #include <array>

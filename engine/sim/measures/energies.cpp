@@ -27,9 +27,10 @@ double spring_energy(const Model& model, const Positions& targets, const Positio
   return sum;
 }
 
-// Returns the work of contacts over a step from q to the current iterate [J]: of all forces along the way of the
-// collider, and of friction along the way on it. What presses does none where the collider stands, although the vertex
-// that comes down on it, as those of a ball that rolls do, has a way; only what is pushed out has gained.
+// Returns the work of contacts over a step from q to the current iterate [J]: the work of all forces along the way of
+// the collider, and of friction along the way on the collider. The normal force on a collider that stands does no work,
+// although a vertex that comes down on it, as those of a rolling ball do, has a way; only a vertex that is pushed out
+// gains energy.
 double work_of_contacts(const StepInputs& inputs, const Positions& q, Workspace& w) {
   const Positions& x = w.current.x;
   std::vector<Contact> one(1);

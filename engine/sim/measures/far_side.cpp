@@ -13,7 +13,7 @@
 namespace supple {
 namespace {
 
-// A plate in its own frame, and what is known of a body's vertices near it.
+// Examines a plate in its own frame, and the ways of a body's surface near it.
 class Plate {
  public:
   Plate(const Shape& shape, double half_thickness)
@@ -21,9 +21,9 @@ class Plate {
 
   SurfacePoint closest(const Vec3& p) { return probe_.closest(p, near_); }
 
-  // Tells whether the straight way between two vertices leads through the plate from one side to the other. Where a
-  // place beside the way, no further away than its length, is reached freely from both ends, the edge only cuts short a
-  // way around the rim, and does not count.
+  // Tells whether the straight way between two vertices leads through the plate from one side to the other. An edge
+  // does not count where it only cuts short a way around the rim: where a place beside the edge, no further away than
+  // its length, is reached freely from both ends.
   bool divides(const SurfacePoint& at_a, const SurfacePoint& at_b, const Vec3& a, const Vec3& b) {
     const double length = (b - a).norm();
     if (at_a.normal.dot(at_b.normal) > 0) return false;
@@ -105,7 +105,7 @@ double reach_on_far_side(const Model& model, const Collider& collider, const Eig
     if (!closest[v]) closest[v] = plate.closest(place(v));
     return *closest[v];
   };
-  DisjointSets parts(std::size_t(model.vertices));  // that hang together by edges which pass through nothing
+  DisjointSets parts(std::size_t(model.vertices));  // vertices joined by edges that pass through nothing
   std::vector<std::array<int, 2>> cut;
   for (Eigen::Index t = 0; t < model.surface.rows(); ++t) {
     for (int k = 0; k < 3; ++k) {
@@ -119,7 +119,7 @@ double reach_on_far_side(const Model& model, const Collider& collider, const Eig
   }
   if (cut.empty()) return 0;
 
-  std::vector<int> size(near.size(), 0);  // of the part that a vertex stands for
+  std::vector<int> size(near.size(), 0);  // number of vertices in the part that a vertex stands for
   for (int v = 0; v < model.vertices; ++v) ++size[parts.of(std::size_t(v))];
   std::vector<char> is_far(near.size(), 0);
   for (const auto& [a, b] : cut) {

@@ -20,7 +20,7 @@ double von_mises(const Mat3& f, const Mat3& piola) {
 
 namespace {
 
-// Adds one material's elements, one by one.
+// Adds the fields of one material's elements, one by one.
 template <class M>
 void add_tetrahedra(const Model& model, const Model::ChunkRange& range, const M& material, const Fibre* fibre,
                     const Positions& x, ElementFields& fields) {

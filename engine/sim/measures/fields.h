@@ -16,8 +16,8 @@ struct ElementFields {
   Positions stretch;              // signed singular values of F, the largest first, m x 3
   std::vector<double> von_mises;  // of Cauchy's stress P F^T / det F, fibres included; NaN where det F = 0 [Pa]
   std::vector<double> energy;     // density, over rest volume, fibres included [J/m^3]
-  // This field has one entry for each vertex of the input, with half of each spring's energy at each end; empty without
-  // springs.
+  // This field has one entry for each vertex of the input: half of the energy of each spring that ends there. It is
+  // empty without springs.
   std::vector<double> spring_energy;  // [J]
 };
 
@@ -25,7 +25,7 @@ struct ElementFields {
 // result.
 double von_mises(const Mat3& f, const Mat3& piola);
 
-// x: positions in the model's order.
+// Computes the fields at a pose. x: positions in the model's order.
 ElementFields element_fields(const Model& model, const Positions& x);
 
 // Returns the force of the colliders on each vertex at the end of the workspace's last step, friction included, by

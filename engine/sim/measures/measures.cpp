@@ -87,8 +87,8 @@ double jiggle(const Model& model, const Positions& x, const Eigen::Isometry3d& m
 
 namespace {
 
-// Tells whether no point of a triangle is deeper in a shape than `known`, as the distances of places in it show: of its
-// centre and, down to some level, of the centres of its quarters. certainty: Shape::certainty.
+// Tells whether no point of a triangle is deeper in a shape than `known`. The distances at the triangle's centre and,
+// down to some level, at the centres of its quarters show that. certainty: Shape::certainty.
 bool certainly_no_deeper(const ShapeProbe& probe, double certainty, const Vec3& a, const Vec3& b, const Vec3& c,
                          double known, int levels, QueryMemory& near) {
   const Vec3 center = (a + b + c) / 3;

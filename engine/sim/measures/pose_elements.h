@@ -1,6 +1,6 @@
-// Computes one number for each tetrahedron of a body at a pose, from the body's description alone: what pictures show
-// on a surface. No model is needed, so that a film can be coloured from its saved motion. Not here: fields of a model
-// for other programs (fields.h).
+// Computes one number for each tetrahedron of a body at a pose, from the body's description alone. Pictures show such
+// numbers on a surface. No model is needed, so that a film can be coloured from its saved motion. Not here: fields of a
+// model for other programs (fields.h).
 #pragma once
 
 #include <vector>
@@ -23,12 +23,12 @@ class PoseElements {
   // The body must outlive this object. Its materials may change meanwhile, its mesh may not.
   explicit PoseElements(const BodyDescription& body);
 
-  // Writes the quantity of each element. NaN where it is not defined: in elements without volume at rest, and stress
-  // where det F = 0. x: the positions of the mesh, n x 3 [m]. threads: null where the calling thread does it all.
+  // Writes the quantity of each element, or NaN where it is not defined: in elements without volume at rest, and for
+  // stress where det F = 0. x: the positions of the mesh, n x 3 [m]. threads: null for the calling thread alone.
   void evaluate(ElementQuantity quantity, const Positions& x, Threads* threads, std::vector<double>& values) const;
 
   // Writes for each vertex the mean over its elements, weighted by their rest volumes. Elements with NaN do not count;
-  // NaN where none is left.
+  // a vertex without any other gets NaN.
   void to_vertices(const std::vector<double>& values, Threads* threads, std::vector<double>& by_vertex) const;
 
  private:

@@ -5,8 +5,8 @@
 
 namespace supple {
 
-// Holds after how many iterations a budget ended a step's searches: the one from the first iterate, and the one from
-// where the body was, which few steps make. -1: the budget did not end that search, or it was not made.
+// Holds after how many iterations a budget ended each search of a step: the search from the first iterate, and the one
+// from where the body was, which few steps make. -1: the budget did not end that search, or the step did not make it.
 struct BudgetCuts {
   std::array<int, 2> after = {-1, -1};
 

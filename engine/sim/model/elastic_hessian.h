@@ -23,7 +23,7 @@ class ElasticHessian {
  public:
   explicit ElasticHessian(const Model& model);
 
-  // Returns the lower triangle, entries 3 i + c.
+  // Returns the lower triangle, whose row 3 i + c belongs to coordinate c of vertex i.
   const Eigen::SparseMatrix<double>& matrix() const { return matrix_; }
 
   // Sums up w M/h^2, the springs of handles, damping and the element matrices as given.
@@ -45,7 +45,7 @@ class ElasticHessian {
   std::vector<std::int32_t> block_begin_, block_row_;  // by block column
   struct Place {
     std::int32_t row, column;  // corners of the element; row >= column in the matrix after `swapped`
-    std::int64_t at;           // of the block's first number; -1: a corner is held
+    std::int64_t at;           // place of the block's first number; -1: a corner is held
     bool swapped;
   };
   std::vector<Place> places_;             // pairs of corners of each lane, in the order of pairs

@@ -13,11 +13,11 @@ namespace supple {
 namespace {
 
 // The share of A in the matrix. It keeps the matrix positive definite and directions bounded where a material has no
-// stiffness as it is; more of it slows convergence (docs/lab/2026-11-24-matrices.md).
+// stiffness in the present pose; a larger share slows convergence (docs/lab/2026-11-24-matrices.md).
 constexpr double share_of_constant = 0.02;
 
-// A strain limit has no stiffness until it acts, and then all of it at once: there the Hessian tells nothing of what a
-// step will meet, and A serves.
+// Returns the share of A for a material. A strain limit has no stiffness until it acts, and then all of it at once: its
+// Hessian does not foretell the stiffness that a step meets, so A takes its place.
 double share_in(const Material& material) {
   return std::holds_alternative<StrainLimiting>(material) ? 1.0 : share_of_constant;
 }
@@ -38,7 +38,7 @@ void mix(double* packed, const SystemTerm& term, int corners, double k, double s
 }  // namespace
 
 struct HessianSystem::Parts {
-  // These tell what the numbers were made for.
+  // The ids of the structure and the model for which the numbers were made.
   std::uint64_t structure = 0, model = 0;
   Positions x;
 
@@ -47,8 +47,8 @@ struct HessianSystem::Parts {
   ChangingFactor factor;
   StiffnessSample sample;
   VertexRotations rotations;
-  Rotations made_back;          // from where the matrix was made to rest
-  Rotations since, since_back;  // from where it was made to where it is turned to, and back
+  Rotations made_back;          // rotations from where the matrix was made to rest
+  Rotations since, since_back;  // rotations from where it was made to where it is turned to, and back
   Positions right;              // n_free x 3
 
   explicit Parts(const Model& of)
@@ -88,7 +88,7 @@ bool HessianSystem::make(const Model& model, const Positions& x, Threads* thread
   if (!parts_ || parts_->structure != model.structure || parts_->factor.precision() != model.factor.precision())
     parts_ = std::make_unique<Parts>(model);
   Parts& p = *parts_;
-  p.model = 0;  // until it is done
+  p.model = 0;  // stays 0 until the matrix is made
   p.x = x;
   element_matrices(model, threads, x, true, p.elements);
   p.mix_elements(model);

@@ -1,8 +1,9 @@
 // Defines a matrix for search directions that couples coordinates, 3n x 3n: the Hessian of g in some pose of the body,
-// with each element's part projected, which turns with the body. Where the body moves on, only its stiffness gets old,
-// and where it but turns and bends, that does not change. The first iteration of Newton's method would solve with the
-// same matrix; here it is factored once for many frames. docs/method.md ("A matrix that follows the body") says what it
-// gains. Not here: when it is renewed (solver/matrix_rule.h); contacts, which it does not contain.
+// with each element's part projected, which turns with the body. As the body moves on, only the stiffness in the matrix
+// gets old, and where the body merely turns and bends, it does not. The first iteration of Newton's method would solve
+// with the same matrix; here the matrix is factored once for many frames. docs/method.md ("A matrix that follows the
+// body") says what it gains. Not here: when it is renewed (solver/matrix_rule.h); contacts, which the matrix does not
+// contain.
 #pragma once
 
 #include <memory>
@@ -20,12 +21,13 @@ class HessianSystem {
   HessianSystem& operator=(HessianSystem&&) noexcept;
 
   // Makes the matrix at x (n x 3 in the model's order) and factors it, in the precision of the model's factor; does
-  // nothing where that is done already. The bits do not depend on threads (may be null). Allocates only for another
-  // structure than last time. Returns false when the matrix is not positive definite, as where positions or stiffnesses
-  // are too large for numbers; there is none then.
+  // nothing where the matrix at x is there already. The bits do not depend on threads (may be null). Allocates only
+  // when the model's structure is not that of the last call. Returns false, and leaves no matrix, when it is not
+  // positive definite, as when positions or stiffnesses are too large for numbers.
   bool make(const Model& model, const Positions& x, Threads* threads);
 
-  // How far the elements' stiffness at x is from that where the matrix was made (stiffness_sample.h).
+  // Returns how far the elements' stiffness at x is from their stiffness where the matrix was made
+  // (stiffness_sample.h).
   double departure(const Model& model, const Positions& x) const;
 
   // Turns the matrix at each vertex by what the elements around it have turned between where it was made and x.

@@ -19,7 +19,7 @@ namespace supple {
 struct Collider {
   std::string name;
   Shape shape;
-  double thickness = 0;  // of a layer around it that already pushes [m]
+  double thickness = 0;  // of the layer around the collider that already pushes [m]
   double friction = 0;   // coefficient of Coulomb's law
 };
 
@@ -35,7 +35,7 @@ struct ColliderMotion {
 // those in force later.
 enum class ContactHistory {
   frozen,   // both gradients with the planes of the iteration that made the pair
-  current,  // the rest of t, and 2 k_c n n^T s for each contact that is in force now
+  current,  // t without contacts, plus 2 k_c n n^T s for each contact in force now
   dropped,  // no pair across a change of the set
 };
 template <>
@@ -46,7 +46,7 @@ struct Names<ContactHistory> {
 
 // Selects how search directions take contacts, which A does not contain, into account.
 enum class ContactDirection {
-  ignored,   // as the paper
+  ignored,   // contacts are not taken into account, as in the paper
   diagonal,  // normal motion of touching vertices by its own stiffness
   low_rank,  // (A + contacts)^-1 by the Woodbury identity
 };
@@ -80,8 +80,8 @@ struct ContactSettings {
 // The matrix that quasi-Newton directions start from.
 enum class SystemMatrix {
   constant,  // A = M/h^2 + L: the paper's
-  tangent,   // one for all coordinates that follows the body (model/tangent_system.h)
-  hessian,   // one over all coordinates that turns with the body (model/hessian_system.h)
+  tangent,   // a matrix for all coordinates that follows the body (model/tangent_system.h)
+  hessian,   // a matrix over all coordinates that turns with the body (model/hessian_system.h)
 };
 template <>
 struct Names<SystemMatrix> {
@@ -112,9 +112,9 @@ struct SolverSettings {
   LineSearch line_search = LineSearch::armijo;
   double armijo = 0.3;      // gamma
   double target_error = 0;  // stop when the error estimate falls below; 0: do all iterations
-  double budget_ms = 0;     // of one step: no iteration begins that would probably end later; 0: no bound
-  int rounds = 5;           // of `iterations`, at most, where the answer so far is far from the minimum
-  bool newton = true;       // Newton's method may finish what they leave (solver/newton_finish.h)
+  double budget_ms = 0;     // of one step: an iteration that would probably end later does not begin; 0: no bound
+  int rounds = 5;           // most rounds of `iterations`, where the answer so far is far from the minimum
+  bool newton = true;       // Newton's method may finish hard steps (solver/newton_finish.h)
   ContactSettings contact;
   ChebyshevSettings chebyshev;
 };
@@ -126,8 +126,8 @@ struct StepInputs {
   Positions middle_targets;          // at its middle; only for implicit midpoint [m]
   SolverSettings solver;
   const std::vector<Collider>* colliders = nullptr;   // null or empty: nothing to touch, and nothing is paid for it
-  std::vector<ColliderMotion> collider_motions = {};  // of each over the step
-  std::optional<BudgetCuts> repeated_cuts = {};       // of an earlier run, in place of the clock, for the same bits
+  std::vector<ColliderMotion> collider_motions = {};  // motion of each collider over the step
+  std::optional<BudgetCuts> repeated_cuts = {};  // cuts of an earlier run, in place of the clock, for the same bits
 };
 
 inline bool has_colliders(const StepInputs& inputs) {

@@ -84,7 +84,8 @@ std::string spelling_of(const Method& method) {
     text += fmt::format(", linear = \"cg\", inner_iterations = {}", method.inner_iterations);
   if (method.inner_tolerance > 0) text += fmt::format(", inner_tolerance = {:g}", method.inner_tolerance);
   const MethodForm* form = form_of(method.matrix, method.linear);
-  // A preconditioner is written wherever there is a choice, because such a method is known by it.
+  // A preconditioner is written wherever there is a choice of several, because such a method is known by its
+  // preconditioner.
   if (form == nullptr || form->preconditioner.begin() + 1 != form->preconditioner.end())
     text += fmt::format(", preconditioner = \"{}\"", name_of(method.preconditioner));
   if (form == nullptr || method.acceleration != form->acceleration.usual())

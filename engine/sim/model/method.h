@@ -88,15 +88,15 @@ struct Names<Safeguard> {
 struct Method {
   StartMatrix matrix = StartMatrix::system;
   LinearSolver linear = LinearSolver::direct;
-  int inner_iterations = 0;    // of conjugate gradients, at most; 0 for direct solves
-  double inner_tolerance = 0;  // they also stop once the residual is this share of the right-hand side
+  int inner_iterations = 0;    // most iterations of conjugate gradients; 0 for direct solves
+  double inner_tolerance = 0;  // conjugate gradients also stop once the residual is this share of the right-hand side
   Preconditioner preconditioner = Preconditioner::none;
   Acceleration acceleration = Acceleration::lbfgs;
   Safeguard safeguard = Safeguard::none;
 
   bool operator==(const Method&) const = default;
 
-  // These are the usual methods, which have short names.
+  // The usual methods have short names.
   static const Method quasi_newton, projective_dynamics, chebyshev, newton, gast, hecht, vertex_block_descent, admm;
 
   // Returns the paper's method with A solved by conjugate gradients.

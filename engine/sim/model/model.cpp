@@ -65,8 +65,8 @@ std::vector<std::int32_t> vertices_of(const ElementRecord* begin, const ElementR
   return list;
 }
 
-// Packs elements of one kind and region into one chunk. Padding repeats the first element without its weight: it is
-// finite and adds nothing. local: scratch by vertex.
+// Packs elements of one kind and region into one chunk. Padding repeats the first element with a weight of 0, so that
+// its numbers are finite and add nothing. local: scratch by vertex.
 void pack_chunk(Model& model, const ElementRecord* begin, const ElementRecord* end, std::vector<std::int32_t>& local) {
   const int corners = corners_of(begin->kind), fields = fields_of(begin->kind);
   const auto count = static_cast<int>(end - begin);

@@ -21,7 +21,7 @@ struct Handle {
   std::string name;
   std::vector<std::int32_t> vertices;  // of the mesh, in its own numbering; one vertex belongs to one handle
   double stiffness = 0;  // of the spring from each vertex to its target [N/m]; 0: hard, the rows are eliminated
-  bool holds = true;     // springs that have been let go pull at nothing until they hold again
+  bool holds = true;     // false: the springs have been let go and do not pull
 };
 
 enum class Integrator { backward_euler, implicit_midpoint };
@@ -48,13 +48,13 @@ struct BodyDescription {
   std::vector<Material> materials;  // by region tag of the elements
   std::vector<Fibre> fibres;        // by region tag; empty: none
   std::vector<Spring> springs;      // beside the tetrahedra or, for cloth, instead of them
-  Triangles surface;                // that contact sees; empty: the boundary of the tetrahedra
+  Triangles surface;                // the surface that contact sees; empty: the boundary of the tetrahedra
   double density = 1000;            // of the tetrahedra [kg/m^3]
   std::vector<double> point_mass;   // by vertex, on top of the tetrahedra's [kg]; empty: none
   std::vector<Handle> handles;
   double time_step = 1.0 / 30;  // h [s]
   Integrator integrator = Integrator::backward_euler;
-  double damping = 0;                                 // beta of stiffness-proportional damping [s]
+  double damping = 0;                                 // beta beta of stiffness-proportional damping [s]
   StretchInterval fit;                                // equation 11
   Precision precision = Precision::single_precision;  // of the factor, hence of search directions
 };
@@ -69,10 +69,10 @@ struct Model : System {
   double size = 0;                        // diagonal of the rest bounding box [m]
   Positions rest;                         // n x 3 [m]
   std::vector<double> mass;               // n [kg]
-  double total_mass = 0;                  // of the free vertices [kg]
-  std::vector<std::int32_t> input_of;     // vertex of the input file by ours
-  std::vector<std::int32_t> internal_of;  // ours by vertex of the input file
-  Triangles surface;                      // that contact sees, in the order of their lowest vertices
+  double total_mass = 0;                  // mass of the free vertices [kg]
+  std::vector<std::int32_t> input_of;     // vertex of the input file, by vertex of the model
+  std::vector<std::int32_t> internal_of;  // vertex of the model, by vertex of the input file
+  Triangles surface;                      // the triangles that contact sees, in the order of their lowest vertices
 
   Integrator integrator = Integrator::backward_euler;
   TimeScheme scheme = scheme_of(Integrator::backward_euler);
@@ -86,7 +86,7 @@ struct Model : System {
   // Elements are stored in blocks of block_width; the layouts are those of ElementChunk.
   int elements = 0;
   int blocks = 0;
-  std::vector<std::int32_t> element_of_lane;  // input's element of the chunk's kind by lane; -1 for padding
+  std::vector<std::int32_t> element_of_lane;  // by lane: number among the input's elements of this kind; -1: padding
   std::vector<std::uint16_t> corner;
   AlignedVector<double> field;
   std::vector<std::int32_t> chunk_vertex;  // all chunks' lists, one after the other
@@ -98,9 +98,8 @@ struct Model : System {
     std::size_t first_corner, first_field;
   };
   std::vector<ChunkRange> chunks;
-  // This is the number of vertices of the chunk that has the most. Each chunk copies the positions of its vertices into
-  // a space of its own before it is evaluated, and each space has this size, so that no two threads that work on chunks
-  // share one.
+  // The largest number of vertices that a chunk has. The positions of a chunk's vertices are copied into a space of its
+  // own before it is evaluated. Each space has this size, so that no two threads that work on chunks share one.
   int largest_chunk = 0;
 
   // The indices of each free vertex in the chunks' lists are slots[slot_begin[v] .. slot_begin[v+1]).
@@ -113,7 +112,7 @@ struct Model : System {
   };
   std::vector<HandleVertex> handled;     // the order of StepInputs::targets
   std::vector<double> handle_stiffness;  // of the spring at each free vertex, 0: none [N/m]; empty when all are hard
-  bool free_floating = false;            // nothing holds it: A has the translations as known eigenvectors
+  bool free_floating = false;            // nothing holds the body: A has the translations as known eigenvectors
 
   // Holds (beta/h) L over all vertices, by row; empty without damping. [N/m]
   struct SparseRows {

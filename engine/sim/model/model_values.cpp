@@ -97,7 +97,7 @@ void add_term(const SystemTerm& term, int corners, const std::int32_t* place, do
   }
 }
 
-// Returns what inertia and the springs of handles add to L in A [N/m].
+// Returns the part of A's diagonal that inertia and the springs of handles add to L [N/m].
 double diagonal_part(const Model& model, std::int32_t v) {
   const double held = model.handle_stiffness.empty()
                           ? 0
@@ -143,8 +143,8 @@ void ModelValues::add_up_elastic(const Model& model) {
   }
 }
 
-// Returns A over the free vertices, its lower triangle; what couples them to held vertices goes to model.couplings, and
-// what damping needs goes to model.damping.
+// Returns the lower triangle of A over the free vertices. Entries that couple these to held vertices go to
+// model.couplings, and the rows that damping needs go to model.damping.
 Eigen::SparseMatrix<double> ModelValues::system_matrix(Model& model, double damping) const {
   const double h = model.time_step, drag = damping / h;
   const double stiffness = model.scheme.energy * model.scheme.theta * model.scheme.theta + drag;

@@ -26,8 +26,8 @@ class ModelValues {
 
   std::vector<ElementRecord> elements_;
   Eigen::SparseMatrix<double> elastic_;  // L over all vertices, both triangles [N/m]
-  std::vector<std::int32_t> place_;      // of each element's pairs of corners among its numbers
-  std::vector<double> share_;            // what each adds there, for k = 1 [m], or a spring's stiffness of 1
+  std::vector<std::int32_t> place_;      // place of each element's pairs of corners among elastic_'s numbers
+  std::vector<double> share_;  // what each pair adds at its place, for k = 1 [m], or a spring's stiffness of 1
 };
 
 }  // namespace supple

@@ -14,7 +14,8 @@ double mass_length(const Model& model, const Positions& displacement);
 // which a stiff body makes so large that it does not see whether the body turns. All n x 3 in the model's order.
 double motion_error(const Model& model, const Positions& q, const Positions& y, const Positions& x,
                     const Positions& solved);
-// The same for a known distance from the solved step, where x stands for it [m sqrt(kg)].
+// Returns the error of motion where only the distance from the solved step is known [m sqrt(kg)]; x stands for the
+// solved step.
 double motion_error(const Model& model, const Positions& q, const Positions& y, const Positions& x, double distance);
 
 }  // namespace supple

@@ -15,8 +15,8 @@ namespace supple {
 // Counts contacts and their changes.
 struct ContactCounts {
   int touching = 0;  // points that touch a collider, counted by collider, at the end
-  int changes = 0;   // of these that came or went, over all iterations
-  int cycles = 0;    // iterations that came back to the set of the one before last
+  int changes = 0;   // touching points that came or went, over all iterations
+  int cycles = 0;    // iterations that came back to the touching points of the one before last
 };
 
 enum class StopReason { iterations, round_off, target_error, line_search_failed, budget };
@@ -30,7 +30,7 @@ struct Names<StopReason> {
 
 struct StepFailure {
   std::string during;  // part of the step, such as "line search"
-  int vertex = -1;     // furthest out, as numbered in the input file
+  int vertex = -1;     // the vertex furthest out, as numbered in the input file
   std::string what;    // such as "a number is no longer finite"
 };
 
@@ -55,27 +55,27 @@ struct StepReport {
   double other_ms = 0;     // the rest; the six add up to step_ms
   double start_ms = 0;     // until the first iterate was evaluated
   int iterations = 0;
-  int newton_iterations = 0;             // of these, those that finished a hard step
+  int newton_iterations = 0;             // iterations of Newton's method that finished a hard step
   int line_search = 0;                   // trial evaluations
   std::vector<double> objective;         // g by iteration, the start first; reserved by the workspace [J]
   std::vector<IterationRecord> records;  // by iteration
   double decrease = 0;                   // g(start) - g(end), summed without cancellation [J]
   double remaining_estimate = 0;         // g(end) - g*, from the decrement or from how decreases shrank [J]
-  double error_estimate = 0;             // of equation 12, from that
-  double motion_estimate = 0;            // of the error of motion (motion_error.h), from the last direction
+  double error_estimate = 0;             // of equation 12's error, from remaining_estimate
+  double motion_estimate = 0;            // of the error of motion (motion_error.h), by the last direction
   double slope = 0;                      // tr(grad^T d) of the last direction [J]
-  double decrement = 0;                  // half of that at the end, downhill: what a quadratic g would still lose [J]
+  double decrement = 0;                  // half of |slope| at the end: what a quadratic g would still lose [J]
   StopReason stop_reason = StopReason::iterations;
   BudgetCuts cuts;  // where a budget of time ended the iterations
   ContactCounts contacts;
   Vec3 contact_force = Vec3(0, 0, 0);  // of all colliders on the body, at the end of the step [N]
-  std::vector<Vec3> collider_forces;   // of each of them; empty where there are none [N]
+  std::vector<Vec3> collider_forces;   // force of each collider on the body; empty without colliders [N]
   bool failed = false;
   StepFailure failure;
 };
 
-// Tells whether a step did not come near its minimum. Where Newton's method finished it, the estimate alone counts: the
-// trials tell how hard the iterations before had it.
+// Tells whether a step did not come near its minimum. Where Newton's method finished it, the estimate alone counts:
+// line searches that tried many points only tell that the iterations before were hard.
 inline bool is_unsolved(const StepReport& report) {
   return is_unsolved(std::max(report.error_estimate, report.motion_estimate), report.iterations,
                      report.newton_iterations > 0 ? 0 : report.line_search);

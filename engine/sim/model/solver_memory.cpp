@@ -5,7 +5,7 @@
 namespace supple {
 namespace {
 
-// The numbers that stand before the positions.
+// Holds the numbers that stand before the positions.
 struct Head {
   std::int64_t age;
   double hessian_progress, constant_progress;

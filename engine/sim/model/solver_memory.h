@@ -12,7 +12,7 @@ namespace supple {
 
 struct SolverMemory {
   Positions matrix_made_at;  // where the matrix of directions was made, n x 3; empty: none was [m]
-  int matrix_age = 0;        // steps since then
+  int matrix_age = 0;        // steps since the matrix was made
   // The factor by which one evaluation reduced the error (its estimate to the power of one over their number) in the
   // last step that started directions from the Hessian, and in the last that started them from A; 0: not known.
   double hessian_progress = 0, constant_progress = 0;
@@ -22,7 +22,7 @@ struct SolverMemory {
 // bytes.
 std::string bytes_of(const SolverMemory& memory);
 
-// Returns the memory of a body with so many vertices from such bytes; nothing where they are not of such a body.
+// Returns the memory that bytes_of() wrote; nothing where the bytes are not of a body with this many vertices.
 std::optional<SolverMemory> memory_from(std::string_view bytes, Eigen::Index vertices);
 
 }  // namespace supple

@@ -20,14 +20,14 @@ struct Anchors {
 };
 
 // All that a body's future depends on, unless its SearchRule remembers earlier steps (solver/step.h). A copy is a
-// snapshot. step() changes x, v, time, and the memory; MovingBody (world/) changes the anchors, and replaces the
-// whole when it restores one.
+// snapshot. step() changes x, v, time, and the memory; MovingBody (world/) changes the anchors, and replaces the whole
+// state when it restores one.
 struct State {
   Positions x;          // positions, n x 3, in the model's order [m]
   Positions v;          // velocities, n x 3 [m/s]
   double time = 0;      // [s]
   Anchors anchors;      // may stay empty where only steps are made: they do not read them
-  SolverMemory memory;  // what its solver remembers of earlier steps; empty: nothing
+  SolverMemory memory;  // what the body's solver remembers of earlier steps; empty: nothing
 };
 
 // Returns the state of a model that is at rest where it was built.

@@ -8,7 +8,7 @@
 namespace supple {
 namespace {
 
-constexpr std::size_t sampled_chunks = 8;  // one in so many
+constexpr std::size_t sampled_chunks = 8;  // one of so many chunks is sampled
 
 int numbers_of(const Model::ChunkRange& range) { return range.blocks * block_width * scalar_numbers(range.kind); }
 
@@ -25,7 +25,7 @@ StiffnessSample::StiffnessSample(const Model& model) {
   now_.resize(most);
 }
 
-// The sum has the share of A in it, and leaves out corner 0.
+// total_ contains the share of A, and leaves out corner 0.
 void StiffnessSample::take(const Model& model, const Positions& x, const TangentShares& shares) {
   shares_ = shares;
   total_ = 0;

@@ -1,4 +1,4 @@
-// Tells how far the elements' stiffness is from where a matrix was made of it, and so when to make a matrix anew.
+// Tells how far the elements' stiffness has departed since a matrix was made of it, and so when to make a new matrix.
 #pragma once
 
 #include "base/aligned.h"
@@ -6,12 +6,13 @@
 
 namespace supple {
 
-// The shares of S and A in the matrix. A tangent looks at a point, but a step needs an interval: A, whose stiffness is
-// fitted over one, keeps directions short where a material has next to no stiffness as it is but stiffens as it goes.
+// Holds the shares of S and A in the matrix. S is the stiffness at one pose, but a step covers an interval. The
+// stiffness of A is fitted over an interval, so A keeps directions short where a material has next to no stiffness in
+// the present pose but stiffens on its way.
 struct TangentShares {
   double tangent = 0.9;
   double constant = 0.1;
-  double axial = 0.7;  // S is along each principal axis at least this share of the secant stiffness there
+  double axial = 0.7;  // along each principal axis, S is at least this share of the secant stiffness
   bool operator==(const TangentShares&) const = default;
 };
 
@@ -25,13 +26,14 @@ class StiffnessSample {
   // Takes the sample at x (n x 3 in the model's order).
   void take(const Model& model, const Positions& x, const TangentShares& shares);
 
-  // Sums the changes of the elements' stiffness since, over the sum of what is in the matrix. 0 where all but turned.
+  // Returns the sum of the changes of the elements' stiffness since take(), over the sum of their stiffness in the
+  // matrix; 0 where elements have only turned.
   double departure(const Model& model, const Positions& x);
 
  private:
   TangentShares shares_;
   std::vector<std::size_t> first_number_;  // by sampled chunk
-  AlignedVector<double> numbers_, now_;    // of the sampled chunks; of one of them
+  AlignedVector<double> numbers_, now_;    // stiffness of all sampled chunks when taken; of one chunk now
   double total_ = 0;                       // of the matrix' numbers over the sampled elements [N/m]
 };
 

@@ -12,13 +12,13 @@
 namespace supple {
 namespace {
 
-constexpr std::uint64_t tangent_ids = std::uint64_t(1) << 63;               // tells them from those of models
-constexpr std::int32_t nowhere = std::numeric_limits<std::int32_t>::min();  // two vertices that are held, or padding
+constexpr std::uint64_t tangent_ids = std::uint64_t(1) << 63;  // tells the ids of tangents from those of models
+constexpr std::int32_t nowhere = std::numeric_limits<std::int32_t>::min();  // of two held vertices, or padding
 
 }  // namespace
 
 struct TangentSystem::Parts : System {
-  // These tell what the numbers were made for.
+  // The ids of the structure and the model for which the numbers were made.
   std::uint64_t structure = 0, model = 0;
   TangentShares shares{};
   Positions x;
@@ -26,7 +26,7 @@ struct TangentSystem::Parts : System {
   // By chunk, lane and pair of corners: the place among the matrix' numbers, or ~ that among the couplings.
   std::vector<std::int32_t> place;
   std::vector<std::size_t> first_place, first_number;  // by chunk
-  AlignedVector<double> numbers;                       // of the elements (element_kernels.h)
+  AlignedVector<double> numbers;                       // stiffness of the elements (element_kernels.h)
   StiffnessSample sample;
 
   CholeskyFactor::Room room;
@@ -70,7 +70,7 @@ std::int32_t TangentSystem::Parts::place_of(const Model& of, std::int32_t a, std
   return static_cast<std::int32_t>(std::lower_bound(first, end, row) - matrix.innerIndexPtr());
 }
 
-// The first corner's rows and columns are minus the sums of the others'.
+// Adds the elements' stiffness. The first corner's rows and columns are minus the sums of the others'.
 void TangentSystem::Parts::add_elements(const Model& of) {
   double* values = matrix.valuePtr();
   const double scale = shares.tangent * of.scheme.energy * of.scheme.theta * of.scheme.theta;
@@ -105,7 +105,7 @@ void TangentSystem::Parts::add_elements(const Model& of) {
   }
 }
 
-// Inertia, springs of handles and damping are the same in the Hessian and in A.
+// Adds inertia, springs of handles and damping, which are the same in the Hessian and in A.
 void TangentSystem::Parts::add_vertices(const Model& of) {
   const double inertia = shares.tangent * of.scheme.inertia / (of.time_step * of.time_step);
   const double springs = shares.tangent * of.scheme.energy * of.scheme.theta * of.scheme.theta;
@@ -138,7 +138,7 @@ bool TangentSystem::make(const Model& model, const Positions& x, const TangentSh
   if (!parts_ || parts_->structure != model.structure || parts_->factor.precision() != model.factor.precision())
     parts_ = std::make_unique<Parts>(model);
   Parts& p = *parts_;
-  p.model = 0;  // until it is done
+  p.model = 0;  // stays 0 until the matrix is made
   static std::atomic<std::uint64_t> made{0};
   p.id = ++made | tangent_ids;
   p.shares = shares;

@@ -1,4 +1,4 @@
-// Sums over the free vertices run in chunks of fixed size, so that they do not depend on the number of threads.
+// Cuts the free vertices into chunks of fixed size, so that sums over them do not depend on the number of threads.
 #pragma once
 
 #include "sim/model/model.h"

@@ -1,5 +1,5 @@
-// Finds the rotation of a body at each of its vertices, for what was made of the body in another pose and has to turn
-// with it.
+// Finds the rotation of a body at each of its vertices, for matrices that were made in another pose and have to turn
+// with the body.
 #pragma once
 
 #include "base/aligned.h"

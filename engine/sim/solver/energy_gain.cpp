@@ -22,7 +22,7 @@ double work_of_handles(const Model& model, const Positions& q, Workspace& w) {
 
 namespace {
 
-// Work of the contacts' forces, friction among them, along the way of each vertex.
+// Returns the work of the contacts' forces, friction among them, along the way of each vertex [J].
 double work_of_contacts(const Positions& q, Workspace& w) {
   Positions& force = w.scratch;
   force.setZero();
@@ -38,7 +38,7 @@ double work_of_contacts(const Positions& q, Workspace& w) {
   return work;
 }
 
-// g without its inertia and without contact [J].
+// Returns g without its inertia and without contact [J].
 double potential_of(const Model& model, const Workspace& w, const Iterate& at) {
   return at.g - inertial_energy(model, w, at.x) - contact_energy(at.contacts, at.x) -
          friction_energy(at.contacts, w.contact.stick_length, at.x);
@@ -53,15 +53,16 @@ double work_from_outside(const Model& model, const Positions& q, Workspace& w) {
 
 namespace {
 
-// Returns the kinetic energy of a body that has fallen from rest for two steps [J]. What is small beside that is not
-// worth iterations: a cloth that comes to rest exchanges next to nothing in a step, and would make five times as many.
+// Returns the kinetic energy of a body that has fallen from rest for two steps [J]. An energy that is small beside it
+// is not worth iterations: a cloth that comes to rest exchanges next to nothing in a step, and without this bound would
+// make five times as many iterations.
 double energy_of_short_fall(const Model& model, const StepInputs& inputs) {
   return 2 * model.total_mass * model.time_step * model.time_step * inputs.gravity.squaredNorm();
 }
 
 // Tells whether a step may have gained more than this share of the energies that it moves and of a short fall's, by a
 // bound that evaluates nothing. Where E is convex between q and x, the energy from nothing is at most r . (x - q) - 1/2
-// |v' - v|^2_M, where r is what is left of the gradient of g at x: the current iterate's, which must be there.
+// |v' - v|^2_M, where r is the remaining gradient of g at x. The current iterate must have its gradient.
 bool may_gain_energy(const Model& model, const StepInputs& inputs, const State& state, const Workspace& w,
                      double share) {
   if (model.integrator != Integrator::backward_euler) return false;
@@ -105,7 +106,7 @@ double share_from_nothing(const Model& model, const StepInputs& inputs, const St
 bool gains_energy(const StepContext& c) {
   constexpr double much = 0.01;       // share of the energies that the step exchanges
   constexpr int usual_trials = 2;     // points that an iteration tries, unless it has a hard time
-  constexpr double much_left = 1e-4;  // share of what the step has gained: steps that come nearer have a small gradient
+  constexpr double much_left = 1e-4;  // share of the step's gain; a step that comes nearer has a small gradient
   const StepReport& report = c.w.report;
   const bool hard = report.line_search > usual_trials * report.iterations;
   const bool unsolved = -report.slope > much_left * (report.decrease + c.above_start);  // by the last direction

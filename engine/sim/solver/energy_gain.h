@@ -1,7 +1,7 @@
 // Computes what handles and contacts put into a body, and tells whether a step has gained energy from nothing. An exact
-// minimiser of backward Euler's objective cannot where the elastic energy is convex between q and x: M (x - q - h v) /
-// h^2 = m g - grad E(x) gives K' - K + E(x) - E(q) - m g . (x - q) <= the work of what is moved from outside. A step
-// that was left far from its minimum can, again and again, without bound.
+// minimiser of backward Euler's objective cannot gain energy where the elastic energy is convex between q and x: M (x -
+// q - h v) / h^2 = m g - grad E(x) gives K' - K + E(x) - E(q) - m g . (x - q) <= the work of what is moved from
+// outside. Steps that were left far from their minimum can gain energy again and again, without bound.
 #pragma once
 
 #include "sim/solver/step_context.h"
@@ -9,17 +9,19 @@
 namespace supple {
 
 // Returns the work of the elements on held vertices that were moved in a step from q to the current iterate, by the
-// forces at its end: what hard handles put in [J]. Evaluates all elements where one has moved, and then overwrites the
-// workspace's trial energies and forces.
+// forces at its end: what hard handles put in [J]. Where a held vertex has moved, evaluates all elements and overwrites
+// the workspace's trial energies and forces.
 double work_of_handles(const Model& model, const Positions& q, Workspace& workspace);
 
 // Returns the work over a step from q to the current iterate that hard handles and contacts do on the body, by the
-// forces at its end and the ways of the vertices: what backward Euler takes for that work [J]. Evaluates as above.
+// forces at its end and the ways of the vertices: what backward Euler takes for that work [J]. Evaluates elements as
+// work_of_handles() does.
 double work_from_outside(const Model& model, const Positions& q, Workspace& workspace);
 
-// Tells whether the step, left at the current iterate, would gain more than a hundredth of the energies that it
-// exchanges, and of that of a fall of two steps, from nothing. That costs an evaluation at q, so only steps are
-// examined whose iterations had a hard time, or whose gradient leaves it possible while there was still much to gain.
+// Tells whether the step, left at the current iterate, would gain too much energy from nothing: more than a hundredth
+// of the energies that it exchanges and of that of a fall of two steps. The test costs an evaluation at q, so it
+// examines only steps whose iterations had a hard time, or whose gradient leaves such a gain possible while there was
+// still much to gain.
 bool gains_energy(const StepContext& c);
 
 }  // namespace supple

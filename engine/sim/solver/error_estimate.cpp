@@ -17,8 +17,9 @@ void Decrements::add(double decrement, double gained) {
 }
 
 // No direction's matrix is the Hessian, so what is left is an unknown number of decrements. If that number is the same
-// at both ends of some iterations, it cancels: what is left is to what they gained as the last decrement is to the
-// difference of the two. A ratio above `slowest` tells that decrements do not shrink, not what is left.
+// at both ends of some iterations, it cancels: the gain that is left is to the gain of these iterations as the last
+// decrement is to the difference of the first and the last. A ratio above `slowest` tells that decrements do not
+// shrink, not what is left.
 double Decrements::left(double decrement) const {
   constexpr double slowest = 0.85;
   double gained = 0, logarithms = 0;
@@ -30,8 +31,8 @@ double Decrements::left(double decrement) const {
   return count_ == 0 ? decrement : std::max(decrement, std::exp(logarithms / count_));
 }
 
-// Decreases of quasi-Newton iterations shrink unevenly, so the ratio is averaged over the last three. Where there are
-// too few, the estimate is as much again as was gained.
+// Decreases of quasi-Newton iterations shrink unevenly, so the ratio is averaged over the last three. With fewer than
+// two decreases, the estimate of what is left is the gain so far.
 double left_by_decreases(const std::vector<double>& g, std::size_t first) {
   const std::size_t steps = g.size() - 1 - first;
   if (steps < 2) return steps == 0 ? 0 : std::max(0.0, g[first] - g[first + 1]);
@@ -49,7 +50,7 @@ namespace {
 
 // Finds how far the contacts' energy alone is above g of the last iterate, if the body had gone to y [J]. An impact
 // ends the first iterate before y, where g is not evaluated; but y lies deep in the collider, and equation 12 counts
-// from there. What elements have there is left out.
+// from y. The energy of the elements at y is left out.
 double below_prediction(const Model& model, const StepInputs& inputs, Workspace& w) {
   if (!has_colliders(inputs) || w.report.failed) return 0;
   w.trial.x.topRows(model.free) = w.y.topRows(model.free);
@@ -59,7 +60,7 @@ double below_prediction(const Model& model, const StepInputs& inputs, Workspace&
 
 }  // namespace
 
-// A contact that is found on the way raises g, which takes nothing from what the searches gained.
+// A contact that is found on the way raises g; this does not lessen what the searches gained.
 double gained_in_all(const Model& model, const StepInputs& inputs, Workspace& w, double gained) {
   double searched = 0;
   for (const IterationRecord& iteration : w.report.records) searched += std::max(0.0, iteration.decrease);
@@ -72,8 +73,8 @@ double error_at_end(const Model& model, const StepInputs& inputs, Workspace& w, 
   return error_of(left, gained_in_all(model, inputs, w, gained));
 }
 
-// The direction's quadratic model foretells a gain of half the decrement. The step is estimated to have some number of
-// times that gain left; the way that is left is the square root of that number of times the direction.
+// The direction's quadratic model foretells a gain of half the decrement. If the gain that is left is N times the
+// foretold one, the way that is left is sqrt(N) times the direction.
 double motion_estimate(const Model& model, const StepInputs& inputs, const Positions& q, Workspace& w) {
   const StepReport& report = w.report;
   if (report.failed || report.decrement <= 0) return 0;

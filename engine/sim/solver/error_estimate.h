@@ -1,6 +1,6 @@
-// Estimates how far a step is from the minimum of g, without knowing it: what is left to gain, the error of
-// equation 12, its share of the whole possible gain, and how far the solved motion is. docs/method.md ("Error and its
-// estimate") compares both with what is true.
+// Estimates how far a step is from the minimum of g without knowing the minimum: the gain that is left, the error of
+// equation 12, which is the share of this gain in the whole possible one, and the error of motion. docs/method.md
+// ("Error and its estimate") compares the estimates of both errors with the true ones.
 #pragma once
 
 #include <array>
@@ -15,8 +15,9 @@ class Decrements {
   // Adds an iteration: the decrement where it began, and by how much it lowered g.
   void add(double decrement, double gained);
 
-  // Estimates what is left at an iterate with this decrement: the geometric mean of what it foretells beside each of
-  // the last four, at least the decrement itself. Before the first iteration, it is the decrement.
+  // Estimates what is left to gain at an iterate with this decrement. Compared with each of the last four decrements,
+  // it foretells a gain; the estimate is the geometric mean of these, but at least the decrement itself. Before the
+  // first iteration, it is the decrement.
   double left(double decrement) const;
 
  private:
@@ -28,26 +29,27 @@ class Decrements {
   int count_ = 0;
 };
 
-// Estimates it from how the decreases since objective[first] shrank, for rules that do not look beyond the last iterate
-// [J].
+// Estimates what is left to gain from how the decreases since objective[first] shrank, for rules that do not look
+// beyond the last iterate [J].
 double left_by_decreases(const std::vector<double>& objective, std::size_t first);
 
-// Returns the share of what is left in the whole possible gain; both in J.
+// Returns the error of equation 12, left / (left + gained). left: the gain that is left [J]; gained: the gain so far
+// [J].
 double error_of(double left, double gained);
 
 // Returns what the step to the current iterate gained since y. gained: the decrease of g over its iterations, with what
 // is known to have been gained before. All in J. Overwrites the trial iterate.
 double gained_in_all(const Model& model, const StepInputs& inputs, Workspace& workspace, double gained);
 
-// Estimates the error at the end of a step that has gained so much [J]. A body at rest has next to nothing to gain;
-// what is left is then no error, however much of it that is, where it is lost in the round-off of g. Overwrites the
-// trial iterate.
+// Estimates the error of equation 12 at the end of a step. gained: the step's gain so far [J]. A body at rest has next
+// to nothing to gain: a rest that is lost in the round-off of g is then no error, however large its share is.
+// Overwrites the trial iterate.
 double error_at_end(const Model& model, const StepInputs& inputs, Workspace& workspace, double gained);
 
 // Estimates the error of motion (model/motion_error.h) of a step from q to the current iterate, where the direction
 // begins, from the length of that direction: it leads to the minimum of its quadratic model. On the first level alone
-// that model resists turning; the second adds what it misses. 0 where the rule does not look beyond its last iterate.
-// Overwrites the trial iterate.
+// that model resists turning; the second adds what it misses. Returns 0 where the rule does not look beyond its last
+// iterate. Overwrites the trial iterate.
 double motion_estimate(const Model& model, const StepInputs& inputs, const Positions& q, Workspace& workspace);
 
 // Tells whether the estimates have reached the target error of the settings: of equation 12, and of motion where the

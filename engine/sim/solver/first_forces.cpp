@@ -11,9 +11,9 @@
 namespace supple {
 namespace {
 
-// Friction turns a body over its front, which presses more than its back then: the first round knows no friction but
-// that of what arrives, and the next ones that of the round before. With one round, a cube that slides with a
-// coefficient of 0.5 has 86 % of its friction, with four more than 98 %.
+// Friction tips a body forward, so that its front presses more than its back. The first round knows only the friction
+// of vertices that arrive, and each further round uses the forces of the round before. With one round, a cube that
+// slides with a coefficient of 0.5 has 86 % of its friction, with four more than 98 %.
 constexpr int rounds = 4;
 constexpr double touching = 1e-6;  // distance within which a vertex touches, over the body's size
 
@@ -34,8 +34,8 @@ std::vector<char> touching_vertices(const Model& model, const StepInputs& inputs
   return found;
 }
 
-// Makes the depths those at which the vertices that touch end, in a step whose friction follows from the given ones.
-// Returns false where the step fails.
+// Makes one step whose friction follows from the given depths, and replaces these by the depths at which the touching
+// vertices end. Returns false where the step fails.
 bool press_once(const Model& model, const StepInputs& inputs, const State& state, const std::vector<char>& touches,
                 Workspace& w, std::vector<double>& pressed) {
   w.prepare(model, inputs.solver);
@@ -68,7 +68,7 @@ void find_first_forces(const Model& model, const StepInputs& inputs, const State
   own.solver.contact = inputs.solver.contact;
   own.repeated_cuts.reset();
   State later = state;
-  later.time = model.time_step;  // so that no forces are looked for in a step that looks for them
+  later.time = model.time_step;  // not 0, so that this step does not look for first forces itself
   Workspace own_workspace;
   own_workspace.threads = w.threads;
   std::vector<double> pressed;

@@ -1,6 +1,6 @@
 // Finds how hard a body that touches colliders when a film begins is pressed on them. Friction in a step follows from
-// the normal forces at its start (sim/contact/find_contacts.cpp), which the step before has left in the overlaps; the
-// first step has none before it, and a body that begins at rest on a slope, or sliding on the ground, would be without
+// the normal forces at its start (sim/contact/find_contacts.cpp), which the step before has left in the overlaps; no
+// step comes before the first one, so a body that begins at rest on a slope, or sliding on the ground, would be without
 // friction for that step.
 #pragma once
 
@@ -11,7 +11,8 @@
 namespace supple {
 
 // Sets workspace.contact.pressed_at_first in the first step (state.time is 0) of a body that touches a collider with
-// friction; does nothing else. The forces are those that the step ends with, by the standard solver, in a few rounds.
+// friction; does nothing in other cases. The forces are those that the step ends with, by the standard solver, in a few
+// rounds.
 void find_first_forces(const Model& model, const StepInputs& inputs, const State& state, Workspace& workspace);
 
 }  // namespace supple

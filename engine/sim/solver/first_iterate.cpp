@@ -1,6 +1,6 @@
-// Lists the candidates for the first iterate in the order in which they are tried. Each line has its guard before it;
-// what a candidate cures, and what it costs, is told where it is declared. The first four place the iterate; the last
-// two take its place where their g is lower.
+// Lists the candidates for the first iterate in the order in which they are tried, each after its guard. The
+// declaration of a candidate tells what it cures and what it costs. The first four place the iterate; the last two take
+// its place where their g is lower.
 #include "sim/solver/first_iterate.h"
 
 #include "sim/solver/leave_prediction.h"

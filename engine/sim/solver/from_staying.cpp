@@ -11,8 +11,9 @@
 namespace supple {
 namespace {
 
-// A body at rest is nearer to its minimum where it stays than ten iterations come from y. Its second search ends there,
-// unless more than this share of what the step has gained is left: without that it would pay for twice the iterations.
+// A body at rest is nearer to its minimum where it stays than ten iterations come from y. Its second search ends where
+// the body stays, unless more than this share of the step's gain is left; otherwise such a body would pay for twice the
+// iterations.
 constexpr double small_share = 1e-7;
 
 // Sets the trial iterate to where the body was, with its handles moved. A body that nothing holds is also carried along

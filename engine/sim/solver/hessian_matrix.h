@@ -9,8 +9,8 @@
 
 namespace supple {
 
-// Returns the stiffness of a contact in force at x, with friction by the stiffness of its secant [N/m]. `stick_length`:
-// above this slip, friction has its full strength [m].
+// Returns the stiffness of a contact in force at x, where friction has the stiffness of its secant [N/m]. stick_length:
+// the slip above which friction has its full strength [m].
 Mat3 stiffness_of(const Contact& contact, const Positions& x, double stick_length);
 
 class HessianMatrix : public ElasticHessian {
@@ -36,7 +36,7 @@ class HessianMatrix : public ElasticHessian {
 // a shift of that size corrects it. Returns false when no such shift is enough.
 bool try_factorize_projected(HessianMatrix& hessian, ChangingFactor& factor);
 
-// The same, but throws RunError.
+// Does the same, but throws RunError where no such shift is enough.
 void factorize_projected(HessianMatrix& hessian, ChangingFactor& factor);
 
 }  // namespace supple

@@ -11,8 +11,8 @@
 
 namespace supple {
 
-// Tells what a search does with an iterate that contacts make worse which were found only there, and which the iterate
-// before could not learn.
+// Tells what a search does with an iterate that is worse because of contacts that were found only there, and that the
+// iterate before could not learn.
 enum class WorseIterate {
   taken,    // the iterations after it know the contacts
   refused,  // it ends the search: g never rises
@@ -21,9 +21,9 @@ enum class WorseIterate {
 // Tells where a search ends at the latest.
 struct SearchLimits {
   int iterations = 0;                            // iterations at most, counted from where the search began
-  int trials = std::numeric_limits<int>::max();  // points that its line searches may try; beyond, it gives up
-  double enough = 0;                             // promise of a direction below which it ends, -tr(grad^T d) [J]
-  int least_iterations = 0;                      // iterations that it makes whatever they promise
+  int trials = std::numeric_limits<int>::max();  // points that its line searches may try before it gives up
+  double enough = 0;                             // the search ends at a direction that promises less, -tr(grad^T d) [J]
+  int least_iterations = 0;                      // iterations that the search makes whatever they promise
   WorseIterate worse_iterate = WorseIterate::taken;
   TimeBudget* budget = nullptr;  // null: time has no bound
 };
@@ -51,11 +51,12 @@ class Iterations {
   Iterations(const Model& model, const StepInputs& inputs, Workspace& workspace, SearchRule& rule,
              const SearchOrigin& origin = {});
 
-  // Iterates until the search ends. A search that was ended by its limits goes on when it is called with further ones.
+  // Iterates until the search ends. A search that ended by its limits goes on when run() is called again with wider
+  // limits.
   void run(const SearchLimits& limits);
 
-  // Asks for the direction at the last iterate, where the rule is for that: it tells what is left to gain, and may find
-  // that there is nothing. To be called after the last run(); does nothing to a search that has settled.
+  // Computes the direction at the last iterate, where the rule asks for that. The direction tells what is left to gain,
+  // which may be nothing. To be called after the last run(); does nothing to a search that has settled.
   void look_further(const SearchLimits& limits);
 
   SearchEnd end() const { return end_; }
@@ -72,7 +73,7 @@ class Iterations {
   SearchOrigin origin_;
   SearchEnd end_ = SearchEnd::settled;
   std::size_t first_;  // place of the search's first iterate in the report's objectives
-  double start_;       // g there [J]
+  double start_;       // g at the first iterate [J]
   int tried_;          // points that earlier searches tried
   Decrements decrements_;
 };

@@ -163,7 +163,7 @@ bool is_safely_positive(double st, double ss, double tt) { return st > 1e-10 * s
 
 void remember_pair(const Model& model, const ContactSettings& contact, Workspace& workspace, PairHistory& history) {
   if (history.window == 0) return;
-  if (workspace.is_bowed) {  // it has turned the body away from where the pairs were found
+  if (workspace.is_bowed) {  // the arc has turned the body away from where the pairs were found
     history.clear();
     return;
   }
@@ -205,7 +205,7 @@ void remember_pair(const Model& model, const ContactSettings& contact, Workspace
 }
 
 void SystemInverse::begin(const Model& model, const StepInputs& inputs, Workspace& w) {
-  // A step that starts again from where the body was is a violent one: the stiffness at rest says little of it.
+  // A step that starts again from where the body was is violent, and the stiffness at rest says little about it.
   const bool starts_again = !w.report.records.empty();
   const bool wanted =
       inputs.solver.levels > 1 && !starts_again && w.system == static_cast<const System*>(&model) && !w.hessian_serves;

@@ -35,9 +35,9 @@ class InitialInverse {
   // Computes z = A0^-1 r for the free vertices; overwrites r.
   virtual void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r,
                      Positions& z) = 0;
-  // As SearchRule::measures_last_iterate.
+  // Tells the same as SearchRule::measures_last_iterate.
   virtual bool measures_last_iterate() const { return false; }
-  // As SearchRule::forget, once no pairs are left.
+  // Does what SearchRule::forget does, once no pairs are left.
   virtual bool forget() { return false; }
   // This is called after the recursion. It may correct workspace.direction for contacts that it would cross, and
   // returns whether it did.
@@ -93,12 +93,12 @@ class SystemInverse final : public InitialInverse {
   void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
   bool measures_last_iterate() const override { return true; }
   bool bend(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
-  // Goes on with the first level alone, where directions of both came to nothing.
+  // Goes on with the first level alone, where directions of both levels came to nothing.
   bool forget() override { return std::exchange(has_second_level_, false); }
 
  private:
   bool has_second_level_ = false;
-  int iterations_ = 0;  // StepReport::iterations at the iterate where the second level has its Z
+  int iterations_ = 0;  // StepReport::iterations at the iterate to which Z belongs
 };
 
 }  // namespace supple

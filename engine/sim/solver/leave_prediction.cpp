@@ -8,7 +8,7 @@
 namespace supple {
 namespace {
 
-// The rigid motion of what hard handles hold, over a step: from rotation * (q - from) to a place relative to `to`.
+// Holds the rigid motion over a step of the vertices that hard handles hold: q moves to `to` + turn * (q - from).
 struct HandleMotion {
   Vec3 from, to;
   Eigen::AngleAxisd turn;
@@ -27,11 +27,11 @@ HandleMotion motion_of_handles(const Model& model, const State& state, const Wor
   return {from.transpose(), to.transpose(), Eigen::AngleAxisd(Mat3(u * svd.matrixV().transpose()))};
 }
 
-// Finds how what turns departs from the straight motions h v, and whether that matters: straight motions stretch it.
+// Finds how turning parts depart from the straight motions h v, which stretch them, and whether that matters.
 void find_turning(StepContext& c) {
   const Model& model = c.model;
   Workspace& w = c.w;
-  constexpr double little = 1e-5;  // of the kinetic energy of what the body would do freely
+  constexpr double little = 1e-5;  // of the kinetic energy of the body's free motion
   w.turns = false;
   if (c.inputs.solver.levels < 2) return;
   const TimedPhase timed(w.clock, Phase::matrix, "turn");
@@ -45,8 +45,8 @@ void find_turning(StepContext& c) {
   if (w.turns) w.turning.correct(model, w.second_level.system(), c.state.x, w.solve_scratch, w.turned);
 }
 
-// Sets the direction to that from y which spreads the handles' departure from y. Returns false where they do not
-// depart.
+// Sets the direction that leads from y to where the handles' departure from y is spread. Returns false where they do
+// not depart.
 bool spread_handles(Workspace& w) {
   Positions& right = w.scratch;
   right.setZero();
@@ -81,7 +81,7 @@ void fit_handles_and_turning(StepContext& c) {
 }
 
 bool handles_turn_far(const StepContext& c) {
-  constexpr double least_turn = 0.3;  // [rad]; below, what straight ways do to the elements is soon undone
+  constexpr double least_turn = 0.3;  // [rad]; elements that straight ways of smaller turns deform recover soon
   return c.spreads_handles && !(motion_of_handles(c.model, c.state, c.w).turn.angle() < least_turn);
 }
 

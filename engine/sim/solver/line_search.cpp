@@ -11,7 +11,7 @@ namespace supple {
 namespace {
 
 constexpr int most_halvings = 30;
-constexpr int most_refusals = 5;  // of trial points for the contacts found there
+constexpr int most_refusals = 5;  // refusals of trial points because of the contacts found there
 constexpr double round_off = std::numeric_limits<double>::epsilon();
 constexpr double curvature_share =
     0.9;  // gamma_2 of the strong Wolfe conditions (Nocedal and Wright 2006, section 3.1)
@@ -53,8 +53,8 @@ Search backtrack(const Model& model, const StepInputs& inputs, Workspace& w, dou
                                    : change.value <= solver.armijo * alpha * slope;
     if (halving == 0) record.full = {accepted, change.slope / slope};
     if (!accepted || !std::isfinite(change.value)) {
-      // Where slopes drown too, shorter steps only repeat the noise. A thousandth of it is next to nothing of a
-      // distance; a slope below the energy of the positions' last bits is nothing else.
+      // Where slopes are lost in round-off too, shorter steps only repeat the noise. A thousandth of the noise stands
+      // for a negligible distance, and a slope below the energy of the positions' last bits is noise itself.
       if (by_slope && -slope < 1e-3 * noise + noise_of(model, 0, extent_of(model, w))) return Search::exhausted;
       continue;
     }
@@ -156,7 +156,7 @@ class WolfeSearch {
   Workspace& w_;
   double slope_;
   double noise_;
-  int refused_ = 0;  // trial points, for the contacts found there
+  int refused_ = 0;  // trial points refused for the contacts found there
   Change& change_;
   IterationRecord& record_;
 };

@@ -8,7 +8,7 @@ namespace supple {
 
 enum class Search {
   found,
-  worse,  // found, but the contacts there, which the current iterate could not learn, make it worse
+  worse,  // a point was found, but contacts that the current iterate could not learn make it worse
   failed,
   unforeseen,  // contacts lay on the way, which the current iterate knows now: another direction is needed
   exhausted,   // what the direction promises is below what the gradient's own round-off decides
@@ -23,7 +23,7 @@ Search search_line(const Model& model, const StepInputs& inputs, Workspace& work
                    Change& change, IterationRecord& record);
 
 // Tells whether a direction is too short to change more than the positions' last bits, so that nothing is left to gain.
-// This is also true for the round-off of a body at rest, which must not be integrated into a drift.
+// Such directions include the round-off of a body at rest, which must not be integrated into a drift.
 bool below_resolution(const Model& model, const Workspace& workspace);
 
 // Returns the largest coordinate, relative to which positions are rounded [m].

@@ -12,11 +12,12 @@ namespace {
 constexpr double most_departure = 0.1;
 constexpr TangentShares shares{};
 
-// The Hessian's directions tell more than its departure how good it still is. It is poor where an evaluation comes
-// nearer by less than from A, and worn where by less than this factor. Beyond the departure it is not even tried.
+// The progress of the Hessian's directions tells better than its departure how good it still is. The Hessian is poor
+// where an evaluation brings less progress than one from A, and worn where an evaluation reduces the error by less than
+// this factor. Beyond most_departure_of_hessian, it is not even tried.
 constexpr double worn_progress = 0.1;
-constexpr double usual_progress = 0.25;  // of A, where it has not served lately
-constexpr double forgetting = 0.1;       // of what it did, in each step that it does not serve
+constexpr double usual_progress = 0.25;  // progress of A, where A has not served lately
+constexpr double forgetting = 0.1;       // share of A's progress that is forgotten in each step that A does not serve
 constexpr double least_error = 1e-12;
 constexpr double most_departure_of_hessian = 0.2;
 constexpr int longest_age = 1000000;
@@ -25,7 +26,8 @@ constexpr int longest_age = 1000000;
 constexpr double share_of_renewals = 0.2;
 constexpr double evaluations_a_step = 11;
 
-// Makes the matrix in force: the one that the state says, or a new one. False where there is none: then A serves.
+// Makes the tangent matrix: the one that the state names, or a new one. Returns false where there is none; A then
+// serves.
 bool make_tangent(const Model& model, const SolverMemory& memory, Workspace& w) {
   const bool known =
       memory.matrix_made_at.rows() == model.vertices && w.tangent.make(model, memory.matrix_made_at, shares, w.threads);
@@ -38,7 +40,7 @@ int least_age(const Model& model, const HessianSystem& hessian) {
   return static_cast<int>(std::ceil(hessian.renewal_cost(model) / (share_of_renewals * evaluations_a_step)));
 }
 
-// Likewise; A serves too where the Hessian is poor and too young to be renewed.
+// Makes the Hessian in the same way. A serves, too, where the Hessian is poor and too young to be renewed.
 bool make_hessian(const Model& model, const SolverMemory& memory, Workspace& w) {
   if (memory.matrix_made_at.rows() == model.vertices && w.hessian.make(model, memory.matrix_made_at, w.threads)) {
     const double others = memory.constant_progress > 0 ? memory.constant_progress : usual_progress;
@@ -73,8 +75,8 @@ void put_in_force(const Model& model, const StepInputs& inputs, const System& sy
 
 void choose_matrix(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
   w.renewed = false;
-  // Implicit midpoint damps nothing: what ten iterations leave unsolved comes back, and velocities of a body that is
-  // torn say little of where it is heading. Free bars of tests/sim/step_test.cpp flew apart with the tangent.
+  // Implicit midpoint damps nothing: an error that ten iterations leave comes back, and the velocities of a torn body
+  // say little of where it is heading. Free bars of tests/sim/step_test.cpp flew apart with the tangent.
   if (inputs.solver.matrix != SystemMatrix::tangent || model.integrator != Integrator::backward_euler) return;
   const TimedPhase timed(w.clock, Phase::matrix, "matrix");
   w.next_matrix_at = state.x + model.time_step * state.v;
@@ -93,7 +95,7 @@ void choose_hessian(const Model& model, const StepInputs& inputs, const State& s
 
 namespace {
 
-// `report` is the whole step's.
+// Returns the factor by which one evaluation reduced the error. report: the report of the whole step.
 double progress_of(const StepReport& report) {
   if (report.newton_iterations > 0) return 1;
   const double left = std::clamp(report.error_estimate, least_error, 1.0);

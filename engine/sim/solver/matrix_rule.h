@@ -1,7 +1,7 @@
-// Decides when the matrix that directions start from is made again: when the elements' stiffness has departed by more
-// than a limit from what it was where the matrix was made. The Hessian, whose renewals are dear, is made again more
-// rarely. The rule goes by the state alone, never by measured time, and State::memory holds all that it remembers: a
-// step from a copy of a state has the same bits, whatever was computed in between, and on any number of threads.
+// Decides when the matrix that directions start from is renewed: when the elements' stiffness has departed by more than
+// a limit from their stiffness where the matrix was made. The Hessian, which is dear to renew, is renewed more rarely.
+// The rule goes by the state alone, never by measured time, and State::memory holds all that it remembers: a step from
+// a copy of a state has the same bits, whatever was computed in between, and on any number of threads.
 #pragma once
 
 #include "sim/model/inputs.h"
@@ -13,18 +13,18 @@ namespace supple {
 // Makes the matrix that the state names, if it names one, so that the next step need not make it.
 void prepare_matrix(const Model& model, const SolverSettings& solver, const State& state, Workspace& workspace);
 
-// Makes a matrix the one that directions start from, with the corrections for contacts that belong to it. Nothing else
-// sets them. `system`: the model itself, for A, or a matrix that follows the body.
+// Makes `system` the matrix that directions start from, and sets the corrections for contacts that belong to it.
+// Nothing else sets either. `system`: the model itself, for A, or a matrix that follows the body.
 void put_in_force(const Model& model, const StepInputs& inputs, const System& system, Workspace& workspace);
 
 // Sets workspace.system for a step from `state`: A, or a matrix that follows the body. To be called after begin_step().
 void choose_matrix(const Model& model, const StepInputs& inputs, const State& state, Workspace& workspace);
 
-// Lets the Hessian serve the step where the settings ask for it, the first iterate touches nothing, and there is one
-// that is good enough. To be called when workspace.current is the first iterate.
+// Lets the Hessian serve the step where the settings ask for it, the first iterate touches nothing, and a Hessian is
+// there that is good enough. To be called when workspace.current is the first iterate.
 void choose_hessian(const Model& model, const StepInputs& inputs, const State& state, Workspace& workspace);
 
-// Writes down which matrix the step had, and how its directions did.
+// Notes in the memory which matrix the step had, and how well its directions did.
 void remember_matrix(const Model& model, const SolverSettings& solver, const Workspace& workspace,
                      SolverMemory& memory);
 

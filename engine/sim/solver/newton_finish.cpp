@@ -40,10 +40,10 @@ SearchLimits limits_of(const StepContext& c, Hardness hardness, double gained) {
           .worse_iterate = WorseIterate::refused};
 }
 
-// Sets what is left to gain, after Newton's method. before: what was left before it [J].
+// Sets the gain that is left after Newton's method. before: the gain that was left before it [J].
 void estimate_what_is_left(double before, StepReport& report) {
   if (!(report.slope < 0)) {
-    report.remaining_estimate = before;  // there was no direction downhill
+    report.remaining_estimate = before;  // no direction led downhill
   } else if (report.stop_reason == StopReason::iterations) {
     report.remaining_estimate = std::max(report.remaining_estimate, report.decrement);
   } else if (report.stop_reason != StopReason::target_error) {

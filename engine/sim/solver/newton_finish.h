@@ -7,10 +7,10 @@
 
 namespace supple {
 
-// Tells whether this body's hard steps are finished so. Not where a direction would cost more than 200 evaluations
-// (from about 7,000 vertices); nor for a body of springs alone, where compressed springs leave the projected Hessian
-// without stiffness across them, so that its directions are too long (a sheet on bars took 108 trials a step, and
-// gained energy).
+// Tells whether Newton's method finishes this body's hard steps. It does not where a direction would cost more than 200
+// evaluations (from about 7,000 vertices); nor for a body of springs alone, where compressed springs leave the
+// projected Hessian without stiffness across them, so that its directions are too long (a sheet on bars took 108 trials
+// a step, and gained energy).
 bool may_finish_by_newton(const Model& model, const StepInputs& inputs);
 
 // Returns how many points the line searches of a search with so many iterations may try before it gives up, because
@@ -19,15 +19,15 @@ int trials_before_newton(const StepContext& c, int iterations);
 
 // Tells why a step is hard.
 enum class Hardness {
-  none,           // it is not, or Newton's method is not for this body
-  gains_energy,   // it gains energy from nothing
+  none,           // the step is not hard, or Newton's method is not for this body
+  gains_energy,   // the step gains energy from nothing
   far_in_energy,  // a search gave up, or the error of equation 12 is large, or the searches tried many points
   far_in_motion,  // the error of motion alone is large: impacts that turn a stiff body
 };
 Hardness hardness_of(const StepContext& c);
 
-// Goes on from the current iterate, but never uphill, until a direction promises next to nothing of what the step has
-// gained. Estimates the errors of the step again.
+// Iterates from the current iterate, never uphill, until the gain that a direction promises is next to nothing beside
+// what the step has gained. Estimates the errors of the step again.
 void finish_by_newton(StepContext& c, Hardness hardness);
 
 }  // namespace supple

@@ -40,7 +40,7 @@ void NewtonSystem::Parts::assemble(const Model& model, Workspace& w) {
 }
 
 // Adds the energies k (gap + n . d)^2 of planes that the direction leads through to the quadratic model: 2 k n n^T to
-// its Hessian, 2 k gap n to its gradient. Returns whether there were any that it did not have.
+// its Hessian, 2 k gap n to its gradient. Returns whether any of these planes was new to the model.
 bool NewtonSystem::Parts::take_planes_ahead(const Iterate& at, const Positions& direction) {
   bool some = false;
   for (std::size_t i = 0; i < at.contacts.size(); ++i) {

@@ -115,7 +115,7 @@ double evaluate_elements(const Model& model, Workspace& workspace, const Positio
   return model.scheme.energy * sum;
 }
 
-// Adds the vertices' terms, and gathers the whole gradient: theirs and the elements' forces.
+// Adds the vertices' terms, and gathers the whole gradient from these and the elements' forces.
 void add_vertices(const Model& model, Workspace& workspace, const VertexTerms& terms, Positions* gradient,
                   Change& change) {
   const int chunks = vertex_chunks(model);
@@ -192,10 +192,11 @@ Change evaluate_trial(const Model& model, Workspace& workspace, Wanted wanted) {
   return change;
 }
 
-// Sums lose some eps of the objective itself. More is lost before: a position's last bit, eps times its distance from
-// the origin, strains an element by that over its edge, and the stress works on it; over all elements, at random, that
-// is the square root of their energy times their mean stiffness. At rest what is left is the energy of these strains
-// themselves: with trace L, between 1/32 and 1/8 of (eps X)^2 trace L, and a hundred times that for stiff volumes.
+// Sums lose some eps of the objective itself. The positions lose more: a position's last bit, eps times its distance
+// from the origin, strains an element by this length over its edge, and the stress does work on this strain. Over all
+// elements, at random, this work grows with the square root of their energy times their mean stiffness. At rest only
+// the energy of these strains themselves remains: with trace L, between 1/32 and 1/8 of (eps X)^2 trace L, and a
+// hundred times that for stiff volumes.
 double noise_of(const Model& model, double objective, double extent) {
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   const double last_bit = epsilon * extent;

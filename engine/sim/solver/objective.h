@@ -10,7 +10,7 @@ namespace supple {
 static_assert(scheme_of(Integrator::backward_euler).energy * scheme_of(Integrator::backward_euler).theta == 1 &&
               scheme_of(Integrator::implicit_midpoint).energy * scheme_of(Integrator::implicit_midpoint).theta == 1);
 
-// Tells whether g depends on the start of the step in another way than through y.
+// Tells whether g depends on q, the start of the step, in another way than through y.
 bool needs_start(const Model& model);
 
 enum class Wanted { value, gradient };
@@ -21,11 +21,12 @@ struct Change {
   double slope;  // tr(grad(trial)^T direction), where the gradient was wanted [J]
 };
 
-// Evaluates g at iterate.x with iterate.contacts: its g and energies, and its gradient where that is wanted.
+// Evaluates g at iterate.x with iterate.contacts: sets its g and energies, and its gradient where that is wanted.
 void evaluate(const Model& model, Workspace& workspace, Iterate& iterate, Wanted wanted);
 
 // Evaluates g at workspace.trial.x with the contacts of workspace.current, as its difference from the current iterate,
-// summed element by element and vertex by vertex; also trial.g, energies, and the gradient where that is wanted.
+// summed element by element and vertex by vertex. Also sets trial.g, the trial's energies, and its gradient where that
+// is wanted.
 Change evaluate_trial(const Model& model, Workspace& workspace, Wanted wanted);
 
 // Returns the round-off of differences of g at a point with this objective and largest coordinate [J].
@@ -37,7 +38,7 @@ double inertial_energy(const Model& model, const Workspace& workspace, const Pos
 // Returns E(x) of all elements [J]. Overwrites the energies of the trial iterate.
 double elastic_energy(const Model& model, Workspace& workspace, const Positions& x);
 
-// The same, and leaves the forces of the elements in the workspace, by slot.
+// Does the same, and leaves the forces of the elements in the workspace, by slot.
 double elastic_forces(const Model& model, Workspace& workspace, const Positions& x);
 
 }  // namespace supple

@@ -12,7 +12,7 @@ void find_contacts_of(const Model& model, const StepInputs& inputs, Workspace& w
 // Evaluates workspace.current with the contacts found there, and appends the value to the report's objectives.
 void evaluate_start(const Model& model, const StepInputs& inputs, Workspace& workspace);
 
-// Drops what was counted and noted of a first iterate that was evaluated, because the step does not start from it.
+// Drops what was counted and noted of a first iterate that was evaluated but from which the step does not start.
 void forget_start(Workspace& workspace);
 
 // Moves the free vertices by a rigid motion.

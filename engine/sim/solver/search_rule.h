@@ -1,6 +1,6 @@
-// Defines rules: a rule chooses the direction in which an iteration looks for the next iterate. step() has the
-// quasi-Newton rule; other solvers put theirs into the same loop, and share first iterate, line search, contacts and
-// report with it.
+// Defines the interface of rules: a rule chooses the direction in which an iteration looks for the next iterate. step()
+// has the quasi-Newton rule. Other solvers put their own rule into the same loop, and share its first iterate, line
+// search, contacts and report.
 #pragma once
 
 #include "sim/model/inputs.h"
@@ -20,10 +20,10 @@ class SearchRule {
   virtual double direction(const Model& model, const StepInputs& inputs, Workspace& workspace) = 0;
 
   // This is called when the trial iterate was accepted and is about to become the current one. The gradients of both
-  // still contain the contacts of the current one, which the search used.
+  // iterates still contain the contacts of the current iterate, which the search used.
   virtual void accepted(const Model&, const StepInputs&, Workspace&) {}
 
-  // This is called when the contacts of the new iterate are not those of the last.
+  // This is called when the contacts of the new iterate are not those of the last iterate.
   virtual void contacts_changed(const StepInputs&) {}
 
   // Tells whether one more direction is computed after the last iteration, to estimate the error there by Newton's

@@ -10,7 +10,7 @@ namespace supple {
 bool is_still(const StepContext& c) {
   const Model& model = c.model;
   const Workspace& w = c.w;
-  constexpr double little = 0.01;  // of the energy of what the step would have it do freely
+  constexpr double little = 0.01;  // of the energy of the body's free motion in the step
   double way = 0, free_way = 0;
   for (int v = 0; v < model.free; ++v) {
     way += model.mass[v] * c.state.v.row(v).squaredNorm();
@@ -55,7 +55,7 @@ bool touches_between_vertices(const StepContext& c) {
 }
 
 void start_where_it_was(StepContext& c) {
-  constexpr double far_better = 0.25;  // share of g
+  constexpr double far_better = 0.25;  // share of the current g
   Workspace& w = c.w;
   const TimedPhase timed(w.clock, Phase::evaluate, "start where it was");
   w.trial.x.topRows(c.model.free) = c.state.x.topRows(c.model.free);

@@ -5,17 +5,17 @@
 
 namespace supple {
 
-// Tells whether the body moves so little that what acts on it must be balanced: it hangs still, or lies.
+// Tells whether the body hangs still, or lies: it moves so little that the forces on it must be balanced.
 bool is_still(const StepContext& c);
 
 // Starts from q + h v where that is better. y contains the fall of the step, which leaves a body that rests on
-// something, or slides along it, g h^2 deep in its colliders, and one that hangs still that far from where it stays: a
-// soft one comes no nearer in its iterations than it was, and needs as many again. This costs an evaluation, so it is
-// tried only where something touches or hardly moves.
+// something, or slides along it, g h^2 deep in its colliders, and a body that hangs still as far below where it stays:
+// the iterations of a soft one bring it no nearer than it was at q, and it needs as many again. The other start costs
+// an evaluation, so it is tried only where the body touches something or hardly moves.
 void start_without_fall(StepContext& c);
 
-// Tells whether points between vertices touch. Those that rest in something thin have no room: what the body would do
-// freely leads through it.
+// Tells whether points between vertices touch. Points that rest in something thin have no room: the free motion of the
+// body leads through it.
 bool touches_between_vertices(const StepContext& c);
 
 // Starts from q where that is far better. This costs an evaluation, and only where inertia alone does not rule q out.

@@ -90,8 +90,8 @@ void iterate(StepContext& c) {
   c.gave_up = search.end() == SearchEnd::trials;
 }
 
-// Lists the searches of a step in the order in which they are made, each with its guard before it. What a search cures,
-// and what it costs where its guard says no, is told where it is declared.
+// Lists the searches of a step in the order in which they are made, each after its guard. The declaration of a search
+// tells what it cures, and what its guard costs where it says no.
 void make_searches(StepContext& c) {
   iterate(c);
   if (const std::optional<double> gain = gain_of_staying(c)) descend_from_staying(c, *gain);

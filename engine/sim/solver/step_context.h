@@ -22,12 +22,12 @@ struct StepContext {
 
   // What is known of the first iterate.
   std::optional<double> at_prediction = {};  // g(y) with handles at their targets, where the step left y by choice [J]
-  bool spreads_handles = false;              // the handles' departure from y is in it
-  bool stopped = false;                      // an impact stopped it
+  bool spreads_handles = false;              // the first iterate has the handles' departure from y in it
+  bool stopped = false;                      // an impact stopped the first iterate
   double above_start = 0;  // g(y) - g of the first iterate, where that is known: equation 12 counts from y [J]
 
   // What is known of the searches.
-  bool gave_up = false;  // one of them did, because its line searches tried too many points
+  bool gave_up = false;  // a search gave up, because its line searches tried too many points
 };
 
 }  // namespace supple

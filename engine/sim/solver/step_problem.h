@@ -1,4 +1,4 @@
-// Describes one step's problem by itself: all on which g of equation 3 depends, before anything touches a collider, in
+// Describes the problem of one step alone: all on which g of equation 3 depends, before anything touches a collider, in
 // the order of the input file instead of the model's. It serves comparisons of solvers on stored states, and other
 // programs. Not here: files (film/record/state_file.h).
 #pragma once
@@ -11,7 +11,7 @@ namespace supple {
 
 struct StepProblem {
   BodyDescription body;           // mesh, materials, fibres, springs, h, integrator, damping
-  std::vector<double> stiffness;  // k of equation 11 by region, which damping takes [Pa]
+  std::vector<double> stiffness;  // k of equation 11 by region, which damping uses [Pa]
   std::vector<double> mass;       // by vertex [kg]
   double time = 0;                // at the start of the step [s]
   Vec3 gravity = Vec3(0, 0, 0);   // [m/s^2]
@@ -21,7 +21,7 @@ struct StepProblem {
 
   struct Handled {
     std::int32_t vertex;
-    double stiffness;  // of the spring to its target [N/m]; 0: held there, and no unknown
+    double stiffness;  // of the spring to the target [N/m]; 0: the vertex is held there, and no unknown
   };
   std::vector<Handled> handled;
   Positions targets;         // at the end of the step, by `handled` [m]

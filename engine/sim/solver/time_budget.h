@@ -10,7 +10,8 @@
 
 namespace supple {
 
-// Also notes the number of iterations in the report, so that a later run can end there without a clock.
+// Tells when a search has to end, and notes after how many iterations in the report, so that a later run can end there
+// without a clock.
 class TimeBudget {
  public:
   enum Which { from_first_iterate, from_staying };
@@ -20,8 +21,8 @@ class TimeBudget {
     if (limit_ms_ > 0) last_ms_ = clock_.elapsed_ms();
   }
 
-  // Tells whether no further iteration fits, after `iterations` of them. One that takes as long as the longest so far
-  // is expected; the first one is always made.
+  // Tells whether no further iteration fits after so many iterations. The next one is expected to take as long as the
+  // longest so far; the first one is always made.
   bool is_spent(int iterations) {
     const bool spent = repeated_ ? iterations == *repeated_ : limit_ms_ > 0 && iterations > 0 && would_end_late();
     if (spent) cut_ = iterations;
@@ -38,7 +39,7 @@ class TimeBudget {
   double limit_ms_, last_ms_ = 0, longest_ms_ = 0;
   const StepClock& clock_;
   int& cut_;
-  std::optional<int> repeated_;  // -1 where the earlier run's search was not ended
+  std::optional<int> repeated_;  // -1: the earlier run's budget did not end this search
 };
 
 }  // namespace supple

@@ -8,7 +8,8 @@
 namespace supple {
 
 void Workspace::prepare(const Model& model, const SolverSettings& solver) {
-  // A step may go on for several rounds, may descend once more, and may be finished by as many of Newton's iterations.
+  // A step may go on for several rounds, make a second search, and be finished by as many iterations of Newton's
+  // method.
   const std::size_t most_values = 2 * (std::size_t(solver.rounds) + 1) * (std::size_t(solver.iterations) + 1);
   if (report.objective.capacity() < most_values) report.objective.reserve(most_values);
   if (report.records.capacity() < most_values) report.records.reserve(most_values);

@@ -18,7 +18,7 @@
 
 namespace supple {
 
-// Each body, or each thread that makes steps, needs one; prepare() adapts it to another model.
+// Holds the memory of one body, or of one thread that makes steps; prepare() adapts it to another model.
 struct Workspace {
   // Allocates memory for a model and a window; does nothing when there is enough.
   void prepare(const Model& model, const SolverSettings& solver);
@@ -28,33 +28,33 @@ struct Workspace {
   // The following members hold the step's problem.
   Positions y;                                 // inertial prediction, n x 3 [m]
   const Positions* start_positions = nullptr;  // q, where the step starts: the caller's, n x 3 [m]
-  Positions start_copy;                        // a copy of them, n x 3 [m]; empty unless the model's forces depend on q
-  Positions target;  // of soft handles, by free vertex, n_free x 3 [m]; empty when there are none
+  Positions start_copy;                        // a copy of q, n x 3 [m]; empty unless the model's forces depend on q
+  Positions target;  // targets of soft handles, by free vertex, n_free x 3 [m]; empty without soft handles
 
-  // These are the point at which the solver is, and the one that it tries.
+  // The solver is at the current iterate, and tries the trial iterate.
   Iterate current, trial;
   Positions direction;  // from the current iterate, n_free x 3 [m]
 
-  // The matrix that directions start from, of the step in hand: the model's own A, or the one that follows the body. In
-  // its place the Hessian serves directions from iterates without contacts, where hessian_serves.
+  // The matrix that directions of the present step start from: the model's own A, or the one that follows the body.
+  // Where hessian_serves is true, directions from iterates without contacts start from the Hessian instead.
   const System* system = nullptr;
   TangentSystem tangent;
   HessianSystem hessian;
   bool hessian_serves = false;
   Positions next_matrix_at;  // q + h v, where a matrix is made if this step makes one, n x 3 [m]
-  bool renewed = false;      // it did
+  bool renewed = false;      // this step made one
 
   // The second level of directions, and the arcs by which parts of the body turn; empty until a step asks for them.
   SecondLevel second_level;
-  bool second_level_serves = false;  // in the search in hand
+  bool second_level_serves = false;  // whether the present search uses the second level
   Turning turning;
   Positions motion;       // h v, n x 3 [m]
-  Positions turned;       // how what turns departs from q + h v, n_free x 3 [m]
-  bool turns = false;     // it does, by so much that the first iterates have `turned` in them
-  Positions bow;          // how the search in hand departs from its straight direction, n_free x 3 [m]
-  bool is_bowed = false;  // it does
+  Positions turned;       // how the turning parts depart from q + h v, n_free x 3 [m]
+  bool turns = false;     // parts turn so much that the first iterates have `turned` in them
+  Positions bow;          // how the present search departs from its straight direction, n_free x 3 [m]
+  bool is_bowed = false;  // the present search has such an arc
 
-  NewtonSystem newton;  // empty until a step is finished by it
+  NewtonSystem newton;  // empty until Newton's method finishes a step
 
   // The pairs of L-BFGS are stored in a ring.
   std::vector<Positions> step_pairs, gradient_pairs;  // s [m] and t [N]
@@ -64,16 +64,16 @@ struct Workspace {
   ContactCorrection correction;
 
   // The following members are memory within one call and hold nothing between calls.
-  Positions middle;             // where forces are evaluated, n x 3 [m]; empty unless that is not the iterate
+  Positions middle;             // where forces are evaluated, n x 3 [m]; empty where that is the iterate itself
   Positions scratch;            // n_free x 3
   AlignedVector<double> force;  // by slot, x 3 [N]
   AlignedVector<double> local;  // positions by chunk, x 3 [m]
   SolveScratch solve_scratch;
-  std::vector<double> partial;  // of chunked sums
+  std::vector<double> partial;  // partial sums, by chunk
 
   StepReport report;
   StepClock clock;
-  // Is shown every iterate of a step, n x 3, by those who compare solvers; empty: nobody looks.
+  // Called with every iterate of a step, n x 3, when solvers are compared; empty: nobody looks.
   std::function<void(const Positions& x)> watch;
 
  private:
