@@ -25,11 +25,8 @@ class ReferenceMeter : public ErrorMeter {
 }  // namespace
 
 FilmSolvers all_solvers() {
-  return {
-      {[](const SolverDef& solver, const Model& model) { return make_rule(solver.method, model); },
-       [](const SolverDef& solver) { return settings_of(solver.method, solver.settings); }},
-      [](const Model& model, Threads& threads) { return std::make_unique<ReferenceMeter>(model, threads); },
-  };
+  return {{make_rule, settings_of},
+          [](const Model& model, Threads& threads) { return std::make_unique<ReferenceMeter>(model, threads); }};
 }
 
 }  // namespace supple

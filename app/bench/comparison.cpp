@@ -116,7 +116,7 @@ StepInputs SolverComparison::inputs_of(const BenchState& state, const SolverEntr
   inputs.solver.line_search = entry.line_search;
   inputs.solver.chebyshev = entry.chebyshev;
   inputs.solver.matrix = entry.start.matrix;
-  inputs.solver.levels = entry.start.levels;
+  inputs.solver.levels = entry.start.levels();
   inputs.solver = settings_of(entry.method, inputs.solver);
   return inputs;
 }

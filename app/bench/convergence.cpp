@@ -22,7 +22,7 @@ SolverEntry started(DirectionStart start) {
   entry.start = start;
   return entry;
 }
-const DirectionStart two_levels = {SystemMatrix::constant, 2}, tangent = {SystemMatrix::tangent, 1};
+const DirectionStart two_levels = {SystemMatrix::constant, true}, tangent = {SystemMatrix::tangent};
 
 double at_iteration(const std::vector<double>& errors, int k) {
   if (std::size_t(k) < errors.size()) return errors[k];

@@ -271,12 +271,13 @@ TabledErrors HardRun::errors_of(const WorstStep& worst) {
   Workspace workspace;
   std::vector<Minimum> minima;
   const auto add = [&](const Solvers& solvers, int iterations) {
+    const SolverDef& def = body().body().def.solver;
     StepInputs more = inputs;
-    more.solver = solvers.settings(body().body().def.solver);
+    more.solver = solvers.settings(def.method, def.settings);
     more.solver.iterations = iterations;
     more.solver.rounds = 1;
     State after = worst.before;
-    const auto rule = solvers.rule(body().body().def.solver, model());
+    const auto rule = solvers.rule(def.method, model());
     const bool failed = step(model(), more, after, workspace, *rule).failed;
     Minimum minimum;
     if (!failed) minimum = reference.minimum(model(), inputs, worst.before, after.x, workspace);

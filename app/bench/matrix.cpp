@@ -126,7 +126,7 @@ struct Candidate {
 
 Candidate candidate_of(DirectionStart start) {
   const std::string text = text_of(start);
-  const std::string name = std::string(name_of(start.matrix)) + (start.levels > 1 ? "-two-levels" : "");
+  const std::string name = std::string(name_of(start.matrix)) + (start.second_level ? "-two-levels" : "");
   Candidate candidate{start,
                       {{"matrix-" + name, "Scenes without colliders: " + text},
                        {"matrix-" + name + "-colliders", "Scenes with colliders: " + text}}};
@@ -266,8 +266,8 @@ void compare(Candidate& candidate, Subject& subject, Estimates& papers_estimates
 }  // namespace
 
 ReportSection bench_matrix(const BenchSetting& setting) {
-  Candidate candidates[] = {candidate_of({SystemMatrix::constant, 2}), candidate_of({SystemMatrix::tangent, 1}),
-                            candidate_of({SystemMatrix::hessian, 1})};
+  Candidate candidates[] = {candidate_of({SystemMatrix::constant, true}), candidate_of({SystemMatrix::tangent}),
+                            candidate_of({SystemMatrix::hessian})};
   Estimates papers_estimates;
   for (const SubjectChoice& choice : all_subjects()) {
     Subject subject(choice);

@@ -57,22 +57,18 @@ BenchState read_snapshot(const Subject& subject, int frame, const std::filesyste
 
 }  // namespace
 
-Solvers scenes_own_solver() {
-  return {[](const SolverDef& solver, const Model& model) { return make_rule(solver.method, model); },
-          [](const SolverDef& solver) { return settings_of(solver.method, solver.settings); }};
-}
+Solvers scenes_own_solver() { return {make_rule, settings_of}; }
 
 std::string text_of(const DirectionStart& start) {
-  return std::string(name_of(start.matrix)) + (start.levels > 1 ? ", two levels" : "");
+  return std::string(name_of(start.matrix)) + (start.second_level ? ", two levels" : "");
 }
 
 Solvers solver_instead(Method method, int iterations, DirectionStart start) {
-  return {[method](const SolverDef&, const Model& model) { return make_rule(method, model); },
-          [method, iterations, start](const SolverDef& solver) {
-            SolverSettings settings = solver.settings;
+  return {[method](const Method&, const Model& model) { return make_rule(method, model); },
+          [method, iterations, start](const Method&, SolverSettings settings) {
             settings.iterations = iterations;
             settings.matrix = start.matrix;
-            settings.levels = start.levels;
+            settings.levels = start.levels();
             return settings_of(method, settings);
           }};
 }

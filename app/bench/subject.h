@@ -21,7 +21,9 @@ struct SubjectChoice {
 // Says what directions of quasi-Newton start from. The default is the paper's.
 struct DirectionStart {
   SystemMatrix matrix = SystemMatrix::constant;
-  int levels = 1;
+  bool second_level = false;  // of directions that know how the body turns (coarse/second_level.h)
+
+  int levels() const { return second_level ? 2 : 1; }
 };
 std::string text_of(const DirectionStart& start);  // "constant, two levels"
 

@@ -169,7 +169,7 @@ void add_row(ReportTable& table, ReportTable& by_start, const Row& row, const Su
   std::vector<SolverEntry> entries = {{"ours", Method::quasi_newton, 10}, {"Newton", Method::newton, 1}};
   std::vector<BesidePapers> beside;
   for (const DirectionStart start :
-       {DirectionStart{SystemMatrix::constant, 2}, DirectionStart{SystemMatrix::tangent}}) {
+       {DirectionStart{SystemMatrix::constant, true}, DirectionStart{SystemMatrix::tangent}}) {
     beside.push_back({start, play_film(subject, *setting.threads, start)});
     for (const int iterations : {10, 40}) {
       entries.push_back({text_of(start), Method::quasi_newton, iterations});

@@ -50,20 +50,22 @@ Body quick(Body body) {
   return body;
 }
 
-// Makes the first frames of a scene, and returns the positions of all bodies after each, by vertex of their meshes [m].
-// Where a step fails, the list ends. With no frames to make, returns the positions at the start.
-std::vector<std::vector<Positions>> rough_motion_of(const World& world, const FilmSolvers& solvers, Threads& threads,
-                                                    int frames) {
-  std::vector<std::vector<Positions>> motion;
-  if (frames == 0) {
-    motion.emplace_back();
-    for (const Body& body : world.bodies()) motion.back().push_back(first_positions(body));
-    return motion;
-  }
+using FramePositions = std::vector<Positions>;  // by body: the positions of its mesh, n x 3 [m]
+
+FramePositions positions_at_start(const World& world) {
+  FramePositions positions;
+  for (const Body& body : world.bodies()) positions.push_back(first_positions(body));
+  return positions;
+}
+
+// Plays the first frames of a scene. Returns the positions after each frame, up to the first frame that fails.
+std::vector<FramePositions> rough_motion_of(const World& world, const FilmSolvers& solvers, Threads& threads,
+                                            int frames) {
   std::vector<Body> bodies;
   for (const Body& body : world.bodies()) bodies.push_back(quick(body));
   World rough(world.scene(), std::move(bodies));
   rough.start(solvers.steps, &threads);
+  std::vector<FramePositions> motion;
   for (int frame = 0; frame < frames && rough.play(frame); ++frame) {
     motion.emplace_back();
     for (std::size_t b = 0; b < rough.size(); ++b)
@@ -72,9 +74,9 @@ std::vector<std::vector<Positions>> rough_motion_of(const World& world, const Fi
   return motion;
 }
 
-Bounds box_around(const std::vector<std::vector<Positions>>& motion, const std::vector<Body>& bodies) {
+Bounds box_around(const std::vector<FramePositions>& motion, const std::vector<Body>& bodies) {
   Bounds box = bounds_at_rest(bodies);
-  for (const std::vector<Positions>& frame : motion) {
+  for (const FramePositions& frame : motion) {
     for (const Positions& body : frame) {
       box.include(bounds_of(body).lower);
       box.include(bounds_of(body).upper);
@@ -97,7 +99,8 @@ std::vector<std::string> missing_in_rough_pictures(const FilmPlan& plan, const F
   const SceneDef& scene = world.scene();
   Threads threads(1);
   const int wanted = frames_of_pass(film);
-  const std::vector<std::vector<Positions>> motion = rough_motion_of(world, solvers, threads, wanted);
+  const std::vector<FramePositions> motion = wanted > 0 ? rough_motion_of(world, solvers, threads, wanted)
+                                                        : std::vector<FramePositions>{positions_at_start(world)};
   if (motion.empty()) return {};  // the first step failed
   const int frames = std::min(wanted, int(motion.size()));
   DrawnFilm drawn(world.script(), world.bodies(), drawn_bodies(world.bodies(), {}, DrawnAs::elements),

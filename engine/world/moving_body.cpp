@@ -17,9 +17,9 @@ MovingBody::MovingBody(const SceneDef& scene, Body& body, Model& model, const Co
 
 void MovingBody::apply(const ChangeCost& cost) {
   inputs_.gravity = scene_.gravity;
-  inputs_.solver = solvers_.settings(body_.def.solver);
+  inputs_.solver = solvers_.settings(body_.def.solver.method, body_.def.solver.settings);
   if (cost.factor) renew_model();
-  if (cost.rule || cost.factor) rule_ = solvers_.rule(body_.def.solver, model_);
+  if (cost.rule || cost.factor) rule_ = solvers_.rule(body_.def.solver.method, model_);
 }
 
 void MovingBody::renew_model() {

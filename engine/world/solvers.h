@@ -5,19 +5,21 @@
 #include <functional>
 #include <memory>
 
-#include "scene/definition/scene_def.h"
+#include "sim/model/inputs.h"
+#include "sim/model/method.h"
 #include "sim/model/model.h"
 #include "sim/model/state.h"
 #include "sim/solver/search_rule.h"
 
 namespace supple {
 
+// Solvers{make_rule, settings_of} are all of them (baselines/make_rule.h).
 struct Solvers {
   // Makes a rule for the directions of one body's steps. It is called again when the method or the model's values
   // change.
-  std::function<std::unique_ptr<SearchRule>(const SolverDef&, const Model&)> rule;
+  std::function<std::unique_ptr<SearchRule>(const Method&, const Model&)> rule;
   // Returns the settings of a step: the scene's, except for those that the method fixes.
-  std::function<SolverSettings(const SolverDef&)> settings;
+  std::function<SolverSettings(const Method&, SolverSettings)> settings;
 };
 
 }  // namespace supple

@@ -129,7 +129,7 @@ TEST_F(OneWorld, ComparisonsMakeTheStepOfTheFilm) {
                                                    is_first = false;
                                                  }}));
     SolverEntry entry{"ours", Method::quasi_newton};
-    entry.start.levels = 2;
+    entry.start.second_level = true;
     const Outcome outcome = comparison.run(states[index], {entry}, 0).front();
     EXPECT_EQ(outcome.x, expected) << index;
   }

@@ -20,9 +20,7 @@ std::string cube(const std::string& model, const std::string& keys, const std::s
 struct Played {
   explicit Played(const std::string& text, int count = 1)
       : threads(count), world(test::scene_of(text), assemble(test::scene_of(text))) {
-    world.start({[](const SolverDef& solver, const Model& m) { return make_rule(solver.method, m); },
-                 [](const SolverDef& solver) { return settings_of(solver.method, solver.settings); }},
-                &threads);
+    world.start({make_rule, settings_of}, &threads);
   }
 
   // Makes frames from `first` on; returns how many of them were untangled.

@@ -17,15 +17,12 @@ int main(int count, char** arguments) {
                  "play_a_scene SCENE ASSETS: the second is the folder in which scenes look for shapes and meshes\n");
     return 2;
   }
-  // Solvers are passed in: these are all that a scene can name.
-  const Solvers solvers = {[](const SolverDef& def, const Model& model) { return make_rule(def.method, model); },
-                           [](const SolverDef& def) { return settings_of(def.method, def.settings); }};
   try {
     Script script = Script::load(std::filesystem::path(arguments[1]), arguments[2], {});
     std::vector<Body> bodies = assemble(script.scene());
     World world(std::move(script), std::move(bodies));
     Threads threads(2);
-    world.start(solvers, &threads);
+    world.start({make_rule, settings_of}, &threads);  // with all solvers that a scene can name
     for (int frame = 0; frame < world.scene().frames && world.play(frame); ++frame)
       std::printf("%d %016" PRIx64 "\n", frame, world.hash());
   } catch (const std::exception& error) {
