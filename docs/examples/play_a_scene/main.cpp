@@ -23,8 +23,10 @@ int main(int count, char** arguments) {
     World world(std::move(script), std::move(bodies));
     Threads threads(2);
     world.start({make_rule, settings_of}, &threads);  // with all solvers that a scene can name
-    for (int frame = 0; frame < world.scene().frames && world.play(frame); ++frame)
+    for (int frame = 0; frame < world.scene().frames; ++frame) {
+      if (!world.play(frame)) throw RunError("a step of frame " + std::to_string(frame) + " failed");
       std::printf("%d %016" PRIx64 "\n", frame, world.hash());
+    }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
