@@ -19,7 +19,7 @@ class ReferenceMeter : public ErrorMeter {
 
  private:
   Reference reference_;
-  Workspace workspace_;
+  OpenWorkspace workspace_;
 };
 
 }  // namespace

@@ -76,7 +76,7 @@ class SolverComparison {
 
   Subject& subject_;
   std::optional<Reference> lowest_;
-  Workspace workspace_, reference_workspace_;
+  OpenWorkspace workspace_, reference_workspace_;
   struct Prepared {
     Method method;
     std::unique_ptr<SearchRule> rule;

@@ -81,7 +81,7 @@ ReportSection bench_ablation(const BenchSetting& setting) {
   add("a general SVD, one element after the other, double",
       least_ms(7, [&] { energy = plain_evaluation<double>(elements, x, mu, force); }));
   add("the same in float", least_ms(7, [&] { energy = plain_evaluation<float>(elements, x, mu, force_float); }));
-  Workspace workspace;
+  OpenWorkspace workspace;
   workspace.prepare(model, {});
   State at = state.before;
   begin_step(model, subject.inputs(state), at, workspace);

@@ -195,7 +195,7 @@ class HardRun {
   Mat3 turn_;
   SceneDef scene_;
   World world_;
-  Workspace solving_;
+  OpenWorkspace solving_;
 };
 
 double HardRun::motion_error_of_step(const State& before) {
@@ -211,7 +211,7 @@ double HardRun::motion_error_of_step(const State& before) {
 
 StabilityOutcome HardRun::play(std::vector<Positions>* motion, WorstStep* worst) {
   StabilityOutcome outcome;
-  Workspace& workspace = body().workspace();
+  OpenWorkspace& workspace = body().workspace();
   workspace.prepare(model(), body().inputs().solver);
   EnergyBudget budget;
   budget.start(model(), scene_.gravity, body().state(), workspace);
@@ -268,7 +268,7 @@ TabledErrors HardRun::errors_of(const WorstStep& worst) {
   world_.prepare(0);
   const StepInputs inputs = body().inputs();
   Reference reference(model());
-  Workspace workspace;
+  OpenWorkspace workspace;
   std::vector<Minimum> minima;
   const auto add = [&](const Solvers& solvers, int iterations) {
     const SolverDef& def = body().body().def.solver;

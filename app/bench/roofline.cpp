@@ -97,7 +97,7 @@ double bytes_of(const List& list) {
   return double(sizeof(*list.data())) * double(list.size());
 }
 
-Stage evaluation(const Model& model, Workspace& w) {
+Stage evaluation(const Model& model, OpenWorkspace& w) {
   Stage stage{"evaluate", Precision::double_precision};
   stage.ms = least_ms(25, [&] { evaluate(model, w, w.current, Wanted::gradient); });
   stage.bytes = bytes_of(model.field) + bytes_of(model.corner) + bytes_of(model.chunk_vertex) + bytes_of(model.slots) +
@@ -108,7 +108,7 @@ Stage evaluation(const Model& model, Workspace& w) {
   return stage;
 }
 
-Stage solve(const Model& model, Workspace& w) {
+Stage solve(const Model& model, OpenWorkspace& w) {
   Stage stage{"solve", model.factor.precision()};
   const Positions right = w.current.gradient;
   Positions solution = right;
@@ -121,7 +121,7 @@ Stage solve(const Model& model, Workspace& w) {
 }
 
 // Takes the time from a step, where the recursion stands between the solves (Nocedal and Wright 2006, algorithm 7.4).
-Stage recursion(const Model& model, const StepInputs& inputs, const State& before, Workspace& w) {
+Stage recursion(const Model& model, const StepInputs& inputs, const State& before, OpenWorkspace& w) {
   Stage stage{"L-BFGS", Precision::double_precision, 1e300};
   for (int i = 0; i < 9; ++i) {
     State state = before;
@@ -175,7 +175,7 @@ ReportSection bench_roofline(const BenchSetting& setting) {
     say_doing(setting, fmt::format("{}: {}", choice.scene, subject.size_text()));
     const BenchState state = states_of(subject, {20}, setting).front();
     const StepInputs inputs = subject.inputs(state);
-    Workspace w;
+    OpenWorkspace w;
     const Stage lbfgs = recursion(subject.model(), inputs, state.before, w);
     add_rows(table, subject, {evaluation(subject.model(), w), solve(subject.model(), w), lbfgs}, peak);
   }

@@ -36,7 +36,7 @@ struct Memory {
   double elements, factor, vectors;
 };
 
-Memory memory_of(const Model& model, const Workspace& w) {
+Memory memory_of(const Model& model, const OpenWorkspace& w) {
   const double number = model.factor.precision() == Precision::single_precision ? sizeof(float) : sizeof(double);
   Memory memory{};
   memory.elements = bytes_of(model.field) + bytes_of(model.corner) + bytes_of(model.chunk_vertex) +
@@ -58,7 +58,8 @@ struct Size {
   StepReport one, two;  // the quickest step with one thread and with two
 };
 
-StepReport quickest_step(const Model& model, const StepInputs& inputs, const State& before, Workspace& w, int repeats) {
+StepReport quickest_step(const Model& model, const StepInputs& inputs, const State& before, OpenWorkspace& w,
+                         int repeats) {
   StepReport best;
   for (int i = 0; i <= repeats; ++i) {
     State state = before;
@@ -81,7 +82,7 @@ Size measure(double vertices, const BenchSetting& setting) {
   const int repeats = vertices < 20000 ? 15 : 5;
   for (const int count : {1, 2}) {
     Threads threads(count);
-    Workspace w;
+    OpenWorkspace w;
     w.threads = &threads;
     (count == 1 ? size.one : size.two) = quickest_step(subject.model(), inputs, state.before, w, repeats);
     size.memory = memory_of(subject.model(), w);

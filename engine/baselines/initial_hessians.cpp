@@ -49,14 +49,14 @@ HessianMatrix rest_hessian(const Model& model) {
 
 }  // namespace
 
-void IdentityInverse::accepted(const Model& model, const StepInputs&, Workspace& w) {
+void IdentityInverse::accepted(const Model& model, const StepInputs&, OpenWorkspace& w) {
   const auto s = w.trial.x.topRows(model.free) - w.current.x.topRows(model.free);
   const auto t = w.trial.gradient - w.current.gradient;
   const double st = s.cwiseProduct(t).sum(), tt = t.squaredNorm();
   if (st > 1e-10 * std::sqrt(s.squaredNorm() * tt)) scale_ = st / tt;
 }
 
-void IdentityInverse::apply(const Model& model, const StepInputs&, Workspace&, Positions& r, Positions& z) {
+void IdentityInverse::apply(const Model& model, const StepInputs&, OpenWorkspace&, Positions& r, Positions& z) {
   if (scale_ > 0) {
     z = scale_ * r;
     return;
@@ -76,7 +76,7 @@ HessianInverse::HessianInverse(const Model& model, const HessianSource& source) 
   if (source.turning != HessianSource::Turning::none) made_.assign(model.free, Mat3::Identity());
 }
 
-void HessianInverse::begin(const Model& model, const StepInputs&, Workspace& w) {
+void HessianInverse::begin(const Model& model, const StepInputs&, OpenWorkspace& w) {
   const bool turns = source_.turning != HessianSource::Turning::none;
   const bool from_start = source_.turning == HessianSource::Turning::to_start;
   if (turns) vertex_rotations(model, from_start ? *w.start_positions : w.current.x, now_);
@@ -85,7 +85,7 @@ void HessianInverse::begin(const Model& model, const StepInputs&, Workspace& w) 
   for (std::size_t v = 0; v < now_.size(); ++v) warp_[v] = now_[v] * made_[v].transpose();
 }
 
-void HessianInverse::renew(const Model& model, Workspace& w) {
+void HessianInverse::renew(const Model& model, OpenWorkspace& w) {
   if (source_.elements == HessianSource::Elements::turned_rest) {
     turn_elements(model, *w.start_positions);
     hessian_.assemble(model, turned_, w.current.contacts, w.contact.stick_length, w.current.x);
@@ -124,7 +124,7 @@ void HessianInverse::turn_elements(const Model& model, const Positions& x) {
   });
 }
 
-void HessianInverse::apply(const Model&, const StepInputs&, Workspace&, Positions& r, Positions& z) {
+void HessianInverse::apply(const Model&, const StepInputs&, OpenWorkspace&, Positions& r, Positions& z) {
   if (!warp_.empty()) turn(warp_, true, r);
   factor_.solve(r.data(), z.data());
   if (!warp_.empty()) turn(warp_, false, z);
@@ -135,9 +135,11 @@ FrameCgInverse::FrameCgInverse(const Model& model, Preconditioner preconditioner
   incomplete_.compute(preconditioner == Preconditioner::rest ? rest_hessian(model).matrix() : system_matrix_of(model));
 }
 
-void FrameCgInverse::begin(const Model& model, const StepInputs&, Workspace& w) { hessian_.assemble(model, w, true); }
+void FrameCgInverse::begin(const Model& model, const StepInputs&, OpenWorkspace& w) {
+  hessian_.assemble(model, w, true);
+}
 
-void FrameCgInverse::apply(const Model& model, const StepInputs&, Workspace&, Positions& r, Positions& z) {
+void FrameCgInverse::apply(const Model& model, const StepInputs&, OpenWorkspace&, Positions& r, Positions& z) {
   right_ = vector_of(r);
   conjugate_gradients(
       right_, solution_, iterations_, 0,
@@ -161,7 +163,7 @@ SystemCgInverse::SystemCgInverse(const Model& model, int iterations)
   for (int v = 0; v < model.free; ++v) inverse_diagonal_.segment<3>(3 * v).setConstant(1 / diagonal[v]);
 }
 
-void SystemCgInverse::apply(const Model& model, const StepInputs&, Workspace&, Positions& r, Positions& z) {
+void SystemCgInverse::apply(const Model& model, const StepInputs&, OpenWorkspace&, Positions& r, Positions& z) {
   right_ = vector_of(r);
   conjugate_gradients(
       right_, solution_, iterations_, 0,
@@ -178,13 +180,13 @@ ContactMatrixInverse::ContactMatrixInverse(const Model& model)
       scratch_(std::size_t(model.free) * 4),
       stiffness_(model.free, 0.0) {}
 
-void ContactMatrixInverse::apply(const Model& model, const StepInputs&, Workspace& w, Positions& r, Positions& z) {
+void ContactMatrixInverse::apply(const Model& model, const StepInputs&, OpenWorkspace& w, Positions& r, Positions& z) {
   std::fill(stiffness_.begin(), stiffness_.end(), 0.0);
   for (const Contact& contact : w.current.contacts) {
     if (contact.depth <= 0) continue;
     // A point between vertices adds the sum of each row of its matrix, which is at least as stiff.
-    for (int k = 0; k < contact.point.free; ++k)
-      stiffness_[contact.point.vertex[k]] += 2 * contact.stiffness * contact.point.weight[k];
+    for (int k = 0; k < contact.stencil.free; ++k)
+      stiffness_[contact.stencil.vertex[k]] += 2 * contact.stiffness * contact.stencil.weight[k];
   }
   if (stiffness_ != factored_) {
     matrix_ = system_;

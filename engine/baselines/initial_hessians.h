@@ -16,9 +16,10 @@ namespace supple {
 // there is a pair.
 class IdentityInverse final : public InitialInverse {
  public:
-  void begin(const Model&, const StepInputs&, Workspace&) override { scale_ = 0; }
-  void accepted(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
-  void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
+  void begin(const Model&, const StepInputs&, OpenWorkspace&) override { scale_ = 0; }
+  void accepted(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace) override;
+  void apply(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, Positions& r,
+             Positions& z) override;
 
  private:
   double scale_ = 0;  // [m/N]; 0: no pair yet
@@ -57,11 +58,12 @@ inline constexpr HessianSource hecht_hessian_source = {HessianSource::Elements::
 class HessianInverse final : public InitialInverse {
  public:
   HessianInverse(const Model& model, const HessianSource& source);
-  void begin(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
-  void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
+  void begin(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace) override;
+  void apply(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, Positions& r,
+             Positions& z) override;
 
  private:
-  void renew(const Model& model, Workspace& workspace);
+  void renew(const Model& model, OpenWorkspace& workspace);
   void turn_elements(const Model& model, const Positions& x);
 
   HessianSource source_;
@@ -77,8 +79,9 @@ class HessianInverse final : public InitialInverse {
 class FrameCgInverse final : public InitialInverse {
  public:
   FrameCgInverse(const Model& model, Preconditioner preconditioner, int iterations);
-  void begin(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
-  void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
+  void begin(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace) override;
+  void apply(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, Positions& r,
+             Positions& z) override;
 
  private:
   using Incomplete = Eigen::IncompleteCholesky<double, Eigen::Lower, Eigen::NaturalOrdering<int>>;
@@ -94,7 +97,8 @@ class FrameCgInverse final : public InitialInverse {
 class SystemCgInverse final : public InitialInverse {
  public:
   SystemCgInverse(const Model& model, int iterations);
-  void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
+  void apply(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, Positions& r,
+             Positions& z) override;
 
  private:
   int iterations_;
@@ -110,8 +114,9 @@ class SystemCgInverse final : public InitialInverse {
 class ContactMatrixInverse final : public InitialInverse {
  public:
   explicit ContactMatrixInverse(const Model& model);
-  void begin(const Model&, const StepInputs&, Workspace&) override { factored_.clear(); }
-  void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
+  void begin(const Model&, const StepInputs&, OpenWorkspace&) override { factored_.clear(); }
+  void apply(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, Positions& r,
+             Positions& z) override;
 
  private:
   SparseMatrix system_, matrix_;  // lower triangles

@@ -37,11 +37,11 @@ std::unique_ptr<InitialInverse> initial_inverse(const Method& method, const Mode
 class LbfgsFrom final : public SearchRule {
  public:
   explicit LbfgsFrom(std::unique_ptr<InitialInverse> inverse) : inverse_(std::move(inverse)), rule_(*inverse_) {}
-  void begin(const Model& model, const StepInputs& inputs, Workspace& w) override { rule_.begin(model, inputs, w); }
-  double direction(const Model& model, const StepInputs& inputs, Workspace& w) override {
+  void begin(const Model& model, const StepInputs& inputs, OpenWorkspace& w) override { rule_.begin(model, inputs, w); }
+  double direction(const Model& model, const StepInputs& inputs, OpenWorkspace& w) override {
     return rule_.direction(model, inputs, w);
   }
-  void accepted(const Model& model, const StepInputs& inputs, Workspace& w) override {
+  void accepted(const Model& model, const StepInputs& inputs, OpenWorkspace& w) override {
     rule_.accepted(model, inputs, w);
   }
   void contacts_changed(const StepInputs& inputs) override { rule_.contacts_changed(inputs); }
@@ -57,9 +57,9 @@ class LbfgsFrom final : public SearchRule {
 // ascent the acceleration starts again.
 class ChebyshevRule final : public SearchRule {
  public:
-  void begin(const Model&, const StepInputs&, Workspace&) override { iteration_ = 0; }
+  void begin(const Model&, const StepInputs&, OpenWorkspace&) override { iteration_ = 0; }
 
-  double direction(const Model& model, const StepInputs& inputs, Workspace& w) override {
+  double direction(const Model& model, const StepInputs& inputs, OpenWorkspace& w) override {
     const TimedPhase timed(w.clock, Phase::solve, "solve");
     w.scratch = w.current.gradient;
     find_stiff_directions(model, w.current.contacts, w.current.x, w.contact.stick_length, w.correction);
@@ -73,7 +73,7 @@ class ChebyshevRule final : public SearchRule {
     return (w.current.gradient.array() * w.direction.array()).sum();
   }
 
-  void accepted(const Model&, const StepInputs&, Workspace& w) override {
+  void accepted(const Model&, const StepInputs&, OpenWorkspace& w) override {
     before_ = w.current.x;
     omega_ = tried_;
     ++iteration_;

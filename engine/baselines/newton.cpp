@@ -7,7 +7,7 @@ namespace {
 
 constexpr int most_tries = 60;  // doublings of the shift
 
-double slope_of(const Workspace& w) { return (w.current.gradient.array() * w.direction.array()).sum(); }
+double slope_of(const OpenWorkspace& w) { return (w.current.gradient.array() * w.direction.array()).sum(); }
 
 }  // namespace
 
@@ -15,7 +15,7 @@ NewtonRule::NewtonRule(const Model& model, Safeguard safeguard) : safeguard_(saf
   factor_.analyze(hessian_.matrix());
 }
 
-double NewtonRule::direction(const Model& model, const StepInputs&, Workspace& w) {
+double NewtonRule::direction(const Model& model, const StepInputs&, OpenWorkspace& w) {
   const TimedPhase timed(w.clock, Phase::solve, "Newton");
   hessian_.assemble(model, w, safeguard_ == Safeguard::projection);
   switch (safeguard_) {
@@ -31,7 +31,7 @@ double NewtonRule::direction(const Model& model, const StepInputs&, Workspace& w
 // Factors the Hessian as it is, or with projected elements where that fails (Longva et al. 2023, "Pitfalls of
 // projection: a study of Newton-type solvers for incremental potentials", Project-on-Demand Newton). Each iteration
 // decides for itself.
-void NewtonRule::factorize_on_demand(const Model& model, Workspace& w) {
+void NewtonRule::factorize_on_demand(const Model& model, OpenWorkspace& w) {
   if (factor_.factorize(hessian_.matrix())) return;
   hessian_.assemble(model, w, true);
   factorize_projected(hessian_, factor_);
@@ -55,7 +55,7 @@ void NewtonRule::factorize_shifted() {
 NewtonCgRule::NewtonCgRule(const Model& model, bool project, int iterations, double tolerance)
     : project_(project), iterations_(iterations), tolerance_(tolerance), hessian_(model) {}
 
-double NewtonCgRule::direction(const Model& model, const StepInputs&, Workspace& w) {
+double NewtonCgRule::direction(const Model& model, const StepInputs&, OpenWorkspace& w) {
   const TimedPhase timed(w.clock, Phase::solve, "Newton");
   hessian_.assemble(model, w, project_);
   const Eigen::Index count = 3 * model.free;

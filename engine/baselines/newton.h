@@ -13,11 +13,11 @@ class NewtonRule final : public SearchRule {
  public:
   // safeguard: projection, on_demand or shift.
   NewtonRule(const Model& model, Safeguard safeguard);
-  void begin(const Model&, const StepInputs&, Workspace&) override { shift_ = 0; }
-  double direction(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
+  void begin(const Model&, const StepInputs&, OpenWorkspace&) override { shift_ = 0; }
+  double direction(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace) override;
 
  private:
-  void factorize_on_demand(const Model& model, Workspace& workspace);
+  void factorize_on_demand(const Model& model, OpenWorkspace& workspace);
   void factorize_shifted();
 
   Safeguard safeguard_;
@@ -31,7 +31,7 @@ class NewtonRule final : public SearchRule {
 class NewtonCgRule final : public SearchRule {
  public:
   NewtonCgRule(const Model& model, bool project, int iterations, double tolerance);
-  double direction(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
+  double direction(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace) override;
 
  private:
   bool project_;

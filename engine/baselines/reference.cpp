@@ -41,14 +41,14 @@ struct Reference::Parts {
 Reference::Reference(const Model& model) : parts_(std::make_unique<Parts>(model)) {}
 Reference::~Reference() = default;
 
-double contact_energy_at(const Model& model, const StepInputs& inputs, const Positions& x, Workspace& w) {
+double contact_energy_at(const Model& model, const StepInputs& inputs, const Positions& x, OpenWorkspace& w) {
   if (!has_colliders(inputs)) return 0;
   std::vector<Contact> found;
   find_contacts(model, inputs, x, w.threads, w.contact, found);
   return add_contacts(found, w.contact.stick_length, x, nullptr, w.direction, nullptr).value;
 }
 
-double gained(const Model& model, const StepInputs& inputs, const State& before, const Positions& x, Workspace& w) {
+double gained(const Model& model, const StepInputs& inputs, const State& before, const Positions& x, OpenWorkspace& w) {
   w.prepare(model, inputs.solver);
   begin_step(model, inputs, before, w);
   // The gain is summed as a difference. The handles of y are at their targets, whatever the solver started from.
@@ -62,7 +62,7 @@ double gained(const Model& model, const StepInputs& inputs, const State& before,
 }
 
 Minimum Reference::minimum(const Model& model, const StepInputs& inputs, const State& before, const Positions& x,
-                           Workspace& w) {
+                           OpenWorkspace& w) {
   const StepInputs by_newton = thorough(inputs, newton_iterations, 0);
   const StepInputs by_lbfgs = thorough(inputs, check_iterations, 20);
   w.prepare(model, by_lbfgs.solver);
@@ -83,7 +83,7 @@ Minimum Reference::minimum(const Model& model, const StepInputs& inputs, const S
 }
 
 Reference::StepErrors Reference::step_errors(const Model& model, const StepInputs& inputs, const State& before,
-                                             const State& after, Workspace& w) {
+                                             const State& after, OpenWorkspace& w) {
   const Minimum lowest = minimum(model, inputs, before, after.x, w);
   StepErrors errors;
   errors.motion = motion_error(model, before.x, w.y, after.x, lowest.x);

@@ -28,7 +28,7 @@ class Reference {
   // Finds the minimum from `x`, one of the points that a step from `before` has reached. workspace: scratch memory for
   // the reference alone.
   Minimum minimum(const Model& model, const StepInputs& inputs, const State& before, const Positions& x,
-                  Workspace& workspace);
+                  OpenWorkspace& workspace);
 
   // Holds the errors of a step.
   struct StepErrors {
@@ -39,10 +39,10 @@ class Reference {
   // minimum() finds when it continues from x_k. Both differences are sums of small ones, so that small errors keep
   // their digits.
   StepErrors step_errors(const Model& model, const StepInputs& inputs, const State& before, const State& after,
-                         Workspace& workspace);
+                         OpenWorkspace& workspace);
   // Returns the first of them.
   std::optional<double> step_error(const Model& model, const StepInputs& inputs, const State& before,
-                                   const State& after, Workspace& workspace) {
+                                   const State& after, OpenWorkspace& workspace) {
     return step_errors(model, inputs, before, after, workspace).error;
   }
 
@@ -52,11 +52,11 @@ class Reference {
 };
 
 // Returns the energy, friction included, of the contacts that are found again at x, after begin_step [J].
-double contact_energy_at(const Model& model, const StepInputs& inputs, const Positions& x, Workspace& workspace);
+double contact_energy_at(const Model& model, const StepInputs& inputs, const Positions& x, OpenWorkspace& workspace);
 
 // Returns g(y) - g(x) of a step from `before`, with handles at their targets and at each point with the contacts found
 // there [J]. Leaves x in workspace.current.x.
 double gained(const Model& model, const StepInputs& inputs, const State& before, const Positions& x,
-              Workspace& workspace);
+              OpenWorkspace& workspace);
 
 }  // namespace supple

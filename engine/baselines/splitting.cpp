@@ -4,12 +4,12 @@
 
 namespace supple {
 
-void SplittingRule::begin(const Model& model, const StepInputs&, Workspace&) {
+void SplittingRule::begin(const Model& model, const StepInputs&, OpenWorkspace&) {
   multipliers_.resize(std::size_t(model.blocks) * most_multipliers * block_width);
   start_ = true;
 }
 
-double SplittingRule::direction(const Model& model, const StepInputs& inputs, Workspace& w) {
+double SplittingRule::direction(const Model& model, const StepInputs& inputs, OpenWorkspace& w) {
   const TimedPhase timed(w.clock, Phase::solve, "splitting");
   make_local_steps(model, w);
   // The slope of the global step's quadratic energy at the current iterate.
@@ -31,7 +31,7 @@ double SplittingRule::direction(const Model& model, const StepInputs& inputs, Wo
   return (kept.array() * w.direction.array()).sum();
 }
 
-void SplittingRule::make_local_steps(const Model& model, Workspace& w) {
+void SplittingRule::make_local_steps(const Model& model, OpenWorkspace& w) {
   const double theta = model.scheme.theta;
   if (theta < 1) w.middle = theta * w.current.x + (1 - theta) * w.start_copy;
   const double* place = (theta < 1 ? w.middle : w.current.x).data();

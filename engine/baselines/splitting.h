@@ -12,12 +12,12 @@ namespace supple {
 // positions that the latter finds, and is followed to its end.
 class SplittingRule final : public SearchRule {
  public:
-  void begin(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
-  double direction(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
+  void begin(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace) override;
+  double direction(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace) override;
   bool needs_gradient() const override { return false; }
 
  private:
-  void make_local_steps(const Model& model, Workspace& workspace);
+  void make_local_steps(const Model& model, OpenWorkspace& workspace);
 
   AlignedVector<double> multipliers_;  // u, by block, most_multipliers x block_width
   bool start_ = true;                  // they have no values yet

@@ -25,7 +25,7 @@ VertexBlockRule::VertexBlockRule(const Model& model, bool accelerated)
   partial_.resize(vertices / vertices_a_task + 1);
 }
 
-double VertexBlockRule::direction(const Model& model, const StepInputs& inputs, Workspace& w) {
+double VertexBlockRule::direction(const Model& model, const StepInputs& inputs, OpenWorkspace& w) {
   const TimedPhase timed(w.clock, Phase::solve, "sweep");
   x_ = w.current.x;
   if (model.scheme.theta < 1) middle_ = model.scheme.theta * x_ + (1 - model.scheme.theta) * w.start_copy;
@@ -43,7 +43,7 @@ double VertexBlockRule::direction(const Model& model, const StepInputs& inputs, 
   return slope;
 }
 
-void VertexBlockRule::accepted(const Model&, const StepInputs&, Workspace& w) {
+void VertexBlockRule::accepted(const Model&, const StepInputs&, OpenWorkspace& w) {
   before_ = w.current.x;
   ++iteration_;
 }
@@ -52,16 +52,16 @@ void VertexBlockRule::list_contacts(const std::vector<Contact>& contacts) {
   for (const std::int32_t v : touched_) contacts_of_[v].clear();
   touched_.clear();
   for (std::size_t c = 0; c < contacts.size(); ++c) {
-    const ContactPoint& point = contacts[c].point;
-    for (int k = 0; k < point.free; ++k) {
-      contacts_of_[point.vertex[k]].push_back(static_cast<std::int32_t>(c));
-      touched_.push_back(point.vertex[k]);
+    const ContactStencil& stencil = contacts[c].stencil;
+    for (int k = 0; k < stencil.free; ++k) {
+      contacts_of_[stencil.vertex[k]].push_back(static_cast<std::int32_t>(c));
+      touched_.push_back(stencil.vertex[k]);
     }
   }
 }
 
 // Moves the vertices of a colour; returns what the quadratic models promise, as a slope [J].
-double VertexBlockRule::sweep(const Model& model, const Workspace& w, const VertexColor& color) {
+double VertexBlockRule::sweep(const Model& model, const OpenWorkspace& w, const VertexColor& color) {
   const double* place = (model.scheme.theta < 1 ? middle_ : x_).data();
   run_chunks(w.threads, static_cast<int>(color.chunks.size()), long(color.lanes) * 16, [&](int c) {
     const CornerChunk& chunk = color.chunks[c];
@@ -80,7 +80,8 @@ double VertexBlockRule::sweep(const Model& model, const Workspace& w, const Vert
   return slope;
 }
 
-double VertexBlockRule::move_vertex(const Model& model, const Workspace& w, const VertexColor& color, std::size_t i) {
+double VertexBlockRule::move_vertex(const Model& model, const OpenWorkspace& w, const VertexColor& color,
+                                    std::size_t i) {
   const int v = color.vertices[i];
   const double theta = model.scheme.theta;
   const VertexTerms own = vertex_terms(model, w, x_, v);
@@ -103,13 +104,13 @@ double VertexBlockRule::move_vertex(const Model& model, const Workspace& w, cons
   return slope.dot(move);
 }
 
-void VertexBlockRule::add_contacts(const Workspace& w, int vertex, Vec3& slope, Mat3& block) const {
+void VertexBlockRule::add_contacts(const OpenWorkspace& w, int vertex, Vec3& slope, Mat3& block) const {
   for (const std::int32_t c : contacts_of_[vertex]) {
     const Contact& contact = w.current.contacts[c];
-    const ContactPoint& point = contact.point;
+    const ContactStencil& stencil = contact.stencil;
     double weight = 0;
-    for (int k = 0; k < point.free; ++k) {
-      if (point.vertex[k] == vertex) weight = point.weight[k];
+    for (int k = 0; k < stencil.free; ++k) {
+      if (stencil.vertex[k] == vertex) weight = stencil.weight[k];
     }
     const Mat3 along = contact.normal * contact.normal.transpose();
     const double below = gap(contact, x_);
@@ -119,7 +120,7 @@ void VertexBlockRule::add_contacts(const Workspace& w, int vertex, Vec3& slope, 
     }
     if (contact.friction > 0) {
       const Mat3 across = friction_stiffness(contact, x_, w.contact.stick_length) * (Mat3::Identity() - along);
-      slope += weight * across * (point.at(x_) - contact.origin);
+      slope += weight * across * (stencil.at(x_) - contact.origin);
       block += weight * weight * across;
     }
   }

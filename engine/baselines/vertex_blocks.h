@@ -16,16 +16,16 @@ class VertexBlockRule final : public SearchRule {
   // accelerated: whether Chebyshev's semi-iterative method moves all vertices that are not in contact.
   VertexBlockRule(const Model& model, bool accelerated);
 
-  void begin(const Model&, const StepInputs&, Workspace&) override { iteration_ = 0; }
-  double direction(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
-  void accepted(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
+  void begin(const Model&, const StepInputs&, OpenWorkspace&) override { iteration_ = 0; }
+  double direction(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace) override;
+  void accepted(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace) override;
   bool needs_gradient() const override { return false; }
 
  private:
   void list_contacts(const std::vector<Contact>& contacts);
-  double sweep(const Model& model, const Workspace& workspace, const VertexColor& color);
-  double move_vertex(const Model& model, const Workspace& workspace, const VertexColor& color, std::size_t i);
-  void add_contacts(const Workspace& workspace, int vertex, Vec3& slope, Mat3& block) const;
+  double sweep(const Model& model, const OpenWorkspace& workspace, const VertexColor& color);
+  double move_vertex(const Model& model, const OpenWorkspace& workspace, const VertexColor& color, std::size_t i);
+  void add_contacts(const OpenWorkspace& workspace, int vertex, Vec3& slope, Mat3& block) const;
 
   bool accelerated_;
   std::vector<VertexColor> colors_;

@@ -2,7 +2,7 @@
 // that treat elements one by one add the elements' forces themselves. The whole of g is in sim/solver/objective.h.
 #pragma once
 
-#include "sim/solver/workspace.h"
+#include "sim/solver/open_workspace.h"
 
 namespace supple {
 
@@ -11,7 +11,7 @@ struct VertexTerms {
   double stiffness;  // the second derivative is this times the identity [N/m]
 };
 
-inline VertexTerms vertex_terms(const Model& model, const Workspace& w, const Positions& x, int v) {
+inline VertexTerms vertex_terms(const Model& model, const OpenWorkspace& w, const Positions& x, int v) {
   const double inertia = model.scheme.inertia / (model.time_step * model.time_step) * model.mass[v];
   const double theta = model.scheme.theta;
   VertexTerms terms{inertia * (x.row(v) - w.y.row(v)).transpose(), inertia};

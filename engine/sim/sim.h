@@ -5,7 +5,7 @@
 //   State state = rest_state(model);         // where the body is; a copy is a snapshot: sim/model/state.h
 //   Workspace workspace;                     // scratch, one for each thread that steps; never changes a result
 //   StepInputs inputs;                       // gravity, handles' targets, colliders, settings: sim/model/inputs.h
-//   const StepReport& report = step(model, inputs, state, workspace);  // once a time step: sim/solver/step.h
+//   const StepReport& report = step(model, inputs, state, workspace);  // once a time step: sim/solver/workspace.h
 //
 // inputs.targets has a row for each of model.handled, in its order: the place where that vertex is held. At rest it is
 // model.rest.row(model.handled[i].vertex); without handles the matrix stays empty.
@@ -27,7 +27,7 @@
 #include "sim/model/model.h"
 #include "sim/model/report.h"
 #include "sim/model/state.h"
-#include "sim/solver/step.h"
+#include "sim/solver/workspace.h"
 
 static_assert(EIGEN_MAX_STATIC_ALIGN_BYTES == 64 && EIGEN_MAX_ALIGN_BYTES == 64,
               "the libraries were built with both of these as 64: define them so (docs/library.md)");

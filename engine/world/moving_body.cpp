@@ -9,11 +9,19 @@ namespace supple {
 
 MovingBody::MovingBody(const SceneDef& scene, Body& body, Model& model, const CollisionSet& set, const Solvers& solvers,
                        Threads* threads)
-    : scene_(scene), body_(body), model_(model), set_(set), solvers_(solvers), state_(start_state(model, body)) {
+    : scene_(scene),
+      body_(body),
+      model_(model),
+      set_(set),
+      solvers_(solvers),
+      state_(start_state(model, body)),
+      workspace_(threads) {
   inputs_.colliders = &set.colliders;
-  workspace_.threads = threads;
   apply({.factor = hold_as_state_says(), .rule = true});
 }
+
+MovingBody::~MovingBody() = default;
+MovingBody::MovingBody(MovingBody&&) noexcept = default;
 
 void MovingBody::apply(const ChangeCost& cost) {
   inputs_.gravity = scene_.gravity;
@@ -94,7 +102,7 @@ const Model& MovingBody::rigid_model() {
 
 const StepReport& MovingBody::step() {
   untangled_ = body_.def.solver.untangle && is_tangled(model_, state_.x);
-  if (!untangled_) return supple::step(model_, inputs_, state_, workspace_, *rule_);
+  if (!untangled_) return supple::step(model_, inputs_, state_, workspace_.open(), *rule_);
   StepInputs inputs = inputs_;
   inputs.solver.matrix = SystemMatrix::constant;
   return supple::step(rigid_model(), inputs, state_, workspace_);

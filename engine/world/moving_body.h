@@ -21,6 +21,8 @@ class MovingBody {
   // change when a handle grabs or releases. All that is passed by reference must outlive this object.
   MovingBody(const SceneDef& scene, Body& body, Model& model, const CollisionSet& set, const Solvers& solvers,
              Threads* threads);
+  ~MovingBody();
+  MovingBody(MovingBody&&) noexcept;
 
   const Body& body() const { return body_; }
   const Model& model() const { return model_; }
@@ -29,8 +31,8 @@ class MovingBody {
   const CollisionSet& colliders() const { return set_; }
   // Gives the workspace of the body's steps, which is free for other use between two steps. It holds the last step's
   // report.
-  Workspace& workspace() { return workspace_; }
-  const StepReport& report() const { return workspace_.report; }  // of the last step
+  OpenWorkspace& workspace() { return workspace_.open(); }
+  const StepReport& report() const { return workspace_.report(); }  // of the last step
 
   // Returns the targets of handles at the beginning of the prepared step, in the order of Model::handled [m].
   Positions targets_at_start() const;

@@ -9,9 +9,10 @@
 #include "sim/model/method.h"
 #include "sim/model/model.h"
 #include "sim/model/state.h"
-#include "sim/solver/search_rule.h"
 
 namespace supple {
+
+class SearchRule;
 
 // Solvers{make_rule, settings_of} are all of them (baselines/make_rule.h).
 struct Solvers {

@@ -44,7 +44,7 @@ TEST(Bench, GainsByIterationAddUpToWhereTheMethodsEnd) {
       comparison.run(state, {{"ours", Method::quasi_newton, 8}, {"Newton", Method::newton, 40}}, 1);
   const Minimum lowest = comparison.reference(state, outcomes);
   EXPECT_TRUE(lowest.positive_definite);
-  Workspace w;
+  OpenWorkspace w;
   for (const Outcome& outcome : outcomes) {
     ASSERT_FALSE(outcome.failed);
     ASSERT_EQ(outcome.gained.size(), outcome.ms.size());

@@ -153,7 +153,7 @@ TEST(States, GiveTheRunsBitsWhenTheStepIsMadeAgain) {
       const StoredState stored = read_state(states / (name + "-000003"));
       State state = state_for(model, stored);
       StepInputs inputs{film.scene.gravity, {}, {}, film.bodies[b].def.solver.settings, &film.set.colliders};
-      Workspace w;
+      OpenWorkspace w;
       for (int substep = 0; substep < film.scene.substeps; ++substep) {
         const double done = 3.0 * film.scene.substeps + substep, h = film.scene.time_step();
         handle_targets(model, film.bodies[b], (done + 1) * h, inputs.targets);

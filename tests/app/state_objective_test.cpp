@@ -79,7 +79,7 @@ void compare(const BodyDescription& body, Agreement& agreement) {
   state.v = test::shaken(Positions::Zero(model.vertices, 3), 1, 4);
   write_state(folder.path, {"scene", "", 0, 0}, problem_of(body, model, inputs, state));
   const StoredProblem stored(folder.path);
-  Workspace w;
+  OpenWorkspace w;
   w.prepare(model, inputs.solver);
   begin_step(model, inputs, state, w);
   w.direction.setZero();

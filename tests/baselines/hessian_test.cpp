@@ -28,7 +28,7 @@ Eigen::MatrixXd full(const SparseMatrix& lower) {
 }
 
 // Computes the Hessian of g by central differences of its gradient, in steps of `step`.
-Eigen::MatrixXd by_differences(const Model& model, Workspace& w, double step) {
+Eigen::MatrixXd by_differences(const Model& model, OpenWorkspace& w, double step) {
   const int count = 3 * model.free;
   Eigen::MatrixXd hessian(count, count);
   const Positions x = w.current.x;
@@ -76,7 +76,7 @@ struct OneTetrahedron {
     for (int v = 0; v < 4; ++v) w.current.x.row(v) = (corner + f * (Vec3(model.rest.row(v)) - corner)).transpose();
   }
   Model model;
-  Workspace w;
+  OpenWorkspace w;
 };
 
 // A difference across a kink of a formula says nothing. The seams of materials have measure zero, and these kinds of
@@ -147,7 +147,7 @@ TEST(Hessian, OfAWholeBodyIsTheDerivativeOfItsGradient) {
       body.damping = 0.01;
       body.fibres = {{2e4, {1, 0, 0}}};
       const Model model = build_model(body);
-      Workspace w;
+      OpenWorkspace w;
       w.prepare(model, {});
       const State state = rest_state(model);
       StepInputs inputs = test::still_inputs(model);
@@ -170,7 +170,7 @@ TEST(Hessian, OfSpringsAndContactsIsTheDerivativeOfTheGradient) {
   net.surface.resize(1, 3);
   net.surface.row(0) << 0, 7, 12;  // no spring joins these
   const Model model = build_model(net);
-  Workspace w;
+  OpenWorkspace w;
   w.prepare(model, {});
   const State state = rest_state(model);
   const StepInputs inputs = test::still_inputs(model);
@@ -178,7 +178,7 @@ TEST(Hessian, OfSpringsAndContactsIsTheDerivativeOfTheGradient) {
   w.current.x = test::shaken(w.current.x, 0.02, 5);
   w.contact.stick_length = 1e-3;
   for (int v = 0; v < 5; ++v) {
-    Contact contact{ContactPoint::at_vertex(v), 0, Vec3(0.6, 0, 0.8), 0, 1e3, 0.01};
+    Contact contact{ContactStencil::at_vertex(v), {0}, Vec3(0.6, 0, 0.8), 0, 1e3, 0.01};
     contact.offset = contact.normal.dot(w.current.x.row(v)) + 0.01;  // the vertex lies inside the plane
     w.current.contacts.push_back(contact);
   }
@@ -188,9 +188,9 @@ TEST(Hessian, OfSpringsAndContactsIsTheDerivativeOfTheGradient) {
                0,
                2e3,
                0.01};
-  std::sort(face.point.vertex.begin(), face.point.vertex.end());
-  while (face.point.free > 0 && face.point.vertex[face.point.free - 1] >= model.free) --face.point.free;
-  ASSERT_GT(face.point.free, 1);
+  std::sort(face.stencil.vertex.begin(), face.stencil.vertex.end());
+  while (face.stencil.free > 0 && face.stencil.vertex[face.stencil.free - 1] >= model.free) --face.stencil.free;
+  ASSERT_GT(face.stencil.free, 1);
   face.offset = gap(face, w.current.x) + 0.01;
   w.current.contacts.push_back(face);
   HessianMatrix hessian(model);
@@ -234,7 +234,7 @@ struct ShakenBar {
   };
   Stepped by_ours() const {
     State after = before;
-    Workspace w;
+    OpenWorkspace w;
     const StepReport report = step(model, inputs, after, w);
     return {after, report};
   }
@@ -244,7 +244,7 @@ struct ShakenBar {
     own.solver = settings_of(method, own.solver);
     if (rule->needs_gradient()) own.solver.line_search = LineSearch::armijo;
     State after = before;
-    Workspace w;
+    OpenWorkspace w;
     const StepReport report = step(model, own, after, w, *rule);
     return {after, report};
   }
@@ -305,7 +305,7 @@ TEST(Methods, NewtonConvergesQuadratically) {
   inputs.solver.iterations = 30;
   State state = rest_state(model);
   state.v.topRows(model.free).setConstant(0.3);
-  Workspace w;
+  OpenWorkspace w;
   const auto rule = make_rule(Method::newton, model);
   const StepReport& report = step(model, inputs, state, w, *rule);
   EXPECT_LE(report.iterations, 9);
@@ -321,7 +321,7 @@ TEST(Methods, ProjectionOnDemandIsNewtonWhereTheHessianIsDefinite) {
     body.time_step = time_step;
     const Model model = build_model(body);
     const StepInputs inputs = test::still_inputs(model);
-    Workspace w;
+    OpenWorkspace w;
     w.prepare(model, inputs.solver);
     w.current.x = model.rest;
     w.current.x.col(1) *= squeezed;
@@ -352,7 +352,7 @@ TEST(LineSearch, WolfeStepsSatisfyBothConditions) {
   inputs.solver.iterations = 12;
   State state = rest_state(model);
   state.v.topRows(model.free) = test::shaken(state.v, 3, 9).topRows(model.free);
-  Workspace w;
+  OpenWorkspace w;
   const StepReport& report = step(model, inputs, state, w);
   ASSERT_GT(report.iterations, 5);
   for (std::size_t k = 1; k < report.objective.size(); ++k) EXPECT_LT(report.objective[k], report.objective[k - 1]);

@@ -72,7 +72,7 @@ TEST(VertexBlocks, TheFirstColourMovesByTheBlocksOfTheHessian) {
       body.materials[1] = material;
       body.fibres.clear();  // theirs are projected
       const Model model = build_model(body);
-      Workspace w;
+      OpenWorkspace w;
       w.prepare(model, {});
       const State state = rest_state(model);
       StepInputs inputs = test::still_inputs(model);
@@ -82,7 +82,7 @@ TEST(VertexBlocks, TheFirstColourMovesByTheBlocksOfTheHessian) {
       w.contact.stick_length = 1e-3;
       const std::vector<VertexColor> colors = vertex_colors(model);
       const int touching = colors[0].vertices[0];
-      Contact contact{ContactPoint::at_vertex(touching), 0, Vec3(0.6, 0, 0.8), 0, 1e3, 0.01};
+      Contact contact{ContactStencil::at_vertex(touching), {0}, Vec3(0.6, 0, 0.8), 0, 1e3, 0.01};
       contact.offset = contact.normal.dot(w.current.x.row(touching)) + 0.01;
       contact.friction = 3;
       contact.origin = w.current.x.row(touching).transpose() + Vec3(0, 0.02, 0);
@@ -210,7 +210,7 @@ TEST(LocalMethods, ReachTheMinimumOfABodyWithEverything) {
       own.solver = settings_of(method, own.solver);
       own.solver.iterations = 3000;
       State after = start;
-      Workspace w;
+      OpenWorkspace w;
       const StepReport& report = step(model, own, after, w, *rule);
       EXPECT_FALSE(report.failed) << name_of(method);
       return after.x;
@@ -232,7 +232,7 @@ TEST(LocalMethods, HaveTheSameBitsOnAnyNumberOfThreads) {
     std::vector<std::uint64_t> hashes;
     for (const int count : {1, 2, 4}) {
       Threads threads(count);
-      Workspace w;
+      OpenWorkspace w;
       w.threads = &threads;
       State state = start;
       const auto rule = make_rule(method, model);

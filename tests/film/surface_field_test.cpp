@@ -137,7 +137,7 @@ shape = { half_space = { normal = [0, 1, 0] } }
 )";
   const test::Film film(path, {});
   Positions forces, motion;
-  film.play(1, 120, [&](std::size_t, int, const State&, const StepInputs&, const State& to, const Workspace& w) {
+  film.play(1, 120, [&](std::size_t, int, const State&, const StepInputs&, const State& to, const OpenWorkspace& w) {
     forces = contact_forces(film.models[0], w, to.x);
     motion = in_input_order(film.models[0], to.x);
   });

@@ -79,7 +79,7 @@ Picture picture_of(const Shot& shot, const Settings& more = {}) {
   for (const Body& body : film.bodies) motion.push_back(first_positions(body));
   before = motion;
   film.play(1, shot.frames,
-            [&](std::size_t b, int, const State& from, const StepInputs&, const State& to, const Workspace& w) {
+            [&](std::size_t b, int, const State& from, const StepInputs&, const State& to, const OpenWorkspace& w) {
               before[b] = in_input_order(film.models[b], from.x);
               motion[b] = in_input_order(film.models[b], to.x);
               forces[b] = contact_forces(film.models[b], w, to.x);

@@ -70,7 +70,7 @@ TEST(Scenes, TheHippoIsWholeAgainAfterTenSecondsFromRandomPositions) {
     State state = start_state(model, body);
     EXPECT_GT(deformation(model, state.x).inverted, model.elements / 3);
     Threads threads(2);
-    Workspace w;
+    OpenWorkspace w;
     w.threads = &threads;
     for (int frame = 0; frame < 300; ++frame) ASSERT_FALSE(step(model, inputs, state, w).failed);
     const Deformation end = deformation(model, state.x);

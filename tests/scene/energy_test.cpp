@@ -17,7 +17,7 @@ namespace energy_test {
 std::vector<double> energy_of(const std::string& body, const std::vector<std::string>& settings, int frames) {
   const test::Film film(test::assets / "scenes" / "integrators.toml", settings);
   std::vector<double> list;
-  Workspace w;
+  OpenWorkspace w;
   film.play(2, frames, [&](std::size_t b, int number, const State&, const StepInputs& inputs, const State& after) {
     if (film.bodies[b].def.name != body || (number + 1) % film.scene.substeps != 0) return;
     w.prepare(film.models[b], inputs.solver);

@@ -64,7 +64,7 @@ struct StillFilm {
   Model model;
   State state;
   StepInputs inputs;
-  Workspace w;
+  OpenWorkspace w;
 
   explicit StillFilm(const SceneDef& scene)
       : body(assemble(scene).front()),

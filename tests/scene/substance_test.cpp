@@ -61,7 +61,7 @@ TEST(Substances, EveryPresetMakesABodyThatHoldsItsOwnWeight) {
     const Model model = build_model(bodies[0].description);
     StepInputs inputs = test::still_inputs(model);
     State state = start_state(model, bodies[0]);
-    Workspace w;
+    OpenWorkspace w;
     for (int frame = 0; frame < 90; ++frame) {
       handle_targets(model, bodies[0], (frame + 1) * scene.time_step(), inputs.targets);
       ASSERT_FALSE(step(model, inputs, state, w).failed) << preset.name;
@@ -254,7 +254,7 @@ TEST(StartStates, BodiesRecoverFromThem) {
     StepInputs inputs = test::still_inputs(model);
     inputs.gravity.setZero();
     State state = start_state(model, body);
-    Workspace w;
+    OpenWorkspace w;
     for (int frame = 0; frame < 300; ++frame) ASSERT_FALSE(step(model, inputs, state, w).failed) << start;
     // The body has recovered when every edge of every element is as long as at rest. (A mirrored body may recover as
     // its mirror image turned round.)

@@ -14,9 +14,11 @@ namespace contact_direction_test {
 using test::bar;
 using test::ContactScene;
 using test::cube;
+using test::dense_system;
 using test::Held;
 using test::shaken;
 using test::shape_of;
+using test::stacked;
 
 const Shape ground = shape_of(HalfSpace{Vec3::UnitY(), 0});
 
@@ -29,27 +31,11 @@ void prepare_direction(ContactScene& scene) {
                         scene.w.correction);
 }
 
-Eigen::VectorXd stacked(const Positions& r) { return Eigen::Map<const Eigen::VectorXd>(r.data(), r.size()); }
-
-// Computes A from its whole inverse, column by column, as the reference for corrections of directions.
-Eigen::MatrixXd dense_system(ContactScene& scene) {
-  const int n = scene.model.free;
-  Eigen::MatrixXd inverse(3 * n, 3 * n);
-  Positions r(n, 3), z(n, 3);
-  for (int column = 0; column < 3 * n; ++column) {
-    r.setZero();
-    r.data()[column] = 1;
-    scene.model.factor.solve(r.data(), z.data(), scene.w.solve_scratch.data());
-    inverse.col(column) = stacked(z);
-  }
-  return inverse.inverse();
-}
-
-void stiffen(Eigen::MatrixXd& system, const ContactPoint& point, const Vec3& axis, double stiffness) {
-  for (int i = 0; i < point.free; ++i) {
-    for (int j = 0; j < point.free; ++j)
-      system.block<3, 3>(3 * point.vertex[i], 3 * point.vertex[j]) +=
-          point.weight[i] * point.weight[j] * stiffness * axis * axis.transpose();
+void stiffen(Eigen::MatrixXd& system, const ContactStencil& stencil, const Vec3& axis, double stiffness) {
+  for (int i = 0; i < stencil.free; ++i) {
+    for (int j = 0; j < stencil.free; ++j)
+      system.block<3, 3>(3 * stencil.vertex[i], 3 * stencil.vertex[j]) +=
+          stencil.weight[i] * stencil.weight[j] * stiffness * axis * axis.transpose();
   }
 }
 
@@ -63,8 +49,8 @@ TEST(Contact, LowRankDirectionsSolveTheSystemWithContacts) {
     scene.state.v.rowwise() = Eigen::RowVector3d(0.3, -0.5, 0);
     prepare_direction(scene);
     ASSERT_GT(scene.w.correction.wanted.size(), 8u);
-    Eigen::MatrixXd system = dense_system(scene);
-    for (const StiffDirection& s : scene.w.correction.wanted) stiffen(system, s.point, s.axis, s.stiffness);
+    Eigen::MatrixXd system = dense_system(scene.model);
+    for (const StiffDirection& s : scene.w.correction.wanted) stiffen(system, s.stencil, s.axis, s.stiffness);
     Positions r = shaken(Positions::Zero(scene.model.free, 3), 1, 2), z(scene.model.free, 3);
     const Eigen::VectorXd wanted = system.ldlt().solve(stacked(r));
     apply_inverse(scene.model, {}, scene.w.correction, scene.w.solve_scratch, r, z);
@@ -119,18 +105,18 @@ TEST(Contact, DirectionsBendAsTheQuadraticModelWithThePlanesAheadDoes) {
     apply_inverse(scene.model, {}, scene.w.correction, scene.w.solve_scratch, r,
                   z);  // makes the system of what touches
 
-    Eigen::MatrixXd system = dense_system(scene);
-    for (const StiffDirection& s : scene.w.correction.wanted) stiffen(system, s.point, s.axis, s.stiffness);
+    Eigen::MatrixXd system = dense_system(scene.model);
+    for (const StiffDirection& s : scene.w.correction.wanted) stiffen(system, s.stencil, s.axis, s.stiffness);
     Positions push = Positions::Zero(scene.model.free, 3);
     int ahead = 0;
     const auto gap_after = [&](const Contact& k, const Positions& d) {
-      return k.normal.dot(k.point.at(x) + k.point.of_free(d)) - k.offset;
+      return k.normal.dot(k.stencil.at(x) + k.stencil.of_free(d)) - k.offset;
     };
     for (const Contact& k : contacts) {
       if (k.depth > 0 || gap_after(k, direction) >= 0) continue;
       ++ahead;
-      stiffen(system, k.point, k.normal, 2 * k.stiffness);
-      k.point.spread(-2 * k.stiffness * gap_after(k, direction) * k.normal, push);
+      stiffen(system, k.stencil, k.normal, 2 * k.stiffness);
+      k.stencil.spread(-2 * k.stiffness * gap_after(k, direction) * k.normal, push);
     }
     ASSERT_GT(ahead, 0);
     EXPECT_EQ(scene.w.correction.wanted.empty(), height == 0.05);

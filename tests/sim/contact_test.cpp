@@ -282,7 +282,7 @@ TEST(Contact, AClothThatLiesOnABallStaysThere) {
   double furthest = 0;
   for (const Contact& contact : scene.w.current.contacts) {
     if (contact.depth > 0)
-      furthest = std::max(furthest, (contact.point.at(scene.state.x) - contact.point.at(start)).norm());
+      furthest = std::max(furthest, (contact.stencil.at(scene.state.x) - contact.stencil.at(start)).norm());
   }
   EXPECT_GT(scene.w.contact.counts.touching, 20);
   EXPECT_LT(furthest, seconds * 1e-3 * scene.model.size);

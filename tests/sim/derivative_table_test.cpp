@@ -204,7 +204,7 @@ TEST(Derivatives, NetForceAndTorqueOfAWholeBodyVanishAtEveryIteration) {
     for (int iterations = 1; iterations <= 10; ++iterations) {
       inputs.solver.iterations = iterations;
       State state = start;
-      Workspace w;
+      OpenWorkspace w;
       step(model, inputs, state, w);
       // The force is the elastic part of the gradient at the end of the step.
       begin_step(model, inputs, start, w);

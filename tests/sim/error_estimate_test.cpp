@@ -62,7 +62,7 @@ TEST(ErrorEstimate, EndsAStepAsSoonAsItIsBelowTheTarget) {
     inputs.solver.target_error = target;
     inputs.solver.iterations = iterations;
     State state = rest_state(model);
-    Workspace w;
+    OpenWorkspace w;
     return step(model, inputs, state, w);
   };
   const auto worse = [](const StepReport& report) { return std::max(report.error_estimate, report.motion_estimate); };
@@ -82,7 +82,7 @@ TEST(ErrorEstimate, CountsFromThePredictionInContactToo) {
   scene.state.v.rowwise() = Eigen::RowVector3d(0.2, -1, 0.1);
   scene.inputs.solver.iterations = 4;
   Reference reference(scene.model);
-  Workspace scratch;
+  OpenWorkspace scratch;
   int count = 0;
   double sum = 0;
   for (int frame = 0; frame < 20; ++frame) {

@@ -40,7 +40,7 @@ void prepare(FaceScene& scene) {
 int touching_faces(const FaceScene& scene) {
   const std::vector<Contact>& found = scene.w.current.contacts;
   return static_cast<int>(
-      std::count_if(found.begin(), found.end(), [](const Contact& c) { return c.depth > 0 && c.point.count == 3; }));
+      std::count_if(found.begin(), found.end(), [](const Contact& c) { return c.depth > 0 && c.stencil.count == 3; }));
 }
 
 // Returns the depth of the deepest of 66 evenly spread points of each triangle of the surface.

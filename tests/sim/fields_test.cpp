@@ -60,7 +60,7 @@ TEST(Fields, EnergiesAddUpToTheBodysForEveryMaterial) {
     const ElementFields fields = element_fields(model, x);
     double sum = 0;
     for (Eigen::Index e = 0; e < body.mesh.tets.rows(); ++e) sum += tet_volume(body.mesh, e) * fields.energy[e];
-    Workspace workspace;
+    OpenWorkspace workspace;
     workspace.prepare(model, {});
     const double whole = elastic_energy(model, workspace, x);
     EXPECT_GT(whole, 0);
@@ -76,7 +76,7 @@ TEST(Fields, EnergiesOfSpringsAddUpToTheNets) {
   EXPECT_EQ(fields.stretch.rows(), 0);
   double sum = 0;
   for (const double energy : fields.spring_energy) sum += energy;
-  Workspace workspace;
+  OpenWorkspace workspace;
   workspace.prepare(model, {});
   const double whole = elastic_energy(model, workspace, x);
   EXPECT_NEAR(sum, whole, 1e-12 * whole);

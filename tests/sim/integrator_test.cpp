@@ -47,7 +47,7 @@ TEST(Integrators, TheSystemMatrixIsTheHessianOfTheQuadraticPart) {
     body.integrator = integrator;
     body.damping = 0.01;
     const Model model = build_model(body);
-    Workspace w;
+    OpenWorkspace w;
     StepInputs inputs = still_inputs(model);
     inputs.middle_targets = inputs.targets;
     inputs.gravity.setZero();
@@ -72,7 +72,7 @@ State swinging(const Model& model, StepInputs inputs, int frames, double* larges
   state.v.col(1) = 2 * model.rest.col(0);
   inputs.middle_targets = inputs.targets;
   inputs.gravity.setZero();
-  Workspace w;
+  OpenWorkspace w;
   for (int frame = 0; frame < frames; ++frame) {
     step(model, inputs, state, w);
     if (largest_energy != nullptr)
@@ -86,7 +86,7 @@ double energy_after(const BodyDescription& body, int frames) {
   StepInputs inputs = still_inputs(model);
   inputs.solver.iterations = 100;
   const State state = swinging(model, inputs, frames);
-  Workspace w;
+  OpenWorkspace w;
   w.prepare(model, inputs.solver);
   return energies(model, state, Vec3::Zero(), w).total();
 }
@@ -137,7 +137,7 @@ TEST(Integrators, BothFallFreelyAndKeepMomentum) {
     const Model model = build_model(body);
     const StepInputs inputs = still_inputs(model);
     State state = rest_state(model);
-    Workspace w;
+    OpenWorkspace w;
     const int frames = 30;
     for (int frame = 0; frame < frames; ++frame) step(model, inputs, state, w);
     // Midpoint is exact under constant acceleration.
@@ -155,7 +155,7 @@ TEST(Integrators, EveryStepOfEveryObjectiveIsNoWorseThanStaying) {
     inputs.solver.iterations = 1;  // deliberately too few
     State state = rest_state(model);
     state.x.topRows(model.free) = test::shaken(model.rest, 0.05, 3).topRows(model.free);
-    Workspace w;
+    OpenWorkspace w;
     for (int frame = 0; frame < 40; ++frame) {
       const State before = state;
       step(model, inputs, state, w);
@@ -195,7 +195,7 @@ TEST(Springs, AndFibresAreWholeInTheSystemMatrix) {
     inputs.solver.iterations = 1;
     inputs.solver.history = 0;
     State state = rest_state(model);
-    Workspace w;
+    OpenWorkspace w;
     const StepReport& report = step(model, inputs, state, w);
     const double gained = report.objective.front() - report.objective.back();
     begin_step(model, inputs, rest_state(model), w);
@@ -214,7 +214,7 @@ TEST(Springs, HangLongerByTheirLoad) {
   StepInputs inputs = still_inputs(model);
   inputs.solver.iterations = 50;
   State state = rest_state(model);
-  Workspace w;
+  OpenWorkspace w;
   for (int frame = 0; frame < 200; ++frame) step(model, inputs, state, w);
   EXPECT_NEAR(in_input_order(model, state.x)(1, 1), -1 - 2 * 9.81 / 40, 1e-9);
 }
@@ -228,7 +228,7 @@ TEST(Fibres, StiffenTheirDirectionAndNoOther) {
     inputs.gravity = Vec3(40, 0, 0);  // along the bar
     inputs.solver.iterations = 50;
     State state = rest_state(model);
-    Workspace w;
+    OpenWorkspace w;
     for (int frame = 0; frame < 200; ++frame) step(model, inputs, state, w);
     return (state.x - model.rest).col(0).maxCoeff();
   };

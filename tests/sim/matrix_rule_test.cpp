@@ -27,7 +27,7 @@ StepInputs inputs_with(const Model& model, SystemMatrix matrix) {
 TEST(MatrixRule, TheConstantMatrixIsThePapersToTheLastBit) {
   // A solve with the model's factor and nothing else.
   struct PlainInverse final : InitialInverse {
-    void apply(const Model& model, const StepInputs&, Workspace& w, Positions& r, Positions& z) override {
+    void apply(const Model& model, const StepInputs&, OpenWorkspace& w, Positions& r, Positions& z) override {
       model.factor.solve(r.data(), z.data(), w.solve_scratch.data());
       if (model.free_floating) restore_translation(model, r, z);
     }
@@ -36,7 +36,7 @@ TEST(MatrixRule, TheConstantMatrixIsThePapersToTheLastBit) {
     const Model model = build_model(bar(NeoHookean{1e4, 4e4}, held, Precision::single_precision, 2));
     const StepInputs inputs = inputs_with(model, SystemMatrix::constant);
     State state = rest_state(model), plain = state;
-    Workspace w, other;
+    OpenWorkspace w, other;
     PlainInverse inverse;
     LbfgsRule rule(inverse);
     for (int i = 0; i < 6; ++i) {
@@ -56,7 +56,7 @@ TEST(MatrixRule, TheTangentComesNearerInTheSameIterations) {
     const State before = test::moving_state(model, inputs_with(model, SystemMatrix::tangent), 6);
     double error[2];
     Reference reference(model);
-    Workspace w, scratch;
+    OpenWorkspace w, scratch;
     for (const SystemMatrix matrix : {SystemMatrix::constant, SystemMatrix::tangent}) {
       const StepInputs inputs = inputs_with(model, matrix);
       State after = before;
@@ -72,7 +72,7 @@ TEST(MatrixRule, ABodyThatHardlyMovesRenewsNothing) {
   StepInputs inputs = inputs_with(model, SystemMatrix::tangent);
   inputs.gravity = Vec3(0, -0.1, 0);
   State state = rest_state(model);
-  Workspace w;
+  OpenWorkspace w;
   for (int i = 0; i < 10; ++i) {
     step(model, inputs, state, w);
     EXPECT_EQ(w.renewed, i == 0) << "step " << i;
@@ -84,7 +84,7 @@ TEST(MatrixRule, ABodyThatStiffensRenews) {
   const Model model = build_model(bar(Polynomial{1e5}, Held::hard_end, Precision::single_precision, 2));
   const StepInputs inputs = inputs_with(model, SystemMatrix::tangent);
   State state = rest_state(model);
-  Workspace w;
+  OpenWorkspace w;
   int renewals = 0;
   for (int i = 0; i < 10; ++i) {
     step(model, inputs, state, w);
@@ -120,13 +120,13 @@ TEST_P(ByMatrix, NewValuesOfAModelMakeTheMatrixAnew) {
   ModelValues values(model, body);
   const StepInputs inputs = inputs_with(model, GetParam());
   State state = rest_state(model);
-  Workspace w;
+  OpenWorkspace w;
   for (int i = 0; i < 4; ++i) step(model, inputs, state, w);
   body.materials = {NeoHookean{4e4, 2e4}};
   values.set(model, body);
   State resumed = state;
   const Model built = build_model(body);
-  Workspace other;
+  OpenWorkspace other;
   for (int i = 0; i < 4; ++i) {
     step(model, inputs, state, w);
     step(built, inputs, resumed, other);
@@ -138,7 +138,7 @@ TEST_P(ByMatrix, IsForgottenByTheConstantMatrixAndBeginsAnew) {
   const Model model = build_model(bar(NeoHookean{1e4, 4e4}, Held::hard_end, Precision::single_precision, 2));
   State state = test::moving_state(model, inputs_with(model, GetParam()), 3);
   EXPECT_EQ(state.memory.matrix_made_at.rows(), model.vertices);
-  Workspace w;
+  OpenWorkspace w;
   step(model, inputs_with(model, SystemMatrix::constant), state, w);
   EXPECT_EQ(state.memory.matrix_made_at.rows(), 0);
   step(model, inputs_with(model, GetParam()), state, w);
@@ -150,7 +150,7 @@ TEST_P(ByMatrix, ImplicitMidpointKeepsTheConstantMatrix) {
   body.integrator = Integrator::implicit_midpoint;
   const Model model = build_model(body);
   State state = rest_state(model), constant = state;
-  Workspace w;
+  OpenWorkspace w;
   for (int i = 0; i < 3; ++i) {
     step(model, inputs_with(model, GetParam()), state, w);
     EXPECT_EQ(w.system, &model);
@@ -164,7 +164,7 @@ TEST_P(ByMatrix, WhereNoneCanBeMadeTheConstantMatrixServes) {
   const Model model = build_model(bar(Polynomial{1e5}, Held::nothing, Precision::single_precision));
   State state = rest_state(model);
   state.v = test::shaken(Positions::Zero(model.vertices, 3), 1e170, 3);
-  Workspace w;
+  OpenWorkspace w;
   const StepReport& report = step(model, inputs_with(model, GetParam()), state, w);
   EXPECT_TRUE(report.failed);
   EXPECT_EQ(w.system, &model);
@@ -180,7 +180,7 @@ TEST(MatrixRule, TheHessianComesMuchNearerInTheSameIterations) {
     ASSERT_EQ(before.memory.matrix_age, 7);  // the matrix is that of the first step
     double error[2];
     Reference reference(model);
-    Workspace w, scratch;
+    OpenWorkspace w, scratch;
     for (const SystemMatrix matrix : {SystemMatrix::constant, SystemMatrix::hessian}) {
       StepInputs inputs = inputs_with(model, matrix);
       inputs.solver.iterations = 5;
@@ -198,7 +198,7 @@ TEST(MatrixRule, AHessianThatServesPoorlyWaitsUntilARenewalIsCheapEnough) {
   const Model model = build_model(bar(Polynomial{1e6}, Held::hard_end, Precision::single_precision, 2));
   const StepInputs inputs = inputs_with(model, SystemMatrix::hessian);
   State state = rest_state(model);
-  Workspace w;
+  OpenWorkspace w;
   std::vector<int> renewals;
   int served = 0;
   for (int i = 0; i < 120; ++i) {
@@ -218,7 +218,7 @@ TEST(MatrixRule, TheHessianServesOnlyWhatTouchesNothing) {
   test::ContactScene scene(body, {{"ground", test::shape_of(HalfSpace{Vec3::UnitY(), 0}), 0, 0.3}}, Vec3(0, 0.3, 0));
   scene.inputs.solver.matrix = SystemMatrix::hessian;
   State state = scene.state;
-  Workspace w;
+  OpenWorkspace w;
   std::vector<State> states;
   int in_the_air = 0, touching = 0;
   for (int i = 0; i < 24; ++i) {
@@ -229,7 +229,7 @@ TEST(MatrixRule, TheHessianServesOnlyWhatTouchesNothing) {
   EXPECT_GT(in_the_air, 4);
   EXPECT_GT(touching, 4);
   for (const int from : {2, 9, 12, 15, 20}) {  // resumed in the air, and where it touches
-    Workspace other;
+    OpenWorkspace other;
     State resumed = states[from];
     for (int i = from; i < 24; ++i) step(scene.model, scene.inputs, resumed, other);
     EXPECT_EQ(state_hash(scene.model, resumed), state_hash(scene.model, state)) << from;
@@ -241,7 +241,7 @@ TEST(MatrixRule, TheHessianServesOnlyWhatTouchesNothing) {
 TEST(MatrixRule, SpringsAloneKeepTheConstantMatrix) {
   const Model model = build_model(test::spring_net(4));
   State state = rest_state(model);
-  Workspace w;
+  OpenWorkspace w;
   step(model, inputs_with(model, SystemMatrix::hessian), state, w);
   EXPECT_FALSE(w.hessian_serves);
   EXPECT_EQ(state.memory.matrix_made_at.rows(), 0);

@@ -12,7 +12,7 @@ std::uint64_t hash_of_step(const Model& model) {
   State state = rest_state(model);
   const Positions shaken = test::shaken(in_input_order(model, model.rest), 0.01 * model.size, 3);
   for (int v = 0; v < model.free; ++v) state.x.row(v) = shaken.row(model.input_of[v]);
-  Workspace workspace;
+  OpenWorkspace workspace;
   const StepReport& report = step(model, test::still_inputs(model), state, workspace);
   EXPECT_FALSE(report.failed);
   return state_hash(model, state);

@@ -46,7 +46,7 @@ TEST(NewtonFinish, BringsHardStepsToTheirMinimum) {
     impact.move();
     const State before = scene.state;
     State without = before;
-    Workspace other;
+    OpenWorkspace other;
     StepInputs plain = scene.inputs;
     plain.solver.newton = false;
     ASSERT_FALSE(supple::step(scene.model, plain, without, other).failed);
@@ -98,7 +98,7 @@ TEST(NewtonFinish, IsNotEndedByATargetErrorBeforeItHasBegun) {
   StepInputs inputs = test::still_inputs(model);
   inputs.solver.target_error = 1e-5;
   State state = rest_state(model);
-  Workspace w;
+  OpenWorkspace w;
   const auto newton = make_rule(Method::newton, model);
   EXPECT_GT(step(model, inputs, state, w, *newton).iterations, 1);
 }
@@ -139,7 +139,7 @@ TEST(NewtonFinish, IsNotForBudgetsSpringsOrVeryLargeBodies) {
 TEST(NewtonSystem, SolvesWithTheHessianAndThePlanesAhead) {
   test::ContactScene scene(cube(2, NeoHookean{3e4, 6e4}), {ground}, Vec3(0, 0.101, 0));
   scene.state.v.col(1).setConstant(-1);
-  Workspace& w = scene.w;
+  OpenWorkspace& w = scene.w;
   w.prepare(scene.model, scene.inputs.solver);
   begin_step(scene.model, scene.inputs, scene.state, w);
   w.current.x = scene.state.x + 1e-3 * test::shaken(Positions::Zero(scene.model.vertices, 3), 1, 3);
@@ -155,14 +155,14 @@ TEST(NewtonSystem, SolvesWithTheHessianAndThePlanesAhead) {
   int ahead = 0;
   for (const Contact& contact : w.current.contacts) {
     const double here = gap(contact, w.current.x);
-    const double there = here + contact.normal.dot(contact.point.of_free(w.direction));
+    const double there = here + contact.normal.dot(contact.stencil.of_free(w.direction));
     if (here < 0) continue;
     // A plane that was held stops the direction a little below itself, where its force is that of the elements.
     if (there >= 0) continue;
     ++ahead;
     EXPECT_GT(there, -1e-3);
-    hessian.add_stiffness(contact.point, 2 * contact.stiffness * contact.normal * contact.normal.transpose());
-    contact.point.spread(2 * contact.stiffness * here * contact.normal, right);
+    hessian.add_stiffness(contact.stencil, 2 * contact.stiffness * contact.normal * contact.normal.transpose());
+    contact.stencil.spread(2 * contact.stiffness * here * contact.normal, right);
   }
   EXPECT_GT(ahead, 0);
   const Eigen::MatrixXd full = Eigen::MatrixXd(hessian.matrix()).selfadjointView<Eigen::Lower>();

@@ -35,15 +35,6 @@ Eigen::MatrixXd motions_of(const Model& model, CoarseSystem& system, const Posit
 
 Eigen::MatrixXd whole(const Eigen::MatrixXd& lower) { return lower.selfadjointView<Eigen::Lower>(); }
 
-Eigen::MatrixXd dense_system(const Model& model) {
-  const Eigen::MatrixXd a = test::dense(model.matrix);
-  Eigen::MatrixXd three = Eigen::MatrixXd::Zero(3 * model.free, 3 * model.free);
-  for (int i = 0; i < model.free; ++i) {
-    for (int j = 0; j < model.free; ++j) three.block<3, 3>(3 * i, 3 * j) = a(i, j) * Mat3::Identity();
-  }
-  return three;
-}
-
 // Returns the positions of a bar that is bent by an angle over its length, and turned.
 Positions bent(const Positions& rest, double angle) {
   const double length = 0.4, radius = length / std::max(angle, 1e-6);
@@ -93,7 +84,7 @@ TEST(CoarseSystem, HasTheMatrixOfAOnItsMotions) {
     for (const Positions& x : {model.rest, Positions(model.rest * turn.transpose())}) {
       system.turn_to(x);
       Eigen::MatrixXd z = motions_of(model, system, x);
-      const Eigen::MatrixXd expected = z.transpose() * dense_system(model) * z;
+      const Eigen::MatrixXd expected = z.transpose() * test::dense_system(model) * z;
       EXPECT_LT((whole(system.constant()) - expected).norm(), 1e-9 * expected.norm()) << static_cast<int>(held);
     }
   }
@@ -157,7 +148,7 @@ TEST(SecondLevel, IsForgottenAfterThePairs) {
   const Model model = build_model(bar(Corotated{1e4, 3e4}, Held::hard_end, Precision::double_precision, 2));
   const StepInputs inputs = test::still_inputs(model);
   State state = rest_state(model);
-  Workspace w, other;
+  OpenWorkspace w, other;
   step(model, inputs, state, w);
   SystemInverse inverse;
   LbfgsRule rule(inverse);
@@ -177,7 +168,7 @@ TEST(SecondLevel, ContactsAreAddedToBothLevels) {
   test::ContactScene scene(cube(3), {{"ground", test::shape_of(HalfSpace{Vec3::UnitY(), 0}), 0, 0.5}},
                            Vec3(0, 0.0999, 0));
   scene.state.v.rowwise() = Eigen::RowVector3d(0.001, -0.05, 0);
-  Workspace& w = scene.w;
+  OpenWorkspace& w = scene.w;
   const Model& model = scene.model;
   w.prepare(model, scene.inputs.solver);
   begin_step(model, scene.inputs, scene.state, w);
@@ -261,7 +252,7 @@ TEST(Turning, FreeBodiesLoseTheAngularMomentumThatBackwardEulerTakes) {
     };
     const double before = momentum();
     double angle = 0, expected = 0;
-    Workspace w;
+    OpenWorkspace w;
     for (int frame = 0; frame < 30; ++frame) {
       step(model, inputs, state, w);
       angle = frame == 0 ? std::atan(speed * model.time_step) : std::atan2(std::sin(angle), 2 - std::cos(angle));
@@ -289,7 +280,7 @@ TEST(MotionError, SeesABodyThatDoesNotTurn) {
     StepInputs inputs = test::still_inputs(model);
     inputs.solver.levels = levels;
     State state = rest_state(model);
-    Workspace w, scratch;
+    OpenWorkspace w, scratch;
     for (int frame = 0; frame < 3; ++frame) step(model, inputs, state, w);
     const State before = state;
     const StepReport& report = step(model, inputs, state, w);
@@ -315,7 +306,7 @@ TEST(MotionError, IsWhatTheTargetOfAStepCountsToo) {
   inputs.solver.iterations = 1000;
   inputs.solver.target_error = 1e-2;
   State state = rest_state(model);
-  Workspace w, scratch;
+  OpenWorkspace w, scratch;
   for (int frame = 0; frame < 3; ++frame) {
     const State before = state;
     const StepReport& report = step(model, inputs, state, w);

@@ -37,7 +37,7 @@ Positions equilibrium(const BodyDescription& body, const Vec3& pull) {
   inputs.solver.history = 30;
   State state = rest_state(model);
   Threads threads(2);
-  Workspace w;
+  OpenWorkspace w;
   w.threads = &threads;
   for (int step_number = 0; step_number < 10; ++step_number) {
     const Positions before = state.x;

@@ -117,7 +117,7 @@ TEST(Step, WithWindowZeroOnAsRigidAsPossibleEqualsLocalGlobalAndNeverRejectsATri
         state.x.row(held_vertex.vertex) = model.rest.row(held_vertex.vertex);
         state.v.row(held_vertex.vertex).setZero();
       }
-      Workspace w;
+      OpenWorkspace w;
       w.prepare(model, inputs.solver);
       begin_step(model, inputs, state, w);
       const Positions y = in_input_order(model, w.y), start = in_input_order(model, w.current.x);
@@ -136,7 +136,7 @@ TEST(Step, ABodyAtRestWithoutForcesStaysWhereItIs) {
       StepInputs inputs = still_inputs(model);
       inputs.gravity.setZero();
       State state = rest_state(model);
-      Workspace w;
+      OpenWorkspace w;
       for (int frame = 0; frame < 1000; ++frame) step(model, inputs, state, w);
       EXPECT_LT((state.x - model.rest).cwiseAbs().maxCoeff(), 1e-12 * model.size) << name_of(material);
     }
@@ -161,7 +161,7 @@ TEST(Step, FreeFlightKeepsMomentum) {
           for (int v = 0; v < model.vertices; ++v) p += model.mass[v] * state.v.row(v).transpose();
           return p;
         };
-        Workspace w;
+        OpenWorkspace w;
         for (int frame = 0; frame < 20; ++frame) {
           const Vec3 before = momentum();
           step(model, inputs, state, w);
@@ -176,7 +176,7 @@ TEST(Step, GravityAloneIsFreeFall) {
   const Model model = build_model(bar(NeoHookean{1e4, 3e4}, Held::nothing, Precision::single_precision));
   const StepInputs inputs = still_inputs(model);
   State state = rest_state(model);
-  Workspace w;
+  OpenWorkspace w;
   const int frames = 30;
   for (int frame = 0; frame < frames; ++frame)
     EXPECT_LT(step(model, inputs, state, w).error_estimate, 0.1) << "round-off is not an error of the solution";
@@ -194,7 +194,7 @@ TEST(Step, ASoftBodyThatHangsStillTakesNoLongerThanAMovingOne) {
     StepInputs inputs = still_inputs(model);
     inputs.solver.levels = levels;
     State state = rest_state(model);
-    Workspace w;
+    OpenWorkspace w;
     double trials[2] = {0, 0};  // of the first steps, and of the last
     for (int frame = 0; frame < 900; ++frame) {
       ASSERT_FALSE(step(model, inputs, state, w).failed);
@@ -233,7 +233,7 @@ TEST(Step, ConvergesToAnErrorOf1e12WithoutStalling) {
       const State before = test::moving_state(model, inputs, 5);
       inputs.solver.iterations = 2000;
       State state = before;
-      Workspace w, reference;
+      OpenWorkspace w, reference;
       const StepReport& report = step(model, inputs, state, w);
       ASSERT_FALSE(report.failed);
       EXPECT_EQ(report.stop_reason, StopReason::round_off)
@@ -253,7 +253,7 @@ TEST(Step, EndsWhereABudgetEndedAnEarlierOne) {
     inputs.solver.iterations = iterations;
     inputs.repeated_cuts = cuts;
     State state = before;
-    Workspace w;
+    OpenWorkspace w;
     const StepReport& report = step(model, inputs, state, w);
     EXPECT_EQ(report.cuts, cuts.value_or(BudgetCuts{}));
     EXPECT_EQ(report.stop_reason, cuts ? StopReason::budget : StopReason::iterations);
@@ -279,7 +279,7 @@ TEST(Step, DoesNotRejectTrialsForTheRoundOffOfPositions) {
   StepInputs inputs = still_inputs(model);
   inputs.solver.iterations = 200;
   State state = rest_state(model);
-  Workspace w;
+  OpenWorkspace w;
   int trials = 0, iterations = 0;
   for (int frame = 0; frame < 40; ++frame) {
     const StepReport& report = step(model, inputs, state, w);
@@ -297,7 +297,7 @@ TEST(Step, IsNeverWorseThanStaying) {
     inputs.solver.iterations = 1;  // deliberately too few
     State state = rest_state(model);
     state.x.topRows(model.free) = test::shaken(model.rest, 0.05, 3).topRows(model.free);
-    Workspace w;
+    OpenWorkspace w;
     for (int frame = 0; frame < 60; ++frame) {
       const State before = state;
       step(model, inputs, state, w);
@@ -316,7 +316,7 @@ TEST(Step, DoesNotDependOnTheNumberOfThreads) {
   for (const int count : {1, 2, 4}) {
     Threads threads(count);
     State state = rest_state(model);
-    Workspace w;
+    OpenWorkspace w;
     w.threads = &threads;
     for (int frame = 0; frame < 5; ++frame) step(model, inputs, state, w);
     hashes.push_back(state_hash(model, state));
@@ -333,7 +333,7 @@ TEST(Step, AllocatesNothingOnceTheWorkspaceIsPrepared) {
   const StepInputs inputs = still_inputs(model);
   Threads threads(2);
   State state = rest_state(model);
-  Workspace w;
+  OpenWorkspace w;
   w.threads = &threads;
   step(model, inputs, state, w);
   const long before = test::allocations();
@@ -348,7 +348,7 @@ TEST(Step, WithoutLineSearchReportsTheVertexWhenTheBodyFliesApart) {
   inputs.solver.matrix = SystemMatrix::constant;  // the tangent's full steps bring this body back
   State state = rest_state(model);
   state.x.topRows(model.free) *= 6;
-  Workspace w;
+  OpenWorkspace w;
   StepReport report;
   State before = state;
   for (int frame = 0; frame < 200 && !report.failed; ++frame) {
@@ -371,7 +371,7 @@ TEST(Step, ErrorEstimateFollowsTheMeasuredError) {
   int count = 0, near = 0;
   for (int frame = 0; frame < 20; ++frame) {
     const State before = state;
-    Workspace w, reference;
+    OpenWorkspace w, reference;
     const StepReport& report = step(model, inputs, state, w);
     const auto error = Reference(model).step_error(model, inputs, before, state, reference);
     if (!error || *error <= 0 || report.error_estimate <= 0) continue;
@@ -391,7 +391,7 @@ TEST(Step, AllHandlesArriveAtTheirTargets) {
     inputs.gravity.setZero();
     inputs.targets.col(0).array() += 0.05;
     State state = rest_state(model);
-    Workspace w;
+    OpenWorkspace w;
     for (int frame = 0; frame < 600; ++frame) step(model, inputs, state, w);
     for (std::size_t i = 0; i < model.handled.size(); ++i) {
       EXPECT_LT((state.x.row(model.handled[i].vertex) - inputs.targets.row(i)).norm(), 1e-6);
@@ -405,7 +405,7 @@ TEST(Step, StartsWithTheHandlesDepartureSpreadIntoTheBody) {
   StepInputs inputs = still_inputs(model);
   inputs.targets.col(1).array() += 0.01;
   State state = rest_state(model);
-  Workspace w;
+  OpenWorkspace w;
   w.prepare(model, inputs.solver);
   begin_step(model, inputs, state, w);
   evaluate(model, w, w.current, Wanted::value);

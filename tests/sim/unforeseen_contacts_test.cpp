@@ -44,7 +44,7 @@ TEST(UnforeseenContacts, AreLearnedByTheCurrentIterate) {
     EXPECT_EQ(scene.w.report.decrease, unknowing - learned.g);
     for (const Contact& contact : learned.contacts) {
       const bool is_ahead = gap(contact, learned.x) >= 0;
-      EXPECT_TRUE(is_ahead || !contact.point.is_vertex()) << "the iterate knew of vertices";
+      EXPECT_TRUE(is_ahead || !contact.stencil.is_vertex()) << "the iterate knew of vertices";
     }
     evaluate(scene.model, scene.w, scene.w.current, Wanted::gradient);
     EXPECT_NEAR(scene.w.current.g, learned.g, 1e-12 * learned.g);

@@ -47,7 +47,7 @@ struct StudiedState {
 
 // Adds the errors of all candidates on one state, or nothing where the body is at rest.
 bool add_state(Subject& subject, const BenchState& state, std::vector<Candidate>& list,
-               std::vector<std::unique_ptr<SearchRule>>& rules, Reference& reference, Workspace& workspace) {
+               std::vector<std::unique_ptr<SearchRule>>& rules, Reference& reference, OpenWorkspace& workspace) {
   StepInputs inputs = subject.inputs(state);
   inputs.solver.iterations = iterations;
   inputs.solver.history = SolverSettings{}.history;
@@ -138,7 +138,7 @@ int main(int count, char** arguments) {
       std::vector<std::unique_ptr<SearchRule>> rules;
       for (const Candidate& candidate : list) rules.push_back(make_rule(candidate.method, subject.model()));
       Reference reference(subject.model());
-      Workspace workspace;
+      OpenWorkspace workspace;
       workspace.threads = &threads;
       for (const BenchState& state : states_of(subject, frames, arguments[1], threads)) {
         if (add_state(subject, state, list, rules, reference, workspace))

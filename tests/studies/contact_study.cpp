@@ -33,7 +33,8 @@ constexpr int most_for_newton = 9000;  // vertices; minima of larger bodies are 
 // Applies the low-rank correction without bending directions around planes that are near.
 class StraightInverse final : public InitialInverse {
  public:
-  void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override {
+  void apply(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, Positions& r,
+             Positions& z) override {
     system_.apply(model, inputs, workspace, r, z);
   }
 
@@ -46,7 +47,7 @@ struct Variant {
   SolverSettings solver;
   bool bends = true;
   bool same_energy = true;  // as the defaults: errors in equal time can be compared
-  std::unique_ptr<Workspace> workspace = std::make_unique<Workspace>();
+  std::unique_ptr<OpenWorkspace> workspace = std::make_unique<OpenWorkspace>();
   // These values belong to one state: by iteration, the first iterate first.
   std::vector<double> gained = {}, least_ms = {};
   std::vector<double> usual_ms = {};  // of the usual number of iterations, by round
@@ -101,7 +102,7 @@ struct Start {
 };
 
 // Makes one step. The first round gives the results, and lets the variant build what it keeps from step to step.
-void run(const Start& s, Variant& variant, int round, Workspace& scratch) {
+void run(const Start& s, Variant& variant, int round, OpenWorkspace& scratch) {
   StepInputs inputs = s.inputs;
   inputs.solver = variant.solver;
   State after = s.before;
@@ -135,7 +136,7 @@ void run(const Start& s, Variant& variant, int round, Workspace& scratch) {
 }
 
 // Returns g(y) - g* of a state, found from the best final point of these variants.
-double whole_gain(const Start& s, const std::vector<Variant*>& list, Reference& lowest, Workspace& scratch) {
+double whole_gain(const Start& s, const std::vector<Variant*>& list, Reference& lowest, OpenWorkspace& scratch) {
   const Variant& best = **std::max_element(
       list.begin(), list.end(), [](const Variant* a, const Variant* b) { return a->gained.back() < b->gained.back(); });
   StepInputs inputs = s.inputs;
@@ -198,7 +199,7 @@ void print(const std::vector<Variant>& list) {
 }
 
 // Compares all variants on the step from one state.
-void compare(const Start& start, std::vector<Variant>& list, Reference& lowest, Workspace& scratch) {
+void compare(const Start& start, std::vector<Variant>& list, Reference& lowest, OpenWorkspace& scratch) {
   std::vector<Variant*> same;
   for (Variant& variant : list) {
     if (variant.same_energy) same.push_back(&variant);
@@ -230,7 +231,7 @@ int main(int count, char** arguments) {
   Triangles surface = found->def.cloth ? found->cloth.surface.triangles : boundary_faces(found->description.mesh.tets);
   for (Eigen::Index i = 0; i < surface.size(); ++i) surface.data()[i] = model.internal_of[surface.data()[i]];
   std::vector<Variant> list = variants(found->def.solver.settings);
-  Workspace scratch;
+  OpenWorkspace scratch;
   scratch.threads = &threads;
   for (Variant& variant : list) variant.workspace->threads = &threads;
   Reference lowest(model);

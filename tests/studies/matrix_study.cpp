@@ -37,7 +37,7 @@ struct Run {
 };
 
 Run run_once(Subject& subject, const StepInputs& given, const State& before, const Variant& variant,
-             const Positions& place, Workspace& w, int iterations) {
+             const Positions& place, OpenWorkspace& w, int iterations) {
   Run run;
   StepInputs inputs = given;
   inputs.solver.iterations = iterations;
@@ -61,7 +61,7 @@ Run run_once(Subject& subject, const StepInputs& given, const State& before, con
   run.decrement = report->decrement;
   run.x = after.x;
   const std::vector<IterationRecord> records = report->records;
-  Workspace scratch;
+  OpenWorkspace scratch;
   double left = gained(subject.model(), inputs, before, run.x, scratch);
   run.gained.assign(records.size() + 1, left);
   for (std::size_t k = records.size(); k-- > 0;) {
@@ -80,7 +80,7 @@ void study(const std::string& scene, const std::string& body, int most_vertices,
   const MovingBody& moving = world.body(0);
   std::deque<Positions> places, starts;
   Reference reference(model);
-  Workspace w, scratch;
+  OpenWorkspace w, scratch;
   for (int frame = 0; frame <= 70; ++frame) {
     world.enter(frame);
     world.prepare(0);

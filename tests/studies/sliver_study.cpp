@@ -91,7 +91,7 @@ Hung hang(Subject& subject, const TetMesh& mesh, int iterations, DirectionStart 
   World world = subject.new_world(solver_instead(Method::quasi_newton, iterations, start), threads);
   const MovingBody& body = world.body(0);
   Reference reference(subject.model());
-  Workspace scratch;
+  OpenWorkspace scratch;
   Hung hung;
   for (int frame = 0; frame < film_frames; ++frame) {
     const State before = body.state();

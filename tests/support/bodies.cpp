@@ -88,7 +88,7 @@ StepInputs still_inputs(const Model& model) {
 
 State moving_state(const Model& model, const StepInputs& inputs, int steps) {
   State state = rest_state(model);
-  Workspace workspace;
+  OpenWorkspace workspace;
   for (int i = 0; i < steps; ++i) step(model, inputs, state, workspace);
   return state;
 }

@@ -10,6 +10,7 @@
 #include "geometry/tetrahedra/tetrahedralize.h"
 #include "sim/solver/step.h"
 #include "support/bodies.h"
+#include "support/sparse_matrices.h"
 
 namespace supple::test {
 
@@ -41,7 +42,7 @@ struct ContactScene {
   std::vector<Collider> colliders;
   StepInputs inputs;
   State state;
-  Workspace w;
+  OpenWorkspace w;
 
   ContactScene(const BodyDescription& body, std::vector<Collider> all, const Vec3& place = Vec3::Zero())
       : model(build_model(body)), colliders(std::move(all)), state(rest_state(model)) {
@@ -80,5 +81,8 @@ inline void expect_derivative_of_contacts(const ContactScene& scene) {
   }
   EXPECT_LT(best, 1e-6 * std::abs(at.slope));
 }
+
+// Lists the numbers of a matrix by free vertex one after the other, three a vertex.
+inline Eigen::VectorXd stacked(const Positions& r) { return Eigen::Map<const Eigen::VectorXd>(r.data(), r.size()); }
 
 }  // namespace supple::test

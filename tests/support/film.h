@@ -28,7 +28,7 @@ struct Film {
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       StepInputs inputs{scene.gravity, {}, {}, bodies[b].def.solver.settings, &set.colliders};
       State state = start_state(models[b], bodies[b]);
-      Workspace w;
+      OpenWorkspace w;
       w.threads = &threads;
       for (int number = 0; number < frames * scene.substeps; ++number) {
         const double h = scene.time_step(), time = (number + 1) * h;
@@ -39,7 +39,7 @@ struct Film {
         const StepReport& report = step(models[b], inputs, state, w);
         ASSERT_FALSE(report.failed) << bodies[b].def.name << " step " << number << ": " << report.failure.what;
         if constexpr (std::is_invocable_v<Visit, std::size_t, int, const State&, const StepInputs&, const State&,
-                                          const Workspace&>) {
+                                          const OpenWorkspace&>) {
           visit(b, number, before, inputs, state, w);
         } else {
           visit(b, number, before, inputs, state);

@@ -8,7 +8,7 @@ namespace supple::test {
 
 void expect_derivative_of_objective(const BodyDescription& body, const std::string& name) {
   const Model model = build_model(body);
-  Workspace w;
+  OpenWorkspace w;
   StepInputs inputs = still_inputs(model);
   inputs.middle_targets = inputs.targets;
   inputs.middle_targets.array() += 0.003;
@@ -39,7 +39,7 @@ void expect_derivative_of_objective(const BodyDescription& body, const std::stri
 }
 
 AgainstStaying against_staying(const Model& model, const StepInputs& inputs, const State& before, const State& after) {
-  Workspace w;
+  OpenWorkspace w;
   w.prepare(model, inputs.solver);
   begin_step(model, inputs, before, w);
   w.current.x.topRows(model.free) = before.x.topRows(model.free);

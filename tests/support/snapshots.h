@@ -19,7 +19,7 @@ void expect_states_to_hold_all(const BodyDescription& body, const StepInputs& in
   constexpr int steps = 16;
   const Model model = build_model(body), again = build_model(body);
   State state = rest_state(model);
-  Workspace w;
+  OpenWorkspace w;
   std::vector<State> states;
   for (int i = 0; i < steps; ++i) {
     states.push_back(state);
@@ -28,7 +28,7 @@ void expect_states_to_hold_all(const BodyDescription& body, const StepInputs& in
   for (const int threads_count : {1, 2, 4}) {
     for (const int from : {3, 8, 13}) {
       Threads threads(threads_count);
-      Workspace other;
+      OpenWorkspace other;
       other.threads = &threads;
       State resumed = states[from];
       for (int i = from; i < steps; ++i) step(again, inputs, resumed, other);

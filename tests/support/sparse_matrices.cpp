@@ -92,4 +92,13 @@ Sparse block_matrix(int n, double shift, unsigned seed) {
 
 Eigen::MatrixXd dense(const Sparse& matrix) { return Eigen::MatrixXd(matrix).selfadjointView<Eigen::Lower>(); }
 
+Eigen::MatrixXd dense_system(const Model& model) {
+  const Eigen::MatrixXd a = dense(model.matrix);
+  Eigen::MatrixXd three = Eigen::MatrixXd::Zero(3 * model.free, 3 * model.free);
+  for (int i = 0; i < model.free; ++i) {
+    for (int j = 0; j < model.free; ++j) three.block<3, 3>(3 * i, 3 * j) = a(i, j) * Mat3::Identity();
+  }
+  return three;
+}
+
 }  // namespace supple::test

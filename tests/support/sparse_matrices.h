@@ -1,7 +1,9 @@
-// Provides sparse matrices with known properties, for tests of factors. They are stored as lower triangles.
+// Provides sparse matrices with known properties, for tests of factors, as lower triangles, and dense copies of them.
 #pragma once
 
 #include <Eigen/SparseCore>
+
+#include "sim/model/model.h"
 
 namespace supple::test {
 
@@ -20,5 +22,8 @@ Sparse block_matrix(int n, double shift, unsigned seed);
 
 // Returns the whole symmetric matrix.
 Eigen::MatrixXd dense(const Sparse& matrix);
+
+// Returns A over all coordinates of the free vertices, 3 n_free x 3 n_free.
+Eigen::MatrixXd dense_system(const Model& model);
 
 }  // namespace supple::test

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/threads.h"
 #include "world/solvers.h"
 
 namespace supple {

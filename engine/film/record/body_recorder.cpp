@@ -74,7 +74,7 @@ BodyRecorder::BodyRecorder(World& world, std::size_t body, const RunFolder& fold
 }
 
 void BodyRecorder::start_energy_balance(const EnergyBalance& balance) {
-  Workspace& w = moving().workspace();
+  OpenWorkspace& w = moving().workspace();
   w.prepare(model(), moving().inputs().solver);
   energy_budget_.start(model(), world_.scene().gravity, state(), w, balance);
 }
@@ -96,7 +96,7 @@ void BodyRecorder::before_step(int substep) {
   const Zone zone("energy budget", body().def.name);
   if (repeated_ != nullptr) moving().repeat(cuts_at(*repeated_, frame_, substep));
   if (is_measured(substep)) before_ = state();
-  Workspace& w = moving().workspace();
+  OpenWorkspace& w = moving().workspace();
   w.prepare(model(), moving().inputs().solver);
   if (!energy_budget_.knows_springs()) energy_budget_.know_springs(model(), moving().targets_at_start(), state());
   energy_budget_.before_step(model(), moving().inputs(), state(), w);

@@ -41,7 +41,7 @@ void FieldWriter::write_collection() const {
   write_pvd(folder_.field_collection(body_.def.name), entries);
 }
 
-void FieldWriter::add(int frame, const State& state, const StepInputs& inputs, const Workspace& workspace) {
+void FieldWriter::add(int frame, const State& state, const StepInputs& inputs, const OpenWorkspace& workspace) {
   const TetMesh& mesh = body_.description.mesh;
   const bool cloth = mesh.tets.rows() == 0;
   const Positions x = in_input_order(model_, state.x);

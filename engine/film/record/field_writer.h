@@ -17,7 +17,7 @@ class FieldWriter {
   // Writes a frame and updates the collection, so that it can be opened while the film is made. In a film that was
   // resumed, the collection also contains the frames that were written before. workspace: the workspace of the step
   // that led to the state. Contact forces are written where there are colliders. Throws RunError.
-  void add(int frame, const State& state, const StepInputs& inputs, const Workspace& workspace);
+  void add(int frame, const State& state, const StepInputs& inputs, const OpenWorkspace& workspace);
 
  private:
   void find_earlier(int frame);

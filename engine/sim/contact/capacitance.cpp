@@ -11,23 +11,23 @@ constexpr std::size_t most_axes = 8;  // axes of a list; beyond, all directions 
 constexpr double right_angle = 1e-7;  // cosine below which directions are uncoupled in single precision
 
 // Compares points, of which most are vertices.
-bool same(const ContactPoint& a, const ContactPoint& b) {
+bool same(const ContactStencil& a, const ContactStencil& b) {
   return a.is_vertex() && b.is_vertex() ? a.vertex[0] == b.vertex[0] : a == b;
 }
 
 // Tells whether two directions are equal, or so nearly that a correction may take one for the other.
 bool alike(const StiffDirection& s, const StiffDirection& t) {
-  return same(s.point, t.point) && s.axis.dot(t.axis) >= 0.999 &&
+  return same(s.stencil, t.stencil) && s.axis.dot(t.axis) >= 0.999 &&
          std::abs(s.stiffness - t.stiffness) <= 0.1 * s.stiffness;
 }
 
 // Takes the direction that is like `wanted` from `left`, which is sorted by first vertex, and marks it in `taken`.
 // Returns whether there is one.
 bool take_alike(const std::vector<StiffDirection>& left, const StiffDirection& wanted, std::vector<bool>& taken) {
-  const std::int32_t first = wanted.point.vertex[0];
+  const std::int32_t first = wanted.stencil.vertex[0];
   auto at = std::lower_bound(left.begin(), left.end(), first,
-                             [](const StiffDirection& s, std::int32_t vertex) { return s.point.vertex[0] < vertex; });
-  for (; at != left.end() && at->point.vertex[0] == first; ++at) {
+                             [](const StiffDirection& s, std::int32_t vertex) { return s.stencil.vertex[0] < vertex; });
+  for (; at != left.end() && at->stencil.vertex[0] == first; ++at) {
     const auto number = static_cast<std::size_t>(at - left.begin());
     if (taken[number] || !alike(wanted, *at)) continue;
     return taken[number] = true;
@@ -127,8 +127,8 @@ bool Capacitance::append(const System& system, const std::vector<StiffDirection>
   }
   std::vector<std::int32_t> touched;
   for (const StiffDirection& direction : directions_) {
-    const auto first = direction.point.vertex.begin();
-    touched.insert(touched.end(), first, first + direction.point.free);
+    const auto first = direction.stencil.vertex.begin();
+    touched.insert(touched.end(), first, first + direction.stencil.free);
   }
   if (entries_of_ != system.id) entries_.clear();
   entries_of_ = system.id;
@@ -146,7 +146,7 @@ bool Capacitance::append(const System& system, const std::vector<StiffDirection>
 }
 
 // Returns the entry of A^-1 between two points: the mean of the entries among their vertices, by both points' weights.
-float Capacitance::entry(const ContactPoint& a, const ContactPoint& b) const {
+float Capacitance::entry(const ContactStencil& a, const ContactStencil& b) const {
   if (a.is_vertex() && b.is_vertex()) return entries_.entry(a.vertex[0], b.vertex[0]);
   double sum = 0;
   for (int i = 0; i < a.free; ++i) {
@@ -158,12 +158,12 @@ float Capacitance::entry(const ContactPoint& a, const ContactPoint& b) const {
 // Consecutive directions of one point share an entry.
 void Capacitance::fill_row(const CoupledDirections& list, Eigen::Index row, float* values) const {
   const StiffDirection& own = directions_[list.members[row]];
-  const ContactPoint* other = nullptr;
+  const ContactStencil* other = nullptr;
   float between = 0;
   for (Eigen::Index j = 0; j <= row; ++j) {
     const StiffDirection& s = directions_[list.members[j]];
-    if (other == nullptr || !same(s.point, *other)) between = entry(own.point, s.point);
-    other = &s.point;
+    if (other == nullptr || !same(s.stencil, *other)) between = entry(own.stencil, s.stencil);
+    other = &s.stencil;
     values[j] = static_cast<float>(own.axis.dot(s.axis)) * between;
   }
   values[row] += static_cast<float>(1 / own.stiffness);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/types.h"
-#include "sim/contact/contact_point.h"
+#include "sim/contact/contact_stencil.h"
 #include "sim/linear/inverse_entries.h"
 #include "sim/model/system.h"
 
@@ -17,14 +17,14 @@ namespace supple {
 // Describes a direction in which a point of the body has a stiffness that A does not contain. With such
 // directions the matrix is A + sum k n n^T, where n has `axis` times the point's weights at its free vertices.
 struct StiffDirection {
-  ContactPoint point;
+  ContactStencil stencil;
   Vec3 axis;         // of unit length
   double stiffness;  // k [N/m]
 
   // Returns the product of n with a vector by free vertex.
-  double along(const Positions& d) const { return point.of_free(d).dot(axis); }
+  double along(const Positions& d) const { return stencil.of_free(d).dot(axis); }
   // Adds `factor` times n.
-  void add(double factor, Positions& sums) const { point.spread(factor * axis, sums); }
+  void add(double factor, Positions& sums) const { stencil.spread(factor * axis, sums); }
 };
 
 // Lists, by number, the directions that are solved for together.
@@ -86,7 +86,7 @@ class Capacitance {
   void keep_rows(const std::vector<Eigen::Index>& place);
   bool count_rows(const CoupledDirections& list, Factor& factor) const;
   void fill_row(const CoupledDirections& list, Eigen::Index row, float* values) const;
-  float entry(const ContactPoint& a, const ContactPoint& b) const;
+  float entry(const ContactStencil& a, const ContactStencil& b) const;
 
   std::vector<StiffDirection> directions_;
   std::vector<CoupledDirections> lists_;

@@ -23,13 +23,13 @@ double friction_energy(const std::vector<Contact>& contacts, double stick_length
   double sum = 0;
   for (const Contact& contact : contacts) {
     if (contact.friction > 0)
-      sum += contact.friction * friction_potential(slip(contact, contact.point.at(point)).norm(), stick_length);
+      sum += contact.friction * friction_potential(slip(contact, contact.stencil.at(point)).norm(), stick_length);
   }
   return sum;
 }
 
 double friction_stiffness(const Contact& contact, const Positions& x, double stick_length) {
-  return contact.friction * friction_slope_over_u(slip(contact, contact.point.at(x)).norm(), stick_length);
+  return contact.friction * friction_slope_over_u(slip(contact, contact.stencil.at(x)).norm(), stick_length);
 }
 
 double contact_energy(const std::vector<Contact>& contacts, const Positions& point) {
@@ -44,12 +44,13 @@ double contact_energy(const std::vector<Contact>& contacts, const Positions& poi
 void add_forces(const std::vector<Contact>& contacts, double stick_length, const Positions& point,
                 std::vector<Vec3>& by_collider) {
   for (const Contact& contact : contacts) {
-    const Vec3 p = contact.point.at(point);
+    if (!contact.other.is_collider()) continue;
+    const Vec3 p = contact.stencil.at(point);
     const double below = std::min(0.0, contact.normal.dot(p) - contact.offset);
-    by_collider[contact.collider] -= 2 * contact.stiffness * below * contact.normal;
+    by_collider[contact.other.collider] -= 2 * contact.stiffness * below * contact.normal;
     if (contact.friction <= 0) continue;
     const Vec3 slid = slip(contact, p);
-    by_collider[contact.collider] -= contact.friction * friction_slope_over_u(slid.norm(), stick_length) * slid;
+    by_collider[contact.other.collider] -= contact.friction * friction_slope_over_u(slid.norm(), stick_length) * slid;
   }
 }
 
@@ -57,7 +58,7 @@ ContactChange add_contacts(const std::vector<Contact>& contacts, double stick_le
                            const Positions* reference, const Positions& direction, Positions* gradient, double sign) {
   ContactChange change;
   for (const Contact& contact : contacts) {
-    const Vec3 p = contact.point.at(point);
+    const Vec3 p = contact.stencil.at(point);
     const double below = std::min(0.0, contact.normal.dot(p) - contact.offset);
     double below_before = 0;
     if (reference != nullptr) below_before = std::min(0.0, gap(contact, *reference));
@@ -69,12 +70,12 @@ ContactChange add_contacts(const std::vector<Contact>& contacts, double stick_le
       change.value += contact.friction * friction_potential(u, stick_length);
       if (reference != nullptr)
         change.value -=
-            contact.friction * friction_potential(slip(contact, contact.point.at(*reference)).norm(), stick_length);
+            contact.friction * friction_potential(slip(contact, contact.stencil.at(*reference)).norm(), stick_length);
       slope += contact.friction * friction_slope_over_u(u, stick_length) * slid;
     }
     if (gradient == nullptr) continue;
-    contact.point.spread(sign * slope, *gradient);
-    change.slope += slope.dot(contact.point.of_free(direction));
+    contact.stencil.spread(sign * slope, *gradient);
+    change.slope += slope.dot(contact.stencil.of_free(direction));
   }
   return change;
 }

@@ -1,6 +1,6 @@
 // Defines contact of one body with rigid colliders (Liu et al. 2017, section 4.3): it adds energies to g and nothing to
-// A. Each touching point of the body, which is a vertex or lies between vertices (contact_point.h), has the energy
-// k_c min(0, n . x - offset)^2 of a plane that was found when the iteration began. Not here: how contacts are found
+// A. Each touching point of the body, which is a vertex or lies between vertices (contact_stencil.h), has the energy
+// k_c min(0, n . u - offset)^2 of a plane that was found when the iteration began. Not here: how contacts are found
 // (find_contacts.h), how directions take them into account (contact_direction.h), contact of bodies with each other.
 //
 // The planes are one-sided: a point that leaves is released at once, even in the middle of a line search, and the
@@ -11,26 +11,33 @@
 
 #include <vector>
 
-#include "sim/contact/contact_point.h"
+#include "sim/contact/contact_stencil.h"
 
 namespace supple {
 
+// Says what a contact's point touches.
+struct OtherSide {
+  std::int32_t collider = -1;  // -1: a place of a surface, whose vertices are in the contact's stencil
+  bool is_collider() const { return collider >= 0; }
+  auto operator<=>(const OtherSide&) const = default;
+};
+
 struct Contact {
-  ContactPoint point;
-  std::int32_t collider;
-  Vec3 normal;              // away from the collider
-  double offset;            // the plane n . x = offset [m]
+  ContactStencil stencil;
+  OtherSide other;
+  Vec3 normal;              // away from the other side
+  double offset;            // the plane n . u = offset [m]
   double stiffness;         // k_c [N/m]
   double depth;             // of the point below the plane when found; 0: it was near, not touching [m]
   std::int32_t number = 0;  // of the point in this step: a vertex, or above all vertices' numbers
-  // Friction is lagged; it opposes x - origin along the plane.
+  // Friction is lagged; it opposes u - origin along the plane.
   double friction = 0;         // coefficient times normal force [N]
-  Vec3 origin = Vec3::Zero();  // where the point would be if it had moved with the collider [m]
+  Vec3 origin = Vec3::Zero();  // what u would be if the point had moved with the other side [m]
 };
 
 // Returns how far a contact's point is above its plane, negative below [m].
 inline double gap(const Contact& contact, const Positions& x) {
-  return contact.normal.dot(contact.point.at(x)) - contact.offset;
+  return contact.normal.dot(contact.stencil.at(x)) - contact.offset;
 }
 
 // Returns the share of friction in the energy [J].
@@ -42,7 +49,7 @@ double friction_stiffness(const Contact& contact, const Positions& x, double sti
 // Returns the share of the normal forces in the energy [J].
 double contact_energy(const std::vector<Contact>& contacts, const Positions& point);
 
-// Adds the force of each contact at a point, friction included, to that of its collider on the body [N].
+// Adds the force of each contact with a collider, friction included, to that of this collider on the body [N].
 void add_forces(const std::vector<Contact>& contacts, double stick_length, const Positions& point,
                 std::vector<Vec3>& by_collider);
 

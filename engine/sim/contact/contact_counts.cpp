@@ -13,7 +13,7 @@ std::uint64_t set_of(const std::vector<Contact>& contacts) {
   std::uint64_t hash = 1;
   for (const Contact& contact : contacts) {
     if (contact.depth <= 0) continue;
-    const std::int32_t pair[] = {contact.number, contact.collider};
+    const std::int32_t pair[] = {contact.number, contact.other.collider};
     hash = hash_bytes(pair, sizeof pair, hash);
   }
   return hash;

@@ -10,18 +10,18 @@ void find_stiff_directions(const Model& model, const std::vector<Contact>& conta
   std::vector<StiffDirection>& stiff = correction.wanted;
   stiff.clear();
   for (const Contact& contact : contacts) {
-    if (contact.depth > 0) stiff.push_back({contact.point, contact.normal, 2 * contact.stiffness});
+    if (contact.depth > 0) stiff.push_back({contact.stencil, contact.normal, 2 * contact.stiffness});
   }
   for (const Contact& contact : contacts) {
     if (contact.friction <= 0) continue;  // friction is lagged: a point may have left and still be rubbed
     const double along = friction_stiffness(contact, x, stick_length);
     // Inertia is the limit even where the elements around the point are stiffer, because together they hold a body
     // that would slide as a whole.
-    if (along < model.scheme.inertia * contact.point.mass(model.mass) / (model.time_step * model.time_step)) continue;
+    if (along < model.scheme.inertia * contact.stencil.mass(model.mass) / (model.time_step * model.time_step)) continue;
     const Vec3 n = contact.normal;
     const Vec3 side = n.cross(std::abs(n.y()) < 0.7 ? Vec3::UnitY() : Vec3::UnitX()).normalized();
-    stiff.push_back({contact.point, side, along});
-    stiff.push_back({contact.point, n.cross(side), along});
+    stiff.push_back({contact.stencil, side, along});
+    stiff.push_back({contact.stencil, n.cross(side), along});
   }
 }
 
@@ -66,10 +66,10 @@ void split(ContactCorrection& c, std::size_t most) {
   c.rest.clear();
   if (c.wanted.size() > most) {
     std::vector<std::uint32_t> ranks;
-    for (const StiffDirection& s : c.wanted) ranks.push_back(rank_of(s.point.vertex[0]));
+    for (const StiffDirection& s : c.wanted) ranks.push_back(rank_of(s.stencil.vertex[0]));
     std::nth_element(ranks.begin(), ranks.begin() + static_cast<std::ptrdiff_t>(most), ranks.end());
     const auto last = std::stable_partition(c.together.begin(), c.together.end(), [&](const StiffDirection& s) {
-      return rank_of(s.point.vertex[0]) < ranks[most];
+      return rank_of(s.stencil.vertex[0]) < ranks[most];
     });
     c.rest.assign(last, c.together.end());
     c.together.erase(last, c.together.end());
@@ -77,35 +77,36 @@ void split(ContactCorrection& c, std::size_t most) {
       s.stiffness *= static_cast<double>(c.wanted.size()) / static_cast<double>(c.together.size());
   }
   std::stable_sort(c.together.begin(), c.together.end(), [](const StiffDirection& a, const StiffDirection& b) {
-    return a.point.vertex[0] < b.point.vertex[0];
+    return a.stencil.vertex[0] < b.stencil.vertex[0];
   });
 }
 
 FactorPart part_of(const System& system, const std::vector<StiffDirection>& directions) {
   std::vector<std::int32_t> vertices;
   for (const StiffDirection& s : directions)
-    vertices.insert(vertices.end(), s.point.vertex.begin(), s.point.vertex.begin() + s.point.free);
+    vertices.insert(vertices.end(), s.stencil.vertex.begin(), s.stencil.vertex.begin() + s.stencil.free);
   return paths_to_root(system.factor, vertices);
 }
 
 // Returns the entry of A for the motion of a point along n / |n|: the mean of the diagonal, by the squared weights.
-double diagonal_at(const System& system, const ContactPoint& point) {
-  if (point.is_vertex()) return system.diagonal[point.vertex[0]];
+double diagonal_at(const System& system, const ContactStencil& stencil) {
+  if (stencil.is_vertex()) return system.diagonal[stencil.vertex[0]];
   double sum = 0;
-  for (int k = 0; k < point.free; ++k) sum += point.weight[k] * point.weight[k] * system.diagonal[point.vertex[k]];
-  return sum / point.weights_squared();
+  for (int k = 0; k < stencil.free; ++k)
+    sum += stencil.weight[k] * stencil.weight[k] * system.diagonal[stencil.vertex[k]];
+  return sum / stencil.weights_squared();
 }
 
 // Returns the share of its motion along a direction of the rest that a point keeps, sqrt(a / (a + k)).
 double share(const System& system, const StiffDirection& s) {
-  const double a = diagonal_at(system, s.point);
-  return std::sqrt(a / (a + s.point.weights_squared() * s.stiffness));
+  const double a = diagonal_at(system, s.stencil);
+  return std::sqrt(a / (a + s.stencil.weights_squared() * s.stiffness));
 }
 
 // Scales the motion of the rest by T. When a vertex has several directions that are not at right angles, they are
 // applied one after the other, and in the opposite order on the way back.
 void scale_rest(const System& system, const StiffDirection& s, Positions& r) {
-  s.add(-(1 - share(system, s)) * s.along(r) / s.point.weights_squared(), r);
+  s.add(-(1 - share(system, s)) * s.along(r) / s.stencil.weights_squared(), r);
 }
 
 // Computes z = H r with H = P A^-1 P + N diag(1 / (a + k)) N^T, for n of unit length.
@@ -113,15 +114,15 @@ void apply_diagonal(const Model& model, ContactCorrection& c, SolveScratch& scra
   c.answer.resize(static_cast<Eigen::Index>(c.wanted.size()));
   for (std::size_t i = 0; i < c.wanted.size(); ++i) {
     const StiffDirection& s = c.wanted[i];
-    const double part = s.along(r), squared = s.point.weights_squared();
+    const double part = s.along(r), squared = s.stencil.weights_squared();
     s.add(-part / squared, r);
     c.answer[static_cast<Eigen::Index>(i)] =
-        static_cast<float>(part / (diagonal_at(system_of(model, c), s.point) + squared * s.stiffness));
+        static_cast<float>(part / (diagonal_at(system_of(model, c), s.stencil) + squared * s.stiffness));
   }
   solve_system(model, system_of(model, c), r, z, scratch);
   for (std::size_t i = c.wanted.size(); i-- > 0;) {
     const StiffDirection& s = c.wanted[i];
-    s.add((c.answer[static_cast<Eigen::Index>(i)] - s.along(z)) / s.point.weights_squared(), z);
+    s.add((c.answer[static_cast<Eigen::Index>(i)] - s.along(z)) / s.stencil.weights_squared(), z);
   }
 }
 
@@ -131,8 +132,8 @@ void add_answer(ContactCorrection& c, const FactorPart& part, Positions& r) {
   for (Eigen::Index i = 0; i < c.answer.size(); ++i) {
     const StiffDirection& s = c.system.directions()[i];
     const Vec3 force = -static_cast<double>(c.answer[i]) * s.axis;
-    for (int k = 0; k < s.point.free; ++k) c.solve.add(s.point.vertex[k], s.point.weight[k] * force);
-    s.point.spread(force, r);
+    for (int k = 0; k < s.stencil.free; ++k) c.solve.add(s.stencil.vertex[k], s.stencil.weight[k] * force);
+    s.stencil.spread(force, r);
   }
   c.solve.pass_on(part);
 }
@@ -145,8 +146,8 @@ void couple_levels(ContactCorrection& c) {
   const bool is_new =
       c.system.know_rows(c.second->pose(), c.second->columns(), [&](const StiffDirection& s, float* row) {
         numbers.setZero();
-        for (int k = 0; k < s.point.free; ++k)
-          c.second->restrict_one(s.point.vertex[k], s.point.weight[k] * s.axis, numbers.data());
+        for (int k = 0; k < s.stencil.free; ++k)
+          c.second->restrict_one(s.stencil.vertex[k], s.stencil.weight[k] * s.axis, numbers.data());
         Eigen::Map<Eigen::VectorXf>(row, numbers.size()) = numbers.cast<float>();
       });
   if (!is_new) return;
@@ -180,9 +181,9 @@ void apply_low_rank(const Model& model, ContactCorrection& c, Positions& r, Posi
   const std::vector<StiffDirection>& directions = c.system.directions();
   c.answer.resize(static_cast<Eigen::Index>(directions.size()));
   for (Eigen::Index i = 0; i < c.answer.size(); ++i) {
-    const ContactPoint& point = directions[i].point;
-    Vec3 seen = point.weight[0] * c.solve.seen(point.vertex[0]);
-    for (int k = 1; k < point.free; ++k) seen += point.weight[k] * c.solve.seen(point.vertex[k]);
+    const ContactStencil& stencil = directions[i].stencil;
+    Vec3 seen = stencil.weight[0] * c.solve.seen(stencil.vertex[0]);
+    for (int k = 1; k < stencil.free; ++k) seen += stencil.weight[k] * c.solve.seen(stencil.vertex[k]);
     c.answer[i] = static_cast<float>(seen.dot(directions[i].axis));
   }
   if (c.second != nullptr) c.answer += c.system.rows() * (c.second->difference() * c.coarse).cast<float>();
@@ -229,7 +230,7 @@ namespace {
 
 // Returns how far above its plane a point is after moving from x along a direction.
 double gap_after(const Contact& contact, const Positions& x, const Positions& direction) {
-  return contact.normal.dot(contact.point.at(x) + contact.point.of_free(direction)) - contact.offset;
+  return contact.normal.dot(contact.stencil.at(x) + contact.stencil.of_free(direction)) - contact.offset;
 }
 
 // Adds the correction to a motion that minimises the quadratic model again. off: how far the motion has come off the
@@ -270,7 +271,7 @@ bool foresee_contacts(const Model& model, const ContactSettings& settings, const
     if (contact.depth > 0) continue;
     const double gap = gap_after(contact, x, direction);
     if (gap >= 0) continue;
-    ahead.push_back({contact.point, contact.normal, 2 * contact.stiffness});
+    ahead.push_back({contact.stencil, contact.normal, 2 * contact.stiffness});
     gaps.push_back(static_cast<float>(gap));
   }
   if (ahead.empty()) return false;
@@ -284,7 +285,7 @@ bool foresee_contacts(const Model& model, const ContactSettings& settings, const
   for (const Contact& contact : contacts) {
     if (contact.depth > 0) continue;
     const double gap = gap_after(contact, x, direction);
-    if (gap < 0) contact.point.spread(-gap / contact.point.weights_squared() * contact.normal, direction);
+    if (gap < 0) contact.stencil.spread(-gap / contact.stencil.weights_squared() * contact.normal, direction);
   }
   return true;
 }
@@ -303,10 +304,10 @@ void keep_bow_on_planes(const Model& model, const ContactSettings& settings, con
     const double gap = gap_after(contact, x, end);
     if (gap >= 0) continue;
     const bool is_held = std::any_of(held.begin(), held.end(), [&](const StiffDirection& s) {
-      return s.point == contact.point && s.axis == contact.normal;
+      return s.stencil == contact.stencil && s.axis == contact.normal;
     });
     if (is_held) continue;
-    ahead.push_back({contact.point, contact.normal, 2 * contact.stiffness});
+    ahead.push_back({contact.stencil, contact.normal, 2 * contact.stiffness});
     gaps.push_back(static_cast<float>(gap));
   }
   if (off.size() == 0 && ahead.empty()) return;

@@ -1,4 +1,4 @@
-// Defines the order of contacts in a list: by collider, then by number of the point.
+// Defines the order of contacts in a list: by what is touched, then by number of the point.
 #pragma once
 
 #include "sim/contact/contact.h"
@@ -6,7 +6,7 @@
 namespace supple {
 
 inline bool comes_before(const Contact& a, const Contact& b) {
-  return a.collider != b.collider ? a.collider < b.collider : a.number < b.number;
+  return a.other != b.other ? a.other < b.other : a.number < b.number;
 }
 
 }  // namespace supple

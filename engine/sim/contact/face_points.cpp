@@ -46,7 +46,7 @@ bool is_finer(const FacePoints::Piece& piece, double thickness, double edge_squa
 
 // Returns the point of a triangle with these weights: of the triangle, an edge or a vertex, after weights that are next
 // to nothing have been left out.
-ContactPoint contact_point(const Model& model, Eigen::Index triangle, const Vec3& weights) {
+ContactStencil stencil_at(const Model& model, Eigen::Index triangle, const Vec3& weights) {
   std::array<std::pair<std::int32_t, double>, 3> parts;
   int count = 0;
   double sum = 0;
@@ -58,7 +58,7 @@ ContactPoint contact_point(const Model& model, Eigen::Index triangle, const Vec3
     parts[place] = {v, weights[k]};
     sum += weights[k];
   }
-  ContactPoint point = ContactPoint::at_vertex(parts[0].first);
+  ContactStencil point = ContactStencil::at_vertex(parts[0].first);
   point.count = count;
   point.free = 0;
   for (int k = 0; k < count; ++k) {
@@ -126,9 +126,9 @@ struct TriangleSearch {
 
   // Returns the normal of the surface that holds a place which an iterate has led into the collider. Beyond the middle
   // of a thin bar, the closest surface is not the one through which the place came.
-  Vec3 normal_at(const ContactPoint& point, const TrianglePlace& place) const {
+  Vec3 normal_at(const ContactStencil& stencil, const TrianglePlace& place) const {
     QueryMemory near;
-    const Way way = view.way(point.at(q), point.at(x));
+    const Way way = view.way(stencil.at(q), stencil.at(x));
     const std::optional<SurfacePoint> held = view.holding(way, view.distance(way.a, near), 0, near);
     return held ? held->normal : place.surface.normal;
   }
@@ -147,11 +147,11 @@ struct TriangleSearch {
     for (int i = 0; i < least.count; ++i) {
       const TrianglePlace& place = least.places[i];
       if (place.surface.distance > within || place.surface.distance + piece.slack > least.at_corners) continue;
-      const ContactPoint point = contact_point(model, triangle, place.weights);
-      if (point.is_vertex() || point.free == 0) continue;
-      const Vec3 normal = at_start ? place.surface.normal : normal_at(point, place);
+      const ContactStencil stencil = stencil_at(model, triangle, place.weights);
+      if (stencil.is_vertex() || stencil.free == 0) continue;
+      const Vec3 normal = at_start ? place.surface.normal : normal_at(stencil, place);
       found.push_back(
-          {point, piece.slack, seen_from * piece.slack * straight_out(corners, place.weights, normal), near});
+          {stencil, piece.slack, seen_from * piece.slack * straight_out(corners, place.weights, normal), near});
     }
   }
 
@@ -186,15 +186,15 @@ struct TriangleSearch {
 // Tells whether there is a point of the same edge or face so near that it may stand for this one, or there are enough
 // of them. A thin piece needs points closer to each other than a round one.
 bool is_known(const FacePoints& faces, const FacePoints::Candidate& candidate, const Positions& q) {
-  const ContactPoint& point = candidate.point;
-  const double edge = (q.row(point.vertex[1]) - q.row(point.vertex[0])).norm();
+  const ContactStencil& stencil = candidate.stencil;
+  const double edge = (q.row(stencil.vertex[1]) - q.row(stencil.vertex[0])).norm();
   const double same = std::min(same_weight, same_place * candidate.slack / edge);
   int known = 0;
-  for (std::int32_t i = faces.newest[point.vertex[0]]; i >= 0; i = faces.points[i].earlier) {
-    const ContactPoint& other = faces.points[i].point;
-    if (other.count != point.count || other.vertex != point.vertex) continue;
+  for (std::int32_t i = faces.newest[stencil.vertex[0]]; i >= 0; i = faces.points[i].earlier) {
+    const ContactStencil& other = faces.points[i].stencil;
+    if (other.count != stencil.count || other.vertex != stencil.vertex) continue;
     double apart = 0;
-    for (int k = 0; k < point.count; ++k) apart = std::max(apart, std::abs(other.weight[k] - point.weight[k]));
+    for (int k = 0; k < stencil.count; ++k) apart = std::max(apart, std::abs(other.weight[k] - stencil.weight[k]));
     if (apart < same || ++known >= most_points) return true;
   }
   return false;
@@ -213,11 +213,12 @@ void search_all(const TriangleSearch& search, Threads* threads, FacePoints& face
   for (const auto& list : faces.by_chunk) {
     for (const FacePoints::Candidate& candidate : list) {
       if (is_known(faces, candidate, search.q)) continue;
-      FacePoint face{
-          candidate.point, candidate.slack, candidate.out, 0, candidate.near, faces.newest[candidate.point.vertex[0]]};
-      const Vec3 start = search.view.at_start(candidate.point.at(search.q));
+      FacePoint face{candidate.stencil, candidate.slack,
+                     candidate.out,     0,
+                     candidate.near,    faces.newest[candidate.stencil.vertex[0]]};
+      const Vec3 start = search.view.at_start(candidate.stencil.at(search.q));
       face.field = search.view.distance(start + face.out, face.near) - face.out.norm();
-      faces.newest[candidate.point.vertex[0]] = static_cast<std::int32_t>(faces.points.size());
+      faces.newest[candidate.stencil.vertex[0]] = static_cast<std::int32_t>(faces.points.size());
       faces.points.push_back(face);
     }
   }

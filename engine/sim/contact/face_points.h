@@ -12,13 +12,13 @@
 #include "base/threads.h"
 #include "geometry/shapes/shape_pieces.h"
 #include "sim/contact/collider_view.h"
-#include "sim/contact/contact_point.h"
+#include "sim/contact/contact_stencil.h"
 #include "sim/model/model.h"
 
 namespace supple {
 
 struct FacePoint {
-  ContactPoint point;
+  ContactStencil stencil;
   double slack;          // depth below which contact begins [m]
   Vec3 out;              // from the point to where its distance is measured, in the collider's frame [m]
   double field;          // distance at the start of the step, negative inside [m]
@@ -42,7 +42,7 @@ struct FacePoints {
   std::vector<std::int32_t> newest;  // the newest point of each first vertex; -1: none
 
   struct Candidate {
-    ContactPoint point;
+    ContactStencil stencil;
     double slack;
     Vec3 out;
     QueryMemory near;

@@ -68,7 +68,7 @@ void find_way_out(const Model& model, const StepInputs& inputs, ContactWork& wor
     double least = search.deepest_start(c, -push_out);
     for (const FacePoint& face : work.faces[c].points) {
       least = std::min(least, face.field);
-      between.push_back(face.point.at(*work.begin));
+      between.push_back(face.stencil.at(*work.begin));
     }
     if (least < -push_out) deep.push_back(c);
   }
@@ -176,7 +176,7 @@ class Planes {
 
   void of_vertex(int v, const Way& way, double field, double reach, QueryMemory& near,
                  std::vector<Contact>& list) const {
-    Contact contact = contact_at(ContactPoint::at_vertex(v), v);
+    Contact contact = contact_at(ContactStencil::at_vertex(v), v);
     if (is_leaving() && field <= 0) {
       leave(view_, way, way_out_, field, push_out_, near, contact);
       return list.push_back(contact);
@@ -187,10 +187,10 @@ class Planes {
 
   // Adds the contact of a face's point. number: the number of the point among the faces' points in this step.
   void of_face(FacePoint& face, std::int32_t number, std::vector<Contact>& list) const {
-    const Way way = view_.way(face.point.at(start_), face.point.at(x_));
-    const double reach = reach_of(way.length, view_.length_to(face.point.at(prediction_), way));
+    const Way way = view_.way(face.stencil.at(start_), face.stencil.at(x_));
+    const double reach = reach_of(way.length, view_.length_to(face.stencil.at(prediction_), way));
     if (way.length + reach < view_.clear(face.field)) return;
-    Contact contact = contact_at(face.point, model_.vertices + number);
+    Contact contact = contact_at(face.stencil, model_.vertices + number);
     if (is_leaving() && face.field <= 0) {
       leave(view_, way, way_out_, face.field, push_out_, face.near, contact);
       return list.push_back(contact);
@@ -208,11 +208,11 @@ class Planes {
 
   bool is_leaving() const { return !way_out_.isZero(0); }
 
-  Contact contact_at(const ContactPoint& point, std::int32_t number) const {
-    return {point, collider_, Vec3::Zero(), 0, unit_stiffness_ * point.mass(model_.mass), 0, number};
+  Contact contact_at(const ContactStencil& stencil, std::int32_t number) const {
+    return {stencil, {collider_}, Vec3::Zero(), 0, unit_stiffness_ * stencil.mass(model_.mass), 0, number};
   }
 
-  // Adds a contact with the plane through a surface's point, lowered by the slack and by as much of the depth as need
+  // Adds a contact with the plane through a surface's stencil, lowered by the slack and by as much of the depth as need
   // not be corrected in this step.
   void add(const SurfacePoint& surface, const Way& way, double field, double slack, QueryMemory& near, Contact& contact,
            std::vector<Contact>& list) const {
@@ -225,7 +225,7 @@ class Planes {
       contact.origin = view_.carried(way.q);
       const double depth_before = deep > 0 ? 0 : std::max(-field - slack, pressed_at_first(contact.number));
       contact.friction = friction_ * lagged_force(contact, depth_before, -gap(contact, prediction_),
-                                                  model_.scheme.inertia * contact.point.mass(model_.mass) /
+                                                  model_.scheme.inertia * contact.stencil.mass(model_.mass) /
                                                       (model_.time_step * model_.time_step));
     }
     list.push_back(contact);

@@ -44,7 +44,7 @@ Impact first_impact(const Model& model, const StepInputs& inputs, const Position
       });
     }
     for (FacePoint& face : work.faces[c].points) {
-      const Way way = view.way(face.point.at(*work.begin), face.point.at(x));
+      const Way way = view.way(face.stencil.at(*work.begin), face.stencil.at(x));
       if (way.length < view.clear(face.field)) continue;
       const double share = share_to_impact(view, way, face.field, here, first.share, face.near);
       if (share < first.share) first = {share, static_cast<int>(c)};
@@ -59,7 +59,9 @@ Eigen::Isometry3d motion_after(const StepInputs& inputs, int collider, double sh
 
 int most_touched(const std::vector<Contact>& contacts, std::size_t colliders) {
   std::vector<int> touching(colliders, 0);
-  for (const Contact& contact : contacts) touching[contact.collider] += contact.depth > 0;
+  for (const Contact& contact : contacts) {
+    if (contact.other.is_collider()) touching[contact.other.collider] += contact.depth > 0;
+  }
   const auto most = std::max_element(touching.begin(), touching.end());
   return most == touching.end() || *most == 0 ? -1 : static_cast<int>(most - touching.begin());
 }

@@ -27,23 +27,24 @@ double spring_energy(const Model& model, const Positions& targets, const Positio
   return sum;
 }
 
-// Returns the work of contacts over a step from q to the current iterate [J]: the work of all forces along the way of
-// the collider, and of friction along the way on the collider. The normal force on a collider that stands does no work,
-// although a vertex that comes down on it, as those of a rolling ball do, has a way; only a vertex that is pushed out
-// gains energy.
-double work_of_contacts(const StepInputs& inputs, const Positions& q, Workspace& w) {
+// Returns the work of contacts with colliders over a step from q to the current iterate [J]: the work of all forces
+// along the way of the collider, and of friction along the way on the collider. The normal force on a collider that
+// stands does no work, although a vertex that comes down on it, as those of a rolling ball do, has a way; only a vertex
+// that is pushed out gains energy.
+double work_of_contacts(const StepInputs& inputs, const Positions& q, OpenWorkspace& w) {
   const Positions& x = w.current.x;
   std::vector<Contact> one(1);
   double work = 0;
   for (const Contact& contact : w.current.contacts) {
-    const ContactPoint& point = contact.point;
+    if (!contact.other.is_collider()) continue;
+    const ContactStencil& stencil = contact.stencil;
     one.front() = contact;
-    for (int k = 0; k < point.free; ++k) w.scratch.row(point.vertex[k]).setZero();
+    for (int k = 0; k < stencil.free; ++k) w.scratch.row(stencil.vertex[k]).setZero();
     add_contacts(one, w.contact.stick_length, x, nullptr, w.direction, &w.scratch, -1);
     Vec3 force = Vec3::Zero();
-    for (int k = 0; k < point.free; ++k) force += w.scratch.row(point.vertex[k]).transpose();
-    const Vec3 from = point.at(q), carried = motion_after(inputs, contact.collider, 0) * from - from;
-    const Vec3 slip = point.at(x) - from - carried;
+    for (int k = 0; k < stencil.free; ++k) force += w.scratch.row(stencil.vertex[k]).transpose();
+    const Vec3 from = stencil.at(q), carried = motion_after(inputs, contact.other.collider, 0) * from - from;
+    const Vec3 slip = stencil.at(x) - from - carried;
     const double pressing = force.dot(contact.normal), away = slip.dot(contact.normal);
     work += force.dot(carried) + force.dot(slip) - pressing * away + pressing * std::max(0.0, away);
   }
@@ -52,14 +53,14 @@ double work_of_contacts(const StepInputs& inputs, const Positions& q, Workspace&
 
 }  // namespace
 
-Energies energies(const Model& model, const State& state, const Vec3& gravity, Workspace& w) {
+Energies energies(const Model& model, const State& state, const Vec3& gravity, OpenWorkspace& w) {
   Energies result;
   set_motion(model, state, gravity, result);
   result.elastic = elastic_energy(model, w, state.x);
   return result;
 }
 
-void EnergyBudget::start(const Model& model, const Vec3& gravity, const State& state, Workspace& w,
+void EnergyBudget::start(const Model& model, const Vec3& gravity, const State& state, OpenWorkspace& w,
                          const EnergyBalance& balance) {
   parts_ = supple::energies(model, state, gravity, w);
   balance_ = balance;
@@ -82,7 +83,7 @@ void EnergyBudget::know_springs(const Model& model, const Positions& targets, co
   knows_springs_ = true;
 }
 
-void EnergyBudget::before_step(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
+void EnergyBudget::before_step(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& w) {
   Energies now = parts_;
   set_motion(model, state, inputs.gravity, now);
   if (model.id != model_) now.elastic = elastic_energy(model, w, state.x);
@@ -95,7 +96,7 @@ void EnergyBudget::before_step(const Model& model, const StepInputs& inputs, con
 }
 
 void EnergyBudget::after_step(const Model& model, const StepInputs& inputs, const Positions& q, const State& state,
-                              Workspace& w) {
+                              OpenWorkspace& w) {
   if (model.free < model.vertices) add_to_budget(work_of_handles(model, q, w));
   if (has_colliders(inputs)) add_to_budget(work_of_contacts(inputs, q, w));
   set_motion(model, state, inputs.gravity, parts_);
@@ -114,7 +115,8 @@ void EnergyBudget::sum_up() {
   balance_.exchanged = most_ + moved_;
 }
 
-void EnergyBudget::after_untangling(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
+void EnergyBudget::after_untangling(const Model& model, const StepInputs& inputs, const State& state,
+                                    OpenWorkspace& w) {
   const double before = parts_.total();
   set_motion(model, state, inputs.gravity, parts_);
   parts_.elastic = elastic_energy(model, w, state.x);

@@ -15,7 +15,7 @@ struct Energies {
 };
 // Returns the energies without those of soft handles and contact, which stay 0. Evaluates all elements; the workspace
 // must be prepared for the model.
-Energies energies(const Model& model, const State& state, const Vec3& gravity, Workspace& workspace);
+Energies energies(const Model& model, const State& state, const Vec3& gravity, OpenWorkspace& workspace);
 
 // Holds what a body has, and what it was given, since its film began [J].
 struct EnergyBalance {
@@ -32,20 +32,20 @@ struct EnergyBalance {
 class EnergyBudget {
  public:
   // Begins with a state, before the next frame changes anything. balance: the balance at this state.
-  void start(const Model& model, const Vec3& gravity, const State& state, Workspace& workspace,
+  void start(const Model& model, const Vec3& gravity, const State& state, OpenWorkspace& workspace,
              const EnergyBalance& balance = {});
   // Counts the energy of soft handles' springs before the first step, by the targets at that time; later steps find by
   // themselves how far the targets have moved. Does nothing where this energy is known.
   void know_springs(const Model& model, const Positions& targets, const State& state);
   bool knows_springs() const { return knows_springs_; }
   // Counts the energy of changes since the last step. To be called when the inputs of the next step are there.
-  void before_step(const Model& model, const StepInputs& inputs, const State& state, Workspace& workspace);
+  void before_step(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& workspace);
   // Counts a step that succeeded. The workspace must be as the step left it. q: the positions before the step.
   void after_step(const Model& model, const StepInputs& inputs, const Positions& q, const State& state,
-                  Workspace& workspace);
+                  OpenWorkspace& workspace);
 
   // Counts a step that was made with another energy: all energy that it changed counts as put in from outside.
-  void after_untangling(const Model& model, const StepInputs& inputs, const State& state, Workspace& workspace);
+  void after_untangling(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& workspace);
 
   const EnergyBalance& balance() const { return balance_; }
   const Energies& energies() const { return parts_; }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/model/state.h"
-#include "sim/solver/workspace.h"
+#include "sim/solver/open_workspace.h"
 
 namespace supple {
 
@@ -30,7 +30,7 @@ ElementFields element_fields(const Model& model, const Positions& x);
 
 // Returns the force of the colliders on each vertex at the end of the workspace's last step, friction included, by
 // vertex of the input, n x 3 [N]. x: the positions where that step ended, in the model's order.
-Positions contact_forces(const Model& model, const Workspace& workspace, const Positions& x);
+Positions contact_forces(const Model& model, const OpenWorkspace& workspace, const Positions& x);
 
 // Returns the two stretches of each triangle in its plane, the larger one first. rest, x: n x 3 in the order of the
 // triangles' indices; a triangle without area at rest gets NaN.

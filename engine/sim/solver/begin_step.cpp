@@ -15,7 +15,7 @@ void inertial_prediction(const Model& model, const StepInputs& inputs, const Sta
 namespace {
 
 // Held vertices are at their targets in both iterates; soft handles pull towards theirs.
-void set_targets(const Model& model, const StepInputs& inputs, Workspace& w) {
+void set_targets(const Model& model, const StepInputs& inputs, OpenWorkspace& w) {
   const bool midway = model.scheme.theta < 1;
   SUPPLE_CHECK(inputs.targets.rows(), ==, Eigen::Index(model.handled.size()));
   if (midway && !model.handle_stiffness.empty())
@@ -34,7 +34,7 @@ void set_targets(const Model& model, const StepInputs& inputs, Workspace& w) {
 
 }  // namespace
 
-void begin_step(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
+void begin_step(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& w) {
   SUPPLE_CHECK(state.x.rows(), ==, model.vertices);
   SUPPLE_CHECK(state.v.rows(), ==, model.vertices);
   inertial_prediction(model, inputs, state, w.y);

@@ -3,7 +3,7 @@
 
 #include "sim/model/inputs.h"
 #include "sim/model/state.h"
-#include "sim/solver/workspace.h"
+#include "sim/solver/open_workspace.h"
 
 namespace supple {
 
@@ -12,6 +12,6 @@ void inertial_prediction(const Model& model, const StepInputs& inputs, const Sta
 
 // Makes the first part of step(): writes y, and the targets of handles in place of their y, into the workspace. Also
 // leaves the current iterate's x = y.
-void begin_step(const Model& model, const StepInputs& inputs, const State& state, Workspace& workspace);
+void begin_step(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& workspace);
 
 }  // namespace supple

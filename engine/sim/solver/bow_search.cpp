@@ -2,7 +2,7 @@
 
 namespace supple {
 
-void bow_search(const Model& model, const StepInputs& inputs, double slope, Workspace& w) {
+void bow_search(const Model& model, const StepInputs& inputs, double slope, OpenWorkspace& w) {
   constexpr double small_share = 0.02;
   w.is_bowed = false;
   if (!w.second_level_serves) return;

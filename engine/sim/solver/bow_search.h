@@ -4,12 +4,12 @@
 #pragma once
 
 #include "sim/model/inputs.h"
-#include "sim/solver/workspace.h"
+#include "sim/solver/open_workspace.h"
 
 namespace supple {
 
-// Sets the arc of a search along workspace.direction (Workspace::bow), or no arc where the stretching along a straight
-// line takes only a small share of the gain that the direction promises. slope: tr(grad^T d), less than 0 [J].
-void bow_search(const Model& model, const StepInputs& inputs, double slope, Workspace& workspace);
+// Sets the arc of a search along workspace.direction (OpenWorkspace::bow), or no arc where the stretching along a
+// straight line takes only a small share of the gain that the direction promises. slope: tr(grad^T d), less than 0 [J].
+void bow_search(const Model& model, const StepInputs& inputs, double slope, OpenWorkspace& workspace);
 
 }  // namespace supple

@@ -7,7 +7,7 @@
 
 namespace supple {
 
-double work_of_handles(const Model& model, const Positions& q, Workspace& w) {
+double work_of_handles(const Model& model, const Positions& q, OpenWorkspace& w) {
   const Positions& x = w.current.x;
   if ((x.bottomRows(model.vertices - model.free) - q.bottomRows(model.vertices - model.free)).isZero(0)) return 0;
   elastic_forces(model, w, x);
@@ -23,14 +23,14 @@ double work_of_handles(const Model& model, const Positions& q, Workspace& w) {
 namespace {
 
 // Returns the work of the contacts' forces, friction among them, along the way of each vertex [J].
-double work_of_contacts(const Positions& q, Workspace& w) {
+double work_of_contacts(const Positions& q, OpenWorkspace& w) {
   Positions& force = w.scratch;
   force.setZero();
   add_contacts(w.current.contacts, w.contact.stick_length, w.current.x, nullptr, w.direction, &force, -1);
   double work = 0;
   for (const Contact& contact : w.current.contacts) {
-    for (int k = 0; k < contact.point.free; ++k) {
-      const std::int32_t v = contact.point.vertex[k];
+    for (int k = 0; k < contact.stencil.free; ++k) {
+      const std::int32_t v = contact.stencil.vertex[k];
       work += force.row(v).dot(w.current.x.row(v) - q.row(v));
       force.row(v).setZero();  // a vertex may belong to several contacts
     }
@@ -39,14 +39,14 @@ double work_of_contacts(const Positions& q, Workspace& w) {
 }
 
 // Returns g without its inertia and without contact [J].
-double potential_of(const Model& model, const Workspace& w, const Iterate& at) {
+double potential_of(const Model& model, const OpenWorkspace& w, const Iterate& at) {
   return at.g - inertial_energy(model, w, at.x) - contact_energy(at.contacts, at.x) -
          friction_energy(at.contacts, w.contact.stick_length, at.x);
 }
 
 }  // namespace
 
-double work_from_outside(const Model& model, const Positions& q, Workspace& w) {
+double work_from_outside(const Model& model, const Positions& q, OpenWorkspace& w) {
   return (model.free < model.vertices ? work_of_handles(model, q, w) : 0) +
          (w.current.contacts.empty() ? 0 : work_of_contacts(q, w));
 }
@@ -63,7 +63,7 @@ double energy_of_short_fall(const Model& model, const StepInputs& inputs) {
 // Tells whether a step may have gained more than this share of the energies that it moves and of a short fall's, by a
 // bound that evaluates nothing. Where E is convex between q and x, the energy from nothing is at most r . (x - q) - 1/2
 // |v' - v|^2_M, where r is the remaining gradient of g at x. The current iterate must have its gradient.
-bool may_gain_energy(const Model& model, const StepInputs& inputs, const State& state, const Workspace& w,
+bool may_gain_energy(const Model& model, const StepInputs& inputs, const State& state, const OpenWorkspace& w,
                      double share) {
   if (model.integrator != Integrator::backward_euler) return false;
   double bound = 0, kinetic = 0, fallen = 0;
@@ -80,7 +80,7 @@ bool may_gain_energy(const Model& model, const StepInputs& inputs, const State& 
 // Returns the energy that the step to the current iterate gained from nothing, over those that it exchanged and that of
 // a short fall; zero or less where it gained none, and for integrators other than backward Euler. Evaluates all
 // elements at q.
-double share_from_nothing(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
+double share_from_nothing(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& w) {
   if (model.integrator != Integrator::backward_euler) return 0;
   double kinetic = 0, before = 0, fallen = 0;
   for (int v = 0; v < model.free; ++v) {

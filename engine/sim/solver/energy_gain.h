@@ -11,12 +11,12 @@ namespace supple {
 // Returns the work of the elements on held vertices that were moved in a step from q to the current iterate, by the
 // forces at its end: what hard handles put in [J]. Where a held vertex has moved, evaluates all elements and overwrites
 // the workspace's trial energies and forces.
-double work_of_handles(const Model& model, const Positions& q, Workspace& workspace);
+double work_of_handles(const Model& model, const Positions& q, OpenWorkspace& workspace);
 
 // Returns the work over a step from q to the current iterate that hard handles and contacts do on the body, by the
 // forces at its end and the ways of the vertices: what backward Euler takes for that work [J]. Evaluates elements as
 // work_of_handles() does.
-double work_from_outside(const Model& model, const Positions& q, Workspace& workspace);
+double work_from_outside(const Model& model, const Positions& q, OpenWorkspace& workspace);
 
 // Tells whether the step, left at the current iterate, would gain too much energy from nothing: more than a hundredth
 // of the energies that it exchanges and of that of a fall of two steps. The test costs an evaluation at q, so it

@@ -51,7 +51,7 @@ namespace {
 // Finds how far the contacts' energy alone is above g of the last iterate, if the body had gone to y [J]. An impact
 // ends the first iterate before y, where g is not evaluated; but y lies deep in the collider, and equation 12 counts
 // from y. The energy of the elements at y is left out.
-double below_prediction(const Model& model, const StepInputs& inputs, Workspace& w) {
+double below_prediction(const Model& model, const StepInputs& inputs, OpenWorkspace& w) {
   if (!has_colliders(inputs) || w.report.failed) return 0;
   w.trial.x.topRows(model.free) = w.y.topRows(model.free);
   find_contacts_of(model, inputs, w, w.trial);
@@ -61,13 +61,13 @@ double below_prediction(const Model& model, const StepInputs& inputs, Workspace&
 }  // namespace
 
 // A contact that is found on the way raises g; this does not lessen what the searches gained.
-double gained_in_all(const Model& model, const StepInputs& inputs, Workspace& w, double gained) {
+double gained_in_all(const Model& model, const StepInputs& inputs, OpenWorkspace& w, double gained) {
   double searched = 0;
   for (const IterationRecord& iteration : w.report.records) searched += std::max(0.0, iteration.decrease);
   return std::max({gained, searched, below_prediction(model, inputs, w)});
 }
 
-double error_at_end(const Model& model, const StepInputs& inputs, Workspace& w, double gained) {
+double error_at_end(const Model& model, const StepInputs& inputs, OpenWorkspace& w, double gained) {
   const double left = w.report.remaining_estimate;
   if (left <= noise_of(model, w.current.g, extent_of(model, w))) return 0;
   return error_of(left, gained_in_all(model, inputs, w, gained));
@@ -75,7 +75,7 @@ double error_at_end(const Model& model, const StepInputs& inputs, Workspace& w, 
 
 // The direction's quadratic model foretells a gain of half the decrement. If the gain that is left is N times the
 // foretold one, the way that is left is sqrt(N) times the direction.
-double motion_estimate(const Model& model, const StepInputs& inputs, const Positions& q, Workspace& w) {
+double motion_estimate(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& w) {
   const StepReport& report = w.report;
   if (report.failed || report.decrement <= 0) return 0;
   Positions& d = w.trial.gradient;
@@ -89,7 +89,7 @@ double motion_estimate(const Model& model, const StepInputs& inputs, const Posit
 }
 
 bool is_near_enough(const Model& model, const StepInputs& inputs, const Positions* q, double above_start,
-                    Workspace& w) {
+                    OpenWorkspace& w) {
   const double target = inputs.solver.target_error;
   if (target <= 0 || error_of(w.report.remaining_estimate, w.report.decrease + above_start) >= target) return false;
   return q == nullptr || motion_estimate(model, inputs, *q, w) < target;

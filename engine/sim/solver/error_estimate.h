@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "sim/solver/workspace.h"
+#include "sim/solver/open_workspace.h"
 
 namespace supple {
 
@@ -39,23 +39,23 @@ double error_of(double left, double gained);
 
 // Returns what the step to the current iterate gained since y. gained: the decrease of g over its iterations, with what
 // is known to have been gained before. All in J. Overwrites the trial iterate.
-double gained_in_all(const Model& model, const StepInputs& inputs, Workspace& workspace, double gained);
+double gained_in_all(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, double gained);
 
 // Estimates the error of equation 12 at the end of a step. gained: the step's gain so far [J]. A body at rest has next
 // to nothing to gain: a rest that is lost in the round-off of g is then no error, however large its share is.
 // Overwrites the trial iterate.
-double error_at_end(const Model& model, const StepInputs& inputs, Workspace& workspace, double gained);
+double error_at_end(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, double gained);
 
 // Estimates the error of motion (model/motion_error.h) of a step from q to the current iterate, where the direction
 // begins, from the length of that direction: it leads to the minimum of its quadratic model. On the first level alone
 // that model resists turning; the second adds what it misses. Returns 0 where the rule does not look beyond its last
 // iterate. Overwrites the trial iterate.
-double motion_estimate(const Model& model, const StepInputs& inputs, const Positions& q, Workspace& workspace);
+double motion_estimate(const Model& model, const StepInputs& inputs, const Positions& q, OpenWorkspace& workspace);
 
 // Tells whether the estimates have reached the target error of the settings: of equation 12, and of motion where the
 // step's start q (n x 3) is given. above_start: g(y) - g of the first iterate, which equation 12 counts as gained [J].
 // Overwrites the trial iterate.
 bool is_near_enough(const Model& model, const StepInputs& inputs, const Positions* q, double above_start,
-                    Workspace& workspace);
+                    OpenWorkspace& workspace);
 
 }  // namespace supple

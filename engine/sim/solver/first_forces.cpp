@@ -37,7 +37,7 @@ std::vector<char> touching_vertices(const Model& model, const StepInputs& inputs
 // Makes one step whose friction follows from the given depths, and replaces these by the depths at which the touching
 // vertices end. Returns false where the step fails.
 bool press_once(const Model& model, const StepInputs& inputs, const State& state, const std::vector<char>& touches,
-                Workspace& w, std::vector<double>& pressed) {
+                OpenWorkspace& w, std::vector<double>& pressed) {
   w.prepare(model, inputs.solver);
   w.report = {};
   begin_step(model, inputs, state, w);
@@ -50,8 +50,8 @@ bool press_once(const Model& model, const StepInputs& inputs, const State& state
   if (w.report.failed || !w.current.x.allFinite()) return false;
   pressed.assign(touches.size(), 0);
   for (const Contact& contact : w.current.contacts) {
-    if (contact.number >= model.free) continue;
-    const std::size_t at = contact.collider * std::size_t(model.free) + contact.number;
+    if (!contact.other.is_collider() || contact.number >= model.free) continue;
+    const std::size_t at = contact.other.collider * std::size_t(model.free) + contact.number;
     if (touches[at] != 0) pressed[at] = std::max(0.0, -gap(contact, w.current.x));
   }
   return true;
@@ -59,7 +59,7 @@ bool press_once(const Model& model, const StepInputs& inputs, const State& state
 
 }  // namespace
 
-void find_first_forces(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
+void find_first_forces(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& w) {
   if (state.time != 0) return;
   const std::vector<char> touches = touching_vertices(model, inputs, state.x);
   if (touches.empty()) return;
@@ -69,7 +69,7 @@ void find_first_forces(const Model& model, const StepInputs& inputs, const State
   own.repeated_cuts.reset();
   State later = state;
   later.time = model.time_step;  // not 0, so that this step does not look for first forces itself
-  Workspace own_workspace;
+  OpenWorkspace own_workspace;
   own_workspace.threads = w.threads;
   std::vector<double> pressed;
   for (int round = 0; round < rounds; ++round)

@@ -6,13 +6,13 @@
 
 #include "sim/model/inputs.h"
 #include "sim/model/state.h"
-#include "sim/solver/workspace.h"
+#include "sim/solver/open_workspace.h"
 
 namespace supple {
 
 // Sets workspace.contact.pressed_at_first in the first step (state.time is 0) of a body that touches a collider with
 // friction; does nothing in other cases. The forces are those that the step ends with, by the standard solver, in a few
 // rounds.
-void find_first_forces(const Model& model, const StepInputs& inputs, const State& state, Workspace& workspace);
+void find_first_forces(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& workspace);
 
 }  // namespace supple

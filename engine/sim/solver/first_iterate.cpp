@@ -10,7 +10,7 @@
 namespace supple {
 
 void set_first_iterate(StepContext& c) {
-  Workspace& w = c.w;
+  OpenWorkspace& w = c.w;
   if (leaves_prediction(c)) fit_handles_and_turning(c);
   if (handles_turn_far(c)) turn_with_handles(c);
   if (is_worse_than_prediction(c)) return_to_prediction(c);

@@ -22,7 +22,7 @@ constexpr double small_share = 1e-7;
 void set_staying(const StepContext& c) {
   const Model& model = c.model;
   const Positions& q = c.state.x;
-  Workspace& w = c.w;
+  OpenWorkspace& w = c.w;
   Positions& x = w.trial.x;
   x.topRows(model.free) = q.topRows(model.free);
   if (has_colliders(c.inputs)) {
@@ -42,7 +42,7 @@ void set_staying(const StepContext& c) {
 
 std::optional<double> gain_of_staying(const StepContext& c) {
   if (c.w.report.failed || c.inputs.solver.line_search == LineSearch::none) return std::nullopt;
-  Workspace& w = c.w;
+  OpenWorkspace& w = c.w;
   const TimedPhase timed(w.clock, Phase::evaluate, "check staying");
   const double stick = w.contact.stick_length;
   const double friction_reached = friction_energy(w.current.contacts, stick, w.current.x);
@@ -58,7 +58,7 @@ std::optional<double> gain_of_staying(const StepContext& c) {
 }
 
 void descend_from_staying(StepContext& c, double gain) {
-  Workspace& w = c.w;
+  OpenWorkspace& w = c.w;
   const SolverSettings& solver = c.inputs.solver;
   const TimedPhase timed(w.clock, Phase::evaluate, "descend from staying");
   StepReport& report = w.report;

@@ -15,16 +15,17 @@ Mat3 stiffness_of(const Contact& contact, const Positions& x, double stick_lengt
 void HessianMatrix::assemble(const Model& model, const ElementMatrices& elements, const std::vector<Contact>& contacts,
                              double stick_length, const Positions& x) {
   ElasticHessian::assemble(model, elements);
-  for (const Contact& contact : contacts) add_stiffness(contact.point, stiffness_of(contact, x, stick_length));
+  for (const Contact& contact : contacts) add_stiffness(contact.stencil, stiffness_of(contact, x, stick_length));
 }
 
-void HessianMatrix::add_stiffness(const ContactPoint& point, const Mat3& stiffness) {
-  for (int i = 0; i < point.free; ++i) {
-    for (int j = 0; j <= i; ++j) add(point.vertex[i], point.vertex[j], point.weight[i] * point.weight[j] * stiffness);
+void HessianMatrix::add_stiffness(const ContactStencil& stencil, const Mat3& stiffness) {
+  for (int i = 0; i < stencil.free; ++i) {
+    for (int j = 0; j <= i; ++j)
+      add(stencil.vertex[i], stencil.vertex[j], stencil.weight[i] * stencil.weight[j] * stiffness);
   }
 }
 
-void HessianMatrix::assemble(const Model& model, Workspace& workspace, bool project) {
+void HessianMatrix::assemble(const Model& model, OpenWorkspace& workspace, bool project) {
   const Positions& x = workspace.current.x;
   const double theta = model.scheme.theta;
   if (theta < 1) workspace.middle = theta * x + (1 - theta) * workspace.start_copy;

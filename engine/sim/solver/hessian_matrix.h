@@ -5,7 +5,7 @@
 #include "sim/contact/contact.h"
 #include "sim/linear/changing_factor.h"
 #include "sim/model/elastic_hessian.h"
-#include "sim/solver/workspace.h"
+#include "sim/solver/open_workspace.h"
 
 namespace supple {
 
@@ -23,10 +23,10 @@ class HessianMatrix : public ElasticHessian {
 
   // Assembles d^2 g at workspace.current with the contacts found there; with `project` each element's Hessian is
   // projected first.
-  void assemble(const Model& model, Workspace& workspace, bool project);
+  void assemble(const Model& model, OpenWorkspace& workspace, bool project);
 
   // Adds a stiffness against motions of a point between vertices [N/m].
-  void add_stiffness(const ContactPoint& point, const Mat3& stiffness);
+  void add_stiffness(const ContactStencil& stencil, const Mat3& stiffness);
 
  private:
   ElementMatrices scratch_;

@@ -41,7 +41,7 @@ struct Descent {
 
 // Asks the rule for a direction that leads downhill. If it does not, asks again after the rule has forgotten what it
 // learned.
-Descent next_direction(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule) {
+Descent next_direction(const Model& model, const StepInputs& inputs, OpenWorkspace& w, SearchRule& rule) {
   const TimedPhase timed(w.clock, Phase::other, "direction");
   for (;;) {
     const double slope = w.report.slope = rule.direction(model, inputs, w);
@@ -55,7 +55,7 @@ Descent next_direction(const Model& model, const StepInputs& inputs, Workspace& 
 // which it did not foresee is repeated, a few times, along a direction that knows them: adding constraints where an
 // iterate violates them, and solving again, is the exchange method of semi-infinite programs (Hettich and Kortanek
 // 1993). A search that fails is repeated once along the direction of a rule that has forgotten what it learned.
-Search find_next(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, double slope,
+Search find_next(const Model& model, const StepInputs& inputs, OpenWorkspace& w, SearchRule& rule, double slope,
                  Change& change, IterationRecord& record) {
   const TimedPhase timed(w.clock, Phase::evaluate, "line search");
   if (inputs.solver.line_search == LineSearch::none) {
@@ -85,7 +85,7 @@ Search find_next(const Model& model, const StepInputs& inputs, Workspace& w, Sea
 
 // Replaces the contacts that the search used with those found at the trial point. Corrects the trial's gradient;
 // returns the change of its objective [J].
-double take_contacts(Workspace& w) {
+double take_contacts(OpenWorkspace& w) {
   const double stick = w.contact.stick_length;
   Iterate& to = w.trial;
   double jump = 0;
@@ -96,8 +96,8 @@ double take_contacts(Workspace& w) {
 }
 
 // Makes the trial iterate the current one. before: g where the iteration began, without contacts learned since [J].
-void accept(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, double before, Change change,
-            IterationRecord& record) {
+void accept(const Model& model, const StepInputs& inputs, OpenWorkspace& w, SearchRule& rule, double before,
+            Change change, IterationRecord& record) {
   const TimedPhase timed(w.clock, Phase::lbfgs, "accept");
   rule.accepted(model, inputs, w);
   if (has_colliders(inputs)) {
@@ -119,7 +119,7 @@ void accept(const Model& model, const StepInputs& inputs, Workspace& w, SearchRu
 
 }  // namespace
 
-void fail(const Model& model, Workspace& w, const char* phase, double objective) {
+void fail(const Model& model, OpenWorkspace& w, const char* phase, double objective) {
   w.report.failed = true;
   w.report.failure.during = phase;
   w.report.failure.vertex = first_bad_vertex(model, w.current.x);
@@ -127,7 +127,7 @@ void fail(const Model& model, Workspace& w, const char* phase, double objective)
       std::isfinite(objective) ? "the objective has grown beyond all bounds" : "a number is no longer finite";
 }
 
-Iterations::Iterations(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule,
+Iterations::Iterations(const Model& model, const StepInputs& inputs, OpenWorkspace& w, SearchRule& rule,
                        const SearchOrigin& origin)
     : model_(model),
       inputs_(inputs),
@@ -229,7 +229,7 @@ bool Iterations::advance(const SearchLimits& limits) {
   return false;
 }
 
-SearchEnd run_search(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule,
+SearchEnd run_search(const Model& model, const StepInputs& inputs, OpenWorkspace& w, SearchRule& rule,
                      const SearchLimits& limits, const SearchOrigin& origin) {
   Iterations iterations(model, inputs, w, rule, origin);
   iterations.run(limits);
@@ -237,13 +237,13 @@ SearchEnd run_search(const Model& model, const StepInputs& inputs, Workspace& w,
   return iterations.end();
 }
 
-void minimize(const Model& model, const StepInputs& inputs, Workspace& w, double enough) {
+void minimize(const Model& model, const StepInputs& inputs, OpenWorkspace& w, double enough) {
   SystemInverse system;
   LbfgsRule rule(system);
   minimize(model, inputs, w, rule, enough);
 }
 
-void minimize(const Model& model, const StepInputs& inputs, Workspace& w, SearchRule& rule, double enough) {
+void minimize(const Model& model, const StepInputs& inputs, OpenWorkspace& w, SearchRule& rule, double enough) {
   evaluate_start(model, inputs, w);
   run_search(model, inputs, w, rule, {.iterations = inputs.solver.iterations, .enough = enough});
 }

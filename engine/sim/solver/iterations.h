@@ -48,7 +48,7 @@ inline SearchOrigin origin_of(const StepContext& c) { return {&c.state.x, c.abov
 class Iterations {
  public:
   // Begins a search at workspace.current, which has been evaluated.
-  Iterations(const Model& model, const StepInputs& inputs, Workspace& workspace, SearchRule& rule,
+  Iterations(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, SearchRule& rule,
              const SearchOrigin& origin = {});
 
   // Iterates until the search ends. A search that ended by its limits goes on when run() is called again with wider
@@ -68,7 +68,7 @@ class Iterations {
 
   const Model& model_;
   const StepInputs& inputs_;
-  Workspace& w_;
+  OpenWorkspace& w_;
   SearchRule& rule_;
   SearchOrigin origin_;
   SearchEnd end_ = SearchEnd::settled;
@@ -79,15 +79,16 @@ class Iterations {
 };
 
 // Runs a search to its end, and looks further. Returns why it ended.
-SearchEnd run_search(const Model& model, const StepInputs& inputs, Workspace& workspace, SearchRule& rule,
+SearchEnd run_search(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, SearchRule& rule,
                      const SearchLimits& limits, const SearchOrigin& origin = {});
 
 // Minimises g from workspace.current.x; adds to the report's decrease, and sets its slope and stop reason. Also stops
 // once a direction promises less than `enough` [J]. It serves references.
-void minimize(const Model& model, const StepInputs& inputs, Workspace& workspace, double enough = 0);
-void minimize(const Model& model, const StepInputs& inputs, Workspace& workspace, SearchRule& rule, double enough = 0);
+void minimize(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, double enough = 0);
+void minimize(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, SearchRule& rule,
+              double enough = 0);
 
 // Makes the report that of a step which failed in the named phase, at this objective [J].
-void fail(const Model& model, Workspace& workspace, const char* phase, double objective);
+void fail(const Model& model, OpenWorkspace& workspace, const char* phase, double objective);
 
 }  // namespace supple

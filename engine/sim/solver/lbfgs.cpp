@@ -17,7 +17,8 @@ using Pointers = std::array<const double*, most_pairs>;
 using Numbers = std::array<double, most_pairs>;
 
 // Computes result[i] = a_i . b, chunk by chunk, so that the sums do not depend on threads.
-void dot_all(const Model& model, Workspace& workspace, const Pointers& a, int count, const double* b, double* result) {
+void dot_all(const Model& model, OpenWorkspace& workspace, const Pointers& a, int count, const double* b,
+             double* result) {
   if (count == 0) return;
   const int chunks = vertex_chunks(model);
   double* partial = workspace.partial.data();
@@ -31,7 +32,8 @@ void dot_all(const Model& model, Workspace& workspace, const Pointers& a, int co
   }
 }
 
-void add_all(const Model& model, Workspace& workspace, const Pointers& a, const double* factors, int count, double* r) {
+void add_all(const Model& model, OpenWorkspace& workspace, const Pointers& a, const double* factors, int count,
+             double* r) {
   if (count == 0) return;
   run_chunks(workspace.threads, vertex_chunks(model), long(model.free) * count, [&](int c) {
     linear_kernels().add_scaled(a.data(), factors, count, r, c * numbers_a_chunk,
@@ -41,17 +43,17 @@ void add_all(const Model& model, Workspace& workspace, const Pointers& a, const 
 
 // Returns how far the step of a pair leads along a stiff direction.
 double along_pair(const StiffDirection& stiff, const double* step) {
-  const ContactPoint& point = stiff.point;
-  Vec3 mean = point.weight[0] * Eigen::Map<const Vec3>(step + 3 * std::size_t(point.vertex[0]));
-  for (int k = 1; k < point.free; ++k)
-    mean += point.weight[k] * Eigen::Map<const Vec3>(step + 3 * std::size_t(point.vertex[k]));
+  const ContactStencil& stencil = stiff.stencil;
+  Vec3 mean = stencil.weight[0] * Eigen::Map<const Vec3>(step + 3 * std::size_t(stencil.vertex[0]));
+  for (int k = 1; k < stencil.free; ++k)
+    mean += stencil.weight[k] * Eigen::Map<const Vec3>(step + 3 * std::size_t(stencil.vertex[k]));
   return mean.dot(stiff.axis);
 }
 
 // Holds the share of contacts in all pairs, t_i += K s_i, when it is kept separately (ContactHistory::current).
 class ContactPairs {
  public:
-  ContactPairs(const Model& model, const ContactSettings& settings, Workspace& w, const Pointers& s, int count)
+  ContactPairs(const Model& model, const ContactSettings& settings, OpenWorkspace& w, const Pointers& s, int count)
       : correction_(w.correction) {
     find_stiff_directions(model, w.current.contacts, w.current.x, w.contact.stick_length, w.correction);
     directions_ = correction_.wanted.size();
@@ -101,8 +103,8 @@ class ContactPairs {
 
 }  // namespace
 
-double search_direction(const Model& model, const StepInputs& inputs, Workspace& workspace, const PairHistory& history,
-                        InitialInverse& initial) {
+double search_direction(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace,
+                        const PairHistory& history, InitialInverse& initial) {
   TimedPhase timed(workspace.clock, Phase::lbfgs, "L-BFGS");
   const int count = history.count;
   Pointers s{}, t{};
@@ -161,7 +163,7 @@ double search_direction(const Model& model, const StepInputs& inputs, Workspace&
 
 bool is_safely_positive(double st, double ss, double tt) { return st > 1e-10 * std::sqrt(ss * tt); }
 
-void remember_pair(const Model& model, const ContactSettings& contact, Workspace& workspace, PairHistory& history) {
+void remember_pair(const Model& model, const ContactSettings& contact, OpenWorkspace& workspace, PairHistory& history) {
   if (history.window == 0) return;
   if (workspace.is_bowed) {  // the arc has turned the body away from where the pairs were found
     history.clear();
@@ -204,7 +206,7 @@ void remember_pair(const Model& model, const ContactSettings& contact, Workspace
   for (int i = 0; i < history.count; ++i) workspace.products[next * history.window + history.place(i)] = with[i];
 }
 
-void SystemInverse::begin(const Model& model, const StepInputs& inputs, Workspace& w) {
+void SystemInverse::begin(const Model& model, const StepInputs& inputs, OpenWorkspace& w) {
   // A step that starts again from where the body was is violent, and the stiffness at rest says little about it.
   const bool starts_again = !w.report.records.empty();
   const bool wanted =
@@ -214,7 +216,7 @@ void SystemInverse::begin(const Model& model, const StepInputs& inputs, Workspac
   iterations_ = w.report.iterations;
 }
 
-void SystemInverse::apply(const Model& model, const StepInputs& inputs, Workspace& w, Positions& r, Positions& z) {
+void SystemInverse::apply(const Model& model, const StepInputs& inputs, OpenWorkspace& w, Positions& r, Positions& z) {
   if (w.hessian_serves && w.current.contacts.empty()) return w.hessian.solve(model, r, z);
   if (has_second_level_ && iterations_ != w.report.iterations) w.second_level.move_to(w.current.x);
   iterations_ = w.report.iterations;
@@ -223,7 +225,7 @@ void SystemInverse::apply(const Model& model, const StepInputs& inputs, Workspac
   apply_inverse(model, inputs.solver.contact, w.correction, w.solve_scratch, r, z);
 }
 
-bool SystemInverse::bend(const Model& model, const StepInputs& inputs, Workspace& w) {
+bool SystemInverse::bend(const Model& model, const StepInputs& inputs, OpenWorkspace& w) {
   return foresee_contacts(model, inputs.solver.contact, w.current.contacts, w.current.x, w.correction, w.direction);
 }
 

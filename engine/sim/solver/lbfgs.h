@@ -30,10 +30,10 @@ class InitialInverse {
  public:
   virtual ~InitialInverse() = default;
   // These functions are called when those of SearchRule are.
-  virtual void begin(const Model&, const StepInputs&, Workspace&) {}
-  virtual void accepted(const Model&, const StepInputs&, Workspace&) {}
+  virtual void begin(const Model&, const StepInputs&, OpenWorkspace&) {}
+  virtual void accepted(const Model&, const StepInputs&, OpenWorkspace&) {}
   // Computes z = A0^-1 r for the free vertices; overwrites r.
-  virtual void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r,
+  virtual void apply(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, Positions& r,
                      Positions& z) = 0;
   // Tells the same as SearchRule::measures_last_iterate.
   virtual bool measures_last_iterate() const { return false; }
@@ -41,17 +41,17 @@ class InitialInverse {
   virtual bool forget() { return false; }
   // This is called after the recursion. It may correct workspace.direction for contacts that it would cross, and
   // returns whether it did.
-  virtual bool bend(const Model&, const StepInputs&, Workspace&) { return false; }
+  virtual bool bend(const Model&, const StepInputs&, OpenWorkspace&) { return false; }
 };
 
 // Sets workspace.direction to -H grad with H the L-BFGS approximation of the inverse Hessian; returns tr(grad^T d).
-double search_direction(const Model& model, const StepInputs& inputs, Workspace& workspace, const PairHistory& history,
-                        InitialInverse& initial);
+double search_direction(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace,
+                        const PairHistory& history, InitialInverse& initial);
 
 // Stores s and t, the differences of positions and gradients between trial and current iterate (without the normal
 // forces of contacts when their stiffness is added again each time), as the newest pair when tr(s^T t) is safely
 // positive.
-void remember_pair(const Model& model, const ContactSettings& contact, Workspace& workspace, PairHistory& history);
+void remember_pair(const Model& model, const ContactSettings& contact, OpenWorkspace& workspace, PairHistory& history);
 
 // Tells whether s.t, of a pair with these s.s and t.t, is more than round-off. Curvature along s that is negative or
 // lost in round-off would spoil the matrix: Nocedal and Wright 2006, section 7.2, skip such pairs.
@@ -62,14 +62,14 @@ class LbfgsRule : public SearchRule {
  public:
   explicit LbfgsRule(InitialInverse& initial) : initial_(initial) {}
 
-  void begin(const Model& model, const StepInputs& inputs, Workspace& workspace) override {
+  void begin(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace) override {
     history_ = {inputs.solver.history};
     initial_.begin(model, inputs, workspace);
   }
-  double direction(const Model& model, const StepInputs& inputs, Workspace& workspace) override {
+  double direction(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace) override {
     return search_direction(model, inputs, workspace, history_, initial_);
   }
-  void accepted(const Model& model, const StepInputs& inputs, Workspace& workspace) override {
+  void accepted(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace) override {
     initial_.accepted(model, inputs, workspace);
     remember_pair(model, inputs.solver.contact, workspace, history_);
   }
@@ -84,15 +84,16 @@ class LbfgsRule : public SearchRule {
   PairHistory history_;
 };
 
-// Starts directions from the matrix in force, Workspace::system, by its factor, with contacts as in
+// Starts directions from the matrix in force, OpenWorkspace::system, by its factor, with contacts as in
 // contact_direction.h: the paper's A = M/h^2 + L, with its second level (coarse/second_level.h) where the settings ask
 // for it, or one that follows the body (matrix_rule.h).
 class SystemInverse final : public InitialInverse {
  public:
-  void begin(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
-  void apply(const Model& model, const StepInputs& inputs, Workspace& workspace, Positions& r, Positions& z) override;
+  void begin(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace) override;
+  void apply(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, Positions& r,
+             Positions& z) override;
   bool measures_last_iterate() const override { return true; }
-  bool bend(const Model& model, const StepInputs& inputs, Workspace& workspace) override;
+  bool bend(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace) override;
   // Goes on with the first level alone, where directions of both levels came to nothing.
   bool forget() override { return std::exchange(has_second_level_, false); }
 

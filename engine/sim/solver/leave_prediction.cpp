@@ -16,7 +16,7 @@ struct HandleMotion {
 
 // Fits a rigid motion to the held vertices (Kabsch 1976, "A solution for the best rotation to relate two sets of
 // vectors").
-HandleMotion motion_of_handles(const Model& model, const State& state, const Workspace& w) {
+HandleMotion motion_of_handles(const Model& model, const State& state, const OpenWorkspace& w) {
   const int held = model.vertices - model.free;
   const auto before = state.x.bottomRows(held), after = w.current.x.bottomRows(held);
   const Eigen::RowVector3d from = before.colwise().mean(), to = after.colwise().mean();
@@ -30,7 +30,7 @@ HandleMotion motion_of_handles(const Model& model, const State& state, const Wor
 // Finds how turning parts depart from the straight motions h v, which stretch them, and whether that matters.
 void find_turning(StepContext& c) {
   const Model& model = c.model;
-  Workspace& w = c.w;
+  OpenWorkspace& w = c.w;
   constexpr double little = 1e-5;  // of the kinetic energy of the body's free motion
   w.turns = false;
   if (c.inputs.solver.levels < 2) return;
@@ -47,7 +47,7 @@ void find_turning(StepContext& c) {
 
 // Sets the direction that leads from y to where the handles' departure from y is spread. Returns false where they do
 // not depart.
-bool spread_handles(Workspace& w) {
+bool spread_handles(OpenWorkspace& w) {
   Positions& right = w.scratch;
   right.setZero();
   for (const System::Coupling& entry : w.system->couplings) {
@@ -68,7 +68,7 @@ bool leaves_prediction(StepContext& c) {
 }
 
 void fit_handles_and_turning(StepContext& c) {
-  Workspace& w = c.w;
+  OpenWorkspace& w = c.w;
   if (!c.spreads_handles) w.direction.setZero();
   if (w.turns) w.direction += w.turned;
   const TimedPhase timed(w.clock, Phase::evaluate, "leave prediction");
@@ -87,7 +87,7 @@ bool handles_turn_far(const StepContext& c) {
 
 void turn_with_handles(StepContext& c) {
   const Model& model = c.model;
-  Workspace& w = c.w;
+  OpenWorkspace& w = c.w;
   const HandleMotion motion = motion_of_handles(model, c.state, w);
   TimedPhase timed(w.clock, Phase::solve, "solve");
   Positions& shares = w.scratch;

@@ -10,7 +10,7 @@
 
 namespace supple {
 
-// Tells whether y needs a remedy. Finds the turning parts (Workspace::turned). If handles depart from y, sets
+// Tells whether y needs a remedy. Finds the turning parts (OpenWorkspace::turned). If handles depart from y, sets
 // workspace.direction so that it leads from y to where their departure is spread into the body.
 bool leaves_prediction(StepContext& c);
 

@@ -26,7 +26,7 @@ bool decreases_by_slope(const Change& change, double slope, double armijo, doubl
 // Finds the contacts at the trial point, which was accepted with the planes of the search. They are kept unless they
 // make the point worse than where the search began; the search could not know of them. Friction, whose normal forces
 // are lagged, does not count here.
-bool contacts_accept(const Model& model, const StepInputs& inputs, Workspace& w, double change, double noise) {
+bool contacts_accept(const Model& model, const StepInputs& inputs, OpenWorkspace& w, double change, double noise) {
   if (!has_colliders(inputs)) return true;
   find_contacts_of(model, inputs, w, w.trial);
   const double jump = contact_energy(w.trial.contacts, w.trial.x) - contact_energy(w.current.contacts, w.trial.x);
@@ -34,7 +34,7 @@ bool contacts_accept(const Model& model, const StepInputs& inputs, Workspace& w,
 }
 
 // Tries alpha = 1, 1/2, ...
-Search backtrack(const Model& model, const StepInputs& inputs, Workspace& w, double slope, bool may_learn,
+Search backtrack(const Model& model, const StepInputs& inputs, OpenWorkspace& w, double slope, bool may_learn,
                  Change& change, IterationRecord& record) {
   const SolverSettings& solver = inputs.solver;
   const double noise = noise_of(model, w.current.g, extent_of(model, w));
@@ -78,7 +78,7 @@ struct Trial {
 // contacts are refused, as in backtrack(), counts as too far away.
 class WolfeSearch {
  public:
-  WolfeSearch(const Model& model, const StepInputs& inputs, Workspace& w, double slope, Change& change,
+  WolfeSearch(const Model& model, const StepInputs& inputs, OpenWorkspace& w, double slope, Change& change,
               IterationRecord& record)
       : model_(model),
         inputs_(inputs),
@@ -153,7 +153,7 @@ class WolfeSearch {
 
   const Model& model_;
   const StepInputs& inputs_;
-  Workspace& w_;
+  OpenWorkspace& w_;
   double slope_;
   double noise_;
   int refused_ = 0;  // trial points refused for the contacts found there
@@ -163,16 +163,16 @@ class WolfeSearch {
 
 }  // namespace
 
-double extent_of(const Model& model, const Workspace& w) {
+double extent_of(const Model& model, const OpenWorkspace& w) {
   return w.current.x.topRows(model.free).cwiseAbs().maxCoeff();
 }
 
-bool below_resolution(const Model& model, const Workspace& w) {
+bool below_resolution(const Model& model, const OpenWorkspace& w) {
   const double extent = extent_of(model, w);
   return w.direction.cwiseAbs().maxCoeff() <= 4 * round_off * std::max(extent, model.size);
 }
 
-Search search_line(const Model& model, const StepInputs& inputs, Workspace& w, double slope, bool may_learn,
+Search search_line(const Model& model, const StepInputs& inputs, OpenWorkspace& w, double slope, bool may_learn,
                    Change& change, IterationRecord& record) {
   const double noise = noise_of(model, w.current.g, extent_of(model, w));
   if (inputs.solver.line_search == LineSearch::wolfe && -slope > noise / inputs.solver.armijo)

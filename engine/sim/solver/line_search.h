@@ -19,14 +19,14 @@ enum class Search {
 // contacts, those found there. may_learn: whether the search may end as `unforeseen` (learn_contacts()); otherwise, and
 // with the strong Wolfe conditions, steps become shorter. `record` gets the step length and the results of the full
 // step.
-Search search_line(const Model& model, const StepInputs& inputs, Workspace& workspace, double slope, bool may_learn,
+Search search_line(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, double slope, bool may_learn,
                    Change& change, IterationRecord& record);
 
 // Tells whether a direction is too short to change more than the positions' last bits, so that nothing is left to gain.
 // Such directions include the round-off of a body at rest, which must not be integrated into a drift.
-bool below_resolution(const Model& model, const Workspace& workspace);
+bool below_resolution(const Model& model, const OpenWorkspace& workspace);
 
 // Returns the largest coordinate, relative to which positions are rounded [m].
-double extent_of(const Model& model, const Workspace& workspace);
+double extent_of(const Model& model, const OpenWorkspace& workspace);
 
 }  // namespace supple

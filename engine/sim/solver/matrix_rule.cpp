@@ -28,7 +28,7 @@ constexpr double evaluations_a_step = 11;
 
 // Makes the tangent matrix: the one that the state names, or a new one. Returns false where there is none; A then
 // serves.
-bool make_tangent(const Model& model, const SolverMemory& memory, Workspace& w) {
+bool make_tangent(const Model& model, const SolverMemory& memory, OpenWorkspace& w) {
   const bool known =
       memory.matrix_made_at.rows() == model.vertices && w.tangent.make(model, memory.matrix_made_at, shares, w.threads);
   if (known && w.tangent.departure(model, w.next_matrix_at) <= most_departure) return true;
@@ -41,7 +41,7 @@ int least_age(const Model& model, const HessianSystem& hessian) {
 }
 
 // Makes the Hessian in the same way. A serves, too, where the Hessian is poor and too young to be renewed.
-bool make_hessian(const Model& model, const SolverMemory& memory, Workspace& w) {
+bool make_hessian(const Model& model, const SolverMemory& memory, OpenWorkspace& w) {
   if (memory.matrix_made_at.rows() == model.vertices && w.hessian.make(model, memory.matrix_made_at, w.threads)) {
     const double others = memory.constant_progress > 0 ? memory.constant_progress : usual_progress;
     const bool poor =
@@ -60,20 +60,20 @@ bool has_tetrahedra(const Model& model) {
 
 }  // namespace
 
-void prepare_matrix(const Model& model, const SolverSettings& solver, const State& state, Workspace& w) {
+void prepare_matrix(const Model& model, const SolverSettings& solver, const State& state, OpenWorkspace& w) {
   const SolverMemory& memory = state.memory;
   if (memory.matrix_made_at.rows() != model.vertices) return;
   if (solver.matrix == SystemMatrix::tangent) w.tangent.make(model, memory.matrix_made_at, shares, w.threads);
   if (solver.matrix == SystemMatrix::hessian) w.hessian.make(model, memory.matrix_made_at, w.threads);
 }
 
-void put_in_force(const Model& model, const StepInputs& inputs, const System& system, Workspace& w) {
+void put_in_force(const Model& model, const StepInputs& inputs, const System& system, OpenWorkspace& w) {
   w.system = w.correction.matrix = &system;
   w.hessian_serves = false;
   if (has_colliders(inputs)) begin_corrections(model, w.correction);
 }
 
-void choose_matrix(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
+void choose_matrix(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& w) {
   w.renewed = false;
   // Implicit midpoint damps nothing: an error that ten iterations leave comes back, and the velocities of a torn body
   // say little of where it is heading. Free bars of tests/sim/step_test.cpp flew apart with the tangent.
@@ -84,7 +84,7 @@ void choose_matrix(const Model& model, const StepInputs& inputs, const State& st
 }
 
 // A body without tetrahedra has A: springs alone do not tell how far it has turned.
-void choose_hessian(const Model& model, const StepInputs& inputs, const State& state, Workspace& w) {
+void choose_hessian(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& w) {
   if (inputs.solver.matrix != SystemMatrix::hessian || model.integrator != Integrator::backward_euler) return;
   if (!w.current.contacts.empty() || !has_tetrahedra(model)) return;
   const TimedPhase timed(w.clock, Phase::matrix, "matrix");
@@ -102,7 +102,7 @@ double progress_of(const StepReport& report) {
   return std::pow(left, 1.0 / std::max(report.line_search, 1));
 }
 
-void remember_progress(const Workspace& w, SolverMemory& memory) {
+void remember_progress(const OpenWorkspace& w, SolverMemory& memory) {
   if (w.hessian_serves) {
     memory.hessian_progress = progress_of(w.report);
     if (memory.constant_progress > 0)
@@ -114,7 +114,7 @@ void remember_progress(const Workspace& w, SolverMemory& memory) {
 
 }  // namespace
 
-void remember_matrix(const Model& model, const SolverSettings& solver, const Workspace& w, SolverMemory& memory) {
+void remember_matrix(const Model& model, const SolverSettings& solver, const OpenWorkspace& w, SolverMemory& memory) {
   const bool of_hessian = solver.matrix == SystemMatrix::hessian;
   if (w.renewed) {
     memory.matrix_made_at = w.next_matrix_at;

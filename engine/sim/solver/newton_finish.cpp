@@ -23,7 +23,7 @@ namespace {
 
 class NewtonDirections final : public SearchRule {
  public:
-  double direction(const Model& model, const StepInputs& inputs, Workspace& workspace) override {
+  double direction(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace) override {
     return workspace.newton.direction(model, inputs, workspace);
   }
 };
@@ -69,7 +69,7 @@ Hardness hardness_of(const StepContext& c) {
 }
 
 void finish_by_newton(StepContext& c, Hardness hardness) {
-  Workspace& w = c.w;
+  OpenWorkspace& w = c.w;
   StepReport& report = w.report;
   const double gained = gained_in_all(c.model, c.inputs, w, report.decrease + c.above_start);
   const double left = report.remaining_estimate;

@@ -7,7 +7,7 @@
 #include "sim/model/hessian_system.h"
 #include "sim/model/system_solve.h"
 #include "sim/solver/hessian_matrix.h"
-#include "sim/solver/workspace.h"
+#include "sim/solver/open_workspace.h"
 
 namespace supple {
 
@@ -21,7 +21,7 @@ struct NewtonSystem::Parts {
   explicit Parts(const Model& of) : structure(of.structure), hessian(of), factor(of.factor.precision()) {
     factor.analyze(hessian.matrix());
   }
-  void assemble(const Model& model, Workspace& w);
+  void assemble(const Model& model, OpenWorkspace& w);
   bool take_planes_ahead(const Iterate& at, const Positions& direction);
   bool solve(const Model& model, const std::vector<Contact>& contacts, Positions& direction);
 };
@@ -31,7 +31,7 @@ NewtonSystem::~NewtonSystem() = default;
 NewtonSystem::NewtonSystem(NewtonSystem&&) noexcept = default;
 NewtonSystem& NewtonSystem::operator=(NewtonSystem&&) noexcept = default;
 
-void NewtonSystem::Parts::assemble(const Model& model, Workspace& w) {
+void NewtonSystem::Parts::assemble(const Model& model, OpenWorkspace& w) {
   hessian.assemble(model, w, true);
   right = w.current.gradient;
   stiffness.clear();
@@ -48,11 +48,11 @@ bool NewtonSystem::Parts::take_planes_ahead(const Iterate& at, const Positions& 
     const Vec3& n = contact.normal;
     const double here = gap(contact, at.x), k = 2 * contact.stiffness;
     const bool is_held = n.dot(stiffness[i] * n) > contact.stiffness;
-    if (is_held || here + n.dot(contact.point.of_free(direction)) >= 0) continue;
+    if (is_held || here + n.dot(contact.stencil.of_free(direction)) >= 0) continue;
     some = true;
-    hessian.add_stiffness(contact.point, k * n * n.transpose());
+    hessian.add_stiffness(contact.stencil, k * n * n.transpose());
     stiffness[i] += k * n * n.transpose();
-    contact.point.spread(k * here * n, right);
+    contact.stencil.spread(k * here * n, right);
   }
   return some;
 }
@@ -68,14 +68,14 @@ bool NewtonSystem::Parts::solve(const Model& model, const std::vector<Contact>& 
   if (model.free_floating) {
     pushed = right;
     for (std::size_t i = 0; i < contacts.size(); ++i)
-      contacts[i].point.spread(-(stiffness[i] * contacts[i].point.of_free(direction)), pushed);
+      contacts[i].stencil.spread(-(stiffness[i] * contacts[i].stencil.of_free(direction)), pushed);
     restore_translation(model, pushed, direction);
   }
   direction = -direction;
   return true;
 }
 
-double NewtonSystem::direction(const Model& model, const StepInputs& inputs, Workspace& w) {
+double NewtonSystem::direction(const Model& model, const StepInputs& inputs, OpenWorkspace& w) {
   constexpr int most_corrections = 3;
   const TimedPhase timed(w.clock, Phase::solve, "Newton");
   if (!parts_ || parts_->structure != model.structure || parts_->factor.precision() != model.factor.precision())

@@ -10,7 +10,7 @@
 
 namespace supple {
 
-struct Workspace;
+struct OpenWorkspace;
 
 class NewtonSystem {
  public:
@@ -22,7 +22,7 @@ class NewtonSystem {
   // Sets workspace.direction at workspace.current; returns tr(grad^T d) [J]. Near planes that the direction would lead
   // through hold it back, as in foresee_contacts() (contact_direction.h). Allocates only when the model's structure is
   // not that of the last call. Where the numbers are too large for a factor or its solution, the direction is zero.
-  double direction(const Model& model, const StepInputs& inputs, Workspace& workspace);
+  double direction(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace);
 
  private:
   struct Parts;

@@ -26,7 +26,7 @@ double quadratic_value(double weight, const double* point, const double* center)
 // Computes one vertex' share of w M/h^2, handles' springs and damping.
 struct VertexTerms {
   const Model& model;
-  const Workspace& w;
+  const OpenWorkspace& w;
   const double* point;
   const double* reference;  // or null
   double inertia;           // w / h^2 [1/s^2]
@@ -97,7 +97,7 @@ struct VertexTerms {
 
 // Computes energies and forces of all elements at `place`; returns e times the sum of energies, or of their differences
 // from those of a reference (null: none).
-double evaluate_elements(const Model& model, Workspace& workspace, const Positions& place,
+double evaluate_elements(const Model& model, OpenWorkspace& workspace, const Positions& place,
                          AlignedVector<double>& energy, Wanted wanted, const AlignedVector<double>* reference) {
   const ElementKernels& kernel = element_kernels();
   const int chunks = static_cast<int>(model.chunks.size());
@@ -116,7 +116,7 @@ double evaluate_elements(const Model& model, Workspace& workspace, const Positio
 }
 
 // Adds the vertices' terms, and gathers the whole gradient from these and the elements' forces.
-void add_vertices(const Model& model, Workspace& workspace, const VertexTerms& terms, Positions* gradient,
+void add_vertices(const Model& model, OpenWorkspace& workspace, const VertexTerms& terms, Positions* gradient,
                   Change& change) {
   const int chunks = vertex_chunks(model);
   double* partial = workspace.partial.data();
@@ -149,7 +149,7 @@ void add_vertices(const Model& model, Workspace& workspace, const VertexTerms& t
 }
 
 // Computes g at an iterate with the contacts of `planes`, or its difference from g at a reference (null: none).
-Change evaluate_against(const Model& model, Workspace& workspace, Iterate& at, const std::vector<Contact>& planes,
+Change evaluate_against(const Model& model, OpenWorkspace& workspace, Iterate& at, const std::vector<Contact>& planes,
                         const Iterate* reference, Wanted wanted) {
   const TimedPhase timed(workspace.clock, Phase::evaluate, "evaluate");
   const double theta = model.scheme.theta;
@@ -181,11 +181,11 @@ Change evaluate_against(const Model& model, Workspace& workspace, Iterate& at, c
 
 bool needs_start(const Model& model) { return model.scheme.theta < 1 || !model.damping.begin.empty(); }
 
-void evaluate(const Model& model, Workspace& workspace, Iterate& iterate, Wanted wanted) {
+void evaluate(const Model& model, OpenWorkspace& workspace, Iterate& iterate, Wanted wanted) {
   iterate.g = evaluate_against(model, workspace, iterate, iterate.contacts, nullptr, wanted).value;
 }
 
-Change evaluate_trial(const Model& model, Workspace& workspace, Wanted wanted) {
+Change evaluate_trial(const Model& model, OpenWorkspace& workspace, Wanted wanted) {
   const Change change =
       evaluate_against(model, workspace, workspace.trial, workspace.current.contacts, &workspace.current, wanted);
   workspace.trial.g = workspace.current.g + change.value;
@@ -205,7 +205,7 @@ double noise_of(const Model& model, double objective, double extent) {
                      4 * last_bit * model.mean_stiffness * model.elements);
 }
 
-double inertial_energy(const Model& model, const Workspace& workspace, const Positions& x) {
+double inertial_energy(const Model& model, const OpenWorkspace& workspace, const Positions& x) {
   const double inverse_h2 = model.scheme.inertia / (model.time_step * model.time_step);
   double sum = 0;
   for (int v = 0; v < model.free; ++v)
@@ -213,11 +213,11 @@ double inertial_energy(const Model& model, const Workspace& workspace, const Pos
   return sum;
 }
 
-double elastic_energy(const Model& model, Workspace& workspace, const Positions& x) {
+double elastic_energy(const Model& model, OpenWorkspace& workspace, const Positions& x) {
   return evaluate_elements(model, workspace, x, workspace.trial.energy, Wanted::value, nullptr) / model.scheme.energy;
 }
 
-double elastic_forces(const Model& model, Workspace& workspace, const Positions& x) {
+double elastic_forces(const Model& model, OpenWorkspace& workspace, const Positions& x) {
   return evaluate_elements(model, workspace, x, workspace.trial.energy, Wanted::gradient, nullptr) /
          model.scheme.energy;
 }

@@ -3,7 +3,7 @@
 // step.h).
 #pragma once
 
-#include "sim/solver/workspace.h"
+#include "sim/solver/open_workspace.h"
 
 namespace supple {
 
@@ -22,23 +22,23 @@ struct Change {
 };
 
 // Evaluates g at iterate.x with iterate.contacts: sets its g and energies, and its gradient where that is wanted.
-void evaluate(const Model& model, Workspace& workspace, Iterate& iterate, Wanted wanted);
+void evaluate(const Model& model, OpenWorkspace& workspace, Iterate& iterate, Wanted wanted);
 
 // Evaluates g at workspace.trial.x with the contacts of workspace.current, as its difference from the current iterate,
 // summed element by element and vertex by vertex. Also sets trial.g, the trial's energies, and its gradient where that
 // is wanted.
-Change evaluate_trial(const Model& model, Workspace& workspace, Wanted wanted);
+Change evaluate_trial(const Model& model, OpenWorkspace& workspace, Wanted wanted);
 
 // Returns the round-off of differences of g at a point with this objective and largest coordinate [J].
 double noise_of(const Model& model, double objective, double extent);
 
 // Returns the share of inertia in g at x, sum of w m |x - y|^2 / (2 h^2), where w is the integrator's weight [J].
-double inertial_energy(const Model& model, const Workspace& workspace, const Positions& x);
+double inertial_energy(const Model& model, const OpenWorkspace& workspace, const Positions& x);
 
 // Returns E(x) of all elements [J]. Overwrites the energies of the trial iterate.
-double elastic_energy(const Model& model, Workspace& workspace, const Positions& x);
+double elastic_energy(const Model& model, OpenWorkspace& workspace, const Positions& x);
 
 // Does the same, and leaves the forces of the elements in the workspace, by slot.
-double elastic_forces(const Model& model, Workspace& workspace, const Positions& x);
+double elastic_forces(const Model& model, OpenWorkspace& workspace, const Positions& x);
 
 }  // namespace supple

@@ -2,13 +2,13 @@
 
 namespace supple {
 
-void find_contacts_of(const Model& model, const StepInputs& inputs, Workspace& w, Iterate& iterate) {
+void find_contacts_of(const Model& model, const StepInputs& inputs, OpenWorkspace& w, Iterate& iterate) {
   if (!has_colliders(inputs)) return;
   const TimedPhase timed(w.clock, Phase::collide, "find contacts");
   find_contacts(model, inputs, iterate.x, w.threads, w.contact, iterate.contacts);
 }
 
-void set_trial(const Model& model, Workspace& w, double alpha) {
+void set_trial(const Model& model, OpenWorkspace& w, double alpha) {
   w.trial.x.topRows(model.free) = w.current.x.topRows(model.free) + alpha * w.direction;
   if (w.is_bowed) w.trial.x.topRows(model.free) += alpha * alpha * w.bow;
 }
@@ -17,7 +17,7 @@ void move_rigidly(const Model& model, const Eigen::Isometry3d& motion, Positions
   for (int v = 0; v < model.free; ++v) x.row(v) = (motion * Vec3(x.row(v))).transpose();
 }
 
-void evaluate_start(const Model& model, const StepInputs& inputs, Workspace& w) {
+void evaluate_start(const Model& model, const StepInputs& inputs, OpenWorkspace& w) {
   const TimedPhase timed(w.clock, Phase::evaluate, "evaluate start");
   if (has_colliders(inputs)) {
     w.trial.contacts.swap(w.current.contacts);
@@ -28,7 +28,7 @@ void evaluate_start(const Model& model, const StepInputs& inputs, Workspace& w) 
   w.report.objective.push_back(w.current.g);
 }
 
-void forget_start(Workspace& w) {
+void forget_start(OpenWorkspace& w) {
   w.report.objective.clear();
   forget_counts(w.contact);
 }

@@ -7,19 +7,19 @@
 namespace supple {
 
 // Finds the contacts of an iterate; does nothing without colliders.
-void find_contacts_of(const Model& model, const StepInputs& inputs, Workspace& workspace, Iterate& iterate);
+void find_contacts_of(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, Iterate& iterate);
 
 // Evaluates workspace.current with the contacts found there, and appends the value to the report's objectives.
-void evaluate_start(const Model& model, const StepInputs& inputs, Workspace& workspace);
+void evaluate_start(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace);
 
 // Drops what was counted and noted of a first iterate that was evaluated but from which the step does not start.
-void forget_start(Workspace& workspace);
+void forget_start(OpenWorkspace& workspace);
 
 // Moves the free vertices by a rigid motion.
 void move_rigidly(const Model& model, const Eigen::Isometry3d& motion, Positions& x);
 
 // Sets workspace.trial.x = x + alpha d for the free vertices, bent by the search's arc where it has one; handled ones
 // stay at their targets.
-void set_trial(const Model& model, Workspace& workspace, double alpha);
+void set_trial(const Model& model, OpenWorkspace& workspace, double alpha);
 
 }  // namespace supple

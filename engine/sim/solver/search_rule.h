@@ -4,7 +4,7 @@
 #pragma once
 
 #include "sim/model/inputs.h"
-#include "sim/solver/workspace.h"
+#include "sim/solver/open_workspace.h"
 
 namespace supple {
 
@@ -14,14 +14,14 @@ class SearchRule {
 
   // This is called at the start of each search, when workspace.current is the first iterate with its gradient and
   // energies. A step makes a second search when it starts again from where the body was.
-  virtual void begin(const Model&, const StepInputs&, Workspace&) {}
+  virtual void begin(const Model&, const StepInputs&, OpenWorkspace&) {}
 
   // Sets workspace.direction at workspace.current; returns tr(grad^T d).
-  virtual double direction(const Model& model, const StepInputs& inputs, Workspace& workspace) = 0;
+  virtual double direction(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace) = 0;
 
   // This is called when the trial iterate was accepted and is about to become the current one. The gradients of both
   // iterates still contain the contacts of the current iterate, which the search used.
-  virtual void accepted(const Model&, const StepInputs&, Workspace&) {}
+  virtual void accepted(const Model&, const StepInputs&, OpenWorkspace&) {}
 
   // This is called when the contacts of the new iterate are not those of the last iterate.
   virtual void contacts_changed(const StepInputs&) {}

@@ -9,7 +9,7 @@ namespace supple {
 
 bool is_still(const StepContext& c) {
   const Model& model = c.model;
-  const Workspace& w = c.w;
+  const OpenWorkspace& w = c.w;
   constexpr double little = 0.01;  // of the energy of the body's free motion in the step
   double way = 0, free_way = 0;
   for (int v = 0; v < model.free; ++v) {
@@ -24,7 +24,7 @@ namespace {
 // Makes the trial positions the first iterate where their g is below a share of the current one's. Friction is treated
 // as in gain_of_staying() (from_staying.h).
 void start_from_trial_below(double share, const StepContext& c) {
-  Workspace& w = c.w;
+  OpenWorkspace& w = c.w;
   const double stick = w.contact.stick_length;
   const double given = w.current.g - friction_energy(w.current.contacts, stick, w.current.x);
   find_contacts_of(c.model, c.inputs, w, w.trial);
@@ -42,7 +42,7 @@ void start_from_trial_below(double share, const StepContext& c) {
 
 void start_without_fall(StepContext& c) {
   const int free = c.model.free;
-  Workspace& w = c.w;
+  OpenWorkspace& w = c.w;
   const TimedPhase timed(w.clock, Phase::evaluate, "start without fall");
   w.trial.x.topRows(free) = (c.state.x + c.model.time_step * c.state.v).topRows(free);
   if (w.turns) w.trial.x.topRows(free) += w.turned;
@@ -51,12 +51,12 @@ void start_without_fall(StepContext& c) {
 
 bool touches_between_vertices(const StepContext& c) {
   return std::ranges::any_of(c.w.current.contacts,
-                             [](const Contact& contact) { return contact.depth > 0 && !contact.point.is_vertex(); });
+                             [](const Contact& contact) { return contact.depth > 0 && !contact.stencil.is_vertex(); });
 }
 
 void start_where_it_was(StepContext& c) {
   constexpr double far_better = 0.25;  // share of the current g
-  Workspace& w = c.w;
+  OpenWorkspace& w = c.w;
   const TimedPhase timed(w.clock, Phase::evaluate, "start where it was");
   w.trial.x.topRows(c.model.free) = c.state.x.topRows(c.model.free);
   if (inertial_energy(c.model, w, w.trial.x) < far_better * w.current.g || c.model.energy_may_be_negative)

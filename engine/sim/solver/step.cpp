@@ -48,7 +48,7 @@ void set_velocity(const Model& model, const Positions& x, State& state) {
   state.v.bottomRows(held) = (x - state.x).bottomRows(held) / h;
 }
 
-void report_contacts(const StepInputs& inputs, Workspace& w) {
+void report_contacts(const StepInputs& inputs, OpenWorkspace& w) {
   w.report.collider_forces.resize(inputs.colliders->size(), Vec3::Zero());
   add_forces(w.current.contacts, w.contact.stick_length, w.current.x, w.report.collider_forces);
   w.report.contacts = w.contact.counts;
@@ -58,7 +58,7 @@ void report_contacts(const StepInputs& inputs, Workspace& w) {
   w.report.contact_force = force.colwise().sum().transpose();
 }
 
-void report_times(Workspace& w) {
+void report_times(OpenWorkspace& w) {
   w.clock.change(Phase::other);
   StepReport& report = w.report;
   report.evaluate_ms = w.clock.spent_ms(Phase::evaluate);
@@ -109,13 +109,13 @@ void take_answer(const StepContext& c, State& state) {
 
 }  // namespace
 
-const StepReport& step(const Model& model, const StepInputs& inputs, State& state, Workspace& w) {
+const StepReport& step(const Model& model, const StepInputs& inputs, State& state, OpenWorkspace& w) {
   SystemInverse system;
   LbfgsRule rule(system);
   return step(model, inputs, state, w, rule);
 }
 
-const StepReport& step(const Model& model, const StepInputs& inputs, State& state, Workspace& w, SearchRule& rule) {
+const StepReport& step(const Model& model, const StepInputs& inputs, State& state, OpenWorkspace& w, SearchRule& rule) {
   w.clock.start();
   const Zone step_zone("step", model.name);
   Zone zone("begin step");

@@ -11,10 +11,10 @@ namespace supple {
 // Unless the line search is off, g at the new x is up to round-off no larger than where the body stays: at the old x,
 // moved along with the collider or the free fall that carries the body. Friction's potential is left out of both,
 // except where Newton's method has finished the step.
-const StepReport& step(const Model& model, const StepInputs& inputs, State& state, Workspace& workspace);
+const StepReport& step(const Model& model, const StepInputs& inputs, State& state, OpenWorkspace& workspace);
 
 // Does the same with another rule for directions. A rule belongs to one body and may keep memory from step to step.
-const StepReport& step(const Model& model, const StepInputs& inputs, State& state, Workspace& workspace,
+const StepReport& step(const Model& model, const StepInputs& inputs, State& state, OpenWorkspace& workspace,
                        SearchRule& rule);
 
 }  // namespace supple

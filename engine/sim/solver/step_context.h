@@ -7,7 +7,7 @@
 
 #include "sim/model/inputs.h"
 #include "sim/model/state.h"
-#include "sim/solver/workspace.h"
+#include "sim/solver/open_workspace.h"
 
 namespace supple {
 
@@ -17,7 +17,7 @@ struct StepContext {
   const Model& model;
   const StepInputs& inputs;
   const State& state;  // the state where the step begins
-  Workspace& w;
+  OpenWorkspace& w;
   SearchRule& rule;  // the rule of the searches before Newton's method
 
   // What is known of the first iterate.

@@ -20,7 +20,7 @@ namespace {
 void go_on_with_collider(const StepContext& c, const Impact& impact) {
   const Model& model = c.model;
   const StepInputs& inputs = c.inputs;
-  Workspace& w = c.w;
+  OpenWorkspace& w = c.w;
   find_contacts_of(model, inputs, w, w.current);
   evaluate(model, w, w.current, Wanted::value);
   w.trial.x.topRows(model.free) = w.current.x.topRows(model.free);

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "sim/model/inputs.h"
-#include "sim/solver/workspace.h"
+#include "sim/solver/open_workspace.h"
 
 namespace supple {
 
@@ -15,7 +15,7 @@ namespace supple {
 class TimeBudget {
  public:
   enum Which { from_first_iterate, from_staying };
-  TimeBudget(const StepInputs& inputs, Workspace& w, Which search)
+  TimeBudget(const StepInputs& inputs, OpenWorkspace& w, Which search)
       : limit_ms_(inputs.solver.budget_ms), clock_(w.clock), cut_(w.report.cuts.after[search]) {
     if (inputs.repeated_cuts) repeated_ = inputs.repeated_cuts->after[search];
     if (limit_ms_ > 0) last_ms_ = clock_.elapsed_ms();

@@ -17,13 +17,13 @@ const Contact* find_same(const std::vector<Contact>& list, const Contact& contac
 
 }  // namespace
 
-bool learn_contacts(const Model& model, const StepInputs& inputs, Workspace& w) {
+bool learn_contacts(const Model& model, const StepInputs& inputs, OpenWorkspace& w) {
   Iterate& at = w.current;
   const std::vector<Contact> before = at.contacts;
   find_contacts_of(model, inputs, w, at);
   std::vector<Contact> more;
   for (const Contact& contact : at.contacts) {
-    if (!contact.point.is_vertex() && find_same(before, contact) == nullptr) more.push_back(contact);
+    if (!contact.stencil.is_vertex() && find_same(before, contact) == nullptr) more.push_back(contact);
   }
   for (Contact ahead : w.trial.contacts) {
     if (gap(ahead, at.x) < 0 || find_same(before, ahead) != nullptr || find_same(more, ahead) != nullptr) continue;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "sim/model/inputs.h"
-#include "sim/solver/workspace.h"
+#include "sim/solver/open_workspace.h"
 
 namespace supple {
 
@@ -15,6 +15,6 @@ inline constexpr int most_lessons = 3;
 // found: planes ahead of it, and planes of points of edges and faces that were chosen on the way. Corrects the
 // objective and its gradient. Returns whether there was anything to add: then a direction from here knows more than the
 // last one.
-bool learn_contacts(const Model& model, const StepInputs& inputs, Workspace& workspace);
+bool learn_contacts(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace);
 
 }  // namespace supple

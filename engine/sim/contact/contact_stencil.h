@@ -1,0 +1,61 @@
+// Describes what a contact acts on as a signed sum u = sum of w_i x_i over up to four vertices. Against a collider it
+// is a material point of the body's surface: a vertex, or a point of an edge or of a triangle, with weights that add up
+// to
+// 1. Against a place of another surface it is the difference between the point and that place, with weights that add up
+// to 0: (1, -b1, -b2, -b3) for a vertex and a triangle, (1 - s, s, t - 1, -t) for two edges. Forces act on the vertices
+// by the same weights, so that in the second case no momentum comes from nothing.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "base/types.h"
+
+namespace supple {
+
+struct ContactStencil {
+  std::array<std::int32_t, 4> vertex;        // ascending, so that the free ones come first
+  std::array<double, 4> weight{1, 0, 0, 0};  // of the vertices, not 0 where they count
+  std::int32_t count = 1;                    // vertices: 1 to 4
+  std::int32_t free = 1;                     // vertices that the solver moves
+
+  static ContactStencil at_vertex(std::int32_t v) { return {{v, v, v, v}}; }
+  bool is_vertex() const { return count == 1; }
+
+  // Returns the sum of vectors by vertex: u of positions, or its motion. x must have rows for all vertices.
+  Vec3 at(const Positions& x) const {
+    Vec3 sum = weight[0] * x.row(vertex[0]);
+    for (int k = 1; k < count; ++k) sum += weight[k] * x.row(vertex[k]).transpose();
+    return sum;
+  }
+  // Returns the sum of vectors by free vertex; those of held vertices count as zero.
+  Vec3 of_free(const Positions& d) const {
+    Vec3 sum = weight[0] * d.row(vertex[0]);
+    for (int k = 1; k < free; ++k) sum += weight[k] * d.row(vertex[k]).transpose();
+    return sum;
+  }
+  // Adds a vector to those of the free vertices, by the weights.
+  template <class Vector>
+  void spread(const Vector& vector, Positions& sums) const {
+    for (int k = 0; k < free; ++k) sums.row(vertex[k]) += weight[k] * vector.transpose();
+  }
+  // Returns the mass that a force on u has to move, 1 / sum of w_i^2 / m_i; held vertices do not move [kg].
+  double mass(const std::vector<double>& masses) const {
+    if (is_vertex()) return masses[vertex[0]];
+    double inverse = 0;
+    for (int k = 0; k < free; ++k) inverse += weight[k] * weight[k] / masses[vertex[k]];
+    return 1 / inverse;
+  }
+  // Tells whether two stencils are made of the same vertices by the same weights.
+  bool operator==(const ContactStencil& other) const {
+    return count == other.count && vertex == other.vertex && weight == other.weight;
+  }
+  // Returns the sum of the squared weights of the free vertices.
+  double weights_squared() const {
+    double sum = 0;
+    for (int k = 0; k < free; ++k) sum += weight[k] * weight[k];
+    return sum;
+  }
+};
+
+}  // namespace supple
