@@ -1,4 +1,5 @@
-// Draws text as grey bitmaps, with FreeType.
+// Draws any text as grey bitmaps, with FreeType: captions, notes, legends and graphs alike. Not here: where captions
+// stand (captions.h, caption_layout.h).
 #pragma once
 
 #include <cstdint>

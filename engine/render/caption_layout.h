@@ -1,5 +1,6 @@
 // Finds places for captions: beside their bodies, and neither over each other nor over a body. Pure geometry in pixels,
-// counted from the upper left corner of the picture.
+// counted from the upper left corner of the picture. Not here: which place a caption would like to have, and what is
+// tried where there is no room (captions.h).
 #pragma once
 
 #include <Eigen/Core>

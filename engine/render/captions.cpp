@@ -1,5 +1,6 @@
 #include "render/captions.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -38,8 +39,7 @@ int Captions::width_of(const std::string& text, int em) const {
 }
 
 // Returns the pixel below which a body's caption stands; nothing behind the eye. The caption stands on the ground: for
-// a body that hangs in the air, below the place where it starts. z: of the part below which it
-// stands [m].
+// a body that hangs in the air, below the place where it starts. z: of the part below which it stands [m].
 std::optional<Eigen::Vector2d> Captions::foot_of(const Projection& project, const Body& body, double z) const {
   std::optional<Eigen::Vector2d> foot = project({body.rest.center().x(), std::min(body.rest.lower.y(), 0.0), z});
   if (!foot || !body.kept_clear) return foot;
@@ -60,9 +60,9 @@ Eigen::AlignedBox2d box_of(const std::vector<Outline>& outlines) {
 
 }  // namespace
 
-// Returns the place beside a body and the collider that bears it; nothing where it has none, or that is as large as a
-// floor, which the picture does not show to its end.
-std::optional<Captions::Anchor> Captions::beside_support(const Projection& project, const Body& body) const {
+// Returns the place beside a body and its board; nothing where it has none, or where the board is as large as a floor,
+// which the picture does not show to its end.
+std::optional<Captions::Anchor> Captions::beside_board(const Projection& project, const Body& body) const {
   if (!body.board) return std::nullopt;
   const Vec3 middle = body.rest.center(), ahead = middle + 0.5 * body.rest.diagonal() * body.board->downhill;
   const std::optional<Eigen::Vector2d> from = project(middle), to = project(ahead);
@@ -77,9 +77,9 @@ std::optional<Captions::Anchor> Captions::beside_support(const Projection& proje
   return shown ? std::optional(Anchor{at, above ? CaptionSide::above : CaptionSide::below}) : std::nullopt;
 }
 
-// supports: whether the caption stands beside a collider that bears the body.
-std::optional<Captions::Anchor> Captions::anchor_of(const Projection& project, const Body& body, bool supports) const {
-  if (const std::optional<Anchor> anchor = supports ? beside_support(project, body) : std::nullopt) return anchor;
+// boards: whether the caption of a body on a board stands beside both.
+std::optional<Captions::Anchor> Captions::anchor_of(const Projection& project, const Body& body, bool boards) const {
+  if (const std::optional<Anchor> anchor = boards ? beside_board(project, body) : std::nullopt) return anchor;
   const std::optional<Eigen::Vector2d> foot = foot_of(project, body, body.rest.upper.z());
   return foot ? std::optional(Anchor{*foot, CaptionSide::below}) : std::nullopt;
 }
@@ -100,7 +100,7 @@ std::optional<double> Captions::try_size(const Camera& camera, int em, const Dem
   for (std::size_t m = 0; m < bodies_.size(); ++m) {
     const Body& body = bodies_[m];
     Outline outline = body.kept_clear ? project.outline(body.rest) : Outline();
-    const auto anchor = anchor_of(project, body, demand.supports);
+    const auto anchor = anchor_of(project, body, demand.boards);
     if (!body.label.empty() && anchor) {
       const int width = std::max(width_of(body.label, em), note_width) + 2 * halo;
       const bool above = anchor->side == CaptionSide::above;
@@ -154,14 +154,14 @@ void Captions::lay_out(const Camera& camera) {
   const int largest = std::max(9, static_cast<int>(std::lround(height / 32.0)));
   const int smallest = std::max(8, static_cast<int>(std::lround(height / 60.0)));
   const int step = std::max(1, largest / 12);
-  const bool supported = std::ranges::any_of(bodies_, [](const Body& body) { return body.board.has_value(); });
+  const bool have_boards = std::ranges::any_of(bodies_, [](const Body& body) { return body.board.has_value(); });
   bool done = false;
   // Small letters beside their body say more than large ones that could belong to another.
   for (const Demand& demand :
        {Demand{CaptionReach::near, true, false}, Demand{CaptionReach::near, false, false},
         Demand{CaptionReach::anywhere, true, false}, Demand{CaptionReach::anywhere, false, false},
         Demand{CaptionReach::anywhere, false, true}}) {
-    if (done || (demand.supports && !supported)) continue;
+    if (done || (demand.boards && !have_boards)) continue;
     // Where they cannot all be near, they grow as long as that moves each of them by less than a line.
     std::optional<double> most;
     if (demand.reach == CaptionReach::anywhere && !demand.over_bodies) {

@@ -1,8 +1,9 @@
 // Lays the captions of bodies over the finished picture: each below its body, and none over another or over a body that
-// stands where it stood at the start. The caption of a body on a collider of its own, as a board, names both and stands
-// beside both: below them, or above them where the board leads the body down in the picture. Where there is little
-// room, all captions become smaller together. A camera that moves changes nothing of this layout but where the bodies
-// are: captions keep their distance from them and do not jump.
+// stands where it stood at the start. The caption of a body on a collider of its own, called its board here, is read as
+// that of both and stands beside both: below them, or above them where the board leads the body down in the picture.
+// Where there is little room, all captions become smaller together. A camera that moves changes nothing of this layout
+// but where the bodies are: captions keep their distance from them and do not jump. Not here: the words (a mesh's label
+// is BodyDef::label, notes are from film/pictures/picture_words.h), and the search for free places (caption_layout.h).
 #pragma once
 
 #include <string>
@@ -52,12 +53,12 @@ class Captions {
   // Tells what a layout asks for.
   struct Demand {
     CaptionReach reach;
-    bool supports;     // whether captions stand beside colliders that bear their bodies
+    bool boards;       // whether captions stand beside the boards of their bodies
     bool over_bodies;  // whether captions may stand in front of bodies
   };
   std::optional<Eigen::Vector2d> foot_of(const Projection& project, const Body& body, double z) const;
-  std::optional<Anchor> beside_support(const Projection& project, const Body& body) const;
-  std::optional<Anchor> anchor_of(const Projection& project, const Body& body, bool supports) const;
+  std::optional<Anchor> beside_board(const Projection& project, const Body& body) const;
+  std::optional<Anchor> anchor_of(const Projection& project, const Body& body, bool boards) const;
   std::optional<double> try_size(const Camera& camera, int em, const Demand& demand);
   void lay_out(const Camera& camera);
   void go_along(const Camera& camera, const std::optional<Followed>& followed);

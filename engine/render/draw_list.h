@@ -47,7 +47,8 @@ struct GraphCurve {
 // This value of a field at a vertex says that there is none.
 constexpr float no_field = -1;
 
-// Describes the collider on which a body comes down.
+// Describes the collider on which a body comes down, beside which its caption stands too. (What holds bodies at their
+// handles is called a support: scene/building/support.h.)
 struct Board {
   std::size_t mesh;  // of the collider
   Vec3 downhill;     // where its surface under the body falls; as long as the sine of its angle, zero where it is level

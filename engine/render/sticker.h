@@ -20,8 +20,8 @@ struct PixelRect {
   }
 };
 
-// Returns the height from which the sizes of letters and graphs follow [pixels]. A picture that is taller than
-// wide has those of a square one, because its width is the room that bodies and words share.
+// Returns the height from which the sizes of letters and graphs follow [pixels]. A picture that is taller than wide has
+// those of a square one, because its width is the room that bodies and words share.
 inline int height_for_letters(int width, int height) { return width < height ? width : height; }
 
 // Colours of what is written on a picture, and of the plates behind it; sRGB.

@@ -96,9 +96,11 @@ TEST(ContactStencil, DirectionsSolveTheSystemWithContactsBetweenSurfaces) {
     contacts.push_back({more.stencil, {}, Vec3(0, 0.28, 0.96), 0, 2e4, 0.001});
   contacts.push_back({ContactStencil::at_vertex(8), {0}, Vec3::UnitZ(), 0, 1e4, 0.001});
   scene.w.prepare(model, scene.inputs.solver);
+  begin_step(model, scene.inputs, scene.state, scene.w);
   ContactCorrection& correction = scene.w.correction;
   find_stiff_directions(model, contacts, model.rest, 1e-3, correction);
   ASSERT_GE(correction.wanted.size(), 5u);
+  ASSERT_GT(model.free, 21);
   Eigen::MatrixXd system = test::dense_system(model);
   for (const StiffDirection& s : correction.wanted) {
     Positions n = Positions::Zero(model.free, 3);

@@ -1,5 +1,7 @@
-// Tests energies against their derivatives at every kind of deformation, and the SIMD kernel against the plain
-// formulas.
+// Tests the energies of materials (their sums over stretches, at rest, at small strains, where they are continued and
+// where the rotation is not unique), polar rotations, the quadrature of equation 11, and the SIMD kernels against the
+// plain formulas. Not here: forces against differences of energies (derivative_table_test.cpp), stresses
+// (stress_test.cpp).
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -44,7 +46,7 @@ double density(const Material& material, const Mat3& f, Mat3* stress) {
 }
 
 TEST(Materials, EnergyIsTheValanisLandelSumOfItsStretches) {
-  // Evaluates equation 9 with the table's a, b, c, at random stretches.
+  // Evaluates equation 9 at random stretches, with a, b and c as they follow from the energies in docs/method.md.
   std::mt19937 random(8);
   for (int sample = 0; sample < 100; ++sample) {
     const Vec3 s(uniform(random, 0.4, 2), uniform(random, 0.4, 2), uniform(random, 0.4, 2));

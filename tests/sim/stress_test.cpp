@@ -1,6 +1,6 @@
-// Tests the stress of every isotropic material against formulas that are written a second time: a', b' and c' of the
-// Valanis-Landel form as docs/method.md tabulates them, and principal stretches in closed form. It also tests k of
-// equation 11.
+// Tests the stress of every material against formulas that are written a second time: a', b' and c' of the
+// Valanis-Landel form as they follow from the energies in docs/method.md, and principal stretches in closed form. It
+// also tests k of equation 11.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>

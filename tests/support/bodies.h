@@ -16,7 +16,8 @@ namespace supple::test {
 // SUPPLE_REQUIRE_PAPER=1 it fails).
 std::optional<std::filesystem::path> paper_mesh(const std::string& name);
 
-// Returns one material of each kind, with moduli of the same size.
+// Returns at least one material of each model, with moduli of the same size. A new one goes to the end: some tests take
+// the first one, or the third for a corotated body with fibres.
 std::vector<Material> all_materials();
 
 // Returns the names of all materials, as scene files spell them.

@@ -77,7 +77,7 @@ std::optional<Board> board_of(const Bounds& body, const std::vector<SceneCollide
 }
 
 // Finds the colliders on which bodies come down. A collider that bears several bodies is a ground to them.
-void find_supports(const std::vector<SceneCollider>& colliders, std::size_t bodies, std::vector<DrawMesh>& meshes) {
+void find_boards(const std::vector<SceneCollider>& colliders, std::size_t bodies, std::vector<DrawMesh>& meshes) {
   std::vector<int> borne(meshes.size(), 0);
   for (std::size_t b = 0; b < bodies; ++b) {
     meshes[b].board = board_of(meshes[b].rest, colliders, meshes, bodies);
@@ -165,7 +165,7 @@ Stage make_stage(const SceneDef& scene, const std::vector<Body>& bodies, const s
     stage.meshes.push_back(std::move(mesh));
   }
   for (std::size_t c = 0; c < colliders.size(); ++c) stage.meshes.push_back(collider_mesh(colliders[c], skins[c]));
-  find_supports(colliders, bodies.size(), stage.meshes);
+  find_boards(colliders, bodies.size(), stage.meshes);
   return stage;
 }
 

@@ -1,4 +1,6 @@
-// Writes what a picture says in words: a line at its top, and a note below each body.
+// Writes what a picture says in words beside captions: the headline, a line at its top, and a note below the caption of
+// each body. Not here: captions, which are BodyDef::label as it stands, and where words stand (render/captions.h,
+// render/overlays.h).
 #pragma once
 
 #include <optional>

@@ -12,6 +12,8 @@
 
 namespace supple {
 
+// Represents a body that is ready to be simulated and drawn, between what a file says of it (BodyDef, scene_def.h) and
+// what a step needs (Model, which build_model makes of `description`, and State). MovingBody (world/) moves it.
 struct Body {
   // Names a collider that the body starts in, and tells how deep the body is in it [m].
   struct Overlap {

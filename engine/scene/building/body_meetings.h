@@ -1,6 +1,6 @@
 // Finds the bodies of a scene that are in the same place. Bodies do not collide with each other: where they meet, they
-// pass through each other, and whoever makes the film should know that. Not here: what a body does with rigid colliders
-// (overlaps.h, sim/contact/).
+// pass through each other, and whoever makes the film should know that: the warning is `overlap`. Not here: what a body
+// does with rigid colliders (overlaps.h, sim/contact/).
 #pragma once
 
 #include <array>

@@ -17,7 +17,7 @@ struct SceneCollider {
   Eigen::Isometry3d pose(double time) const;
 };
 
-// Holds all that bodies can collide with.
+// Holds all that bodies can collide with: the colliders of the scene, and no other bodies.
 struct CollisionSet {
   std::vector<SceneCollider> scene_colliders;
   std::vector<SceneCollider> earlier;  // those before a change that is spread over this frame; else empty

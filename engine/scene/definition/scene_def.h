@@ -151,7 +151,7 @@ struct BodySurface;  // body_pieces.h
 
 struct BodyDef {
   std::string name;
-  std::string label;
+  std::string label;               // the caption in pictures; empty: there is none
   std::vector<WarningKind> meant;  // warnings that need not be said
   // One of these five members gives the mesh. The regions of a mesh file are named by their reference numbers.
   std::filesystem::path shape;
@@ -262,7 +262,7 @@ struct LookDef {
   Vec3 ground = Vec3(0.914, 0.894, 0.863);      // sRGB
   Vec3 background = Vec3(0.851, 0.871, 0.902);  // sRGB
   double exposure = 1;
-  bool show_labels = true;
+  bool show_labels = true;      // captions are drawn
   bool supports = true;         // what holds the bodies is seen
   std::filesystem::path ghost;  // folder of a run whose bodies are seen through these; empty: none
   bool marks = false;           // where handles hold vertices, and where vertices touch colliders
@@ -332,8 +332,8 @@ struct OutputDef {
 };
 
 struct SceneDef {
-  std::string name;  // of the file, without folder and ending
-  std::string title;
+  std::string name;   // of the file, without folder and ending
+  std::string title;  // shown in pictures where text.title asks for it
   int frames = 120;
   double fps = 30;
   int substeps = 1;

@@ -213,7 +213,10 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
   body.name = table.text({"name", "", "addresses the body in --set and in reports"}, "body");
   check_name(table, body.name);
   body.meant = table.words<WarningKind>({"meant", "", "warnings about the body that need not be said"});
-  body.label = table.text({"label", "", "caption in the film; the default is the name"}, body.name);
+  body.label = table.text(
+      {"label", "",
+       "caption in the pictures; the default is the name, and none for a body that is alone and has no name"},
+      body.name);
   body.shape = table.file({"shape", "", "a shape file, to be meshed here"});
   body.surface = table.file({"surface", "", "a triangle surface (OBJ, PLY, STL, glTF, OFF), to be meshed here"});
   body.mesh = table.file({"mesh", "", "a tetrahedral mesh (MEDIT .mesh, Gmsh .msh, TetGen .ele, VTK .vtk or .vtu)"});

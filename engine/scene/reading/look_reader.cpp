@@ -14,7 +14,7 @@ LookDef read_look(const ConfigTable& root, LookDef look) {
   look.light =
       table->word<LightKind>({"light", "", "the lamps, and the tint that they give ground and background"}, look.light);
   look.exposure = table->number({"exposure", "", "multiplies the light"}, look.exposure, Range::above(0, 100));
-  look.show_labels = table->boolean({"labels", "", "captions below the bodies"}, look.show_labels);
+  look.show_labels = table->boolean({"labels", "", "the bodies' captions are drawn"}, look.show_labels);
   look.supports =
       table->boolean({"supports", "", "plates, rings, rods and pins where handles hold bodies"}, look.supports);
   look.ghost = table->text({"ghost", "", "folder of a run whose bodies are seen beside these, half transparent"}, "");

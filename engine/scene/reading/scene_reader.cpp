@@ -32,7 +32,7 @@ SceneDef read_scene(Config& config) {
   scene.name = std::filesystem::path(config.name()).stem().string();
   const ConfigTable root = config.root();
   (void)root.integer({"version", "", "of this format"}, 1, Range::between(1, 1));
-  scene.title = root.text({"title", "", "for people"}, "");
+  scene.title = root.text({"title", "", "for people; pictures show it where `text.title` asks for it"}, "");
   scene.frames = root.integer({"frames", "", "length of the film"}, scene.frames, Range::between(1, 1000000));
   scene.fps = root.number({"fps", "1/s", "frames a second"}, scene.fps, Range::between(1, 100000));
   scene.substeps =

@@ -14,8 +14,8 @@
 
 namespace supple {
 
-// Describes a direction in which a point of the body has a stiffness that A does not contain. With such
-// directions the matrix is A + sum k n n^T, where n has `axis` times the point's weights at its free vertices.
+// Describes a direction in which a point of the body has a stiffness that A does not contain. With such directions the
+// matrix is A + sum k n n^T, where n has `axis` times the point's weights at its free vertices.
 struct StiffDirection {
   ContactStencil stencil;
   Vec3 axis;         // of unit length

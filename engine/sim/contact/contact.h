@@ -1,7 +1,14 @@
 // Defines contact of one body with rigid colliders (Liu et al. 2017, section 4.3): it adds energies to g and nothing to
+<<<<<<< HEAD
 // A. Each touching point of the body, which is a vertex or lies between vertices (contact_stencil.h), has the energy
 // k_c min(0, n . u - offset)^2 of a plane that was found when the iteration began. Not here: how contacts are found
 // (find_contacts.h), how directions take them into account (contact_direction.h), contact of bodies with each other.
+=======
+// A. Each touching point of the body, which is a vertex or lies between vertices (contact_point.h), has the energy
+// k_c min(0, n . x - offset)^2 of a plane that was found when the iteration began. Not here: how contacts are found
+// (find_contacts.h), how directions take them into account (contact_direction.h). Bodies have no contact with each
+// other anywhere: where two are in the same place, they pass through each other (scene/building/body_meetings.h).
+>>>>>>> 811ee4a58111a317a7b68706048afb4f9efb12f7
 //
 // The planes are one-sided: a point that leaves is released at once, even in the middle of a line search, and the
 // energy is a continuous function. A point that starts a step below the surface is pushed out no faster than push_out:

@@ -1,4 +1,4 @@
-// Defines the order of contacts in a list: by what is touched, then by number of the point.
+// Defines the order of the contacts of one body in a list: by what is touched, then by number of the point.
 #pragma once
 
 #include "sim/contact/contact.h"

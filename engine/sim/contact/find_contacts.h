@@ -1,6 +1,7 @@
 // Finds where a body's vertices, and the points of its edges and faces that need it (face_points.h), meet rigid
 // colliders on their path through a step, and the planes that hold them: once for each iterate, with an exact test of
-// only those that may have come near. Not here: the energies of these planes (contact.h).
+// only those that may have come near. Impacts are found in first_impact.cpp, and contacts counted in
+// contact_counts.cpp. Not here: the energies of these planes (contact.h).
 #pragma once
 
 #include <memory>

@@ -1,6 +1,7 @@
-// Defines the closed set of materials. To add one, write a header in this folder (name, needs, parameters(), density(),
-// axial_stress(): parameters.h) and enter it here: kernels, scene files and the stiffness fit then use it.
-// docs/adding-a-material.md describes the steps, and lists what tests and pages need.
+// Defines the closed set of materials, and k of equation 11, which follows from each. To add one, write a header in
+// this folder (name, needs, parameters(), density(), axial_stress(): parameters.h) and enter it here: kernels, scene
+// files and the stiffness fit then use it. docs/adding-a-material.md describes the steps, and lists what tests and
+// pages need.
 #pragma once
 
 #include <variant>

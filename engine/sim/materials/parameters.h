@@ -1,4 +1,5 @@
-// Every material has a name, needs, parameters(), density() and axial_stress(s). The last is f = a' + 2 b' + c' of
+// Every material is isotropic: what has a direction is a Fibre (elements/tetrahedron.h), which scenes add to any
+// material. It has a name, needs, parameters(), density() and axial_stress(s). The last is f = a' + 2 b' + c' of
 // equation 10: the stress along the axis of a sample at F = diag(s, 1, 1), whose sides are held. Because a material
 // declares these itself, scene files, stiffness fits and kernels use a new one without further changes. For tests and
 // pages, docs/adding-a-material.md lists the places that must name it.
@@ -9,7 +10,8 @@
 //   std::vector<double> seams() const   stretches where the axial stress changes its formula
 //   double system_stiffness() const     k in M/h^2 + L, in place of equation 11
 //   bool energy_may_be_negative() const  whether some deformation has less energy than rest; without it, none has
-//   static constexpr auto curves()      functions given by control points, as parameters() are numbers
+// Spline alone has curves(), functions given by control points, in place of numbers: scene/reading/material_reader.cpp
+// reads them into a Spline and into nothing else.
 #pragma once
 
 #include <optional>

@@ -1,7 +1,6 @@
 // 3 x 3 matrices whose entries may be SIMD registers (one element a lane) or plain doubles (the oracle in the tests).
-// The operations of a register are found by its
-// type, so that only those who compute with registers include a SIMD library. Free of Eigen, so that it can be compiled
-// for several instruction sets in one program.
+// The operations of a register are found by its type, so that only those who compute with registers include a SIMD
+// library. Free of Eigen, so that it can be compiled for several instruction sets in one program.
 #pragma once
 
 #include <cmath>

@@ -1,6 +1,6 @@
-// Computes the form that all isotropic materials here have (Valanis and Landel 1967; Liu et al. 2017, equation 9): Psi
-// = sum a(s_i) + sum b(s_i s_j) + c(s_1 s_2 s_3). It serves materials that are given by their functions, and tests; a
-// closed formula in F or S is cheaper where there is one.
+// Computes the form that all materials here have, stable Neo-Hookean apart (Valanis and Landel 1967; Liu et al. 2017,
+// equation 9): Psi = sum a(s_i) + sum b(s_i s_j) + c(s_1 s_2 s_3). It serves materials that are given by their
+// functions, and tests; a closed formula in F or S is cheaper where there is one.
 #pragma once
 
 #include "sim/materials/small_matrix.h"
