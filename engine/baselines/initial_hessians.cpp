@@ -88,7 +88,7 @@ void HessianInverse::begin(const Model& model, const StepInputs&, OpenWorkspace&
 void HessianInverse::renew(const Model& model, OpenWorkspace& w) {
   if (source_.elements == HessianSource::Elements::turned_rest) {
     turn_elements(model, *w.start_positions);
-    hessian_.assemble(model, turned_, w.current.contacts, w.contact.stick_length, w.current.x);
+    hessian_.assemble(model, turned_, w.current.contacts, w.current.x);
   } else {
     hessian_.assemble(model, w, true);
   }

@@ -62,7 +62,7 @@ class ChebyshevRule final : public SearchRule {
   double direction(const Model& model, const StepInputs& inputs, OpenWorkspace& w) override {
     const TimedPhase timed(w.clock, Phase::solve, "solve");
     w.scratch = w.current.gradient;
-    find_stiff_directions(model, w.current.contacts, w.current.x, w.contact.stick_length, w.correction);
+    find_stiff_directions(model, w.current.contacts, w.current.x, w.correction);
     apply_inverse(model, inputs.solver.contact, w.correction, w.solve_scratch, w.scratch, w.direction);
     w.direction = -w.direction;
     tried_ = chebyshev_weight(inputs.solver.chebyshev, iteration_, omega_);

@@ -45,7 +45,7 @@ double contact_energy_at(const Model& model, const StepInputs& inputs, const Pos
   if (!has_colliders(inputs)) return 0;
   std::vector<Contact> found;
   find_contacts(model, inputs, x, w.threads, w.contact, found);
-  return add_contacts(found, w.contact.stick_length, x, nullptr, w.direction, nullptr).value;
+  return add_contacts(found, x, nullptr, w.direction, nullptr).value;
 }
 
 double gained(const Model& model, const StepInputs& inputs, const State& before, const Positions& x, OpenWorkspace& w) {

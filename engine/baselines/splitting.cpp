@@ -22,9 +22,8 @@ double SplittingRule::direction(const Model& model, const StepInputs& inputs, Op
     }
     slope.row(v) = sum.transpose();
   }
-  if (!w.current.contacts.empty())
-    add_contacts(w.current.contacts, w.contact.stick_length, w.current.x, nullptr, w.direction, &slope);
-  find_stiff_directions(model, w.current.contacts, w.current.x, w.contact.stick_length, w.correction);
+  if (!w.current.contacts.empty()) add_contacts(w.current.contacts, w.current.x, nullptr, w.direction, &slope);
+  find_stiff_directions(model, w.current.contacts, w.current.x, w.correction);
   const Positions kept = slope;
   apply_inverse(model, inputs.solver.contact, w.correction, w.solve_scratch, slope, w.direction);
   w.direction = -w.direction;

@@ -119,7 +119,7 @@ void VertexBlockRule::add_contacts(const OpenWorkspace& w, int vertex, Vec3& slo
       block += weight * weight * 2 * contact.stiffness * along;
     }
     if (contact.friction > 0) {
-      const Mat3 across = friction_stiffness(contact, x_, w.contact.stick_length) * (Mat3::Identity() - along);
+      const Mat3 across = friction_stiffness(contact, x_) * (Mat3::Identity() - along);
       slope += weight * across * (stencil.at(x_) - contact.origin);
       block += weight * weight * across;
     }

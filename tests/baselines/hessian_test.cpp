@@ -176,7 +176,6 @@ TEST(Hessian, OfSpringsAndContactsIsTheDerivativeOfTheGradient) {
   const StepInputs inputs = test::still_inputs(model);
   begin_step(model, inputs, state, w);
   w.current.x = test::shaken(w.current.x, 0.02, 5);
-  w.contact.stick_length = 1e-3;
   for (int v = 0; v < 5; ++v) {
     Contact contact{ContactStencil::at_vertex(v), {0}, Vec3(0.6, 0, 0.8), 0, 1e3, 0.01};
     contact.offset = contact.normal.dot(w.current.x.row(v)) + 0.01;  // the vertex lies inside the plane

@@ -79,12 +79,12 @@ TEST(VertexBlocks, TheFirstColourMovesByTheBlocksOfTheHessian) {
       inputs.middle_targets = inputs.targets;
       begin_step(model, inputs, state, w);
       w.current.x.topRows(model.free) = test::shaken(w.current.x, 0.001, 3).topRows(model.free);
-      w.contact.stick_length = 1e-3;
       const std::vector<VertexColor> colors = vertex_colors(model);
       const int touching = colors[0].vertices[0];
       Contact contact{ContactStencil::at_vertex(touching), {0}, Vec3(0.6, 0, 0.8), 0, 1e3, 0.01};
       contact.offset = contact.normal.dot(w.current.x.row(touching)) + 0.01;
       contact.friction = 3;
+      contact.stick = 1e-3;
       contact.origin = w.current.x.row(touching).transpose() + Vec3(0, 0.02, 0);
       w.current.contacts = {contact};
       evaluate(model, w, w.current, Wanted::gradient);

@@ -27,8 +27,7 @@ void prepare_direction(ContactScene& scene) {
   scene.w.prepare(scene.model, scene.inputs.solver);
   begin_step(scene.model, scene.inputs, scene.state, scene.w);
   find_contacts_of(scene.model, scene.inputs, scene.w, scene.w.current);
-  find_stiff_directions(scene.model, scene.w.current.contacts, scene.w.current.x, scene.w.contact.stick_length,
-                        scene.w.correction);
+  find_stiff_directions(scene.model, scene.w.current.contacts, scene.w.current.x, scene.w.correction);
 }
 
 void stiffen(Eigen::MatrixXd& system, const ContactStencil& stencil, const Vec3& axis, double stiffness) {

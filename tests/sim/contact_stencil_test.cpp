@@ -35,6 +35,7 @@ std::vector<Contact> pressed_contacts(const std::vector<NamedStencil>& stencils,
     Contact contact{named.stencil, {}, Vec3(0.6, 0, 0.8), 0, 1e3, 0.001};
     contact.offset = contact.normal.dot(named.stencil.at(x)) + 0.001;
     contact.friction = 0.2;
+    contact.stick = 1e-3;
     contact.origin = named.stencil.at(x) - Vec3(0.8, 0.4, -0.6) * 1e-4;
     contacts.push_back(contact);
   }
@@ -44,13 +45,13 @@ std::vector<Contact> pressed_contacts(const std::vector<NamedStencil>& stencils,
 TEST(ContactStencil, GradientsAreThoseOfTheEnergy) {
   const ContactScene scene(bar(Corotated{1e4, 3e4}, Held::hard_end), {});
   const Positions& x = scene.model.rest;
-  const double stick = 1e-3, step = 1e-7;
+  const double step = 1e-7;
   for (const NamedStencil& named : stencils_of({1, 5, 8, 13})) {
     const std::vector<Contact> contacts = pressed_contacts({named}, x);
     Positions gradient = Positions::Zero(scene.model.free, 3);
-    add_contacts(contacts, stick, x, nullptr, gradient, &gradient);
+    add_contacts(contacts, x, nullptr, gradient, &gradient);
     const auto energy = [&](const Positions& at) {
-      return contact_energy(contacts, at) + friction_energy(contacts, stick, at);
+      return contact_energy(contacts, at) + friction_energy(contacts, at);
     };
     for (const std::int32_t v : named.stencil.vertex) {
       for (int c = 0; c < 3; ++c) {
@@ -69,11 +70,11 @@ TEST(ContactStencil, ForcesBetweenSurfacesAddNoMomentum) {
   const Positions& x = scene.model.rest;
   const std::vector<Contact> contacts = pressed_contacts(stencils_of({1, 5, 8, 13}), x);
   Positions gradient = Positions::Zero(scene.model.free, 3);
-  add_contacts(contacts, 1e-3, x, nullptr, gradient, &gradient);
+  add_contacts(contacts, x, nullptr, gradient, &gradient);
   ASSERT_GT(gradient.norm(), 1);
   EXPECT_LT(gradient.colwise().sum().norm(), 1e-15 * gradient.norm());
   std::vector<Vec3> by_collider;
-  add_forces(contacts, 1e-3, x, by_collider);  // none of them is a collider's
+  add_forces(contacts, x, by_collider);  // none of them is a collider's
 }
 
 TEST(ContactStencil, MassIsThatWhichAForceHasToMove) {
@@ -98,7 +99,7 @@ TEST(ContactStencil, DirectionsSolveTheSystemWithContactsBetweenSurfaces) {
   scene.w.prepare(model, scene.inputs.solver);
   begin_step(model, scene.inputs, scene.state, scene.w);
   ContactCorrection& correction = scene.w.correction;
-  find_stiff_directions(model, contacts, model.rest, 1e-3, correction);
+  find_stiff_directions(model, contacts, model.rest, correction);
   ASSERT_GE(correction.wanted.size(), 5u);
   ASSERT_GT(model.free, 21);
   Eigen::MatrixXd system = test::dense_system(model);

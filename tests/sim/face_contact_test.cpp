@@ -33,8 +33,7 @@ void prepare(FaceScene& scene) {
   scene.w.prepare(scene.model, scene.inputs.solver);
   begin_step(scene.model, scene.inputs, scene.state, scene.w);
   find_contacts_of(scene.model, scene.inputs, scene.w, scene.w.current);
-  find_stiff_directions(scene.model, scene.w.current.contacts, scene.w.current.x, scene.w.contact.stick_length,
-                        scene.w.correction);
+  find_stiff_directions(scene.model, scene.w.current.contacts, scene.w.current.x, scene.w.correction);
 }
 
 int touching_faces(const FaceScene& scene) {

@@ -29,7 +29,7 @@ TEST(MatrixRule, TheConstantMatrixIsThePapersToTheLastBit) {
   struct PlainInverse final : InitialInverse {
     void apply(const Model& model, const StepInputs&, OpenWorkspace& w, Positions& r, Positions& z) override {
       model.factor.solve(r.data(), z.data(), w.solve_scratch.data());
-      if (model.free_floating) restore_translation(model, r, z);
+      restore_translation(model, r, z);
     }
   };
   for (const Held held : {Held::nothing, Held::hard_end, Held::spring_end}) {

@@ -34,7 +34,8 @@ void expect_as_built(BodyDescription body, const Change& change) {
   EXPECT_EQ(model.field, built.field);
   EXPECT_EQ(model.handle_stiffness, built.handle_stiffness);
   EXPECT_EQ(model.damping.value, built.damping.value);
-  EXPECT_EQ(model.free_floating, built.free_floating);
+  EXPECT_EQ(model.parts[0].floats, built.parts[0].floats);
+  EXPECT_EQ(model.parts[0].mass, built.parts[0].mass);
   EXPECT_EQ(model.couplings.size(), built.couplings.size());
   EXPECT_EQ(hash_of_step(model), hash_of_step(built));
   EXPECT_NE(hash_of_step(model), before);
@@ -77,7 +78,7 @@ TEST(ModelValues, AHandleThatLetGoPullsAtNothing) {
   held.handles[0].holds = false;
   free.handles.clear();
   const Model let_go = build_model(held), never_held = build_model(free);
-  EXPECT_TRUE(let_go.free_floating);
+  EXPECT_TRUE(let_go.parts[0].floats);
   EXPECT_EQ(hash_of_step(let_go), hash_of_step(never_held));
 }
 

@@ -173,7 +173,7 @@ TEST(SecondLevel, ContactsAreAddedToBothLevels) {
   w.prepare(model, scene.inputs.solver);
   begin_step(model, scene.inputs, scene.state, w);
   find_contacts_of(model, scene.inputs, w, w.current);
-  find_stiff_directions(model, w.current.contacts, w.current.x, w.contact.stick_length, w.correction);
+  find_stiff_directions(model, w.current.contacts, w.current.x, w.correction);
   ASSERT_GT(w.correction.wanted.size(), 10u);
   ASSERT_TRUE(w.second_level.begin(model, w.current.x));
   const int n = model.free;

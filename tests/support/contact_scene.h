@@ -67,16 +67,15 @@ struct ContactScene {
 // Compares the gradient of the contacts that were found with differences of their energy along one direction.
 inline void expect_derivative_of_contacts(const ContactScene& scene) {
   const std::vector<Contact>& found = scene.w.current.contacts;
-  const double stick = scene.w.contact.stick_length;
   const Positions& x = scene.w.current.x;
   Positions gradient = Positions::Zero(scene.model.free, 3);
   const Positions direction = shaken(Positions::Zero(scene.model.free, 3), 1, 6);
-  const ContactChange at = add_contacts(found, stick, x, nullptr, direction, &gradient);
+  const ContactChange at = add_contacts(found, x, nullptr, direction, &gradient);
   EXPECT_NEAR(at.slope, (gradient.array() * direction.array()).sum(), 1e-12 * std::abs(at.slope));
   double best = 1e300;
   for (const double h : {1e-6, 1e-7, 1e-8}) {
     const Positions forward = x + h * direction, backward = x - h * direction;
-    const double slope = add_contacts(found, stick, forward, &backward, direction, nullptr).value / (2 * h);
+    const double slope = add_contacts(found, forward, &backward, direction, nullptr).value / (2 * h);
     best = std::min(best, std::abs(slope - at.slope));
   }
   EXPECT_LT(best, 1e-6 * std::abs(at.slope));

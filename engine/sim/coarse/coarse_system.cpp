@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "base/error.h"
 #include "sim/coarse/rest_moduli.h"
 #include "sim/model/element_view.h"
 #include "sim/model/vertex_chunks.h"
@@ -48,6 +49,7 @@ int place_in(const std::vector<std::int32_t>& sorted, std::int32_t value) {
 }  // namespace
 
 void CoarseSystem::make(const Model& model) {
+  SUPPLE_CHECK(model.parts.size(), ==, 1u);
   if (structure_ != model.structure) make_structure(model);
   if (model_ == model.id) return;
   for (Group& group : groups_) set_values(model, group);

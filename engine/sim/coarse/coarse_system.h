@@ -22,8 +22,8 @@ class CoarseSystem {
  public:
   static constexpr int motions_of_cluster = 6;
 
-  // Computes the clusters and groups of a model and their values; does nothing where this model has them already. The
-  // bits of the result do not depend on earlier models.
+  // Computes the clusters and groups of a model of one part and their values; does nothing where this model has them
+  // already. The bits of the result do not depend on earlier models.
   void make(const Model& model);
 
   // Makes both matrices at x (n x 3 in the model's order): constant() is Z^T A Z, and hessian() has the elastic

@@ -34,16 +34,17 @@ void SecondLevel::add(const Model& model, const Eigen::VectorXd& f, Threads* thr
 }
 
 void SecondLevel::add_to(const Model& model, const Positions& forces, Threads* threads, Positions& motions) {
+  const Part& part = model.parts.front();  // the only one (CoarseSystem::make)
   Vec3 mean = Vec3::Zero();
-  if (model.free_floating) {
+  if (part.floats) {
     for (int v = 0; v < model.free; ++v) mean += forces.row(v).transpose();
-    mean /= model.total_mass;
+    mean /= part.mass;
   }
   system_.restrict(model, x_, forces, mean, threads, restricted_);
   motion_.noalias() = difference_ * restricted_;
   const Vec3 moved = system_.prolong(model, x_, motion_, threads, motions);
-  if (!model.free_floating) return;
-  const Eigen::RowVector3d back = -moved.transpose() / model.total_mass;
+  if (!part.floats) return;
+  const Eigen::RowVector3d back = -moved.transpose() / part.mass;
   for (int v = 0; v < model.free; ++v) motions.row(v) += back;
 }
 

@@ -19,17 +19,17 @@ Vec3 slip(const Contact& contact, const Vec3& x) {
 
 }  // namespace
 
-double friction_energy(const std::vector<Contact>& contacts, double stick_length, const Positions& point) {
+double friction_energy(const std::vector<Contact>& contacts, const Positions& point) {
   double sum = 0;
   for (const Contact& contact : contacts) {
     if (contact.friction > 0)
-      sum += contact.friction * friction_potential(slip(contact, contact.stencil.at(point)).norm(), stick_length);
+      sum += contact.friction * friction_potential(slip(contact, contact.stencil.at(point)).norm(), contact.stick);
   }
   return sum;
 }
 
-double friction_stiffness(const Contact& contact, const Positions& x, double stick_length) {
-  return contact.friction * friction_slope_over_u(slip(contact, contact.stencil.at(x)).norm(), stick_length);
+double friction_stiffness(const Contact& contact, const Positions& x) {
+  return contact.friction * friction_slope_over_u(slip(contact, contact.stencil.at(x)).norm(), contact.stick);
 }
 
 double contact_energy(const std::vector<Contact>& contacts, const Positions& point) {
@@ -41,8 +41,7 @@ double contact_energy(const std::vector<Contact>& contacts, const Positions& poi
   return sum;
 }
 
-void add_forces(const std::vector<Contact>& contacts, double stick_length, const Positions& point,
-                std::vector<Vec3>& by_collider) {
+void add_forces(const std::vector<Contact>& contacts, const Positions& point, std::vector<Vec3>& by_collider) {
   for (const Contact& contact : contacts) {
     if (!contact.other.is_collider()) continue;
     const Vec3 p = contact.stencil.at(point);
@@ -50,12 +49,12 @@ void add_forces(const std::vector<Contact>& contacts, double stick_length, const
     by_collider[contact.other.collider] -= 2 * contact.stiffness * below * contact.normal;
     if (contact.friction <= 0) continue;
     const Vec3 slid = slip(contact, p);
-    by_collider[contact.other.collider] -= contact.friction * friction_slope_over_u(slid.norm(), stick_length) * slid;
+    by_collider[contact.other.collider] -= contact.friction * friction_slope_over_u(slid.norm(), contact.stick) * slid;
   }
 }
 
-ContactChange add_contacts(const std::vector<Contact>& contacts, double stick_length, const Positions& point,
-                           const Positions* reference, const Positions& direction, Positions* gradient, double sign) {
+ContactChange add_contacts(const std::vector<Contact>& contacts, const Positions& point, const Positions* reference,
+                           const Positions& direction, Positions* gradient, double sign) {
   ContactChange change;
   for (const Contact& contact : contacts) {
     const Vec3 p = contact.stencil.at(point);
@@ -67,11 +66,11 @@ ContactChange add_contacts(const std::vector<Contact>& contacts, double stick_le
     if (contact.friction > 0) {
       const Vec3 slid = slip(contact, p);
       const double u = slid.norm();
-      change.value += contact.friction * friction_potential(u, stick_length);
+      change.value += contact.friction * friction_potential(u, contact.stick);
       if (reference != nullptr)
         change.value -=
-            contact.friction * friction_potential(slip(contact, contact.stencil.at(*reference)).norm(), stick_length);
-      slope += contact.friction * friction_slope_over_u(u, stick_length) * slid;
+            contact.friction * friction_potential(slip(contact, contact.stencil.at(*reference)).norm(), contact.stick);
+      slope += contact.friction * friction_slope_over_u(u, contact.stick) * slid;
     }
     if (gradient == nullptr) continue;
     contact.stencil.spread(sign * slope, *gradient);

@@ -1,14 +1,8 @@
 // Defines contact of one body with rigid colliders (Liu et al. 2017, section 4.3): it adds energies to g and nothing to
-<<<<<<< HEAD
 // A. Each touching point of the body, which is a vertex or lies between vertices (contact_stencil.h), has the energy
 // k_c min(0, n . u - offset)^2 of a plane that was found when the iteration began. Not here: how contacts are found
-// (find_contacts.h), how directions take them into account (contact_direction.h), contact of bodies with each other.
-=======
-// A. Each touching point of the body, which is a vertex or lies between vertices (contact_point.h), has the energy
-// k_c min(0, n . x - offset)^2 of a plane that was found when the iteration began. Not here: how contacts are found
-// (find_contacts.h), how directions take them into account (contact_direction.h). Bodies have no contact with each
-// other anywhere: where two are in the same place, they pass through each other (scene/building/body_meetings.h).
->>>>>>> 811ee4a58111a317a7b68706048afb4f9efb12f7
+// (find_contacts.h), how directions take them into account (contact_direction.h). Nothing finds contacts of bodies with
+// each other yet: where two are in the same place, they pass through each other (scene/building/body_meetings.h).
 //
 // The planes are one-sided: a point that leaves is released at once, even in the middle of a line search, and the
 // energy is a continuous function. A point that starts a step below the surface is pushed out no faster than push_out:
@@ -40,6 +34,7 @@ struct Contact {
   // Friction is lagged; it opposes u - origin along the plane.
   double friction = 0;         // coefficient times normal force [N]
   Vec3 origin = Vec3::Zero();  // what u would be if the point had moved with the other side [m]
+  double stick = 0;            // friction is whole above this slip in a step [m]
 };
 
 // Returns how far a contact's point is above its plane, negative below [m].
@@ -48,17 +43,16 @@ inline double gap(const Contact& contact, const Positions& x) {
 }
 
 // Returns the share of friction in the energy [J].
-double friction_energy(const std::vector<Contact>& contacts, double stick_length, const Positions& point);
+double friction_energy(const std::vector<Contact>& contacts, const Positions& point);
 
 // Returns the stiffness of friction along the plane at x [N/m].
-double friction_stiffness(const Contact& contact, const Positions& x, double stick_length);
+double friction_stiffness(const Contact& contact, const Positions& x);
 
 // Returns the share of the normal forces in the energy [J].
 double contact_energy(const std::vector<Contact>& contacts, const Positions& point);
 
 // Adds the force of each contact with a collider, friction included, to that of this collider on the body [N].
-void add_forces(const std::vector<Contact>& contacts, double stick_length, const Positions& point,
-                std::vector<Vec3>& by_collider);
+void add_forces(const std::vector<Contact>& contacts, const Positions& point, std::vector<Vec3>& by_collider);
 
 // Holds the share of contacts in an objective.
 struct ContactChange {
@@ -68,8 +62,7 @@ struct ContactChange {
 
 // Returns the energy of the contacts at a point, friction included, or its difference from the energy at a reference
 // point (null: none). Where a gradient is given (null: none), adds `sign` times the gradient of the contacts to it.
-ContactChange add_contacts(const std::vector<Contact>& contacts, double stick_length, const Positions& point,
-                           const Positions* reference, const Positions& direction, Positions* gradient,
-                           double sign = 1);
+ContactChange add_contacts(const std::vector<Contact>& contacts, const Positions& point, const Positions* reference,
+                           const Positions& direction, Positions* gradient, double sign = 1);
 
 }  // namespace supple

@@ -6,7 +6,7 @@
 namespace supple {
 
 void find_stiff_directions(const Model& model, const std::vector<Contact>& contacts, const Positions& x,
-                           double stick_length, ContactCorrection& correction) {
+                           ContactCorrection& correction) {
   std::vector<StiffDirection>& stiff = correction.wanted;
   stiff.clear();
   for (const Contact& contact : contacts) {
@@ -14,7 +14,7 @@ void find_stiff_directions(const Model& model, const std::vector<Contact>& conta
   }
   for (const Contact& contact : contacts) {
     if (contact.friction <= 0) continue;  // friction is lagged: a point may have left and still be rubbed
-    const double along = friction_stiffness(contact, x, stick_length);
+    const double along = friction_stiffness(contact, x);
     // Inertia is the limit even where the elements around the point are stiffer, because together they hold a body
     // that would slide as a whole.
     if (along < model.scheme.inertia * contact.stencil.mass(model.mass) / (model.time_step * model.time_step)) continue;
@@ -171,7 +171,7 @@ void add_coarse_answer(ContactCorrection& c) { c.coarse -= (c.system.rows().tran
 
 void finish(const Model& model, ContactCorrection& c, const Positions& r, Positions& z) {
   c.solve.finish(z.data());
-  if (model.free_floating) restore_translation(model, r, z);
+  restore_translation(model, r, z);
 }
 
 // Computes z = (A + K')^-1 r; r gets the forces at the contacts.

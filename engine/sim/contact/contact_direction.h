@@ -49,7 +49,7 @@ std::size_t most_coupled_directions(const Model& model);
 
 // Lists in correction.wanted the stiff directions of the contacts found at x.
 void find_stiff_directions(const Model& model, const std::vector<Contact>& contacts, const Positions& x,
-                           double stick_length, ContactCorrection& correction);
+                           ContactCorrection& correction);
 
 // Makes a step independent of earlier ones.
 void begin_corrections(const Model& model, ContactCorrection& correction);

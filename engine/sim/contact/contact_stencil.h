@@ -1,9 +1,8 @@
-// Describes what a contact acts on as a signed sum u = sum of w_i x_i over up to four vertices. Against a collider it
-// is a material point of the body's surface: a vertex, or a point of an edge or of a triangle, with weights that add up
-// to
-// 1. Against a place of another surface it is the difference between the point and that place, with weights that add up
-// to 0: (1, -b1, -b2, -b3) for a vertex and a triangle, (1 - s, s, t - 1, -t) for two edges. Forces act on the vertices
-// by the same weights, so that in the second case no momentum comes from nothing.
+// Describes what a contact acts on: a signed sum u of w_i x_i over up to four vertices. Against a collider it is a
+// material point of the body's surface: a vertex, or a point of an edge or of a triangle, and the weights add up to 1.
+// Against a place of another surface it is the difference between the point and that place, and the weights add up to
+// 0: they are (1, -b1, -b2, -b3) for a vertex and a triangle, and (1 - s, s, t - 1, -t) for two edges. Forces act on
+// the vertices by the same weights, so that in the second case no momentum comes from nothing.
 #pragma once
 
 #include <array>

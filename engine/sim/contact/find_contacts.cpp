@@ -18,17 +18,16 @@ constexpr int vertex_groups_a_chunk = 8;  // a thread takes so many; fixed, so t
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double furthest_way_out = 100;  // the longest way out that is looked for, over the body's size
 
-// Returns how far a point may move out of an overlap in one step [m].
-double push_out_of(const Model& model, const StepInputs& inputs) {
-  return inputs.solver.contact.push_out * model.size * model.time_step;
+// Returns how far a point of a body may move out of an overlap in one step [m]. size: the size of the body [m].
+double push_out_of(const Model& model, const StepInputs& inputs, double size) {
+  return inputs.solver.contact.push_out * size * model.time_step;
 }
 
 // Returns k_c over m / h^2 for a collider. The depth of a vertex is inversely proportional to it.
-double stiffness_of(const Model& model, const StepInputs& inputs, const ContactWork& work, std::size_t collider) {
+double stiffness_of(const StepInputs& inputs, double size, const ContactWork& work, std::size_t collider) {
   constexpr double most = 1000;  // times the stiffness for a thick collider
   const double share =
-      usual_depth(model.size, (*inputs.colliders)[collider], work.traits[collider].usual_half_thickness) /
-      usual_depth(model.size);
+      usual_depth(size, (*inputs.colliders)[collider], work.traits[collider].usual_half_thickness) / usual_depth(size);
   return inputs.solver.contact.stiffness * std::min(1 / share, most);
 }
 
@@ -60,7 +59,7 @@ double lagged_force(const Contact& contact, double depth_before, double depth_un
 // Finds a common way out where the body starts so deep inside a collider that it cannot leave it in this step.
 void find_way_out(const Model& model, const StepInputs& inputs, ContactWork& work) {
   const std::vector<Collider>& colliders = *inputs.colliders;
-  const double push_out = push_out_of(model, inputs);
+  const double push_out = push_out_of(model, inputs, model.size);
   const VertexSearch search{model, inputs, work.start, work};
   std::vector<std::size_t> deep;
   std::vector<Vec3> between;  // vertices
@@ -118,7 +117,6 @@ void begin_contacts(const Model& model, const StepInputs& inputs, const Position
   forget_counts(work);
   work.pressed_at_first.clear();
   work.prediction = &y;
-  work.stick_length = inputs.solver.contact.stick * model.size * model.time_step;
   work.begin = &q;
   work.start = q.topRows(model.free);
   work.clearance.assign(colliders * model.free, unknown);
@@ -171,14 +169,14 @@ class Planes {
         pressed_at_first_(work.pressed_at_first),
         collider_(static_cast<std::int32_t>(c)),
         friction_((*inputs.colliders)[c].friction),
-        push_out_(push_out_of(model, inputs)),
-        unit_stiffness_(stiffness_of(model, inputs, work, c) / (model.time_step * model.time_step)) {}
+        inputs_(inputs),
+        work_(work) {}
 
   void of_vertex(int v, const Way& way, double field, double reach, QueryMemory& near,
                  std::vector<Contact>& list) const {
     Contact contact = contact_at(ContactStencil::at_vertex(v), v);
     if (is_leaving() && field <= 0) {
-      leave(view_, way, way_out_, field, push_out_, near, contact);
+      leave(view_, way, way_out_, field, push_out(v), near, contact);
       return list.push_back(contact);
     }
     const std::optional<SurfacePoint> surface = view_.holding(way, field, reach, near);
@@ -192,7 +190,7 @@ class Planes {
     if (way.length + reach < view_.clear(face.field)) return;
     Contact contact = contact_at(face.stencil, model_.vertices + number);
     if (is_leaving() && face.field <= 0) {
-      leave(view_, way, way_out_, face.field, push_out_, face.near, contact);
+      leave(view_, way, way_out_, face.field, push_out(face.stencil.vertex[0]), face.near, contact);
       return list.push_back(contact);
     }
     const std::optional<SurfacePoint> surface = plane_of(view_, face, way, reach, face.near);
@@ -206,10 +204,15 @@ class Planes {
     return known ? pressed_at_first_[collider_ * std::size_t(model_.free) + number] : 0;
   }
 
+  double size_at(std::int32_t vertex) const { return model_.part_of(vertex).size; }
+  double push_out(std::int32_t vertex) const { return push_out_of(model_, inputs_, size_at(vertex)); }
+
   bool is_leaving() const { return !way_out_.isZero(0); }
 
   Contact contact_at(const ContactStencil& stencil, std::int32_t number) const {
-    return {stencil, {collider_}, Vec3::Zero(), 0, unit_stiffness_ * stencil.mass(model_.mass), 0, number};
+    const double unit =
+        stiffness_of(inputs_, size_at(stencil.vertex[0]), work_, collider_) / (model_.time_step * model_.time_step);
+    return {stencil, {collider_}, Vec3::Zero(), 0, unit * stencil.mass(model_.mass), 0, number};
   }
 
   // Adds a contact with the plane through a surface's stencil, lowered by the slack and by as much of the depth as need
@@ -218,10 +221,12 @@ class Planes {
            std::vector<Contact>& list) const {
     contact.normal = view_.end().linear() * surface.normal;
     if (is_leaving() && contact.normal.dot(way_out_) < 0.5) return;  // the points that leave pull it through
-    const double deep = field < -push_out_ ? std::max(0.0, -view_.closest(way.a, near).distance - push_out_) : 0;
+    const double fastest = push_out(contact.stencil.vertex[0]);
+    const double deep = field < -fastest ? std::max(0.0, -view_.closest(way.a, near).distance - fastest) : 0;
     contact.offset = contact.normal.dot(view_.end() * surface.point) - std::max(slack, deep);
     contact.depth = std::max(0.0, -gap(contact, x_));
     if (friction_ > 0) {
+      contact.stick = inputs_.solver.contact.stick * size_at(contact.stencil.vertex[0]) * model_.time_step;
       contact.origin = view_.carried(way.q);
       const double depth_before = deep > 0 ? 0 : std::max(-field - slack, pressed_at_first(contact.number));
       contact.friction = friction_ * lagged_force(contact, depth_before, -gap(contact, prediction_),
@@ -239,7 +244,9 @@ class Planes {
   const Positions& prediction_;
   const std::vector<double>& pressed_at_first_;
   std::int32_t collider_;
-  double friction_, push_out_, unit_stiffness_;
+  double friction_;
+  const StepInputs& inputs_;
+  const ContactWork& work_;
 };
 
 }  // namespace

@@ -43,7 +43,6 @@ struct ContactWork {
   std::vector<double> pressed_at_first;
   const Positions* begin = nullptr;       // q of the step, the caller's, n x 3 [m]
   const Positions* prediction = nullptr;  // y of the step, the caller's, n x 3 [m]
-  double stick_length = 0;                // friction is whole above this slip in a step [m]
   std::uint64_t set_before = 0, set_now = 0;
   ContactCounts counts;
 };
@@ -62,10 +61,9 @@ struct Impact {
   int collider = -1;  // -1: there is none
 };
 
-// Finds how much of the way from q to x the body can go before a point is deeper than `allowed` [m] below a surface
-// that it enters on the way, or that comes to it.
-Impact first_impact(const Model& model, const StepInputs& inputs, const Positions& x, double allowed,
-                    ContactWork& work);
+// Finds how much of the way from q to x the bodies can go before a point is deeper than usual (usual_depth.h) below a
+// surface that it enters on the way, or that comes to it.
+Impact first_impact(const Model& model, const StepInputs& inputs, const Positions& x, ContactWork& work);
 
 // Returns the motion of a collider in the rest of a step, after a share of it.
 Eigen::Isometry3d motion_after(const StepInputs& inputs, int collider, double share);

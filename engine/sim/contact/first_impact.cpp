@@ -28,25 +28,26 @@ double share_to_impact(const ColliderView& view, const Way& way, double field, d
 
 }  // namespace
 
-Impact first_impact(const Model& model, const StepInputs& inputs, const Positions& x, double allowed,
-                    ContactWork& work) {
+Impact first_impact(const Model& model, const StepInputs& inputs, const Positions& x, ContactWork& work) {
   measure_moves(model, x, work, work.group_move);
   Impact first;
   for (std::size_t c = 0; c < inputs.colliders->size(); ++c) {
     const VertexSearch search{model, inputs, x, work};
     const ColliderView view = search.view(c);
-    const double here =
-        std::min(allowed, usual_depth(model.size, (*inputs.colliders)[c], work.traits[c].usual_half_thickness));
+    const auto allowed = [&](std::int32_t v) {
+      return usual_depth(model.part_of(v).size, (*inputs.colliders)[c], work.traits[c].usual_half_thickness);
+    };
     for (int group = 0; group < vertex_groups(model); ++group) {
       search.near(c, view, group, [&](int v, const Way& way, double field, double) {
-        const double share = share_to_impact(view, way, field, here, first.share, search.memory(c, v));
+        const double share = share_to_impact(view, way, field, allowed(v), first.share, search.memory(c, v));
         if (share < first.share) first = {share, static_cast<int>(c)};
       });
     }
     for (FacePoint& face : work.faces[c].points) {
       const Way way = view.way(face.stencil.at(*work.begin), face.stencil.at(x));
       if (way.length < view.clear(face.field)) continue;
-      const double share = share_to_impact(view, way, face.field, here, first.share, face.near);
+      const double share =
+          share_to_impact(view, way, face.field, allowed(face.stencil.vertex[0]), first.share, face.near);
       if (share < first.share) first = {share, static_cast<int>(c)};
     }
   }

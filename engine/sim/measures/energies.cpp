@@ -40,7 +40,7 @@ double work_of_contacts(const StepInputs& inputs, const Positions& q, OpenWorksp
     const ContactStencil& stencil = contact.stencil;
     one.front() = contact;
     for (int k = 0; k < stencil.free; ++k) w.scratch.row(stencil.vertex[k]).setZero();
-    add_contacts(one, w.contact.stick_length, x, nullptr, w.direction, &w.scratch, -1);
+    add_contacts(one, x, nullptr, w.direction, &w.scratch, -1);
     Vec3 force = Vec3::Zero();
     for (int k = 0; k < stencil.free; ++k) force += w.scratch.row(stencil.vertex[k]).transpose();
     const Vec3 from = stencil.at(q), carried = motion_after(inputs, contact.other.collider, 0) * from - from;

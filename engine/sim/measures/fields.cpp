@@ -76,7 +76,7 @@ ElementFields element_fields(const Model& model, const Positions& x) {
 
 Positions contact_forces(const Model& model, const OpenWorkspace& workspace, const Positions& x) {
   Positions force = Positions::Zero(model.vertices, 3);
-  add_contacts(workspace.current.contacts, workspace.contact.stick_length, x, nullptr, workspace.direction, &force, -1);
+  add_contacts(workspace.current.contacts, x, nullptr, workspace.direction, &force, -1);
   return in_input_order(model, force);
 }
 

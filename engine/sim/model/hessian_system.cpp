@@ -118,14 +118,15 @@ void HessianSystem::turn_to(const Positions& x, Threads* threads) {
 void HessianSystem::solve(const Model& model, const Positions& r, Positions& z) {
   Parts& p = *parts_;
   p.right = r;
-  if (model.free_floating) {
-    const Eigen::RowVector3d mean = r.colwise().sum() / model.total_mass;
-    for (int v = 0; v < model.free; ++v) p.right.row(v) -= model.mass[v] * mean;
+  for (const Part& part : model.parts) {
+    if (!part.floats) continue;
+    const Eigen::RowVector3d mean = r.middleRows(part.first_free, part.free).colwise().sum() / part.mass;
+    for (int v = part.first_free; v < part.first_free + part.free; ++v) p.right.row(v) -= model.mass[v] * mean;
   }
   turn_back(p.since, p.right, p.right);
   p.factor.solve(p.right.data(), p.right.data());
   turn_back(p.since_back, p.right, z);
-  if (model.free_floating) restore_translation(model, r, z);
+  restore_translation(model, r, z);
 }
 
 double HessianSystem::renewal_cost(const Model& model) const {

@@ -136,13 +136,20 @@ ElementChunk Model::chunk(int index) const {
           field.data() + c.first_field};
 }
 
+const Part& Model::part_of(std::int32_t vertex) const {
+  const auto has = [vertex](const Part& part) {
+    return (vertex >= part.first_free && vertex < part.first_free + part.free) ||
+           (vertex >= part.first_held && vertex < part.first_held + part.held);
+  };
+  return parts.size() == 1 ? parts.front() : *std::find_if(parts.begin(), parts.end(), has);
+}
+
 Model build_model(const BodyDescription& body) {
   static std::atomic<std::uint64_t> structures{0};
   Model model;
   model.structure = ++structures;
   model.name = body.name;
   model.vertices = static_cast<int>(body.mesh.rest.rows());
-  model.size = bounds_of(body.mesh.rest).diagonal();
   for (const int region : body.mesh.regions) SUPPLE_CHECK(std::size_t(region), <, body.materials.size());
   for (const Spring& spring : body.springs) SUPPLE_CHECK(std::max(spring.from, spring.to), <, model.vertices);
 
@@ -159,6 +166,13 @@ Model build_model(const BodyDescription& body) {
   if (std::count(held.begin(), held.end(), 0) == 0)
     throw InputError(body.name, "every vertex is held: nothing is left to move");
   number_vertices(model, body, held);
+  const double size = bounds_of(body.mesh.rest).diagonal();
+  model.parts = {Part{.name = body.name,
+                      .free = model.free,
+                      .first_held = model.free,
+                      .held = model.vertices - model.free,
+                      .size = size}};
+  model.size = size;
   number_surface(model, body.surface.rows() > 0 ? body.surface : boundary_faces(body.mesh.tets));
   for (std::size_t h = 0; h < body.handles.size(); ++h) {
     for (const std::int32_t v : body.handles[h].vertices)

@@ -1,8 +1,9 @@
-// Describes a body as the solver needs it: elements in SIMD blocks, masses, handles and the factor of A = M/h^2 + L
-// (Liu et al. 2017, section 3.3). No step changes it; between steps, ModelValues may set its numbers again (for
-// replays, and handles that release). Not here: where the body is (State), what drives it (StepInputs). Vertices are
-// renumbered: free ones come first, in the factor's order of elimination (so that solves permute nothing), then those
-// that hard handles hold. Elements are sorted by material and by their first vertex.
+// Describes a body, or several whose steps are made together, as the solver needs it: elements in SIMD blocks, masses,
+// handles and the factor of A = M/h^2 + L (Liu et al. 2017, section 3.3). No step changes it; between steps,
+// ModelValues may set its numbers again (for replays, and handles that release). Not here: where the body is (State),
+// what drives it (StepInputs). Vertices are renumbered: free ones come first, in the factor's order of elimination (so
+// that solves permute nothing), then those that hard handles hold. Elements are sorted by material and by their first
+// vertex.
 #pragma once
 
 #include <string>
@@ -59,17 +60,28 @@ struct BodyDescription {
   Precision precision = Precision::single_precision;  // of the factor, hence of search directions
 };
 
+// Describes one of the bodies of a model. Elements never join two of them, so that A is block-diagonal by parts.
+struct Part {
+  std::string name;
+  std::int32_t first_free = 0, free = 0;  // its vertices that the solver moves: first_free .. first_free + free - 1
+  std::int32_t first_held = 0, held = 0;  // its vertices that hard handles hold
+  double size = 0;                        // diagonal of the rest bounding box [m]
+  double mass = 0;                        // of the free vertices [kg]
+  bool floats = false;                    // nothing holds it: A has its translations as known eigenvectors
+};
+
 // As a System it is A = w M/h^2 + (e theta^2 + beta/h) L + springs of handles.
 struct Model : System {
   std::uint64_t structure = 0;  // names the description that the model was built from; new values keep it
-  std::string name;
-  int vertices = 0;  // n
-  int free = 0;      // vertices that the solver moves: 0 .. free-1
+  std::string name;             // of the body
+  std::vector<Part> parts;      // the bodies whose steps are made together: one, where a body moves by itself
+  int vertices = 0;             // n
+  int free = 0;                 // vertices that the solver moves: 0 .. free-1
   double time_step = 0;
-  double size = 0;                        // diagonal of the rest bounding box [m]
+  double size = 0;                        // of the largest part [m]
   Positions rest;                         // n x 3 [m]
   std::vector<double> mass;               // n [kg]
-  double total_mass = 0;                  // mass of the free vertices [kg]
+  double total_mass = 0;                  // mass of the free vertices of all parts [kg]
   std::vector<std::int32_t> input_of;     // vertex of the input file, by vertex of the model
   std::vector<std::int32_t> internal_of;  // vertex of the model, by vertex of the input file
   Triangles surface;                      // the triangles that contact sees, in the order of their lowest vertices
@@ -112,7 +124,6 @@ struct Model : System {
   };
   std::vector<HandleVertex> handled;     // the order of StepInputs::targets
   std::vector<double> handle_stiffness;  // of the spring at each free vertex, 0: none [N/m]; empty when all are hard
-  bool free_floating = false;            // nothing holds the body: A has the translations as known eigenvectors
 
   // Holds (beta/h) L over all vertices, by row; empty without damping. [N/m]
   struct SparseRows {
@@ -124,6 +135,7 @@ struct Model : System {
   double drag = 0;  // beta/h
 
   ElementChunk chunk(int index) const;
+  const Part& part_of(std::int32_t vertex) const;
 };
 
 // Throws RunError (with the body's name) when A cannot be factored, and InputError when the description contradicts

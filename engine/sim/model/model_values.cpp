@@ -62,19 +62,24 @@ void set_masses(Model& model, const BodyDescription& body) {
   }
   if (!body.point_mass.empty()) SUPPLE_CHECK(body.point_mass.size(), ==, std::size_t(model.vertices));
   for (std::size_t v = 0; v < body.point_mass.size(); ++v) model.mass[model.internal_of[v]] += body.point_mass[v];
-  model.total_mass = std::accumulate(model.mass.begin(), model.mass.begin() + model.free, 0.0);
+  model.total_mass = 0;
+  for (Part& part : model.parts) {
+    const auto first = model.mass.begin() + part.first_free;
+    part.mass = std::accumulate(first, first + part.free, 0.0);
+    model.total_mass += part.mass;
+  }
 }
 
 void set_handle_springs(Model& model, const BodyDescription& body) {
   model.handle_stiffness.clear();
-  model.free_floating = model.free == model.vertices;
+  for (Part& part : model.parts) part.floats = part.held == 0;
   for (const auto& [vertex, h] : model.handled) {
     const Handle& handle = body.handles[h];
     if (handle.stiffness <= 0) continue;
     if (model.handle_stiffness.empty()) model.handle_stiffness.assign(model.free, 0.0);
     if (!handle.holds) continue;
     model.handle_stiffness[vertex] = handle.stiffness;
-    model.free_floating = false;
+    for (Part& part : model.parts) part.floats &= vertex < part.first_free || vertex >= part.first_free + part.free;
   }
 }
 

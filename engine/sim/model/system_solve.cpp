@@ -1,15 +1,19 @@
 #include "sim/model/system_solve.h"
 
 namespace supple {
+
 void restore_translation(const Model& model, const Positions& r, Positions& z) {
-  Eigen::RowVector3d wanted = Eigen::RowVector3d::Zero(), found = Eigen::RowVector3d::Zero();
-  for (int v = 0; v < model.free; ++v) {
-    wanted += r.row(v);
-    found += model.mass[v] * z.row(v);
-  }
   const double h = model.time_step;
-  const Eigen::RowVector3d shift = (h * h / model.scheme.inertia * wanted - found) / model.total_mass;
-  for (int v = 0; v < model.free; ++v) z.row(v) += shift;
+  for (const Part& part : model.parts) {
+    if (!part.floats) continue;
+    Eigen::RowVector3d wanted = Eigen::RowVector3d::Zero(), found = Eigen::RowVector3d::Zero();
+    for (int v = part.first_free; v < part.first_free + part.free; ++v) {
+      wanted += r.row(v);
+      found += model.mass[v] * z.row(v);
+    }
+    const Eigen::RowVector3d shift = (h * h / model.scheme.inertia * wanted - found) / part.mass;
+    z.middleRows(part.first_free, part.free).rowwise() += shift;
+  }
 }
 
 void solve_system(const Model& model, const Positions& r, Positions& z, SolveScratch& scratch) {
@@ -19,7 +23,7 @@ void solve_system(const Model& model, const Positions& r, Positions& z, SolveScr
 void solve_system(const Model& model, const System& system, const Positions& r, Positions& z, SolveScratch& scratch) {
   scratch.resize(4 * std::size_t(model.free));
   system.factor.solve(r.data(), z.data(), scratch.data());
-  if (model.free_floating) restore_translation(model, r, z);
+  restore_translation(model, r, z);
 }
 
 }  // namespace supple

@@ -15,9 +15,9 @@ void solve_system(const Model& model, const Positions& r, Positions& z, SolveScr
 // Does the same with the matrix of `system`. Like A, it must resist translations by the body's inertia alone.
 void solve_system(const Model& model, const System& system, const Positions& r, Positions& z, SolveScratch& scratch);
 
-// Adds to z = A^-1 r what single precision misses. A body that nothing holds moves as a whole by exactly 1^T M z =
-// h^2/w 1^T r, because L does not see translations; a solve in single precision moves it only nearly so, and would let
-// the centre of mass drift.
+// Adds to z = A^-1 r what single precision misses, for all parts that nothing holds. Such a part moves as a whole by
+// exactly 1^T M z = h^2/w 1^T r, because L does not see translations; a solve in single precision moves it only nearly
+// so, and would let the centre of mass drift.
 void restore_translation(const Model& model, const Positions& r, Positions& z);
 
 }  // namespace supple

@@ -26,7 +26,7 @@ namespace {
 double work_of_contacts(const Positions& q, OpenWorkspace& w) {
   Positions& force = w.scratch;
   force.setZero();
-  add_contacts(w.current.contacts, w.contact.stick_length, w.current.x, nullptr, w.direction, &force, -1);
+  add_contacts(w.current.contacts, w.current.x, nullptr, w.direction, &force, -1);
   double work = 0;
   for (const Contact& contact : w.current.contacts) {
     for (int k = 0; k < contact.stencil.free; ++k) {
@@ -41,7 +41,7 @@ double work_of_contacts(const Positions& q, OpenWorkspace& w) {
 // Returns g without its inertia and without contact [J].
 double potential_of(const Model& model, const OpenWorkspace& w, const Iterate& at) {
   return at.g - inertial_energy(model, w, at.x) - contact_energy(at.contacts, at.x) -
-         friction_energy(at.contacts, w.contact.stick_length, at.x);
+         friction_energy(at.contacts, at.x);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ std::vector<char> touching_vertices(const Model& model, const StepInputs& inputs
     const Eigen::Isometry3d to_local = inputs.collider_motions[c].start.inverse();
     for (int v = 0; v < model.free; ++v) {
       const double distance = collider.shape.distance(to_local * Vec3(x.row(v).transpose())) - collider.thickness;
-      if (std::abs(distance) > touching * model.size) continue;
+      if (std::abs(distance) > touching * model.part_of(v).size) continue;
       found.resize(inputs.colliders->size() * std::size_t(model.free), 0);
       found[c * std::size_t(model.free) + v] = 1;
     }

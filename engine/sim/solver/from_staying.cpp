@@ -31,11 +31,14 @@ void set_staying(const StepContext& c) {
       move_rigidly(model, motion_after(c.inputs, collider, 0), x);
     return;
   }
-  if (!model.free_floating) return;
-  Eigen::RowVector3d moved = Eigen::RowVector3d::Zero();
-  for (int v = 0; v < model.free; ++v) moved += model.mass[v] * (w.y.row(v) - q.row(v));
-  moved /= model.total_mass;
-  for (int v = 0; v < model.free; ++v) x.row(v) += moved;
+  for (const Part& part : model.parts) {
+    if (!part.floats) continue;
+    const int end = part.first_free + part.free;
+    Eigen::RowVector3d moved = Eigen::RowVector3d::Zero();
+    for (int v = part.first_free; v < end; ++v) moved += model.mass[v] * (w.y.row(v) - q.row(v));
+    moved /= part.mass;
+    for (int v = part.first_free; v < end; ++v) x.row(v) += moved;
+  }
 }
 
 }  // namespace
@@ -44,14 +47,13 @@ std::optional<double> gain_of_staying(const StepContext& c) {
   if (c.w.report.failed || c.inputs.solver.line_search == LineSearch::none) return std::nullopt;
   OpenWorkspace& w = c.w;
   const TimedPhase timed(w.clock, Phase::evaluate, "check staying");
-  const double stick = w.contact.stick_length;
-  const double friction_reached = friction_energy(w.current.contacts, stick, w.current.x);
+  const double friction_reached = friction_energy(w.current.contacts, w.current.x);
   const double reached = w.current.g - friction_reached;
   set_staying(c);
   if (reached <= inertial_energy(c.model, w, w.trial.x) && !c.model.energy_may_be_negative) return std::nullopt;
   find_contacts_of(c.model, c.inputs, w, w.trial);
   evaluate(c.model, w, w.trial, Wanted::value);
-  const double friction_staying = friction_energy(w.trial.contacts, stick, w.trial.x);
+  const double friction_staying = friction_energy(w.trial.contacts, w.trial.x);
   const double staying = w.trial.g - friction_staying;
   if (!(staying < reached - noise_of(c.model, reached, extent_of(c.model, w)))) return std::nullopt;
   return reached + friction_reached - staying - friction_staying;

@@ -4,18 +4,18 @@
 
 namespace supple {
 
-Mat3 stiffness_of(const Contact& contact, const Positions& x, double stick_length) {
+Mat3 stiffness_of(const Contact& contact, const Positions& x) {
   const Mat3 along = contact.normal * contact.normal.transpose();
   Mat3 stiffness = Mat3::Zero();
   if (gap(contact, x) < 0) stiffness += 2 * contact.stiffness * along;
-  if (contact.friction > 0) stiffness += friction_stiffness(contact, x, stick_length) * (Mat3::Identity() - along);
+  if (contact.friction > 0) stiffness += friction_stiffness(contact, x) * (Mat3::Identity() - along);
   return stiffness;
 }
 
 void HessianMatrix::assemble(const Model& model, const ElementMatrices& elements, const std::vector<Contact>& contacts,
-                             double stick_length, const Positions& x) {
+                             const Positions& x) {
   ElasticHessian::assemble(model, elements);
-  for (const Contact& contact : contacts) add_stiffness(contact.stencil, stiffness_of(contact, x, stick_length));
+  for (const Contact& contact : contacts) add_stiffness(contact.stencil, stiffness_of(contact, x));
 }
 
 void HessianMatrix::add_stiffness(const ContactStencil& stencil, const Mat3& stiffness) {
@@ -30,7 +30,7 @@ void HessianMatrix::assemble(const Model& model, OpenWorkspace& workspace, bool 
   const double theta = model.scheme.theta;
   if (theta < 1) workspace.middle = theta * x + (1 - theta) * workspace.start_copy;
   element_matrices(model, workspace.threads, theta < 1 ? workspace.middle : x, project, scratch_);
-  assemble(model, scratch_, workspace.current.contacts, workspace.contact.stick_length, x);
+  assemble(model, scratch_, workspace.current.contacts, x);
 }
 
 bool try_factorize_projected(HessianMatrix& hessian, ChangingFactor& factor) {

@@ -9,9 +9,8 @@
 
 namespace supple {
 
-// Returns the stiffness of a contact in force at x, where friction has the stiffness of its secant [N/m]. stick_length:
-// the slip above which friction has its full strength [m].
-Mat3 stiffness_of(const Contact& contact, const Positions& x, double stick_length);
+// Returns the stiffness of a contact in force at x, where friction has the stiffness of its secant [N/m].
+Mat3 stiffness_of(const Contact& contact, const Positions& x);
 
 class HessianMatrix : public ElasticHessian {
  public:
@@ -19,7 +18,7 @@ class HessianMatrix : public ElasticHessian {
 
   // Sums up what ElasticHessian does, and stiffness_of() the contacts.
   void assemble(const Model& model, const ElementMatrices& elements, const std::vector<Contact>& contacts,
-                double stick_length, const Positions& x);
+                const Positions& x);
 
   // Assembles d^2 g at workspace.current with the contacts found there; with `project` each element's Hessian is
   // projected first.

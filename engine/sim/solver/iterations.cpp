@@ -86,11 +86,10 @@ Search find_next(const Model& model, const StepInputs& inputs, OpenWorkspace& w,
 // Replaces the contacts that the search used with those found at the trial point. Corrects the trial's gradient;
 // returns the change of its objective [J].
 double take_contacts(OpenWorkspace& w) {
-  const double stick = w.contact.stick_length;
   Iterate& to = w.trial;
   double jump = 0;
-  jump -= add_contacts(w.current.contacts, stick, to.x, nullptr, w.direction, &to.gradient, -1).value;
-  jump += add_contacts(to.contacts, stick, to.x, nullptr, w.direction, &to.gradient).value;
+  jump -= add_contacts(w.current.contacts, to.x, nullptr, w.direction, &to.gradient, -1).value;
+  jump += add_contacts(to.contacts, to.x, nullptr, w.direction, &to.gradient).value;
   count_contacts(w.current.contacts, to.contacts, w.contact);
   return jump;
 }

@@ -55,7 +55,7 @@ class ContactPairs {
  public:
   ContactPairs(const Model& model, const ContactSettings& settings, OpenWorkspace& w, const Pointers& s, int count)
       : correction_(w.correction) {
-    find_stiff_directions(model, w.current.contacts, w.current.x, w.contact.stick_length, w.correction);
+    find_stiff_directions(model, w.current.contacts, w.current.x, w.correction);
     directions_ = correction_.wanted.size();
     if (settings.history != ContactHistory::current || count == 0 || directions_ == 0) return;
     count_ = count;
@@ -178,9 +178,8 @@ void remember_pair(const Model& model, const ContactSettings& contact, OpenWorks
   if (contact.history == ContactHistory::current && !from.contacts.empty()) {
     // Both gradients are taken with the planes that the search used. Friction is taken out, too: its stiffness falls
     // while it slides, and a pair that tells so lets the next direction slide past where it would stick.
-    const double stick = workspace.contact.stick_length;
-    add_contacts(from.contacts, stick, to.x, nullptr, workspace.direction, &t, -1);
-    add_contacts(from.contacts, stick, from.x, nullptr, workspace.direction, &t, 1);
+    add_contacts(from.contacts, to.x, nullptr, workspace.direction, &t, -1);
+    add_contacts(from.contacts, from.x, nullptr, workspace.direction, &t, 1);
   }
 
   Pointers other{s.data(), t.data()};

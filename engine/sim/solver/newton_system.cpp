@@ -35,8 +35,7 @@ void NewtonSystem::Parts::assemble(const Model& model, OpenWorkspace& w) {
   hessian.assemble(model, w, true);
   right = w.current.gradient;
   stiffness.clear();
-  for (const Contact& contact : w.current.contacts)
-    stiffness.push_back(stiffness_of(contact, w.current.x, w.contact.stick_length));
+  for (const Contact& contact : w.current.contacts) stiffness.push_back(stiffness_of(contact, w.current.x));
 }
 
 // Adds the energies k (gap + n . d)^2 of planes that the direction leads through to the quadratic model: 2 k n n^T to
@@ -65,7 +64,7 @@ bool NewtonSystem::Parts::solve(const Model& model, const std::vector<Contact>& 
     return false;
   }
   factor.solve(right.data(), direction.data());
-  if (model.free_floating) {
+  if (std::ranges::any_of(model.parts, &Part::floats)) {
     pushed = right;
     for (std::size_t i = 0; i < contacts.size(); ++i)
       contacts[i].stencil.spread(-(stiffness[i] * contacts[i].stencil.of_free(direction)), pushed);

@@ -169,8 +169,7 @@ Change evaluate_against(const Model& model, OpenWorkspace& workspace, Iterate& a
   add_vertices(model, workspace, terms, gradient, change);
   if (terms.damped && reference == nullptr) terms.add_held_drag(change.value);
   if (!planes.empty()) {
-    const ContactChange contacts =
-        add_contacts(planes, workspace.contact.stick_length, at.x, reference_x, workspace.direction, gradient);
+    const ContactChange contacts = add_contacts(planes, at.x, reference_x, workspace.direction, gradient);
     change.value += contacts.value;
     change.slope += contacts.slope;
   }

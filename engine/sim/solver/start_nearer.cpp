@@ -25,10 +25,9 @@ namespace {
 // as in gain_of_staying() (from_staying.h).
 void start_from_trial_below(double share, const StepContext& c) {
   OpenWorkspace& w = c.w;
-  const double stick = w.contact.stick_length;
-  const double given = w.current.g - friction_energy(w.current.contacts, stick, w.current.x);
+  const double given = w.current.g - friction_energy(w.current.contacts, w.current.x);
   find_contacts_of(c.model, c.inputs, w, w.trial);
-  const double rubbed = friction_energy(w.trial.contacts, stick, w.trial.x);
+  const double rubbed = friction_energy(w.trial.contacts, w.trial.x);
   evaluate(c.model, w, w.trial, Wanted::gradient);
   if (!(w.trial.g - rubbed < share * given)) return;
   std::swap(w.current, w.trial);

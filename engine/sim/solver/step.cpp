@@ -50,11 +50,11 @@ void set_velocity(const Model& model, const Positions& x, State& state) {
 
 void report_contacts(const StepInputs& inputs, OpenWorkspace& w) {
   w.report.collider_forces.resize(inputs.colliders->size(), Vec3::Zero());
-  add_forces(w.current.contacts, w.contact.stick_length, w.current.x, w.report.collider_forces);
+  add_forces(w.current.contacts, w.current.x, w.report.collider_forces);
   w.report.contacts = w.contact.counts;
   Positions& force = w.scratch;
   force.setZero();
-  add_contacts(w.current.contacts, w.contact.stick_length, w.current.x, nullptr, w.direction, &force, -1);
+  add_contacts(w.current.contacts, w.current.x, nullptr, w.direction, &force, -1);
   w.report.contact_force = force.colwise().sum().transpose();
 }
 

@@ -10,7 +10,7 @@ namespace supple {
 Impact find_impact(const StepContext& c) {
   if (!has_colliders(c.inputs)) return {};
   const TimedPhase timed(c.w.clock, Phase::collide, "find impact");
-  return first_impact(c.model, c.inputs, c.w.current.x, usual_depth(c.model.size), c.w.contact);
+  return first_impact(c.model, c.inputs, c.w.current.x, c.w.contact);
 }
 
 namespace {

@@ -32,7 +32,7 @@ bool learn_contacts(const Model& model, const StepInputs& inputs, OpenWorkspace&
   }
   at.contacts.clear();
   std::merge(before.begin(), before.end(), more.begin(), more.end(), std::back_inserter(at.contacts), comes_before);
-  const double rise = add_contacts(more, w.contact.stick_length, at.x, nullptr, w.direction, &at.gradient).value;
+  const double rise = add_contacts(more, at.x, nullptr, w.direction, &at.gradient).value;
   at.g += rise;
   w.report.objective.back() = at.g;
   w.report.decrease -= rise;
