@@ -133,16 +133,6 @@ void end_film(const GalleryCommand& command, ListedScene& scene, const JobEnd& e
                             succeeded(scene) ? "done" : "failed", duration_text(end.seconds)));
 }
 
-void check_out(const GalleryCommand& command) {
-  const std::string option = "--out " + command.out;
-  std::error_code error;
-  if (!std::filesystem::exists(command.out, error)) return;
-  if (!std::filesystem::is_directory(command.out, error)) throw InputError(option, "exists and is not a folder");
-  const bool known = std::filesystem::exists(std::filesystem::path(command.out) / "gallery.json", error);
-  if (!known && !std::filesystem::is_empty(command.out, error))
-    throw InputError(option, "holds files that no gallery left there (no gallery.json); choose another folder");
-}
-
 // Makes the page of what there is. Returns the number of scenes without a whole film.
 std::size_t write_page(const GalleryCommand& command, const std::vector<ListedScene>& scenes) {
   std::vector<GalleryScene> shown;
@@ -183,7 +173,7 @@ void film(const GalleryCommand& command, std::vector<ListedScene>& scenes) {
 
 int make_gallery(const GalleryCommand& command) {
   const std::vector<std::filesystem::path> files = files_of(command);
-  check_out(command);
+  check_left_by(command.out, "gallery", "gallery.json");
   const FolderLock lock(command.out);
   write_whole_file(std::filesystem::path(command.out) / "gallery.json", std::string_view("{}\n"));
   std::vector<ListedScene> scenes;
