@@ -5,9 +5,9 @@
 #include <cerrno>
 #include <cstring>
 #include <memory>
-#include <thread>
 
 #include "app/film_run.h"
+#include "app/jobs.h"
 #include "app/split_draw.h"
 #include "app/verbs.h"
 #include "base/console.h"
@@ -21,7 +21,6 @@
 #include "film/progress.h"
 #include "film/redraw/redraw.h"
 #include "film/redraw/skin_files.h"
-#include "output/files/child_program.h"
 #include "output/files/png_file.h"
 #include "output/files/whole_file.h"
 #include "output/run/run_folder.h"
@@ -98,19 +97,23 @@ void begin_film(const DrawCommand& command, const LoadedDrawing& drawing, std::o
   video.emplace(command.folder() / file, scene.output.width, scene.output.height, drawing.rate, command.coding);
 }
 
-// Makes the film from pictures that other processes have drawn.
-int merge_parts(const DrawCommand& command, const LoadedDrawing& drawing) {
-  const Stopwatch watch;
+// Makes the film from pictures that other processes have drawn. watch: started with the work.
+int film_of_parts(const DrawCommand& command, const LoadedDrawing& drawing, const Stopwatch& watch) {
   const auto count = static_cast<int>(drawing.frames.size());
-  const std::vector<int> missing = missing_pictures(drawing, command.folder());
-  if (!missing.empty()) {
-    throw RunError(fmt::format("{}: {} of {} pictures are not drawn yet, the first of them {:06}",
-                               command.folder().string(), missing.size(), count, missing.front()));
-  }
   std::optional<VideoEncoder> video;
   begin_film(command, drawing, video);
   if (video) video->add_files(command.folder() / "frames", count);
   return finish_film(command, drawing, video, count, watch.elapsed_ms() / 1000);
+}
+
+int merge_parts(const DrawCommand& command, const LoadedDrawing& drawing) {
+  const Stopwatch watch;
+  const std::vector<int> missing = missing_pictures(drawing, command.folder());
+  if (!missing.empty()) {
+    throw RunError(fmt::format("{}: {} of {} pictures are not drawn yet, the first of them {:06}",
+                               command.folder().string(), missing.size(), drawing.frames.size(), missing.front()));
+  }
+  return film_of_parts(command, drawing, watch);
 }
 
 int draw_range(const DrawCommand& command, LoadedDrawing& drawing, PictureRange range, VideoEncoder* video) {
@@ -132,23 +135,14 @@ int draw_whole(const DrawCommand& command, LoadedDrawing& drawing) {
   return status == 0 ? finish_film(command, drawing, video, count, watch.elapsed_ms() / 1000) : status;
 }
 
-// Returns the command that draws one part, as a user would type it.
-std::vector<std::string> command_of_part(const DrawCommand& command, int index) {
+// Returns the command line that draws one part.
+std::vector<std::string> words_of_part(const DrawCommand& command, std::size_t index) {
   const DrawPlan& plan = command.plan;
-  std::vector<std::string> words = {std::filesystem::read_symlink("/proc/self/exe").string(),
-                                    "draw",
-                                    "--out=" + command.folder().string(),
-                                    "--index",
-                                    std::to_string(index),
-                                    "--of",
-                                    std::to_string(command.jobs),
-                                    "--first",
-                                    std::to_string(plan.first),
-                                    "--every",
-                                    std::to_string(plan.every),
-                                    "--gl",
-                                    std::string(name_of(plan.gl)),
-                                    "--quiet"};
+  std::vector<std::string> words = {
+      "draw",    "--out=" + command.folder().string(), "--index", std::to_string(index),
+      "--of",    std::to_string(command.jobs),         "--first", std::to_string(plan.first),
+      "--every", std::to_string(plan.every),           "--gl",    std::string(name_of(plan.gl)),
+      "--quiet"};
   if (plan.last >= 0) words.insert(words.end(), {"--last", std::to_string(plan.last)});
   if (plan.rate > 0) words.insert(words.end(), {"--rate", fmt::format("{}", plan.rate)});
   if (!plan.cache) words.emplace_back("--no-cache");
@@ -161,27 +155,17 @@ std::vector<std::string> command_of_part(const DrawCommand& command, int index) 
 // Draws the parts in processes of their own, all at the same time, and makes the film.
 int draw_in_parts(const DrawCommand& command, const LoadedDrawing& drawing) {
   const Stopwatch watch;
-  std::vector<std::optional<ProgramEnd>> ends(command.jobs);
-  std::vector<std::thread> waiting;
-  for (int part = 0; part < command.jobs; ++part) {
-    waiting.emplace_back(
-        [&, part] { ends[part] = run_program(command_of_part(command, part), [] { return interrupted(); }); });
-  }
-  for (std::thread& thread : waiting) thread.join();
+  std::vector<JobEnd> ends(command.jobs);
+  run_jobs({"part", ends.size(), command.jobs, [&](std::size_t part) { return Job{words_of_part(command, part)}; },
+            [&](const JobEnd& end) { ends[end.job] = end; }});
   if (interrupted()) {
     const auto drawn = drawing.frames.size() - missing_pictures(drawing, command.folder()).size();
     return say_end({FilmEnd::interrupted, "", static_cast<int>(drawn)}, command.folder());
   }
-  for (const auto& end : ends) {
-    if (!end) throw RunError("the program cannot be started once more for a part");
-    if (end->status != 0)
-      throw RunError("a part " + how_it_ended(*end) + (end->output.empty() ? "" : ": " + end->output));
+  for (const JobEnd& end : ends) {
+    if (end.status != 0) throw RunError("a part " + end.how + (end.output.empty() ? "" : ": " + end.output));
   }
-  const auto count = static_cast<int>(drawing.frames.size());
-  std::optional<VideoEncoder> video;
-  begin_film(command, drawing, video);
-  if (video) video->add_files(command.folder() / "frames", count);
-  return finish_film(command, drawing, video, count, watch.elapsed_ms() / 1000);
+  return film_of_parts(command, drawing, watch);
 }
 
 // Writes one frame as a picture.

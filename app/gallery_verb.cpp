@@ -1,12 +1,11 @@
 #include <fmt/core.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "app/jobs.h"
 #include "app/verbs.h"
 #include "base/console.h"
 #include "base/error.h"
@@ -14,9 +13,7 @@
 #include "base/interrupts.h"
 #include "base/names.h"
 #include "base/text.h"
-#include "base/timing.h"
 #include "film/plan/shipped_files.h"
-#include "output/files/child_program.h"
 #include "output/files/folder_lock.h"
 #include "output/files/json_text.h"
 #include "output/files/whole_file.h"
@@ -47,8 +44,9 @@ struct GalleryCommand {
 struct ListedScene {
   std::string name, title;
   std::filesystem::path file;
-  std::vector<std::string> words;  // that film it; empty where the scene cannot be read
-  std::string identity;            // of all that its film depends on and that is cheap to know
+  std::vector<std::string> words;          // that film it; empty where the scene cannot be read
+  std::string identity;                    // of all that its film depends on and that is cheap to know
+  std::optional<JobOutcome> outcome = {};  // of its film; none where this film was not tried yet
 };
 
 std::vector<std::filesystem::path> files_of(const GalleryCommand& command) {
@@ -65,15 +63,10 @@ std::vector<std::filesystem::path> files_of(const GalleryCommand& command) {
   return files;
 }
 
-// Returns the words with which the program films a scene within the gallery's bounds.
+// Returns the command line that films a scene within the gallery's bounds.
 std::vector<std::string> words_for(const GalleryCommand& command, const ListedScene& listed, const SceneDef& scene) {
-  std::vector<std::string> words = {std::filesystem::read_symlink("/proc/self/exe").string(),
-                                    "render",
-                                    "--out=" + command.folder(listed.name).string(),
-                                    "--force",
-                                    "--quiet",
-                                    "--gl",
-                                    command.gl};
+  std::vector<std::string> words = {
+      "render", "--out=" + command.folder(listed.name).string(), "--force", "--quiet", "--gl", command.gl};
   if (command.preview) {
     words.emplace_back("--preview");
   } else if (scene.output.width > command.width) {
@@ -89,16 +82,17 @@ std::vector<std::string> words_for(const GalleryCommand& command, const ListedSc
   return words;
 }
 
-void write_record(const GalleryCommand& command, const ListedScene& scene, int status, const std::string& message) {
-  std::filesystem::create_directories(std::filesystem::path(command.out) / "runs");
-  const Json record = {{"identity", scene.identity}, {"exit_status", status}, {"message", message}};
-  write_whole_file(command.record(scene.name), json_text(record, 1) + "\n");
+// Reads the outcome of this film from the record; nothing where the record tells of another film.
+void read_outcome(const GalleryCommand& command, ListedScene& scene) {
+  const auto record = json_object_in<Json>(command.record(scene.name));
+  const bool of_this_film = record.is_object() && record.value("identity", "") == scene.identity;
+  scene.outcome = of_this_film ? std::optional(outcome_in(record)) : std::nullopt;
 }
 
-Json record_of(const GalleryCommand& command, const ListedScene& scene) {
-  std::ifstream file(command.record(scene.name));
-  const Json record = file ? json_if_valid<Json>(file) : Json();
-  return record.is_object() && record.value("identity", "") == scene.identity ? record : Json();
+void keep_outcome(const GalleryCommand& command, ListedScene& scene, const JobOutcome& outcome) {
+  const Json made_with = {{"identity", scene.identity}};
+  write_job_record(command.record(scene.name), made_with, outcome);
+  read_outcome(command, scene);
 }
 
 // Reads a scene so far that its bounds are known. A scene that is wrong is recorded as one that failed.
@@ -109,46 +103,34 @@ ListedScene listed(const GalleryCommand& command, const std::filesystem::path& f
     result.title = script.scene().title;
     result.words = words_for(command, result, script.scene());
     std::string all = hash_text_form(program_identity()) + script.scene_json() + script.replay_json();
-    for (std::size_t i = 2; i < result.words.size(); ++i) all += '\n' + result.words[i];
+    for (std::size_t i = 1; i < result.words.size(); ++i) all += '\n' + result.words[i];
     result.identity = hash_text_form(hash_text(all));
+    read_outcome(command, result);
   } catch (const InputError& error) {
     result.identity = hash_text_form(hash_text(error.what()));
-    write_record(command, result, 2, error.what());
+    keep_outcome(command, result, {2, error.what()});
   }
   return result;
 }
 
-bool is_done(const GalleryCommand& command, const ListedScene& scene) {
-  const Json record = record_of(command, scene);
-  return record.is_object() && !command.again && record.value("exit_status", 1) == 0;
+bool succeeded(const ListedScene& scene) { return scene.outcome && scene.outcome->exit_status == 0; }
+
+// Returns why a scene has no film.
+std::string trouble_of(const ListedScene& scene) {
+  if (!scene.outcome) return "not filmed yet";
+  return scene.outcome->message.empty() ? "failed" : scene.outcome->message;
 }
 
-// Films a scene in a process of its own. Returns false when the gallery was interrupted meanwhile.
-bool film(const GalleryCommand& command, const ListedScene& scene, const std::string& place) {
-  const Stopwatch watch;
-  std::error_code error;
-  std::filesystem::remove(command.record(scene.name), error);
-  const auto end = run_program(scene.words, interrupted);
-  if (!end) throw RunError("the program cannot be started once more for a scene");
-  if (interrupted()) return false;
-  const int status = WIFEXITED(end->status) ? WEXITSTATUS(end->status) : 128 + WTERMSIG(end->status);
-  std::string message = status == 0 ? "" : end->output.empty() ? how_it_ended(*end) : end->output;
+// Keeps how the film of a scene ended, and says so, unless an interrupt cut it short.
+void end_film(const GalleryCommand& command, ListedScene& scene, const JobEnd& end, std::size_t films) {
+  scene.outcome.reset();
+  if (end.cut_short) return;
+  std::string message = end.status == 0 ? "" : end.output.empty() ? end.how : end.output;
   message.erase(message.find_last_not_of('\n') + 1);
-  write_record(command, scene, status, message);
+  keep_outcome(command, scene, {end.status, message});
   if (!command.quiet)
-    say(stderr, fmt::format("{} {}: {} in {}\n", place, scene.name, status == 0 ? "done" : "failed",
-                            duration_text(watch.elapsed_ms() / 1000)));
-  return true;
-}
-
-void check_out(const GalleryCommand& command) {
-  const std::string option = "--out " + command.out;
-  std::error_code error;
-  if (!std::filesystem::exists(command.out, error)) return;
-  if (!std::filesystem::is_directory(command.out, error)) throw InputError(option, "exists and is not a folder");
-  const bool known = std::filesystem::exists(std::filesystem::path(command.out) / "gallery.json", error);
-  if (!known && !std::filesystem::is_empty(command.out, error))
-    throw InputError(option, "holds files that no gallery left there (no gallery.json); choose another folder");
+    say(stderr, fmt::format("{} of {}, {}: {} in {}\n", end.ended, films, scene.name,
+                            succeeded(scene) ? "done" : "failed", duration_text(end.seconds)));
 }
 
 // Makes the page of what there is. Returns the number of scenes without a whole film.
@@ -157,13 +139,11 @@ std::size_t write_page(const GalleryCommand& command, const std::vector<ListedSc
   std::size_t troubled = 0;
   std::error_code error;
   for (const ListedScene& scene : scenes) {
-    const Json record = record_of(command, scene);
-    std::string trouble = record.is_object() ? record.value("message", "") : "not filmed yet";
-    if (record.is_object() && record.value("exit_status", 1) != 0 && trouble.empty()) trouble = "failed";
-    troubled += trouble.empty() ? 0 : 1;
+    troubled += succeeded(scene) ? 0 : 1;
     const std::filesystem::path run = command.folder(scene.name);
-    const bool has_run = record.is_object() && !scene.words.empty() && std::filesystem::exists(run, error);
-    shown.push_back({scene.name, scene.title, has_run ? run : std::filesystem::path(), trouble});
+    const bool has_run = scene.outcome && !scene.words.empty() && std::filesystem::exists(run, error);
+    shown.push_back(
+        {scene.name, scene.title, has_run ? run : std::filesystem::path(), succeeded(scene) ? "" : trouble_of(scene)});
   }
   const std::string heading =
       command.scenes.empty() ? "The scenes that ship with supple" : "The scenes in " + command.scenes;
@@ -175,21 +155,31 @@ std::size_t write_page(const GalleryCommand& command, const std::vector<ListedSc
   return troubled;
 }
 
-int make_gallery(const GalleryCommand& command) {
-  const std::vector<std::filesystem::path> files = files_of(command);
-  check_out(command);
-  const FolderLock lock(command.out);
-  write_whole_file(std::filesystem::path(command.out) / "gallery.json", std::string_view("{}\n"));
-  std::vector<ListedScene> scenes, left;
-  for (const std::filesystem::path& file : files) scenes.push_back(listed(command, file));
-  std::copy_if(scenes.begin(), scenes.end(), std::back_inserter(left),
-               [&](const ListedScene& scene) { return !scene.words.empty() && !is_done(command, scene); });
-  const auto done = std::ranges::count_if(scenes, [&](const ListedScene& scene) { return is_done(command, scene); });
+// Films the scenes that need it, one after the other.
+void film(const GalleryCommand& command, std::vector<ListedScene>& scenes) {
+  std::vector<ListedScene*> left;
+  for (ListedScene& scene : scenes) {
+    if (!scene.words.empty() && (command.again || !succeeded(scene))) left.push_back(&scene);
+  }
+  const auto done = command.again ? 0 : std::ranges::count_if(scenes, succeeded);
   if (!command.quiet && done > 0) say(stderr, fmt::format("{} of {} scenes are done\n", done, scenes.size()));
   catch_interrupts();
-  bool whole = true;
-  for (std::size_t i = 0; i < left.size() && whole; ++i)
-    whole = !interrupted() && film(command, left[i], fmt::format("{} of {},", i + 1, left.size()));
+  run_jobs({"scene", left.size(), 1,
+            [&](std::size_t i) {
+              return Job{left[i]->words, command.record(left[i]->name)};
+            },
+            [&](const JobEnd& end) { end_film(command, *left[end.job], end, left.size()); }});
+}
+
+int make_gallery(const GalleryCommand& command) {
+  const std::vector<std::filesystem::path> files = files_of(command);
+  check_left_by(command.out, "gallery", "gallery.json");
+  const FolderLock lock(command.out);
+  write_whole_file(std::filesystem::path(command.out) / "gallery.json", std::string_view("{}\n"));
+  std::vector<ListedScene> scenes;
+  for (const std::filesystem::path& file : files) scenes.push_back(listed(command, file));
+  film(command, scenes);
+  const bool whole = !interrupted();
   const std::size_t troubled = write_page(command, scenes);
   if (!whole) {
     say(stderr, "supple: interrupted; the same command goes on with the scene that was cut short\n");
@@ -198,9 +188,7 @@ int make_gallery(const GalleryCommand& command) {
   if (troubled == 0) return 0;
   say(stderr, fmt::format("supple: {} of {} scenes failed:\n", troubled, scenes.size()));
   for (const ListedScene& scene : scenes) {
-    const Json record = record_of(command, scene);
-    if (record.value("exit_status", 1) != 0)
-      say(stderr, fmt::format("  {}: {}\n", scene.name, record.value("message", "")));
+    if (!succeeded(scene)) say(stderr, fmt::format("  {}: {}\n", scene.name, trouble_of(scene)));
   }
   return 1;
 }

@@ -6,6 +6,7 @@
 
 #include "app/film_run.h"
 #include "app/verbs.h"
+#include "base/companion_program.h"
 #include "base/console.h"
 #include "base/error.h"
 #include "base/hash.h"
@@ -179,7 +180,7 @@ std::vector<Profiled> programs_of(const ProfileCommand& request, const std::file
   std::vector<Profiled> programs;
   if (!request.against.empty())
     programs.push_back({std::filesystem::absolute(request.against).string(), folder.string() + "-against"});
-  programs.push_back({std::filesystem::read_symlink("/proc/self/exe").string(), folder});
+  programs.push_back({this_program().string(), folder});
   return programs;
 }
 

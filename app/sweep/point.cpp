@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "app/film_run.h"
@@ -12,20 +11,11 @@
 #include "film/plan/shipped_files.h"
 #include "output/files/folder_lock.h"
 #include "output/files/json_text.h"
-#include "output/files/whole_file.h"
 
 namespace supple {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// Reads a JSON object; null where the file is missing or incomplete.
-Json read_json(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  if (!file) return nullptr;
-  Json json = json_if_valid<Json>(file);
-  return json.is_object() ? json : Json(nullptr);
-}
 
 // Returns the program and the scene that a record is made with; the scene's hash is empty where the point's scene
 // cannot be read.
@@ -44,20 +34,6 @@ std::vector<std::string> paths_of(const SweepDef& sweep) {
   std::vector<std::string> paths;
   for (const PathList& axis : sweep.axes) paths.push_back(axis.path);
   return paths;
-}
-
-void write_record(const SweepRequest& request, std::size_t point, int status, const std::string& message,
-                  double seconds) {
-  Json json = made_with(request, point);
-  json["sweep"] = {{"scene", request.name}, {"paths", paths_of(request.sweep)}};
-  json["error_every"] = request.error_every;
-  json["pictures"] = name_of(request.pictures);
-  json["exit_status"] = status;
-  json["message"] = message;
-  json["wall_s"] = seconds;
-  std::error_code error;
-  std::filesystem::create_directories(request.folder(point), error);
-  write_whole_file(request.folder(point) / "point.json", json_text(json, 1) + "\n");
 }
 
 FilmPlan film_of(const SweepRequest& request, std::size_t point) {
@@ -116,7 +92,7 @@ void check_folder(const SweepRequest& request) {
                          std::stoul(name) >= request.sweep.points();
     std::string difference;
     if (!known) {
-      const Json record = read_json(entry.path() / "point.json");
+      const auto record = json_object_in<Json>(entry.path() / "point.json");
       known = record.is_object();
       difference = other_sweep(request, record);
     }
@@ -133,6 +109,8 @@ std::filesystem::path SweepRequest::folder(std::size_t point) const {
   return out / "points" / fmt::format("{:0{}}", point, digits);
 }
 
+std::filesystem::path SweepRequest::record(std::size_t point) const { return folder(point) / "point.json"; }
+
 std::string end_text(PointEnd end) {
   switch (end) {
     case PointEnd::done: return "done";
@@ -145,55 +123,61 @@ std::string end_text(PointEnd end) {
   return "not run";
 }
 
+void record_point(const SweepRequest& request, std::size_t point, const JobOutcome& outcome) {
+  Json json = made_with(request, point);
+  json["sweep"] = {{"scene", request.name}, {"paths", paths_of(request.sweep)}};
+  json["error_every"] = request.error_every;
+  json["pictures"] = name_of(request.pictures);
+  write_job_record(request.record(point), json, outcome);
+}
+
 int run_point(const SweepRequest& request, std::size_t point, const std::vector<std::string>& command) {
   const std::filesystem::path folder = request.folder(point);
   const FolderLock lock(folder);
   std::error_code error;
   for (const char* stale : {"point.json", "profile.json"}) std::filesystem::remove(folder / stale, error);
   const Stopwatch watch;
+  const auto record = [&](int status, const std::string& message) {
+    record_point(request, point, {status, message, watch.elapsed_ms() / 1000});
+  };
   try {
     const int status = run_film({film_of(request, point)}, command);
-    const std::string message = status == 1 ? failure_in(read_json(folder / "run.json")) : "";
-    write_record(request, point, status, message, watch.elapsed_ms() / 1000);
+    record(status, status == 1 ? failure_in(json_object_in<Json>(folder / "run.json")) : "");
     return status;
   } catch (const InputError& wrong) {
-    write_record(request, point, 2, wrong.what(), watch.elapsed_ms() / 1000);
+    record(2, wrong.what());
     throw;
   } catch (const std::exception& wrong) {
-    write_record(request, point, 1, wrong.what(), watch.elapsed_ms() / 1000);
+    record(1, wrong.what());
     throw;
   }
 }
 
-void record_failure(const SweepRequest& request, std::size_t point, int exit_status, const std::string& message) {
-  write_record(request, point, exit_status, message, 0);
-}
-
 PointOutcome outcome_of(const SweepRequest& request, std::size_t point) {
-  const std::filesystem::path folder = request.folder(point);
-  const Json record = read_json(folder / "point.json"), run = read_json(folder / "run.json");
+  const auto record = json_object_in<Json>(request.record(point));
+  const auto run = json_object_in<Json>(request.folder(point) / "run.json");
   PointOutcome outcome;
   if (!record.is_object()) {
     if (run.is_object()) outcome = {PointEnd::unfinished, "", "still running, or ended without a word", 0};
     return outcome;
   }
-  const int status = record.value("exit_status", 1);
-  outcome = {PointEnd::failed, std::to_string(status), record.value("message", ""), record.value("wall_s", 0.0)};
+  const JobOutcome kept = outcome_in(record);
+  outcome = {PointEnd::failed, std::to_string(kept.exit_status), kept.message, kept.wall_s.value_or(0)};
   const Json now = made_with(request, point);
   if (record.value("program", "") != now["program"] || record.value("scene", "") != now["scene"]) {
     outcome.end = PointEnd::outdated;
     outcome.message = record.value("program", "") != now["program"] ? "was made by another build of the program"
                                                                     : "was made from another scene or other settings";
-  } else if (status == 130) {
+  } else if (kept.exit_status == 130) {
     outcome.end = PointEnd::interrupted;
-  } else if (status == 0 && run.is_object() && run.value("ended", "") == "done") {
+  } else if (kept.exit_status == 0 && run.is_object() && run.value("ended", "") == "done") {
     outcome.end = PointEnd::done;
   }
   return outcome;
 }
 
 bool has_what_is_asked(const SweepRequest& request, std::size_t point) {
-  const Json record = read_json(request.folder(point) / "point.json");
+  const auto record = json_object_in<Json>(request.record(point));
   if (!record.is_object() || record.value("error_every", 0) != request.error_every) return false;
   const auto drawn = value_named<FilmPictures>(record.value("pictures", ""));
   return request.pictures == FilmPictures::none || drawn == FilmPictures::all || drawn == request.pictures;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/jobs.h"
 #include "film/plan/film_plan.h"
 #include "scene/reading/sweep.h"
 
@@ -27,6 +28,7 @@ struct SweepRequest {
   bool quiet = false;
 
   std::filesystem::path folder(std::size_t point) const;
+  std::filesystem::path record(std::size_t point) const;  // its point.json
 };
 
 enum class PointEnd { done, failed, interrupted, outdated, unfinished, not_run };
@@ -50,8 +52,8 @@ void check_folder(const SweepRequest& request);
 // which the program was called. Throws what the run throws, after recording it.
 int run_point(const SweepRequest& request, std::size_t point, const std::vector<std::string>& command);
 
-// Records the failure of a point whose process ended without recording it.
-void record_failure(const SweepRequest& request, std::size_t point, int exit_status, const std::string& message);
+// Records how a point ended.
+void record_point(const SweepRequest& request, std::size_t point, const JobOutcome& outcome);
 
 // Returns how a point ended, judged by the content of its folder. It counts as done if its run.json says so and if
 // program and scene are the same.

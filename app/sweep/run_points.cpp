@@ -1,30 +1,24 @@
 #include "app/sweep/run_points.h"
 
 #include <fmt/core.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <atomic>
-#include <mutex>
 #include <thread>
 
+#include "app/jobs.h"
 #include "app/sweep/merge.h"
 #include "base/console.h"
-#include "base/error.h"
 #include "base/interrupts.h"
 #include "base/text.h"
-#include "base/timing.h"
 #include "film/plan/shipped_files.h"
-#include "output/files/child_program.h"
 #include "output/files/folder_lock.h"
 
 namespace supple {
 namespace {
 
-// Returns the command that runs one point, as a user would type it.
-std::vector<std::string> command_of(const SweepRequest& request, std::size_t point) {
-  std::vector<std::string> words = {std::filesystem::read_symlink("/proc/self/exe").string(),
-                                    "sweep",
+// Returns the command line that runs one point.
+std::vector<std::string> words_of(const SweepRequest& request, std::size_t point) {
+  std::vector<std::string> words = {"sweep",
                                     "--index",
                                     std::to_string(point),
                                     "--out=" + request.out.string(),
@@ -42,62 +36,17 @@ std::vector<std::string> command_of(const SweepRequest& request, std::size_t poi
   return words;
 }
 
-// Hands out points to threads, each of which waits for one process at a time.
-class PointQueue {
- public:
-  PointQueue(const SweepRequest& request, std::vector<std::size_t> points)
-      : request_(request), points_(std::move(points)) {}
-
-  void run(int jobs) {
-    std::vector<std::thread> workers;
-    for (int i = 0; i < jobs; ++i) workers.emplace_back([this] { work(); });
-    for (std::thread& worker : workers) worker.join();
-    if (!error_.empty()) throw RunError(error_);
+// Says how a point ended, and records it where its process could not.
+void end_point(const SweepRequest& request, std::size_t point, const JobEnd& end, std::size_t points) {
+  PointOutcome outcome = outcome_of(request, point);
+  if (!end.cut_short && end.status != 0 && outcome.exit_status.empty()) {
+    record_point(request, point, {end.status, end.how, 0});
+    outcome = outcome_of(request, point);
   }
-
- private:
-  void work() {
-    try {
-      while (!interrupted() && !stopped_) {
-        const std::size_t next = next_++;
-        if (next >= points_.size()) return;
-        run_one(points_[next]);
-      }
-    } catch (const std::exception& error) {
-      const std::lock_guard lock(mutex_);
-      error_ = error.what();
-      stopped_ = true;
-    }
-  }
-
-  void run_one(std::size_t point) {
-    const Stopwatch watch;
-    std::error_code error;
-    std::filesystem::remove(request_.folder(point) / "point.json", error);  // of an earlier run
-    const auto end = run_program(command_of(request_, point), [this] { return interrupted() || stopped_.load(); });
-    if (!end) throw RunError("the program cannot be started once more for a point");
-    PointOutcome outcome = outcome_of(request_, point);
-    const bool asked_to_end = interrupted() || stopped_;
-    if (!asked_to_end && end->status != 0 && outcome.exit_status.empty()) {
-      const int status = WIFSIGNALED(end->status) ? 128 + WTERMSIG(end->status) : WEXITSTATUS(end->status);
-      record_failure(request_, point, status, how_it_ended(*end));
-      outcome = outcome_of(request_, point);
-    }
-    const std::lock_guard lock(mutex_);
-    ++ended_;
-    if (request_.quiet || (asked_to_end && outcome.end != PointEnd::done)) return;
-    say(stderr, fmt::format("point {}: {} in {} ({} of {})\n", point, end_text(outcome.end),
-                            duration_text(watch.elapsed_ms() / 1000), ended_, points_.size()));
-  }
-
-  const SweepRequest& request_;
-  const std::vector<std::size_t> points_;
-  std::atomic<std::size_t> next_{0};
-  std::atomic<bool> stopped_{false};
-  std::mutex mutex_;
-  std::size_t ended_ = 0;
-  std::string error_;
-};
+  if (request.quiet || (end.cut_short && outcome.end != PointEnd::done)) return;
+  say(stderr, fmt::format("point {}: {} in {} ({} of {})\n", point, end_text(outcome.end), duration_text(end.seconds),
+                          end.ended, points));
+}
 
 std::vector<std::size_t> points_to_run(const SweepRequest& request, bool again) {
   std::vector<std::size_t> points;
@@ -127,7 +76,11 @@ int run_points(const SweepRequest& request, int jobs, bool again) {
     say(stderr,
         fmt::format("{} point{} to run, {} at a time\n", points.size(), points.size() == 1 ? "" : "s", at_once));
   catch_interrupts();
-  PointQueue(request, points).run(at_once);
+  run_jobs({"point", points.size(), at_once,
+            [&](std::size_t i) {
+              return Job{words_of(request, points[i]), request.record(points[i])};
+            },
+            [&](const JobEnd& end) { end_point(request, points[end.job], end, points.size()); }});
   if (interrupted()) {
     const auto left = points_to_run(request, false).size();
     say(stderr,

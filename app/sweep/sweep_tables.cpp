@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 
@@ -144,8 +143,7 @@ PointResult read_result(const SweepRequest& request, std::size_t point) {
   result.outcome = outcome_of(request, point);
   if (result.outcome.end != PointEnd::done && result.outcome.end != PointEnd::failed) return result;
   const std::filesystem::path folder = request.folder(point);
-  std::ifstream file(folder / "run.json");
-  const nlohmann::json run = json_if_valid<nlohmann::json>(file);
+  const auto run = json_object_in<nlohmann::json>(folder / "run.json");
   result.cpu = json_word(run, "machine", "cpu");
   result.kernels = json_word(run, "program", "kernels");
   if (std::filesystem::exists(folder / "profile.json")) add_rows(result, read_profile(folder / "profile.json"));

@@ -4,9 +4,14 @@
 
 namespace supple {
 
+std::filesystem::path this_program() {
+  std::error_code error;
+  return std::filesystem::read_symlink("/proc/self/exe", error);
+}
+
 std::optional<std::filesystem::path> companion_program(const std::string& name) {
   std::error_code error;
-  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  const std::filesystem::path folder = this_program().parent_path();
   for (const std::filesystem::path& place : {folder / name, folder / SUPPLE_LIBEXEC_FROM_BIN / name})
     if (std::filesystem::is_regular_file(place, error)) return place;
   return std::nullopt;

@@ -1,4 +1,4 @@
-// Finds the programs that belong to the one that runs.
+// Finds the program that runs, and those that belong to it.
 #pragma once
 
 #include <filesystem>
@@ -6,6 +6,9 @@
 #include <string>
 
 namespace supple {
+
+// Returns the file of the running program; empty where the system does not tell.
+std::filesystem::path this_program();
 
 // Looks beside the running program, where a build leaves it, and in the folder that an installation has for programs
 // that users do not call themselves. Returns nothing where it is in neither.

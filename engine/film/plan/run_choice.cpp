@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "output/files/json_text.h"
@@ -44,8 +43,7 @@ SortedJson film_of(const SortedJson& info) {
 Holds what_is_in(const std::filesystem::path& run, const FilmPlan& plan, const SortedJson& info) {
   std::error_code error;
   if (!std::filesystem::exists(run / "run.json", error)) return Holds::nothing;
-  std::ifstream file(run / "run.json");
-  const SortedJson before = json_if_valid<SortedJson>(file);
+  const auto before = json_object_in<SortedJson>(run / "run.json");
   if (before.is_object() && !before.contains("ended")) return Holds::nothing;  // a run that had only begun
   if (!before.is_object()) return Holds::another;
   // An earlier preview is there to be replaced.

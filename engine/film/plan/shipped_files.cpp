@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "base/companion_program.h"
 #include "base/error.h"
 #include "base/near_files.h"
 #include "base/read_file.h"
@@ -13,7 +14,7 @@ namespace {
 
 std::filesystem::path shared_folder() {
   std::error_code error;
-  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  const std::filesystem::path folder = this_program().parent_path();
   // The first way leads to the files from supple itself, the second from a program that supple starts.
   for (const char* way : {SUPPLE_SHARE_FROM_BIN, SUPPLE_SHARE_FROM_LIBEXEC}) {
     const std::filesystem::path installed = (folder / way).lexically_normal();

@@ -40,8 +40,7 @@ std::string film_of_run(const Json& run) {
 // Tells whether a run has only just begun to use the folder. Everything else in the folder then comes from an earlier
 // run.
 bool has_just_begun(const std::filesystem::path& run) {
-  std::ifstream stream(run / "run.json");
-  const Json json = stream ? json_if_valid<Json>(stream) : Json();
+  const auto json = json_object_in<Json>(run / "run.json");
   return json.is_object() && !json.contains("ended");
 }
 
@@ -49,9 +48,8 @@ bool has_just_begun(const std::filesystem::path& run) {
 // beginning of this same film.
 void check_nothing_is_lost(const std::filesystem::path& run, const RunInfo& info) {
   const std::filesystem::path file = run / "run.json";
-  std::ifstream stream(file);
-  if (!stream) return;
-  const Json before = json_if_valid<Json>(stream);
+  if (!std::ifstream(file)) return;
+  const auto before = json_object_in<Json>(file);
   const auto refuse = [&run](const std::string& what) {
     throw InputError("--resume", fmt::format("{} holds {}; without --resume it is made anew", run.string(), what));
   };
@@ -119,8 +117,7 @@ void check_pictures(const std::filesystem::path& frames, int count) {
 
 void note_other_graphs(const SceneDef& scene, const std::filesystem::path& run, int kept_frames) {
   if (kept_frames == 0 || !scene.text.error_graph) return;
-  std::ifstream stream(run / "run.json");
-  const Json before = json_if_valid<Json>(stream);
+  const auto before = json_object_in<Json>(run / "run.json");
   if (!before.is_object() || !before.contains("scene") || !before["scene"].is_object()) return;
   const Json then = before["scene"].value("frames", Json(SceneDef{}.frames));
   if (then == scene.frames) return;

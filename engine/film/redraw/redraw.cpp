@@ -16,6 +16,7 @@
 #include "film/pictures/reference_run.h"
 #include "film/plan/shipped_files.h"
 #include "film/record/film_identity.h"
+#include "output/files/folder_lock.h"
 #include "output/files/json_text.h"
 #include "output/files/obj_file.h"
 #include "output/files/whole_file.h"
@@ -306,36 +307,18 @@ Positions saved_positions(LoadedDrawing& drawing, std::size_t body, int frame) {
   return drawing.motion[body].frame(frame).rowwise() + origin.transpose();
 }
 
-namespace {
-
-// Tells whether a folder holds nothing, or no more than what another process leaves while it begins a drawing there.
-bool is_new(const std::filesystem::path& folder) {
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    if (!entry.path().filename().string().starts_with("draw.json")) return false;
-  }
-  return !error;
-}
-
-}  // namespace
-
 // draw.json is written first, because several processes that draw parts may begin at one time.
 void open_drawing(const std::filesystem::path& folder, const LoadedDrawing& drawing, bool keep) {
   std::error_code error;
   const std::filesystem::path record = folder / "draw.json";
-  const std::string source = "--out " + folder.string();
-  if (std::filesystem::exists(folder, error) && !std::filesystem::is_directory(folder, error))
-    throw InputError(source, "exists and is not a folder");
-  const bool fresh = !std::filesystem::exists(folder, error) || is_new(folder);
+  check_left_by(folder, "drawing", "draw.json");
   const bool known = std::filesystem::exists(record, error);
-  if (!known && !fresh)
-    throw InputError(source, "holds files that no drawing left there (no draw.json); choose another folder");
   if (known && keep) {
     std::ifstream file(record);
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     const std::vector<std::string> differences = json_differences(text, drawing.identity, 3);
     if (!differences.empty())
-      throw InputError(source,
+      throw InputError("--out " + folder.string(),
                        "holds another drawing, which differs in " + fmt::format("{}", fmt::join(differences, "; ")));
   }
   const auto make = [&](const std::filesystem::path& made) {

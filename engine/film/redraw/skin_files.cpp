@@ -8,6 +8,7 @@
 #include "base/interrupts.h"
 #include "film/pictures/draw_scene.h"
 #include "output/files/colored_obj.h"
+#include "output/files/folder_lock.h"
 #include "output/files/obj_file.h"
 #include "output/files/whole_file.h"
 
@@ -29,17 +30,11 @@ Vec3 write_rest(const std::filesystem::path& file, const DrawnBody& drawn) {
 
 void open_skins(const std::filesystem::path& folder, const LoadedDrawing& drawing) {
   std::error_code error;
-  const std::string source = "--out " + folder.string();
-  const std::filesystem::path record = folder / "skins.json";
-  if (std::filesystem::exists(folder, error) && !std::filesystem::is_directory(folder, error))
-    throw InputError(source, "exists and is not a folder");
-  const bool known = std::filesystem::exists(record, error);
-  if (!known && std::filesystem::exists(folder, error) && !std::filesystem::is_empty(folder, error))
-    throw InputError(source, "holds files that no skins left there (no skins.json); choose another folder");
+  check_left_by(folder, "skins", "skins.json");
   std::filesystem::remove_all(folder / "motion", error);
   std::filesystem::create_directories(folder / "motion", error);
   if (error) throw RunError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
-  write_whole_file(record, drawing.identity);
+  write_whole_file(folder / "skins.json", drawing.identity);
 }
 
 int write_skins(LoadedDrawing& drawing, const std::filesystem::path& folder, const std::function<void(int)>& told) {

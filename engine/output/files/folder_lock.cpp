@@ -1,6 +1,7 @@
 #include "output/files/folder_lock.h"
 
 #include <fcntl.h>
+#include <fmt/core.h>
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -9,6 +10,29 @@
 #include "base/error.h"
 
 namespace supple {
+
+namespace {
+
+// Tells whether there is nothing but what another process leaves while it writes the mark.
+bool is_new(const std::filesystem::path& folder, const std::string& mark) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (!entry.path().filename().string().starts_with(mark)) return false;
+  }
+  return !error;
+}
+
+}  // namespace
+
+void check_left_by(const std::filesystem::path& folder, const std::string& maker, const std::string& mark) {
+  std::error_code error;
+  const std::string option = "--out " + folder.string();
+  if (!std::filesystem::exists(folder, error)) return;
+  if (!std::filesystem::is_directory(folder, error)) throw InputError(option, "exists and is not a folder");
+  if (!is_new(folder, mark) && !std::filesystem::exists(folder / mark, error))
+    throw InputError(option,
+                     fmt::format("holds files that no {} left there (no {}); choose another folder", maker, mark));
+}
 
 FolderLock::FolderLock(const std::filesystem::path& folder) {
   std::error_code error;

@@ -1,11 +1,18 @@
-// Reserves a folder for one process, because two runs that write into one folder destroy each other's results. The lock
-// is the system's, on the folder itself: it leaves no file behind and ends with the process, in whatever way that ends.
-// It does not protect against other machines that share the disk, because each of them may know only of its own locks.
+// Keeps folders of results apart from other files, and reserves a folder for one process, because two runs that write
+// into one folder destroy each other's results. The lock is the system's, on the folder itself: it leaves no file
+// behind and ends with the process, in whatever way that ends. It does not protect against other machines that share
+// the disk, because each of them may know only of its own locks.
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace supple {
+
+// Throws InputError when there is something else than a folder, and when the folder holds files but no `mark`
+// ("gallery.json"), the file by which a folder is known that a `maker` ("gallery") has left. Where several
+// processes may begin at one time, the mark must be what each of them writes first.
+void check_left_by(const std::filesystem::path& folder, const std::string& maker, const std::string& mark);
 
 class FolderLock {
  public:

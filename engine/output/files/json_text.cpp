@@ -1,6 +1,7 @@
 #include "output/files/json_text.h"
 
 #include <cmath>
+#include <fstream>
 
 #include <nlohmann/json.hpp>
 
@@ -50,21 +51,24 @@ template <class Json>
 Json json_if_valid(std::string_view text) {
   return is_too_deep(text) ? Json(Json::value_t::discarded) : Json::parse(text, nullptr, false);
 }
+
 template <class Json>
-Json json_if_valid(std::istream& text) {
-  return json_if_valid<Json>(std::string{std::istreambuf_iterator<char>(text), {}});
+Json json_object_in(const std::filesystem::path& file) {
+  std::ifstream text(file);
+  auto json = json_if_valid<Json>(std::string{std::istreambuf_iterator<char>(text), {}});
+  return json.is_object() ? std::move(json) : Json(nullptr);
 }
 
 template std::string json_text(const nlohmann::json&, int);
 template std::string exact_json_text(const nlohmann::json&, int);
 template nlohmann::json parsed_json(std::string_view);
 template nlohmann::json json_if_valid(std::string_view);
-template nlohmann::json json_if_valid(std::istream&);
+template nlohmann::json json_object_in(const std::filesystem::path&);
 template std::string json_text(const nlohmann::ordered_json&, int);
 template std::string exact_json_text(const nlohmann::ordered_json&, int);
 template nlohmann::ordered_json parsed_json(std::string_view);
 template nlohmann::ordered_json json_if_valid(std::string_view);
-template nlohmann::ordered_json json_if_valid(std::istream&);
+template nlohmann::ordered_json json_object_in(const std::filesystem::path&);
 
 double rounded_ms(double ms) { return std::round(ms * 1e4) / 1e4; }
 

@@ -2,7 +2,7 @@
 // would have to compile them again, which takes seconds. Json is nlohmann::json or nlohmann::ordered_json.
 #pragma once
 
-#include <istream>
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
@@ -25,7 +25,8 @@ Json parsed_json(std::string_view text);
 // Returns a discarded value where the text is not JSON, or has more than 2000 levels.
 template <class Json>
 Json json_if_valid(std::string_view text);
+// Returns the object that a file holds; null where the file is missing or holds anything else.
 template <class Json>
-Json json_if_valid(std::istream& text);
+Json json_object_in(const std::filesystem::path& file);
 
 }  // namespace supple

@@ -248,8 +248,7 @@ bool is_slower_than_asked(const std::vector<FrameRow>& rows) {
 }
 
 std::string warnings_html(const RunRecord& run) {
-  std::ifstream file(run.folder / "profile.json");
-  const Json profile = json_if_valid<Json>(file);
+  const auto profile = json_object_in<Json>(run.folder / "profile.json");
   std::string html;
   if (is_slower_than_asked(run.rows) && profile.is_object() && profile.contains("summary") &&
       profile["summary"].contains("verdict"))
