@@ -69,7 +69,7 @@ Dense hessian_at(const Subject& subject, const Positions& x) {
   ElementMatrices elements;
   HessianMatrix hessian(subject.model());
   element_matrices(subject.model(), nullptr, x, false, elements);
-  hessian.assemble(subject.model(), elements, {}, 0, x);
+  hessian.assemble(subject.model(), elements, {}, x);
   return dense_of(hessian.matrix());
 }
 

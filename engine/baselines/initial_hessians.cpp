@@ -43,7 +43,7 @@ HessianMatrix rest_hessian(const Model& model) {
   HessianMatrix hessian(model);
   ElementMatrices elements;
   element_matrices(model, nullptr, model.rest, true, elements);
-  hessian.assemble(model, elements, {}, 0, model.rest);
+  hessian.assemble(model, elements, {}, model.rest);
   return hessian;
 }
 

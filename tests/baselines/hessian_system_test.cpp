@@ -27,7 +27,7 @@ Eigen::MatrixXd expected_matrix(const Model& model, const Positions& x, double s
   ElementMatrices elements;
   element_matrices(model, nullptr, x, true, elements);
   HessianMatrix hessian(model);
-  hessian.assemble(model, elements, {}, 0, x);
+  hessian.assemble(model, elements, {}, x);
   const Eigen::MatrixXd a = full(model.matrix);
   Eigen::MatrixXd result = (1 - share) * full(hessian.matrix());
   for (int i = 0; i < model.free; ++i) {

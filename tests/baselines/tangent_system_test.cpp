@@ -25,7 +25,7 @@ Eigen::MatrixXd traces(const Model& model, const Positions& x) {
   ElementMatrices elements;
   element_matrices(model, nullptr, x, true, elements);
   HessianMatrix hessian(model);
-  hessian.assemble(model, elements, {}, 0, x);
+  hessian.assemble(model, elements, {}, x);
   const Eigen::MatrixXd all = full(hessian.matrix());
   Eigen::MatrixXd result(model.free, model.free);
   for (int i = 0; i < model.free; ++i) {

@@ -80,7 +80,7 @@ TEST(Contact, PlanesGiveTheDerivativeOfTheEnergyFoundAnew) {
     const Positions x = scene.w.current.x, direction = shaken(Positions::Zero(scene.model.free, 3), 1, 6);
     find_contacts_of(scene.model, scene.inputs, scene.w, scene.w.current);
     Positions gradient = Positions::Zero(scene.model.free, 3);
-    const double slope = add_contacts(scene.w.current.contacts, 1, x, nullptr, direction, &gradient).slope;
+    const double slope = add_contacts(scene.w.current.contacts, x, nullptr, direction, &gradient).slope;
     ASSERT_NE(slope, 0) << name;
     double best = 1e300;
     for (const double h : {1e-6, 1e-7}) {

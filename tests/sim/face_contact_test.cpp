@@ -83,7 +83,7 @@ TEST(FaceContact, PlanesGiveTheDerivativeOfTheEnergyFoundAnew) {
     ASSERT_GT(touching_faces(scene), 0) << top;
     const Positions x = scene.w.current.x, direction = shaken(Positions::Zero(scene.model.free, 3), 1, 6);
     Positions gradient = Positions::Zero(scene.model.free, 3);
-    const double slope = add_contacts(scene.w.current.contacts, 1, x, nullptr, direction, &gradient).slope;
+    const double slope = add_contacts(scene.w.current.contacts, x, nullptr, direction, &gradient).slope;
     const auto energy = [&](double h) {
       Positions moved = x;
       moved.topRows(scene.model.free) += h * direction;

@@ -67,10 +67,10 @@ Frame frame_of(const Body& body) {
   return frame;
 }
 
-using Part = std::vector<std::int32_t>;  // vertices of a handle that hang together by edges
+using HeldPart = std::vector<std::int32_t>;  // vertices of a handle that hang together by edges
 
 // Returns the parts of a handle, in the order of their first vertices.
-std::vector<Part> parts_of(const Body& body, const Handle& handle, Frame& frame) {
+std::vector<HeldPart> parts_of(const Body& body, const Handle& handle, Frame& frame) {
   DisjointSets joined(frame.on_surface.size());
   frame.held.assign(joined.size(), 0);
   for (const std::int32_t v : handle.vertices) frame.held[std::size_t(v)] = 1;
@@ -86,14 +86,14 @@ std::vector<Part> parts_of(const Body& body, const Handle& handle, Frame& frame)
     }
   };
   body.def.cloth ? join(frame.surface) : join(body.description.mesh.tets);
-  std::map<std::size_t, Part> parts;
+  std::map<std::size_t, HeldPart> parts;
   for (const std::int32_t v : handle.vertices) parts[joined.of(std::size_t(v))].push_back(v);
-  std::vector<Part> result;
+  std::vector<HeldPart> result;
   for (auto& [first, part] : parts) result.push_back(std::move(part));
   return result;
 }
 
-Bounds box_of(const Frame& frame, const Part& part) {
+Bounds box_of(const Frame& frame, const HeldPart& part) {
   Bounds box;
   for (const std::int32_t v : part) box.include(frame.places.row(v).transpose());
   return box;
@@ -108,7 +108,7 @@ TriMesh stood_along(int axis, TriMesh mesh) {
   return mesh;
 }
 
-std::vector<Eigen::Vector2d> seen_along(int axis, const Frame& frame, const Part& part) {
+std::vector<Eigen::Vector2d> seen_along(int axis, const Frame& frame, const HeldPart& part) {
   std::vector<Eigen::Vector2d> points;
   for (const std::int32_t v : part)
     points.emplace_back(frame.places(v, (axis + 1) % 3), frame.places(v, (axis + 2) % 3));
@@ -123,7 +123,7 @@ double plate_thickness(const Frame& frame, const Bounds& part, int axis) {
 }
 
 // Makes a plate, ring or clamp along an axis around the held vertices of a part.
-TriMesh prism_around(const Frame& frame, const Part& part, int axis, double low, double high, double thickness) {
+TriMesh prism_around(const Frame& frame, const HeldPart& part, int axis, double low, double high, double thickness) {
   const double margin = margin_by_plate * thickness;
   return stood_along(
       axis, surface_of({seen_along(axis, frame, part), margin, low, high, std::min(margin, 0.25 * (high - low))}));
@@ -136,7 +136,7 @@ TriMesh ball_at(const Vec3& place, double radius) {
 }
 
 // Tells whether a part is a line, and gives its ends.
-bool is_line(const Frame& frame, const Part& part, Vec3& from, Vec3& to) {
+bool is_line(const Frame& frame, const HeldPart& part, Vec3& from, Vec3& to) {
   const auto farthest_from = [&](const Vec3& place) {
     return Vec3(frame.places.row(*std::ranges::max_element(
         part, {}, [&](std::int32_t v) { return (Vec3(frame.places.row(v)) - place).squaredNorm(); })));
@@ -189,9 +189,9 @@ bool stands(const Frame& frame, const End& end, double side) {
 }
 
 // Makes a plate on the outermost layer of an end.
-TriMesh plate_on(const Frame& frame, const Part& part, const Bounds& box, const End& end) {
+TriMesh plate_on(const Frame& frame, const HeldPart& part, const Bounds& box, const End& end) {
   const double side = end.high ? box.upper[end.axis] : box.lower[end.axis];
-  Part outer;
+  HeldPart outer;
   for (const std::int32_t v : part) {
     if (std::abs(frame.places(v, end.axis) - side) <= frame.edge) outer.push_back(v);
   }
@@ -222,10 +222,10 @@ std::optional<int> slice_of(const Frame& frame, const Bounds& part) {
   return std::nullopt;
 }
 
-TriMesh ring_around(const Frame& frame, const Part& part, const Bounds& box, int axis) {
+TriMesh ring_around(const Frame& frame, const HeldPart& part, const Bounds& box, int axis) {
   const double middle = box.center()[axis], widest = widest_ring * frame.box.extent()[axis];
   const double reach = 0.5 * std::min(box.extent()[axis], widest);
-  Part around;
+  HeldPart around;
   for (const std::int32_t v : part) {
     if (std::abs(frame.places(v, axis) - middle) <= reach + frame.edge) around.push_back(v);
   }
@@ -251,7 +251,7 @@ double held_area(const Frame& frame) {
 
 // Makes a clamp around a flat piece of cloth; nothing where it is not flat, or a clamp would hide much more than it
 // holds.
-std::optional<TriMesh> clamp_on(const Frame& frame, const Part& part, const Bounds& box) {
+std::optional<TriMesh> clamp_on(const Frame& frame, const HeldPart& part, const Bounds& box) {
   int axis = 0;
   const Vec3 extent = box.extent();
   extent.minCoeff(&axis);
@@ -262,8 +262,8 @@ std::optional<TriMesh> clamp_on(const Frame& frame, const Part& part, const Boun
 }
 
 // Makes pins in vertices that are far from each other.
-std::vector<TriMesh> pins_in(const Frame& frame, const Part& part) {
-  Part seen;
+std::vector<TriMesh> pins_in(const Frame& frame, const HeldPart& part) {
+  HeldPart seen;
   for (const std::int32_t v : part) {
     if (frame.on_surface[std::size_t(v)] != 0) seen.push_back(v);
   }
@@ -281,7 +281,7 @@ std::vector<TriMesh> pins_in(const Frame& frame, const Part& part) {
   return pins;
 }
 
-std::vector<TriMesh> supports_in(const Frame& frame, const Part& part, bool cloth) {
+std::vector<TriMesh> supports_in(const Frame& frame, const HeldPart& part, bool cloth) {
   const bool seen = std::ranges::any_of(part, [&](std::int32_t v) { return frame.on_surface[std::size_t(v)] != 0; });
   if (!seen) return {};
   const Bounds box = box_of(frame, part);
@@ -314,9 +314,9 @@ std::vector<Support> supports_of(const Body& body) {
       one.points = one.points * frame.turn.transpose();
       supports.push_back({h, std::move(one)});
     };
-    const std::vector<Part> parts = parts_of(body, handle, frame);
+    const std::vector<HeldPart> parts = parts_of(body, handle, frame);
     const bool scattered = parts.size() > most_pins;
-    for (const Part& part : scattered ? std::vector<Part>{handle.vertices} : parts) {
+    for (const HeldPart& part : scattered ? std::vector<HeldPart>{handle.vertices} : parts) {
       const bool cloth = body.def.cloth.has_value();
       for (TriMesh& one : scattered ? pins_in(frame, part) : supports_in(frame, part, cloth)) add(std::move(one));
     }
