@@ -22,7 +22,7 @@ SolverEntry started(DirectionStart start) {
   entry.start = start;
   return entry;
 }
-const DirectionStart two_levels = {SystemMatrix::constant, true}, tangent = {SystemMatrix::tangent};
+const DirectionStart two_levels = {StartMatrix::system, true}, tangent = {StartMatrix::tangent};
 
 double at_iteration(const std::vector<double>& errors, int k) {
   if (std::size_t(k) < errors.size()) return errors[k];

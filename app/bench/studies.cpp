@@ -203,7 +203,7 @@ std::vector<std::string> columns_after(std::vector<std::string> first) {
 }
 
 const std::vector<DirectionStart> beside_the_papers = {
-    {SystemMatrix::constant, true}, {SystemMatrix::tangent}, {SystemMatrix::hessian}};
+    {StartMatrix::system, true}, {StartMatrix::tangent}, {StartMatrix::turned_hessian}};
 
 // Compares what directions start from on a slender bar that swings further, on our mesh and on the paper's.
 ReportTable slender_table(const BenchSetting& setting) {

@@ -26,6 +26,8 @@ std::unique_ptr<InitialInverse> initial_inverse(const Method& method, const Mode
       return std::make_unique<HessianInverse>(model, frame_hessian_source);
     case StartMatrix::hecht: return std::make_unique<HessianInverse>(model, hecht_hessian_source);
     case StartMatrix::contact: return std::make_unique<ContactMatrixInverse>(model);
+    case StartMatrix::tangent:
+    case StartMatrix::turned_hessian: break;  // no method has them (problem_of)
     case StartMatrix::hessian:
     case StartMatrix::vertex_blocks: break;  // their rules hold them; no pairs of L-BFGS correct them
   }
@@ -108,7 +110,7 @@ std::unique_ptr<SearchRule> make_rule(const Method& method, const Model& model) 
 SolverSettings settings_of(const Method& method, SolverSettings settings) {
   if (method.acceleration != Acceleration::lbfgs) settings.history = 0;
   if (method != Method::quasi_newton) {
-    settings.matrix = SystemMatrix::constant;
+    settings.matrix = StartMatrix::system;
     settings.levels = 1;
     settings.newton = false;
   }

@@ -292,6 +292,7 @@ TEST(Methods, EveryCombinationOfPartsReachesTheMinimum) {
 TEST(Methods, PartsThatDoNotGoTogetherMakeNoRule) {
   const Model model = build_model(test::bar(NeoHookean{2e4, 4e4}, Held::hard_end, Precision::double_precision, 2));
   EXPECT_THROW((void)make_rule({.matrix = StartMatrix::identity, .linear = LinearSolver::cg}, model), InputError);
+  EXPECT_THROW((void)make_rule(Method::lbfgs_from(StartMatrix::tangent), model), InputError);
   EXPECT_THROW((void)make_rule({.matrix = StartMatrix::hessian, .acceleration = Acceleration::none}, model),
                InputError);
   EXPECT_THROW((void)make_rule({.linear = LinearSolver::cg, .preconditioner = Preconditioner::jacobi}, model),

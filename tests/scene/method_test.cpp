@@ -92,6 +92,28 @@ TEST(Method, FormerWordsAreRefusedWithTheirNewSpelling) {
   }
 }
 
+TEST(SolverMatrix, HasTheWordsOfTheMethodsMatrices) {
+  EXPECT_EQ(solver_of("").settings.matrix, StartMatrix::system);
+  EXPECT_EQ(solver_of("matrix = \"system\"").settings.matrix, StartMatrix::system);
+  EXPECT_EQ(solver_of("matrix = \"tangent\"").settings.matrix, StartMatrix::tangent);
+  EXPECT_EQ(solver_of("matrix = \"turned-hessian\"").settings.matrix, StartMatrix::turned_hessian);
+  EXPECT_EQ(refusal("matrix = \"rest-hessian\""),
+            "scene.toml:2:10: matrix = 'rest-hessian': must be system, tangent or turned-hessian");
+}
+
+TEST(SolverMatrix, FormerWordsAreRefusedWithTheirNewSpelling) {
+  EXPECT_EQ(refusal("matrix = \"constant\""),
+            "scene.toml:2:10: matrix = 'constant': is now written matrix = \"system\"");
+  EXPECT_EQ(refusal("matrix = \"hessian\""),
+            "scene.toml:2:10: matrix = 'hessian': is now written matrix = \"turned-hessian\"");
+}
+
+TEST(Method, HasNoMatrixOfItsOwnForWhatQuasiNewtonHas) {
+  EXPECT_EQ(refusal("method = { matrix = \"tangent\" }"),
+            "scene.toml:2:21: matrix = 'tangent': must be system, identity, rest-hessian, warped-rest-hessian, "
+            "frame-hessian, hessian, hecht, contact or vertex-blocks");
+}
+
 TEST(Method, PartsThatDoNotGoTogetherAreRefusedWithWhatDoes) {
   EXPECT_EQ(refusal("method = { matrix = \"identity\", linear = \"cg\" }"),
             "scene.toml:2:42: linear = 'cg': with matrix = 'identity' it must be direct");

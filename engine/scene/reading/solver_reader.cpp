@@ -31,9 +31,18 @@ Words method_words() {
   return words;
 }
 
+// Returns the words of `solver.matrix`, with those of earlier versions.
+Words matrix_words() {
+  Words words;
+  for (const StartMatrix matrix : quasi_newton_matrices) words.allowed.emplace_back(name_of(matrix));
+  words.former = {{"constant", "\"system\""}, {"hessian", "\"turned-hessian\""}};
+  return words;
+}
+
 Method method_of_parts(const ConfigTable& table) {
   Method method;
-  method.matrix = table.word<StartMatrix>({"matrix", "", "what a search direction starts from"}, std::nullopt);
+  method.matrix =
+      table.word<StartMatrix>({"matrix", "", "what a search direction starts from"}, std::nullopt, {method_matrices()});
   method.linear = table.word<LinearSolver>(
       {"linear", "", "systems with it are solved by a factor, or by conjugate gradients"}, LinearSolver::direct);
   const MethodForm* form = form_of(method.matrix, method.linear);
@@ -110,10 +119,10 @@ SolverSettings read_settings(const ConfigTable& table, SolverSettings s) {
                      "2: the first matrix of quasi-newton's directions knows that turning parts of the body costs "
                      "nothing; 1: it resists turning, as the paper's"},
                     s.levels, Range::between(1, 2));
-  s.matrix = table.word<SystemMatrix>(
+  s.matrix = table.word<StartMatrix>(
       {"matrix", "",
        "what directions of quasi-newton start from: a matrix that follows the body, or the paper's M/h^2 + L"},
-      s.matrix);
+      s.matrix, matrix_words());
   s.chebyshev.delay = table.integer({"chebyshev_delay", "", "iterations of chebyshev before it accelerates"},
                                     s.chebyshev.delay, Range::between(0, 10000));
   s.chebyshev.radius = table.number({"chebyshev_radius", "", "spectral radius that chebyshev assumes of an iteration"},

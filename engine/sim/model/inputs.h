@@ -12,6 +12,7 @@
 #include "geometry/meshes/pose.h"
 #include "geometry/shapes/shape.h"
 #include "sim/model/budget_cuts.h"
+#include "sim/model/start_matrix.h"
 
 namespace supple {
 
@@ -77,18 +78,6 @@ struct ContactSettings {
   ContactDirection direction = ContactDirection::low_rank;
 };
 
-// The matrix that quasi-Newton directions start from.
-enum class SystemMatrix {
-  constant,  // A = M/h^2 + L: the paper's
-  tangent,   // a matrix for all coordinates that follows the body (model/tangent_system.h)
-  hessian,   // a matrix over all coordinates that turns with the body (model/hessian_system.h)
-};
-template <>
-struct Names<SystemMatrix> {
-  static constexpr std::array table = {Name{SystemMatrix::constant, "constant"}, Name{SystemMatrix::tangent, "tangent"},
-                                       Name{SystemMatrix::hessian, "hessian"}};
-};
-
 enum class LineSearch { armijo, wolfe, none };
 template <>
 struct Names<LineSearch> {
@@ -108,7 +97,7 @@ struct SolverSettings {
   int iterations = 10;
   int history = 5;  // window m of L-BFGS; 0 is plain quasi-Newton
   int levels = 2;   // 2: directions know how the body turns (coarse/second_level.h); 1: the paper's method
-  SystemMatrix matrix = SystemMatrix::constant;
+  StartMatrix matrix = StartMatrix::system;  // of quasi-Newton directions: one of quasi_newton_matrices
   LineSearch line_search = LineSearch::armijo;
   double armijo = 0.3;      // gamma
   double target_error = 0;  // stop when the error estimate falls below; 0: do all iterations

@@ -8,35 +8,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/names.h"
+#include "sim/model/start_matrix.h"
 
 namespace supple {
-
-// Selects the approximation of the Hessian of g from which a search direction starts.
-enum class StartMatrix {
-  system,               // A = M/h^2 + L, constant: the paper's
-  identity,             // (t.t / s.t) I of the last L-BFGS pair (equation 13)
-  rest_hessian,         // M/h^2 + the Hessian of the rest pose
-  warped_rest_hessian,  // the same, turned at each vertex by its rotation (Mueller et al. 2002)
-  frame_hessian,        // the projected Hessian at the first iterate of each search
-  hessian,              // the Hessian at each iterate: Newton's method
-  hecht,                // a warped Hessian that is renewed every other step (Hecht et al. 2012)
-  contact,              // A with the stiffness of contacts on its diagonal, factored anew when they change
-  vertex_blocks,        // the Hessian's 3 x 3 block of each vertex, when its turn comes (Chen et al. 2024)
-};
-template <>
-struct Names<StartMatrix> {
-  static constexpr std::array table = {Name{StartMatrix::system, "system"},
-                                       Name{StartMatrix::identity, "identity"},
-                                       Name{StartMatrix::rest_hessian, "rest-hessian"},
-                                       Name{StartMatrix::warped_rest_hessian, "warped-rest-hessian"},
-                                       Name{StartMatrix::frame_hessian, "frame-hessian"},
-                                       Name{StartMatrix::hessian, "hessian"},
-                                       Name{StartMatrix::hecht, "hecht"},
-                                       Name{StartMatrix::contact, "contact"},
-                                       Name{StartMatrix::vertex_blocks, "vertex-blocks"}};
-};
 
 enum class LinearSolver { direct, cg };  // by a factor, or by conjugate gradients
 template <>
@@ -229,6 +206,9 @@ constexpr const MethodForm* form_of(StartMatrix matrix, LinearSolver linear) {
   }
   return nullptr;
 }
+
+// Returns the words for the matrices in the table of forms, each once.
+std::vector<std::string> method_matrices();
 
 // Tells why parts cannot be combined.
 struct MethodProblem {

@@ -207,15 +207,15 @@ void remember_pair(const Model& model, const ContactSettings& contact, Workspace
 void SystemInverse::begin(const Model& model, const StepInputs& inputs, Workspace& w) {
   // A step that starts again from where the body was is violent, and the stiffness at rest says little about it.
   const bool starts_again = !w.report.records.empty();
-  const bool wanted =
-      inputs.solver.levels > 1 && !starts_again && w.system == static_cast<const System*>(&model) && !w.hessian_serves;
+  const bool wanted = inputs.solver.levels > 1 && !starts_again && w.system == static_cast<const System*>(&model) &&
+                      !w.turned_hessian_serves;
   const TimedPhase timed(w.clock, Phase::matrix, "second level");
   has_second_level_ = w.second_level_serves = wanted && w.second_level.begin(model, w.current.x);
   iterations_ = w.report.iterations;
 }
 
 void SystemInverse::apply(const Model& model, const StepInputs& inputs, Workspace& w, Positions& r, Positions& z) {
-  if (w.hessian_serves && w.current.contacts.empty()) return w.hessian.solve(model, r, z);
+  if (w.turned_hessian_serves && w.current.contacts.empty()) return w.turned_hessian.solve(model, r, z);
   if (has_second_level_ && iterations_ != w.report.iterations) w.second_level.move_to(w.current.x);
   iterations_ = w.report.iterations;
   w.second_level_serves = has_second_level_;
