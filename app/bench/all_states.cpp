@@ -34,8 +34,8 @@ struct MethodTimes {
 
 std::vector<MethodTimes> all_methods() {
   return {{{"ours", Method::quasi_newton, 200}},
-          {{"ours, two levels", Method::quasi_newton, 200, 5, LineSearch::armijo, {}, {StartMatrix::system, true}}},
-          {{"ours, tangent", Method::quasi_newton, 200, 5, LineSearch::armijo, {}, {StartMatrix::tangent}}},
+          {{"ours, two levels", Method::quasi_newton, 200, 5, {}, {StartMatrix::system, true}}},
+          {{"ours, tangent", Method::quasi_newton, 200, 5, {}, {StartMatrix::tangent}}},
           {{"Projective Dynamics", Method::projective_dynamics, 300}},
           {{"Chebyshev", Method::chebyshev, 300}},
           {{"ADMM", Method::admm, 300}},

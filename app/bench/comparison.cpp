@@ -113,7 +113,7 @@ StepInputs SolverComparison::inputs_of(const BenchState& state, const SolverEntr
   inputs.solver.iterations = entry.iterations;
   inputs.solver.rounds = 1;
   inputs.solver.history = entry.history;
-  inputs.solver.line_search = entry.line_search;
+  inputs.solver.line_search = LineSearch::armijo;
   inputs.solver.chebyshev = entry.chebyshev;
   inputs.solver.matrix = entry.start.matrix;
   inputs.solver.levels = entry.start.levels();

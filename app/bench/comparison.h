@@ -16,7 +16,6 @@ struct SolverEntry {
   Method method = Method::quasi_newton;
   int iterations = 10;
   int history = 5;
-  LineSearch line_search = LineSearch::armijo;
   ChebyshevSettings chebyshev = {};
   DirectionStart start = {};  // where directions of quasi-Newton start
 };

@@ -345,24 +345,21 @@ TEST(Methods, ProjectionOnDemandIsNewtonWhereTheHessianIsDefinite) {
   EXPECT_FALSE(indefinite[1] == indefinite[2]);
 }
 
-// The conditions are those of Nocedal and Wright 2006, equations 3.7.
-TEST(LineSearch, WolfeStepsSatisfyBothConditions) {
+TEST(LineSearch, RecordsWhatTheFullStepDoes) {
   const Model model = build_model(test::bar(NeoHookean{2e4, 4e4}, Held::hard_end, Precision::double_precision, 2));
   StepInputs inputs = test::still_inputs(model);
-  inputs.solver.line_search = LineSearch::wolfe;
   inputs.solver.iterations = 12;
+  inputs.solver.rounds = 1;
   State state = rest_state(model);
   state.v.topRows(model.free) = test::shaken(state.v, 3, 9).topRows(model.free);
   Workspace w;
   const StepReport& report = step(model, inputs, state, w);
-  ASSERT_GT(report.iterations, 5);
-  for (std::size_t k = 1; k < report.objective.size(); ++k) EXPECT_LT(report.objective[k], report.objective[k - 1]);
+  ASSERT_GT(report.records.size(), 5u);
+  EXPECT_GT(report.decrease, 0);
   for (const IterationRecord& record : report.records) {
     if (record.alpha == 0) continue;  // the step began again from the body's last position
     EXPECT_GT(record.alpha, 0);
-    const bool full_step_does = record.full.decreases && std::abs(record.full.slope_ratio) <= 0.9;
-    EXPECT_TRUE(!full_step_does || record.alpha == 1);
-    EXPECT_TRUE(record.full.decreases || record.alpha < 1);
+    EXPECT_EQ(record.full.decreases, record.alpha == 1);
   }
 }
 

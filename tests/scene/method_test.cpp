@@ -108,6 +108,11 @@ TEST(SolverMatrix, FormerWordsAreRefusedWithTheirNewSpelling) {
             "scene.toml:2:10: matrix = 'hessian': is now written matrix = \"turned-hessian\"");
 }
 
+TEST(Solver, WordsForWhatExistsNoMoreAreRefusedWithTheNearest) {
+  EXPECT_EQ(refusal("line_search = \"wolfe\""),
+            "scene.toml:2:15: line_search = 'wolfe': exists no more; nearest is line_search = \"armijo\"");
+}
+
 TEST(Method, HasNoMatrixOfItsOwnForWhatQuasiNewtonHas) {
   EXPECT_EQ(refusal("method = { matrix = \"tangent\" }"),
             "scene.toml:2:21: matrix = 'tangent': must be system, identity, rest-hessian, warped-rest-hessian, "

@@ -54,6 +54,8 @@ struct Words {
   std::vector<std::string> allowed;
   // These are the words of earlier versions, each with the word that replaces it now.
   std::vector<std::pair<std::string, std::string>> former = {};
+  // These are words for what exists no more, each with the word for what is nearest to it.
+  std::vector<std::pair<std::string, std::string>> gone = {};
 };
 
 // Holds one row of the documentation: a key that some reader asked for.

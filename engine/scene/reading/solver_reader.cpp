@@ -127,8 +127,9 @@ SolverSettings read_settings(const ConfigTable& table, SolverSettings s) {
                                     s.chebyshev.delay, Range::between(0, 10000));
   s.chebyshev.radius = table.number({"chebyshev_radius", "", "spectral radius that chebyshev assumes of an iteration"},
                                     s.chebyshev.radius, Range::between(0, 0.9999));
-  s.line_search = table.word<LineSearch>(
-      {"line_search", "", "how a step length is accepted; none takes every full step"}, s.line_search);
+  s.line_search =
+      table.word<LineSearch>({"line_search", "", "how a step length is accepted; none takes every full step"},
+                             s.line_search, {.allowed = all_names<LineSearch>(), .gone = {{"wolfe", "\"armijo\""}}});
   s.armijo = table.number({"armijo", "", "gamma of the sufficient decrease"}, s.armijo, Range::above(0, 0.5));
   s.target_error = table.number(
       {"target_error", "", "stop once both of the solver's own error estimates are below; 0 does all iterations"},

@@ -78,11 +78,10 @@ struct ContactSettings {
   ContactDirection direction = ContactDirection::low_rank;
 };
 
-enum class LineSearch { armijo, wolfe, none };
+enum class LineSearch { armijo, none };
 template <>
 struct Names<LineSearch> {
-  static constexpr std::array table = {Name{LineSearch::armijo, "armijo"}, Name{LineSearch::wolfe, "wolfe"},
-                                       Name{LineSearch::none, "none"}};
+  static constexpr std::array table = {Name{LineSearch::armijo, "armijo"}, Name{LineSearch::none, "none"}};
 };
 
 // Holds the settings of Chebyshev's semi-iterative acceleration (Wang 2015). docs/bench.md tells how the defaults were
