@@ -24,7 +24,6 @@ std::unique_ptr<InitialInverse> initial_inverse(const Method& method, const Mode
     case StartMatrix::frame_hessian:
       if (cg) return std::make_unique<FrameCgInverse>(model, method.preconditioner, method.inner_iterations);
       return std::make_unique<HessianInverse>(model, frame_hessian_source);
-    case StartMatrix::hecht: return std::make_unique<HessianInverse>(model, hecht_hessian_source);
     case StartMatrix::contact: return std::make_unique<ContactMatrixInverse>(model);
     case StartMatrix::tangent:
     case StartMatrix::turned_hessian: break;  // no method has them (problem_of)
@@ -114,8 +113,7 @@ SolverSettings settings_of(const Method& method, SolverSettings settings) {
     settings.levels = 1;
     settings.newton = false;
   }
-  if (method.matrix == StartMatrix::hecht || method.matrix == StartMatrix::vertex_blocks ||
-      method.acceleration == Acceleration::admm)
+  if (method.matrix == StartMatrix::vertex_blocks || method.acceleration == Acceleration::admm)
     settings.line_search = LineSearch::none;
   return settings;
 }

@@ -111,12 +111,17 @@ TEST(SolverMatrix, FormerWordsAreRefusedWithTheirNewSpelling) {
 TEST(Solver, WordsForWhatExistsNoMoreAreRefusedWithTheNearest) {
   EXPECT_EQ(refusal("line_search = \"wolfe\""),
             "scene.toml:2:15: line_search = 'wolfe': exists no more; nearest is line_search = \"armijo\"");
+  EXPECT_EQ(
+      refusal("method = \"hecht\""),
+      "scene.toml:2:10: method = 'hecht': exists no more; nearest is method = { matrix = \"warped-rest-hessian\" }");
+  EXPECT_EQ(refusal("method = { matrix = \"hecht\" }"),
+            "scene.toml:2:21: matrix = 'hecht': exists no more; nearest is matrix = \"warped-rest-hessian\"");
 }
 
 TEST(Method, HasNoMatrixOfItsOwnForWhatQuasiNewtonHas) {
   EXPECT_EQ(refusal("method = { matrix = \"tangent\" }"),
             "scene.toml:2:21: matrix = 'tangent': must be system, identity, rest-hessian, warped-rest-hessian, "
-            "frame-hessian, hessian, hecht, contact or vertex-blocks");
+            "frame-hessian, hessian, contact or vertex-blocks");
 }
 
 TEST(Method, PartsThatDoNotGoTogetherAreRefusedWithWhatDoes) {
@@ -139,13 +144,13 @@ TEST(Method, PartsThatDoNotGoTogetherAreRefusedWithWhatDoes) {
             "scene.toml:2:64: inner_tolerance = 0.1: must be 0 but with matrix = 'hessian' and linear = 'cg'");
   EXPECT_EQ(refusal("method = { linear = \"cg\" }"),
             "scene.toml:2:10: 'matrix' is missing: what a search direction starts from (system, identity, "
-            "rest-hessian, warped-rest-hessian, frame-hessian, hessian, hecht, contact or vertex-blocks)");
+            "rest-hessian, warped-rest-hessian, frame-hessian, hessian, contact or vertex-blocks)");
   EXPECT_EQ(refusal("method = \"newtn\""),
             "scene.toml:2:10: method = 'newtn': must be quasi-newton, projective-dynamics, chebyshev, newton, gast, "
-            "hecht, vertex-block-descent or admm; did you mean 'newton'?");
+            "vertex-block-descent or admm; did you mean 'newton'?");
   EXPECT_EQ(refusal("method = { matrix = \"hesian\" }"),
             "scene.toml:2:21: matrix = 'hesian': must be system, identity, rest-hessian, warped-rest-hessian, "
-            "frame-hessian, hessian, hecht, contact or vertex-blocks; did you mean 'hessian'?");
+            "frame-hessian, hessian, contact or vertex-blocks; did you mean 'hessian'?");
 }
 
 TEST(Method, PartsCanBeSetByTheirPaths) {
@@ -160,7 +165,7 @@ TEST(Method, PartsCanBeSetByTheirPaths) {
             Method::frame_cg(5, Preconditioner::rest));
   EXPECT_EQ(method_with({"solver.method=newton"}), Method::newton);
   EXPECT_EQ(method_with({"solver.method={ matrix = \"contact\" }"}), Method::lbfgs_from(StartMatrix::contact));
-  EXPECT_EQ(method_with({"body.body.solver.method=hecht"}), Method::hecht);
+  EXPECT_EQ(method_with({"body.body.solver.method=gast"}), Method::gast);
 }
 
 TEST(Chebyshev, WithoutAnIterationLeftToAccelerateIsWarnedOf) {

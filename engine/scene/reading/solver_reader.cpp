@@ -28,6 +28,7 @@ Words method_words() {
   for (const ShortName& entry : short_names) words.allowed.emplace_back(entry.name);
   for (const ShortName& entry : former_method_names)
     words.former.push_back({std::string(entry.name), spelling_of(entry.method)});
+  words.gone = {{"hecht", spelling_of(Method::lbfgs_from(StartMatrix::warped_rest_hessian))}};
   return words;
 }
 
@@ -42,7 +43,8 @@ Words matrix_words() {
 Method method_of_parts(const ConfigTable& table) {
   Method method;
   method.matrix =
-      table.word<StartMatrix>({"matrix", "", "what a search direction starts from"}, std::nullopt, {method_matrices()});
+      table.word<StartMatrix>({"matrix", "", "what a search direction starts from"}, std::nullopt,
+                              {.allowed = method_matrices(), .gone = {{"hecht", "\"warped-rest-hessian\""}}});
   method.linear = table.word<LinearSolver>(
       {"linear", "", "systems with it are solved by a factor, or by conjugate gradients"}, LinearSolver::direct);
   const MethodForm* form = form_of(method.matrix, method.linear);
@@ -56,8 +58,7 @@ Method method_of_parts(const ConfigTable& table) {
        "of conjugate gradients: the diagonal, or an incomplete factor of the rest pose's Hessian or of the system"},
       "by the matrix");
   const auto acceleration = table.word_if_given<Acceleration>(
-      {"acceleration", "", "what an iteration learns from earlier ones; the hessian and hecht go without"},
-      "by the matrix");
+      {"acceleration", "", "what an iteration learns from earlier ones; the hessian goes without"}, "by the matrix");
   const auto safeguard = table.word_if_given<Safeguard>(
       {"safeguard", "", "of matrix = \"hessian\" where it is not positive definite"}, "by the matrix");
   const bool cg = method.linear == LinearSolver::cg;

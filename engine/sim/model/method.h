@@ -74,7 +74,7 @@ struct Method {
   bool operator==(const Method&) const = default;
 
   // The usual methods have short names.
-  static const Method quasi_newton, projective_dynamics, chebyshev, newton, gast, hecht, vertex_block_descent, admm;
+  static const Method quasi_newton, projective_dynamics, chebyshev, newton, gast, vertex_block_descent, admm;
 
   // Returns the paper's method with A solved by conjugate gradients.
   static constexpr Method quasi_newton_cg(int iterations);
@@ -103,7 +103,6 @@ inline constexpr Method Method::gast = {.matrix = StartMatrix::hessian,
                                         .preconditioner = Preconditioner::jacobi,
                                         .acceleration = Acceleration::none,
                                         .safeguard = Safeguard::curvature};
-inline constexpr Method Method::hecht = {.matrix = StartMatrix::hecht, .acceleration = Acceleration::none};
 inline constexpr Method Method::vertex_block_descent = {.matrix = StartMatrix::vertex_blocks,
                                                         .acceleration = Acceleration::chebyshev};
 inline constexpr Method Method::admm = {.acceleration = Acceleration::admm};
@@ -141,7 +140,6 @@ inline constexpr std::array short_names = {
     ShortName{"chebyshev", Method::chebyshev},
     ShortName{"newton", Method::newton},
     ShortName{"gast", Method::gast},
-    ShortName{"hecht", Method::hecht},
     ShortName{"vertex-block-descent", Method::vertex_block_descent},
     ShortName{"admm", Method::admm},
 };
@@ -193,7 +191,6 @@ inline constexpr auto method_forms = [] {
       {frame_hessian, cg, {Preconditioner::system, Preconditioner::rest}, {lbfgs, none}, {definite}},
       {hessian, direct, {without}, {none}, {Safeguard::projection, Safeguard::on_demand, Safeguard::shift}},
       {hessian, cg, {jacobi}, {none}, {Safeguard::projection, Safeguard::curvature}},
-      {hecht, direct, {without}, {none}, {definite}},
       {contact, direct, {without}, {lbfgs, none}, {definite}},
       {vertex_blocks, direct, {without}, {chebyshev, none}, {definite}},
   });
@@ -223,8 +220,5 @@ std::string name_of(const Method& method);
 
 // Returns the method as a scene file spells it: "newton" in quotes, or a table with the parts that are not the default.
 std::string spelling_of(const Method& method);
-
-// Tells whether a step depends on earlier ones through more than the state.
-constexpr bool remembers_steps(const Method& method) { return method.matrix == StartMatrix::hecht; }
 
 }  // namespace supple
