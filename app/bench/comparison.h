@@ -10,6 +10,8 @@
 
 namespace supple {
 
+using RuleMaker = std::unique_ptr<SearchRule> (*)(const Model&);
+
 // Describes a solver in a comparison, with its settings.
 struct SolverEntry {
   std::string label;
@@ -18,6 +20,7 @@ struct SolverEntry {
   int history = 5;
   ChebyshevSettings chebyshev = {};
   DirectionStart start = {};  // where directions of quasi-Newton start
+  RuleMaker maker = nullptr;  // of a rule that takes the method's place (baselines/figure_rules.h)
 };
 
 // Holds the result of one solver on one state. Lists go by iteration, with the first iterate first.
@@ -78,6 +81,7 @@ class SolverComparison {
   Workspace workspace_, reference_workspace_;
   struct Prepared {
     Method method;
+    RuleMaker maker;
     std::unique_ptr<SearchRule> rule;
   };
   std::vector<Prepared> prepared_;

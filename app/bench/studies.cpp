@@ -258,7 +258,6 @@ ReportSection bench_hanging(const BenchSetting& setting) {
                   play(bar.subject, Method::quasi_newton, iterations, hanging_frames, *setting.threads, start)));
   }
   for (const Method& method : compared_methods()) {
-    if (method.matrix == StartMatrix::contact) continue;
     const bool newton = method.matrix == StartMatrix::hessian && method.linear == LinearSolver::direct;
     for (const int iterations : newton ? std::vector<int>{1, 2} : std::vector<int>{5, 10, 20})
       table.rows.push_back(bar.row({name_of(method)}, iterations,

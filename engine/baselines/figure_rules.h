@@ -16,4 +16,9 @@ std::unique_ptr<SearchRule> make_hecht_rule(const Model& model);
 // Returns the settings with which Hecht's method was published: without pairs and without line search.
 SolverSettings hecht_settings(SolverSettings settings);
 
+// Takes directions from algorithm 2 of the paper to the letter: L-BFGS from A, by the two-loop recursion as it is
+// written. Contacts are in the gradients of the pairs, with the planes of the iteration that made them, and nowhere
+// else in the directions (section 4.3). To be used with levels = 1.
+std::unique_ptr<SearchRule> make_paper_rule(const Model& model);
+
 }  // namespace supple

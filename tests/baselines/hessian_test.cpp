@@ -16,6 +16,7 @@
 #include "sim/model/element_view.h"
 #include "sim/solver/first_iterate.h"
 #include "support/bodies.h"
+#include "support/contact_scene.h"
 #include "support/deformations.h"
 
 namespace supple {
@@ -274,12 +275,41 @@ TEST(Methods, RulesOfFiguresReachTheMinimumToo) {
   ShakenBar bar(2000);
   bar.before.v.topRows(bar.model.free).setConstant(0.5);
   const ShakenBar::Stepped ours = bar.by_ours();
-  const auto hecht = make_hecht_rule(bar.model);
-  const auto [after, report] = bar.by(*hecht, hecht_settings(bar.inputs.solver));
-  ASSERT_FALSE(report.failed);
-  EXPECT_NEAR(report.objective.back(), ours.report.objective.back(),
-              1e-9 * (report.objective.front() - ours.report.objective.back()));
-  EXPECT_LT((after.x - ours.after.x).cwiseAbs().maxCoeff(), 1e-6 * bar.model.size);
+  const double lowest = ours.report.objective.back();
+  SolverSettings papers = bar.inputs.solver;
+  papers.levels = 1;
+  const auto hecht = make_hecht_rule(bar.model), paper = make_paper_rule(bar.model);
+  for (const auto& [after, report] : {bar.by(*hecht, hecht_settings(papers)), bar.by(*paper, papers)}) {
+    ASSERT_FALSE(report.failed);
+    EXPECT_NEAR(report.objective.back(), lowest, 1e-9 * (report.objective.front() - lowest));
+    EXPECT_LT((after.x - ours.after.x).cwiseAbs().maxCoeff(), 1e-6 * bar.model.size);
+  }
+}
+
+// The recursion of lbfgs.cpp, which finds all inner products in one pass, is that of the paper up to round-off.
+TEST(Methods, ThePapersRecursionMakesOurIterates) {
+  ShakenBar bar(5);
+  bar.inputs.solver.levels = 1;
+  bar.inputs.solver.rounds = 1;
+  const auto paper = make_paper_rule(bar.model);
+  const ShakenBar::Stepped plain = bar.by(*paper, bar.inputs.solver), ours = bar.by_ours();
+  EXPECT_GT(plain.report.iterations, 3);
+  EXPECT_EQ(plain.report.iterations, ours.report.iterations);
+  EXPECT_LT((plain.after.x - ours.after.x).cwiseAbs().maxCoeff(), 1e-9 * bar.model.size);
+}
+
+TEST(Methods, ThePapersRuleMakesStepsInContact) {
+  test::ContactScene scene(test::cube(3), {{"ground", test::shape_of(HalfSpace{Vec3::UnitY(), 0}), 0, 0.3}},
+                           Vec3(0, 0.12, 0));
+  scene.inputs.solver.levels = 1;
+  const auto rule = make_paper_rule(scene.model);
+  int touching = 0;
+  for (int i = 0; i < 12; ++i) {
+    const StepReport& report = step(scene.model, scene.inputs, scene.state, scene.w, *rule);
+    ASSERT_FALSE(report.failed) << report.failure.what;
+    touching += report.contacts.touching;
+  }
+  EXPECT_GT(touching, 0);
 }
 
 // Tests every combination in the table of forms, also those that compared_methods() does not contain, such as a matrix
@@ -302,7 +332,7 @@ TEST(Methods, EveryCombinationOfPartsReachesTheMinimum) {
       }
     }
   }
-  EXPECT_EQ(count, 27);
+  EXPECT_EQ(count, 25);
 }
 
 TEST(Methods, PartsThatDoNotGoTogetherMakeNoRule) {

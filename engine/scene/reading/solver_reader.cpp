@@ -20,7 +20,6 @@ constexpr std::array former_method_names = {
     ShortName{"lbfgs-frame-cg15-rest", Method::frame_cg(15, Preconditioner::rest)},
     ShortName{"lbfgs-frame-cg5-ours", Method::frame_cg(5, Preconditioner::system)},
     ShortName{"lbfgs-frame-cg15-ours", Method::frame_cg(15, Preconditioner::system)},
-    ShortName{"contact-matrix", Method::lbfgs_from(StartMatrix::contact)},
 };
 
 Words method_words() {
@@ -28,7 +27,8 @@ Words method_words() {
   for (const ShortName& entry : short_names) words.allowed.emplace_back(entry.name);
   for (const ShortName& entry : former_method_names)
     words.former.push_back({std::string(entry.name), spelling_of(entry.method)});
-  words.gone = {{"hecht", spelling_of(Method::lbfgs_from(StartMatrix::warped_rest_hessian))}};
+  words.gone = {{"hecht", spelling_of(Method::lbfgs_from(StartMatrix::warped_rest_hessian))},
+                {"contact-matrix", spelling_of(Method::quasi_newton)}};
   return words;
 }
 
@@ -42,9 +42,9 @@ Words matrix_words() {
 
 Method method_of_parts(const ConfigTable& table) {
   Method method;
-  method.matrix =
-      table.word<StartMatrix>({"matrix", "", "what a search direction starts from"}, std::nullopt,
-                              {.allowed = method_matrices(), .gone = {{"hecht", "\"warped-rest-hessian\""}}});
+  method.matrix = table.word<StartMatrix>(
+      {"matrix", "", "what a search direction starts from"}, std::nullopt,
+      {.allowed = method_matrices(), .gone = {{"hecht", "\"warped-rest-hessian\""}, {"contact", "\"system\""}}});
   method.linear = table.word<LinearSolver>(
       {"linear", "", "systems with it are solved by a factor, or by conjugate gradients"}, LinearSolver::direct);
   const MethodForm* form = form_of(method.matrix, method.linear);
@@ -98,13 +98,11 @@ ContactSettings read_contact(const ConfigTable& table, ContactSettings contact) 
                                               "what of a body touches: its vertices, or also points of edges and faces "
                                               "where a collider is finer than the body's surface"},
                                              contact.points);
-  contact.history =
-      table.word<ContactHistory>({"history", "",
-                                  "L-BFGS pairs across a change of contacts: both gradients with the planes of "
-                                  "their iteration, the contacts in force now, or no pair"},
-                                 contact.history);
   contact.direction =
-      table.word<ContactDirection>({"direction", "", "what search directions make of contacts"}, contact.direction);
+      table.word<ContactDirection>({"direction", "", "what search directions make of contacts"}, contact.direction,
+                                   {.allowed = all_names<ContactDirection>(), .gone = {{"ignored", "\"low-rank\""}}});
+  if (table.has("history"))
+    table.complain("history", "history: exists no more; all pairs of L-BFGS have the contacts in force now");
   return contact;
 }
 

@@ -32,29 +32,14 @@ struct ColliderMotion {
   bool moves() const { return start.matrix() != end.matrix(); }
 };
 
-// Selects how L-BFGS' pairs are treated when the contacts change: the planes of the iteration that made a pair are not
-// those in force later.
-enum class ContactHistory {
-  frozen,   // both gradients with the planes of the iteration that made the pair
-  current,  // t without contacts, plus 2 k_c n n^T s for each contact in force now
-  dropped,  // no pair across a change of the set
-};
-template <>
-struct Names<ContactHistory> {
-  static constexpr std::array table = {Name{ContactHistory::frozen, "frozen"}, Name{ContactHistory::current, "current"},
-                                       Name{ContactHistory::dropped, "dropped"}};
-};
-
 // Selects how search directions take contacts, which A does not contain, into account.
 enum class ContactDirection {
-  ignored,   // contacts are not taken into account, as in the paper
   diagonal,  // normal motion of touching vertices by its own stiffness
   low_rank,  // (A + contacts)^-1 by the Woodbury identity
 };
 template <>
 struct Names<ContactDirection> {
-  static constexpr std::array table = {Name{ContactDirection::ignored, "ignored"},
-                                       Name{ContactDirection::diagonal, "diagonal"},
+  static constexpr std::array table = {Name{ContactDirection::diagonal, "diagonal"},
                                        Name{ContactDirection::low_rank, "low-rank"}};
 };
 
@@ -74,7 +59,6 @@ struct ContactSettings {
   double push_out = 1;     // fastest way out of an overlap [body sizes / s]
   double stick = 1.5e-4;   // friction is whole above this speed [body sizes / s]
   ContactPoints points = ContactPoints::vertices;
-  ContactHistory history = ContactHistory::current;
   ContactDirection direction = ContactDirection::low_rank;
 };
 

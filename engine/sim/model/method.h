@@ -191,7 +191,6 @@ inline constexpr auto method_forms = [] {
       {frame_hessian, cg, {Preconditioner::system, Preconditioner::rest}, {lbfgs, none}, {definite}},
       {hessian, direct, {without}, {none}, {Safeguard::projection, Safeguard::on_demand, Safeguard::shift}},
       {hessian, cg, {jacobi}, {none}, {Safeguard::projection, Safeguard::curvature}},
-      {contact, direct, {without}, {lbfgs, none}, {definite}},
       {vertex_blocks, direct, {without}, {chebyshev, none}, {definite}},
   });
 }();

@@ -19,7 +19,6 @@ enum class StartMatrix {
   warped_rest_hessian,  // the same, turned at each vertex by its rotation (Mueller et al. 2002)
   frame_hessian,        // the projected Hessian at the first iterate of each search
   hessian,              // the Hessian at each iterate: Newton's method
-  contact,              // A with the stiffness of contacts on its diagonal, factored anew when they change
   vertex_blocks,        // the Hessian's 3 x 3 block of each vertex, when its turn comes (Chen et al. 2024)
 };
 template <>
@@ -32,7 +31,6 @@ struct Names<StartMatrix> {
                                        Name{StartMatrix::warped_rest_hessian, "warped-rest-hessian"},
                                        Name{StartMatrix::frame_hessian, "frame-hessian"},
                                        Name{StartMatrix::hessian, "hessian"},
-                                       Name{StartMatrix::contact, "contact"},
                                        Name{StartMatrix::vertex_blocks, "vertex-blocks"}};
 };
 

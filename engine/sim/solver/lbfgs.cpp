@@ -48,14 +48,13 @@ double along_pair(const StiffDirection& stiff, const double* step) {
   return mean.dot(stiff.axis);
 }
 
-// Holds the share of contacts in all pairs, t_i += K s_i, when it is kept separately (ContactHistory::current).
+// Holds the share in all pairs of the contacts in force, t_i += K s_i.
 class ContactPairs {
  public:
-  ContactPairs(const Model& model, const ContactSettings& settings, Workspace& w, const Pointers& s, int count)
-      : correction_(w.correction) {
+  ContactPairs(const Model& model, Workspace& w, const Pointers& s, int count) : correction_(w.correction) {
     find_stiff_directions(model, w.current.contacts, w.current.x, w.contact.stick_length, w.correction);
     directions_ = correction_.wanted.size();
-    if (settings.history != ContactHistory::current || count == 0 || directions_ == 0) return;
+    if (count == 0 || directions_ == 0) return;
     count_ = count;
     correction_.along.resize(directions_ * count);
     correction_.products.assign(std::size_t(count) * count, 0.0);
@@ -110,7 +109,7 @@ double search_direction(const Model& model, const StepInputs& inputs, Workspace&
     s[i] = workspace.step_pairs[history.place(i)].data();
     t[i] = workspace.gradient_pairs[history.place(i)].data();
   }
-  const ContactPairs contacts(model, inputs.solver.contact, workspace, s, count);
+  const ContactPairs contacts(model, workspace, s, count);
   // Returns s_i . t_j of the i-th and j-th newest pairs.
   const auto product = [&](int i, int j) {
     return workspace.products[history.place(i) * history.window + history.place(j)] + contacts.product(i, j);
@@ -161,7 +160,7 @@ double search_direction(const Model& model, const StepInputs& inputs, Workspace&
 
 bool is_safely_positive(double st, double ss, double tt) { return st > 1e-10 * std::sqrt(ss * tt); }
 
-void remember_pair(const Model& model, const ContactSettings& contact, Workspace& workspace, PairHistory& history) {
+void remember_pair(const Model& model, Workspace& workspace, PairHistory& history) {
   if (history.window == 0) return;
   if (workspace.is_bowed) {  // the arc has turned the body away from where the pairs were found
     history.clear();
@@ -173,7 +172,7 @@ void remember_pair(const Model& model, const ContactSettings& contact, Workspace
   const Iterate &from = workspace.current, &to = workspace.trial;
   s = to.x.topRows(model.free) - from.x.topRows(model.free);
   t = to.gradient - from.gradient;
-  if (contact.history == ContactHistory::current && !from.contacts.empty()) {
+  if (!from.contacts.empty()) {
     // Both gradients are taken with the planes that the search used. Friction is taken out, too: its stiffness falls
     // while it slides, and a pair that tells so lets the next direction slide past where it would stick.
     const double stick = workspace.contact.stick_length;
