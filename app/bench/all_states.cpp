@@ -34,8 +34,8 @@ struct MethodTimes {
 
 std::vector<MethodTimes> all_methods() {
   return {{{"ours", Method::quasi_newton, 200}},
-          {{"ours, two levels", Method::quasi_newton, 200, 5, LineSearch::armijo, {}, {SystemMatrix::constant, true}}},
-          {{"ours, tangent", Method::quasi_newton, 200, 5, LineSearch::armijo, {}, {SystemMatrix::tangent}}},
+          {{"ours, two levels", Method::quasi_newton, 200, 5, {}, {StartMatrix::system, true}}},
+          {{"ours, tangent", Method::quasi_newton, 200, 5, {}, {StartMatrix::tangent}}},
           {{"Projective Dynamics", Method::projective_dynamics, 300}},
           {{"Chebyshev", Method::chebyshev, 300}},
           {{"ADMM", Method::admm, 300}},
@@ -239,8 +239,8 @@ ReportSection bench_scenes(const BenchSetting& setting) {
                                         {"vertex block descent", Method::vertex_block_descent, 100},
                                         {"ours, two levels", Method::quasi_newton, 100},
                                         {"ours, tangent", Method::quasi_newton, 100}};
-    entries[entries.size() - 2].start = {SystemMatrix::constant, true};
-    entries[entries.size() - 1].start = {SystemMatrix::tangent};
+    entries[entries.size() - 2].start = {StartMatrix::system, true};
+    entries[entries.size() - 1].start = {StartMatrix::tangent};
     train_chebyshev(comparison, states.front(), entries);
     const std::vector<Outcome> outcomes = comparison.run(state, entries, 2, 2000);
     const Minimum lowest = comparison.reference(state, outcomes);

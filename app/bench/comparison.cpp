@@ -13,10 +13,12 @@
 namespace supple {
 
 SearchRule& SolverComparison::rule_of(const SolverEntry& entry) {
-  const auto same = [&](const Prepared& p) { return p.method == entry.method; };
+  const auto same = [&](const Prepared& p) { return p.method == entry.method && p.maker == entry.maker; };
   const auto at = std::find_if(prepared_.begin(), prepared_.end(), same);
   if (at != prepared_.end()) return *at->rule;
-  prepared_.push_back({entry.method, make_rule(entry.method, subject_.model())});
+  const Model& model = subject_.model();
+  prepared_.push_back(
+      {entry.method, entry.maker, entry.maker != nullptr ? entry.maker(model) : make_rule(entry.method, model)});
   return *prepared_.back().rule;
 }
 
@@ -113,7 +115,7 @@ StepInputs SolverComparison::inputs_of(const BenchState& state, const SolverEntr
   inputs.solver.iterations = entry.iterations;
   inputs.solver.rounds = 1;
   inputs.solver.history = entry.history;
-  inputs.solver.line_search = entry.line_search;
+  inputs.solver.line_search = LineSearch::armijo;
   inputs.solver.chebyshev = entry.chebyshev;
   inputs.solver.matrix = entry.start.matrix;
   inputs.solver.levels = entry.start.levels();

@@ -10,15 +10,17 @@
 
 namespace supple {
 
+using RuleMaker = std::unique_ptr<SearchRule> (*)(const Model&);
+
 // Describes a solver in a comparison, with its settings.
 struct SolverEntry {
   std::string label;
   Method method = Method::quasi_newton;
   int iterations = 10;
   int history = 5;
-  LineSearch line_search = LineSearch::armijo;
   ChebyshevSettings chebyshev = {};
   DirectionStart start = {};  // where directions of quasi-Newton start
+  RuleMaker maker = nullptr;  // of a rule that takes the method's place (baselines/figure_rules.h)
 };
 
 // Holds the result of one solver on one state. Lists go by iteration, with the first iterate first.
@@ -79,6 +81,7 @@ class SolverComparison {
   OpenWorkspace workspace_, reference_workspace_;
   struct Prepared {
     Method method;
+    RuleMaker maker;
     std::unique_ptr<SearchRule> rule;
   };
   std::vector<Prepared> prepared_;

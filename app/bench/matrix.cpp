@@ -45,7 +45,7 @@ PlayedFilm play_film(Subject& subject, Threads& threads, DirectionStart start, c
     return static_cast<double>(ms.size()) * ms[ms.size() / 2];
   };
   film.renewals = static_cast<double>(renewing.size()) / film_frames;
-  if (start.matrix != SystemMatrix::constant)
+  if (start.matrix != StartMatrix::system)
     film.renewal_ms = (sum_of_medians(renewing) + sum_of_medians(examining)) / film_frames;
   return film;
 }
@@ -247,7 +247,7 @@ void compare(Candidate& candidate, Subject& subject, Estimates& papers_estimates
     const double scale = subject.model().total_mass * std::pow(subject.model().size / subject.model().time_step, 2);
     if (!(lowest.below_y > 1e-12 * scale)) continue;  // at rest: nothing to solve
     ++states;
-    if (candidate.start.matrix != SystemMatrix::constant) take_out_renewal(outcomes[2]);
+    if (candidate.start.matrix != StartMatrix::system) take_out_renewal(outcomes[2]);
     add_motion(papers, outcomes[0], outcomes[1], comparison.motion_errors(state, outcomes[0], lowest.x),
                papers_estimates.motion);
     add_motion(score, outcomes[2], outcomes[3], comparison.motion_errors(state, outcomes[2], lowest.x),
@@ -266,8 +266,8 @@ void compare(Candidate& candidate, Subject& subject, Estimates& papers_estimates
 }  // namespace
 
 ReportSection bench_matrix(const BenchSetting& setting) {
-  Candidate candidates[] = {candidate_of({SystemMatrix::constant, true}), candidate_of({SystemMatrix::tangent}),
-                            candidate_of({SystemMatrix::hessian})};
+  Candidate candidates[] = {candidate_of({StartMatrix::system, true}), candidate_of({StartMatrix::tangent}),
+                            candidate_of({StartMatrix::turned_hessian})};
   Estimates papers_estimates;
   for (const SubjectChoice& choice : all_subjects()) {
     Subject subject(choice);
@@ -277,9 +277,9 @@ ReportSection bench_matrix(const BenchSetting& setting) {
   }
   ReportSection section{"matrix", "What directions start from"};
   section.text = fmt::format(
-      "Two levels, solver.levels, and matrices that follow the body, solver.matrix, beside the paper's constant "
-      "matrix, M/h^2 + L, on states of all bodies of "
-      "up to {} vertices, geometric means over their frames. Times contain the renewals that the matrix' film had, on "
+      "Two levels, solver.levels, and matrices that follow the body, solver.matrix, beside the paper's "
+      "matrix, M/h^2 + L, on states of all bodies of up to {} vertices, geometric means over their frames. Times "
+      "contain the renewals that the matrix' film had, on "
       "average over {} frames.",
       most_vertices, film_frames);
   for (const Candidate& candidate : candidates)

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/bench/sections.h"
+#include "baselines/figure_rules.h"
 #include "sim/measures/measures.h"
 
 namespace supple {
@@ -17,9 +18,17 @@ struct ShakenRun {
   double ms = 0;                // median of a step
 };
 
-ShakenRun shake(Subject& subject, Method method, int iterations, int frames, Threads& threads) {
+Solvers hecht_solver(int iterations) {
+  return {[](const Method&, const Model& model) { return make_hecht_rule(model); },
+          [iterations](const Method&, SolverSettings settings) {
+            settings.iterations = iterations;
+            return hecht_settings(settings);
+          }};
+}
+
+ShakenRun shake(Subject& subject, const Solvers& solvers, int frames, Threads& threads) {
   ShakenRun result;
-  World world = subject.new_world(solver_instead(method, iterations), threads);
+  World world = subject.new_world(solvers, threads);
   const MovingBody& body = world.body(0);
   std::vector<double> times;
   for (int frame = 0; frame < frames && result.failed_at < 0; ++frame) {
@@ -62,16 +71,17 @@ ReportSection bench_figure10(const BenchSetting& setting) {
     plot.y_min = 1;
     plot.y_max = 1e4;
     struct Shaken {
-      const char* label;
-      Method method;
+      std::string label;
+      Solvers solvers;
       int iterations;
     };
     for (const Shaken& shaken :
-         {Shaken{"ours", Method::quasi_newton, 10}, Shaken{"Hecht et al., 1 solve", Method::hecht, 1},
-          Shaken{"Hecht et al., 10 solves", Method::hecht, 10}, Shaken{"Newton", Method::newton, 2}}) {
-      const ShakenRun result = shake(subject, shaken.method, shaken.iterations, frames, *setting.threads);
+         {Shaken{"ours", solver_instead(Method::quasi_newton, 10), 10},
+          Shaken{"Hecht et al., 1 solve", hecht_solver(1), 1}, Shaken{"Hecht et al., 10 solves", hecht_solver(10), 10},
+          Shaken{"Newton", solver_instead(Method::newton, 2), 2}}) {
+      const ShakenRun result = shake(subject, shaken.solvers, frames, *setting.threads);
       PlotSeries curve{shaken.label};
-      curve.thick = shaken.method == Method::quasi_newton;
+      curve.thick = shaken.label == "ours";
       for (std::size_t k = 0; k < result.stretch.size(); ++k) {
         curve.x.push_back(static_cast<double>(k));
         curve.y.push_back(result.stretch[k]);

@@ -203,7 +203,7 @@ std::vector<std::string> columns_after(std::vector<std::string> first) {
 }
 
 const std::vector<DirectionStart> beside_the_papers = {
-    {SystemMatrix::constant, true}, {SystemMatrix::tangent}, {SystemMatrix::hessian}};
+    {StartMatrix::system, true}, {StartMatrix::tangent}, {StartMatrix::turned_hessian}};
 
 // Compares what directions start from on a slender bar that swings further, on our mesh and on the paper's.
 ReportTable slender_table(const BenchSetting& setting) {
@@ -258,7 +258,6 @@ ReportSection bench_hanging(const BenchSetting& setting) {
                   play(bar.subject, Method::quasi_newton, iterations, hanging_frames, *setting.threads, start)));
   }
   for (const Method& method : compared_methods()) {
-    if (method.matrix == StartMatrix::contact) continue;
     const bool newton = method.matrix == StartMatrix::hessian && method.linear == LinearSolver::direct;
     for (const int iterations : newton ? std::vector<int>{1, 2} : std::vector<int>{5, 10, 20})
       table.rows.push_back(bar.row({name_of(method)}, iterations,

@@ -20,12 +20,12 @@ struct SubjectChoice {
 
 // Says what directions of quasi-Newton start from. The default is the paper's.
 struct DirectionStart {
-  SystemMatrix matrix = SystemMatrix::constant;
+  StartMatrix matrix = StartMatrix::system;
   bool second_level = false;  // of directions that know how the body turns (coarse/second_level.h)
 
   int levels() const { return second_level ? 2 : 1; }
 };
-std::string text_of(const DirectionStart& start);  // "constant, two levels"
+std::string text_of(const DirectionStart& start);  // "system, two levels"
 
 // These functions return the solver that a scene names, or another solver in its place.
 Solvers scenes_own_solver();

@@ -168,8 +168,7 @@ void add_row(ReportTable& table, ReportTable& by_start, const Row& row, const Su
   SolverComparison comparison(subject, *setting.threads);
   std::vector<SolverEntry> entries = {{"ours", Method::quasi_newton, 10}, {"Newton", Method::newton, 1}};
   std::vector<BesidePapers> beside;
-  for (const DirectionStart start :
-       {DirectionStart{SystemMatrix::constant, true}, DirectionStart{SystemMatrix::tangent}}) {
+  for (const DirectionStart start : {DirectionStart{StartMatrix::system, true}, DirectionStart{StartMatrix::tangent}}) {
     beside.push_back({start, play_film(subject, *setting.threads, start)});
     for (const int iterations : {10, 40}) {
       entries.push_back({text_of(start), Method::quasi_newton, iterations});
@@ -193,7 +192,7 @@ void add_row(ReportTable& table, ReportTable& by_start, const Row& row, const Su
     for (std::size_t i = 0; i < beside.size(); ++i) {
       const Outcome &ten = outcomes[2 + 2 * i], &longer = outcomes[3 + 2 * i];
       beside[i].error.push_back(last_error(ten, lowest.below_y));
-      const double matrix_ms = beside[i].start.matrix == SystemMatrix::constant ? 0 : longer.matrix_ms;
+      const double matrix_ms = beside[i].start.matrix == StartMatrix::system ? 0 : longer.matrix_ms;
       beside[i].ms_to_same.push_back(time_to(longer, lowest.below_y, errors[0].back()) - matrix_ms);
       beside[i].motion_error.push_back(comparison.motion_errors(state, ten, lowest.x).back());
       beside[i].ms_to_same_motion.push_back(

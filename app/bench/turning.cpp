@@ -1,6 +1,6 @@
-// Compares films of bodies that turn with the same films whose every step is solved. The constant matrix of a
-// quasi-Newton step resists a turn as it resists a strain, so a few iterations turn a stiff body too little. Such a
-// body hardly deforms, so this shows in its motion as a whole: a ball that rolls too slowly, a bar that falls too late.
+// Compares films of bodies that turn with the same films whose every step is solved. The paper's matrix
+// resists a turn as it resists a strain, so a few quasi-Newton iterations turn a stiff body too little. Such a body
+// hardly deforms, so this shows in its motion as a whole: a ball that rolls too slowly, a bar that falls too late.
 #include <fmt/core.h>
 
 #include <Eigen/Geometry>

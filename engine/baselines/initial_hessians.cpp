@@ -175,28 +175,4 @@ void SystemCgInverse::apply(const Model& model, const StepInputs&, OpenWorkspace
   vector_of(z) = solution_;
 }
 
-ContactMatrixInverse::ContactMatrixInverse(const Model& model)
-    : system_(system_matrix_of(model).triangularView<Eigen::Lower>()),
-      scratch_(std::size_t(model.free) * 4),
-      stiffness_(model.free, 0.0) {}
-
-void ContactMatrixInverse::apply(const Model& model, const StepInputs&, OpenWorkspace& w, Positions& r, Positions& z) {
-  std::fill(stiffness_.begin(), stiffness_.end(), 0.0);
-  for (const Contact& contact : w.current.contacts) {
-    if (contact.depth <= 0) continue;
-    // A point between vertices adds the sum of each row of its matrix, which is at least as stiff.
-    for (int k = 0; k < contact.stencil.free; ++k)
-      stiffness_[contact.stencil.vertex[k]] += 2 * contact.stiffness * contact.stencil.weight[k];
-  }
-  if (stiffness_ != factored_) {
-    matrix_ = system_;
-    for (int v = 0; v < model.free; ++v) {
-      if (stiffness_[v] > 0) matrix_.coeffRef(v, v) += stiffness_[v];
-    }
-    factor_.factorize(matrix_, Precision::double_precision);
-    factored_ = stiffness_;
-  }
-  factor_.solve(r.data(), z.data(), scratch_.data());
-}
-
 }  // namespace supple

@@ -108,21 +108,4 @@ class SystemCgInverse final : public InitialInverse {
   Eigen::VectorXd right_, solution_;
 };
 
-// Applies the inverse of M/h^2 + L with a spring of 2 k_c at each touching vertex. It is factored again when the set of
-// touching vertices changes (the second way of Bouaziz et al. 2014, which section 4.3 of the paper discusses). apply()
-// throws RunError where that matrix is not positive definite.
-class ContactMatrixInverse final : public InitialInverse {
- public:
-  explicit ContactMatrixInverse(const Model& model);
-  void begin(const Model&, const StepInputs&, OpenWorkspace&) override { factored_.clear(); }
-  void apply(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, Positions& r,
-             Positions& z) override;
-
- private:
-  SparseMatrix system_, matrix_;  // lower triangles
-  CholeskyFactor factor_;
-  SolveScratch scratch_;
-  std::vector<double> stiffness_, factored_;  // by free vertex [N/m]
-};
-
 }  // namespace supple

@@ -24,8 +24,8 @@ std::unique_ptr<InitialInverse> initial_inverse(const Method& method, const Mode
     case StartMatrix::frame_hessian:
       if (cg) return std::make_unique<FrameCgInverse>(model, method.preconditioner, method.inner_iterations);
       return std::make_unique<HessianInverse>(model, frame_hessian_source);
-    case StartMatrix::hecht: return std::make_unique<HessianInverse>(model, hecht_hessian_source);
-    case StartMatrix::contact: return std::make_unique<ContactMatrixInverse>(model);
+    case StartMatrix::tangent:
+    case StartMatrix::turned_hessian: break;  // no method has them (problem_of)
     case StartMatrix::hessian:
     case StartMatrix::vertex_blocks: break;  // their rules hold them; no pairs of L-BFGS correct them
   }
@@ -44,7 +44,6 @@ class LbfgsFrom final : public SearchRule {
   void accepted(const Model& model, const StepInputs& inputs, OpenWorkspace& w) override {
     rule_.accepted(model, inputs, w);
   }
-  void contacts_changed(const StepInputs& inputs) override { rule_.contacts_changed(inputs); }
   bool measures_last_iterate() const override { return rule_.measures_last_iterate(); }
   bool forget() override { return rule_.forget(); }
 
@@ -108,12 +107,11 @@ std::unique_ptr<SearchRule> make_rule(const Method& method, const Model& model) 
 SolverSettings settings_of(const Method& method, SolverSettings settings) {
   if (method.acceleration != Acceleration::lbfgs) settings.history = 0;
   if (method != Method::quasi_newton) {
-    settings.matrix = SystemMatrix::constant;
+    settings.matrix = StartMatrix::system;
     settings.levels = 1;
     settings.newton = false;
   }
-  if (method.matrix == StartMatrix::hecht || method.matrix == StartMatrix::vertex_blocks ||
-      method.acceleration == Acceleration::admm)
+  if (method.matrix == StartMatrix::vertex_blocks || method.acceleration == Acceleration::admm)
     settings.line_search = LineSearch::none;
   return settings;
 }
@@ -123,8 +121,8 @@ std::vector<Method> compared_methods() {
   for (const ShortName& entry : short_names) methods.push_back(entry.method);
   methods.push_back(Method::newton_shifted);
   methods.push_back(Method::newton_on_demand);
-  for (const StartMatrix matrix : {StartMatrix::identity, StartMatrix::rest_hessian, StartMatrix::warped_rest_hessian,
-                                   StartMatrix::frame_hessian, StartMatrix::contact})
+  for (const StartMatrix matrix :
+       {StartMatrix::identity, StartMatrix::rest_hessian, StartMatrix::warped_rest_hessian, StartMatrix::frame_hessian})
     methods.push_back(Method::lbfgs_from(matrix));
   for (const int iterations : {5, 15}) {
     methods.push_back(Method::quasi_newton_cg(iterations));

@@ -15,8 +15,8 @@ namespace supple {
 std::unique_ptr<SearchRule> make_rule(const Method& method, const Model& model);
 
 // Returns the settings with those values that the method fixes whatever a scene says: only L-BFGS has a history, only
-// the quasi-Newton method has other matrices and begins with the step before, and Hecht's method, ADMM and vertex
-// blocks have no line search.
+// the quasi-Newton method has other matrices and begins with the step before, and ADMM and vertex blocks have no line
+// search.
 SolverSettings settings_of(const Method& method, SolverSettings settings);
 
 // Returns the paper's method and all methods with which the paper compares it.

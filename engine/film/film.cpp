@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <exception>
 #include <nlohmann/json.hpp>
 
@@ -28,21 +27,6 @@
 namespace supple {
 
 namespace {
-
-bool remembers_steps(const SceneDef& scene) {
-  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
-                     [](const BodyDef& body) { return remembers_steps(body.solver.method); });
-}
-
-// Tells whether the script uses a method that no checkpoint can resume.
-bool remembers_steps(const Script& script) {
-  for (int frame = 0; frame < script.scene().frames; ++frame) {
-    const std::vector<const TimedChange*> at_work = script.at_work(frame);
-    const bool method = std::any_of(at_work.begin(), at_work.end(), [](const TimedChange* c) { return c->cost.rule; });
-    if (method && remembers_steps(script.scene_at(frame))) return true;
-  }
-  return remembers_steps(script.scene());
-}
 
 std::vector<std::string> names_of(const std::vector<Body>& bodies) {
   std::vector<std::string> names;
@@ -95,8 +79,7 @@ FilmStart check_film(const FilmPlan& plan, const LoadedFilm& film) {
   FilmStart start;
   start.place = place_of_run(asked_folder(plan, scene), plan, film.info);
   start.identity = identity_of(film.info, film.world.script(), film.world.bodies(), plan);
-  start.checkpoint_every =
-      remembers_steps(film.world.script()) || plan.film_only || plan.preview ? 0 : plan.checkpoint_every;
+  start.checkpoint_every = plan.film_only || plan.preview ? 0 : plan.checkpoint_every;
   start.record_head = record_head(film.info, film.world.bodies());
   check_pictures_asked(plan, film);
   std::error_code ignored;

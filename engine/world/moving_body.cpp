@@ -104,7 +104,7 @@ const StepReport& MovingBody::step() {
   untangled_ = body_.def.solver.untangle && is_tangled(model_, state_.x);
   if (!untangled_) return supple::step(model_, inputs_, state_, workspace_.open(), *rule_);
   StepInputs inputs = inputs_;
-  inputs.solver.matrix = SystemMatrix::constant;
+  inputs.solver.matrix = StartMatrix::system;
   return supple::step(rigid_model(), inputs, state_, workspace_);
 }
 

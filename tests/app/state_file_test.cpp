@@ -250,9 +250,9 @@ TEST(States, ThatWereChangedOrAreOfAnotherVersionAreRefused) {
   }
   {
     const Written written;
-    written.edit("\"version\": 1", "\"version\": 2");
-    EXPECT_EQ(written.complaint(), "/state.json: is of version 2; version 1 is the one that this program reads");
-    written.edit("\"version\": 2", "\"version\": 1.5");
+    written.edit("\"version\": 2", "\"version\": 1");
+    EXPECT_EQ(written.complaint(), "/state.json: is of version 1; version 2 is the one that this program reads");
+    written.edit("\"version\": 1", "\"version\": 1.5");
     EXPECT_EQ(written.complaint(), "/state.json: 'version' cannot be 1.5");
     written.edit("\"version\": 1.5", "\"versions\": 1");
     EXPECT_EQ(written.complaint(), "/state.json: 'version' is missing");

@@ -15,9 +15,9 @@ namespace names_test {
 template <class E>
 class NameTables : public testing::Test {};
 
-using AllEnums = testing::Types<LineSearch, StopReason, ContactHistory, ContactDirection, Integrator, Precision, Ease,
-                                Selection::Kind, SweepMode, RampRule, Combine, Pattern, GlChoice, FilmPictures,
-                                StartMatrix, LinearSolver, Preconditioner, Acceleration, Safeguard>;
+using AllEnums = testing::Types<LineSearch, StopReason, ContactDirection, Integrator, Precision, Ease, Selection::Kind,
+                                SweepMode, RampRule, Combine, Pattern, GlChoice, FilmPictures, StartMatrix,
+                                LinearSolver, Preconditioner, Acceleration, Safeguard>;
 TYPED_TEST_SUITE(NameTables, AllEnums);
 
 TYPED_TEST(NameTables, GiveEveryValueBackByItsName) {

@@ -9,12 +9,14 @@
 #include <array>
 
 #include "base/error.h"
+#include "baselines/figure_rules.h"
 #include "baselines/make_rule.h"
 #include "baselines/newton.h"
 #include "baselines/system_matrix.h"
 #include "sim/model/element_view.h"
 #include "sim/solver/first_iterate.h"
 #include "support/bodies.h"
+#include "support/contact_scene.h"
 #include "support/deformations.h"
 
 namespace supple {
@@ -177,7 +179,7 @@ TEST(Hessian, OfSpringsAndContactsIsTheDerivativeOfTheGradient) {
   begin_step(model, inputs, state, w);
   w.current.x = test::shaken(w.current.x, 0.02, 5);
   for (int v = 0; v < 5; ++v) {
-    Contact contact{ContactStencil::at_vertex(v), {0}, Vec3(0.6, 0, 0.8), 0, 1e3, 0.01};
+    Contact contact{ContactStencil::at_vertex(v), 0, Vec3(0.6, 0, 0.8), 0, 1e3, 0.01};
     contact.offset = contact.normal.dot(w.current.x.row(v)) + 0.01;  // the vertex lies inside the plane
     w.current.contacts.push_back(contact);
   }
@@ -187,7 +189,7 @@ TEST(Hessian, OfSpringsAndContactsIsTheDerivativeOfTheGradient) {
                0,
                2e3,
                0.01};
-  std::sort(face.stencil.vertex.begin(), face.stencil.vertex.begin() + 3);
+  std::sort(face.stencil.vertex.begin(), face.stencil.vertex.end());
   while (face.stencil.free > 0 && face.stencil.vertex[face.stencil.free - 1] >= model.free) --face.stencil.free;
   ASSERT_GT(face.stencil.free, 1);
   face.offset = gap(face, w.current.x) + 0.01;
@@ -237,15 +239,18 @@ struct ShakenBar {
     const StepReport report = step(model, inputs, after, w);
     return {after, report};
   }
-  Stepped by(const Method& method) const {
-    const auto rule = make_rule(method, model);
+  Stepped by(SearchRule& rule, const SolverSettings& settings) const {
     StepInputs own = inputs;
-    own.solver = settings_of(method, own.solver);
-    if (rule->needs_gradient()) own.solver.line_search = LineSearch::armijo;
+    own.solver = settings;
+    if (rule.needs_gradient()) own.solver.line_search = LineSearch::armijo;
     State after = before;
     OpenWorkspace w;
-    const StepReport report = step(model, own, after, w, *rule);
+    const StepReport report = step(model, own, after, w, rule);
     return {after, report};
+  }
+  Stepped by(const Method& method) const {
+    const auto rule = make_rule(method, model);
+    return by(*rule, settings_of(method, inputs.solver));
   }
 };
 
@@ -263,6 +268,47 @@ TEST(Methods, AllReachTheMinimumOfOneStep) {
     EXPECT_LT((after.x - ours.after.x).cwiseAbs().maxCoeff(), 1e-6 * bar.model.size) << name;
     fmt::print("{:24} {:5} iterations, {:5} trials\n", name, report.iterations, report.line_search);
   }
+}
+
+TEST(Methods, RulesOfFiguresReachTheMinimumToo) {
+  ShakenBar bar(2000);
+  bar.before.v.topRows(bar.model.free).setConstant(0.5);
+  const ShakenBar::Stepped ours = bar.by_ours();
+  const double lowest = ours.report.objective.back();
+  SolverSettings papers = bar.inputs.solver;
+  papers.levels = 1;
+  const auto hecht = make_hecht_rule(bar.model), paper = make_paper_rule(bar.model);
+  for (const auto& [after, report] : {bar.by(*hecht, hecht_settings(papers)), bar.by(*paper, papers)}) {
+    ASSERT_FALSE(report.failed);
+    EXPECT_NEAR(report.objective.back(), lowest, 1e-9 * (report.objective.front() - lowest));
+    EXPECT_LT((after.x - ours.after.x).cwiseAbs().maxCoeff(), 1e-6 * bar.model.size);
+  }
+}
+
+// The recursion of lbfgs.cpp, which finds all inner products in one pass, is that of the paper up to round-off.
+TEST(Methods, ThePapersRecursionMakesOurIterates) {
+  ShakenBar bar(5);
+  bar.inputs.solver.levels = 1;
+  bar.inputs.solver.rounds = 1;
+  const auto paper = make_paper_rule(bar.model);
+  const ShakenBar::Stepped plain = bar.by(*paper, bar.inputs.solver), ours = bar.by_ours();
+  EXPECT_GT(plain.report.iterations, 3);
+  EXPECT_EQ(plain.report.iterations, ours.report.iterations);
+  EXPECT_LT((plain.after.x - ours.after.x).cwiseAbs().maxCoeff(), 1e-9 * bar.model.size);
+}
+
+TEST(Methods, ThePapersRuleMakesStepsInContact) {
+  test::ContactScene scene(test::cube(3), {{"ground", test::shape_of(HalfSpace{Vec3::UnitY(), 0}), 0, 0.3}},
+                           Vec3(0, 0.12, 0));
+  scene.inputs.solver.levels = 1;
+  const auto rule = make_paper_rule(scene.model);
+  int touching = 0;
+  for (int i = 0; i < 12; ++i) {
+    const StepReport& report = step(scene.model, scene.inputs, scene.state, scene.w, *rule);
+    ASSERT_FALSE(report.failed) << report.failure.what;
+    touching += report.contacts.touching;
+  }
+  EXPECT_GT(touching, 0);
 }
 
 // Tests every combination in the table of forms, also those that compared_methods() does not contain, such as a matrix
@@ -285,12 +331,13 @@ TEST(Methods, EveryCombinationOfPartsReachesTheMinimum) {
       }
     }
   }
-  EXPECT_EQ(count, 28);
+  EXPECT_EQ(count, 25);
 }
 
 TEST(Methods, PartsThatDoNotGoTogetherMakeNoRule) {
   const Model model = build_model(test::bar(NeoHookean{2e4, 4e4}, Held::hard_end, Precision::double_precision, 2));
   EXPECT_THROW((void)make_rule({.matrix = StartMatrix::identity, .linear = LinearSolver::cg}, model), InputError);
+  EXPECT_THROW((void)make_rule(Method::lbfgs_from(StartMatrix::tangent), model), InputError);
   EXPECT_THROW((void)make_rule({.matrix = StartMatrix::hessian, .acceleration = Acceleration::none}, model),
                InputError);
   EXPECT_THROW((void)make_rule({.linear = LinearSolver::cg, .preconditioner = Preconditioner::jacobi}, model),
@@ -343,24 +390,21 @@ TEST(Methods, ProjectionOnDemandIsNewtonWhereTheHessianIsDefinite) {
   EXPECT_FALSE(indefinite[1] == indefinite[2]);
 }
 
-// The conditions are those of Nocedal and Wright 2006, equations 3.7.
-TEST(LineSearch, WolfeStepsSatisfyBothConditions) {
+TEST(LineSearch, RecordsWhatTheFullStepDoes) {
   const Model model = build_model(test::bar(NeoHookean{2e4, 4e4}, Held::hard_end, Precision::double_precision, 2));
   StepInputs inputs = test::still_inputs(model);
-  inputs.solver.line_search = LineSearch::wolfe;
   inputs.solver.iterations = 12;
+  inputs.solver.rounds = 1;
   State state = rest_state(model);
   state.v.topRows(model.free) = test::shaken(state.v, 3, 9).topRows(model.free);
   OpenWorkspace w;
   const StepReport& report = step(model, inputs, state, w);
-  ASSERT_GT(report.iterations, 5);
-  for (std::size_t k = 1; k < report.objective.size(); ++k) EXPECT_LT(report.objective[k], report.objective[k - 1]);
+  ASSERT_GT(report.records.size(), 5u);
+  EXPECT_GT(report.decrease, 0);
   for (const IterationRecord& record : report.records) {
     if (record.alpha == 0) continue;  // the step began again from the body's last position
     EXPECT_GT(record.alpha, 0);
-    const bool full_step_does = record.full.decreases && std::abs(record.full.slope_ratio) <= 0.9;
-    EXPECT_TRUE(!full_step_does || record.alpha == 1);
-    EXPECT_TRUE(record.full.decreases || record.alpha < 1);
+    EXPECT_EQ(record.full.decreases, record.alpha == 1);
   }
 }
 

@@ -83,13 +83,53 @@ TEST(Method, FormerWordsAreRefusedWithTheirNewSpelling) {
        R"({ matrix = "frame-hessian", linear = "cg", inner_iterations = 5, preconditioner = "system" })"},
       {"lbfgs-frame-cg15-ours",
        R"({ matrix = "frame-hessian", linear = "cg", inner_iterations = 15, preconditioner = "system" })"},
-      {"contact-matrix", R"({ matrix = "contact" })"},
   };
   for (const auto& [word, spelling] : words) {
     EXPECT_EQ(refusal("method = \"" + word + "\""),
               "scene.toml:2:10: method = '" + word + "': is now written method = " + spelling);
     EXPECT_EQ(refusal("method = " + spelling), "accepted");
   }
+}
+
+TEST(SolverMatrix, HasTheWordsOfTheMethodsMatrices) {
+  EXPECT_EQ(solver_of("").settings.matrix, StartMatrix::system);
+  EXPECT_EQ(solver_of("matrix = \"system\"").settings.matrix, StartMatrix::system);
+  EXPECT_EQ(solver_of("matrix = \"tangent\"").settings.matrix, StartMatrix::tangent);
+  EXPECT_EQ(solver_of("matrix = \"turned-hessian\"").settings.matrix, StartMatrix::turned_hessian);
+  EXPECT_EQ(refusal("matrix = \"rest-hessian\""),
+            "scene.toml:2:10: matrix = 'rest-hessian': must be system, tangent or turned-hessian; did you mean "
+            "'turned-hessian'?");
+}
+
+TEST(SolverMatrix, FormerWordsAreRefusedWithTheirNewSpelling) {
+  EXPECT_EQ(refusal("matrix = \"constant\""),
+            "scene.toml:2:10: matrix = 'constant': is now written matrix = \"system\"");
+  EXPECT_EQ(refusal("matrix = \"hessian\""),
+            "scene.toml:2:10: matrix = 'hessian': is now written matrix = \"turned-hessian\"");
+}
+
+TEST(Solver, WordsForWhatExistsNoMoreAreRefusedWithTheNearest) {
+  EXPECT_EQ(refusal("line_search = \"wolfe\""),
+            "scene.toml:2:15: line_search = 'wolfe': exists no more; nearest is line_search = \"armijo\"");
+  EXPECT_EQ(
+      refusal("method = \"hecht\""),
+      "scene.toml:2:10: method = 'hecht': exists no more; nearest is method = { matrix = \"warped-rest-hessian\" }");
+  EXPECT_EQ(refusal("method = { matrix = \"hecht\" }"),
+            "scene.toml:2:21: matrix = 'hecht': exists no more; nearest is matrix = \"warped-rest-hessian\"");
+  EXPECT_EQ(refusal("method = \"contact-matrix\""),
+            "scene.toml:2:10: method = 'contact-matrix': exists no more; nearest is method = \"quasi-newton\"");
+  EXPECT_EQ(refusal("method = { matrix = \"contact\" }"),
+            "scene.toml:2:21: matrix = 'contact': exists no more; nearest is matrix = \"system\"");
+  EXPECT_EQ(refusal("contact = { direction = \"ignored\" }"),
+            "scene.toml:2:25: direction = 'ignored': exists no more; nearest is direction = \"low-rank\"");
+  EXPECT_EQ(refusal("contact = { history = \"frozen\" }"),
+            "scene.toml:2:23: history: exists no more; all pairs of L-BFGS have the contacts in force now");
+}
+
+TEST(Method, HasNoMatrixOfItsOwnForWhatQuasiNewtonHas) {
+  EXPECT_EQ(refusal("method = { matrix = \"tangent\" }"),
+            "scene.toml:2:21: matrix = 'tangent': must be system, identity, rest-hessian, warped-rest-hessian, "
+            "frame-hessian, hessian or vertex-blocks");
 }
 
 TEST(Method, PartsThatDoNotGoTogetherAreRefusedWithWhatDoes) {
@@ -112,13 +152,13 @@ TEST(Method, PartsThatDoNotGoTogetherAreRefusedWithWhatDoes) {
             "scene.toml:2:64: inner_tolerance = 0.1: must be 0 but with matrix = 'hessian' and linear = 'cg'");
   EXPECT_EQ(refusal("method = { linear = \"cg\" }"),
             "scene.toml:2:10: 'matrix' is missing: what a search direction starts from (system, identity, "
-            "rest-hessian, warped-rest-hessian, frame-hessian, hessian, hecht, contact or vertex-blocks)");
+            "rest-hessian, warped-rest-hessian, frame-hessian, hessian or vertex-blocks)");
   EXPECT_EQ(refusal("method = \"newtn\""),
             "scene.toml:2:10: method = 'newtn': must be quasi-newton, projective-dynamics, chebyshev, newton, gast, "
-            "hecht, vertex-block-descent or admm; did you mean 'newton'?");
+            "vertex-block-descent or admm; did you mean 'newton'?");
   EXPECT_EQ(refusal("method = { matrix = \"hesian\" }"),
             "scene.toml:2:21: matrix = 'hesian': must be system, identity, rest-hessian, warped-rest-hessian, "
-            "frame-hessian, hessian, hecht, contact or vertex-blocks; did you mean 'hessian'?");
+            "frame-hessian, hessian or vertex-blocks; did you mean 'hessian'?");
 }
 
 TEST(Method, PartsCanBeSetByTheirPaths) {
@@ -132,8 +172,8 @@ TEST(Method, PartsCanBeSetByTheirPaths) {
   EXPECT_EQ(method_with({"solver.method.inner_iterations=5", "solver.method.preconditioner=rest"}),
             Method::frame_cg(5, Preconditioner::rest));
   EXPECT_EQ(method_with({"solver.method=newton"}), Method::newton);
-  EXPECT_EQ(method_with({"solver.method={ matrix = \"contact\" }"}), Method::lbfgs_from(StartMatrix::contact));
-  EXPECT_EQ(method_with({"body.body.solver.method=hecht"}), Method::hecht);
+  EXPECT_EQ(method_with({"solver.method={ matrix = \"identity\" }"}), Method::lbfgs_from(StartMatrix::identity));
+  EXPECT_EQ(method_with({"body.body.solver.method=gast"}), Method::gast);
 }
 
 TEST(Chebyshev, WithoutAnIterationLeftToAccelerateIsWarnedOf) {

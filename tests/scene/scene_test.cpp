@@ -52,7 +52,7 @@ keys = [ { t = 1 }, { t = 0.5 } ]
       "scene.toml:4:12: substeps = 1.5: must be a whole number, 1 to 1000",
       "scene.toml:6:14: iterations = 0: must be a whole number, 1 to 10000",
       "scene.toml:7:10: armijo = -0.3: must be above 0 to 0.5",
-      "scene.toml:8:15: line_search = 'armjo': must be armijo, wolfe or none; did you mean 'armijo'?",
+      "scene.toml:8:15: line_search = 'armjo': must be armijo or none; did you mean 'armijo'?",
       "scene.toml:10:9: shape = 'shapes/squirel.toml': no such file (looked for shapes/squirel.toml and " +
           (test::assets / "shapes/squirel.toml").string() + "); did you mean 'shapes/squirrel.toml'?",
       "scene.toml:11:22: model = 'polynomal': must be " + word_list(test::model_names()) +

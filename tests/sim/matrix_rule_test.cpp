@@ -17,14 +17,14 @@ namespace matrix_rule_test {
 using test::bar;
 using test::Held;
 
-StepInputs inputs_with(const Model& model, SystemMatrix matrix) {
+StepInputs inputs_with(const Model& model, StartMatrix matrix) {
   StepInputs inputs = test::still_inputs(model);
   inputs.solver.matrix = matrix;
   inputs.solver.levels = 1;  // so that errors tell of the matrix alone
   return inputs;
 }
 
-TEST(MatrixRule, TheConstantMatrixIsThePapersToTheLastBit) {
+TEST(MatrixRule, TheSystemIsThePapersToTheLastBit) {
   // A solve with the model's factor and nothing else.
   struct PlainInverse final : InitialInverse {
     void apply(const Model& model, const StepInputs&, OpenWorkspace& w, Positions& r, Positions& z) override {
@@ -34,7 +34,7 @@ TEST(MatrixRule, TheConstantMatrixIsThePapersToTheLastBit) {
   };
   for (const Held held : {Held::nothing, Held::hard_end, Held::spring_end}) {
     const Model model = build_model(bar(NeoHookean{1e4, 4e4}, held, Precision::single_precision, 2));
-    const StepInputs inputs = inputs_with(model, SystemMatrix::constant);
+    const StepInputs inputs = inputs_with(model, StartMatrix::system);
     State state = rest_state(model), plain = state;
     OpenWorkspace w, other;
     PlainInverse inverse;
@@ -53,15 +53,15 @@ TEST(MatrixRule, TheTangentComesNearerInTheSameIterations) {
   const std::pair<Material, double> cases[] = {{Polynomial{1e5}, 0.1}, {NeoHookean{2e4, 1e4}, 0.5}};
   for (const auto& [material, most] : cases) {
     const Model model = build_model(bar(material, Held::hard_end, Precision::single_precision, 3));
-    const State before = test::moving_state(model, inputs_with(model, SystemMatrix::tangent), 6);
+    const State before = test::moving_state(model, inputs_with(model, StartMatrix::tangent), 6);
     double error[2];
     Reference reference(model);
     OpenWorkspace w, scratch;
-    for (const SystemMatrix matrix : {SystemMatrix::constant, SystemMatrix::tangent}) {
+    for (const StartMatrix matrix : {StartMatrix::system, StartMatrix::tangent}) {
       const StepInputs inputs = inputs_with(model, matrix);
       State after = before;
       ASSERT_FALSE(step(model, inputs, after, w).failed);
-      error[matrix == SystemMatrix::tangent] = reference.step_error(model, inputs, before, after, scratch).value();
+      error[matrix == StartMatrix::tangent] = reference.step_error(model, inputs, before, after, scratch).value();
     }
     EXPECT_LT(error[1], most * error[0]) << name_of(material);
   }
@@ -69,7 +69,7 @@ TEST(MatrixRule, TheTangentComesNearerInTheSameIterations) {
 
 TEST(MatrixRule, ABodyThatHardlyMovesRenewsNothing) {
   const Model model = build_model(bar(Corotated{1e5, 1e5}, Held::hard_end, Precision::single_precision, 2));
-  StepInputs inputs = inputs_with(model, SystemMatrix::tangent);
+  StepInputs inputs = inputs_with(model, StartMatrix::tangent);
   inputs.gravity = Vec3(0, -0.1, 0);
   State state = rest_state(model);
   OpenWorkspace w;
@@ -82,7 +82,7 @@ TEST(MatrixRule, ABodyThatHardlyMovesRenewsNothing) {
 
 TEST(MatrixRule, ABodyThatStiffensRenews) {
   const Model model = build_model(bar(Polynomial{1e5}, Held::hard_end, Precision::single_precision, 2));
-  const StepInputs inputs = inputs_with(model, SystemMatrix::tangent);
+  const StepInputs inputs = inputs_with(model, StartMatrix::tangent);
   State state = rest_state(model);
   OpenWorkspace w;
   int renewals = 0;
@@ -94,25 +94,27 @@ TEST(MatrixRule, ABodyThatStiffensRenews) {
 }
 
 TEST(MatrixRule, AStateHoldsAllThatTheNextStepDependsOn) {
-  const std::tuple<Material, SystemMatrix> cases[] = {{NeoHookean{1e4, 4e4}, SystemMatrix::tangent},
-                                                      {Polynomial{1e5}, SystemMatrix::tangent},
-                                                      {NeoHookean{1e4, 4e4}, SystemMatrix::hessian},
-                                                      {Polynomial{1e5}, SystemMatrix::hessian}};
+  const std::tuple<Material, StartMatrix> cases[] = {{NeoHookean{1e4, 4e4}, StartMatrix::tangent},
+                                                     {Polynomial{1e5}, StartMatrix::tangent},
+                                                     {NeoHookean{1e4, 4e4}, StartMatrix::turned_hessian},
+                                                     {Polynomial{1e5}, StartMatrix::turned_hessian}};
   for (const auto& [material, matrix] : cases) {
     const BodyDescription body = bar(material, Held::hard_end, Precision::single_precision, 4);
     const StepInputs inputs = inputs_with(build_model(body), matrix);
     test::expect_states_to_hold_all(body, inputs, [](const State& one, const State& other) {
       EXPECT_EQ(one.memory.matrix_made_at, other.memory.matrix_made_at);
       EXPECT_EQ(one.memory.matrix_age, other.memory.matrix_age);
-      EXPECT_EQ(one.memory.hessian_progress, other.memory.hessian_progress);
-      EXPECT_EQ(one.memory.constant_progress, other.memory.constant_progress);
+      EXPECT_EQ(one.memory.turned_hessian_progress, other.memory.turned_hessian_progress);
+      EXPECT_EQ(one.memory.system_progress, other.memory.system_progress);
     });
   }
 }
 
-class ByMatrix : public testing::TestWithParam<SystemMatrix> {};
-INSTANTIATE_TEST_SUITE_P(MatrixRule, ByMatrix, testing::Values(SystemMatrix::tangent, SystemMatrix::hessian),
-                         [](const auto& matrix) { return std::string(name_of(matrix.param)); });
+class ByMatrix : public testing::TestWithParam<StartMatrix> {};
+INSTANTIATE_TEST_SUITE_P(MatrixRule, ByMatrix, testing::Values(StartMatrix::tangent, StartMatrix::turned_hessian),
+                         [](const auto& matrix) {
+                           return std::string(matrix.param == StartMatrix::tangent ? "tangent" : "turned_hessian");
+                         });
 
 TEST_P(ByMatrix, NewValuesOfAModelMakeTheMatrixAnew) {
   BodyDescription body = bar(NeoHookean{1e4, 4e4}, Held::hard_end, Precision::single_precision, 2);
@@ -134,33 +136,33 @@ TEST_P(ByMatrix, NewValuesOfAModelMakeTheMatrixAnew) {
   }
 }
 
-TEST_P(ByMatrix, IsForgottenByTheConstantMatrixAndBeginsAnew) {
+TEST_P(ByMatrix, IsForgottenByTheSystemAndBeginsAnew) {
   const Model model = build_model(bar(NeoHookean{1e4, 4e4}, Held::hard_end, Precision::single_precision, 2));
   State state = test::moving_state(model, inputs_with(model, GetParam()), 3);
   EXPECT_EQ(state.memory.matrix_made_at.rows(), model.vertices);
   OpenWorkspace w;
-  step(model, inputs_with(model, SystemMatrix::constant), state, w);
+  step(model, inputs_with(model, StartMatrix::system), state, w);
   EXPECT_EQ(state.memory.matrix_made_at.rows(), 0);
   step(model, inputs_with(model, GetParam()), state, w);
   EXPECT_TRUE(w.renewed);
 }
 
-TEST_P(ByMatrix, ImplicitMidpointKeepsTheConstantMatrix) {
+TEST_P(ByMatrix, ImplicitMidpointKeepsTheSystem) {
   BodyDescription body = bar(NeoHookean{1e4, 4e4}, Held::nothing, Precision::single_precision);
   body.integrator = Integrator::implicit_midpoint;
   const Model model = build_model(body);
-  State state = rest_state(model), constant = state;
+  State state = rest_state(model), by_system = state;
   OpenWorkspace w;
   for (int i = 0; i < 3; ++i) {
     step(model, inputs_with(model, GetParam()), state, w);
     EXPECT_EQ(w.system, &model);
-    EXPECT_FALSE(w.hessian_serves);
-    step(model, inputs_with(model, SystemMatrix::constant), constant, w);
-    EXPECT_EQ(state_hash(model, state), state_hash(model, constant));
+    EXPECT_FALSE(w.turned_hessian_serves);
+    step(model, inputs_with(model, StartMatrix::system), by_system, w);
+    EXPECT_EQ(state_hash(model, state), state_hash(model, by_system));
   }
 }
 
-TEST_P(ByMatrix, WhereNoneCanBeMadeTheConstantMatrixServes) {
+TEST_P(ByMatrix, WhereNoneCanBeMadeTheSystemServes) {
   const Model model = build_model(bar(Polynomial{1e5}, Held::nothing, Precision::single_precision));
   State state = rest_state(model);
   state.v = test::shaken(Positions::Zero(model.vertices, 3), 1e170, 3);
@@ -168,35 +170,36 @@ TEST_P(ByMatrix, WhereNoneCanBeMadeTheConstantMatrixServes) {
   const StepReport& report = step(model, inputs_with(model, GetParam()), state, w);
   EXPECT_TRUE(report.failed);
   EXPECT_EQ(w.system, &model);
-  EXPECT_FALSE(w.hessian_serves);
+  EXPECT_FALSE(w.turned_hessian_serves);
 }
 
-TEST(MatrixRule, TheHessianComesMuchNearerInTheSameIterations) {
+TEST(MatrixRule, TheTurnedHessianComesMuchNearerInTheSameIterations) {
   // A bar that swings far: bent and turned, with little stretch.
   const std::pair<Material, double> cases[] = {{NeoHookean{1e5, 4e5}, 1e-3}, {Corotated{1e5, 1e5}, 1e-3}};
   for (const auto& [material, most] : cases) {
     const Model model = build_model(bar(material, Held::hard_end, Precision::single_precision, 3));
-    const State before = test::moving_state(model, inputs_with(model, SystemMatrix::hessian), 8);
+    const State before = test::moving_state(model, inputs_with(model, StartMatrix::turned_hessian), 8);
     ASSERT_EQ(before.memory.matrix_age, 7);  // the matrix is that of the first step
     double error[2];
     Reference reference(model);
     OpenWorkspace w, scratch;
-    for (const SystemMatrix matrix : {SystemMatrix::constant, SystemMatrix::hessian}) {
+    for (const StartMatrix matrix : {StartMatrix::system, StartMatrix::turned_hessian}) {
       StepInputs inputs = inputs_with(model, matrix);
       inputs.solver.iterations = 5;
       State after = before;
       ASSERT_FALSE(step(model, inputs, after, w).failed);
-      EXPECT_EQ(w.hessian_serves, matrix == SystemMatrix::hessian);
-      error[matrix == SystemMatrix::hessian] = reference.step_error(model, inputs, before, after, scratch).value();
+      EXPECT_EQ(w.turned_hessian_serves, matrix == StartMatrix::turned_hessian);
+      error[matrix == StartMatrix::turned_hessian] =
+          reference.step_error(model, inputs, before, after, scratch).value();
     }
     EXPECT_LT(error[1], most * error[0]) << name_of(material);
   }
 }
 
-TEST(MatrixRule, AHessianThatServesPoorlyWaitsUntilARenewalIsCheapEnough) {
+TEST(MatrixRule, ATurnedHessianThatServesPoorlyWaitsUntilARenewalIsCheapEnough) {
   // Without stiffness at rest, and with more of it in each step.
   const Model model = build_model(bar(Polynomial{1e6}, Held::hard_end, Precision::single_precision, 2));
-  const StepInputs inputs = inputs_with(model, SystemMatrix::hessian);
+  const StepInputs inputs = inputs_with(model, StartMatrix::turned_hessian);
   State state = rest_state(model);
   OpenWorkspace w;
   std::vector<int> renewals;
@@ -204,7 +207,7 @@ TEST(MatrixRule, AHessianThatServesPoorlyWaitsUntilARenewalIsCheapEnough) {
   for (int i = 0; i < 120; ++i) {
     step(model, inputs, state, w);
     if (w.renewed) renewals.push_back(i);
-    served += w.hessian_serves;
+    served += w.turned_hessian_serves;
     EXPECT_EQ(w.system, &model);
   }
   ASSERT_GT(renewals.size(), 1u);
@@ -213,10 +216,10 @@ TEST(MatrixRule, AHessianThatServesPoorlyWaitsUntilARenewalIsCheapEnough) {
   EXPECT_LT(served, 120);
 }
 
-TEST(MatrixRule, TheHessianServesOnlyWhatTouchesNothing) {
+TEST(MatrixRule, TheTurnedHessianServesOnlyWhatTouchesNothing) {
   const BodyDescription body = bar(NeoHookean{1e4, 4e4}, Held::nothing, Precision::single_precision, 2);
   test::ContactScene scene(body, {{"ground", test::shape_of(HalfSpace{Vec3::UnitY(), 0}), 0, 0.3}}, Vec3(0, 0.3, 0));
-  scene.inputs.solver.matrix = SystemMatrix::hessian;
+  scene.inputs.solver.matrix = StartMatrix::turned_hessian;
   State state = scene.state;
   OpenWorkspace w;
   std::vector<State> states;
@@ -224,7 +227,7 @@ TEST(MatrixRule, TheHessianServesOnlyWhatTouchesNothing) {
   for (int i = 0; i < 24; ++i) {
     states.push_back(state);
     ASSERT_FALSE(step(scene.model, scene.inputs, state, w).failed);
-    (w.hessian_serves ? in_the_air : touching) += 1;
+    (w.turned_hessian_serves ? in_the_air : touching) += 1;
   }
   EXPECT_GT(in_the_air, 4);
   EXPECT_GT(touching, 4);
@@ -238,12 +241,12 @@ TEST(MatrixRule, TheHessianServesOnlyWhatTouchesNothing) {
   }
 }
 
-TEST(MatrixRule, SpringsAloneKeepTheConstantMatrix) {
+TEST(MatrixRule, SpringsAloneKeepTheSystem) {
   const Model model = build_model(test::spring_net(4));
   State state = rest_state(model);
   OpenWorkspace w;
-  step(model, inputs_with(model, SystemMatrix::hessian), state, w);
-  EXPECT_FALSE(w.hessian_serves);
+  step(model, inputs_with(model, StartMatrix::turned_hessian), state, w);
+  EXPECT_FALSE(w.turned_hessian_serves);
   EXPECT_EQ(state.memory.matrix_made_at.rows(), 0);
 }
 
@@ -254,8 +257,8 @@ TEST(SolverMemory, IsTheSameAfterAWayThroughBytes) {
   ASSERT_TRUE(again);
   EXPECT_EQ(again->matrix_made_at, memory.matrix_made_at);
   EXPECT_EQ(again->matrix_age, 7);
-  EXPECT_EQ(again->hessian_progress, 0.25);
-  EXPECT_EQ(again->constant_progress, 0.125);
+  EXPECT_EQ(again->turned_hessian_progress, 0.25);
+  EXPECT_EQ(again->system_progress, 0.125);
   const std::optional<SolverMemory> nothing = memory_from(bytes_of(SolverMemory{}), 5);
   ASSERT_TRUE(nothing);
   EXPECT_EQ(nothing->matrix_made_at.rows(), 0);

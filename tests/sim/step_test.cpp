@@ -345,7 +345,7 @@ TEST(Step, WithoutLineSearchReportsTheVertexWhenTheBodyFliesApart) {
   const Model model = build_model(bar(Polynomial{1e5}, Held::hard_end, Precision::single_precision));
   StepInputs inputs = still_inputs(model);
   inputs.solver.line_search = LineSearch::none;
-  inputs.solver.matrix = SystemMatrix::constant;  // the tangent's full steps bring this body back
+  inputs.solver.matrix = StartMatrix::system;  // the tangent's full steps bring this body back
   State state = rest_state(model);
   state.x.topRows(model.free) *= 6;
   OpenWorkspace w;

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "app/bench/subject.h"
+#include "baselines/figure_rules.h"
 #include "baselines/reference.h"
 #include "output/run/profile.h"
 #include "scene/building/assemble.h"
@@ -42,10 +43,16 @@ class StraightInverse final : public InitialInverse {
   SystemInverse system_;
 };
 
+enum class Directions {
+  ours,
+  not_bent,  // around planes that are near
+  papers,    // baselines/figure_rules.h
+};
+
 struct Variant {
   std::string name;
   SolverSettings solver;
-  bool bends = true;
+  Directions directions = Directions::ours;
   bool same_energy = true;  // as the defaults: errors in equal time can be compared
   std::unique_ptr<OpenWorkspace> workspace = std::make_unique<OpenWorkspace>();
   // These values belong to one state: by iteration, the first iterate first.
@@ -70,26 +77,19 @@ std::vector<Variant> variants(const SolverSettings& usual) {
     variant.same_energy = same_energy;
     return variant;
   };
+  const auto add_papers = [&](const std::string& name, bool same_energy = true) -> Variant& {
+    Variant& variant = add(name, same_energy);
+    variant.directions = Directions::papers;
+    variant.solver.levels = 1;
+    return variant;
+  };
   add("defaults");
-  for (const auto& direction : Names<ContactDirection>::table) {
-    for (const auto& history : Names<ContactHistory>::table) {
-      const bool low_rank = direction.value == ContactDirection::low_rank;
-      const bool defaults = direction.value == usual.contact.direction && history.value == usual.contact.history;
-      for (const bool bends : {true, false}) {
-        if (bends ? defaults : !low_rank) continue;
-        Variant& variant = add(fmt::format("{}, {}{}", direction.text, history.text, bends ? "" : ", not bent"));
-        variant.solver.contact.direction = direction.value;
-        variant.solver.contact.history = history.value;
-        variant.bends = bends;
-      }
-    }
-  }
+  add("low-rank, not bent").directions = Directions::not_bent;
+  add("diagonal").solver.contact.direction = ContactDirection::diagonal;
+  add_papers("contacts in pairs, as the paper");
   add("no history (m = 0)").solver.history = 0;
   for (const double k : {10.0, 100.0, 1e3, 1e5}) add(fmt::format("k_c {:g}", k), false).solver.contact.stiffness = k;
-  ContactSettings& paper = add("as the paper: ignored, frozen, k_c 100", false).solver.contact;
-  paper.stiffness = 100;
-  paper.history = ContactHistory::frozen;
-  paper.direction = ContactDirection::ignored;
+  add_papers("the same, k_c 100", false).solver.contact.stiffness = 100;
   return list;
 }
 
@@ -108,7 +108,9 @@ void run(const Start& s, Variant& variant, int round, OpenWorkspace& scratch) {
   State after = s.before;
   SystemInverse bending;
   StraightInverse straight;
-  LbfgsRule rule(variant.bends ? static_cast<InitialInverse&>(bending) : straight);
+  LbfgsRule ours(variant.directions == Directions::ours ? static_cast<InitialInverse&>(bending) : straight);
+  const auto papers = make_paper_rule(s.model);
+  SearchRule& rule = variant.directions == Directions::papers ? *papers : ours;
   const StepReport report = step(s.model, inputs, after, *variant.workspace, rule);
   std::vector<double> ms = {report.start_ms};
   for (const IterationRecord& record : report.records) ms.push_back(record.elapsed_ms);

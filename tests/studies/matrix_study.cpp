@@ -1,6 +1,6 @@
 // Finds the numbers of the matrix that follows the body (sim/model/tangent_system.h, sim/solver/matrix_rule.h): on
 // states of the scenes that ship, steps of ten iterations with matrices of several shares and ages. Prints a line each:
-// scene, body, frame, matrix, departure, error of equation 12, that over the constant matrix', trials, contacts, and
+// scene, body, frame, matrix, departure, error of equation 12, that over the paper's matrix', trials, contacts, and
 // half of the slope at the end over g(y) - g*.
 //   supple_matrix_study [MOST_VERTICES] [SCENE...]
 #include <fmt/format.h>
@@ -41,7 +41,7 @@ Run run_once(Subject& subject, const StepInputs& given, const State& before, con
   Run run;
   StepInputs inputs = given;
   inputs.solver.iterations = iterations;
-  inputs.solver.matrix = SystemMatrix::constant;  // the matrix comes with the model
+  inputs.solver.matrix = StartMatrix::system;  // the matrix comes with the model
   State after = before;
   const StepReport* report = nullptr;
   w.correction = {};
@@ -71,9 +71,9 @@ Run run_once(Subject& subject, const StepInputs& given, const State& before, con
   return run;
 }
 
-// One line a state and age: how stale the matrix is, error and trials over those of the constant matrix.
+// One line a state and age: how stale the matrix is, error and trials over those of the paper's matrix.
 void study(const std::string& scene, const std::string& body, int most_vertices, Threads& threads) {
-  Subject subject({scene, body, {"solver.matrix=constant"}});
+  Subject subject({scene, body, {"solver.matrix=system"}});
   if (subject.model().vertices > most_vertices) return;
   const Model& model = subject.model();
   World world = subject.new_world(scenes_own_solver(), threads);
@@ -102,7 +102,7 @@ void study(const std::string& scene, const std::string& body, int most_vertices,
         if (v.age != -2) made.make(model, place, v.shares, nullptr);
         stale.push_back(v.age == -2 ? 0 : made.departure(model, places[0]));
       };
-      add("constant", {"", {0, 1}, -2}, places[0]);
+      add("system", {"", {0, 1}, -2}, places[0]);
       for (const double axial : {0.0, 0.5, 0.7}) {
         for (const double share : {0.8, 0.95}) {
           for (const int age : {0, 1, 3, 8}) {

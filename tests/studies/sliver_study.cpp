@@ -128,7 +128,7 @@ void print_rows(const HangingBody& body, double share, const std::filesystem::pa
                      {"body.bar.mesh=" + file.string(), fmt::format("body.bar.material={}", material),
                       "body.bar.handles.end.select={ box = [[0, 0, 0], [0.03, 1, 1]] }"}});
     const double solved = hang(subject, mesh, solving_iterations, {}, false, threads).stretch;
-    for (const SystemMatrix matrix : {SystemMatrix::constant, SystemMatrix::tangent, SystemMatrix::hessian}) {
+    for (const StartMatrix matrix : {StartMatrix::system, StartMatrix::tangent, StartMatrix::turned_hessian}) {
       const Hung hung = hang(subject, mesh, 10, {matrix, true}, true, threads);
       fmt::print("| {} | {:.1e} | {:.2g} | {} | {} | {:.1e} | {:.1e} | {:.2f} | {:.3f} | {:.3f} |\n", body.name,
                  found.smallest_volume, found.smallest_dihedral, material, name_of(matrix),

@@ -68,7 +68,6 @@ Json solver_json(const StepProblem& problem) {
            {{"stiffness", c.stiffness},
             {"push_out", c.push_out},
             {"stick", c.stick},
-            {"history", name_of(c.history)},
             {"direction", name_of(c.direction)}}}};
 }
 

@@ -8,7 +8,7 @@
 
 namespace supple {
 
-constexpr int state_file_version = 1;
+constexpr int state_file_version = 2;
 
 // Tells which step of which film a problem belongs to.
 struct StepLabel {

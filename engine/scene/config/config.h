@@ -54,6 +54,8 @@ struct Words {
   std::vector<std::string> allowed;
   // These are the words of earlier versions, each with the word that replaces it now.
   std::vector<std::pair<std::string, std::string>> former = {};
+  // These are words for what exists no more, each with the word for what is nearest to it.
+  std::vector<std::pair<std::string, std::string>> gone = {};
 };
 
 // Holds one row of the documentation: a key that some reader asked for.
@@ -197,9 +199,14 @@ class ConfigTable {
   // Returns the value of an enum that the key names.
   template <Named E>
   E word(const Key& key, std::optional<E> fallback) const {
+    return word<E>(key, fallback, {all_names<E>()});
+  }
+  // Does the same for an enum of which the key may have these words alone.
+  template <Named E>
+  E word(const Key& key, std::optional<E> fallback, const Words& words) const {
     std::optional<std::string> usual;
     if (fallback) usual = name_of(*fallback);
-    return *value_named<E>(choice(key, std::move(usual), {all_names<E>()}));
+    return *value_named<E>(choice(key, std::move(usual), words));
   }
   // Returns the value of an enum that the key names; nothing when the key is absent or wrong. fallback: the default in
   // words, for the documentation.

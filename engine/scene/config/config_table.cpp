@@ -215,6 +215,11 @@ bool ConfigTable::is_one_of(const Words& words, const Key& key, const toml::node
     config_->complain(&node, fmt::format("{0} = '{1}': is now written {0} = {2}", key.name, word, instead));
     return false;
   }
+  for (const auto& [word, nearest] : words.gone) {
+    if (value != word) continue;
+    config_->complain(&node, fmt::format("{0} = '{1}': exists no more; nearest is {0} = {2}", key.name, word, nearest));
+    return false;
+  }
   wrong(key, node, word_list(words.allowed) + (value ? did_you_mean(*value, words.allowed) : ""));
   return false;
 }

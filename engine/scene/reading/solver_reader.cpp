@@ -20,7 +20,6 @@ constexpr std::array former_method_names = {
     ShortName{"lbfgs-frame-cg15-rest", Method::frame_cg(15, Preconditioner::rest)},
     ShortName{"lbfgs-frame-cg5-ours", Method::frame_cg(5, Preconditioner::system)},
     ShortName{"lbfgs-frame-cg15-ours", Method::frame_cg(15, Preconditioner::system)},
-    ShortName{"contact-matrix", Method::lbfgs_from(StartMatrix::contact)},
 };
 
 Words method_words() {
@@ -28,12 +27,24 @@ Words method_words() {
   for (const ShortName& entry : short_names) words.allowed.emplace_back(entry.name);
   for (const ShortName& entry : former_method_names)
     words.former.push_back({std::string(entry.name), spelling_of(entry.method)});
+  words.gone = {{"hecht", spelling_of(Method::lbfgs_from(StartMatrix::warped_rest_hessian))},
+                {"contact-matrix", spelling_of(Method::quasi_newton)}};
+  return words;
+}
+
+// Returns the words of `solver.matrix`, with those of earlier versions.
+Words matrix_words() {
+  Words words;
+  for (const StartMatrix matrix : quasi_newton_matrices) words.allowed.emplace_back(name_of(matrix));
+  words.former = {{"constant", "\"system\""}, {"hessian", "\"turned-hessian\""}};
   return words;
 }
 
 Method method_of_parts(const ConfigTable& table) {
   Method method;
-  method.matrix = table.word<StartMatrix>({"matrix", "", "what a search direction starts from"}, std::nullopt);
+  method.matrix = table.word<StartMatrix>(
+      {"matrix", "", "what a search direction starts from"}, std::nullopt,
+      {.allowed = method_matrices(), .gone = {{"hecht", "\"warped-rest-hessian\""}, {"contact", "\"system\""}}});
   method.linear = table.word<LinearSolver>(
       {"linear", "", "systems with it are solved by a factor, or by conjugate gradients"}, LinearSolver::direct);
   const MethodForm* form = form_of(method.matrix, method.linear);
@@ -47,8 +58,7 @@ Method method_of_parts(const ConfigTable& table) {
        "of conjugate gradients: the diagonal, or an incomplete factor of the rest pose's Hessian or of the system"},
       "by the matrix");
   const auto acceleration = table.word_if_given<Acceleration>(
-      {"acceleration", "", "what an iteration learns from earlier ones; the hessian and hecht go without"},
-      "by the matrix");
+      {"acceleration", "", "what an iteration learns from earlier ones; the hessian goes without"}, "by the matrix");
   const auto safeguard = table.word_if_given<Safeguard>(
       {"safeguard", "", "of matrix = \"hessian\" where it is not positive definite"}, "by the matrix");
   const bool cg = method.linear == LinearSolver::cg;
@@ -88,13 +98,11 @@ ContactSettings read_contact(const ConfigTable& table, ContactSettings contact) 
                                               "what of a body touches: its vertices, or also points of edges and faces "
                                               "where a collider is finer than the body's surface"},
                                              contact.points);
-  contact.history =
-      table.word<ContactHistory>({"history", "",
-                                  "L-BFGS pairs across a change of contacts: both gradients with the planes of "
-                                  "their iteration, the contacts in force now, or no pair"},
-                                 contact.history);
   contact.direction =
-      table.word<ContactDirection>({"direction", "", "what search directions make of contacts"}, contact.direction);
+      table.word<ContactDirection>({"direction", "", "what search directions make of contacts"}, contact.direction,
+                                   {.allowed = all_names<ContactDirection>(), .gone = {{"ignored", "\"low-rank\""}}});
+  if (table.has("history"))
+    table.complain("history", "history: exists no more; all pairs of L-BFGS have the contacts in force now");
   return contact;
 }
 
@@ -110,16 +118,17 @@ SolverSettings read_settings(const ConfigTable& table, SolverSettings s) {
                      "2: the first matrix of quasi-newton's directions knows that turning parts of the body costs "
                      "nothing; 1: it resists turning, as the paper's"},
                     s.levels, Range::between(1, 2));
-  s.matrix = table.word<SystemMatrix>(
+  s.matrix = table.word<StartMatrix>(
       {"matrix", "",
        "what directions of quasi-newton start from: a matrix that follows the body, or the paper's M/h^2 + L"},
-      s.matrix);
+      s.matrix, matrix_words());
   s.chebyshev.delay = table.integer({"chebyshev_delay", "", "iterations of chebyshev before it accelerates"},
                                     s.chebyshev.delay, Range::between(0, 10000));
   s.chebyshev.radius = table.number({"chebyshev_radius", "", "spectral radius that chebyshev assumes of an iteration"},
                                     s.chebyshev.radius, Range::between(0, 0.9999));
-  s.line_search = table.word<LineSearch>(
-      {"line_search", "", "how a step length is accepted; none takes every full step"}, s.line_search);
+  s.line_search =
+      table.word<LineSearch>({"line_search", "", "how a step length is accepted; none takes every full step"},
+                             s.line_search, {.allowed = all_names<LineSearch>(), .gone = {{"wolfe", "\"armijo\""}}});
   s.armijo = table.number({"armijo", "", "gamma of the sufficient decrease"}, s.armijo, Range::above(0, 0.5));
   s.target_error = table.number(
       {"target_error", "", "stop once both of the solver's own error estimates are below; 0 does all iterations"},

@@ -207,7 +207,7 @@ void begin_corrections(const Model& model, ContactCorrection& c) { c.system.begi
 
 void apply_inverse(const Model& model, const ContactSettings& settings, ContactCorrection& c, SolveScratch& scratch,
                    Positions& r, Positions& z) {
-  if (c.wanted.empty() || settings.direction == ContactDirection::ignored) {
+  if (c.wanted.empty()) {
     c.system.clear();
     return apply_both_levels(model, c, scratch, r, z);
   }

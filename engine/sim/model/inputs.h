@@ -12,6 +12,7 @@
 #include "geometry/meshes/pose.h"
 #include "geometry/shapes/shape.h"
 #include "sim/model/budget_cuts.h"
+#include "sim/model/start_matrix.h"
 
 namespace supple {
 
@@ -31,29 +32,14 @@ struct ColliderMotion {
   bool moves() const { return start.matrix() != end.matrix(); }
 };
 
-// Selects how L-BFGS' pairs are treated when the contacts change: the planes of the iteration that made a pair are not
-// those in force later.
-enum class ContactHistory {
-  frozen,   // both gradients with the planes of the iteration that made the pair
-  current,  // t without contacts, plus 2 k_c n n^T s for each contact in force now
-  dropped,  // no pair across a change of the set
-};
-template <>
-struct Names<ContactHistory> {
-  static constexpr std::array table = {Name{ContactHistory::frozen, "frozen"}, Name{ContactHistory::current, "current"},
-                                       Name{ContactHistory::dropped, "dropped"}};
-};
-
 // Selects how search directions take contacts, which A does not contain, into account.
 enum class ContactDirection {
-  ignored,   // contacts are not taken into account, as in the paper
   diagonal,  // normal motion of touching vertices by its own stiffness
   low_rank,  // (A + contacts)^-1 by the Woodbury identity
 };
 template <>
 struct Names<ContactDirection> {
-  static constexpr std::array table = {Name{ContactDirection::ignored, "ignored"},
-                                       Name{ContactDirection::diagonal, "diagonal"},
+  static constexpr std::array table = {Name{ContactDirection::diagonal, "diagonal"},
                                        Name{ContactDirection::low_rank, "low-rank"}};
 };
 
@@ -73,27 +59,13 @@ struct ContactSettings {
   double push_out = 1;     // fastest way out of an overlap [body sizes / s]
   double stick = 1.5e-4;   // friction is whole above this speed [body sizes / s]
   ContactPoints points = ContactPoints::vertices;
-  ContactHistory history = ContactHistory::current;
   ContactDirection direction = ContactDirection::low_rank;
 };
 
-// The matrix that quasi-Newton directions start from.
-enum class SystemMatrix {
-  constant,  // A = M/h^2 + L: the paper's
-  tangent,   // a matrix for all coordinates that follows the body (model/tangent_system.h)
-  hessian,   // a matrix over all coordinates that turns with the body (model/hessian_system.h)
-};
-template <>
-struct Names<SystemMatrix> {
-  static constexpr std::array table = {Name{SystemMatrix::constant, "constant"}, Name{SystemMatrix::tangent, "tangent"},
-                                       Name{SystemMatrix::hessian, "hessian"}};
-};
-
-enum class LineSearch { armijo, wolfe, none };
+enum class LineSearch { armijo, none };
 template <>
 struct Names<LineSearch> {
-  static constexpr std::array table = {Name{LineSearch::armijo, "armijo"}, Name{LineSearch::wolfe, "wolfe"},
-                                       Name{LineSearch::none, "none"}};
+  static constexpr std::array table = {Name{LineSearch::armijo, "armijo"}, Name{LineSearch::none, "none"}};
 };
 
 // Holds the settings of Chebyshev's semi-iterative acceleration (Wang 2015). docs/bench.md tells how the defaults were
@@ -108,7 +80,7 @@ struct SolverSettings {
   int iterations = 10;
   int history = 5;  // window m of L-BFGS; 0 is plain quasi-Newton
   int levels = 2;   // 2: directions know how the body turns (coarse/second_level.h); 1: the paper's method
-  SystemMatrix matrix = SystemMatrix::constant;
+  StartMatrix matrix = StartMatrix::system;  // of quasi-Newton directions: one of quasi_newton_matrices
   LineSearch line_search = LineSearch::armijo;
   double armijo = 0.3;      // gamma
   double target_error = 0;  // stop when the error estimate falls below; 0: do all iterations

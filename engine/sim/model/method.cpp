@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <vector>
 
 #include "base/text.h"
 
@@ -36,9 +35,20 @@ const ShortName* short_name_of(const Method& method) {
 
 }  // namespace
 
+std::vector<std::string> method_matrices() {
+  std::vector<std::string> names;
+  for (const MethodForm& form : method_forms) {
+    const std::string_view name = name_of(form.matrix);
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.emplace_back(name);
+  }
+  return names;
+}
+
 std::optional<MethodProblem> problem_of(const Method& method) {
   const std::string matrix = fmt::format("matrix = '{}'", name_of(method.matrix));
   const MethodForm* form = form_of(method.matrix, method.linear);
+  if (form == nullptr && linear_solvers_for(method.matrix).empty())
+    return MethodProblem{"matrix", fmt::format("{}: must be {}", matrix, word_list(method_matrices()))};
   if (form == nullptr) {
     return MethodProblem{"linear", fmt::format("linear = '{}': with {} it must be {}", name_of(method.linear), matrix,
                                                word_list(linear_solvers_for(method.matrix)))};

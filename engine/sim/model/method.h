@@ -8,35 +8,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/names.h"
+#include "sim/model/start_matrix.h"
 
 namespace supple {
-
-// Selects the approximation of the Hessian of g from which a search direction starts.
-enum class StartMatrix {
-  system,               // A = M/h^2 + L, constant: the paper's
-  identity,             // (t.t / s.t) I of the last L-BFGS pair (equation 13)
-  rest_hessian,         // M/h^2 + the Hessian of the rest pose
-  warped_rest_hessian,  // the same, turned at each vertex by its rotation (Mueller et al. 2002)
-  frame_hessian,        // the projected Hessian at the first iterate of each search
-  hessian,              // the Hessian at each iterate: Newton's method
-  hecht,                // a warped Hessian that is renewed every other step (Hecht et al. 2012)
-  contact,              // A with the stiffness of contacts on its diagonal, factored anew when they change
-  vertex_blocks,        // the Hessian's 3 x 3 block of each vertex, when its turn comes (Chen et al. 2024)
-};
-template <>
-struct Names<StartMatrix> {
-  static constexpr std::array table = {Name{StartMatrix::system, "system"},
-                                       Name{StartMatrix::identity, "identity"},
-                                       Name{StartMatrix::rest_hessian, "rest-hessian"},
-                                       Name{StartMatrix::warped_rest_hessian, "warped-rest-hessian"},
-                                       Name{StartMatrix::frame_hessian, "frame-hessian"},
-                                       Name{StartMatrix::hessian, "hessian"},
-                                       Name{StartMatrix::hecht, "hecht"},
-                                       Name{StartMatrix::contact, "contact"},
-                                       Name{StartMatrix::vertex_blocks, "vertex-blocks"}};
-};
 
 enum class LinearSolver { direct, cg };  // by a factor, or by conjugate gradients
 template <>
@@ -97,7 +74,7 @@ struct Method {
   bool operator==(const Method&) const = default;
 
   // The usual methods have short names.
-  static const Method quasi_newton, projective_dynamics, chebyshev, newton, gast, hecht, vertex_block_descent, admm;
+  static const Method quasi_newton, projective_dynamics, chebyshev, newton, gast, vertex_block_descent, admm;
 
   // Returns the paper's method with A solved by conjugate gradients.
   static constexpr Method quasi_newton_cg(int iterations);
@@ -126,7 +103,6 @@ inline constexpr Method Method::gast = {.matrix = StartMatrix::hessian,
                                         .preconditioner = Preconditioner::jacobi,
                                         .acceleration = Acceleration::none,
                                         .safeguard = Safeguard::curvature};
-inline constexpr Method Method::hecht = {.matrix = StartMatrix::hecht, .acceleration = Acceleration::none};
 inline constexpr Method Method::vertex_block_descent = {.matrix = StartMatrix::vertex_blocks,
                                                         .acceleration = Acceleration::chebyshev};
 inline constexpr Method Method::admm = {.acceleration = Acceleration::admm};
@@ -164,7 +140,6 @@ inline constexpr std::array short_names = {
     ShortName{"chebyshev", Method::chebyshev},
     ShortName{"newton", Method::newton},
     ShortName{"gast", Method::gast},
-    ShortName{"hecht", Method::hecht},
     ShortName{"vertex-block-descent", Method::vertex_block_descent},
     ShortName{"admm", Method::admm},
 };
@@ -216,8 +191,6 @@ inline constexpr auto method_forms = [] {
       {frame_hessian, cg, {Preconditioner::system, Preconditioner::rest}, {lbfgs, none}, {definite}},
       {hessian, direct, {without}, {none}, {Safeguard::projection, Safeguard::on_demand, Safeguard::shift}},
       {hessian, cg, {jacobi}, {none}, {Safeguard::projection, Safeguard::curvature}},
-      {hecht, direct, {without}, {none}, {definite}},
-      {contact, direct, {without}, {lbfgs, none}, {definite}},
       {vertex_blocks, direct, {without}, {chebyshev, none}, {definite}},
   });
 }();
@@ -229,6 +202,9 @@ constexpr const MethodForm* form_of(StartMatrix matrix, LinearSolver linear) {
   }
   return nullptr;
 }
+
+// Returns the words for the matrices in the table of forms, each once.
+std::vector<std::string> method_matrices();
 
 // Tells why parts cannot be combined.
 struct MethodProblem {
@@ -243,8 +219,5 @@ std::string name_of(const Method& method);
 
 // Returns the method as a scene file spells it: "newton" in quotes, or a table with the parts that are not the default.
 std::string spelling_of(const Method& method);
-
-// Tells whether a step depends on earlier ones through more than the state.
-constexpr bool remembers_steps(const Method& method) { return method.matrix == StartMatrix::hecht; }
 
 }  // namespace supple

@@ -14,8 +14,8 @@ struct SolverMemory {
   Positions matrix_made_at;  // where the matrix of directions was made, n x 3; empty: none was [m]
   int matrix_age = 0;        // steps since the matrix was made
   // The factor by which one evaluation reduced the error (its estimate to the power of one over their number) in the
-  // last step that started directions from the Hessian, and in the last that started them from A; 0: not known.
-  double hessian_progress = 0, constant_progress = 0;
+  // last step that started directions from the turned Hessian, and in the last that started them from A; 0: not known.
+  double turned_hessian_progress = 0, system_progress = 0;
 };
 
 // Returns the memory as bytes, for files that a program of the same version reads on a machine with the same order of

@@ -71,7 +71,6 @@ Search find_next(const Model& model, const StepInputs& inputs, OpenWorkspace& w,
     const Search search = search_line(model, inputs, w, slope, lessons < most_lessons, change, record);
     if (search == Search::unforeseen) {
       ++lessons;
-      rule.contacts_changed(inputs);
     } else if (search == Search::failed && rule.forget()) {
       lessons = most_lessons;
     } else {
@@ -99,11 +98,7 @@ void accept(const Model& model, const StepInputs& inputs, OpenWorkspace& w, Sear
             Change change, IterationRecord& record) {
   const TimedPhase timed(w.clock, Phase::lbfgs, "accept");
   rule.accepted(model, inputs, w);
-  if (has_colliders(inputs)) {
-    const int changes = w.contact.counts.changes;
-    change.value += take_contacts(w);
-    if (w.contact.counts.changes != changes) rule.contacts_changed(inputs);
-  }
+  if (has_colliders(inputs)) change.value += take_contacts(w);
   const double learned = w.current.g - before;
   w.trial.g = w.current.g + change.value;
   std::swap(w.current, w.trial);

@@ -50,14 +50,13 @@ double along_pair(const StiffDirection& stiff, const double* step) {
   return mean.dot(stiff.axis);
 }
 
-// Holds the share of contacts in all pairs, t_i += K s_i, when it is kept separately (ContactHistory::current).
+// Holds the share in all pairs of the contacts in force, t_i += K s_i.
 class ContactPairs {
  public:
-  ContactPairs(const Model& model, const ContactSettings& settings, OpenWorkspace& w, const Pointers& s, int count)
-      : correction_(w.correction) {
+  ContactPairs(const Model& model, OpenWorkspace& w, const Pointers& s, int count) : correction_(w.correction) {
     find_stiff_directions(model, w.current.contacts, w.current.x, w.correction);
     directions_ = correction_.wanted.size();
-    if (settings.history != ContactHistory::current || count == 0 || directions_ == 0) return;
+    if (count == 0 || directions_ == 0) return;
     count_ = count;
     correction_.along.resize(directions_ * count);
     correction_.products.assign(std::size_t(count) * count, 0.0);
@@ -112,7 +111,7 @@ double search_direction(const Model& model, const StepInputs& inputs, OpenWorksp
     s[i] = workspace.step_pairs[history.place(i)].data();
     t[i] = workspace.gradient_pairs[history.place(i)].data();
   }
-  const ContactPairs contacts(model, inputs.solver.contact, workspace, s, count);
+  const ContactPairs contacts(model, workspace, s, count);
   // Returns s_i . t_j of the i-th and j-th newest pairs.
   const auto product = [&](int i, int j) {
     return workspace.products[history.place(i) * history.window + history.place(j)] + contacts.product(i, j);
@@ -163,7 +162,7 @@ double search_direction(const Model& model, const StepInputs& inputs, OpenWorksp
 
 bool is_safely_positive(double st, double ss, double tt) { return st > 1e-10 * std::sqrt(ss * tt); }
 
-void remember_pair(const Model& model, const ContactSettings& contact, OpenWorkspace& workspace, PairHistory& history) {
+void remember_pair(const Model& model, OpenWorkspace& workspace, PairHistory& history) {
   if (history.window == 0) return;
   if (workspace.is_bowed) {  // the arc has turned the body away from where the pairs were found
     history.clear();
@@ -175,7 +174,7 @@ void remember_pair(const Model& model, const ContactSettings& contact, OpenWorks
   const Iterate &from = workspace.current, &to = workspace.trial;
   s = to.x.topRows(model.free) - from.x.topRows(model.free);
   t = to.gradient - from.gradient;
-  if (contact.history == ContactHistory::current && !from.contacts.empty()) {
+  if (!from.contacts.empty()) {
     // Both gradients are taken with the planes that the search used. Friction is taken out, too: its stiffness falls
     // while it slides, and a pair that tells so lets the next direction slide past where it would stick.
     add_contacts(from.contacts, to.x, nullptr, workspace.direction, &t, -1);
@@ -208,15 +207,15 @@ void remember_pair(const Model& model, const ContactSettings& contact, OpenWorks
 void SystemInverse::begin(const Model& model, const StepInputs& inputs, OpenWorkspace& w) {
   // A step that starts again from where the body was is violent, and the stiffness at rest says little about it.
   const bool starts_again = !w.report.records.empty();
-  const bool wanted =
-      inputs.solver.levels > 1 && !starts_again && w.system == static_cast<const System*>(&model) && !w.hessian_serves;
+  const bool wanted = inputs.solver.levels > 1 && !starts_again && w.system == static_cast<const System*>(&model) &&
+                      !w.turned_hessian_serves;
   const TimedPhase timed(w.clock, Phase::matrix, "second level");
   has_second_level_ = w.second_level_serves = wanted && w.second_level.begin(model, w.current.x);
   iterations_ = w.report.iterations;
 }
 
 void SystemInverse::apply(const Model& model, const StepInputs& inputs, OpenWorkspace& w, Positions& r, Positions& z) {
-  if (w.hessian_serves && w.current.contacts.empty()) return w.hessian.solve(model, r, z);
+  if (w.turned_hessian_serves && w.current.contacts.empty()) return w.turned_hessian.solve(model, r, z);
   if (has_second_level_ && iterations_ != w.report.iterations) w.second_level.move_to(w.current.x);
   iterations_ = w.report.iterations;
   w.second_level_serves = has_second_level_;

@@ -48,10 +48,10 @@ class InitialInverse {
 double search_direction(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace,
                         const PairHistory& history, InitialInverse& initial);
 
-// Stores s and t, the differences of positions and gradients between trial and current iterate (without the normal
-// forces of contacts when their stiffness is added again each time), as the newest pair when tr(s^T t) is safely
-// positive.
-void remember_pair(const Model& model, const ContactSettings& contact, OpenWorkspace& workspace, PairHistory& history);
+// Stores s and t, the differences of positions and gradients between trial and current iterate, without the forces of
+// contacts, as the newest pair when tr(s^T t) is safely positive. search_direction() adds the stiffness of the contacts
+// in force to all pairs.
+void remember_pair(const Model& model, OpenWorkspace& workspace, PairHistory& history);
 
 // Tells whether s.t, of a pair with these s.s and t.t, is more than round-off. Curvature along s that is negative or
 // lost in round-off would spoil the matrix: Nocedal and Wright 2006, section 7.2, skip such pairs.
@@ -71,10 +71,7 @@ class LbfgsRule : public SearchRule {
   }
   void accepted(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace) override {
     initial_.accepted(model, inputs, workspace);
-    remember_pair(model, inputs.solver.contact, workspace, history_);
-  }
-  void contacts_changed(const StepInputs& inputs) override {
-    if (inputs.solver.contact.history == ContactHistory::dropped) history_.clear();
+    remember_pair(model, workspace, history_);
   }
   bool measures_last_iterate() const override { return initial_.measures_last_iterate(); }
   bool forget() override { return history_.forget() || initial_.forget(); }

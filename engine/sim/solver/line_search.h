@@ -14,10 +14,10 @@ enum class Search {
   exhausted,   // what the direction promises is below what the gradient's own round-off decides
 };
 
-// Searches from the current iterate along workspace.direction (with this slope [J]) as the settings require. Leaves the
-// accepted point in workspace.trial, with gradient and energies by the contacts of the current iterate and, in its
-// contacts, those found there. may_learn: whether the search may end as `unforeseen` (learn_contacts()); otherwise, and
-// with the strong Wolfe conditions, steps become shorter. `record` gets the step length and the results of the full
+// Searches from the current iterate along workspace.direction (with this slope [J]) by Armijo's backtracking. Leaves
+// the accepted point in workspace.trial, with gradient and energies by the contacts of the current iterate and, in its
+// contacts, those found there. may_learn: whether the search may end as `unforeseen` (learn_contacts()); otherwise
+// steps become shorter. `record` gets the step length and the results of the full
 // step.
 Search search_line(const Model& model, const StepInputs& inputs, OpenWorkspace& workspace, double slope, bool may_learn,
                    Change& change, IterationRecord& record);

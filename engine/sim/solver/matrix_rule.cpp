@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.h"
 #include "sim/contact/contact_direction.h"
 
 namespace supple {
@@ -12,7 +13,7 @@ namespace {
 constexpr double most_departure = 0.1;
 constexpr TangentShares shares{};
 
-// The progress of the Hessian's directions tells better than its departure how good it still is. The Hessian is poor
+// The progress of the turned Hessian's directions tells better than its departure how good it still is. It is poor
 // where an evaluation brings less progress than one from A, and worn where an evaluation reduces the error by less than
 // this factor. Beyond most_departure_of_hessian, it is not even tried.
 constexpr double worn_progress = 0.1;
@@ -22,7 +23,8 @@ constexpr double least_error = 1e-12;
 constexpr double most_departure_of_hessian = 0.2;
 constexpr int longest_age = 1000000;
 
-// Renewals of the Hessian may cost as much as this share of the evaluations of all steps, of ten iterations each.
+// Renewals of the turned Hessian may cost as much as this share of the evaluations of all steps, of ten iterations
+// each.
 constexpr double share_of_renewals = 0.2;
 constexpr double evaluations_a_step = 11;
 
@@ -36,20 +38,21 @@ bool make_tangent(const Model& model, const SolverMemory& memory, OpenWorkspace&
   return w.renewed;
 }
 
-int least_age(const Model& model, const HessianSystem& hessian) {
+int least_age(const Model& model, const TurnedHessianSystem& hessian) {
   return static_cast<int>(std::ceil(hessian.renewal_cost(model) / (share_of_renewals * evaluations_a_step)));
 }
 
-// Makes the Hessian in the same way. A serves, too, where the Hessian is poor and too young to be renewed.
-bool make_hessian(const Model& model, const SolverMemory& memory, OpenWorkspace& w) {
-  if (memory.matrix_made_at.rows() == model.vertices && w.hessian.make(model, memory.matrix_made_at, w.threads)) {
-    const double others = memory.constant_progress > 0 ? memory.constant_progress : usual_progress;
-    const bool poor =
-        memory.hessian_progress > others || w.hessian.departure(model, w.next_matrix_at) > most_departure_of_hessian;
-    const bool worn = poor || memory.hessian_progress > worn_progress;
-    if (!worn || memory.matrix_age < least_age(model, w.hessian)) return !poor;
+// Makes the turned Hessian in the same way. A serves, too, where it is poor and too young to be renewed.
+bool make_turned_hessian(const Model& model, const SolverMemory& memory, OpenWorkspace& w) {
+  if (memory.matrix_made_at.rows() == model.vertices &&
+      w.turned_hessian.make(model, memory.matrix_made_at, w.threads)) {
+    const double others = memory.system_progress > 0 ? memory.system_progress : usual_progress;
+    const bool poor = memory.turned_hessian_progress > others ||
+                      w.turned_hessian.departure(model, w.next_matrix_at) > most_departure_of_hessian;
+    const bool worn = poor || memory.turned_hessian_progress > worn_progress;
+    if (!worn || memory.matrix_age < least_age(model, w.turned_hessian)) return !poor;
   }
-  w.renewed = w.hessian.make(model, w.next_matrix_at, w.threads);
+  w.renewed = w.turned_hessian.make(model, w.next_matrix_at, w.threads);
   return w.renewed;
 }
 
@@ -63,34 +66,35 @@ bool has_tetrahedra(const Model& model) {
 void prepare_matrix(const Model& model, const SolverSettings& solver, const State& state, OpenWorkspace& w) {
   const SolverMemory& memory = state.memory;
   if (memory.matrix_made_at.rows() != model.vertices) return;
-  if (solver.matrix == SystemMatrix::tangent) w.tangent.make(model, memory.matrix_made_at, shares, w.threads);
-  if (solver.matrix == SystemMatrix::hessian) w.hessian.make(model, memory.matrix_made_at, w.threads);
+  if (solver.matrix == StartMatrix::tangent) w.tangent.make(model, memory.matrix_made_at, shares, w.threads);
+  if (solver.matrix == StartMatrix::turned_hessian) w.turned_hessian.make(model, memory.matrix_made_at, w.threads);
 }
 
 void put_in_force(const Model& model, const StepInputs& inputs, const System& system, OpenWorkspace& w) {
   w.system = w.correction.matrix = &system;
-  w.hessian_serves = false;
+  w.turned_hessian_serves = false;
   if (has_colliders(inputs)) begin_corrections(model, w.correction);
 }
 
 void choose_matrix(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& w) {
+  SUPPLE_CHECK(is_of_quasi_newton(inputs.solver.matrix), ==, true);
   w.renewed = false;
   // Implicit midpoint damps nothing: an error that ten iterations leave comes back, and the velocities of a torn body
   // say little of where it is heading. Free bars of tests/sim/step_test.cpp flew apart with the tangent.
-  if (inputs.solver.matrix != SystemMatrix::tangent || model.integrator != Integrator::backward_euler) return;
+  if (inputs.solver.matrix != StartMatrix::tangent || model.integrator != Integrator::backward_euler) return;
   const TimedPhase timed(w.clock, Phase::matrix, "matrix");
   w.next_matrix_at = state.x + model.time_step * state.v;
   if (make_tangent(model, state.memory, w)) put_in_force(model, inputs, w.tangent.system(), w);
 }
 
 // A body without tetrahedra has A: springs alone do not tell how far it has turned.
-void choose_hessian(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& w) {
-  if (inputs.solver.matrix != SystemMatrix::hessian || model.integrator != Integrator::backward_euler) return;
+void choose_turned_hessian(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& w) {
+  if (inputs.solver.matrix != StartMatrix::turned_hessian || model.integrator != Integrator::backward_euler) return;
   if (!w.current.contacts.empty() || !has_tetrahedra(model)) return;
   const TimedPhase timed(w.clock, Phase::matrix, "matrix");
   w.next_matrix_at = state.x + model.time_step * state.v;
-  w.hessian_serves = make_hessian(model, state.memory, w);
-  if (w.hessian_serves) w.hessian.turn_to(w.current.x, w.threads);
+  w.turned_hessian_serves = make_turned_hessian(model, state.memory, w);
+  if (w.turned_hessian_serves) w.turned_hessian.turn_to(w.current.x, w.threads);
 }
 
 namespace {
@@ -103,32 +107,31 @@ double progress_of(const StepReport& report) {
 }
 
 void remember_progress(const OpenWorkspace& w, SolverMemory& memory) {
-  if (w.hessian_serves) {
-    memory.hessian_progress = progress_of(w.report);
-    if (memory.constant_progress > 0)
-      memory.constant_progress += forgetting * (usual_progress - memory.constant_progress);
+  if (w.turned_hessian_serves) {
+    memory.turned_hessian_progress = progress_of(w.report);
+    if (memory.system_progress > 0) memory.system_progress += forgetting * (usual_progress - memory.system_progress);
   } else if (w.current.contacts.empty()) {
-    memory.constant_progress = progress_of(w.report);
+    memory.system_progress = progress_of(w.report);
   }
 }
 
 }  // namespace
 
 void remember_matrix(const Model& model, const SolverSettings& solver, const OpenWorkspace& w, SolverMemory& memory) {
-  const bool of_hessian = solver.matrix == SystemMatrix::hessian;
+  const bool turned = solver.matrix == StartMatrix::turned_hessian;
   if (w.renewed) {
     memory.matrix_made_at = w.next_matrix_at;
     memory.matrix_age = 0;
-  } else if (of_hessian) {
+  } else if (turned) {
     memory.matrix_age = std::min(memory.matrix_age + 1, longest_age);
   } else if (w.system == static_cast<const System*>(&model)) {
     memory.matrix_made_at.resize(0, 3);
     memory.matrix_age = 0;
   }
-  if (of_hessian) {
+  if (turned) {
     remember_progress(w, memory);
   } else {
-    memory.hessian_progress = memory.constant_progress = 0;
+    memory.turned_hessian_progress = memory.system_progress = 0;
   }
 }
 

@@ -1,7 +1,7 @@
 // Decides when the matrix that directions start from is renewed: when the elements' stiffness has departed by more than
-// a limit from their stiffness where the matrix was made. The Hessian, which is dear to renew, is renewed more rarely.
-// The rule goes by the state alone, never by measured time, and State::memory holds all that it remembers: a step from
-// a copy of a state has the same bits, whatever was computed in between, and on any number of threads.
+// a limit from their stiffness where the matrix was made. The turned Hessian, which is dear to renew, is renewed more
+// rarely. The rule goes by the state alone, never by measured time, and State::memory holds all that it remembers: a
+// step from a copy of a state has the same bits, whatever was computed in between, and on any number of threads.
 #pragma once
 
 #include "sim/model/inputs.h"
@@ -20,9 +20,9 @@ void put_in_force(const Model& model, const StepInputs& inputs, const System& sy
 // Sets workspace.system for a step from `state`: A, or a matrix that follows the body. To be called after begin_step().
 void choose_matrix(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& workspace);
 
-// Lets the Hessian serve the step where the settings ask for it, the first iterate touches nothing, and a Hessian is
+// Lets the turned Hessian serve the step where the settings ask for it, the first iterate touches nothing, and one is
 // there that is good enough. To be called when workspace.current is the first iterate.
-void choose_hessian(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& workspace);
+void choose_turned_hessian(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& workspace);
 
 // Notes in the memory which matrix the step had, and how well its directions did.
 void remember_matrix(const Model& model, const SolverSettings& solver, const OpenWorkspace& workspace,

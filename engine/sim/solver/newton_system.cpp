@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "sim/linear/changing_factor.h"
-#include "sim/model/hessian_system.h"
 #include "sim/model/system_solve.h"
+#include "sim/model/turned_hessian_system.h"
 #include "sim/solver/hessian_matrix.h"
 #include "sim/solver/open_workspace.h"
 

@@ -10,9 +10,9 @@
 #include "sim/coarse/turning.h"
 #include "sim/contact/contact_direction.h"
 #include "sim/contact/find_contacts.h"
-#include "sim/model/hessian_system.h"
 #include "sim/model/report.h"
 #include "sim/model/tangent_system.h"
+#include "sim/model/turned_hessian_system.h"
 #include "sim/solver/iterate.h"
 #include "sim/solver/newton_system.h"
 #include "sim/solver/step_clock.h"
@@ -37,11 +37,12 @@ struct OpenWorkspace {
   Positions direction;  // from the current iterate, n_free x 3 [m]
 
   // The matrix that directions of the present step start from: the model's own A, or the one that follows the body.
-  // Where hessian_serves is true, directions from iterates without contacts start from the Hessian instead.
+  // Where turned_hessian_serves is true, directions from iterates without contacts start from the turned Hessian
+  // instead.
   const System* system = nullptr;
   TangentSystem tangent;
-  HessianSystem hessian;
-  bool hessian_serves = false;
+  TurnedHessianSystem turned_hessian;
+  bool turned_hessian_serves = false;
   Positions next_matrix_at;  // q + h v, where a matrix is made if this step makes one, n x 3 [m]
   bool renewed = false;      // this step made one
 

@@ -23,9 +23,6 @@ class SearchRule {
   // iterates still contain the contacts of the current iterate, which the search used.
   virtual void accepted(const Model&, const StepInputs&, OpenWorkspace&) {}
 
-  // This is called when the contacts of the new iterate are not those of the last iterate.
-  virtual void contacts_changed(const StepInputs&) {}
-
   // Tells whether one more direction is computed after the last iteration, to estimate the error there by Newton's
   // decrement.
   virtual bool measures_last_iterate() const { return false; }

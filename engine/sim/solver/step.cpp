@@ -127,7 +127,7 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   choose_matrix(model, inputs, state, w);
   zone.next("first iterate");
   set_first_iterate(c);
-  choose_hessian(model, inputs, state, w);
+  choose_turned_hessian(model, inputs, state, w);
   report.start_ms = w.clock.elapsed_ms();
   if (w.watch) w.watch(w.current.x);
   zone.next("iterate");

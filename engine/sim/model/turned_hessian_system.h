@@ -1,9 +1,9 @@
-// Defines a matrix for search directions that couples coordinates, 3n x 3n: the Hessian of g in some pose of the body,
-// with each element's part projected, which turns with the body. As the body moves on, only the stiffness in the matrix
-// gets old, and where the body merely turns and bends, it does not. The first iteration of Newton's method would solve
-// with the same matrix; here the matrix is factored once for many frames. docs/method.md ("A matrix that follows the
-// body") says what it gains. Not here: when it is renewed (solver/matrix_rule.h); contacts, which the matrix does not
-// contain.
+// Defines a matrix for search directions that couples coordinates, 3n x 3n: the turned Hessian, which is the Hessian of
+// g in some pose of the body, with each element's part projected, and turns with the body. As the body moves on, only
+// the stiffness in the matrix gets old, and where the body merely turns and bends, it does not. The first iteration of
+// Newton's method would solve with the same matrix; here the matrix is factored once for many frames. docs/method.md
+// ("A matrix that follows the body") says what it gains. Not here: when it is renewed (solver/matrix_rule.h); contacts,
+// which the matrix does not contain.
 #pragma once
 
 #include <memory>
@@ -13,12 +13,12 @@
 
 namespace supple {
 
-class HessianSystem {
+class TurnedHessianSystem {
  public:
-  HessianSystem();
-  ~HessianSystem();
-  HessianSystem(HessianSystem&&) noexcept;
-  HessianSystem& operator=(HessianSystem&&) noexcept;
+  TurnedHessianSystem();
+  ~TurnedHessianSystem();
+  TurnedHessianSystem(TurnedHessianSystem&&) noexcept;
+  TurnedHessianSystem& operator=(TurnedHessianSystem&&) noexcept;
 
   // Makes the matrix at x (n x 3 in the model's order) and factors it, in the precision of the model's factor; does
   // nothing where the matrix at x is there already. The bits do not depend on threads (may be null). Allocates only

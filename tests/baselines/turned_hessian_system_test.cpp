@@ -1,6 +1,6 @@
 // Tests the Hessian that turns with the body: against the assembled one, under rotations, for symmetry and momentum,
 // and its bits on several threads.
-#include "sim/model/hessian_system.h"
+#include "sim/model/turned_hessian_system.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "support/bodies.h"
 
 namespace supple {
-namespace hessian_system_test {
+namespace turned_hessian_system_test {
 
 using test::bar;
 using test::Held;
@@ -40,14 +40,14 @@ Positions some_forces(const Model& model, unsigned seed) {
   return test::shaken(Positions::Zero(model.free, 3), 1, seed);
 }
 
-Positions solution(const Model& model, HessianSystem& hessian, const Positions& r) {
+Positions solution(const Model& model, TurnedHessianSystem& hessian, const Positions& r) {
   Positions z(model.free, 3);
   hessian.solve(model, r, z);
   return z;
 }
 
-HessianSystem made_at(const Model& model, const Positions& x) {
-  HessianSystem hessian;
+TurnedHessianSystem made_at(const Model& model, const Positions& x) {
+  TurnedHessianSystem hessian;
   EXPECT_TRUE(hessian.make(model, x, nullptr));
   hessian.turn_to(x, nullptr);
   return hessian;
@@ -55,7 +55,7 @@ HessianSystem made_at(const Model& model, const Positions& x) {
 
 double distance(const Positions& a, const Positions& b) { return (a - b).norm() / b.norm(); }
 
-TEST(HessianSystem, SolvesWithTheProjectedHessianAndAShareOfA) {
+TEST(TurnedHessianSystem, SolvesWithTheProjectedHessianAndAShareOfA) {
   for (const Material& material : test::all_materials()) {
     const double share = std::holds_alternative<StrainLimiting>(material) ? 1 : 0.02;
     for (const Held held : {Held::hard_end, Held::spring_end}) {
@@ -63,7 +63,7 @@ TEST(HessianSystem, SolvesWithTheProjectedHessianAndAShareOfA) {
       body.damping = held == Held::spring_end ? 0.01 : 0;
       const Model model = build_model(body);
       const Positions x = test::shaken(model.rest, 0.02, 5), r = some_forces(model, 3);
-      HessianSystem hessian = made_at(model, x);
+      TurnedHessianSystem hessian = made_at(model, x);
       const Eigen::MatrixXd expected = expected_matrix(model, x, share);
       const Eigen::Map<const Eigen::VectorXd> b(r.data(), r.size());
       const Eigen::VectorXd exact = expected.ldlt().solve(b);
@@ -74,13 +74,13 @@ TEST(HessianSystem, SolvesWithTheProjectedHessianAndAShareOfA) {
   }
 }
 
-TEST(HessianSystem, KnowsFibresAndSpringsBesideTetrahedra) {
+TEST(TurnedHessianSystem, KnowsFibresAndSpringsBesideTetrahedra) {
   BodyDescription body = bar(NeoHookean{1e4, 4e4}, Held::hard_end);
   body.fibres.assign(body.materials.size(), Fibre{3e4, {0.6, 0.8, 0}});
   body.springs = {{0, 7, 0.05, 800}, {3, 12, 0.5, 300}};
   const Model model = build_model(body);
   const Positions x = test::shaken(model.rest, 0.02, 5), r = some_forces(model, 3);
-  HessianSystem hessian = made_at(model, x);
+  TurnedHessianSystem hessian = made_at(model, x);
   // Where an element has both, a share of A has the fibres' part of A too; the matrix leaves that part out.
   const Eigen::MatrixXd hessian_alone = expected_matrix(model, x, 0);
   const Positions z = solution(model, hessian, r);
@@ -89,11 +89,11 @@ TEST(HessianSystem, KnowsFibresAndSpringsBesideTetrahedra) {
   EXPECT_LT((found - exact).norm(), 0.1 * exact.norm());
 }
 
-TEST(HessianSystem, TurnsWithTheBody) {
+TEST(TurnedHessianSystem, TurnsWithTheBody) {
   for (const Material& material : test::all_materials()) {
     const Model model = build_model(bar(material, Held::nothing));
     const Positions x = test::shaken(model.rest, 0.01, 2), r = some_forces(model, 4);
-    HessianSystem hessian = made_at(model, x);
+    TurnedHessianSystem hessian = made_at(model, x);
     const Positions straight = solution(model, hessian, r);
     const Positions turned_place = (x * some_turn.transpose()).rowwise() + Eigen::RowVector3d(3, -1, 2);
     hessian.turn_to(turned_place, nullptr);
@@ -103,9 +103,9 @@ TEST(HessianSystem, TurnsWithTheBody) {
   }
 }
 
-TEST(HessianSystem, IsSymmetricAndMovesTheCentreOfMassAsNewtonSays) {
+TEST(TurnedHessianSystem, IsSymmetricAndMovesTheCentreOfMassAsNewtonSays) {
   const Model model = build_model(bar(NeoHookean{1e4, 4e4}, Held::nothing, Precision::single_precision, 2));
-  HessianSystem hessian = made_at(model, model.rest);
+  TurnedHessianSystem hessian = made_at(model, model.rest);
   // Twisted, so that vertices turn in different ways.
   Positions twisted = model.rest;
   for (int v = 0; v < model.vertices; ++v) {
@@ -123,17 +123,17 @@ TEST(HessianSystem, IsSymmetricAndMovesTheCentreOfMassAsNewtonSays) {
   EXPECT_LT((moved - wanted).norm(), 1e-12 * wanted.norm());
 }
 
-TEST(HessianSystem, HasTheSameBitsOnAnyNumberOfThreadsAndAfterOtherMatrices) {
+TEST(TurnedHessianSystem, HasTheSameBitsOnAnyNumberOfThreadsAndAfterOtherMatrices) {
   const Model model = build_model(bar(NeoHookean{1e4, 4e4}, Held::hard_end, Precision::single_precision, 6));
   const Positions x = test::shaken(model.rest, 0.005, 1), y = test::shaken(model.rest, 0.005, 7);
   const Positions r = some_forces(model, 3);
-  HessianSystem alone;
+  TurnedHessianSystem alone;
   ASSERT_TRUE(alone.make(model, x, nullptr));
   alone.turn_to(y, nullptr);
   const Positions expected = solution(model, alone, r);
   for (const int count : {1, 2, 4}) {
     Threads threads(count);
-    HessianSystem other;
+    TurnedHessianSystem other;
     ASSERT_TRUE(other.make(model, model.rest, &threads));
     ASSERT_TRUE(other.make(model, x, &threads));
     other.turn_to(y, &threads);
@@ -144,11 +144,11 @@ TEST(HessianSystem, HasTheSameBitsOnAnyNumberOfThreadsAndAfterOtherMatrices) {
   EXPECT_GT(alone.renewal_cost(model), 20);
 }
 
-TEST(HessianSystem, IsRefusedWherePositionsAreNoNumbers) {
+TEST(TurnedHessianSystem, IsRefusedWherePositionsAreNoNumbers) {
   const Model model = build_model(bar(NeoHookean{1e4, 4e4}, Held::hard_end));
   Positions x = model.rest;
   x(0, 1) = std::nan("");
-  HessianSystem hessian;
+  TurnedHessianSystem hessian;
   EXPECT_FALSE(hessian.make(model, x, nullptr));
   EXPECT_TRUE(hessian.make(model, model.rest, nullptr));
 }
@@ -198,5 +198,5 @@ TEST(VertexRotations, TurnMultiplyAndTurnBack) {
   for (int v = 0; v < model.free; ++v) EXPECT_LT((rotation_at(second, v) - other_turn).norm(), 1e-12);
 }
 
-}  // namespace hessian_system_test
+}  // namespace turned_hessian_system_test
 }  // namespace supple

@@ -1,4 +1,4 @@
-#include "sim/model/hessian_system.h"
+#include "sim/model/turned_hessian_system.h"
 
 #include "base/error.h"
 #include "base/trace.h"
@@ -37,7 +37,7 @@ void mix(double* packed, const SystemTerm& term, int corners, double k, double s
 
 }  // namespace
 
-struct HessianSystem::Parts {
+struct TurnedHessianSystem::Parts {
   // The ids of the structure and the model for which the numbers were made.
   std::uint64_t structure = 0, model = 0;
   Positions x;
@@ -63,7 +63,7 @@ struct HessianSystem::Parts {
   void mix_elements(const Model& of);
 };
 
-void HessianSystem::Parts::mix_elements(const Model& of) {
+void TurnedHessianSystem::Parts::mix_elements(const Model& of) {
   for (std::size_t c = 0; c < of.chunks.size(); ++c) {
     const Model::ChunkRange& range = of.chunks[c];
     const bool solid = range.kind == ElementKind::tetrahedron;
@@ -76,12 +76,12 @@ void HessianSystem::Parts::mix_elements(const Model& of) {
   }
 }
 
-HessianSystem::HessianSystem() = default;
-HessianSystem::~HessianSystem() = default;
-HessianSystem::HessianSystem(HessianSystem&&) noexcept = default;
-HessianSystem& HessianSystem::operator=(HessianSystem&&) noexcept = default;
+TurnedHessianSystem::TurnedHessianSystem() = default;
+TurnedHessianSystem::~TurnedHessianSystem() = default;
+TurnedHessianSystem::TurnedHessianSystem(TurnedHessianSystem&&) noexcept = default;
+TurnedHessianSystem& TurnedHessianSystem::operator=(TurnedHessianSystem&&) noexcept = default;
 
-bool HessianSystem::make(const Model& model, const Positions& x, Threads* threads) {
+bool TurnedHessianSystem::make(const Model& model, const Positions& x, Threads* threads) {
   SUPPLE_CHECK(x.rows(), ==, model.vertices);
   if (parts_ && parts_->model == model.id && parts_->x == x) return true;
   const Zone zone("renew matrix");
@@ -101,12 +101,12 @@ bool HessianSystem::make(const Model& model, const Positions& x, Threads* thread
   return true;
 }
 
-double HessianSystem::departure(const Model& model, const Positions& x) const {
+double TurnedHessianSystem::departure(const Model& model, const Positions& x) const {
   SUPPLE_CHECK(parts_->model, ==, model.id);
   return parts_->sample.departure(model, x);
 }
 
-void HessianSystem::turn_to(const Positions& x, Threads* threads) {
+void TurnedHessianSystem::turn_to(const Positions& x, Threads* threads) {
   Parts& p = *parts_;
   p.rotations.find(x, threads, p.since);
   multiply(p.since, p.made_back, p.since);
@@ -115,7 +115,7 @@ void HessianSystem::turn_to(const Positions& x, Threads* threads) {
 
 // With P = 1 - 1 1^T M / m, which takes the motion of the centre of mass out of a motion, z = P R H^-1 R^T P^T r and
 // the motion that r gives to the centre of mass: symmetric, as L-BFGS needs it. [m: total mass]
-void HessianSystem::solve(const Model& model, const Positions& r, Positions& z) {
+void TurnedHessianSystem::solve(const Model& model, const Positions& r, Positions& z) {
   Parts& p = *parts_;
   p.right = r;
   for (const Part& part : model.parts) {
@@ -129,7 +129,7 @@ void HessianSystem::solve(const Model& model, const Positions& r, Positions& z) 
   restore_translation(model, r, z);
 }
 
-double HessianSystem::renewal_cost(const Model& model) const {
+double TurnedHessianSystem::renewal_cost(const Model& model) const {
   return cost_of_hessian(model, parts_->factor.operations());
 }
 
@@ -139,6 +139,6 @@ double cost_of_hessian(const Model& model, double factor_operations) {
   return 20 + factor_operations / (450.0 * model.elements);
 }
 
-std::int64_t HessianSystem::stored_numbers() const { return parts_ ? parts_->factor.stored_numbers() : 0; }
+std::int64_t TurnedHessianSystem::stored_numbers() const { return parts_ ? parts_->factor.stored_numbers() : 0; }
 
 }  // namespace supple
