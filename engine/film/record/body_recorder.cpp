@@ -16,7 +16,7 @@
 namespace supple {
 namespace {
 
-void add_up(BodyRow& row, const StepReport& report) {
+void add_up(StepRow& row, const StepReport& report) {
   row.step_ms += report.step_ms;
   row.evaluate_ms += report.evaluate_ms;
   row.solve_ms += report.solve_ms;
@@ -32,11 +32,13 @@ void add_up(BodyRow& row, const StepReport& report) {
   row.motion_estimate = std::max(row.motion_estimate, report.motion_estimate);
   row.unsolved = row.unsolved || is_unsolved(report);
   row.stop_reason = name_of(report.stop_reason);
-  if (!row.contact) return;
-  row.contact->collide_ms += report.collide_ms;
-  row.contact->contacts = report.contacts.touching;
-  row.contact->changes += report.contacts.changes;
-  row.contact->cycles += report.contacts.cycles;
+}
+
+void add_up(ContactRow& row, const StepReport& report) {
+  row.collide_ms += report.collide_ms;
+  row.contacts = report.contacts.touching;
+  row.changes += report.contacts.changes;
+  row.cycles += report.contacts.cycles;
 }
 
 bool has_time_budget(const StepInputs& inputs) {
@@ -114,6 +116,7 @@ void BodyRecorder::after_step(int substep) {
     }
   }
   add_up(*row_, report);
+  if (row_->contact) add_up(*row_->contact, report);
   if (has_time_budget(moving().inputs())) row_->budget_cuts.push_back(report.cuts.after);
   if (!report.failed && is_measured(substep)) measure_errors();
 }

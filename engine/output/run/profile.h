@@ -36,16 +36,24 @@ struct BalanceRow {
   double total = 0, put_in = 0, from_nothing = 0, exchanged = 0;
 };
 
-struct BodyRow {
-  std::string name;
+// Holds what the steps of a frame know of themselves, summed up. Bodies whose steps are made together share it.
+struct StepRow {
   double step_ms = 0, evaluate_ms = 0, solve_ms = 0, lbfgs_ms = 0, matrix_ms = 0, other_ms = 0;
   int iterations = 0, newton_iterations = 0, line_search = 0;  // the second: of these, those that finished hard steps
   double objective_start = 0, objective_end = 0;               // [J]
   double error_estimate = 0, motion_estimate = 0;              // of the frame's worst step
   bool unsolved = false;  // a step of the frame did not come near its minimum (base/unsolved_step.h)
+  std::string stop_reason;
+  std::vector<std::array<int, 2>>
+      budget_cuts;  // BudgetCuts (sim/model/budget_cuts.h) by substep; empty without a budget
   bool error_measured = false;
-  std::optional<double> error;                  // equation 12; null where the start is already the minimum to round-off
-  std::optional<double> motion_error;           // how far the solved motion is, over the step's own motion
+  std::optional<double> error;         // equation 12; null where the start is already the minimum to round-off
+  std::optional<double> motion_error;  // how far the solved motion is, over the step's own motion
+};
+
+// Holds what a body shows at the end of a frame, with the steps that moved it.
+struct BodyRow : StepRow {
+  std::string name;
   double stretch = 0;                           // 99.9th percentile of the largest stretch, weighted by volume
   std::optional<std::array<double, 5>> energy;  // kinetic, elastic, gravitational, springs, contact [J]; when asked for
   std::optional<BalanceRow> balance;            // absent in profiles of earlier versions
@@ -56,9 +64,6 @@ struct BodyRow {
   std::optional<double> in_picture;  // share of its surface that lies within the picture's borders; where it is drawn
   std::optional<double> jiggle;      // jiggle of the body over its size; only for bodies with a handle
   std::optional<ContactRow> contact;
-  std::string stop_reason;
-  std::vector<std::array<int, 2>>
-      budget_cuts;  // BudgetCuts (sim/model/budget_cuts.h) by substep; empty without a budget
 };
 
 // Holds how long the picture of a frame took.

@@ -15,38 +15,41 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Four digits after the point are plenty for times; numbers that may be compared keep all seventeen.
-Json json_of(const BodyRow& body) {
-  Json row = {{"name", body.name},
-              {"step_ms", rounded_ms(body.step_ms)},
-              {"evaluate_ms", rounded_ms(body.evaluate_ms)},
-              {"solve_ms", rounded_ms(body.solve_ms)},
-              {"lbfgs_ms", rounded_ms(body.lbfgs_ms)},
-              {"matrix_ms", rounded_ms(body.matrix_ms)},
-              {"other_ms", rounded_ms(body.other_ms)},
-              {"iterations", body.iterations},
-              {"newton_iterations", body.newton_iterations},
-              {"line_search", body.line_search},
-              {"objective_start", body.objective_start},
-              {"objective_end", body.objective_end},
-              {"error_estimate", body.error_estimate},
-              {"motion_estimate", body.motion_estimate},
-              {"unsolved", body.unsolved}};
-  if (body.error_measured) row["error"] = body.error ? Json(*body.error) : Json(nullptr);
-  if (body.motion_error) row["motion_error"] = *body.motion_error;
-  if (body.contact) {
-    row["collide_ms"] = rounded_ms(body.contact->collide_ms);
-    row["contacts"] = body.contact->contacts;
-    row["contact_changes"] = body.contact->changes;
-    row["contact_cycles"] = body.contact->cycles;
-    row["penetration"] = body.contact->penetration;
-    row["colliders"] = Json::array();
-    for (const ColliderRow& c : body.contact->colliders) {
-      row["colliders"].push_back({{"name", c.name}, {"penetration", c.penetration}, {"force", c.force}});
-      if (c.far_side > 0) row["colliders"].back()["far_side"] = c.far_side;
-    }
+// These add to the row of a body. Four digits after the point are plenty for times; numbers that may be compared keep
+// all seventeen.
+void add_step(const StepRow& step, Json& row) {
+  row.update({{"step_ms", rounded_ms(step.step_ms)},
+              {"evaluate_ms", rounded_ms(step.evaluate_ms)},
+              {"solve_ms", rounded_ms(step.solve_ms)},
+              {"lbfgs_ms", rounded_ms(step.lbfgs_ms)},
+              {"matrix_ms", rounded_ms(step.matrix_ms)},
+              {"other_ms", rounded_ms(step.other_ms)},
+              {"iterations", step.iterations},
+              {"newton_iterations", step.newton_iterations},
+              {"line_search", step.line_search},
+              {"objective_start", step.objective_start},
+              {"objective_end", step.objective_end},
+              {"error_estimate", step.error_estimate},
+              {"motion_estimate", step.motion_estimate},
+              {"unsolved", step.unsolved}});
+  if (step.error_measured) row["error"] = step.error ? Json(*step.error) : Json(nullptr);
+  if (step.motion_error) row["motion_error"] = *step.motion_error;
+}
+
+void add_contact(const ContactRow& contact, Json& row) {
+  row["collide_ms"] = rounded_ms(contact.collide_ms);
+  row["contacts"] = contact.contacts;
+  row["contact_changes"] = contact.changes;
+  row["contact_cycles"] = contact.cycles;
+  row["penetration"] = contact.penetration;
+  row["colliders"] = Json::array();
+  for (const ColliderRow& c : contact.colliders) {
+    row["colliders"].push_back({{"name", c.name}, {"penetration", c.penetration}, {"force", c.force}});
+    if (c.far_side > 0) row["colliders"].back()["far_side"] = c.far_side;
   }
-  row["stretch"] = body.stretch;
+}
+
+void add_energy(const BodyRow& body, Json& row) {
   if (body.energy) {
     row["kinetic_energy"] = (*body.energy)[0];
     row["elastic_energy"] = (*body.energy)[1];
@@ -54,12 +57,19 @@ Json json_of(const BodyRow& body) {
     row["spring_energy"] = (*body.energy)[3];
     row["contact_energy"] = (*body.energy)[4];
   }
-  if (body.balance) {
-    row["energy"] = {{"total", body.balance->total},
-                     {"put_in", body.balance->put_in},
-                     {"from_nothing", body.balance->from_nothing},
-                     {"exchanged", body.balance->exchanged}};
-  }
+  if (!body.balance) return;
+  row["energy"] = {{"total", body.balance->total},
+                   {"put_in", body.balance->put_in},
+                   {"from_nothing", body.balance->from_nothing},
+                   {"exchanged", body.balance->exchanged}};
+}
+
+Json json_of(const BodyRow& body) {
+  Json row = {{"name", body.name}};
+  add_step(body, row);
+  if (body.contact) add_contact(*body.contact, row);
+  row["stretch"] = body.stretch;
+  add_energy(body, row);
   if (body.inverted) row["inverted"] = *body.inverted;
   if (body.collapsed) row["collapsed"] = *body.collapsed;
   if (body.skin_excess) row["skin_excess"] = *body.skin_excess;
@@ -93,36 +103,46 @@ void read_if_there(const Json& json, const char* key, std::optional<Number>& val
   if (json.contains(key)) value = json.at(key).get<Number>();
 }
 
-BodyRow body_row(const Json& json) {
-  BodyRow row;
-  json.at("name").get_to(row.name);
+// These read what the functions above add. Keys with a default were not written by earlier programs.
+void read_step(const Json& json, StepRow& row) {
   json.at("step_ms").get_to(row.step_ms);
   json.at("evaluate_ms").get_to(row.evaluate_ms);
   json.at("solve_ms").get_to(row.solve_ms);
   json.at("lbfgs_ms").get_to(row.lbfgs_ms);
-  row.matrix_ms = json.value("matrix_ms", 0.0);  // earlier programs did not write it
+  row.matrix_ms = json.value("matrix_ms", 0.0);
   json.at("other_ms").get_to(row.other_ms);
   json.at("iterations").get_to(row.iterations);
-  row.newton_iterations = json.value("newton_iterations", 0);  // likewise
+  row.newton_iterations = json.value("newton_iterations", 0);
   json.at("line_search").get_to(row.line_search);
   json.at("objective_start").get_to(row.objective_start);
   json.at("objective_end").get_to(row.objective_end);
   json.at("error_estimate").get_to(row.error_estimate);
-  row.motion_estimate = json.value("motion_estimate", 0.0);  // likewise
-  if (json.contains("motion_error")) row.motion_error = json.at("motion_error").get<double>();
+  row.motion_estimate = json.value("motion_estimate", 0.0);
+  read_if_there(json, "motion_error", row.motion_error);
   const int trials = row.newton_iterations > 0 ? 0 : row.line_search;
-  row.unsolved = json.value("unsolved", is_unsolved(row.error_estimate, row.iterations, trials));  // likewise
+  row.unsolved = json.value("unsolved", is_unsolved(row.error_estimate, row.iterations, trials));
   row.error_measured = json.contains("error");
   if (row.error_measured && !json.at("error").is_null()) row.error = json.at("error").get<double>();
-  if (json.contains("collide_ms")) {
-    row.contact = {json.at("collide_ms").get<double>(), json.at("contacts").get<int>(),
-                   json.at("contact_changes").get<int>(), json.at("contact_cycles").get<int>(),
-                   json.at("penetration").get<double>()};
-    for (const Json& c : json.value("colliders", Json::array())) {  // earlier versions did not write them
-      row.contact->colliders.push_back({c.at("name").get<std::string>(), c.at("penetration").get<double>(),
-                                        c.at("force").get<double>(), c.value("far_side", 0.0)});
-    }
+  json.at("stop_reason").get_to(row.stop_reason);
+  if (json.contains("budget_cuts")) json.at("budget_cuts").get_to(row.budget_cuts);
+}
+
+ContactRow contact_row(const Json& json) {
+  ContactRow row = {json.at("collide_ms").get<double>(), json.at("contacts").get<int>(),
+                    json.at("contact_changes").get<int>(), json.at("contact_cycles").get<int>(),
+                    json.at("penetration").get<double>()};
+  for (const Json& c : json.value("colliders", Json::array())) {
+    row.colliders.push_back({c.at("name").get<std::string>(), c.at("penetration").get<double>(),
+                             c.at("force").get<double>(), c.value("far_side", 0.0)});
   }
+  return row;
+}
+
+BodyRow body_row(const Json& json) {
+  BodyRow row;
+  read_step(json, row);
+  json.at("name").get_to(row.name);
+  if (json.contains("collide_ms")) row.contact = contact_row(json);
   json.at("stretch").get_to(row.stretch);
   if (json.contains("kinetic_energy")) {
     row.energy = {json.at("kinetic_energy").get<double>(), json.at("elastic_energy").get<double>(),
@@ -139,8 +159,6 @@ BodyRow body_row(const Json& json) {
   read_if_there(json, "skin_excess", row.skin_excess);
   read_if_there(json, "in_picture", row.in_picture);
   read_if_there(json, "jiggle", row.jiggle);
-  json.at("stop_reason").get_to(row.stop_reason);
-  if (json.contains("budget_cuts")) json.at("budget_cuts").get_to(row.budget_cuts);
   return row;
 }
 
