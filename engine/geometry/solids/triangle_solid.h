@@ -14,10 +14,16 @@
 #include <vector>
 
 #include "geometry/meshes/mesh.h"
-#include "geometry/triangles/surface_point.h"
 #include "geometry/triangles/triangle_tree.h"
 
 namespace supple {
+
+// Describes the point of a solid's surface that is closest to a query point.
+struct SurfacePoint {
+  Vec3 point;       // the surface's closest point [m]
+  Vec3 normal;      // of unit length, from inside to outside
+  double distance;  // from the query point, negative inside [m]
+};
 
 // Keeps what queries about places near each other have found, for one caller. It saves work and changes no answer: the
 // same place has the same answer, whatever was asked before.
