@@ -10,7 +10,7 @@
 #include "film/plan/shipped_files.h"
 #include "film/plan/slow_work_line.h"
 #include "geometry/files/mesh_file.h"
-#include "scene/building/body_mesh.h"
+#include "scene/building/unplaced_body.h"
 #include "scene/reading/model_scene.h"
 
 namespace supple {
@@ -44,10 +44,10 @@ int make_mesh(const std::string& input, const std::string& output, int vertices,
     body.surface_options = options;
     body.pieces = Pieces::largest;
     (path.extension() == ".toml" ? body.shape : body.surface) = path;
-    MeshCache meshes({{}, [&](const std::string& what) { line.show(what); }});
-    const Loaded& made = meshes.get(scene, body);
-    mesh = made.mesh;
-    notes = made.notes;
+    UnplacedBodies unplaced({{}, [&](const std::string& what) { line.show(what); }});
+    Body made = unplaced.get(scene, body);
+    mesh = std::move(made.description.mesh);
+    notes = std::move(made.notes);
   }
   line.end();
   for (const std::string& note : notes) say(stdout, fmt::format("note: {}\n", note));

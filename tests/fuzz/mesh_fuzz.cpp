@@ -7,7 +7,7 @@
 #include "geometry/files/announced_counts.h"
 #include "geometry/files/mesh_file.h"
 #include "geometry/files/mesh_formats.h"
-#include "geometry/tetrahedra/surface_tetrahedra.h"
+#include "geometry/tetrahedra/meshing.h"
 #include "output/files/npy.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -31,6 +31,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
   }
   (void)announced_too_much(text, size);
-  (void)surface_mesh_from(text);
+  (void)made_mesh_from(text);
   return 0;
 }

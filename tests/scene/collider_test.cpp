@@ -4,9 +4,9 @@
 
 #include <fstream>
 
-#include "scene/building/body_mesh.h"
 #include "scene/building/collision_set.h"
 #include "scene/building/drawn_body.h"
+#include "scene/building/unplaced_body.h"
 #include "scene/reading/scene_reader.h"
 #include "support/bodies.h"
 #include "support/scene_text.h"
@@ -310,16 +310,15 @@ TEST(SurfaceBody, IsMeshedWithItsNotesItsRegionsAndItsSkin) {
   std::ofstream(folder.path / "s.toml") << "[[body]]\nsurface = \"block.obj\"\nvertices = 400\nposition = [0, 2, 0]\n"
                                            "material = \"jelly\"\n";
   const SceneDef scene = load_scene(folder.path / "s.toml", test::assets, {});
-  MeshCache meshes;
-  const Loaded& loaded = meshes.get(scene, scene.bodies.at(0));
-  EXPECT_EQ(loaded.regions, std::vector<std::string>{""});
-  EXPECT_EQ(loaded.notes, std::vector<std::string>{"1 triangles that repeat others were left out"});
-  EXPECT_EQ(loaded.source, (folder.path / "block.obj").string());
-  EXPECT_NEAR(double(loaded.mesh.rest.rows()), 400, 12);
-  EXPECT_NEAR(quality(loaded.mesh).volume, 0.25, 0.01);
+  const Body unplaced = UnplacedBodies().get(scene, scene.bodies.at(0));
+  EXPECT_EQ(unplaced.regions, std::vector<std::string>{""});
+  EXPECT_EQ(unplaced.notes, std::vector<std::string>{"1 triangles that repeat others were left out"});
+  EXPECT_EQ(unplaced.source, (folder.path / "block.obj").string());
+  EXPECT_NEAR(double(unplaced.description.mesh.rest.rows()), 400, 12);
+  EXPECT_NEAR(quality(unplaced.description.mesh).volume, 0.25, 0.01);
   const std::vector<Body> bodies = assemble(scene);
   ASSERT_EQ(bodies.size(), 1u);
-  EXPECT_EQ(bodies[0].notes, loaded.notes);
+  EXPECT_EQ(bodies[0].notes, unplaced.notes);
   EXPECT_EQ(bodies[0].skin.triangles.rows(), 12);
   EXPECT_EQ(bodies[0].description.materials.size(), 1u);
   const Bounds placed = bounds_of(bodies[0].description.mesh.rest);

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "base/error.h"
+#include "scene/building/assemble.h"
 #include "scene/reading/scene_reader.h"
 #include "support/bodies.h"
 

@@ -4,11 +4,11 @@
 
 #include <fstream>
 
-#include "geometry/tetrahedra/surface_tetrahedra.h"
+#include "geometry/tetrahedra/meshing.h"
 #include "geometry/tetrahedra/tetrahedralize.h"
 #include "scene/building/assemble.h"
-#include "scene/building/body_mesh.h"
 #include "scene/building/collision_set.h"
+#include "scene/building/unplaced_body.h"
 #include "scene/reading/body_pieces.h"
 #include "scene/reading/model_scene.h"
 #include "scene/reading/scene_reader.h"
@@ -95,8 +95,7 @@ TEST_F(SurfaceScene, PiecesThatTouchBecomeOneBodyByWhatLiesBetween) {
                                             test::moved(test::box_surface(Vec3(1, 1, 1)), Vec3(2.01, 0, 0)))));
   const SceneDef scene = scene_of("surface = \"near.obj\"\n");
   ASSERT_EQ(scene.bodies.size(), 1u);
-  MeshCache meshes;
-  const TetMesh& mesh = meshes.get(scene, scene.bodies[0]).mesh;
+  const TetMesh mesh = UnplacedBodies().get(scene, scene.bodies[0]).description.mesh;
   EXPECT_EQ(manifoldness(mesh).pieces, 1);
   EXPECT_NEAR(bounds_of(mesh.rest).extent().x(), 4.01, 0.05);
   EXPECT_EQ(scene_of("surface = \"near.obj\"\npieces = \"bodies\"\n").bodies.size(), 2u);
@@ -105,16 +104,15 @@ TEST_F(SurfaceScene, PiecesThatTouchBecomeOneBodyByWhatLiesBetween) {
 TEST_F(SurfaceScene, WhatIsThinnerThanAnElementIsHeldByElementsAroundIt) {
   write("plate.obj", obj_text(test::box_surface(Vec3(1, 1e-3, 0.5))));
   const SceneDef scene = scene_of("surface = \"plate.obj\"\n");
-  MeshCache meshes;
-  const Loaded& loaded = meshes.get(scene, scene.bodies.at(0));
-  EXPECT_NEAR(double(loaded.mesh.rest.rows()), 600, 60);
-  EXPECT_EQ(manifoldness(loaded.mesh).pieces, 1);
-  const Vec3 beyond = 0.5 * (bounds_of(loaded.mesh.rest).extent() - Vec3(2, 2e-3, 1));
+  const Body unplaced = UnplacedBodies().get(scene, scene.bodies.at(0));
+  EXPECT_NEAR(double(unplaced.description.mesh.rest.rows()), 600, 60);
+  EXPECT_EQ(manifoldness(unplaced.description.mesh).pieces, 1);
+  const Vec3 beyond = 0.5 * (bounds_of(unplaced.description.mesh.rest).extent() - Vec3(2, 2e-3, 1));
   EXPECT_GT(beyond.minCoeff(), 0.02);
-  ASSERT_EQ(loaded.notes.size(), 2u);
-  EXPECT_NE(loaded.notes[0].find("thinner than an element of 600 vertices"), std::string::npos) << loaded.notes[0];
-  EXPECT_EQ(loaded.notes[1].find(fmt::format("the elements reach {:.2g} beyond the surface", beyond.maxCoeff())), 0u)
-      << loaded.notes[1];
+  ASSERT_EQ(unplaced.notes.size(), 2u);
+  EXPECT_NE(unplaced.notes[0].find("thinner than an element of 600 vertices"), std::string::npos) << unplaced.notes[0];
+  EXPECT_EQ(unplaced.notes[1].find(fmt::format("the elements reach {:.2g} beyond the surface", beyond.maxCoeff())), 0u)
+      << unplaced.notes[1];
 }
 
 // A ball with an arm of half an element's thickness: a lattice inside it would hold the ball alone.
@@ -126,26 +124,12 @@ TEST_F(SurfaceScene, ThinPartsAreHeldBySmallerElementsThatReachALittleBeyondThem
   const TriMesh surface{fine.rest, boundary_faces(fine.tets)};
   write("arm.obj", obj_text(surface));
   const SceneDef scene = scene_of("surface = \"arm.obj\"\n");
-  MeshCache meshes;
-  const Loaded& loaded = meshes.get(scene, scene.bodies.at(0));
-  const Bounds body = bounds_of(loaded.mesh.rest), skin = bounds_of(surface.points);
+  const Body unplaced = UnplacedBodies().get(scene, scene.bodies.at(0));
+  const Bounds body = bounds_of(unplaced.description.mesh.rest), skin = bounds_of(surface.points);
   EXPECT_NEAR(body.upper.x(), skin.upper.x(), 0.05);
   EXPECT_NEAR(body.lower.x(), skin.lower.x(), 0.03);
-  ASSERT_EQ(loaded.notes.size(), 1u) << "less than a twentieth of the surface is thin";
-  EXPECT_EQ(loaded.notes[0].find("the elements reach 0.0"), 0u) << loaded.notes[0];
-}
-
-TEST(SurfaceMesh, IsTheSameFromItsBytesWithItsNotes) {
-  const SurfaceMesh made{box_mesh(Vec3(1, 2, 3), {1, 2, 1}), {"first", "second"}};
-  const auto again = surface_mesh_from(bytes_of(made));
-  ASSERT_TRUE(again);
-  EXPECT_EQ(again->mesh.rest, made.mesh.rest);
-  EXPECT_EQ(again->mesh.tets, made.mesh.tets);
-  EXPECT_EQ(again->notes, made.notes);
-  EXPECT_TRUE(surface_mesh_from(bytes_of(SurfaceMesh{made.mesh, {}}))->notes.empty());
-  EXPECT_FALSE(surface_mesh_from("neither"));
-  EXPECT_FALSE(surface_mesh_from(std::string("a note without an end") + std::string(25, '\0')));
-  EXPECT_FALSE(surface_mesh_from(bytes_of(made).substr(0, 40)));
+  ASSERT_EQ(unplaced.notes.size(), 1u) << "less than a twentieth of the surface is thin";
+  EXPECT_EQ(unplaced.notes[0].find("the elements reach 0.0"), 0u) << unplaced.notes[0];
 }
 
 TEST_F(SurfaceScene, SheetsGetTheirThicknessInMetres) {

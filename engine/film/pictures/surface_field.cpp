@@ -9,7 +9,7 @@
 #include "film/pictures/marked_vertices.h"
 #include "geometry/meshes/cloth.h"
 #include "render/color_map.h"
-#include "scene/building/body_surface.h"
+#include "scene/building/body.h"
 #include "sim/measures/fields.h"
 
 namespace supple {

@@ -8,7 +8,7 @@
 #include "base/trace.h"
 #include "film/record/state_file.h"
 #include "output/files/obj_file.h"
-#include "scene/building/body_surface.h"
+#include "scene/building/body.h"
 #include "sim/measures/far_side.h"
 #include "sim/measures/fields.h"
 #include "sim/measures/measures.h"

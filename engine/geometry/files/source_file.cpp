@@ -28,4 +28,10 @@ SourceFile source_of(const std::filesystem::path& path, const SolidSurface& surf
   return source;
 }
 
+std::string content_name(const std::vector<SourceFile>& files) {
+  std::string name;
+  for (const SourceFile& file : files) name += (name.empty() ? "" : " ") + hash_text_form(file.hash);
+  return name;
+}
+
 }  // namespace supple

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "geometry/meshes/mesh.h"
 #include "geometry/solids/solid_surface.h"
@@ -20,5 +22,8 @@ SourceFile source_of(const std::filesystem::path& path, const TetMesh& mesh);
 SourceFile source_of(const std::filesystem::path& path, const TriMesh& mesh);
 // A surface is known by its boundary, and by what is drawn of it where that is something else.
 SourceFile source_of(const std::filesystem::path& path, const SolidSurface& surface);
+
+// Returns a name for the content of files, which does not depend on where they are.
+std::string content_name(const std::vector<SourceFile>& files);
 
 }  // namespace supple

@@ -32,7 +32,7 @@ struct Skin {
   std::vector<std::int32_t> smooth;
 };
 
-// Contours the shape with cells of the given size [m] (surface nets) and moves the vertices onto the zero set.
+// Contours the shape with cells of the given size [m] (surface_nets.h) and moves the vertices onto the zero set.
 TriMesh contour(const Shape& shape, double cell);
 
 // Adds to the contour the distances to its layers and the ambient occlusion of the rest shape.

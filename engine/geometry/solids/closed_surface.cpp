@@ -12,8 +12,8 @@
 
 #include "base/disjoint_sets.h"
 #include "base/error.h"
+#include "geometry/solids/surface_closing.h"
 #include "geometry/solids/triangle_solid.h"
-#include "geometry/triangles/numbered_surface.h"
 
 namespace supple {
 namespace {

@@ -1,9 +1,10 @@
-#include "geometry/solids/hole_caps.h"
-
+// Closes the holes of a surface with caps.
 #include <fmt/core.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
+
+#include "geometry/solids/surface_closing.h"
 
 namespace supple {
 namespace {

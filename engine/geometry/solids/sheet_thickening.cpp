@@ -1,9 +1,9 @@
-#include "geometry/solids/sheet_thickening.h"
-
+// Gives sheets a thickness, so that they enclose a volume.
 #include <Eigen/Geometry>
 #include <cmath>
 
 #include "base/disjoint_sets.h"
+#include "geometry/solids/surface_closing.h"
 
 namespace supple {
 namespace {

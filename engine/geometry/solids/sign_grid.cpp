@@ -203,82 +203,9 @@ void make_well_composed(SignGrid& grid) {
   }
 }
 
-namespace {
-
-// Collects the vertices of one layer of cells after the other, and keeps the names of the last two layers.
-class Nets {
- public:
-  explicit Nets(const SignGrid& grid) : grid_(grid) {
-    for (auto& layer : names_) layer.assign(std::size_t(grid.points.x()) * std::size_t(grid.points.y()), -1);
-  }
-
-  TriMesh run() {
-    for (int k = 0; k + 1 < grid_.points.z(); ++k) {
-      add_vertices(k);
-      if (k > 0) add_faces(k);
-    }
-    TriMesh mesh{Positions(std::ssize(points_), 3), Triangles(std::ssize(triangles_), 3)};
-    for (std::size_t v = 0; v < points_.size(); ++v) mesh.points.row(Eigen::Index(v)) = points_[v].transpose();
-    for (std::size_t t = 0; t < triangles_.size(); ++t)
-      mesh.triangles.row(Eigen::Index(t)) << triangles_[t][0], triangles_[t][1], triangles_[t][2];
-    return mesh;
-  }
-
- private:
-  std::int32_t& name(int i, int j, int k) {
-    return names_[std::size_t(k % 2)][std::size_t(j) * std::size_t(grid_.points.x()) + std::size_t(i)];
-  }
-
-  // A cell's vertex is the mean of the middles of the edges that the boundary crosses.
-  void add_vertices(int k) {
-    for (int j = 0; j + 1 < grid_.points.y(); ++j) {
-      for (int i = 0; i + 1 < grid_.points.x(); ++i) {
-        const Cube cube = cube_at(grid_, {i, j, k});
-        Vec3 sum = Vec3::Zero();
-        int crossed = 0;
-        for (int a = 0; a < 8; ++a) {
-          for (int bit = 1; bit < 8; bit <<= 1) {
-            const int b = a | bit;
-            if (b == a || cube[std::size_t(a)] == cube[std::size_t(b)]) continue;
-            sum += 0.5 * Vec3((a & 1) + (b & 1), (a >> 1 & 1) + (b >> 1 & 1), (a >> 2) + (b >> 2));
-            ++crossed;
-          }
-        }
-        name(i, j, k) = crossed > 0 ? std::int32_t(points_.size()) : -1;
-        if (crossed > 0) points_.push_back(grid_.position(i, j, k) + grid_.cell * sum / crossed);
-      }
-    }
-  }
-
-  void add_quad(std::int32_t a, std::int32_t b, std::int32_t c, std::int32_t d, bool flip) {
-    if (flip) std::swap(b, d);
-    triangles_.push_back({a, b, c});
-    triangles_.push_back({a, c, d});
-  }
-
-  // Adds the faces across the edges that start at the points of layer k; all cells around them have names.
-  void add_faces(int k) {
-    for (int j = 1; j + 1 < grid_.points.y(); ++j) {
-      for (int i = 1; i + 1 < grid_.points.x(); ++i) {
-        const bool here = grid_.inside[grid_.at(i, j, k)];
-        if (here != bool(grid_.inside[grid_.at(i + 1, j, k)]))
-          add_quad(name(i, j - 1, k - 1), name(i, j, k - 1), name(i, j, k), name(i, j - 1, k), !here);
-        if (here != bool(grid_.inside[grid_.at(i, j + 1, k)]))
-          add_quad(name(i - 1, j, k - 1), name(i - 1, j, k), name(i, j, k), name(i, j, k - 1), !here);
-        if (here != bool(grid_.inside[grid_.at(i, j, k + 1)]))
-          add_quad(name(i - 1, j - 1, k), name(i, j - 1, k), name(i, j, k), name(i - 1, j, k), !here);
-      }
-    }
-  }
-
-  const SignGrid& grid_;
-  std::array<std::vector<std::int32_t>, 2> names_;
-  std::vector<Vec3> points_;
-  std::vector<std::array<std::int32_t, 3>> triangles_;
-};
-
-}  // namespace
-
-TriMesh boundary_of(const SignGrid& grid) { return Nets(grid).run(); }
+TriMesh boundary_of(const SignGrid& grid) {
+  const auto value = [&](std::size_t point) { return grid.inside[point] != 0 ? -1.0f : 1.0f; };
+  return triangles_of(surface_nets(grid, value), Diagonal::first);
+}
 
 }  // namespace supple

@@ -3,20 +3,13 @@
 #pragma once
 
 #include "base/threads.h"
+#include "geometry/triangles/surface_nets.h"
 #include "geometry/triangles/triangle_soup.h"
 
 namespace supple {
 
-struct SignGrid {
-  Vec3 origin = Vec3::Zero();
-  double cell = 0;  // [m]
-  Eigen::Vector3i points = Eigen::Vector3i::Zero();
-  std::vector<char> inside;  // 1: inside; by point, x first
-
-  std::size_t at(int i, int j, int k) const {
-    return (std::size_t(k) * std::size_t(points.y()) + std::size_t(j)) * std::size_t(points.x()) + std::size_t(i);
-  }
-  Vec3 position(double i, double j, double k) const { return origin + cell * Vec3(i, j, k); }
+struct SignGrid : PointGrid {
+  std::vector<char> inside;  // 1: inside; by point
 };
 
 // Returns an edge of the cells that puts some 40,000 of them on the triangles' area, within bounds for the whole grid.
@@ -31,7 +24,7 @@ SignGrid sampled_signs(const TriangleSoup& soup, double cell, Threads& threads);
 void make_well_composed(SignGrid& grid);
 
 // Returns the boundary of the inside as a closed manifold surface that faces outward, with one vertex in the middle of
-// each cell that it crosses (surface nets). The inside must be well-composed.
+// each cell that it crosses (surface_nets.h). The inside must be well-composed.
 TriMesh boundary_of(const SignGrid& grid);
 
 }  // namespace supple

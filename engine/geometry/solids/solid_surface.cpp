@@ -7,9 +7,7 @@
 #include <thread>
 
 #include "base/error.h"
-#include "geometry/solids/closed_surface.h"
-#include "geometry/solids/hole_caps.h"
-#include "geometry/solids/sheet_thickening.h"
+#include "geometry/solids/surface_closing.h"
 #include "geometry/solids/winding_solid.h"
 
 namespace supple {

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/disjoint_sets.h"
-#include "geometry/solids/united_volume.h"
 #include "geometry/triangles/numbered_surface.h"
 #include "geometry/triangles/triangle_soup.h"
 

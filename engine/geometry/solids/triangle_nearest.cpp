@@ -2,15 +2,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "geometry/solids/triangle_solid.h"
-#include "geometry/triangles/tree_stack.h"
 
 namespace supple {
 namespace {
-
-// The tree is balanced, so that 2^31 triangles make 15 levels; each level leaves at most three siblings on the stack.
 
 template <class L>
 Vec3 get(const L& lanes, int k) {
@@ -90,9 +86,8 @@ TriangleSolid::Nearest TriangleSolid::nearest(const Vec3& p, std::int32_t likely
     double squared;
     std::int32_t node;
   };
-  std::array<Entry, tree_stack_size> stack;
-  int top = 0;
-  stack[std::size_t(top++)] = {0, 0};
+  const auto is_further = [](const Entry& a, const Entry& b) { return b.squared < a.squared; };
+  TreeStack<Entry> stack({0, 0});
   Nearest best{most * most, most < infinity ? -1 : 0, 0, 0, 0, 0};
   double bound = infinity;
   const auto look = [&](std::int32_t leaf) {
@@ -104,8 +99,8 @@ TriangleSolid::Nearest TriangleSolid::nearest(const Vec3& p, std::int32_t likely
   };
   if (most < infinity) bound = best.squared;
   if (likely >= 0) look(likely);
-  while (top > 0) {
-    const Entry entry = stack[std::size_t(--top)];
+  while (!stack.empty()) {
+    const Entry entry = stack.pop();
     if (!(entry.squared < bound)) continue;
     if (entry.node < 0) {
       if (~entry.node != likely) look(~entry.node);
@@ -113,14 +108,9 @@ TriangleSolid::Nearest TriangleSolid::nearest(const Vec3& p, std::int32_t likely
     }
     const Node& node = nodes_[std::size_t(entry.node)];
     const Lanes squared = squared_distances(node, p);
-    const int first = top;
-    for (int k = 0; k < width; ++k) {
-      if (!(squared[k] < bound)) continue;
-      int place = top++;  // keeps the furthest child lowest on the stack
-      for (; place > first && stack[std::size_t(place - 1)].squared < squared[k]; --place)
-        stack[std::size_t(place)] = stack[std::size_t(place - 1)];
-      stack[std::size_t(place)] = {squared[k], node.child[std::size_t(k)]};
-    }
+    const int first = stack.size();
+    for (int k = 0; k < width; ++k)
+      if (squared[k] < bound) stack.push_below(first, {squared[k], node.child[std::size_t(k)]}, is_further);
   }
   return best;
 }
@@ -168,12 +158,10 @@ double TriangleSolid::certain_distance(const Vec3& p, const QueryMemory& near) c
 
 bool TriangleSolid::find_leaves(const Vec3& p, double reach, NearLeaves& found) const {
   const double with_slack = 1.001 * reach + 1e3 * on_surface_, bound = with_slack * with_slack;
-  std::array<std::int32_t, tree_stack_size> stack;
-  int top = 0;
-  stack[std::size_t(top++)] = 0;
+  TreeStack<std::int32_t> stack(0);
   found.count = 0;
-  while (top > 0) {
-    const std::int32_t index = stack[std::size_t(--top)];
+  while (!stack.empty()) {
+    const std::int32_t index = stack.pop();
     if (index < 0) {
       if (found.count == int(found.leaf.size())) {
         found.count = 0;
@@ -185,7 +173,7 @@ bool TriangleSolid::find_leaves(const Vec3& p, double reach, NearLeaves& found) 
     const Node& node = nodes_[std::size_t(index)];
     const Lanes squared = squared_distances(node, p);
     for (int k = 0; k < width; ++k)
-      if (squared[k] <= bound) stack[std::size_t(top++)] = node.child[std::size_t(k)];
+      if (squared[k] <= bound) stack.push(node.child[std::size_t(k)]);
   }
   return true;
 }

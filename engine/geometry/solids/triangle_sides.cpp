@@ -2,13 +2,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <thread>
 
 #include "base/threads.h"
 #include "geometry/solids/triangle_solid.h"
-#include "geometry/triangles/tree_stack.h"
 #include "geometry/triangles/triangle_edges.h"
 
 namespace supple {
@@ -19,11 +17,9 @@ namespace {
 template <class Node, class Leaf, class Ends>
 bool any_near(const std::vector<Node>& nodes, const std::vector<Leaf>& leaves, const Vec3& lower, const Vec3& upper,
               const Ends& ends) {
-  std::array<std::int32_t, tree_stack_size> stack;
-  int top = 0;
-  stack[std::size_t(top++)] = 0;
-  while (top > 0) {
-    const std::int32_t index = stack[std::size_t(--top)];
+  TreeStack<std::int32_t> stack(0);
+  while (!stack.empty()) {
+    const std::int32_t index = stack.pop();
     if (index < 0) {
       const Leaf& leaf = leaves[std::size_t(~index)];
       for (int k = 0; k < leaf.count; ++k) {
@@ -35,7 +31,7 @@ bool any_near(const std::vector<Node>& nodes, const std::vector<Leaf>& leaves, c
     const auto met = (node.lower.x <= upper.x()) & (node.upper.x >= lower.x()) & (node.lower.y <= upper.y()) &
                      (node.upper.y >= lower.y()) & (node.lower.z <= upper.z()) & (node.upper.z >= lower.z());
     for (std::size_t k = 0; k < node.child.size(); ++k) {
-      if (met[k]) stack[std::size_t(top++)] = node.child[k];
+      if (met[k]) stack.push(node.child[k]);
     }
   }
   return false;
@@ -70,12 +66,10 @@ double TriangleSolid::winding_number(const Vec3& p) const {
   constexpr double far = 2;
   // At this distance the result is below round-off, and further away squares would overflow.
   if ((p - bounds_.center()).cwiseAbs().maxCoeff() > 1e12 * (bounds_.diagonal() + on_surface_)) return 0;
-  std::array<std::int32_t, tree_stack_size> stack;
-  int top = 0;
-  stack[std::size_t(top++)] = 0;
+  TreeStack<std::int32_t> stack(0);
   double sum = 0;
-  while (top > 0) {
-    const std::int32_t index = stack[std::size_t(--top)];
+  while (!stack.empty()) {
+    const std::int32_t index = stack.pop();
     if (index < 0) {
       const Leaf& leaf = leaves_[std::size_t(~index)];
       for (int k = 0; k < leaf.count; ++k) {
@@ -95,7 +89,7 @@ double TriangleSolid::winding_number(const Vec3& p) const {
       if (squared[k] > reach[k] * reach[k]) {
         sum += flux[k] / (squared[k] * std::sqrt(squared[k]) * (4 * std::numbers::pi));
       } else {
-        stack[std::size_t(top++)] = node.child[std::size_t(k)];
+        stack.push(node.child[std::size_t(k)]);
       }
     }
   }
@@ -298,11 +292,9 @@ std::optional<double> TriangleSolid::entry(const Vec3& a, const Vec3& b) const {
   Vec3 inverse;
   for (int k = 0; k < 3; ++k) inverse[k] = 1 / (std::abs(way[k]) > 1e-290 ? way[k] : 1e-290);
   double first = 1 + 1e-12;
-  std::array<std::int32_t, tree_stack_size> stack;
-  int top = 0;
-  stack[std::size_t(top++)] = 0;
-  while (top > 0) {
-    const std::int32_t index = stack[std::size_t(--top)];
+  TreeStack<std::int32_t> stack(0);
+  while (!stack.empty()) {
+    const std::int32_t index = stack.pop();
     if (index < 0) {
       entry_in_leaf(a, way, ~index, first);
       continue;
@@ -321,7 +313,7 @@ std::optional<double> TriangleSolid::entry(const Vec3& a, const Vec3& b) const {
     slab(node.lower.z, node.upper.z, 2);
     for (int k = 0; k < width; ++k) {
       if (node.lower.x[k] > node.upper.x[k]) continue;  // there is no child here
-      if (in[k] <= out[k] + 1e-12) stack[std::size_t(top++)] = node.child[std::size_t(k)];
+      if (in[k] <= out[k] + 1e-12) stack.push(node.child[std::size_t(k)]);
     }
   }
   return first <= 1 ? std::optional(first) : std::nullopt;

@@ -10,12 +10,20 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "geometry/meshes/mesh.h"
-#include "geometry/triangles/surface_point.h"
+#include "geometry/triangles/triangle_tree.h"
 
 namespace supple {
+
+// Describes the point of a solid's surface that is closest to a query point.
+struct SurfacePoint {
+  Vec3 point;       // the surface's closest point [m]
+  Vec3 normal;      // of unit length, from inside to outside
+  double distance;  // from the query point, negative inside [m]
+};
 
 // Keeps what queries about places near each other have found, for one caller. It saves work and changes no answer: the
 // same place has the same answer, whatever was asked before.
@@ -81,8 +89,10 @@ class TriangleSolid {
   const TriMesh& surface() const { return surface_; }
 
  private:
-  // The tree has four children a node and up to four triangles a leaf, one in each vector lane.
+  // The binary tree's nodes are packed so that each has four children, and each leaf up to four triangles, one in each
+  // vector lane.
   static constexpr int width = 4;
+  static_assert(width == TriangleTree::leaf_size);
   // The compiler's vectors: on a machine with shorter registers, it takes several, and the bits are the same.
   using Lanes = double __attribute__((vector_size(width * sizeof(double))));
   struct Lanes3 {
@@ -113,12 +123,14 @@ class TriangleSolid {
     double v, w;
   };
   using Corners = std::array<Vec3, 3>;
-  class Builder;
 
   Vec3 corner(Eigen::Index triangle, int k) const { return surface_.points.row(surface_.triangles(triangle, k)); }
   Corners corners(Eigen::Index triangle) const {
     return {corner(triangle, 0), corner(triangle, 1), corner(triangle, 2)};
   }
+  std::int32_t add_node(const TriangleTree& tree, std::int32_t from);
+  Leaf leaf_of(std::span<const std::int32_t> triangles) const;
+  void build_tree();
   void nearest_in_leaf(const Vec3& p, std::int32_t leaf, Nearest& best) const;
   Nearest nearest(const Vec3& p, std::int32_t likely, double most) const;
   Vec3 point_of(const Nearest& found) const;

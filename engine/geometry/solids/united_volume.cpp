@@ -1,10 +1,10 @@
-#include "geometry/solids/united_volume.h"
-
+// Measures the volume inside closed surfaces that overlap or lie in one another.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "geometry/solids/surface_pieces.h"
 #include "geometry/triangles/numbered_surface.h"
 
 namespace supple {

@@ -1,5 +1,6 @@
-// Both kinds of isosurface stuffing (stuffed_lattice.h, graded_stuffing.h) use these two: one sorts the corners of an
-// element by their side of the surface, the other makes a mesh of the elements that are kept.
+// Serves both kinds of isosurface stuffing (stuffed_lattice.h, graded_stuffing.h): sorts the corners of an element by
+// their side of the surface, makes a mesh of the elements that are kept, and removes two defects that such a mesh
+// sometimes has: small loose pieces, and places where the surface touches itself.
 #pragma once
 
 #include <array>
@@ -32,5 +33,9 @@ struct CornersBySide {
 
 // Makes a mesh without tags, and turns its elements so that their volumes are positive.
 TetMesh oriented_mesh(const std::vector<Eigen::RowVector3d>& vertices, const std::vector<std::array<int, 4>>& tets);
+
+// Returns the largest face-connected piece, without the elements at which its boundary is not a manifold (the smaller
+// side of each place where it touches itself).
+TetMesh one_manifold_piece(TetMesh mesh);
 
 }  // namespace supple

@@ -9,7 +9,6 @@
 #include "geometry/tetrahedra/bisected_lattice.h"
 #include "geometry/tetrahedra/cut_elements.h"
 #include "geometry/tetrahedra/lattice_probe.h"
-#include "geometry/tetrahedra/mesh_repair.h"
 
 namespace supple {
 namespace {

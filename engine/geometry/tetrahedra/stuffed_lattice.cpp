@@ -7,7 +7,6 @@
 #include "base/error.h"
 #include "geometry/tetrahedra/cut_elements.h"
 #include "geometry/tetrahedra/lattice_probe.h"
-#include "geometry/tetrahedra/mesh_repair.h"
 
 namespace supple {
 namespace {

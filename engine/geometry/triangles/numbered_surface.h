@@ -1,5 +1,5 @@
 // Holds triangles as they come from a file, cleaned and with the numbers that they had there, and finds how they hang
-// together. Only the steps that make solids of them use it: closed_surface.cpp, hole_caps.cpp and solid_surface.cpp.
+// together, for the steps that make solids of them (solids/surface_closing.h, winding_solid.h).
 #pragma once
 
 #include <array>
@@ -64,8 +64,5 @@ struct Flood {
   Eigen::Index one_sided = -1;  // a triangle at which orientations disagree, as on a Moebius strip, or -1
 };
 Flood flood(const Numbered& surface, const Neighbours& next);
-
-// Applies the rules of closed_surface (surface_file.h) to a cleaned surface.
-TriMesh closed(Numbered surface, const std::string& name, std::vector<std::string>* notes);
 
 }  // namespace supple

@@ -1,13 +1,14 @@
 // Answers questions about triangles that need not bound a solid: which way they wind around a point, what a ray meets
 // first, and which of them is near. Surfaces with an inside are in triangle_solid.h. The winding number is that of
 // Barill, Dickson, Schmidt, Levin, Jacobson, Fast winding numbers for soups and clouds, 2018, with the first two terms
-// of its expansion for parts that are far away.
+// of its expansion (triangle_tree.h) for parts that are far away.
 #pragma once
 
 #include <optional>
 #include <vector>
 
 #include "geometry/meshes/mesh.h"
+#include "geometry/triangles/triangle_tree.h"
 
 namespace supple {
 
@@ -48,26 +49,13 @@ class TriangleSoup {
   const Positions& normals() const { return normals_; }  // unit normals; zero for triangles without area
 
  private:
-  // A node's children are the next node and the node `other`; a leaf has triangles [first, first + count) of order_.
-  struct Node {
-    Bounds box;
-    Vec3 center;       // mean of the triangles, weighted by area [m]
-    Vec3 area;         // sum of their area vectors [m^2]
-    Mat3 moment;       // sum of (centroid - center) x area vector, as outer products [m^3]
-    double reach = 0;  // distance from the centre beyond which the expansion serves [m]
-    std::int32_t other = 0;
-    std::int32_t first = 0, count = 0;  // count 0: not a leaf
-  };
-
-  class Builder;
   struct Packet;
 
   Vec3 corner(Eigen::Index triangle, int k) const { return mesh_.points.row(mesh_.triangles(triangle, k)); }
 
   TriMesh mesh_;
-  Positions centroids_, areas_, normals_;
-  std::vector<std::int32_t> order_;
-  std::vector<Node> nodes_;
+  Positions normals_;
+  TriangleTree tree_;
 };
 
 }  // namespace supple

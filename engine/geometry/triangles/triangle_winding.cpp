@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <numbers>
 
-#include "geometry/triangles/tree_stack.h"
 #include "geometry/triangles/triangle_soup.h"
 
 namespace supple {
@@ -15,6 +14,7 @@ namespace {
 constexpr int lanes = 8;  // of a group
 constexpr int groups = 8;
 constexpr double pi = std::numbers::pi;
+constexpr double far = 2.5;  // a part counts as far beyond this many of its radii: section 3.2 of the paper has 2
 
 using Lanes = std::array<double, lanes>;
 
@@ -51,9 +51,9 @@ struct TriangleSoup::Packet {
 
   // Adds the part's expansion where it is far away: with the gradient of the dipoles' field, I / d^3 - 3 d d' / d^5,
   // equation 15 of the paper. Returns the lanes where it is near.
-  std::uint8_t add_far(std::size_t g, const Node& node, std::uint8_t active) {
+  std::uint8_t add_far(std::size_t g, const TriangleTree::Node& node, std::uint8_t active) {
     const Mat3& m = node.moment;
-    const double trace = m.trace(), reach2 = node.reach * node.reach;
+    const double trace = m.trace(), reach = far * node.radius, reach2 = reach * reach;
     Lanes term, near;
     for (std::size_t k = 0; k < lanes; ++k) {
       const double dx = node.center.x() - x[g][k], dy = node.center.y() - y[g][k], dz = node.center.z() - z[g][k];
@@ -111,14 +111,12 @@ void TriangleSoup::winding_numbers(const std::vector<Vec3>& places, std::vector<
       std::int32_t node;
       std::array<std::uint8_t, groups> active;  // lanes
     };
-    std::array<Entry, tree_stack_size> stack;
-    int top = 0;
-    Entry& root = stack[std::size_t(top++)];
-    root.node = 0;
+    Entry root{0, {}};
     for (std::size_t g = 0; g < groups; ++g) root.active[g] = g * lanes < count ? 0xff : 0;
-    while (top > 0) {
-      const Entry entry = stack[std::size_t(--top)];
-      const Node& node = nodes_[std::size_t(entry.node)];
+    TreeStack<Entry> stack(root);
+    while (!stack.empty()) {
+      const Entry entry = stack.pop();
+      const TriangleTree::Node& node = tree_.nodes[std::size_t(entry.node)];
       std::array<std::uint8_t, groups> near{};
       bool any = false;
       for (std::size_t g = 0; g < groups; ++g) {
@@ -126,13 +124,12 @@ void TriangleSoup::winding_numbers(const std::vector<Vec3>& places, std::vector<
         any |= near[g] != 0;
       }
       if (!any) continue;
-      if (node.count == 0) {
-        stack[std::size_t(top++)] = {node.other, near};
-        stack[std::size_t(top++)] = {entry.node + 1, near};
+      if (!node.is_leaf()) {
+        stack.push({node.other, near});
+        stack.push({entry.node + 1, near});
         continue;
       }
-      for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
-        const std::int32_t t = order_[std::size_t(i)];
+      for (const std::int32_t t : tree_.triangles_of(node)) {
         const Vec3 a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
         for (std::size_t g = 0; g < groups; ++g)
           if (near[g] != 0) packet.add_triangle(g, a, b, c, near[g]);

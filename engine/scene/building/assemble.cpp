@@ -4,9 +4,10 @@
 #include <cmath>
 
 #include "base/text.h"
-#include "scene/building/body_mesh.h"
 #include "scene/building/overlaps.h"
+#include "scene/building/unplaced_body.h"
 #include "scene/definition/rotation.h"
+#include "scene/reading/body_pieces.h"
 
 namespace supple {
 namespace {
@@ -27,6 +28,12 @@ Eigen::Affine3d placement(const BodyDef& def, const Positions& points) {
 
 void apply(const Eigen::Affine3d& place, Positions& points) {
   for (Eigen::Index v = 0; v < points.rows(); ++v) points.row(v) = (place * Vec3(points.row(v))).transpose();
+}
+
+// Pieces stay where they are in the whole, which is placed and scaled as one.
+const Positions& points_to_place(const Body& body) {
+  const auto& read = body.def.read_surface;
+  return read && read->pieces.size() > 1 ? read->whole : body.unplaced;
 }
 
 std::vector<std::int32_t> selected(const Selection& s, const TetMesh& mesh, const Positions& file_points,
@@ -144,11 +151,12 @@ void weave(Body& body) {
   for (double& mass : description.point_mass) mass *= density;
 }
 
-void add_handles(Body& body, const Loaded& loaded, std::vector<Problem>& problems) {
-  std::vector<char> taken(loaded.mesh.rest.rows(), 0);
+void add_handles(Body& body, std::vector<Problem>& problems) {
+  const TetMesh& mesh = body.description.mesh;
+  std::vector<char> taken(mesh.rest.rows(), 0);
   Eigen::Index held = 0;
   for (const HandleDef& def : body.def.handles) {
-    Handle handle{def.name, selected(def.select, loaded.mesh, loaded.mesh.rest, loaded.regions), def.stiffness,
+    Handle handle{def.name, selected(def.select, mesh, body.unplaced, body.regions), def.stiffness,
                   !def.grabs || def.holds_at(0)};
     // When two handles overlap, the first one gets the vertices.
     std::erase_if(handle.vertices, [&](std::int32_t v) { return taken[v] != 0; });
@@ -162,7 +170,7 @@ void add_handles(Body& body, const Loaded& loaded, std::vector<Problem>& problem
                                    : "; boxes, spheres and planes are relative to the rest bounding box (0 to 1)")));
     }
     if (def.stiffness <= 0) held += static_cast<Eigen::Index>(handle.vertices.size());
-    if (def.stiffness <= 0 && held == loaded.mesh.rest.rows()) {
+    if (def.stiffness <= 0 && held == mesh.rest.rows()) {
       problems.push_back(at(def.select.place,
                             fmt::format("with handle '{}' every vertex of body '{}' is held: nothing is left to move",
                                         def.name, body.def.name)));
@@ -221,36 +229,23 @@ void update_body(Body& body, const SceneDef& scene, const BodyDef& def) {
 std::vector<Body> assemble(const SceneDef& scene, const SlowWork& work) {
   std::vector<Body> bodies;
   std::vector<Problem> problems;
-  MeshCache meshes(work);
+  UnplacedBodies unplaced(work);
   for (const BodyDef& def : scene.bodies) {
     try {
-      const Loaded& loaded = meshes.get(scene, def);
-      Body body;
-      body.def = def;
-      body.notes = loaded.notes;
-      body.source = loaded.source;
-      body.files = loaded.files;
+      Body body = unplaced.get(scene, def);
       body.seed = scene.seed;
-      body.skin = loaded.skin;
-      body.colors = loaded.colors;
-      body.shape = loaded.shape;
-      body.unplaced = loaded.mesh.rest;
-      body.description.name = def.name;
-      body.description.mesh = loaded.mesh;
-      // Pieces stay where they are in the whole, which is placed and scaled as one.
-      body.placement = placement(def, loaded.whole.rows() > 0 ? loaded.whole : loaded.mesh.rest);
+      body.unplaced = body.description.mesh.rest;
+      body.placement = placement(def, points_to_place(body));
       apply(body.placement, body.description.mesh.rest);
       check_distance(body, problems);
       note_size(body);
-      body.regions = loaded.regions;
-      body.cloth = loaded.cloth;
       if (!def.cloth) body.volume = quality(body.description.mesh).volume;
       set_values(body, scene, problems);
       if (def.pattern_size && *def.pattern_size < 1e-3 * bounds_of(body.description.mesh.rest).diagonal()) {
         problems.push_back(
             at(def.place, fmt::format("pattern_size of body '{}' is below a thousandth of its size", def.name)));
       }
-      add_handles(body, loaded, problems);
+      add_handles(body, problems);
       bodies.push_back(std::move(body));
     } catch (const InputError& error) {
       problems.insert(problems.end(), error.problems().begin(), error.problems().end());

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "geometry/meshes/shared_space.h"
-#include "scene/building/body_surface.h"
 
 namespace supple {
 

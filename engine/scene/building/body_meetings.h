@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "scene/building/assemble.h"
+#include "scene/building/body.h"
 
 namespace supple {
 

@@ -6,11 +6,10 @@
 #include <cmath>
 #include <map>
 
+#include "geometry/files/source_file.h"
 #include "geometry/skins/mesh_bytes.h"
 #include "geometry/skins/skin_stretch.h"
 #include "geometry/triangles/refine_surface.h"
-#include "scene/building/body_mesh.h"
-#include "scene/building/body_surface.h"
 #include "scene/definition/rotation.h"
 
 namespace supple {

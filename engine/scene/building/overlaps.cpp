@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "scene/building/body_surface.h"
 #include "scene/building/collision_set.h"
 #include "sim/contact/usual_depth.h"
 #include "sim/contact/way_out.h"

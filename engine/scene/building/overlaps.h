@@ -3,7 +3,7 @@
 // body that stays inside is pushed out while the film runs (sim/contact/way_out.h).
 #pragma once
 
-#include "scene/building/assemble.h"
+#include "scene/building/body.h"
 
 namespace supple {
 

@@ -7,7 +7,6 @@
 
 #include "base/disjoint_sets.h"
 #include "geometry/shapes/rounded_prism.h"
-#include "scene/building/body_surface.h"
 #include "scene/definition/rotation.h"
 
 namespace supple {

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "scene/building/assemble.h"
+#include "scene/building/body.h"
 
 namespace supple {
 

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "geometry/triangles/surface_thickness.h"
-#include "scene/building/body_surface.h"
 
 namespace supple {
 namespace {

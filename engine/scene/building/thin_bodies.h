@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "scene/building/assemble.h"
+#include "scene/building/body.h"
 
 namespace supple {
 

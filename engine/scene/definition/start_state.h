@@ -1,6 +1,6 @@
 // Defines where a body starts: at rest, or deformed on purpose, to show how it recovers. Not here: motion from outside
-// (handles), and the form of start states in scene files (start_reader.h). A new start state is a struct with place(),
-// an entry in StartDef, and a reader.
+// (handles), and the form of start states in scene files (start_reader.cpp). A new start state is a struct with
+// place(), an entry in StartDef, and a reader.
 #pragma once
 
 #include <cstdint>

@@ -1,14 +1,10 @@
-#include "scene/reading/body_reader.h"
-
+// Reads the bodies.
 #include <algorithm>
 #include <set>
 
 #include "base/text.h"
-#include "scene/reading/material_reader.h"
 #include "scene/reading/model_scene.h"
-#include "scene/reading/solver_reader.h"
-#include "scene/reading/start_reader.h"
-#include "scene/reading/surface_reader.h"
+#include "scene/reading/table_readers.h"
 
 namespace supple {
 Ease read_ease(const ConfigTable& table) { return table.word<Ease>({"ease", "", "how keys are joined"}, Ease::smooth); }

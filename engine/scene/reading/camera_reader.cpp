@@ -1,10 +1,9 @@
-#include "scene/reading/camera_reader.h"
-
+// Reads the table [camera].
 #include <fmt/core.h>
 
 #include <algorithm>
 
-#include "scene/reading/body_reader.h"
+#include "scene/reading/table_readers.h"
 
 namespace supple {
 namespace {

@@ -1,8 +1,7 @@
-#include "scene/reading/collider_reader.h"
-
+// Reads the colliders.
 #include "base/text.h"
-#include "scene/reading/body_reader.h"
 #include "scene/reading/shape_reader.h"
+#include "scene/reading/table_readers.h"
 
 namespace supple {
 namespace {

@@ -1,4 +1,5 @@
-#include "scene/reading/look_reader.h"
+// Reads what is seen beside the bodies and the camera: the tables [look], [field] and [text].
+#include "scene/reading/table_readers.h"
 
 namespace supple {
 

@@ -1,6 +1,6 @@
-#include "scene/reading/material_reader.h"
-
+// Reads materials and their presets.
 #include "scene/definition/presets.h"
+#include "scene/reading/table_readers.h"
 
 namespace supple {
 namespace {

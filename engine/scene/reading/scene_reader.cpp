@@ -5,13 +5,9 @@
 
 #include "base/text.h"
 #include "scene/reading/body_pieces.h"
-#include "scene/reading/body_reader.h"
-#include "scene/reading/camera_reader.h"
-#include "scene/reading/collider_reader.h"
-#include "scene/reading/look_reader.h"
 #include "scene/reading/model_scene.h"
-#include "scene/reading/solver_reader.h"
 #include "scene/reading/sweep.h"
+#include "scene/reading/table_readers.h"
 
 namespace supple {
 

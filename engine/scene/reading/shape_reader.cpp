@@ -7,7 +7,7 @@
 #include "geometry/files/surface_file.h"
 #include "scene/definition/rotation.h"
 #include "scene/reading/known_surfaces.h"
-#include "scene/reading/surface_reader.h"
+#include "scene/reading/table_readers.h"
 
 namespace supple {
 

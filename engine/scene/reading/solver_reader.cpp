@@ -1,6 +1,7 @@
-#include "scene/reading/solver_reader.h"
-
+// Reads the table `solver` of a scene or a body.
 #include <algorithm>
+
+#include "scene/reading/table_readers.h"
 
 namespace supple {
 namespace {

@@ -1,10 +1,10 @@
-#include "scene/reading/start_reader.h"
-
+// Reads the table `start` of a body.
 #include <array>
 
 #include "base/names.h"
 #include "base/text.h"
 #include "scene/definition/rotation.h"
+#include "scene/reading/table_readers.h"
 
 namespace supple {
 namespace {

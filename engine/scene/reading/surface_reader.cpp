@@ -1,4 +1,5 @@
-#include "scene/reading/surface_reader.h"
+// Reads how a surface from a file is taken.
+#include "scene/reading/table_readers.h"
 
 namespace supple {
 

@@ -3,8 +3,8 @@
 #include <iterator>
 
 #include "base/frame_time.h"
-#include "scene/reading/material_reader.h"
 #include "scene/reading/scene_reader.h"
+#include "scene/reading/table_readers.h"
 #include "scene/replay/script_parts.h"
 
 namespace supple {

@@ -1,4 +1,4 @@
-#include "geometry/tetrahedra/surface_tetrahedra.h"
+#include "geometry/tetrahedra/meshing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,13 +17,17 @@ namespace {
 // A mesh has lost a part of the body when a larger share of the surface than this has no element inside.
 constexpr double most_unheld = 0.01;
 
-MeshingListener listener_of(const std::string& source, int vertices, const SlowWork& work) {
-  return {[&, vertices](int attempt, double share) {
+MeshingListener listener_of(const WantedMesh& wanted, const SlowWork& work) {
+  return {[&](int attempt, double share) {
             if (work.tell)
-              work.tell(fmt::format("meshing {} with {} vertices: attempt {}, {:.0f} %", source, vertices, attempt,
-                                    100 * share));
+              work.tell(fmt::format("meshing {} with {} vertices: attempt {}, {:.0f} %", wanted.source, wanted.vertices,
+                                    attempt, 100 * share));
           },
           {}};
+}
+
+std::string kept_name(const WantedMesh& wanted) {
+  return fmt::format("mesh of {} vertices from {}", wanted.vertices, wanted.content);
 }
 
 // Joins parts that touch without an overlap by what lies between them: their fields melt into each other there.
@@ -110,17 +114,18 @@ double reach_beyond(const TetMesh& mesh, const Shape& solid) {
   return most;
 }
 
-// shape: inside the body's surface. Throws InputError.
-TetMesh tetrahedra_of(const SurfaceBody& body, const Shape& shape, const Thinness& thinness, const SlowWork& work) {
-  const MeshingListener listener = listener_of(body.source, body.vertices, work);
-  std::string reason = "is too thin for its elements";
+// Keeps the best of the meshes that are tried: the one that leaves least of the surface without an element inside.
+struct Attempts {
+  const std::vector<ThicknessSample>& samples;  // of the surface
   TetMesh best;
-  double least = 1.1;  // share of the surface without an element inside; more than there can be: there is no mesh
-  // Makes a mesh, and tells whether it holds all of the surface. Keeps it where it holds more than those before it.
-  const auto holds_all = [&](const std::function<TetMesh()>& make) {
+  double least = 1.1;  // share of the surface that the best one leaves; more than there can be: there is no mesh
+  std::string reason = "is too thin for its elements";  // why the last attempt failed that did
+
+  // Makes a mesh, and tells whether it holds all of the surface.
+  bool holds_all(const std::function<TetMesh()>& make) {
     try {
       TetMesh mesh = make();
-      const double unheld = unheld_share(held_samples(thinness.samples, mesh));
+      const double unheld = unheld_share(held_samples(samples, mesh));
       if (unheld < least) best = std::move(mesh);
       least = std::min(least, unheld);
       return unheld <= most_unheld;
@@ -128,67 +133,70 @@ TetMesh tetrahedra_of(const SurfaceBody& body, const Shape& shape, const Thinnes
       reason = error.problems().front().message;
       return false;
     }
-  };
+  }
+};
+
+[[noreturn]] void refuse_surface(const WantedMesh& wanted, const std::string& reason, const Thinness& thinness) {
+  const std::string resolving =
+      thinness.wanted > 0 ? fmt::format("; {} resolve nearly all of it", count_text(thinness.wanted)) : "";
+  throw InputError(wanted.source, fmt::format("{}; more vertices (now {}{}) may help, or pieces = \"largest\", or "
+                                              "thicken = 0.01 [m], which gives sheets a thickness",
+                                              reason, wanted.vertices, resolving));
+}
+
+// shape: inside the body's surface. Throws InputError.
+TetMesh tetrahedra_of(const SurfaceBody& body, const WantedMesh& wanted, const Shape& shape, const Thinness& thinness,
+                      const SlowWork& work) {
+  const MeshingListener listener = listener_of(wanted, work);
+  Attempts attempts{thinness.samples, {}};
   double uniform_loss = 0;  // of the surface, by a uniform lattice inside it
   const auto uniform = [&](const Shape& inside, double& loss) {
     // The first mesh of about the right size tells whether parts are lost: others of that size lose them too.
     MeshingListener judging = listener;
     judging.judge = [&](const TetMesh& mesh) {
       loss = unheld_share(held_samples(thinness.samples, mesh));
-      if (loss > most_unheld) throw InputError(body.source, "loses parts that are thinner than its elements");
+      if (loss > most_unheld) throw InputError(wanted.source, "loses parts that are thinner than its elements");
     };
-    return tetrahedralize(inside, body.vertices, body.source, judging);
+    return attempts.holds_all([&] { return tetrahedralize(inside, wanted.vertices, wanted.source, judging); });
   };
-  const auto lossy = [&] { return tetrahedralize(shape, body.vertices, body.source, listener); };
+  const auto lossy = [&] { return tetrahedralize(shape, wanted.vertices, wanted.source, listener); };
   const auto graded = [&](double swollen_to) {
-    return graded_tetrahedralize(shape, body.vertices, body.source, thinness.samples, swollen_to, listener);
+    return attempts.holds_all([&] {
+      return graded_tetrahedralize(shape, wanted.vertices, wanted.source, thinness.samples, swollen_to, listener);
+    });
   };
   // The last resort is much thicker than the surface, so that it must hold much that would be lost otherwise.
   constexpr double bearable = 0.05;
   // Where most of the surface is thin, no lattice inside it holds together, and there are no vertices to spare.
   if (thinness.thin_share < 0.5) {
-    if (holds_all([&] { return uniform(shape, uniform_loss); })) return best;
-    if (!thinness.samples.empty() &&
-        (holds_all([&] { return graded(1.25); }) || holds_all([&] { return graded(1.5); })))
-      return best;
+    if (uniform(shape, uniform_loss)) return std::move(attempts.best);
+    if (!thinness.samples.empty() && (graded(1.25) || graded(1.5))) return std::move(attempts.best);
     double loss = 0;
     const auto joined = body.touching ? bridged(body.solid.boundary, 3 * thinness.spacing) : std::nullopt;
-    if (joined && holds_all([&] { return uniform(*joined, loss); })) return best;
-    if (least >= bearable && uniform_loss > most_unheld && uniform_loss < bearable) holds_all(lossy);
-    if (least < bearable) return best;
+    if (joined && uniform(*joined, loss)) return std::move(attempts.best);
+    if (attempts.least >= bearable && uniform_loss > most_unheld && uniform_loss < bearable) attempts.holds_all(lossy);
+    if (attempts.least < bearable) return std::move(attempts.best);
   }
-  holds_all([&] {
+  attempts.holds_all([&] {
     for (const double swell : {0.5, 1.0}) {
       try {
-        return tetrahedralize(shape, body.vertices, body.source, listener, swell);
+        return tetrahedralize(shape, wanted.vertices, wanted.source, listener, swell);
       } catch (const InputError&) {  // the reason is that of the body inside
       }
     }
-    throw InputError(body.source, reason);
+    throw InputError(wanted.source, attempts.reason);
   });
   // A body without its thin parts, of which a note tells, is better than none.
-  if (best.rest.rows() == 0 && uniform_loss > most_unheld) holds_all(lossy);
-  if (best.rest.rows() > 0) return best;
-  const std::string wanted =
-      thinness.wanted > 0 ? fmt::format("; {} resolve nearly all of it", count_text(thinness.wanted)) : "";
-  throw InputError(body.source, fmt::format("{}; more vertices (now {}{}) may help, or pieces = \"largest\", or "
-                                            "thicken = 0.01 [m], which gives sheets a thickness",
-                                            reason, body.vertices, wanted));
+  if (attempts.best.rest.rows() == 0 && uniform_loss > most_unheld) attempts.holds_all(lossy);
+  if (attempts.best.rest.rows() == 0) refuse_surface(wanted, attempts.reason, thinness);
+  return std::move(attempts.best);
 }
 
-}  // namespace
-
-TetMesh shape_tetrahedra(const Shape& shape, int vertices, const std::string& source, const SlowWork& work) {
-  // Slender shapes gain and lose whole layers of vertices at once, and have no mesh of some numbers between.
-  constexpr double most_missed = 0.5;
-  return tetrahedralize(shape, vertices, source, listener_of(source, vertices, work), 0, most_missed);
-}
-
-SurfaceMesh surface_tetrahedra(const SurfaceBody& body, const SlowWork& work) {
-  const Thinness thinness = thinness_of(body.solid.boundary, body.vertices);
+MadeMesh made_of_surface(const SurfaceBody& body, const WantedMesh& wanted, const SlowWork& work) {
+  const Thinness thinness = thinness_of(body.solid.boundary, wanted.vertices);
   const Shape shape = shape_of(body.solid.boundary);
-  SurfaceMesh made{tetrahedra_of(body, shape, thinness, work), {}};
-  const std::string note = thinness_note(thinness, made.mesh, body.vertices);
+  MadeMesh made{tetrahedra_of(body, wanted, shape, thinness, work), {}};
+  const std::string note = thinness_note(thinness, made.mesh, wanted.vertices);
   if (!note.empty()) made.notes.push_back(note);
   const double beyond = reach_beyond(made.mesh, shape);
   if (beyond > 0.1 * thinness.spacing) {
@@ -200,18 +208,39 @@ SurfaceMesh surface_tetrahedra(const SurfaceBody& body, const SlowWork& work) {
   return made;
 }
 
-std::string bytes_of(const SurfaceMesh& made) {
+}  // namespace
+
+MadeMesh mesh_of_surface(const SurfaceBody& body, const WantedMesh& wanted, const SlowWork& work) {
+  return kept_or_made(work.cache, kept_name(wanted), made_mesh_from,
+                      [&] { return made_of_surface(body, wanted, work); });
+}
+
+MadeMesh mesh_of_shape(const Shape& shape, const WantedMesh& wanted, const SlowWork& work) {
+  // Slender shapes gain and lose whole layers of vertices at once, and have no mesh of some numbers between.
+  constexpr double most_missed = 0.5;
+  MadeMesh made;
+  made.mesh = kept_or_made(work.cache, kept_name(wanted), tet_mesh_from, [&] {
+    return tetrahedralize(shape, wanted.vertices, wanted.source, listener_of(wanted, work), 0, most_missed);
+  });
+  const Eigen::Index vertices = made.mesh.rest.rows();
+  if (std::abs(double(vertices) / wanted.vertices - 1) > usual_miss)
+    made.notes.push_back(
+        fmt::format("has {} vertices, the nearest number to {} of which a mesh was found", vertices, wanted.vertices));
+  return made;
+}
+
+std::string bytes_of(const MadeMesh& made) {
   std::string bytes;
   for (const std::string& note : made.notes) bytes += note + '\n';
   return bytes + '\0' + bytes_of(made.mesh);
 }
 
-std::optional<SurfaceMesh> surface_mesh_from(std::string_view bytes) {
+std::optional<MadeMesh> made_mesh_from(std::string_view bytes) {
   const std::size_t end = bytes.find('\0');
   if (end == std::string_view::npos) return std::nullopt;
   auto mesh = tet_mesh_from(bytes.substr(end + 1));
   if (!mesh) return std::nullopt;
-  SurfaceMesh made{std::move(*mesh), {}};
+  MadeMesh made{std::move(*mesh), {}};
   for (std::size_t at = 0; at < end;) {
     const std::size_t line = bytes.find('\n', at);
     if (line > end) return std::nullopt;

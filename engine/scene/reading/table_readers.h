@@ -1,0 +1,46 @@
+// Reads the tables of a scene file, each into a part of a SceneDef (scene_reader.h). Problems are recorded in the
+// tables' Config. Not here: tables of shapes (shape_reader.h).
+#pragma once
+
+#include "scene/config/config.h"
+#include "scene/definition/scene_def.h"
+
+namespace supple {
+
+// Reads the table of a body: what it is made of, where it starts, and what holds it. defaults: the defaults of the
+// body's solver, from the scene's table.
+BodyDef read_body(const ConfigTable& table, const SolverDef& defaults);
+
+// Reads how a body starts: at rest when it has no table `start`.
+StartDef read_start(const ConfigTable& body);
+
+// Reads `material` (and `fibre`) of a body or a region: a preset's name, or a table with the model and its parameters.
+SubstanceDef read_substance(const ConfigTable& owner);
+
+// Returns the table that a preset stands for, { model = "neo-hookean", young = ..., poisson = ... }, and the other
+// values that it sets. Empty when no preset has this name.
+std::string preset_in_full(const std::string& name);
+
+// Reads how a surface from a file is taken: its axes and units, and what is done where it is not closed. Bodies and
+// parts of shapes have these keys in common; they are refused in tables without a `surface`.
+SurfaceOptions read_surface_options(const ConfigTable& table);
+
+// Reads a `solver` table, of the whole scene or of a body. Keys that are absent keep their defaults.
+SolverDef read_solver(const ConfigTable& table, const SolverDef& defaults);
+
+ColliderDef read_collider(const ConfigTable& table);
+
+// Reads [camera]. Keys that contradict each other are problems, and keys of a motion that are not in order of time.
+CameraDef read_camera(const ConfigTable& table, CameraDef camera);
+
+// These read the tables [look], [field] and [text] of a scene's root.
+LookDef read_look(const ConfigTable& root, LookDef look);
+FieldDef read_field(const ConfigTable& root);
+TextDef read_text(const ConfigTable& root);
+
+Ease read_ease(const ConfigTable& table);
+
+// Reads the list `keys`, in the order of time. `turn`: the meaning of the key turn_deg, for the documentation.
+std::vector<MotionKey> read_keys(const ConfigTable& table, const char* turn);
+
+}  // namespace supple
