@@ -16,9 +16,12 @@ install(FILES ${PROJECT_BINARY_DIR}/supple.1.gz DESTINATION ${CMAKE_INSTALL_MAND
 
 include(CMakePackageConfigHelpers)
 set(supple_config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/supple)
+# Films, pictures and their files are the program's own affair.
+list(FILTER supple_libraries EXCLUDE REGEX "^supple_(render|output|film)$")
 install(TARGETS ${supple_libraries} EXPORT supple-targets ARCHIVE COMPONENT libraries)
-install(DIRECTORY engine/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/supple COMPONENT libraries
-        FILES_MATCHING PATTERN "*.h")
+install(CODE "set(engine ${PROJECT_SOURCE_DIR}/engine)
+set(folder ${CMAKE_INSTALL_INCLUDEDIR}/supple)" COMPONENT libraries)
+install(SCRIPT cmake/install_headers.cmake COMPONENT libraries)
 install(EXPORT supple-targets NAMESPACE supple:: DESTINATION ${supple_config_folder} COMPONENT libraries)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/supple-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES cmake/supple-config.cmake cmake/FindCHOLMOD.cmake ${PROJECT_BINARY_DIR}/supple-config-version.cmake

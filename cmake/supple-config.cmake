@@ -1,22 +1,16 @@
-# find_package(supple) gives supple::base, supple::geometry, supple::sim, supple::scene, supple::render, supple::output and
-# supple::baselines; docs/library.md tells which to take.
+# find_package(supple) gives supple::base, supple::geometry, supple::sim, supple::baselines, supple::scene and supple::world;
+# docs/library.md tells which to take.
 include(CMakeFindDependencyMacro)
 set(supple_module_path ${CMAKE_MODULE_PATH})
 list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
 find_dependency(Threads)
 find_dependency(Eigen3 3.4)
 find_dependency(fmt)
-find_dependency(PNG)
-find_dependency(Freetype)
-find_dependency(nlohmann_json)
 find_dependency(CHOLMOD)
 find_dependency(PkgConfig)
 set(CMAKE_MODULE_PATH ${supple_module_path})
 unset(supple_module_path)
 if(NOT TARGET PkgConfig::XXHASH)
   pkg_check_modules(XXHASH REQUIRED QUIET IMPORTED_TARGET libxxhash)
-endif()
-if(NOT TARGET PkgConfig::DEFLATE)
-  pkg_check_modules(DEFLATE REQUIRED QUIET IMPORTED_TARGET libdeflate)
 endif()
 include(${CMAKE_CURRENT_LIST_DIR}/supple-targets.cmake)

@@ -115,6 +115,25 @@ TEST(House, EveryIncludeFollowsTheArrows) {
   EXPECT_GT(checked, 50);
 }
 
+// Two types of one name in two libraries are one type to the linker, which takes the functions of either for both.
+TEST(House, NoHeaderDefinesATypeThatAnotherDefines) {
+  const std::regex pattern("(?:template <.*> ?)?(?:struct|class|enum class) (\\w+)(?: final)?(?: : .*)? \\{.*");
+  std::map<std::string, std::string> home;
+  for (const char* top : {"app", "engine"}) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(test::source_folder / top)) {
+      if (entry.path().extension() != ".h") continue;
+      std::ifstream file(entry.path());
+      for (std::string line; std::getline(file, line);) {
+        std::smatch match;
+        if (!std::regex_match(line, match, pattern)) continue;
+        const auto [known, is_new] = home.try_emplace(match[1].str(), entry.path().string());
+        EXPECT_TRUE(is_new) << match[1] << " is defined by " << known->second << " and by " << entry.path().string();
+      }
+    }
+  }
+  EXPECT_GT(home.size(), 300u);
+}
+
 // Returns the room of a path such as sim/model/state.h, and "corridor" for one such as sim/sim.h.
 std::string room_of(const std::string& path) {
   const std::size_t first = path.find('/'), second = path.find('/', first + 1);

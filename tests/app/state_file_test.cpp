@@ -107,7 +107,7 @@ TEST(States, SayWhatTheSceneSaid) {
   ASSERT_EQ(render(folder.path, {"--save-state", "3"}).status, 0);
   const std::filesystem::path states = folder.path / "out" / "s" / "states";
   const StoredProblem bar(states / "bar-000003"), cloth(states / "cloth-000003");
-  EXPECT_EQ(bar.json["version"], 1);
+  EXPECT_EQ(bar.json["version"], 2);
   EXPECT_EQ(bar.json["scene"], "s");
   EXPECT_EQ(bar.json["title"], "A bar that is shaken");
   EXPECT_EQ(bar.json["step"], 6);

@@ -9,10 +9,10 @@
 namespace supple {
 namespace surface_nets_test {
 
-const PointGrid small{Vec3(1, 2, 3), 0.5, {3, 3, 3}};
+const PointGrid small{Vec3(1, 2, 3), 0.5, {5, 5, 5}};
 
 QuadSurface around_the_middle(const PointGrid& grid, float outside) {
-  const std::size_t middle = grid.at(1, 1, 1);
+  const std::size_t middle = grid.at(2, 2, 2);
   return surface_nets(grid, [&](std::size_t point) { return point == middle ? -1.0f : outside; });
 }
 
@@ -22,7 +22,7 @@ TEST(SurfaceNets, OnePointInsideHasACubeAroundItThatIsAsLargeAsTheValuesSay) {
     ASSERT_EQ(surface.points.size(), 8u);
     EXPECT_EQ(surface.quads.size(), 6u);
     for (const Vec3& point : surface.points)
-      EXPECT_LT(((point - small.position(1, 1, 1)).cwiseAbs() - Vec3::Constant(half)).norm(), 1e-14);
+      EXPECT_LT(((point - small.position(2, 2, 2)).cwiseAbs() - Vec3::Constant(half)).norm(), 1e-14);
     const TriMesh mesh = triangles_of(surface, Diagonal::first);
     EXPECT_NEAR(enclosed_volume(mesh), 8 * half * half * half, 1e-13) << "faces outward";
   }

@@ -29,7 +29,7 @@ void count_other(int type, Gmsh& mesh) {
   mesh.others += std::find(volumes.begin(), volumes.end(), type) != volumes.end() ? 1 : 0;
 }
 
-void add_node(Words& words, long long tag, Gmsh& mesh) {
+void add_node(MeshWords& words, long long tag, Gmsh& mesh) {
   Vec3 p;
   for (int k = 0; k < 3; ++k) p[k] = words.number<double>("a coordinate");
   if (!mesh.vertex_of.emplace(tag, std::int32_t(mesh.points.size())).second)
@@ -37,7 +37,7 @@ void add_node(Words& words, long long tag, Gmsh& mesh) {
   mesh.points.push_back(p);
 }
 
-void add_tetrahedron(Words& words, int type, long long group, Gmsh& mesh) {
+void add_tetrahedron(MeshWords& words, int type, long long group, Gmsh& mesh) {
   std::array<std::int32_t, 4> corners{};
   for (std::int32_t& corner : corners) {
     const auto tag = words.number<long long>("a node of an element");
@@ -57,7 +57,7 @@ void add_tetrahedron(Words& words, int type, long long group, Gmsh& mesh) {
 
 bool is_tetrahedron(int type) { return type == linear_tetrahedron || type == quadratic_tetrahedron; }
 
-void read_nodes_2(Words& words, Gmsh& mesh) {
+void read_nodes_2(MeshWords& words, Gmsh& mesh) {
   const Eigen::Index count = words.count("nodes", 8);
   for (Eigen::Index i = 0; i < count; ++i, words.end_row()) {
     const auto tag = words.number<long long>("a node's number");
@@ -65,7 +65,7 @@ void read_nodes_2(Words& words, Gmsh& mesh) {
   }
 }
 
-void read_elements_2(Words& words, Gmsh& mesh) {
+void read_elements_2(MeshWords& words, Gmsh& mesh) {
   const Eigen::Index count = words.count("elements", 6);
   for (Eigen::Index i = 0; i < count; ++i, words.end_row()) {
     (void)words.number<long long>("an element's number");
@@ -87,7 +87,7 @@ void read_elements_2(Words& words, Gmsh& mesh) {
 }
 
 // Points have a place, all other entities a box, and all their physical groups. What bounds them is not needed.
-void read_entities(Words& words, Gmsh& mesh) {
+void read_entities(MeshWords& words, Gmsh& mesh) {
   std::array<Eigen::Index, 4> counts{};
   for (Eigen::Index& count : counts) count = words.count("entities", 10);
   for (std::size_t dimension = 0; dimension < 4; ++dimension) {
@@ -101,7 +101,7 @@ void read_entities(Words& words, Gmsh& mesh) {
   }
 }
 
-void read_nodes_4(Words& words, Gmsh& mesh) {
+void read_nodes_4(MeshWords& words, Gmsh& mesh) {
   const auto blocks = words.number<long long>("the number of blocks");
   const Eigen::Index count = words.count("nodes", 8);
   words.skip_line();
@@ -125,7 +125,7 @@ void read_nodes_4(Words& words, Gmsh& mesh) {
     words.refuse(fmt::format("{} nodes announced, but the blocks hold {}", count, mesh.points.size()));
 }
 
-void read_elements_4(Words& words, Gmsh& mesh) {
+void read_elements_4(MeshWords& words, Gmsh& mesh) {
   const auto blocks = words.number<long long>("the number of blocks");
   const Eigen::Index count = words.count("elements", 4);
   words.skip_line();
@@ -152,7 +152,7 @@ void read_elements_4(Words& words, Gmsh& mesh) {
   if (sum != count) words.refuse(fmt::format("{} elements announced, but the blocks hold {}", count, sum));
 }
 
-double read_version(Words& words) {
+double read_version(MeshWords& words) {
   if (words.next() != "$MeshFormat") words.refuse("not a Gmsh mesh: it should begin with $MeshFormat");
   const auto version = words.number<double>("the version");
   const bool known = (version >= 2 && version < 3) || (version >= 4.1 && version < 5);
@@ -163,19 +163,19 @@ double read_version(Words& words) {
   return version;
 }
 
-void end_section(Words& words, std::string_view section) {
+void end_section(MeshWords& words, std::string_view section) {
   const std::string end = fmt::format("$End{}", section.substr(1));
   const std::string_view word = words.next();
   if (word != end) words.refuse(fmt::format("'{}' stands where {} should end", word.substr(0, 40), section));
 }
 
-void skip_section(Words& words, const std::string& section) {
+void skip_section(MeshWords& words, const std::string& section) {
   const std::string end = fmt::format("$End{}", section.substr(1));
   for (std::string_view word = words.next(); word != end; word = words.next())
     if (word.empty()) words.refuse(fmt::format("the file ends where {} should stand", end));
 }
 
-RawMesh finished(Words& words, Gmsh& mesh) {
+RawMesh finished(MeshWords& words, Gmsh& mesh) {
   if (mesh.points.empty() || mesh.tets.empty()) words.refuse("the file has no $Nodes or no tetrahedra");
   TetMesh& result = mesh.raw.mesh;
   result.rest.resize(std::ssize(mesh.points), 3);
@@ -191,7 +191,7 @@ RawMesh finished(Words& words, Gmsh& mesh) {
 }  // namespace
 
 RawMesh read_gmsh(std::string text, const std::string& name) {
-  Words words(std::move(text), name);
+  MeshWords words(std::move(text), name);
   const bool blocks = read_version(words) >= 4;
   Gmsh mesh;
   bool in_header = true;

@@ -22,7 +22,7 @@ struct Sections {
 
 // Reads rows of `columns` vertex indices and a reference, and passes each to row(i, indices, reference).
 template <class Row>
-void read_rows(Words& words, const char* what, int columns, Eigen::Index vertices, std::vector<int>& lines,
+void read_rows(MeshWords& words, const char* what, int columns, Eigen::Index vertices, std::vector<int>& lines,
                const Row& row) {
   const Eigen::Index count = words.count(what, static_cast<std::size_t>(2 * columns + 2));
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -46,7 +46,7 @@ void read_rows(Words& words, const char* what, int columns, Eigen::Index vertice
 }
 
 // Skips a section that is of no use here: rows of integers, of which it returns how many stand in one.
-int skip_section(Words& words, std::string_view section) {
+int skip_section(MeshWords& words, std::string_view section) {
   struct Skipped {
     std::string_view name;
     int integers;
@@ -65,7 +65,7 @@ int skip_section(Words& words, std::string_view section) {
 
 enum class Wanted { tetrahedra, triangles };
 
-Sections read_sections(Words& words, Wanted wanted) {
+Sections read_sections(MeshWords& words, Wanted wanted) {
   if (words.next() != "MeshVersionFormatted")
     words.refuse("not a MEDIT mesh: it should begin with MeshVersionFormatted");
   const int version = words.number<int>("the version");
@@ -137,7 +137,7 @@ void check_triangles(const Sections& read, const std::string& name) {
 }  // namespace
 
 RawMesh read_medit(std::string text, const std::string& name) {
-  Words words(std::move(text), name);
+  MeshWords words(std::move(text), name);
   Sections read = read_sections(words, Wanted::tetrahedra);
   if (read.raw.mesh.rest.rows() == 0 || read.raw.mesh.tets.rows() == 0)
     words.refuse("the file has no Vertices or no Tetrahedra");
@@ -146,7 +146,7 @@ RawMesh read_medit(std::string text, const std::string& name) {
 
 TriMesh read_surface(const std::filesystem::path& path) {
   const std::string name = path.string();
-  Words words(mesh_text(path), name);
+  MeshWords words(mesh_text(path), name);
   const Sections read = read_sections(words, Wanted::triangles);
   if (read.triangles.rows() == 0) words.refuse("the file has no Triangles");
   check_triangles(read, name);

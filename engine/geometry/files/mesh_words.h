@@ -14,9 +14,9 @@
 namespace supple {
 
 // Splits a text into words and keeps their line numbers; '#' starts a comment.
-class Words {
+class MeshWords {
  public:
-  Words(std::string text, std::string name) : text_(std::move(text)), name_(std::move(name)) {}
+  MeshWords(std::string text, std::string name) : text_(std::move(text)), name_(std::move(name)) {}
 
   // Returns the next word, or an empty one at the end.
   std::string_view next() {

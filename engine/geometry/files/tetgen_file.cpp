@@ -11,7 +11,7 @@ namespace {
 
 using VertexOf = std::unordered_map<long long, std::int32_t>;
 
-VertexOf read_nodes(Words& words, Positions& rest) {
+VertexOf read_nodes(MeshWords& words, Positions& rest) {
   const Eigen::Index count = words.count("points", 8);
   const int dimension = words.number<int>("the dimension");
   if (dimension != 3) words.refuse(fmt::format("the dimension must be 3, not {}", dimension));
@@ -28,7 +28,7 @@ VertexOf read_nodes(Words& words, Positions& rest) {
   return vertex_of;
 }
 
-void read_elements(Words& words, const VertexOf& vertex_of, RawMesh& raw) {
+void read_elements(MeshWords& words, const VertexOf& vertex_of, RawMesh& raw) {
   const Eigen::Index count = words.count("elements", 10);
   const int nodes = words.number<int>("the number of an element's nodes");
   if (nodes != 4 && nodes != 10) words.refuse(fmt::format("elements have 4 or 10 nodes, not {}", nodes));
@@ -59,7 +59,7 @@ void read_elements(Words& words, const VertexOf& vertex_of, RawMesh& raw) {
 RawMesh read_tetgen(std::string nodes, const std::string& nodes_name, std::string elements,
                     const std::string& elements_name) {
   RawMesh raw;
-  Words points(std::move(nodes), nodes_name), tets(std::move(elements), elements_name);
+  MeshWords points(std::move(nodes), nodes_name), tets(std::move(elements), elements_name);
   const VertexOf vertex_of = read_nodes(points, raw.mesh.rest);
   read_elements(tets, vertex_of, raw);
   if (raw.mesh.rest.rows() == 0) points.refuse("the file has no points");

@@ -8,14 +8,14 @@
 namespace supple {
 namespace {
 
-std::vector<long long> read_integers(Words& words, Eigen::Index count, const char* what) {
+std::vector<long long> read_integers(MeshWords& words, Eigen::Index count, const char* what) {
   std::vector<long long> values;
   for (Eigen::Index i = 0; i < count; ++i) values.push_back(words.number<long long>(what));
   return values;
 }
 
 // Cells of version 5 are two arrays; before, each cell is its number of points and then the points.
-void read_cells(Words& words, bool arrays, VtkCells& cells) {
+void read_cells(MeshWords& words, bool arrays, VtkCells& cells) {
   const Eigen::Index first = words.count("cells", 2), second = words.count("numbers of cells", 2);
   if (arrays) {
     if (words.next() != "OFFSETS") words.refuse("OFFSETS should follow CELLS");
@@ -43,7 +43,7 @@ void read_cells(Words& words, bool arrays, VtkCells& cells) {
   if (held < second) words.refuse(fmt::format("{} numbers of cells announced, but the cells hold {}", second, held));
 }
 
-void read_points(Words& words, VtkCells& cells) {
+void read_points(MeshWords& words, VtkCells& cells) {
   const Eigen::Index count = words.count("points", 6);
   (void)words.next();  // the type of the numbers
   cells.rest.resize(count, 3);
@@ -52,7 +52,7 @@ void read_points(Words& words, VtkCells& cells) {
 }
 
 // Reads the cells' scalars called region, if they are the first ones.
-void read_regions(Words& words, VtkCells& cells) {
+void read_regions(MeshWords& words, VtkCells& cells) {
   const Eigen::Index count = words.count("values of cells", 2);
   if (words.next() != "SCALARS" || words.next() != "region") return;
   (void)words.next();
@@ -71,7 +71,7 @@ RawMesh read_legacy_vtk(std::string text, const std::string& name) {
   if (rest == std::string::npos) throw InputError(name, "the file ends after its title");
   for (std::size_t i = title + 1; i < rest; ++i) text[i] = ' ';  // a title may say anything
   const bool arrays = text.size() > 23 && text[23] >= '5';       // the version's first digit
-  Words words(std::move(text), name);
+  MeshWords words(std::move(text), name);
   const std::string format(words.next());
   if (format != "ASCII") words.refuse(fmt::format("{} files are not read; ASCII ones are", format.substr(0, 40)));
   if (words.next() != "DATASET" || words.next() != "UNSTRUCTURED_GRID")

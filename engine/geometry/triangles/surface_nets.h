@@ -44,7 +44,8 @@ TriMesh triangles_of(const QuadSurface& surface, Diagonal diagonal);
 std::optional<Vec3> net_vertex(const std::array<float, 8>& value, double cell);
 
 // Walks through the grid layer by layer, and keeps the names of two layers' vertices. value: a function that returns
-// the value of a point by its place, below 0 inside. The surface is closed where the outermost points are outside.
+// the value of a point by its place, below 0 inside. The surface is closed where the two outermost layers of points
+// are outside.
 template <class Value>
 QuadSurface surface_nets(const PointGrid& grid, const Value& value) {
   QuadSurface surface;
