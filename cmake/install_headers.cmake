@@ -1,5 +1,6 @@
 # Run by `cmake --install`: installs the headers that other programs include (docs/library.md), and all that these include.
 # Takes `engine`, the folder of the sources, and `folder`, where headers go below the prefix.
+cmake_minimum_required(VERSION 3.22)
 set(headers base/error.h base/threads.h baselines/make_rule.h sim/sim.h world/world.h)
 set(left ${headers})
 while(left)
