@@ -98,8 +98,8 @@ void add_motion(Score& score, const Outcome& whole_run, const Outcome& ten, cons
   }
 }
 
-// Where a step made a matrix, the times of its state contain the time of that, while the times of other states contain
-// none. So this time is taken out, and each state gets the film's average in its place.
+// Takes the time of making a matrix out of a state's times. Only few steps make one, so the states of these steps would
+// seem slower than the others. The film's average of this time is added to all states instead.
 void take_out_renewal(Outcome& outcome) {
   for (double& ms : outcome.ms) ms -= outcome.matrix_ms;
 }

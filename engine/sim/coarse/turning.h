@@ -23,7 +23,7 @@ class Turning {
   }
 
   // Takes the motion h v from the start of a step. Backward Euler's velocities are along the chord of the step before.
-  // Where a part turned, they also seem to widen it; this widening is taken out again.
+  // A motion along a chord would widen a part that turns; the function takes this widening out of the motion.
   void take_velocity(const CoarseSystem& system, const Positions& x, const Positions& motion);
   // Takes a motion from x as the tangent of the turning.
   void take_tangent(const CoarseSystem& system, const Positions& x, const Positions& motion);

@@ -215,7 +215,7 @@ class Planes {
     return {stencil, {collider_}, Vec3::Zero(), 0, unit * stencil.mass(model_.mass), 0, number};
   }
 
-  // Adds a contact with the plane through a surface's stencil, lowered by the slack and by as much of the depth as need
+  // Adds a contact with the plane through a surface's point, lowered by the slack and by as much of the depth as need
   // not be corrected in this step.
   void add(const SurfacePoint& surface, const Way& way, double field, double slack, QueryMemory& near, Contact& contact,
            std::vector<Contact>& list) const {

@@ -55,7 +55,7 @@ struct BodyDescription {
   std::vector<Handle> handles;
   double time_step = 1.0 / 30;  // h [s]
   Integrator integrator = Integrator::backward_euler;
-  double damping = 0;                                 // beta beta of stiffness-proportional damping [s]
+  double damping = 0;                                 // beta of stiffness-proportional damping [s]
   StretchInterval fit;                                // equation 11
   Precision precision = Precision::single_precision;  // of the factor, hence of search directions
 };
