@@ -188,7 +188,8 @@ bool Capacitance::extend(const CoupledDirections& list, Factor& factor) {
   auto below = lower.block(first, 0, more, first);
   auto corner = lower.block(first, first, more, more);
   if (first > 0) {
-    lower.topLeftCorner(first, first).transpose().triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(below);
+    auto right = below.transpose();
+    lower.topLeftCorner(first, first).triangularView<Eigen::Lower>().solveInPlace(right);
     corner.selfadjointView<Eigen::Lower>().rankUpdate(below, -1);
   }
   const Eigen::LLT<Eigen::Ref<RowMatrix>> done(corner);
