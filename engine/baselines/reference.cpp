@@ -42,7 +42,7 @@ Reference::Reference(const Model& model) : parts_(std::make_unique<Parts>(model)
 Reference::~Reference() = default;
 
 double contact_energy_at(const Model& model, const StepInputs& inputs, const Positions& x, OpenWorkspace& w) {
-  if (!has_colliders(inputs)) return 0;
+  if (!may_touch(inputs)) return 0;
   std::vector<Contact> found;
   find_contacts(model, inputs, x, w.threads, w.contact, found);
   return add_contacts(found, x, nullptr, w.direction, nullptr).value;

@@ -100,6 +100,25 @@ const Model& MovingBody::rigid_model() {
   return *rigid_;
 }
 
+const Model& MovingBody::model_of_step() {
+  untangled_ = body_.def.solver.untangle && is_tangled(model_, state_.x);
+  return untangled_ ? rigid_model() : model_;
+}
+
+void MovingBody::take_step(const Positions& x, Positions v, double time, std::vector<Contact> contacts,
+                           StepReport report) {
+  OpenWorkspace& w = workspace_.open();
+  w.prepare(model_, inputs_.solver);
+  w.current.x = x;
+  w.current.contacts = std::move(contacts);
+  w.report = std::move(report);
+  if (w.report.failed) return;
+  state_.x = x;
+  state_.v = std::move(v);
+  state_.time = time;
+  state_.memory = {};
+}
+
 const StepReport& MovingBody::step() {
   untangled_ = body_.def.solver.untangle && is_tangled(model_, state_.x);
   if (!untangled_) return supple::step(model_, inputs_, state_, workspace_.open(), *rule_);

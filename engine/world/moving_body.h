@@ -9,6 +9,7 @@
 #include "scene/building/assemble.h"
 #include "scene/building/collision_set.h"
 #include "scene/replay/live_keys.h"
+#include "sim/contact/contact.h"
 #include "sim/model/model_values.h"
 #include "sim/solver/workspace.h"
 #include "world/solvers.h"
@@ -48,6 +49,7 @@ class MovingBody {
 
  private:
   friend class World;
+  friend class Islands;
 
   // Takes over a changed scene and body definition, and recomputes what the change requires.
   void apply(const ChangeCost& cost);
@@ -59,6 +61,13 @@ class MovingBody {
   // (materials/as_rigid_as_possible.h), which unfolds elements that the body's own material would keep folded. A, and
   // with it every direction, stays the same.
   const StepReport& step();
+
+  // These make the prepared step together with other bodies (islands.h). model_of_step: the model that is to be joined,
+  // the as-rigid-as-possible one where step() would take that. take_step: takes over the end of the step, unless the
+  // report says that it failed, and leaves the workspace as a step of the body alone would: x, v: n x 3 in the body's
+  // order; contacts: those that act on the body.
+  const Model& model_of_step();
+  void take_step(const Positions& x, Positions v, double time, std::vector<Contact> contacts, StepReport report);
 
   void switch_handles(double time);
   // Makes the description's handles hold as the state says. Returns false when they held so already.

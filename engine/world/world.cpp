@@ -4,6 +4,7 @@
 #include "base/hash.h"
 #include "base/trace.h"
 #include "sim/solver/step.h"
+#include "world/islands.h"
 
 namespace supple {
 
@@ -15,6 +16,7 @@ struct World::Parts {
   CollisionSet colliders;
   std::vector<Model> models;                        // by body, once they are built
   std::vector<std::unique_ptr<MovingBody>> moving;  // by body, once the world is started
+  std::unique_ptr<Islands> islands;                 // once the world is started
   int frame = -1;                                   // that was entered last
 
   Parts(std::optional<Script> script, SceneDef at_start, std::vector<Body> bodies)
@@ -31,6 +33,8 @@ struct World::Parts {
     for (Body& body : bodies) body.earlier.clear();
   }
   void apply(SceneDef changed, const std::vector<TimedChange>& changes);
+  // Makes the step of an island that was prepared. Returns whether it succeeded.
+  bool step(const std::vector<std::size_t>& island, int substep, const StepWatch& watch);
 };
 
 void World::Parts::apply(SceneDef changed, const std::vector<TimedChange>& changes) {
@@ -79,6 +83,7 @@ void World::start(const Solvers& solvers, Threads* threads) {
         std::make_unique<MovingBody>(parts.scene, parts.bodies[b], parts.models[b], parts.colliders, solvers, threads));
     if (was_played && parts.script) parts.moving[b]->apply(cost_for(parts.bodies[b].def.name, parts.script->changes()));
   }
+  parts.islands = std::make_unique<Islands>(parts.scene, parts.moving, solvers, threads);
 }
 
 std::vector<TimedChange> World::enter(int frame) {
@@ -104,15 +109,27 @@ void World::prepare(int substep) {
   for (const auto& body : parts_->moving) body->prepare_step(parts_->frame, substep);
 }
 
+bool World::Parts::step(const std::vector<std::size_t>& island, int substep, const StepWatch& watch) {
+  for (const std::size_t b : island) {
+    if (watch.prepared) watch.prepared(b, substep);
+  }
+  if (island.size() > 1) {
+    const int failed = islands->step(island);
+    for (const std::size_t b : island) {
+      if (watch.made && (failed < 0 || b == std::size_t(failed))) watch.made(b, substep);
+    }
+    return failed < 0;
+  }
+  const bool failed = moving[island.front()]->step().failed;
+  if (watch.made) watch.made(island.front(), substep);
+  return !failed;
+}
+
 bool World::step(const StepWatch& watch) {
   for (int substep = 0; substep < parts_->scene.substeps; ++substep) {
-    for (std::size_t b = 0; b < size(); ++b) {
-      MovingBody& body = *parts_->moving[b];
-      body.prepare_step(parts_->frame, substep);
-      if (watch.prepared) watch.prepared(b, substep);
-      const bool failed = body.step().failed;
-      if (watch.made) watch.made(b, substep);
-      if (failed) return false;
+    prepare(substep);
+    for (const std::vector<std::size_t>& island : parts_->islands->find()) {
+      if (!parts_->step(island, substep, watch)) return false;
     }
   }
   return true;

@@ -9,8 +9,8 @@
 //     if (!world.step()) break;
 //   }
 //
-// Bodies do not touch each other, and nothing in a step of one depends on another. So a world has no groups of bodies:
-// in each substep, one body after the other makes its own step, in the order of the scene.
+// In each substep, bodies that may touch each other make their step together (islands.h); each of the others makes its
+// own step, in the order of the scene.
 //
 // Not here: what is recorded of a world, and what is drawn of it (film/).
 #pragma once

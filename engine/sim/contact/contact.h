@@ -1,8 +1,8 @@
-// Defines contact of one body with rigid colliders (Liu et al. 2017, section 4.3): it adds energies to g and nothing to
-// A. Each touching point of the body, which is a vertex or lies between vertices (contact_stencil.h), has the energy
-// k_c min(0, n . u - offset)^2 of a plane that was found when the iteration began. Not here: how contacts are found
-// (find_contacts.h), how directions take them into account (contact_direction.h). Nothing finds contacts of bodies with
-// each other yet: where two are in the same place, they pass through each other (scene/building/body_meetings.h).
+// Defines contact of bodies with rigid colliders and with each other (Liu et al. 2017, section 4.3): it adds energies
+// to g and nothing to A. Each touching point of a body, which is a vertex or lies between vertices (contact_stencil.h),
+// has the energy k_c min(0, n . u - offset)^2 of a plane that was found when the iteration began. Not here: how
+// contacts are found (find_contacts.h, surface_contacts.h), how directions take them into account
+// (contact_direction.h).
 //
 // The planes are one-sided: a point that leaves is released at once, even in the middle of a line search, and the
 // energy is a continuous function. A point that starts a step below the surface is pushed out no faster than push_out:
@@ -18,7 +18,8 @@ namespace supple {
 
 // Says what a contact's point touches.
 struct OtherSide {
-  std::int32_t collider = -1;  // -1: a place of a surface, whose vertices are in the contact's stencil
+  std::int32_t collider = -1;  // -1: a place of a part's surface, whose vertices are in the contact's stencil
+  std::int32_t part = -1;      // -1: a collider
   bool is_collider() const { return collider >= 0; }
   auto operator<=>(const OtherSide&) const = default;
 };

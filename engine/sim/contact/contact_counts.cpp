@@ -8,12 +8,14 @@
 namespace supple {
 namespace {
 
-// Returns the XXH64 of all pairs of point and collider that touch.
+// Returns the XXH64 of all pairs of a point and what it touches.
 std::uint64_t set_of(const std::vector<Contact>& contacts) {
   std::uint64_t hash = 1;
   for (const Contact& contact : contacts) {
     if (contact.depth <= 0) continue;
-    const std::int32_t pair[] = {contact.number, contact.other.collider};
+    // Parts are numbered below the colliders.
+    const std::int32_t other = contact.other.is_collider() ? contact.other.collider : -1 - contact.other.part;
+    const std::int32_t pair[] = {contact.number, other};
     hash = hash_bytes(pair, sizeof pair, hash);
   }
   return hash;

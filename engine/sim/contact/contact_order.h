@@ -1,4 +1,5 @@
-// Defines the order of the contacts of one body in a list: by what is touched, then by number of the point.
+// Defines the order of contacts in a list: by what is touched, other parts before colliders, then by number of the
+// point.
 #pragma once
 
 #include "sim/contact/contact.h"

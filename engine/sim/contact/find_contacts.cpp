@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "sim/contact/lagged_force.h"
 #include "sim/contact/usual_depth.h"
 #include "sim/contact/vertex_search.h"
 #include "sim/contact/way_out.h"
@@ -46,18 +47,9 @@ void leave(const ColliderView& view, const Way& way, const Vec3& way_out, double
   contact.depth = std::max(0.0, contact.offset - contact.normal.dot(way.x));
 }
 
-// Returns the normal force from which friction follows (Li et al. 2020, section 5.3, lag it too). It is the force on
-// the vertex when the step began or, where the vertex arrives or comes out of a deep overlap, at most the force that
-// stops it alone. The overlap of an iterate would give a force that is many times too large; it only reduces friction,
-// smoothly, on a vertex that is leaving. With a jump at the surface, vertices would touch and leave without end.
-double lagged_force(const Contact& contact, double depth_before, double depth_unhindered, double mass_over_h2) {
-  const double pressing = 2 * contact.stiffness * contact.depth;
-  if (depth_before > 0) return 2 * std::min(contact.stiffness * depth_before, pressing);
-  return std::min(mass_over_h2 * std::max(0.0, depth_unhindered), pressing);
-}
-
 // Finds a common way out where the body starts so deep inside a collider that it cannot leave it in this step.
 void find_way_out(const Model& model, const StepInputs& inputs, ContactWork& work) {
+  if (!has_colliders(inputs)) return;
   const std::vector<Collider>& colliders = *inputs.colliders;
   const double push_out = push_out_of(model, inputs, model.size);
   const VertexSearch search{model, inputs, work.start, work};
@@ -111,7 +103,7 @@ void measure_moves(const Model& model, const Positions& x, const ContactWork& wo
 
 void begin_contacts(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& y,
                     Threads* threads, ContactWork& work) {
-  const std::size_t colliders = inputs.colliders->size();
+  const std::size_t colliders = collider_count(inputs);
   const int groups = vertex_groups(model);
   SUPPLE_CHECK(inputs.collider_motions.size(), ==, colliders);
   forget_counts(work);
@@ -120,15 +112,16 @@ void begin_contacts(const Model& model, const StepInputs& inputs, const Position
   work.begin = &q;
   work.start = q.topRows(model.free);
   work.clearance.assign(colliders * model.free, unknown);
-  remember_vertices(model, *inputs.colliders, work);
+  if (colliders > 0) remember_vertices(model, *inputs.colliders, work);
   work.group_distance.resize(colliders * groups);
   work.collider_move.resize(colliders * groups);
   measure_moves(model, y, work, work.group_free_move);
   work.by_chunk.resize((groups + vertex_groups_a_chunk - 1) / vertex_groups_a_chunk);
   work.traits.clear();
-  for (const Collider& collider : *inputs.colliders)
-    work.traits.push_back(
-        {collider.shape.certainty(), collider.shape.half_thickness(), collider.shape.usual_half_thickness()});
+  for (std::size_t c = 0; c < colliders; ++c) {
+    const Shape& shape = (*inputs.colliders)[c].shape;
+    work.traits.push_back({shape.certainty(), shape.half_thickness(), shape.usual_half_thickness()});
+  }
   for (int group = 0; group < groups; ++group) {
     const int first = group * vertices_a_group, count = std::min(model.free - first, vertices_a_group);
     const Vec3 center = work.start.middleRows(first, count).colwise().mean().transpose();
@@ -151,6 +144,7 @@ void begin_contacts(const Model& model, const StepInputs& inputs, const Position
       begin_face_points(model, collider, view, q, y, threads, work.faces[c]);
   }
   find_way_out(model, inputs, work);
+  begin_surfaces(model, inputs, q, y, work.surfaces);
 }
 
 namespace {
@@ -254,9 +248,10 @@ class Planes {
 void find_contacts(const Model& model, const StepInputs& inputs, const Positions& x, Threads* threads,
                    ContactWork& work, std::vector<Contact>& found) {
   found.clear();
+  find_surface_contacts(model, inputs, *work.begin, *work.prediction, x, threads, work.surfaces, found);
   measure_moves(model, x, work, work.group_move);
   const int groups = vertex_groups(model);
-  for (std::size_t c = 0; c < inputs.colliders->size(); ++c) {
+  for (std::size_t c = 0; c < collider_count(inputs); ++c) {
     const VertexSearch search{model, inputs, x, work};
     const ColliderView view = search.view(c);
     const Planes planes(model, inputs, x, view, c, work);

@@ -1,6 +1,7 @@
 // Finds where a body's vertices, and the points of its edges and faces that need it (face_points.h), meet rigid
 // colliders on their path through a step, and the planes that hold them: once for each iterate, with an exact test of
-// only those that may have come near. Impacts are found in first_impact.cpp, and contacts counted in
+// only those that may have come near. The parts of a joined model meet each other as well (surface_contacts.h). Impacts
+// are found in first_impact.cpp, and contacts counted in
 // contact_counts.cpp. Not here: the energies of these planes (contact.h).
 #pragma once
 
@@ -11,6 +12,7 @@
 #include "sim/contact/collider_view.h"
 #include "sim/contact/contact.h"
 #include "sim/contact/face_points.h"
+#include "sim/contact/surface_contacts.h"
 #include "sim/model/model.h"
 #include "sim/model/report.h"
 
@@ -38,6 +40,7 @@ struct ContactWork {
   std::vector<Vec3> way_out;             // by collider: the way out of it; zero: the body does not start deep inside
   Positions start;                       // q of the free vertices [m]
   std::vector<FacePoints> faces;         // by collider
+  SurfaceWork surfaces;                  // for contacts of the model's parts with each other
   // How deep the vertices that touch are pressed into colliders when a film begins, colliders x free; empty in every
   // other step, and where nothing touches (solver/first_forces.h) [m].
   std::vector<double> pressed_at_first;
@@ -51,25 +54,25 @@ struct ContactWork {
 void begin_contacts(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& y,
                     Threads* threads, ContactWork& work);
 
-// Finds the contacts at x, on the path from q, ordered by collider and number of the point.
+// Finds the contacts at x, on the path from q, ordered by what is touched and number of the point (contact_order.h).
 void find_contacts(const Model& model, const StepInputs& inputs, const Positions& x, Threads* threads,
                    ContactWork& work, std::vector<Contact>& found);
 
-// Holds the share of a step after which a point is deeper in a collider than it may be, and that collider.
+// Holds the share of a step after which a point of a part is deeper below a surface than it may be.
 struct Impact {
-  double share = 1;
-  int collider = -1;  // -1: there is none
+  double share = 1;   // 1: there is no impact
+  int collider = -1;  // -1: there is none, or the surface is that of another part
 };
 
-// Finds how much of the way from q to x the bodies can go before a point is deeper than usual (usual_depth.h) below a
-// surface that it enters on the way, or that comes to it.
-Impact first_impact(const Model& model, const StepInputs& inputs, const Positions& x, ContactWork& work);
+// Finds how much of the way from q to x each part can go before a point of it is deeper than usual (usual_depth.h)
+// below a surface that it enters on the way, or that comes to it. Returns impacts by part.
+std::vector<Impact> first_impacts(const Model& model, const StepInputs& inputs, const Positions& x, ContactWork& work);
 
 // Returns the motion of a collider in the rest of a step, after a share of it.
 Eigen::Isometry3d motion_after(const StepInputs& inputs, int collider, double share);
 
-// Returns the collider that most points touch; -1 when nothing touches.
-int most_touched(const std::vector<Contact>& contacts, std::size_t colliders);
+// Returns the collider that most points of a part touch; -1 when nothing touches.
+int most_touched(const Model& model, const Part& part, const std::vector<Contact>& contacts, std::size_t colliders);
 
 // Counts what changed between the contacts of two iterates, the later of which has just been accepted.
 void count_contacts(const std::vector<Contact>& before, const std::vector<Contact>& now, ContactWork& work);

@@ -1,4 +1,4 @@
-// Finds where a body meets colliders first, and what it touches most.
+// Finds where bodies meet colliders and each other first, and what they touch most.
 #include "sim/contact/usual_depth.h"
 #include "sim/contact/vertex_search.h"
 
@@ -28,10 +28,11 @@ double share_to_impact(const ColliderView& view, const Way& way, double field, d
 
 }  // namespace
 
-Impact first_impact(const Model& model, const StepInputs& inputs, const Positions& x, ContactWork& work) {
+std::vector<Impact> first_impacts(const Model& model, const StepInputs& inputs, const Positions& x, ContactWork& work) {
   measure_moves(model, x, work, work.group_move);
-  Impact first;
-  for (std::size_t c = 0; c < inputs.colliders->size(); ++c) {
+  std::vector<Impact> first(model.parts.size());
+  const auto impact_of = [&](std::int32_t v) -> Impact& { return first[model.part_number(v)]; };
+  for (std::size_t c = 0; c < collider_count(inputs); ++c) {
     const VertexSearch search{model, inputs, x, work};
     const ColliderView view = search.view(c);
     const auto allowed = [&](std::int32_t v) {
@@ -39,17 +40,24 @@ Impact first_impact(const Model& model, const StepInputs& inputs, const Position
     };
     for (int group = 0; group < vertex_groups(model); ++group) {
       search.near(c, view, group, [&](int v, const Way& way, double field, double) {
-        const double share = share_to_impact(view, way, field, allowed(v), first.share, search.memory(c, v));
-        if (share < first.share) first = {share, static_cast<int>(c)};
+        Impact& impact = impact_of(v);
+        const double share = share_to_impact(view, way, field, allowed(v), impact.share, search.memory(c, v));
+        if (share < impact.share) impact = {share, static_cast<int>(c)};
       });
     }
     for (FacePoint& face : work.faces[c].points) {
       const Way way = view.way(face.stencil.at(*work.begin), face.stencil.at(x));
       if (way.length < view.clear(face.field)) continue;
-      const double share =
-          share_to_impact(view, way, face.field, allowed(face.stencil.vertex[0]), first.share, face.near);
-      if (share < first.share) first = {share, static_cast<int>(c)};
+      const std::int32_t v = face.stencil.vertex[0];
+      const double share = share_to_impact(view, way, face.field, allowed(v), impact_of(v).share, face.near);
+      if (share < impact_of(v).share) impact_of(v) = {share, static_cast<int>(c)};
     }
+  }
+  std::vector<double> shares;
+  for (const Impact& impact : first) shares.push_back(impact.share);
+  stop_at_surfaces(model, inputs, *work.begin, x, work.surfaces, shares);
+  for (std::size_t p = 0; p < first.size(); ++p) {
+    if (shares[p] < first[p].share) first[p] = {shares[p], -1};
   }
   return first;
 }
@@ -58,10 +66,11 @@ Eigen::Isometry3d motion_after(const StepInputs& inputs, int collider, double sh
   return ColliderView((*inputs.colliders)[collider], inputs.collider_motions[collider], {}).motion_after(share);
 }
 
-int most_touched(const std::vector<Contact>& contacts, std::size_t colliders) {
+int most_touched(const Model& model, const Part& part, const std::vector<Contact>& contacts, std::size_t colliders) {
   std::vector<int> touching(colliders, 0);
   for (const Contact& contact : contacts) {
-    if (contact.other.is_collider()) touching[contact.other.collider] += contact.depth > 0;
+    if (contact.other.is_collider() && &model.part_of(contact.stencil.vertex[0]) == &part)
+      touching[contact.other.collider] += contact.depth > 0;
   }
   const auto most = std::max_element(touching.begin(), touching.end());
   return most == touching.end() || *most == 0 ? -1 : static_cast<int>(most - touching.begin());

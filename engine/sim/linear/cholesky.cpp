@@ -91,6 +91,7 @@ void CholeskyFactor::analyze(const Eigen::SparseMatrix<double>& matrix) {
   outer_.assign(matrix.outerIndexPtr(), matrix.outerIndexPtr() + size_ + 1);
   inner_.assign(matrix.innerIndexPtr(), matrix.innerIndexPtr() + matrix.nonZeros());
   elimination_ = Elimination::of(matrix);
+  operations_ = elimination_.operations();
   first_row_.push_back(0);
   first_panel_.push_back(0);
   std::int64_t value_count = 0;
@@ -133,6 +134,42 @@ void CholeskyFactor::factorize(const Eigen::SparseMatrix<double>& matrix, Precis
   Room room;
   if (!renew(matrix, room))
     throw RunError(fmt::format("the stiffness matrix is not positive definite (unknown {})", room.failed_));
+}
+
+namespace {
+
+// Appends numbers, each raised by an amount.
+template <class List, class Number>
+void append(List& list, const List& more, Number raise, std::size_t skip = 0) {
+  for (std::size_t i = skip; i < more.size(); ++i)
+    list.push_back(static_cast<typename List::value_type>(more[i] + raise));
+}
+
+}  // namespace
+
+CholeskyFactor CholeskyFactor::block_diagonal(const std::vector<const CholeskyFactor*>& blocks) {
+  CholeskyFactor all;
+  all.first_panel_ = {0};
+  all.first_row_ = all.first_value_ = {0};
+  if (!blocks.empty()) all.precision_ = blocks.front()->precision_;
+  for (const CholeskyFactor* block : blocks) {
+    SUPPLE_CHECK(int(block->precision_), ==, int(all.precision_));
+    const auto panels = static_cast<std::int32_t>(all.width_.size());
+    const auto nodes = static_cast<std::int32_t>(all.first_panel_.size()) - 1;
+    append(all.panel_of_, block->panel_of_, panels);
+    append(all.node_of_, block->node_of_, nodes);
+    append(all.first_panel_, block->first_panel_, panels, 1);
+    append(all.first_column_, block->first_column_, all.size_);
+    append(all.width_, block->width_, 0);
+    append(all.first_row_, block->first_row_, all.rows_.size(), 1);
+    append(all.rows_, block->rows_, all.size_);
+    append(all.first_value_, block->first_value_, all.first_value_.back(), 1);
+    all.single_.insert(all.single_.end(), block->single_.begin(), block->single_.end());
+    all.double_.insert(all.double_.end(), block->double_.begin(), block->double_.end());
+    all.operations_ += block->operations_;
+    all.size_ += block->size_;
+  }
+  return all;
 }
 
 CholeskyFactor::Room::Room() = default;

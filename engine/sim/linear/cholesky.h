@@ -43,6 +43,10 @@ class CholeskyFactor {
   CholeskyFactor() = default;
   CholeskyFactor(const Eigen::SparseMatrix<double>& matrix, Precision precision) { factorize(matrix, precision); }
 
+  // Returns the factor of the block-diagonal matrix whose blocks, in this order, have these factors; no number is
+  // computed anew. The factors must have one precision. The result solves, and is not renewed.
+  static CholeskyFactor block_diagonal(const std::vector<const CholeskyFactor*>& blocks);
+
   // Factors a lower triangle (compressed, nothing stored above the diagonal) in the order given. For a matrix with the
   // pattern and the precision of the last one, only the numbers are computed again. Throws RunError with the number of
   // the column when the matrix is not positive definite; the factor then solves nothing.
@@ -69,7 +73,7 @@ class CholeskyFactor {
   std::int64_t stored_numbers() const { return static_cast<std::int64_t>(single_.size() + double_.size()); }
 
   // Counts the multiplications and additions of one factorisation.
-  double operations() const { return elimination_.operations(); }
+  double operations() const { return operations_; }
 
   // Computes x = A^-1 b for b and x with `size` rows, interleaved. scratch: 4 * size doubles.
   void solve(const double* b, double* x, double* scratch) const;
@@ -94,6 +98,7 @@ class CholeskyFactor {
 
   int size_ = 0;
   Precision precision_ = Precision::double_precision;
+  double operations_ = 0;
   std::vector<int> outer_, inner_;  // the pattern that was analysed
   Elimination elimination_;
   std::vector<std::int32_t> first_panel_;  // by supernode; one more entry than supernodes

@@ -27,22 +27,26 @@ double spring_energy(const Model& model, const Positions& targets, const Positio
   return sum;
 }
 
-// Returns the work of contacts with colliders over a step from q to the current iterate [J]: the work of all forces
-// along the way of the collider, and of friction along the way on the collider. The normal force on a collider that
-// stands does no work, although a vertex that comes down on it, as those of a rolling ball do, has a way; only a vertex
-// that is pushed out gains energy.
+// Returns the work of contacts over a step from q to the current iterate [J]. With a collider it is the work of all
+// forces along the way of the collider, and of friction along the way on the collider. The normal force on a collider
+// that stands does no work, although a vertex that comes down on it, as those of a rolling ball do, has a way; only a
+// vertex that is pushed out gains energy. The forces of another body do work along the whole way.
 double work_of_contacts(const StepInputs& inputs, const Positions& q, OpenWorkspace& w) {
   const Positions& x = w.current.x;
   std::vector<Contact> one(1);
   double work = 0;
   for (const Contact& contact : w.current.contacts) {
-    if (!contact.other.is_collider()) continue;
     const ContactStencil& stencil = contact.stencil;
     one.front() = contact;
     for (int k = 0; k < stencil.free; ++k) w.scratch.row(stencil.vertex[k]).setZero();
     add_contacts(one, x, nullptr, w.direction, &w.scratch, -1);
     Vec3 force = Vec3::Zero();
     for (int k = 0; k < stencil.free; ++k) force += w.scratch.row(stencil.vertex[k]).transpose();
+    if (!contact.other.is_collider()) {
+      for (int k = 0; k < stencil.free; ++k)
+        work += w.scratch.row(stencil.vertex[k]).dot(x.row(stencil.vertex[k]) - q.row(stencil.vertex[k]));
+      continue;
+    }
     const Vec3 from = stencil.at(q), carried = motion_after(inputs, contact.other.collider, 0) * from - from;
     const Vec3 slip = stencil.at(x) - from - carried;
     const double pressing = force.dot(contact.normal), away = slip.dot(contact.normal);
@@ -98,7 +102,7 @@ void EnergyBudget::before_step(const Model& model, const StepInputs& inputs, con
 void EnergyBudget::after_step(const Model& model, const StepInputs& inputs, const Positions& q, const State& state,
                               OpenWorkspace& w) {
   if (model.free < model.vertices) add_to_budget(work_of_handles(model, q, w));
-  if (has_colliders(inputs)) add_to_budget(work_of_contacts(inputs, q, w));
+  if (!w.current.contacts.empty()) add_to_budget(work_of_contacts(inputs, q, w));
   set_motion(model, state, inputs.gravity, parts_);
   parts_.elastic = elastic_energy(model, w, state.x);
   parts_.springs = spring_energy(model, inputs.targets, state.x);

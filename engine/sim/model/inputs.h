@@ -1,4 +1,4 @@
-// Defines the inputs of one step of one body: gravity, targets of handles, colliders and their motions, and the
+// Defines the inputs of one step: gravity, targets of handles, colliders and their motions, and the
 // settings of the solver, which may change from step to step.
 #pragma once
 
@@ -91,7 +91,13 @@ struct SolverSettings {
   ChebyshevSettings chebyshev;
 };
 
-// Holds all that comes from outside for one step of one body.
+// Says that points of one part of a model touch the surface of another (contact/surface_contacts.h).
+struct Meeting {
+  std::int32_t points = 0, surface = 0;  // parts; the second one is solid
+  double friction = 0;                   // coefficient of Coulomb's law between the two
+};
+
+// Holds all that comes from outside for one step of one body, or of several that are joined in a model.
 struct StepInputs {
   Vec3 gravity = Vec3(0, -9.81, 0);  // [m/s^2]
   Positions targets;                 // at the end of the step, by Model::handled [m]
@@ -99,11 +105,17 @@ struct StepInputs {
   SolverSettings solver;
   const std::vector<Collider>* colliders = nullptr;   // null or empty: nothing to touch, and nothing is paid for it
   std::vector<ColliderMotion> collider_motions = {};  // motion of each collider over the step
+  // What parts of the model touch each other, ordered by surface; empty: none do, and nothing is paid for it.
+  std::vector<Meeting> meetings = {};
   std::optional<BudgetCuts> repeated_cuts = {};  // cuts of an earlier run, in place of the clock, for the same bits
 };
 
-inline bool has_colliders(const StepInputs& inputs) {
-  return inputs.colliders != nullptr && !inputs.colliders->empty();
+inline std::size_t collider_count(const StepInputs& inputs) {
+  return inputs.colliders == nullptr ? 0 : inputs.colliders->size();
 }
+inline bool has_colliders(const StepInputs& inputs) { return collider_count(inputs) > 0; }
+
+// Tells whether contacts are looked for in a step.
+inline bool may_touch(const StepInputs& inputs) { return has_colliders(inputs) || !inputs.meetings.empty(); }
 
 }  // namespace supple

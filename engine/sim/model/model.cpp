@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 
 #include "base/error.h"
 #include "sim/model/model_values.h"
@@ -136,18 +135,19 @@ ElementChunk Model::chunk(int index) const {
           field.data() + c.first_field};
 }
 
-const Part& Model::part_of(std::int32_t vertex) const {
-  const auto has = [vertex](const Part& part) {
-    return (vertex >= part.first_free && vertex < part.first_free + part.free) ||
-           (vertex >= part.first_held && vertex < part.first_held + part.held);
+std::size_t Model::part_number(std::int32_t vertex) const {
+  if (parts.size() == 1) return 0;
+  const bool is_free = vertex < free;
+  const auto begins_after = [is_free](std::int32_t v, const Part& part) {
+    return v < (is_free ? part.first_free : part.first_held);
   };
-  return parts.size() == 1 ? parts.front() : *std::find_if(parts.begin(), parts.end(), has);
+  const auto after = std::upper_bound(parts.begin(), parts.end(), vertex, begins_after);
+  return static_cast<std::size_t>(std::prev(after) - parts.begin());
 }
 
 Model build_model(const BodyDescription& body) {
-  static std::atomic<std::uint64_t> structures{0};
   Model model;
-  model.structure = ++structures;
+  model.structure = new_structure();
   model.name = body.name;
   model.vertices = static_cast<int>(body.mesh.rest.rows());
   for (const int region : body.mesh.regions) SUPPLE_CHECK(std::size_t(region), <, body.materials.size());
@@ -171,7 +171,8 @@ Model build_model(const BodyDescription& body) {
                       .free = model.free,
                       .first_held = model.free,
                       .held = model.vertices - model.free,
-                      .size = size}};
+                      .size = size,
+                      .solid = body.mesh.tets.rows() > 0}};
   model.size = size;
   number_surface(model, body.surface.rows() > 0 ? body.surface : boundary_faces(body.mesh.tets));
   for (std::size_t h = 0; h < body.handles.size(); ++h) {

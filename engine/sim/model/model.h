@@ -67,6 +67,7 @@ struct Part {
   std::int32_t first_held = 0, held = 0;  // its vertices that hard handles hold
   double size = 0;                        // diagonal of the rest bounding box [m]
   double mass = 0;                        // of the free vertices [kg]
+  bool solid = false;                     // has tetrahedra, and so an inside
   bool floats = false;                    // nothing holds it: A has its translations as known eigenvectors
 };
 
@@ -135,7 +136,8 @@ struct Model : System {
   double drag = 0;  // beta/h
 
   ElementChunk chunk(int index) const;
-  const Part& part_of(std::int32_t vertex) const;
+  std::size_t part_number(std::int32_t vertex) const;  // of the part that a vertex belongs to
+  const Part& part_of(std::int32_t vertex) const { return parts[part_number(vertex)]; }
 };
 
 // Throws RunError (with the body's name) when A cannot be factored, and InputError when the description contradicts

@@ -112,6 +112,16 @@ double diagonal_part(const Model& model, std::int32_t v) {
 
 }  // namespace
 
+std::uint64_t new_structure() {
+  static std::atomic<std::uint64_t> structures{0};
+  return ++structures;
+}
+
+std::uint64_t new_values() {
+  static std::atomic<std::uint64_t> values{0};
+  return ++values;
+}
+
 ModelValues::ModelValues(const Model& model, const BodyDescription& body)
     : elements_(element_records(body.mesh, body.springs)) {
   sort_elements(model, elements_);
@@ -181,8 +191,7 @@ Eigen::SparseMatrix<double> ModelValues::system_matrix(Model& model, double damp
 }
 
 void ModelValues::set(Model& model, const BodyDescription& body) {
-  static std::atomic<std::uint64_t> settings{0};
-  model.id = ++settings;
+  model.id = new_values();
   model.time_step = body.time_step;
   model.integrator = body.integrator;
   model.scheme = scheme_of(body.integrator);

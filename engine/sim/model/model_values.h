@@ -7,6 +7,10 @@
 
 namespace supple {
 
+// These return names that no structure and no values of a model have had yet (Model::structure, System::id).
+std::uint64_t new_structure();
+std::uint64_t new_values();
+
 class ModelValues {
  public:
   // Takes a model whose vertices are numbered. Sorts the elements by kind and region, then by first vertex, with

@@ -46,7 +46,7 @@ void begin_step(const Model& model, const StepInputs& inputs, const State& state
   if (needs_start(model)) w.start_copy = state.x;
   w.current.contacts.clear();
   w.trial.contacts.clear();
-  if (has_colliders(inputs)) {
+  if (may_touch(inputs)) {
     const TimedPhase timed(w.clock, Phase::collide, "begin contacts");
     begin_contacts(model, inputs, state.x, w.y, w.threads, w.contact);
   }

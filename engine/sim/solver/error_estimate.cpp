@@ -52,7 +52,7 @@ namespace {
 // ends the first iterate before y, where g is not evaluated; but y lies deep in the collider, and equation 12 counts
 // from y. The energy of the elements at y is left out.
 double below_prediction(const Model& model, const StepInputs& inputs, OpenWorkspace& w) {
-  if (!has_colliders(inputs) || w.report.failed) return 0;
+  if (!may_touch(inputs) || w.report.failed) return 0;
   w.trial.x.topRows(model.free) = w.y.topRows(model.free);
   find_contacts_of(model, inputs, w, w.trial);
   return contact_energy(w.trial.contacts, w.trial.x) - w.current.g;
@@ -80,7 +80,7 @@ double motion_estimate(const Model& model, const StepInputs& inputs, const Posit
   if (report.failed || report.decrement <= 0) return 0;
   Positions& d = w.trial.gradient;
   d = w.direction;
-  if (inputs.solver.levels < 2 && !w.second_level_serves && w.second_level.begin(model, w.current.x)) {
+  if (model.parts.size() == 1 && inputs.solver.levels < 2 && !w.second_level_serves && w.second_level.begin(model, w.current.x)) {
     w.scratch = -w.current.gradient;
     w.second_level.add_to(model, w.scratch, w.threads, d);
   }

@@ -14,11 +14,11 @@ void set_first_iterate(StepContext& c) {
   if (leaves_prediction(c)) fit_handles_and_turning(c);
   if (handles_turn_far(c)) turn_with_handles(c);
   if (is_worse_than_prediction(c)) return_to_prediction(c);
-  if (const Impact impact = find_impact(c); impact.collider >= 0) stop_at_impact(c, impact);
+  if (const std::vector<Impact> impacts = find_impacts(c); !impacts.empty()) stop_at_impacts(c, impacts);
 
   const bool is_evaluated = !w.report.objective.empty();
   if (!is_evaluated) evaluate_start(c.model, c.inputs, w);
-  const bool touches = has_colliders(c.inputs) && w.contact.counts.touching > 0;
+  const bool touches = may_touch(c.inputs) && w.contact.counts.touching > 0;
   const double from = c.at_prediction.value_or(w.current.g);
 
   if (touches || is_still(c)) start_without_fall(c);

@@ -26,9 +26,11 @@ void set_staying(const StepContext& c) {
   Positions& x = w.trial.x;
   x.topRows(model.free) = q.topRows(model.free);
   if (has_colliders(c.inputs)) {
-    const int collider = most_touched(w.current.contacts, c.inputs.colliders->size());
-    if (collider >= 0 && c.inputs.collider_motions[collider].moves())
-      move_rigidly(model, motion_after(c.inputs, collider, 0), x);
+    for (const Part& part : model.parts) {
+      const int collider = most_touched(model, part, w.current.contacts, c.inputs.colliders->size());
+      if (collider >= 0 && c.inputs.collider_motions[collider].moves())
+        move_rigidly(part, motion_after(c.inputs, collider, 0), x);
+    }
     return;
   }
   for (const Part& part : model.parts) {

@@ -98,7 +98,7 @@ void accept(const Model& model, const StepInputs& inputs, OpenWorkspace& w, Sear
             Change change, IterationRecord& record) {
   const TimedPhase timed(w.clock, Phase::lbfgs, "accept");
   rule.accepted(model, inputs, w);
-  if (has_colliders(inputs)) change.value += take_contacts(w);
+  if (may_touch(inputs)) change.value += take_contacts(w);
   const double learned = w.current.g - before;
   w.trial.g = w.current.g + change.value;
   std::swap(w.current, w.trial);

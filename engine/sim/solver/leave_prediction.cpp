@@ -110,7 +110,7 @@ void turn_with_handles(StepContext& c) {
     std::swap(w.current, w.trial);
     w.report.objective.back() = w.current.g;
     forget_counts(w.contact);
-    if (has_colliders(c.inputs)) count_contacts(w.trial.contacts, w.current.contacts, w.contact);
+    if (may_touch(c.inputs)) count_contacts(w.trial.contacts, w.current.contacts, w.contact);
   }
 }
 

@@ -25,7 +25,7 @@ bool decreases_by_slope(const Change& change, double slope, double armijo, doubl
 // make the point worse than where the search began; the search could not know of them. Friction, whose normal forces
 // are lagged, does not count here.
 bool contacts_accept(const Model& model, const StepInputs& inputs, OpenWorkspace& w, double change, double noise) {
-  if (!has_colliders(inputs)) return true;
+  if (!may_touch(inputs)) return true;
   find_contacts_of(model, inputs, w, w.trial);
   const double jump = contact_energy(w.trial.contacts, w.trial.x) - contact_energy(w.current.contacts, w.trial.x);
   return jump <= 0 || change + jump <= noise;

@@ -73,7 +73,7 @@ void prepare_matrix(const Model& model, const SolverSettings& solver, const Stat
 void put_in_force(const Model& model, const StepInputs& inputs, const System& system, OpenWorkspace& w) {
   w.system = w.correction.matrix = &system;
   w.turned_hessian_serves = false;
-  if (has_colliders(inputs)) begin_corrections(model, w.correction);
+  if (may_touch(inputs)) begin_corrections(model, w.correction);
 }
 
 void choose_matrix(const Model& model, const StepInputs& inputs, const State& state, OpenWorkspace& w) {

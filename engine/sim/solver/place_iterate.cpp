@@ -3,7 +3,7 @@
 namespace supple {
 
 void find_contacts_of(const Model& model, const StepInputs& inputs, OpenWorkspace& w, Iterate& iterate) {
-  if (!has_colliders(inputs)) return;
+  if (!may_touch(inputs)) return;
   const TimedPhase timed(w.clock, Phase::collide, "find contacts");
   find_contacts(model, inputs, iterate.x, w.threads, w.contact, iterate.contacts);
 }
@@ -13,13 +13,13 @@ void set_trial(const Model& model, OpenWorkspace& w, double alpha) {
   if (w.is_bowed) w.trial.x.topRows(model.free) += alpha * alpha * w.bow;
 }
 
-void move_rigidly(const Model& model, const Eigen::Isometry3d& motion, Positions& x) {
-  for (int v = 0; v < model.free; ++v) x.row(v) = (motion * Vec3(x.row(v))).transpose();
+void move_rigidly(const Part& part, const Eigen::Isometry3d& motion, Positions& x) {
+  for (int v = part.first_free; v < part.first_free + part.free; ++v) x.row(v) = (motion * Vec3(x.row(v))).transpose();
 }
 
 void evaluate_start(const Model& model, const StepInputs& inputs, OpenWorkspace& w) {
   const TimedPhase timed(w.clock, Phase::evaluate, "evaluate start");
-  if (has_colliders(inputs)) {
+  if (may_touch(inputs)) {
     w.trial.contacts.swap(w.current.contacts);
     find_contacts_of(model, inputs, w, w.current);
     count_contacts(w.trial.contacts, w.current.contacts, w.contact);

@@ -15,8 +15,8 @@ void evaluate_start(const Model& model, const StepInputs& inputs, OpenWorkspace&
 // Drops what was counted and noted of a first iterate that was evaluated but from which the step does not start.
 void forget_start(OpenWorkspace& workspace);
 
-// Moves the free vertices by a rigid motion.
-void move_rigidly(const Model& model, const Eigen::Isometry3d& motion, Positions& x);
+// Moves the free vertices of a part by a rigid motion.
+void move_rigidly(const Part& part, const Eigen::Isometry3d& motion, Positions& x);
 
 // Sets workspace.trial.x = x + alpha d for the free vertices, bent by the search's arc where it has one; handled ones
 // stay at their targets.

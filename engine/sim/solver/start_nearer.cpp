@@ -32,7 +32,7 @@ void start_from_trial_below(double share, const StepContext& c) {
   if (!(w.trial.g - rubbed < share * given)) return;
   std::swap(w.current, w.trial);
   w.report.objective.back() = w.current.g;
-  if (!has_colliders(c.inputs)) return;
+  if (!may_touch(c.inputs)) return;
   forget_counts(w.contact);
   count_contacts(w.trial.contacts, w.current.contacts, w.contact);
 }

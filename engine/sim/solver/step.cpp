@@ -49,7 +49,7 @@ void set_velocity(const Model& model, const Positions& x, State& state) {
 }
 
 void report_contacts(const StepInputs& inputs, OpenWorkspace& w) {
-  w.report.collider_forces.resize(inputs.colliders->size(), Vec3::Zero());
+  w.report.collider_forces.resize(collider_count(inputs), Vec3::Zero());
   add_forces(w.current.contacts, w.current.x, w.report.collider_forces);
   w.report.contacts = w.contact.counts;
   Positions& force = w.scratch;
@@ -135,7 +135,7 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   zone.next("end step");
   if (!report.failed && !w.current.x.allFinite()) fail(model, w, "step", std::numeric_limits<double>::quiet_NaN());
   if (!report.failed) take_answer(c, state);
-  if (has_colliders(inputs)) report_contacts(inputs, w);
+  if (may_touch(inputs)) report_contacts(inputs, w);
   report_times(w);
   return report;
 }

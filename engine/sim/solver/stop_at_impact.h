@@ -1,19 +1,19 @@
 // Stops the first iterate at an impact, because far below a surface the step would start from torn or inverted
-// elements, or beyond the collider. This costs nothing without colliders. With them, each step pays a search along the
-// ways of the vertices, and two evaluations where the collider that stops the body moves.
+// elements, or beyond the collider. This costs nothing where nothing can be touched. Otherwise each step pays a search
+// along the ways of the vertices, and two evaluations for each part that a moving collider stops.
 #pragma once
 
 #include "sim/solver/step_context.h"
 
 namespace supple {
 
-// Finds the first impact on the way from q to the current iterate; its collider is -1 where there is none.
-Impact find_impact(const StepContext& c);
+// Finds the first impact of each part on the way from q to the current iterate; empty where there is none.
+std::vector<Impact> find_impacts(const StepContext& c);
 
-// Lets the body go only as far as the impact and a little further. If the collider moves, the body then goes on with
+// Lets each part go only as far as its impact and a little further. If the collider moves, the part then goes on with
 // it: at the end of the step, it lies before the collider as it would if the same impact were seen from the collider.
 // To go on with the collider is not better for a body that is held, or that is carried into another collider, so the
 // lower objective decides. The new first iterate is not evaluated yet.
-void stop_at_impact(StepContext& c, const Impact& impact);
+void stop_at_impacts(StepContext& c, const std::vector<Impact>& impacts);
 
 }  // namespace supple

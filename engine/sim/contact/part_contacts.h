@@ -1,0 +1,17 @@
+// Shows the contacts of a joined model as one of its parts feels them.
+#pragma once
+
+#include <vector>
+
+#include "sim/contact/contact.h"
+#include "sim/model/model.h"
+
+namespace supple {
+
+// Returns the contacts that act on a part, in the numbering of its own model, with all that belongs to other parts kept
+// where it is at x: their vertices only move the plane and the origin of friction. At x, the energies and the forces on
+// the part are those of the joined contacts.
+std::vector<Contact> contacts_of_part(const Model& joined, const Part& part, const std::vector<Contact>& contacts,
+                                      const Positions& x);
+
+}  // namespace supple

@@ -1,0 +1,311 @@
+#include "sim/contact/surface_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/contact/contact_order.h"
+#include "sim/contact/lagged_force.h"
+#include "sim/contact/reach.h"
+#include "sim/contact/usual_depth.h"
+#include "sim/model/joined_model.h"
+
+namespace supple {
+namespace {
+
+using Place = MovingSurface::Place;
+using Entry = MovingSurface::Entry;
+
+constexpr int points_a_chunk = 128;  // a thread takes so many; fixed, so that results do not depend on threads
+constexpr double deepest = 0.5;      // points that begin a step deeper than this are not found, over the body's size
+
+// Lists the triangles of a part, with its vertices numbered as in its own model.
+Triangles triangles_of(const Model& model, const Part& part) {
+  std::vector<Eigen::Index> own;
+  for (Eigen::Index t = 0; t < model.surface.rows(); ++t) {
+    if (&model.part_of(model.surface(t, 0)) == &part) own.push_back(t);
+  }
+  Triangles triangles(std::ssize(own), 3);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t v = model.surface(own[i], k);
+      triangles(static_cast<Eigen::Index>(i), k) =
+          v < model.free ? v - part.first_free : v - part.first_held + part.free;
+    }
+  }
+  return triangles;
+}
+
+std::vector<std::int32_t> points_of(const Part& part, const Triangles& triangles) {
+  std::vector<std::int32_t> points;
+  for (Eigen::Index i = 0; i < triangles.size(); ++i) points.push_back(joined_vertex(part, triangles.data()[i]));
+  std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return points;
+}
+
+void make_surfaces(const Model& model, const StepInputs& inputs, SurfaceWork& work) {
+  if (work.structure != model.structure) {
+    work.surfaces.clear();
+    for (const Part& part : model.parts) {
+      SurfaceWork::Surface& surface = work.surfaces.emplace_back();
+      surface.triangles = triangles_of(model, part);
+      surface.points = points_of(part, surface.triangles);
+    }
+  }
+  work.structure = model.structure;
+  for (const Meeting& meeting : inputs.meetings) {
+    SurfaceWork::Surface& surface = work.surfaces[meeting.surface];
+    if (surface.moving != nullptr) continue;
+    const Part& part = model.parts[meeting.surface];
+    surface.moving = std::make_unique<MovingSurface>(surface.triangles, rows_of(part, model.rest));
+  }
+}
+
+// Returns the mean motion of some vertices from q to x [m].
+Vec3 mean_motion(const std::vector<std::int32_t>& points, const Positions& q, const Positions& x) {
+  Vec3 sum = Vec3::Zero();
+  for (const std::int32_t v : points) sum += (x.row(v) - q.row(v)).transpose();
+  return sum / static_cast<double>(points.size());
+}
+
+// Returns how far vertices move beside a common motion at most [m].
+double most_moved(const std::vector<std::int32_t>& points, const Positions& q, const Positions& x, const Vec3& common) {
+  double most = 0;
+  for (const std::int32_t v : points) most = std::max(most, ((x.row(v) - q.row(v)).transpose() - common).squaredNorm());
+  return std::sqrt(most);
+}
+
+// Examines the points of one part before the surface of another, at one iterate.
+class Pair {
+ public:
+  Pair(const Model& model, const StepInputs& inputs, const Meeting& meeting, const Positions& q, const Positions& y,
+       const Positions& x, SurfaceWork& work, std::vector<SurfaceWork::Beginning>& beginnings)
+      : model_(model),
+        solver_(inputs.solver),
+        meeting_(meeting),
+        q_(q),
+        y_(y),
+        x_(x),
+        part_(model.parts[meeting.surface]),
+        surface_(work.surfaces[meeting.surface]),
+        points_(work.surfaces[meeting.points].points),
+        beginnings_(beginnings),
+        size_(std::min(part_.size, model.parts[meeting.points].size)),
+        fall_(model.time_step * model.time_step * inputs.gravity.norm()) {}
+
+  std::size_t points() const { return points_.size(); }
+
+  // Adds the contact of a point, if there is one. index: of the point among those of its part.
+  void find(std::size_t index, std::vector<Contact>& list) const {
+    const std::int32_t v = points_[index];
+    const Vec3 a = q_.row(v).transpose(), b = x_.row(v).transpose();
+    const double way = (b - a - surface_.carried).norm();
+    const double reach = reach_at(v, way);
+    if (!surface_.moving->is_near(a, b, surface_.carried, reach)) return;
+    const std::optional<Place>& before = beginning(index, a);
+    const std::optional<Place> held =
+        before && before->distance <= 0 ? leaving(*before, b, reach, way) : arriving(before, a, b, reach, way);
+    if (held) add(v, *held, before ? before->distance : reach, list);
+  }
+
+  // Lowers a share to where a point that arrives is deeper than it may be.
+  double share_to_impact(std::size_t index, double least) const {
+    const std::int32_t v = points_[index];
+    const Vec3 a = q_.row(v).transpose(), b = x_.row(v).transpose();
+    if (!surface_.moving->is_near(a, b, surface_.carried, 0)) return 1;
+    const std::optional<Place>& before = beginning(index, a);
+    if (before && before->distance <= 0) return 1;
+    const std::optional<Entry> entry = surface_.moving->first_entry(a, b, surface_.carried, least);
+    if (!entry) return 1;
+    Vec3 pace = b - a;
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t c = corner(entry->triangle, k);
+      pace -= entry->weights[k] * (x_.row(c) - q_.row(c)).transpose();
+    }
+    const double falls = -entry->normal.dot(pace), allowed = usual_depth(size_);
+    return falls * (1 - entry->share) > allowed ? entry->share + allowed / falls : 1;
+  }
+
+ private:
+  std::int32_t corner(std::int32_t triangle, int k) const {
+    return joined_vertex(part_, surface_.triangles(triangle, k));
+  }
+
+  double reach_at(std::int32_t v, double way) const {
+    const double freely = ((y_.row(v) - q_.row(v)).transpose() - surface_.carried_freely).norm();
+    return reach_of(way + surface_.own_move, std::max(freely + surface_.free_move, fall_));
+  }
+
+  // Returns the place closest to a point where the step began.
+  const std::optional<Place>& beginning(std::size_t index, const Vec3& a) const {
+    SurfaceWork::Beginning& known = beginnings_[index];
+    if (!known.is_known) known = {true, surface_.moving->closest_at_start(a, deepest * part_.size)};
+    return known.place;
+  }
+
+  // Returns the unit normal of a triangle at the end of the step.
+  Vec3 normal_at_end(std::int32_t triangle) const {
+    const Vec3 p0 = x_.row(corner(triangle, 0)).transpose();
+    const Vec3 edge = x_.row(corner(triangle, 1)).transpose() - p0,
+               other = x_.row(corner(triangle, 2)).transpose() - p0;
+    const Vec3 normal = edge.cross(other);
+    const double length = normal.norm();
+    return length > 0 ? Vec3(normal / length) : Vec3::Zero();
+  }
+
+  // Returns the place that a triangle's point has at the end of the step.
+  std::optional<Place> place_at_end(std::int32_t triangle, const Vec3& weights, const Vec3& p) const {
+    Place place{triangle, weights, Vec3::Zero(), 0, normal_at_end(triangle)};
+    if (place.normal.isZero(0)) return std::nullopt;
+    for (int k = 0; k < 3; ++k) place.point += weights[k] * x_.row(corner(triangle, k)).transpose();
+    place.distance = place.normal.dot(p - place.point);
+    return place;
+  }
+
+  // Finds the place that holds a point which began the step inside.
+  std::optional<Place> leaving(const Place& before, const Vec3& b, double reach, double way) const {
+    const double most = std::max(reach, -before.distance + way + 2 * surface_.own_move);
+    const std::optional<Place> here = surface_.moving->closest_at_end(b, (1 + 1e-6) * most);
+    if (!here) return std::nullopt;
+    if (here->distance >= reach) return std::nullopt;
+    if (here->distance >= 0 || here->normal.dot(normal_at_end(before.triangle)) > 0) return here;
+    return place_at_end(before.triangle, before.weights, b);
+  }
+
+  // Finds the place that holds a point which began the step outside.
+  std::optional<Place> arriving(const std::optional<Place>& before, const Vec3& a, const Vec3& b, double reach,
+                                double way) const {
+    const double moved = way + 2 * surface_.own_move;
+    const bool may_enter = !before || before->distance <= moved;
+    const std::optional<Entry> entry = may_enter ? surface_.moving->first_entry(a, b, surface_.carried) : std::nullopt;
+    const std::optional<Place> here = surface_.moving->closest_at_end(b, std::max(reach, entry ? moved : 0));
+    if (!entry) return here && here->distance >= 0 && here->distance < reach ? here : std::nullopt;
+    const std::optional<Place> entered = place_at_end(entry->triangle, entry->weights, b);
+    if (!here || !entered) return entered;
+    const bool on_one_side = here->normal.dot(entered->normal) > 0;
+    if (!on_one_side) return entered;
+    return here->distance < reach ? here : std::nullopt;
+  }
+
+  ContactStencil stencil_of(std::int32_t point, const Place& place) const {
+    constexpr double least_weight = 1e-9;
+    ContactStencil stencil{};
+    stencil.count = stencil.free = 0;
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) {
+      if (place.weights[k] < least_weight) continue;
+      add_vertex(corner(place.triangle, k), -place.weights[k], stencil);
+      sum += place.weights[k];
+    }
+    add_vertex(point, sum, stencil);
+    return stencil;
+  }
+
+  // Adds a vertex to a stencil, before those with larger numbers.
+  void add_vertex(std::int32_t vertex, double weight, ContactStencil& stencil) const {
+    int at = stencil.count++;
+    for (; at > 0 && stencil.vertex[at - 1] > vertex; --at) {
+      stencil.vertex[at] = stencil.vertex[at - 1];
+      stencil.weight[at] = stencil.weight[at - 1];
+    }
+    stencil.vertex[at] = vertex;
+    stencil.weight[at] = weight;
+    stencil.free += vertex < model_.free;
+  }
+
+  // Adds the contact with the plane through a place, lowered by as much of the depth as need not be corrected in this
+  // step. field: the distance where the step began, negative inside [m].
+  void add(std::int32_t v, const Place& place, double field, std::vector<Contact>& list) const {
+    Contact contact{stencil_of(v, place), {-1, meeting_.surface}, place.normal, 0, 0, 0, v};
+    if (contact.stencil.free == 0) return;
+    const double h = model_.time_step, mass = contact.stencil.mass(model_.mass);
+    const double fastest = solver_.contact.push_out * size_ * h;
+    const double deep = std::max(0.0, -field - fastest);
+    contact.offset = -deep;
+    contact.stiffness = solver_.contact.stiffness / (h * h) * mass;
+    contact.depth = std::max(0.0, -gap(contact, x_));
+    if (meeting_.friction > 0) {
+      contact.stick = solver_.contact.stick * size_ * h;
+      contact.origin = contact.stencil.at(q_);
+      contact.friction = meeting_.friction * lagged_force(contact, deep > 0 ? 0 : -field, -gap(contact, y_),
+                                                          model_.scheme.inertia * mass / (h * h));
+    }
+    list.push_back(contact);
+  }
+
+  const Model& model_;
+  const SolverSettings& solver_;
+  const Meeting& meeting_;
+  const Positions &q_, &y_, &x_;
+  const Part& part_;
+  const SurfaceWork::Surface& surface_;
+  const std::vector<std::int32_t>& points_;
+  std::vector<SurfaceWork::Beginning>& beginnings_;
+  double size_;  // of the smaller part [m]
+  double fall_;  // in one step from rest: one part may rest on what holds it while the other falls [m]
+};
+
+// Moves the surfaces to the positions of an iterate.
+void move_surfaces(const Model& model, const Positions& q, const Positions& x, SurfaceWork& work) {
+  for (std::size_t p = 0; p < work.surfaces.size(); ++p) {
+    SurfaceWork::Surface& surface = work.surfaces[p];
+    if (surface.moving == nullptr) continue;
+    surface.carried = mean_motion(surface.points, q, x);
+    surface.own_move = most_moved(surface.points, q, x, surface.carried);
+    surface.moving->set_end(rows_of(model.parts[p], x));
+  }
+}
+
+}  // namespace
+
+void begin_surfaces(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& y,
+                    SurfaceWork& work) {
+  if (inputs.meetings.empty()) return;
+  make_surfaces(model, inputs, work);
+  for (std::size_t p = 0; p < work.surfaces.size(); ++p) {
+    SurfaceWork::Surface& surface = work.surfaces[p];
+    if (surface.moving == nullptr) continue;
+    surface.moving->set_start(rows_of(model.parts[p], q));
+    surface.carried_freely = mean_motion(surface.points, q, y);
+    surface.free_move = most_moved(surface.points, q, y, surface.carried_freely);
+  }
+  work.beginnings.resize(inputs.meetings.size());
+  for (std::size_t m = 0; m < inputs.meetings.size(); ++m)
+    work.beginnings[m].assign(work.surfaces[inputs.meetings[m].points].points.size(), {});
+}
+
+void find_surface_contacts(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& y,
+                           const Positions& x, Threads* threads, SurfaceWork& work, std::vector<Contact>& found) {
+  if (inputs.meetings.empty()) return;
+  move_surfaces(model, q, x, work);
+  const std::size_t before = found.size();
+  for (std::size_t m = 0; m < inputs.meetings.size(); ++m) {
+    const Pair pair(model, inputs, inputs.meetings[m], q, y, x, work, work.beginnings[m]);
+    const int chunks = static_cast<int>((pair.points() + points_a_chunk - 1) / points_a_chunk);
+    if (std::ssize(work.by_chunk) < chunks) work.by_chunk.resize(chunks);
+    run_chunks(threads, chunks, long(pair.points()) * 20, [&](int chunk) {
+      work.by_chunk[chunk].clear();
+      const std::size_t end = std::min(pair.points(), std::size_t(chunk + 1) * points_a_chunk);
+      for (std::size_t i = std::size_t(chunk) * points_a_chunk; i < end; ++i) pair.find(i, work.by_chunk[chunk]);
+    });
+    for (int chunk = 0; chunk < chunks; ++chunk)
+      found.insert(found.end(), work.by_chunk[chunk].begin(), work.by_chunk[chunk].end());
+  }
+  std::sort(found.begin() + static_cast<std::ptrdiff_t>(before), found.end(), comes_before);
+}
+
+void stop_at_surfaces(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& x,
+                      SurfaceWork& work, std::vector<double>& shares) {
+  if (inputs.meetings.empty()) return;
+  move_surfaces(model, q, x, work);
+  for (std::size_t m = 0; m < inputs.meetings.size(); ++m) {
+    const Meeting& meeting = inputs.meetings[m];
+    const Pair pair(model, inputs, meeting, q, x, x, work, work.beginnings[m]);
+    double least = std::max(shares[meeting.points], shares[meeting.surface]);
+    for (std::size_t i = 0; i < pair.points(); ++i) least = std::min(least, pair.share_to_impact(i, least));
+    shares[meeting.points] = std::min(shares[meeting.points], least);
+    shares[meeting.surface] = std::min(shares[meeting.surface], least);
+  }
+}
+
+}  // namespace supple

@@ -1,0 +1,60 @@
+// Finds where the parts of a joined model touch each other in a step: points of one part, which are the vertices of its
+// surface, against the surface of another part that has an inside. Each pair of solids is looked at both ways. As for
+// colliders, a point gets the plane of the place that holds it before it touches. That place is a triangle of the other
+// surface with barycentric weights; the contact acts on the point and the triangle's vertices, equal and opposite
+// (contact_stencil.h). Not here: which parts meet (StepInputs::meetings), the energies of the planes (contact.h).
+//
+// For a point that begins a step outside, the way through the step decides: it is held by the triangle through which it
+// came, unless the closest place at the end is on the same side. A point that begins inside is held by the closest
+// place, and by that of the step's beginning where the point has passed the middle of the other part meanwhile.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/threads.h"
+#include "geometry/triangles/moving_surface.h"
+#include "sim/contact/contact.h"
+#include "sim/model/inputs.h"
+#include "sim/model/model.h"
+
+namespace supple {
+
+// Holds the surfaces of a joined model's parts, and what a step knows of its beginning.
+struct SurfaceWork {
+  struct Surface {
+    Triangles triangles;                    // rows of its part's vertices, in the order of the part's own model
+    std::vector<std::int32_t> points;       // vertices of the joined model that may touch others, ascending
+    std::unique_ptr<MovingSurface> moving;  // null where nothing touches this part
+    Vec3 carried = Vec3::Zero();            // the mean motion of the part from q to the present iterate [m]
+    double own_move = 0;                    // how far its vertices move beside that at most [m]
+    Vec3 carried_freely = Vec3::Zero();     // the mean motion of the part from q to the prediction [m]
+    double free_move = 0;                   // how far its vertices move beside that at most [m]
+  };
+  // What is known of a point where the step begins.
+  struct Beginning {
+    bool is_known = false;
+    std::optional<MovingSurface::Place> place;  // nothing: outside, far from the surface
+  };
+
+  std::uint64_t structure = 0;                     // of the model that the surfaces belong to
+  std::vector<Surface> surfaces;                   // by part
+  std::vector<std::vector<Beginning>> beginnings;  // by meeting and point
+  std::vector<std::vector<Contact>> by_chunk;      // scratch
+};
+
+// Prepares a step from q (n x 3, with the held vertices at the start of the step).
+void begin_surfaces(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& y,
+                    SurfaceWork& work);
+
+// Finds the contacts between parts at x, ordered by surface and number of the point, and adds them to a list.
+void find_surface_contacts(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& y,
+                           const Positions& x, Threads* threads, SurfaceWork& work, std::vector<Contact>& found);
+
+// Lowers the shares of the way from q to x that the parts can go (by part) to where a point becomes deeper than usual
+// (usual_depth.h) in another part. Both parts of an impact are stopped.
+void stop_at_surfaces(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& x,
+                      SurfaceWork& work, std::vector<double>& shares);
+
+}  // namespace supple

@@ -1,0 +1,29 @@
+// Joins the models of bodies that touch each other into one, whose parts they are, so that their steps are made
+// together. Nothing is computed or factored anew: the elements and the factors of the bodies follow one another. Not
+// here: what the parts do to each other (contact/surface_contacts.h), which bodies are joined (world/islands.h).
+#pragma once
+
+#include <vector>
+
+#include "sim/model/model.h"
+#include "sim/model/state.h"
+
+namespace supple {
+
+// Returns the model of several bodies. Its free vertices are those of the first body, then of the second, and so on;
+// then come the held ones in the same order. Its input file, as far as vertices are numbered, is that of the first body
+// with those of the others behind it, and so are its handles and regions. The bodies must have one time step,
+// integrator and precision.
+Model join(const std::vector<const Model*>& bodies);
+
+// Returns the vertex of a joined model that is a vertex of one of its bodies. own_free: the body's free vertices.
+inline std::int32_t joined_vertex(const Part& part, std::int32_t vertex) {
+  return vertex < part.free ? part.first_free + vertex : part.first_held + (vertex - part.free);
+}
+
+// Returns the rows of a part (its vertices x 3, in the order of its own model) among those of a joined model.
+Positions rows_of(const Part& part, const Positions& joined);
+// Writes the rows of a part to their places among those of a joined model.
+void set_rows(const Part& part, const Positions& rows, Positions& joined);
+
+}  // namespace supple

@@ -1,0 +1,254 @@
+#include "world/islands.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "scene/definition/meeting.h"
+#include "sim/contact/part_contacts.h"
+#include "sim/model/joined_model.h"
+#include "sim/solver/begin_step.h"
+#include "sim/solver/search_rule.h"
+#include "sim/solver/step.h"
+
+namespace supple {
+namespace {
+
+constexpr std::size_t most_kept = 16;  // joined models that are kept for later steps
+
+// Groups numbers that are joined, directly or through others.
+class Groups {
+ public:
+  explicit Groups(std::size_t count) : first_(count) { std::iota(first_.begin(), first_.end(), std::size_t(0)); }
+  std::size_t of(std::size_t i) const {
+    while (first_[i] != i) i = first_[i];
+    return i;
+  }
+  void join(std::size_t a, std::size_t b) {
+    const std::size_t one = of(a), other = of(b);
+    first_[std::max(one, other)] = std::min(one, other);
+  }
+  // Returns the members of each group, in the order of their first members.
+  std::vector<std::vector<std::size_t>> lists() const {
+    std::vector<std::vector<std::size_t>> by_first(first_.size()), lists;
+    for (std::size_t i = 0; i < first_.size(); ++i) by_first[of(i)].push_back(i);
+    for (auto& list : by_first) {
+      if (!list.empty()) lists.push_back(std::move(list));
+    }
+    return lists;
+  }
+
+ private:
+  std::vector<std::size_t> first_;  // a number of the same group that is lower, or the number itself
+};
+
+// Returns where a body's vertices would go if nothing touched them, with hard handles at their targets (n x 3) [m].
+Positions free_motion(const Model& model, const StepInputs& inputs, const State& state) {
+  Positions y;
+  inertial_prediction(model, inputs, state, y);
+  for (std::size_t i = 0; i < model.handled.size(); ++i) {
+    if (model.handled[i].vertex >= model.free) y.row(model.handled[i].vertex) = inputs.targets.row(i);
+  }
+  return y;
+}
+
+}  // namespace
+
+struct Islands::Way {
+  Positions y;               // n x 3 [m]
+  Bounds swept;              // of the body from q to y
+  Vec3 mean = Vec3::Zero();  // its mean motion [m]
+  std::uint64_t structure = 0;
+  mutable std::unique_ptr<MovingSurface> surface;
+  mutable bool is_moved = false;  // whether the surface goes the way of this step
+};
+
+struct Islands::Together {
+  std::vector<std::uint64_t> members;  // ids of the bodies' models
+  Model model;
+  std::unique_ptr<SearchRule> rule;
+  Workspace workspace;
+  State state;
+
+  Together(const std::vector<const Model*>& models, Threads* threads) : model(join(models)), workspace(threads) {
+    for (const Model* of : models) members.push_back(of->id);
+  }
+};
+
+Islands::Islands(const SceneDef& scene, const std::vector<std::unique_ptr<MovingBody>>& bodies, const Solvers& solvers,
+                 Threads* threads)
+    : scene_(scene), bodies_(bodies), solvers_(solvers), threads_(threads), ways_(bodies.size()) {}
+Islands::~Islands() = default;
+
+void Islands::find_ways() {
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const MovingBody& body = *bodies_[b];
+    Way& way = ways_[b];
+    const Positions& q = body.state().x;
+    way.y = free_motion(body.model(), body.inputs(), body.state());
+    way.mean = (way.y - q).colwise().mean().transpose();
+    way.swept = bounds_of(q);
+    const Bounds end = bounds_of(way.y);
+    way.swept.include(end.lower);
+    way.swept.include(end.upper);
+    way.is_moved = false;
+    if (way.structure != body.model().structure) way.surface.reset();
+    way.structure = body.model().structure;
+  }
+}
+
+MovingSurface& Islands::surface_of(std::size_t body) const {
+  const Way& way = ways_[body];
+  const Model& model = bodies_[body]->model();
+  if (way.surface == nullptr) way.surface = std::make_unique<MovingSurface>(model.surface, model.rest);
+  if (!way.is_moved) {
+    way.surface->set_start(bodies_[body]->state().x);
+    way.surface->set_end(way.y);
+  }
+  way.is_moved = true;
+  return *way.surface;
+}
+
+// Tells whether two bodies may touch in the step. pushed: how far others may push them off their ways [m].
+bool Islands::may_touch(std::size_t a, std::size_t b, double pushed) const {
+  constexpr double near = 0.01;  // of the smaller body's size
+  const Model &one = bodies_[a]->model(), &other = bodies_[b]->model();
+  const double h = one.time_step;
+  const double margin = near * std::min(one.size, other.size) + 0.25 * h * h * scene_.gravity.norm() + pushed;
+  for (int k = 0; k < 3; ++k) {
+    if (ways_[a].swept.lower[k] - margin > ways_[b].swept.upper[k] ||
+        ways_[b].swept.lower[k] - margin > ways_[a].swept.upper[k])
+      return false;
+  }
+  return surface_of(a).may_meet(surface_of(b), margin, ways_[a].mean);
+}
+
+std::vector<std::vector<std::size_t>> Islands::find() {
+  const std::size_t count = bodies_.size();
+  Groups groups(count);
+  std::vector<std::array<std::size_t, 2>> pairs;
+  for (std::size_t a = 0; a < count; ++a) {
+    for (std::size_t b = a + 1; b < count; ++b) {
+      if (meet(scene_, a, b)) pairs.push_back({a, b});
+    }
+  }
+  if (pairs.empty()) return groups.lists();
+  find_ways();
+  // An island may push its bodies off their ways, as far as they go beside each other, and into others.
+  std::vector<double> pushed(count, 0.0);
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (const auto& [a, b] : pairs) {
+      if (groups.of(a) == groups.of(b) || !may_touch(a, b, pushed[a] + pushed[b])) continue;
+      groups.join(a, b);
+      grows = true;
+    }
+    for (const std::vector<std::size_t>& island : groups.lists()) {
+      double most = 0;
+      for (const std::size_t a : island) most = std::max(most, (ways_[a].mean - ways_[island.front()].mean).norm());
+      for (const std::size_t a : island) pushed[a] = most;
+    }
+  }
+  return groups.lists();
+}
+
+Islands::Together& Islands::together(const std::vector<std::size_t>& island) {
+  std::vector<const Model*> models;
+  std::vector<std::uint64_t> members;
+  for (const std::size_t b : island) {
+    models.push_back(&bodies_[b]->model_of_step());
+    members.push_back(models.back()->id);
+  }
+  const auto has_members = [&](const auto& known) { return known->members == members; };
+  auto at = std::find_if(together_.begin(), together_.end(), has_members);
+  if (at == together_.end()) {
+    if (together_.size() >= most_kept) together_.pop_back();
+    at = together_.insert(together_.end(), std::make_unique<Together>(models, threads_));
+  }
+  std::rotate(together_.begin(), at, at + 1);
+  return *together_.front();
+}
+
+// The bodies of an island are solved as the first of them says, with as many iterations as any of them asks for.
+StepInputs Islands::inputs_of(const std::vector<std::size_t>& island, const Model& joined) const {
+  StepInputs inputs = bodies_[island.front()]->inputs();
+  inputs.solver.matrix = StartMatrix::system;
+  inputs.solver.levels = 1;  // TEMPORARY
+  inputs.targets.resize(std::ssize(joined.handled), 3);
+  inputs.middle_targets.resize(joined.scheme.theta < 1 ? std::ssize(joined.handled) : 0, 3);
+  Eigen::Index row = 0;
+  for (const std::size_t b : island) {
+    const StepInputs& own = bodies_[b]->inputs();
+    inputs.targets.middleRows(row, own.targets.rows()) = own.targets;
+    if (joined.scheme.theta < 1) inputs.middle_targets.middleRows(row, own.targets.rows()) = own.middle_targets;
+    row += own.targets.rows();
+    inputs.solver.iterations = std::max(inputs.solver.iterations, own.solver.iterations);
+  }
+  for (std::size_t s = 0; s < island.size(); ++s) {
+    for (std::size_t p = 0; p < island.size(); ++p) {
+      if (p == s || !joined.parts[s].solid || !meet(scene_, island[p], island[s])) continue;
+      inputs.meetings.push_back({static_cast<std::int32_t>(p), static_cast<std::int32_t>(s),
+                                 pair_friction(scene_.bodies[island[p]], scene_.bodies[island[s]])});
+    }
+  }
+  return inputs;
+}
+
+namespace {
+
+// Returns what a step of several bodies was for one of them: times by its share of the vertices, forces and contacts of
+// its own; iterations, energies and errors are those of all.
+StepReport report_of_part(const Model& joined, const Part& part, const StepReport& all,
+                          const std::vector<Contact>& contacts, const Positions& x) {
+  StepReport report = all;
+  const double share = static_cast<double>(part.free) / joined.free;
+  for (double* time : {&report.step_ms, &report.evaluate_ms, &report.solve_ms, &report.lbfgs_ms, &report.collide_ms,
+                       &report.matrix_ms, &report.other_ms, &report.start_ms})
+    *time *= share;
+  report.contacts.touching =
+      static_cast<int>(std::ranges::count_if(contacts, [](const Contact& c) { return c.depth > 0; }));
+  std::ranges::fill(report.collider_forces, Vec3::Zero());
+  add_forces(contacts, x, report.collider_forces);
+  Positions force = Positions::Zero(x.rows(), 3);
+  const Positions none = Positions::Zero(x.rows(), 3);
+  add_contacts(contacts, x, nullptr, none, &force, -1);
+  report.contact_force = force.topRows(part.free).colwise().sum().transpose();
+  return report;
+}
+
+}  // namespace
+
+int Islands::step(const std::vector<std::size_t>& island) {
+  Together& all = together(island);
+  const Model& model = all.model;
+  const StepInputs inputs = inputs_of(island, model);
+  State& state = all.state;
+  state = {};
+  state.x.resize(model.vertices, 3);
+  state.v.resize(model.vertices, 3);
+  for (std::size_t p = 0; p < island.size(); ++p) {
+    set_rows(model.parts[p], bodies_[island[p]]->state().x, state.x);
+    set_rows(model.parts[p], bodies_[island[p]]->state().v, state.v);
+    state.time = bodies_[island[p]]->state().time;
+  }
+  if (all.rule == nullptr) all.rule = solvers_.rule(scene_.bodies[island.front()].solver.method, model);
+  OpenWorkspace& w = all.workspace.open();
+  const StepReport& report = supple::step(model, inputs, state, w, *all.rule);
+  int failed = -1;
+  std::int32_t first_input = 0;
+  for (std::size_t p = 0; p < island.size(); ++p) {
+    const Part& part = model.parts[p];
+    const Positions x = rows_of(part, w.current.x);
+    const std::vector<Contact> contacts = contacts_of_part(model, part, w.current.contacts, w.current.x);
+    StepReport own = report_of_part(model, part, report, contacts, x);
+    const int vertex = report.failure.vertex - first_input;
+    if (report.failed && vertex >= 0 && vertex < part.free + part.held) {
+      failed = static_cast<int>(island[p]);
+      own.failure.vertex = vertex;
+    }
+    first_input += part.free + part.held;
+    bodies_[island[p]]->take_step(x, rows_of(part, state.v), state.time, contacts, std::move(own));
+  }
+  return failed;
+}
+
+}  // namespace supple

@@ -1,0 +1,48 @@
+// Finds which bodies of a world may touch each other in a step, and makes the steps of these together. Bodies that may
+// touch, directly or through others, are an island; its step is that of one model whose parts they are
+// (sim/model/joined_model.h), and ends in the bodies' own states and reports. A body that nothing may touch makes its
+// own step. Islands depend on the states where a step begins, and nothing of an island's solver outlives a step, so
+// that a film that is resumed finds the same ones.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "geometry/triangles/moving_surface.h"
+#include "world/moving_body.h"
+
+namespace supple {
+
+class Islands {
+ public:
+  // All that is passed must outlive this object. bodies: those of the scene, in its order.
+  Islands(const SceneDef& scene, const std::vector<std::unique_ptr<MovingBody>>& bodies, const Solvers& solvers,
+          Threads* threads);
+  ~Islands();
+
+  // Returns the islands of the step that was prepared, each as its bodies in the order of the scene, in the order of
+  // their first bodies. Bodies that nothing may touch are islands of their own.
+  std::vector<std::vector<std::size_t>> find();
+
+  // Makes the step of an island of several bodies. Returns the body whose step failed, or -1; then no state changes.
+  int step(const std::vector<std::size_t>& island);
+
+ private:
+  struct Way;       // of a body over the step that was prepared
+  struct Together;  // a joined model, with what its steps need
+
+  void find_ways();
+  bool may_touch(std::size_t a, std::size_t b, double pushed) const;
+  MovingSurface& surface_of(std::size_t body) const;
+  Together& together(const std::vector<std::size_t>& island);
+  StepInputs inputs_of(const std::vector<std::size_t>& island, const Model& joined) const;
+
+  const SceneDef& scene_;
+  const std::vector<std::unique_ptr<MovingBody>>& bodies_;
+  Solvers solvers_;
+  Threads* threads_;
+  std::vector<Way> ways_;                            // by body
+  std::vector<std::unique_ptr<Together>> together_;  // of the last steps, the latest used first
+};
+
+}  // namespace supple
