@@ -1,5 +1,5 @@
-// Bodies that pass through each other are warned of, from the frame on in which they meet, and bodies that do not are
-// not.
+// Bodies that do not meet are warned of where they pass through each other, from the frame on in which they are in the
+// same place, and no others are.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -40,6 +40,7 @@ std::string cube(const std::string& name, const std::string& more) {
       name, more);
 }
 
+const std::string meets_none = "contact = { meets = false }\n";
 const std::string ground = "[[collider]]\nshape = { half_space = { normal = [0, 1, 0] } }\n";
 
 std::string words(const std::string& a, const std::string& b, int frame) {
@@ -50,7 +51,8 @@ std::string words(const std::string& a, const std::string& b, int frame) {
 
 // The upper cube falls 0.2 m until it meets the lower one, which takes 0.2 s.
 TEST_F(Meetings, OfCubesThatAreDroppedOnEachOtherAreWarnedOf) {
-  const std::string scene = "frames = 12\n" + cube("lower", "") + cube("upper", "position = [0, 0.4, 0]") + ground;
+  const std::string scene =
+      "frames = 12\n" + cube("lower", meets_none) + cube("upper", "position = [0, 0.4, 0]") + ground;
   const std::string expected = words("lower", "upper", 5);
   EXPECT_EQ(film(scene).err, "warning: " + expected + "\n");
   EXPECT_EQ(warnings(), nlohmann::json::array({expected}));
@@ -64,7 +66,8 @@ TEST_F(Meetings, OfCubesThatAreDroppedOnEachOtherAreWarnedOf) {
 }
 
 TEST_F(Meetings, AreToldOnceWhereAFilmIsResumed) {
-  const std::string scene = "frames = 12\n" + cube("lower", "") + cube("upper", "position = [0, 0.4, 0]") + ground;
+  const std::string scene =
+      "frames = 12\n" + cube("lower", meets_none) + cube("upper", "position = [0, 0.4, 0]") + ground;
   film(scene, {"--frames", "8", "--checkpoint-every", "4"});
   film(scene, {"--resume"});
   int told = 0;
@@ -87,20 +90,20 @@ TEST_F(Meetings, OfAClothAndABodyAndOfCrossedBarsAreWarnedOf) {
   const std::string cloth =
       "[[body]]\nname = \"cloth\"\ncloth = { extent = [0.6, 0.6], cells = [6, 6], stretch = 120 }\n"
       "turn_deg = [-90, 0, 0]\nposition = [0, 0.4, 0]\n";
-  const Result fallen = film("frames = 12\n" + cube("cube", "") + cloth + ground);
+  const Result fallen = film("frames = 12\n" + cube("cube", meets_none) + cloth + ground);
   EXPECT_NE(fallen.err.find("bodies 'cube' and 'cloth' pass through each other from frame "), std::string::npos)
       << fallen.err;
   const std::string bars =
       "frames = 2\ngravity = [0, 0, 0]\n"
       "[[body]]\nname = \"along\"\nbox = { extent = [1, 0.1, 0.1], cells = [1, 1, 1] }\nmeant = [\"thin\"]\n"
-      "material = \"rubber\"\n"
+      "material = \"rubber\"\ncontact = { meets = false }\n"
       "[[body]]\nname = \"across\"\nbox = { extent = [0.1, 0.1, 1], cells = [1, 1, 1] }\nmeant = [\"thin\"]\n"
       "material = \"rubber\"\n";
   EXPECT_EQ(film(bars).err, "warning: " + words("along", "across", 0) + "\n");
 }
 
 TEST_F(Meetings, AtTheStartAreToldByCheck) {
-  const std::string scene = cube("a", "") + cube("b", "position = [0.1, 0.1, 0]") + ground;
+  const std::string scene = cube("a", meets_none) + cube("b", "position = [0.1, 0.1, 0]") + ground;
   const std::string expected =
       "bodies 'a' and 'b' pass through each other from the start on: bodies do not collide with each other";
   EXPECT_NE(run("check", scene).out.find(expected), std::string::npos);
@@ -108,9 +111,13 @@ TEST_F(Meetings, AtTheStartAreToldByCheck) {
   ASSERT_EQ(list["warnings"].size(), 1u) << list.dump();
   EXPECT_EQ(list["warnings"][0]["kind"], "overlap");
   EXPECT_EQ(list["warnings"][0]["meant"], true);
-  const std::string turned = "turn_deg = [0, 0, 45]\n";
-  EXPECT_EQ(run("check", cube("a", turned) + cube("b", turned + "position = [0.145, 0.145, 0]")).out.find("pass through"),
-            std::string::npos)
+  const std::string meeting = run("check", scene, {"--set=body.a.contact.meets=true"}).out;
+  EXPECT_EQ(meeting.find("pass through"), std::string::npos) << meeting;
+  EXPECT_NE(meeting.find("bodies 'a' and 'b' overlap at the start, by up to "), std::string::npos) << meeting;
+  const std::string turned = "contact = { meets = false }\nturn_deg = [0, 0, 45]\n";
+  EXPECT_EQ(
+      run("check", cube("a", turned) + cube("b", turned + "position = [0.145, 0.145, 0]")).out.find("pass through"),
+      std::string::npos)
       << "the boxes around them overlap, and they do not";
 }
 

@@ -240,6 +240,7 @@ box = {{}}
 material = {0}
 fibre = {{ kappa = 1 }}
 start = {{ stretch = [1, 1, 1], turn_deg = [0, 0, 0], twist_deg = 0, random = [1, 1, 1], flatten = "plane" }}
+[body.contact]
 [body.solver]
 [body.regions.NAME]
 material = {0}

@@ -9,6 +9,7 @@
 #include "scene/building/assemble.h"
 #include "scene/building/collision_set.h"
 #include "scene/building/unplaced_body.h"
+#include "scene/definition/meeting.h"
 #include "scene/reading/body_pieces.h"
 #include "scene/reading/model_scene.h"
 #include "scene/reading/scene_reader.h"
@@ -87,6 +88,18 @@ TEST_F(SurfaceScene, PiecesApartAreBodiesThatKeepTheirPlaces) {
             "the surface has 2 pieces, all of which become bodies of their own (pieces = \"largest\" "
             "takes one)");
   EXPECT_EQ(scene_of("surface = \"two.obj\"\npieces = \"largest\"\n").bodies.size(), 1u);
+}
+
+// The pieces have the same list, in which a piece may find its own name.
+TEST_F(SurfaceScene, PiecesMeetEachOtherUnlessTheirTableSaysOtherwise) {
+  write("two.obj", obj_text(test::together(test::box_surface(Vec3(1, 1, 1)),
+                                           test::moved(test::box_surface(Vec3(0.5, 0.5, 0.5)), Vec3(3, 0, 0)))));
+  const std::string pieces = "name = \"toy\"\nsurface = \"two.obj\"\n";
+  EXPECT_TRUE(meet(scene_of(pieces), 0, 1));
+  EXPECT_TRUE(meet(scene_of(pieces + "contact = { meets = [\"toy_1\", \"toy_2\"] }\n"), 0, 1));
+  EXPECT_FALSE(meet(scene_of(pieces + "contact = { meets = false }\n"), 0, 1));
+  EXPECT_EQ(refusal_of(pieces + "contact = { meets = [\"toy\"] }\n"),
+            "meets = 'toy': must be the name of another body: toy_2; did you mean 'toy_2'?");
 }
 
 TEST_F(SurfaceScene, PiecesThatTouchBecomeOneBodyByWhatLiesBetween) {

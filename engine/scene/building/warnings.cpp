@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geometry/meshes/cloth.h"
+#include "scene/building/body_depths.h"
 #include "scene/building/body_meetings.h"
 #include "scene/building/collision_set.h"
 #include "scene/building/overlaps.h"
@@ -150,19 +151,24 @@ void warn_of_fall(const SceneDef& scene, const Body& body, std::vector<Warning>&
                                 body.def.name)));
 }
 
-// Warns of bodies that start in the same place. Either of them may say that it is meant.
+// Warns of bodies that start in the same place, whether they meet or pass through each other. Either of them may say
+// that it is meant.
 void warn_of_meetings(const std::vector<Body>& bodies, std::vector<Warning>& list) {
   if (bodies.size() < 2) return;
   std::vector<Positions> points;
   for (const Body& body : bodies) points.push_back(first_positions(body));
-  for (const auto& [a, b] : BodyMeetings(bodies).find(points)) {
+  const auto warn = [&](std::size_t a, std::size_t b, std::string message) {
     const BodyDef &one = bodies[a].def, &other = bodies[b].def;
-    list.push_back(at(WarningKind::overlap, other.place,
-                      fmt::format("bodies '{}' and '{}' pass through each other from the start on: bodies do not "
-                                  "collide with each other",
-                                  one.name, other.name)));
+    list.push_back(at(WarningKind::overlap, other.place, std::move(message)));
     list.back().meant = is_meant(one, WarningKind::overlap) || is_meant(other, WarningKind::overlap);
-  }
+  };
+  for (const auto& [a, b] : BodyMeetings(bodies).find(points))
+    warn(a, b,
+         fmt::format("bodies '{}' and '{}' pass through each other from the start on: bodies do not collide with each "
+                     "other",
+                     bodies[a].def.name, bodies[b].def.name));
+  for (const BodyDepth& overlap : overlaps_of_bodies(bodies, points))
+    warn(overlap.a, overlap.b, start_overlap_text(bodies, overlap));
 }
 
 }  // namespace

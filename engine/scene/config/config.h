@@ -241,6 +241,9 @@ class ConfigTable {
                                                           const Words& words, const Range& range) const;
   // Returns a list of pairs of finite numbers; it is empty when the key is absent or wrong.
   std::vector<std::pair<double, double>> pairs(const Key& key, std::size_t least, std::size_t most) const;
+  // Returns true or false, or a list of texts; the fallback when the key is absent or wrong. `texts`: what the texts of
+  // a list are, such as "names of bodies".
+  std::variant<bool, std::vector<std::string>> boolean_or_texts(const Key& key, bool fallback, const char* texts) const;
   bool is_text(const char* key) const;
   // Returns an existing path, looked up in the folder of the file that names it or among the assets; empty when the key
   // is absent or wrong.

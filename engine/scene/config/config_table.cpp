@@ -395,6 +395,23 @@ std::vector<std::pair<double, double>> ConfigTable::pairs(const Key& key, std::s
   return {};
 }
 
+std::variant<bool, std::vector<std::string>> ConfigTable::boolean_or_texts(const Key& key, bool fallback,
+                                                                           const char* texts) const {
+  const std::string allowed = fmt::format("true, false or a list of {}", texts);
+  const toml::node* node = find(key, "true, false or list of texts", fallback ? "true" : "false", allowed);
+  if (node == nullptr) return fallback;
+  if (const auto value = node->value_exact<bool>()) return *value;
+  if (const toml::array* list = node->as_array()) {
+    std::vector<std::string> values;
+    for (const toml::node& element : *list) {
+      if (const auto value = element.value_exact<std::string>()) values.push_back(*value);
+    }
+    if (values.size() == list->size()) return values;
+  }
+  wrong(key, *node, allowed);
+  return fallback;
+}
+
 bool ConfigTable::is_text(const char* key) const {
   const toml::node* node = table_->get(key);
   return node != nullptr && node->is_string();

@@ -147,6 +147,15 @@ struct Names<ColorSource> {
                                        Name{ColorSource::body, "body"}};
 };
 
+// Says what a body does with other bodies (meeting.h). The table solver.contact is about how contact with colliders is
+// computed, and a collider has its own friction.
+struct BodyContactDef {
+  // Names the only bodies that it meets, none where the list is empty. Nothing: it meets all.
+  std::optional<std::vector<std::string>> meets;
+  FilePlace meets_place;  // of `meets` in the file, for messages once all bodies are known
+  double friction = 0.5;  // its share of the coefficient of Coulomb's law between it and another body
+};
+
 struct BodySurface;  // body_pieces.h
 
 struct BodyDef {
@@ -174,6 +183,7 @@ struct BodyDef {
   StartDef start;
   StartInside start_inside = StartInside::move;
   Vec3 velocity = Vec3(0, 0, 0);  // at the start [m/s]
+  BodyContactDef contact;
   std::vector<RegionDef> regions;
   std::vector<HandleDef> handles;
   SolverDef solver;

@@ -170,6 +170,29 @@ Pattern read_pattern(const ConfigTable& table, const BodyDef& body) {
   return pattern;
 }
 
+// Reads what the body does with others. Whether the names are those of bodies is known once all have been read
+// (meeting_check.h).
+BodyContactDef read_contact(const ConfigTable& body) {
+  BodyContactDef contact;
+  const auto table = body.table({"contact", "", "with other bodies"});
+  if (!table) return contact;
+  const auto meets = table->boolean_or_texts(
+      {"meets", "",
+       "which bodies it touches and pushes: all, none or these alone; two bodies meet where both allow it"},
+      true, "names of bodies");
+  if (const auto* names = std::get_if<std::vector<std::string>>(&meets)) {
+    contact.meets = *names;
+  } else if (!std::get<bool>(meets)) {
+    contact.meets.emplace();
+  }
+  contact.meets_place = table->place("meets");
+  contact.friction = table->number({"friction", "",
+                                    "its share of Coulomb's coefficient between two bodies, which is the geometric "
+                                    "mean of both; with a collider the collider's counts"},
+                                   contact.friction, Range::between(0, 100));
+  return contact;
+}
+
 void refuse_substances(const ConfigTable& table) {
   for (const char* key : {"material", "fibre", "regions"}) {
     if (table.has(key))
@@ -260,6 +283,7 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
        "an error"},
       StartInside::move);
   body.velocity = table.vector({"velocity", "m/s", "at the start"}, Vec3(0, 0, 0));
+  body.contact = read_contact(table);
   std::set<std::string> names;
   for (const ConfigTable& row : table.tables({"handles", "", "vertices that follow a motion from outside"})) {
     body.handles.push_back(read_handle(row));

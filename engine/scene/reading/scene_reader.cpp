@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "scene/reading/body_pieces.h"
+#include "scene/reading/meeting_check.h"
 #include "scene/reading/model_scene.h"
 #include "scene/reading/sweep.h"
 #include "scene/reading/table_readers.h"
@@ -45,6 +46,7 @@ SceneDef read_scene(Config& config) {
       scene.bodies.push_back(std::move(body));
     }
   }
+  check_meetings(scene, config);
   // A body that is alone and has no name needs no caption.
   const std::vector<ConfigTable> given = root.tables({"body", "", "what moves"});
   if (given.size() == 1 && !given.front().has("name") && !given.front().has("label")) scene.bodies.front().label = "";

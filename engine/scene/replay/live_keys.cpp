@@ -41,6 +41,7 @@ constexpr auto patterns = std::to_array<LivePattern>({
     {"body[].fibre", new_factor},
     {"body[].regions", new_factor},
     {"body[].label", nothing},
+    {"body[].contact", nothing},
     {"body[].density", new_factor},
     {"body[].total_mass", new_factor},
     {"body[].cloth.stretch", new_factor},

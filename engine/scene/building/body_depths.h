@@ -1,0 +1,52 @@
+// Finds bodies that meet (scene/definition/meeting.h) and are nevertheless in each other: those that start so, which
+// contact pushes apart, and those that are deep in each other while the film runs. The warning is `overlap`. Not here:
+// bodies that pass through each other (body_meetings.h), and bodies in colliders (overlaps.h).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/building/body_pairs.h"
+
+namespace supple {
+
+struct BodyDepth {
+  std::size_t a, b;  // the bodies, the earlier one first
+  double depth;      // an estimate (geometry/triangles/shared_depth.h); 0: no vertex of one is inside the other [m]
+  double share;      // of the depth in the size of the smaller body
+  Vec3 place;        // of the vertex that is deepest [m]
+};
+
+// Returns the pairs of bodies that meet and overlap in these positions. An overlap below a ten-thousandth of the
+// smaller body's size does not count. points: the positions of each body's mesh, n x 3 [m].
+std::vector<BodyDepth> overlaps_of_bodies(const std::vector<Body>& bodies, const std::vector<Positions>& points);
+
+// Tells of two bodies that overlap at the start, and of what becomes of that.
+std::string start_overlap_text(const std::vector<Body>& bodies, const BodyDepth& overlap);
+
+// Tells of two bodies that are deep in each other at a time that is given in words, such as "in frame 12".
+std::string deep_text(const std::vector<Body>& bodies, const BodyDepth& overlap, const std::string& when);
+
+// Finds, each once, the pairs of bodies that meet and are deep in each other.
+class DeepBodies {
+ public:
+  static constexpr double deep = 0.01;  // over the size of the smaller body
+
+  // bodies: the bodies of the scene; they must outlive this object. With one body nothing is computed.
+  explicit DeepBodies(const std::vector<Body>& bodies) : bodies_(bodies), pairs_(bodies) {}
+
+  // Leaves a pair out of find() from now on.
+  void leave_out(std::size_t a, std::size_t b) { pairs_.leave_out(a, b); }
+  // Tells whether find() has nothing to look for, as the bodies are defined now.
+  bool none_left() const { return !pairs_.has(PairKind::meeting); }
+
+  // Returns the pairs that are deep in each other in these positions, and leaves them out from now on. points: the
+  // positions of each body's mesh, n x 3 [m].
+  std::vector<BodyDepth> find(const std::vector<Positions>& points);
+
+ private:
+  const std::vector<Body>& bodies_;
+  BodyPairs pairs_;
+};
+
+}  // namespace supple

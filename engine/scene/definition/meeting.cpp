@@ -1,0 +1,45 @@
+#include "scene/definition/meeting.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace supple {
+namespace {
+
+bool both_are_cloth(const BodyDef& a, const BodyDef& b) { return a.cloth && b.cloth; }
+
+bool integrators_differ(const BodyDef& a, const BodyDef& b) { return a.solver.integrator != b.solver.integrator; }
+
+bool allows_meeting(const BodyDef& body, const BodyDef& other) {
+  return !body.contact.meets || asks_to_meet(body, other);
+}
+
+}  // namespace
+
+bool asks_to_meet(const BodyDef& body, const BodyDef& other) {
+  return body.contact.meets && std::ranges::find(*body.contact.meets, other.name) != body.contact.meets->end();
+}
+
+bool both_allow_meeting(const BodyDef& a, const BodyDef& b) { return allows_meeting(a, b) && allows_meeting(b, a); }
+
+std::string why_not_meet(const BodyDef& a, const BodyDef& b) {
+  if (both_are_cloth(a, b)) return "both are cloth, and the vertices of a cloth touch solids alone";
+  if (integrators_differ(a, b))
+    return fmt::format("bodies that meet need the same solver.integrator, and these have '{}' and '{}'",
+                       name_of(a.solver.integrator), name_of(b.solver.integrator));
+  return "";
+}
+
+bool meet(const BodyDef& a, const BodyDef& b) {
+  return !both_are_cloth(a, b) && !integrators_differ(a, b) && both_allow_meeting(a, b);
+}
+
+bool meet(const SceneDef& scene, std::size_t a, std::size_t b) {
+  return a != b && meet(scene.bodies.at(a), scene.bodies.at(b));
+}
+
+double pair_friction(const BodyDef& a, const BodyDef& b) { return std::sqrt(a.contact.friction * b.contact.friction); }
+
+}  // namespace supple

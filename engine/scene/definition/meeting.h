@@ -1,0 +1,33 @@
+// Tells which bodies of a scene meet, which means that they touch and push each other, and with how much friction. Two
+// bodies meet where both allow it (BodyContactDef) and nothing about them is in the way. Not here: contact with
+// colliders (sim/contact/), and what is said of bodies that overlap (scene/building/body_depths.h, body_meetings.h).
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "scene/definition/scene_def.h"
+
+namespace supple {
+
+// Tells whether two bodies that are not the same one meet.
+bool meet(const BodyDef& a, const BodyDef& b);
+
+// Tells the same of two bodies of a scene, by their indices. No body meets itself.
+bool meet(const SceneDef& scene, std::size_t a, std::size_t b);
+
+// Tells whether the definitions of both bodies allow that they meet.
+bool both_allow_meeting(const BodyDef& a, const BodyDef& b);
+
+// Tells whether a body's definition names the other one among those that it meets.
+bool asks_to_meet(const BodyDef& body, const BodyDef& other);
+
+// Says why two bodies cannot meet, whatever their definitions allow; empty where they can. A solid can be touched. A
+// cloth has no inside: its vertices touch solids, and it can't be touched itself. Bodies that meet make their steps
+// together, and so with one integrator.
+std::string why_not_meet(const BodyDef& a, const BodyDef& b);
+
+// Returns the coefficient of Coulomb's law between two bodies: the geometric mean of their shares.
+double pair_friction(const BodyDef& a, const BodyDef& b);
+
+}  // namespace supple
