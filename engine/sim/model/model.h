@@ -69,6 +69,7 @@ struct Part {
   double mass = 0;                        // of the free vertices [kg]
   bool solid = false;                     // has tetrahedra, and so an inside
   bool floats = false;                    // nothing holds it: A has its translations as known eigenvectors
+  double drag = 0;                        // beta/h
 };
 
 // As a System it is A = w M/h^2 + (e theta^2 + beta/h) L + springs of handles.
@@ -133,7 +134,6 @@ struct Model : System {
     std::vector<double> value;
   };
   SparseRows damping;
-  double drag = 0;  // beta/h
 
   ElementChunk chunk(int index) const;
   std::size_t part_number(std::int32_t vertex) const;  // of the part that a vertex belongs to
