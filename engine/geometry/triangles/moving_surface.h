@@ -1,0 +1,128 @@
+// Represents the closed surface of a body that moves in a step: each vertex moves evenly from its place at the start to
+// that at the end. It finds the closest place of the surface at both times, and where a point that moves evenly too
+// first enters. The boxes of its tree follow the vertices; which triangles they hold is fixed by the rest positions.
+// The sign of a distance is that of the angle-weighted pseudonormal (Baerentzen, Aanaes, Signed distance computation
+// using the angle weighted pseudonormal, 2005), which is right where the surface does not cross itself. Solids that
+// keep their shape are in solids/triangle_solid.h.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/types.h"
+#include "geometry/triangles/triangle_tree.h"
+
+namespace supple {
+
+// Queries may run on any number of threads between two calls that set places, and give the same bits on each.
+//
+// Where a query takes `carried`, that is a motion which all take part in [m]. Boxes are compared in the frame that
+// moves by it, so that few triangles need a closer look where all move fast together. It changes no answer of
+// first_entry; the other queries answer "yes" less often the better it fits.
+class MovingSurface {
+ public:
+  // triangles: at least one, m x 3; those without area do no harm, nor do edges with more than two triangles. rest: all
+  // vertices of the body, n x 3 [m]; at first, they are the places at the start and at the end.
+  MovingSurface(Triangles triangles, const Positions& rest);
+
+  // Sets the places of the vertices at the start and at the end of the step, n x 3 [m].
+  void set_start(const Positions& x) { set(start_, x); }
+  void set_end(const Positions& x) { set(end_, x); }
+
+  // Describes the place of the surface that is closest to a point.
+  struct Place {
+    std::int32_t triangle;
+    Vec3 weights;     // barycentric, of the triangle's vertices; none is negative, and their sum is 1
+    Vec3 point;       // [m]
+    double distance;  // negative inside [m]
+    Vec3 normal;      // gradient of the distance, of unit length; the pseudonormal where the point is on the surface
+  };
+  // Returns nothing where the surface is further away than `most` [m]. A point counts as on the surface within a
+  // billionth of the largest coordinate. Where all triangles around have no area, the point is outside.
+  std::optional<Place> closest_at_start(const Vec3& p, double most) const { return closest(start_, p, most); }
+  std::optional<Place> closest_at_end(const Vec3& p, double most) const { return closest(end_, p, most); }
+
+  // Describes how a point enters.
+  struct Entry {
+    std::int32_t triangle;
+    Vec3 weights;  // barycentric, of the triangle's vertices; none is negative, and their sum is 1
+    double share;  // of the step, 0 to 1
+    Vec3 normal;   // of the triangle at that time, of unit length, outward
+  };
+  // Finds where a point that moves from a to b first passes through a triangle from outside, up to the share `latest`
+  // of the step. What counts as passing is said in point_passage.h.
+  std::optional<Entry> first_entry(const Vec3& a, const Vec3& b, const Vec3& carried, double latest = 1) const;
+
+  // Tells whether a point that moves from a to b may come nearer than `margin` [m] to the surface, by the boxes in
+  // which the point and each triangle move.
+  bool is_near(const Vec3& a, const Vec3& b, const Vec3& carried, double margin) const;
+
+  // Tells whether a point of the other surface may come nearer than `margin` [m] to this one, by the boxes in which
+  // groups of up to four of its triangles move.
+  bool may_meet(const MovingSurface& other, double margin, const Vec3& carried) const;
+
+  // Finds the other surface's vertices for which is_near() holds, each once and in the order of its tree. It is quicker
+  // than to ask for each vertex.
+  void find_near_vertices(const MovingSurface& other, double margin, const Vec3& carried,
+                          std::vector<std::int32_t>& found) const;
+
+  const Triangles& triangles() const { return triangles_; }
+  const Bounds& bounds_at_start() const { return start_.bounds; }
+  const Bounds& bounds_at_end() const { return end_.bounds; }
+
+ private:
+  // The nodes of the binary tree are packed so that each has up to four children: nodes, or the triangles of a leaf.
+  static constexpr int width = 4;
+  static_assert(width == TriangleTree::leaf_size);
+  struct Node {
+    // Each is the index of a node, which is larger than its own, or the complement of a triangle.
+    std::array<std::int32_t, width> child;
+    int count = 0;
+    std::int32_t first_vertex = 0, vertices = 0;  // a range of own_vertices_
+
+    bool is_leaf() const { return child[0] < 0; }
+  };
+  struct Boxes {
+    using Lanes = Eigen::Array<double, width, 1>;
+    std::array<Lanes, 3> lower, upper;  // by axis, of a node's children; empty where there is no child [m]
+  };
+  // Holds the surface at one time.
+  struct Pose {
+    Positions x;               // n x 3 [m]
+    std::vector<Boxes> boxes;  // one for each node
+    Bounds bounds;
+    double on_surface = 0;  // nearer than this, the vector to a point has no reliable direction [m]
+  };
+
+  std::int32_t add_node(const TriangleTree& tree, std::int32_t from);
+  void list_triangles_around();
+  void list_own_vertices();
+  void set(Pose& pose, const Positions& x) const;
+
+  std::span<const std::int32_t> around(std::int32_t vertex) const;
+  Vec3 corner(const Pose& pose, std::int32_t t, int k) const { return pose.x.row(triangles_(t, k)); }
+  Vec3 unit_normal(const Pose& pose, std::int32_t t) const;
+  Vec3 edge_normal(const Pose& pose, std::int32_t a, std::int32_t b) const;
+  Vec3 vertex_normal(const Pose& pose, std::int32_t vertex) const;
+  Vec3 pseudonormal(const Pose& pose, std::int32_t t, const Vec3& weights) const;
+  std::optional<Place> closest(const Pose& pose, const Vec3& p, double most) const;
+  Place seen_from(const Vec3& p, const Pose& pose, std::int32_t t, const Vec3& weights, const Vec3& offset) const;
+
+  Bounds swept_box(std::int32_t node, const Vec3& carried) const;
+  template <class Visit>
+  bool any_triangle(const Bounds& box, const Vec3& carried, const Visit& visit) const;
+  template <class Visit>
+  bool any_leaf_of(const MovingSurface& other, double margin, const Vec3& carried, const Visit& visit) const;
+
+  Triangles triangles_;
+  std::vector<Node> nodes_;                 // the root first
+  std::vector<std::int32_t> around_start_;  // where each vertex's triangles begin in around_; n + 1
+  std::vector<std::int32_t> around_;
+  std::vector<std::int32_t> own_vertices_;  // of the leaves: each vertex belongs to one that has a triangle at it
+  Pose start_, end_;
+};
+
+}  // namespace supple
