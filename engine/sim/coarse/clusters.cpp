@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <queue>
+#include <utility>
 
+#include "base/error.h"
 #include "sim/model/element_view.h"
 
 namespace supple {
@@ -16,32 +18,75 @@ constexpr double unreached = std::numeric_limits<double>::infinity();
 // turned as a whole has the same clusters.
 bool is_clearly_less(double a, double b) { return a < b * (1 - 1e-9); }
 
-// Holds the edges of the tetrahedra around each vertex.
-struct EdgeGraph {
-  std::vector<std::int32_t> begin, neighbor;  // of vertex v: begin[v] .. begin[v + 1]
-  std::vector<double> length;                 // [m]
+// Numbers the vertices of each part by themselves: its free ones first, then those that are held. Code below that works
+// on one part uses these numbers.
+class PartNumbers {
+ public:
+  explicit PartNumbers(const Model& model) : place_(model.vertices) {
+    for (std::size_t p = 0; p < model.parts.size(); ++p) {
+      const Part& part = model.parts[p];
+      for (int v = 0; v < part.free + part.held; ++v)
+        place_[of_model(part, v)] = {static_cast<std::int32_t>(p), static_cast<std::int32_t>(v)};
+    }
+  }
+
+  std::size_t part_of(std::int32_t vertex) const { return static_cast<std::size_t>(place_[vertex].part); }
+  std::int32_t in_part(std::int32_t vertex) const { return place_[vertex].number; }
+  static std::int32_t of_model(const Part& part, std::int32_t number) {
+    return number < part.free ? part.first_free + number : part.first_held + (number - part.free);
+  }
+
+ private:
+  struct Place {
+    std::int32_t part, number;
+  };
+  std::vector<Place> place_;  // by vertex of the model
 };
 
-EdgeGraph edges_of(const Model& model) {
-  std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
+// Holds a part's vertices and the edges of the tetrahedra around each of them.
+struct EdgeGraph {
+  Positions rest;                             // [m]
+  std::vector<double> mass;                   // [kg]
+  std::vector<std::int32_t> begin, neighbor;  // of vertex v: begin[v] .. begin[v + 1]
+  std::vector<double> length;                 // [m]
+
+  int vertices() const { return static_cast<int>(mass.size()); }
+};
+
+using EdgeList = std::vector<std::pair<std::int32_t, std::int32_t>>;
+
+// Lists the edges of the tetrahedra of each part, in both directions.
+std::vector<EdgeList> edges_by_part(const Model& model) {
+  const PartNumbers numbers(model);
+  std::vector<EdgeList> edges(model.parts.size());
   for_each_element(model, [&](const ElementView& element) {
     if (element.kind != ElementKind::tetrahedron) return;
+    EdgeList& list = edges[numbers.part_of(element.corner[0])];
     for (const std::int32_t a : element.corner) {
       for (const std::int32_t b : element.corner) {
-        if (a != b) pairs.emplace_back(a, b);
+        if (a != b) list.emplace_back(numbers.in_part(a), numbers.in_part(b));
       }
     }
   });
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return edges;
+}
+
+EdgeGraph graph_of(const Model& model, const Part& part, EdgeList edges) {
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   EdgeGraph graph;
-  graph.begin.assign(std::size_t(model.vertices) + 1, 0);
-  for (const auto& [from, to] : pairs) {
+  graph.rest.resize(part.free + part.held, 3);
+  for (int v = 0; v < part.free + part.held; ++v) {
+    graph.rest.row(v) = model.rest.row(PartNumbers::of_model(part, v));
+    graph.mass.push_back(model.mass[PartNumbers::of_model(part, v)]);
+  }
+  graph.begin.assign(graph.mass.size() + 1, 0);
+  for (const auto& [from, to] : edges) {
     ++graph.begin[from + 1];
     graph.neighbor.push_back(to);
-    graph.length.push_back((model.rest.row(from) - model.rest.row(to)).norm());
+    graph.length.push_back((graph.rest.row(from) - graph.rest.row(to)).norm());
   }
-  for (int v = 0; v < model.vertices; ++v) graph.begin[v + 1] += graph.begin[v];
+  for (int v = 0; v < graph.vertices(); ++v) graph.begin[v + 1] += graph.begin[v];
   return graph;
 }
 
@@ -107,11 +152,11 @@ Distances all_distances(const EdgeGraph& graph, const std::vector<std::int32_t>&
 }
 
 // Moves each centre to the vertex that is nearest to the mean of the vertices nearest to it (Lloyd 1982).
-void center_centers(const Model& model, const Distances& distances, std::vector<std::int32_t>& centers) {
-  std::vector<std::int32_t> owner(model.vertices, -1);
+void center_centers(const EdgeGraph& graph, const Distances& distances, std::vector<std::int32_t>& centers) {
+  std::vector<std::int32_t> owner(graph.vertices(), -1);
   std::vector<Vec3> sum(centers.size(), Vec3::Zero());
   std::vector<double> mass(centers.size(), 0.0);
-  for (int v = 0; v < model.vertices; ++v) {
+  for (int v = 0; v < graph.vertices(); ++v) {
     double least = unreached;
     for (std::size_t c = 0; c < centers.size(); ++c) {
       if (!is_clearly_less(distances[c][v], least)) continue;
@@ -119,23 +164,29 @@ void center_centers(const Model& model, const Distances& distances, std::vector<
       owner[v] = static_cast<std::int32_t>(c);
     }
     if (owner[v] < 0) continue;
-    sum[owner[v]] += model.mass[v] * model.rest.row(v).transpose();
-    mass[owner[v]] += model.mass[v];
+    sum[owner[v]] += graph.mass[v] * graph.rest.row(v).transpose();
+    mass[owner[v]] += graph.mass[v];
   }
   std::vector<double> best(centers.size(), unreached);
-  for (int v = 0; v < model.vertices; ++v) {
+  for (int v = 0; v < graph.vertices(); ++v) {
     if (owner[v] < 0) continue;
-    const double away = (model.rest.row(v).transpose() - sum[owner[v]] / mass[owner[v]]).norm();
+    const double away = (graph.rest.row(v).transpose() - sum[owner[v]] / mass[owner[v]]).norm();
     if (!is_clearly_less(away, best[owner[v]])) continue;
     best[owner[v]] = away;
     centers[owner[v]] = v;
   }
 }
 
-void set_weights(const Distances& distances, std::size_t v, Clusters& clusters) {
+// Holds the clusters of a vertex and their weights.
+struct VertexWeights {
+  std::array<std::int32_t, Clusters::most_of_vertex> of = {};
+  std::array<double, Clusters::most_of_vertex> weight = {};
+};
+
+// Returns the weights of a vertex, with the clusters in the numbering of the vertex's part.
+VertexWeights weights_of(const Distances& distances, std::size_t v) {
   constexpr int most = Clusters::most_of_vertex;
-  clusters.of[v].fill(0);
-  clusters.weight[v].fill(0);
+  VertexWeights result;
   std::vector<std::pair<double, std::int32_t>> near;
   double furthest = 0;
   for (std::size_t c = 0; c < distances.size(); ++c) {
@@ -150,43 +201,93 @@ void set_weights(const Distances& distances, std::size_t v, Clusters& clusters) 
   double sum = 0;
   for (int k = 0; k < count; ++k) {
     const double share = std::max(0.0, 1 - near[k].first / reach);
-    clusters.of[v][k] = near[k].second;
-    sum += clusters.weight[v][k] = share * share;
+    result.of[k] = near[k].second;
+    sum += result.weight[k] = share * share;
   }
   // Centres that are all at the same distance get no weight by the formula; they then share alike.
-  for (int k = 0; k < count; ++k) clusters.weight[v][k] = sum > 0 ? clusters.weight[v][k] / sum : 1.0 / count;
+  for (int k = 0; k < count; ++k) result.weight[k] = sum > 0 ? result.weight[k] / sum : 1.0 / count;
+  return result;
+}
+
+// Adds up to `count` clusters of a part that has tetrahedra.
+void add_clusters(const Part& part, const EdgeGraph& graph, int count, Clusters& clusters) {
+  constexpr int rounds_of_centering = 3;
+  std::vector<std::int32_t> centers = spread_centers(graph, count);
+  Distances distances = all_distances(graph, centers);
+  for (int round = 0; round < rounds_of_centering; ++round) {
+    center_centers(graph, distances, centers);
+    distances = all_distances(graph, centers);
+  }
+  const std::int32_t first = clusters.count();
+  for (const std::int32_t center : centers) clusters.center.push_back(PartNumbers::of_model(part, center));
+  for (int v = 0; v < graph.vertices(); ++v) {
+    const auto [of, weight] = weights_of(distances, std::size_t(v));
+    const std::int32_t vertex = PartNumbers::of_model(part, v);
+    for (int k = 0; k < Clusters::most_of_vertex; ++k) clusters.of[vertex][k] = first + of[k];
+    clusters.weight[vertex] = weight;
+  }
+}
+
+std::vector<double> volume_by_part(const Model& model) {
+  const PartNumbers numbers(model);
+  std::vector<double> volume(model.parts.size(), 0.0);
+  for_each_element(model, [&](const ElementView& element) {
+    if (element.kind == ElementKind::tetrahedron)
+      volume[numbers.part_of(element.corner[0])] += unit_term(element).weight;
+  });
+  return volume;
+}
+
+// Returns how many clusters a body has where it moves by itself. A body of a thousand vertices whose limbs are as thick
+// as they are long has eight clusters. Slender bodies have up to four times as many, because a bar bends between its
+// ends. A cluster of fewer than a dozen vertices would hardly differ from the first level. volume: of its tetrahedra
+// [m^3].
+int wanted_alone(const Part& part, double volume) {
+  constexpr int vertices_a_cluster = 100, least_vertices_a_cluster = 12, least = 4, most = 12;
+  const int vertices = part.free + part.held;
+  const double slenderness = part.size / std::cbrt(volume);
+  const double wanted = std::clamp(vertices / vertices_a_cluster, least, most) * std::clamp(slenderness / 4, 1.0, 4.0);
+  return std::max(1, std::min(static_cast<int>(wanted), vertices / least_vertices_a_cluster));
+}
+
+// Lowers the numbers of clusters of several bodies to `most` in all. Each body keeps at least one, and what is left is
+// shared out in proportion to what they want beyond that.
+void share_out(int most, std::vector<int>& counts) {
+  int bodies = 0, more = 0;
+  for (const int count : counts) {
+    bodies += count > 0 ? 1 : 0;
+    more += std::max(0, count - 1);
+  }
+  const int left = std::max(0, most - bodies);
+  if (more <= left) return;
+  for (int& count : counts) {
+    if (count > 0) count = 1 + static_cast<int>(std::int64_t{count - 1} * left / more);
+  }
 }
 
 }  // namespace
 
-// A body of a thousand vertices whose parts are as thick as they are long has eight clusters. Slender bodies have up to
-// four times as many, because a bar bends between its ends. A cluster of fewer than a dozen vertices would hardly
-// differ from the first level.
-int wanted_clusters(const Model& model) {
-  constexpr int vertices_a_cluster = 100, least_vertices_a_cluster = 12, least = 4, most = 12;
-  double volume = 0;
-  for_each_element(model, [&](const ElementView& element) {
-    if (element.kind == ElementKind::tetrahedron) volume += unit_term(element).weight;
-  });
-  const double slenderness = model.size / std::cbrt(volume);
-  const double wanted =
-      std::clamp(model.vertices / vertices_a_cluster, least, most) * std::clamp(slenderness / 4, 1.0, 4.0);
-  return std::max(1, std::min(static_cast<int>(wanted), model.vertices / least_vertices_a_cluster));
+std::vector<int> wanted_clusters(const Model& model) {
+  constexpr int most_of_several_bodies = 32;
+  const std::vector<double> volume = volume_by_part(model);
+  std::vector<int> counts;
+  for (std::size_t p = 0; p < model.parts.size(); ++p)
+    counts.push_back(volume[p] > 0 ? wanted_alone(model.parts[p], volume[p]) : 0);
+  if (counts.size() > 1) share_out(most_of_several_bodies, counts);
+  return counts;
 }
 
-Clusters make_clusters(const Model& model, int count) {
-  constexpr int rounds_of_centering = 3;
-  const EdgeGraph graph = edges_of(model);
+Clusters make_clusters(const Model& model, const std::vector<int>& counts) {
+  SUPPLE_CHECK(counts.size(), ==, model.parts.size());
+  std::vector<EdgeList> edges = edges_by_part(model);
   Clusters clusters;
-  clusters.center = spread_centers(graph, count);
-  Distances distances = all_distances(graph, clusters.center);
-  for (int round = 0; round < rounds_of_centering; ++round) {
-    center_centers(model, distances, clusters.center);
-    distances = all_distances(graph, clusters.center);
+  clusters.of.assign(model.vertices, {});
+  clusters.weight.assign(model.vertices, {});
+  for (std::size_t p = 0; p < model.parts.size(); ++p) {
+    const Part& part = model.parts[p];
+    if (counts[p] > 0) add_clusters(part, graph_of(model, part, std::move(edges[p])), counts[p], clusters);
+    clusters.first.push_back(clusters.count());
   }
-  clusters.of.resize(model.vertices);
-  clusters.weight.resize(model.vertices);
-  for (int v = 0; v < model.vertices; ++v) set_weights(distances, v, clusters);
   return clusters;
 }
 

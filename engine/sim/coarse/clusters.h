@@ -1,8 +1,9 @@
-// Divides a body into overlapping clusters of vertices, whose rigid motions are the second level of search directions
-// (coarse_system.h). Centres are spread by distance along the body, so that a bar has them along it, and an ear that
-// touches a head is no part of it. The weights are those of an embedded deformation graph (Sumner, Schmid, Pauly 2007,
-// "Embedded deformation for shape manipulation", section 3): a vertex belongs to the nearest few centres, by (1 - d /
-// d_most)^2 at the distance d, where d_most is that of the first centre to which it does not belong.
+// Divides each body of a model into overlapping clusters of vertices, whose rigid motions are the second level of
+// search directions (coarse_system.h). Centres are spread by distance along the body, so that a bar has them along it,
+// and an ear that touches a head is no part of it. The weights are those of an embedded deformation graph (Sumner,
+// Schmid, Pauly 2007, "Embedded deformation for shape manipulation", section 3): a vertex belongs to the nearest few
+// centres, by (1 - d / d_most)^2 at the distance d, where d_most is that of the first centre to which it does not
+// belong.
 #pragma once
 
 #include <array>
@@ -17,19 +18,21 @@ struct Clusters {
   static constexpr int most_of_vertex = 3;
 
   std::vector<std::int32_t> center;  // by cluster: the vertex at its centre
+  std::vector<int> first = {0};      // the clusters of part p of the model are first[p] .. first[p + 1] - 1
   // These list the clusters of each vertex (held ones too) and their weights, which add up to 1. Where a vertex belongs
-  // to fewer than most_of_vertex clusters, the other weights are 0; if no centre reaches it, all are.
+  // to fewer than most_of_vertex clusters, the other weights are 0; if no centre reaches it, all are. A cluster of
+  // weight 0 is the first of the vertex's part, or cluster 0 where the part has none.
   std::vector<std::array<std::int32_t, most_of_vertex>> of;
   std::vector<std::array<double, most_of_vertex>> weight;
 
   int count() const { return static_cast<int>(center.size()); }
 };
 
-// Returns how many clusters a body has: enough that each of its parts can turn, and so few that their matrix costs a
-// small share of a step.
-int wanted_clusters(const Model& model);
+// Returns how many clusters each part of a model should have: enough that every limb of a body can turn, and so few
+// that their matrix costs a small share of a step. A part without tetrahedra has none.
+std::vector<int> wanted_clusters(const Model& model);
 
-// Spreads `count` clusters over the tetrahedra of a model.
-Clusters make_clusters(const Model& model, int count);
+// Spreads clusters over the tetrahedra of a model. counts: the largest number of clusters of each part.
+Clusters make_clusters(const Model& model, const std::vector<int>& counts);
 
 }  // namespace supple

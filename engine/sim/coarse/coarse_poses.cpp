@@ -8,22 +8,21 @@
 
 #include "sim/coarse/coarse_system.h"
 #include "sim/coarse/cross_matrix.h"
-#include "sim/model/vertex_chunks.h"
 
 namespace supple {
 namespace {
 
 constexpr int rigid_motions = CoarseSystem::motions_of_cluster;
-using Block = Eigen::Matrix<double, rigid_motions, rigid_motions>;
+using MotionBlock = Eigen::Matrix<double, rigid_motions, rigid_motions>;
 
 // Expresses a block in the motions of its clusters about their own centres, along the world's axes. turn: from the
 // group's frame to the world's; s: from the centres to the group's.
-Block turned(const Eigen::Ref<const Block>& block, const Mat3& turn, const Mat3& s_c, const Mat3& s_d) {
+MotionBlock turned(const Eigen::Ref<const MotionBlock>& block, const Mat3& turn, const Mat3& s_c, const Mat3& s_d) {
   const Mat3 b11 = turn * block.block<3, 3>(0, 0) * turn.transpose();
   const Mat3 b12 = turn * block.block<3, 3>(0, 3) * turn.transpose();
   const Mat3 b21 = turn * block.block<3, 3>(3, 0) * turn.transpose();
   const Mat3 b22 = turn * block.block<3, 3>(3, 3) * turn.transpose();
-  Block result;
+  MotionBlock result;
   const Mat3 upper = b12 - b11 * s_d;
   result.block<3, 3>(0, 0) = b11;
   result.block<3, 3>(0, 3) = upper;
@@ -50,43 +49,54 @@ struct GroupPose {
 
 }  // namespace
 
-bool CoarseSystem::turn_to(const Positions& x) {
+// Adds a group to the matrices of its part, or tells by `is_made` that the part has none.
+void CoarseSystem::add_group(const Group& group, const Positions& x) {
   // Beyond these, the stiffness at rest says little of a group. With 0.4 and 2.5, spheres of spline materials were up
   // to four times farther from their solution than with one level, and bodies that were flattened by a violent impact
   // came to rest inside out; with 0.75 and 1.35, a ball of jelly that squashes as it rolls was three times as far.
   constexpr double least_stretch = 0.5, most_stretch = 2;
+  Block& to_part = blocks_[group.part];
+  Mat3 gradient = Mat3::Zero();
+  Vec3 center = Vec3::Zero();
+  for (std::size_t i = 0; i < group.vertex.size(); ++i) {
+    const Vec3 at = x.row(group.vertex[i]).transpose();
+    gradient += at * group.gradient[i].transpose();
+    center += group.share[i] * at;
+  }
+  const GroupPose pose(gradient);
+  to_part.is_made = pose.least > least_stretch && pose.most < most_stretch;
+  if (!to_part.is_made) return;
+  shift_.clear();
+  for (const std::int32_t c : group.clusters) shift_.push_back(cross_matrix(center - centers_[c]));
+  const int first = clusters_.first[group.part];
+  for (std::size_t c = 0; c < group.clusters.size(); ++c) {
+    for (std::size_t d = 0; d <= c; ++d) {
+      const auto from = static_cast<Eigen::Index>(rigid_motions * c), to = static_cast<Eigen::Index>(rigid_motions * d);
+      const Eigen::Index row = rigid_motions * (group.clusters[c] - first),
+                         column = rigid_motions * (group.clusters[d] - first);
+      to_part.constant.block<rigid_motions, rigid_motions>(row, column) +=
+          turned(group.constant.block<rigid_motions, rigid_motions>(from, to), pose.turn, shift_[c], shift_[d]);
+      to_part.hessian.block<rigid_motions, rigid_motions>(row, column) +=
+          turned(group.hessian.block<rigid_motions, rigid_motions>(from, to), pose.turn, shift_[c], shift_[d]);
+    }
+  }
+}
+
+bool CoarseSystem::turn_to(const Positions& x) {
   const int count = clusters_.count();
   centers_.resize(count);
   for (int c = 0; c < count; ++c) centers_[c] = x.row(clusters_.center[c]).transpose();
-  constant_.setZero(columns(), columns());
-  hessian_.setZero(columns(), columns());
-  std::vector<Mat3>& shift = shift_;
-  for (const Group& group : groups_) {
-    Mat3 gradient = Mat3::Zero();
-    Vec3 center = Vec3::Zero();
-    for (std::size_t i = 0; i < group.vertex.size(); ++i) {
-      const Vec3 at = x.row(group.vertex[i]).transpose();
-      gradient += at * group.gradient[i].transpose();
-      center += group.share[i] * at;
-    }
-    const GroupPose pose(gradient);
-    if (!(pose.least > least_stretch && pose.most < most_stretch)) return false;
-    const Mat3& turn = pose.turn;
-    shift.clear();
-    for (const std::int32_t c : group.clusters) shift.push_back(cross_matrix(center - centers_[c]));
-    for (std::size_t c = 0; c < group.clusters.size(); ++c) {
-      for (std::size_t d = 0; d <= c; ++d) {
-        const auto from = static_cast<Eigen::Index>(rigid_motions * c),
-                   to = static_cast<Eigen::Index>(rigid_motions * d);
-        const Eigen::Index row = rigid_motions * group.clusters[c], column = rigid_motions * group.clusters[d];
-        constant_.block<rigid_motions, rigid_motions>(row, column) +=
-            turned(group.constant.block<rigid_motions, rigid_motions>(from, to), turn, shift[c], shift[d]);
-        hessian_.block<rigid_motions, rigid_motions>(row, column) +=
-            turned(group.hessian.block<rigid_motions, rigid_motions>(from, to), turn, shift[c], shift[d]);
-      }
-    }
+  blocks_.resize(parts());
+  for (int part = 0; part < parts(); ++part) {
+    const int size = columns_of(part);
+    blocks_[part].constant.setZero(size, size);
+    blocks_[part].hessian.setZero(size, size);
+    blocks_[part].is_made = size > 0;
   }
-  return true;
+  for (const Group& group : groups_) {
+    if (blocks_[group.part].is_made) add_group(group, x);
+  }
+  return std::any_of(blocks_.begin(), blocks_.end(), [](const Block& block) { return block.is_made; });
 }
 
 namespace {
@@ -104,84 +114,92 @@ Four cross(const Four& a, const Four& b) {
          __builtin_shuffle(a, last) * __builtin_shuffle(b, next);
 }
 
-constexpr int cluster_numbers = 8;  // a force and a torque, or a shift and a turn, each with a fourth number
-
 }  // namespace
 
-// Torques are summed about the first centre, and moved to each cluster's own at the end.
-void CoarseSystem::restrict(const Model& model, const Positions& x, const Positions& forces, const Vec3& acceleration,
-                            Threads* threads, Eigen::VectorXd& result) {
-  const int chunks = vertex_chunks(model), count = clusters_.count();
-  const Four origin = load_three(centers_[0].data()), out = load_three(acceleration.data());
-  run_chunks(threads, chunks, long(model.free) * 12, [&](int chunk) {
-    double* sums = partial_.data() + std::size_t(chunk) * count * cluster_numbers;
-    std::fill(sums, sums + count * cluster_numbers, 0.0);
-    const int end = std::min(model.free, (chunk + 1) * vertices_a_chunk);
-    for (int v = chunk * vertices_a_chunk; v < end; ++v) {
-      const Four force = load_three(forces.data() + 3 * std::size_t(v)) - model.mass[v] * out;
-      const Four torque = cross(load_three(x.data() + 3 * std::size_t(v)) - origin, force);
-      for (int k = 0; k < Clusters::most_of_vertex; ++k) {
-        double* to = sums + cluster_numbers * clusters_.of[v][k];
-        const double weight = clusters_.weight[v][k];
-        Four sum, turn;
-        __builtin_memcpy(&sum, to, sizeof sum);
-        __builtin_memcpy(&turn, to + 4, sizeof turn);
-        sum += weight * force;
-        turn += weight * torque;
-        __builtin_memcpy(to, &sum, sizeof sum);
-        __builtin_memcpy(to + 4, &turn, sizeof turn);
-      }
+// Torques are summed about the first centre of the part.
+void CoarseSystem::sum_forces(const Model& model, const Piece& piece, const Positions& x, const Positions& forces,
+                              const Vec3& acceleration) {
+  const int first = clusters_.first[piece.part], count = clusters_.first[piece.part + 1] - first;
+  const Four origin = load_three(centers_[first].data()), out = load_three(acceleration.data());
+  double* sums = partial_.data() + piece.sums;
+  std::fill(sums, sums + count * numbers_a_cluster, 0.0);
+  for (int v = piece.first; v < piece.end; ++v) {
+    const Four force = load_three(forces.data() + 3 * std::size_t(v)) - model.mass[v] * out;
+    const Four torque = cross(load_three(x.data() + 3 * std::size_t(v)) - origin, force);
+    for (int k = 0; k < Clusters::most_of_vertex; ++k) {
+      double* to = sums + numbers_a_cluster * (clusters_.of[v][k] - first);
+      const double weight = clusters_.weight[v][k];
+      Four sum, turn;
+      __builtin_memcpy(&sum, to, sizeof sum);
+      __builtin_memcpy(&turn, to + 4, sizeof turn);
+      sum += weight * force;
+      turn += weight * torque;
+      __builtin_memcpy(to, &sum, sizeof sum);
+      __builtin_memcpy(to + 4, &turn, sizeof turn);
     }
-  });
-  result.setZero(columns());
-  for (int chunk = 0; chunk < chunks; ++chunk) {
-    const double* sums = partial_.data() + std::size_t(chunk) * count * cluster_numbers;
-    for (int c = 0; c < count; ++c) {
-      result.segment<3>(rigid_motions * c) += Eigen::Map<const Vec3>(sums + cluster_numbers * c);
-      result.segment<3>(rigid_motions * c + 3) += Eigen::Map<const Vec3>(sums + cluster_numbers * c + 4);
-    }
-  }
-  for (int c = 0; c < count; ++c) {
-    const Vec3 force = result.segment<3>(rigid_motions * c);
-    result.segment<3>(rigid_motions * c + 3) -= (centers_[c] - centers_[0]).cross(force);
   }
 }
 
-Vec3 CoarseSystem::prolong(const Model& model, const Positions& x, const Eigen::VectorXd& y, Threads* threads,
-                           Positions& to) {
-  const int chunks = vertex_chunks(model), count = clusters_.count();
-  const Four origin = load_three(centers_[0].data());
-  by_cluster_.resize(std::size_t(count) * cluster_numbers);
+// Torques are moved to each cluster's own centre at the end.
+void CoarseSystem::restrict(const Model& model, const Positions& x, const Positions& forces,
+                            const std::vector<Vec3>& accelerations, Threads* threads, Eigen::VectorXd& result) {
+  run_chunks(threads, static_cast<int>(pieces_.size()), long(model.free) * 12, [&](int number) {
+    const Piece& piece = pieces_[number];
+    sum_forces(model, piece, x, forces, accelerations[piece.part]);
+  });
+  result.setZero(columns());
+  for (const Piece& piece : pieces_) {
+    const double* sums = partial_.data() + piece.sums;
+    for (int c = clusters_.first[piece.part]; c < clusters_.first[piece.part + 1]; ++c, sums += numbers_a_cluster) {
+      result.segment<3>(rigid_motions * c) += Eigen::Map<const Vec3>(sums);
+      result.segment<3>(rigid_motions * c + 3) += Eigen::Map<const Vec3>(sums + 4);
+    }
+  }
+  for (int c = 0; c < clusters_.count(); ++c) {
+    const Vec3 force = result.segment<3>(rigid_motions * c);
+    result.segment<3>(rigid_motions * c + 3) -= (centers_[c] - centers_[clusters_.first[part_of_[c]]]).cross(force);
+  }
+}
+
+// Adds the motion that by_cluster_ describes to a piece's vertices. Returns the sum of m times what was added [kg m].
+Vec3 CoarseSystem::move_piece(const Model& model, const Piece& piece, const Positions& x, Positions& to) const {
+  const Four origin = load_three(centers_[clusters_.first[piece.part]].data());
+  Four moved = {0, 0, 0, 0};
+  for (int v = piece.first; v < piece.end; ++v) {
+    Four motion = {0, 0, 0, 0}, turn = {0, 0, 0, 0};
+    for (int k = 0; k < Clusters::most_of_vertex; ++k) {
+      const double* from = &by_cluster_[std::size_t(numbers_a_cluster) * clusters_.of[v][k]];
+      const double weight = clusters_.weight[v][k];
+      Four of_shift, of_turn;
+      __builtin_memcpy(&of_shift, from, sizeof of_shift);
+      __builtin_memcpy(&of_turn, from + 4, sizeof of_turn);
+      motion += weight * of_shift;
+      turn += weight * of_turn;
+    }
+    motion += cross(turn, load_three(x.data() + 3 * std::size_t(v)) - origin);
+    for (int i = 0; i < 3; ++i) to.data()[3 * std::size_t(v) + i] += motion[i];
+    moved += model.mass[v] * motion;
+  }
+  return {moved[0], moved[1], moved[2]};
+}
+
+const std::vector<Vec3>& CoarseSystem::prolong(const Model& model, const Positions& x, const Eigen::VectorXd& y,
+                                               Threads* threads, Positions& to) {
+  const int count = clusters_.count();
+  by_cluster_.resize(std::size_t(count) * numbers_a_cluster);
   for (int c = 0; c < count; ++c) {
     const Vec3 turn = y.segment<3>(rigid_motions * c + 3);
-    const Vec3 shift = y.segment<3>(rigid_motions * c) - turn.cross(centers_[c] - centers_[0]);
-    Eigen::Map<Eigen::Matrix<double, cluster_numbers, 1>>(&by_cluster_[std::size_t(c) * cluster_numbers]) << shift, 0,
-        turn, 0;
+    const Vec3 from_first = centers_[c] - centers_[clusters_.first[part_of_[c]]];
+    const Vec3 shift = y.segment<3>(rigid_motions * c) - turn.cross(from_first);
+    Eigen::Map<Eigen::Matrix<double, numbers_a_cluster, 1>>(&by_cluster_[std::size_t(c) * numbers_a_cluster]) << shift,
+        0, turn, 0;
   }
-  run_chunks(threads, chunks, long(model.free) * 12, [&](int chunk) {
-    Four moved = {0, 0, 0, 0};
-    const int end = std::min(model.free, (chunk + 1) * vertices_a_chunk);
-    for (int v = chunk * vertices_a_chunk; v < end; ++v) {
-      Four motion = {0, 0, 0, 0}, turn = {0, 0, 0, 0};
-      for (int k = 0; k < Clusters::most_of_vertex; ++k) {
-        const double* from = &by_cluster_[std::size_t(cluster_numbers) * clusters_.of[v][k]];
-        const double weight = clusters_.weight[v][k];
-        Four of_shift, of_turn;
-        __builtin_memcpy(&of_shift, from, sizeof of_shift);
-        __builtin_memcpy(&of_turn, from + 4, sizeof of_turn);
-        motion += weight * of_shift;
-        turn += weight * of_turn;
-      }
-      motion += cross(turn, load_three(x.data() + 3 * std::size_t(v)) - origin);
-      for (int i = 0; i < 3; ++i) to.data()[3 * std::size_t(v) + i] += motion[i];
-      moved += model.mass[v] * motion;
-    }
-    for (int i = 0; i < 3; ++i) partial_[3 * std::size_t(chunk) + i] = moved[i];
+  run_chunks(threads, static_cast<int>(pieces_.size()), long(model.free) * 12, [&](int number) {
+    Eigen::Map<Vec3>(partial_.data() + pieces_[number].sums) = move_piece(model, pieces_[number], x, to);
   });
-  Vec3 moved = Vec3::Zero();
-  for (int chunk = 0; chunk < chunks; ++chunk)
-    moved += Eigen::Map<const Vec3>(partial_.data() + 3 * std::size_t(chunk));
-  return moved;
+  moved_.assign(std::size_t(parts()), Vec3::Zero());
+  for (const Piece& piece : pieces_) moved_[piece.part] += Eigen::Map<const Vec3>(partial_.data() + piece.sums);
+  return moved_;
 }
 
 // A group whose mean deformation gradient F changes by D turns by the angle that minimises |D - [theta]x F|.
@@ -213,9 +231,15 @@ void CoarseSystem::find_turns(const Positions& x, const Positions& motion, std::
 }
 
 double CoarseSystem::most_stretched(const Model& model, const Positions& motion) const {
-  double sum = 0;
-  for (int v = 0; v < model.free; ++v) sum += model.mass[v] * motion.row(v).squaredNorm();
-  return stretch_bound_ * sum * sum;
+  double energy = 0;
+  for (int p = 0; p < parts(); ++p) {
+    const Part& part = model.parts[p];
+    double sum = 0;
+    for (int v = part.first_free; v < part.first_free + part.free; ++v)
+      sum += model.mass[v] * motion.row(v).squaredNorm();
+    energy += stretch_bounds_[p] * sum * sum;
+  }
+  return energy;
 }
 
 Mat3 CoarseSystem::mean_at(std::int32_t vertex, const std::vector<Mat3>& by_cluster) const {

@@ -49,17 +49,16 @@ int place_in(const std::vector<std::int32_t>& sorted, std::int32_t value) {
 }  // namespace
 
 void CoarseSystem::make(const Model& model) {
-  SUPPLE_CHECK(model.parts.size(), ==, 1u);
   if (structure_ != model.structure) make_structure(model);
   if (model_ == model.id) return;
   for (Group& group : groups_) set_values(model, group);
-  find_stretch_bound(model);
+  find_stretch_bounds(model);
   model_ = model.id;
 }
 
 // A cluster that turns by theta moves its vertices so that the sum of m |d|^2 is at least theta^2 times its least
 // moment of inertia.
-void CoarseSystem::find_stretch_bound(const Model& model) {
+void CoarseSystem::find_stretch_bounds(const Model& model) {
   struct Moments {
     double mass = 0;
     Vec3 first = Vec3::Zero();
@@ -77,18 +76,21 @@ void CoarseSystem::find_stretch_bound(const Model& model) {
       of.second += model.mass[v] * at * at.transpose();
     }
   }
-  stretch_bound_ = 0;
-  for (const Moments& of : moments) {
+  stretch_bounds_.assign(std::size_t(parts()), 0.0);
+  for (std::size_t c = 0; c < moments.size(); ++c) {
+    const Moments& of = moments[c];
     if (of.mass <= 0) continue;
     const Mat3 second = of.second - of.first * of.first.transpose() / of.mass;
     const Eigen::SelfAdjointEigenSolver<Mat3> axes(second, Eigen::EigenvaluesOnly);
     const double inertia = std::max(axes.eigenvalues()[0] + axes.eigenvalues()[1], 1e-300);
-    stretch_bound_ += of.stiffness / (inertia * inertia);
+    stretch_bounds_[part_of_[c]] += of.stiffness / (inertia * inertia);
   }
 }
 
 void CoarseSystem::make_structure(const Model& model) {
   groups_.clear();
+  pieces_.clear();
+  part_of_.clear();
   clusters_ = {};
   model_ = 0;
   structure_ = model.structure;
@@ -96,9 +98,26 @@ void CoarseSystem::make_structure(const Model& model) {
                                  [](const Model::ChunkRange& chunk) { return chunk.kind == ElementKind::tetrahedron; });
   if (!solid) return;
   clusters_ = make_clusters(model, wanted_clusters(model));
+  for (int part = 0; part < parts(); ++part)
+    part_of_.insert(part_of_.end(), std::size_t(columns_of(part) / motions_of_cluster), part);
   make_groups(model);
   add_gradients(model);
-  partial_.resize(std::size_t(vertex_chunks(model)) * (8 * std::size_t(clusters_.count())));
+  make_pieces(model);
+}
+
+// Cuts each part by itself, so that its sums are the same whatever it is joined with.
+void CoarseSystem::make_pieces(const Model& model) {
+  std::size_t numbers = 0;
+  for (int p = 0; p < parts(); ++p) {
+    const Part& part = model.parts[p];
+    if (columns_of(p) == 0) continue;
+    const int end = part.first_free + part.free;
+    for (int first = part.first_free; first < end; first += vertices_a_chunk) {
+      pieces_.push_back({p, first, std::min(end, first + vertices_a_chunk), numbers});
+      numbers += numbers_a_cluster * std::size_t(columns_of(p) / motions_of_cluster);
+    }
+  }
+  partial_.resize(numbers);
 }
 
 void CoarseSystem::make_groups(const Model& model) {
@@ -114,6 +133,7 @@ void CoarseSystem::make_groups(const Model& model) {
       sums.emplace_back();
       groups_.back().region = element.region;
       groups_.back().cluster = cluster;
+      groups_.back().part = part_of_[cluster];
     }
     group_of_.push_back(static_cast<std::int32_t>(entry->second));
     const SystemTerm term = unit_term(element);
@@ -291,6 +311,7 @@ void CoarseSystem::set_values(const Model& model, Group& group) const {
   static const Eigen::Matrix<double, coordinates, motions> by_functions = motions_by_functions();
   const auto count = static_cast<Eigen::Index>(group.clusters.size());
   const double elastic = model.scheme.energy * model.scheme.theta * model.scheme.theta;
+  const double drag = model.parts[group.part].drag;
   const RegionStiffness stiffness = stiffness_of(model, group.region);
   const Eigen::MatrixXd points = point_products(model, group);
   group.stiffness = model.stiffness[group.region].k;
@@ -301,7 +322,7 @@ void CoarseSystem::set_values(const Model& model, Group& group) const {
       const FunctionBlock gradients = group.gradients.block<coordinates, coordinates>(coordinates * c, coordinates * d);
       const FunctionBlock by_constant = constant_stiffness(gradients, stiffness.constant);
       const FunctionBlock in_both =
-          point_stiffness(points.block<functions, functions>(functions * c, functions * d)) + model.drag * by_constant;
+          point_stiffness(points.block<functions, functions>(functions * c, functions * d)) + drag * by_constant;
       group.constant.block<motions, motions>(motions * c, motions * d) =
           by_functions.transpose() * (in_both + elastic * by_constant) * by_functions;
       group.hessian.block<motions, motions>(motions * c, motions * d) =

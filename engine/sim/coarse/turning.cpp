@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "sim/coarse/cross_matrix.h"
 
@@ -20,7 +21,7 @@ constexpr double least_angle = 1e-8;  // [rad]; a smaller turn stretches by no m
 void Turning::take_velocity(const CoarseSystem& system, const Positions& x, const Positions& motion) {
   system.find_turns(x, motion, turns_);
   by_cluster_.assign(turns_.size(), Mat3::Zero());
-  energy_ = 0;
+  energy_.assign(std::size_t(system.parts()), 0.0);
   for (std::size_t c = 0; c < turns_.size(); ++c) {
     const double sine = std::min(turns_[c].angle.norm(), 1.0);
     if (!(sine > least_angle)) continue;
@@ -29,22 +30,24 @@ void Turning::take_velocity(const CoarseSystem& system, const Positions& x, cons
     const double widened = std::clamp(-0.5 * turns_[c].strain.cwiseProduct(k2).sum(), 0.0, most);
     const double angle = std::atan2(sine, 1 + widened);
     by_cluster_[c] = (std::sin(angle) - turns_[c].angle.norm()) * k + (1 - std::cos(angle) + widened) * k2;
-    energy_ += 0.5 * turns_[c].stiffness * by_cluster_[c].squaredNorm();
+    energy_[system.part_of(c)] += 0.5 * turns_[c].stiffness * by_cluster_[c].squaredNorm();
   }
 }
 
 void Turning::take_tangent(const CoarseSystem& system, const Positions& x, const Positions& motion) {
   system.find_turns(x, motion, turns_);
   by_cluster_.assign(turns_.size(), Mat3::Zero());
-  energy_ = 0;
+  energy_.assign(std::size_t(system.parts()), 0.0);
   for (std::size_t c = 0; c < turns_.size(); ++c) {
     const double angle = turns_[c].angle.norm();
     if (!(angle > least_angle)) continue;
     const Mat3 k = axis_of(turns_[c].angle);
     by_cluster_[c] = (std::sin(angle) - angle) * k + (1 - std::cos(angle)) * k * k;
-    energy_ += 0.5 * turns_[c].stiffness * by_cluster_[c].squaredNorm();
+    energy_[system.part_of(c)] += 0.5 * turns_[c].stiffness * by_cluster_[c].squaredNorm();
   }
 }
+
+double Turning::energy() const { return std::accumulate(energy_.begin(), energy_.end(), 0.0); }
 
 void Turning::correct(const Model& model, const CoarseSystem& system, const Positions& x, SolveScratch& scratch,
                       Positions& correction) {

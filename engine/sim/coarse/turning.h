@@ -28,8 +28,10 @@ class Turning {
   // Takes a motion from x as the tangent of the turning.
   void take_tangent(const CoarseSystem& system, const Positions& x, const Positions& motion);
 
-  // Returns roughly the energy that it takes to stretch the turning parts along the straight motion [J].
-  double energy() const { return energy_; }
+  // Returns roughly the energy that it takes to stretch what turns along the straight motion [J].
+  double energy() const;
+  // Returns what one part of the model takes of it [J].
+  double energy_of(std::size_t part) const { return part < energy_.size() ? energy_[part] : 0; }
 
   // Computes e (n_free x 3).
   void correct(const Model& model, const CoarseSystem& system, const Positions& x, SolveScratch& scratch,
@@ -38,7 +40,7 @@ class Turning {
  private:
   std::vector<CoarseSystem::Turn> turns_;
   std::vector<Mat3> by_cluster_, by_vertex_;  // C
-  double energy_ = 0;
+  std::vector<double> energy_;                // by part of the model; empty without clusters
   Positions right_;
 };
 

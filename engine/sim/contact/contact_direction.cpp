@@ -152,7 +152,7 @@ void couple_levels(ContactCorrection& c) {
       });
   if (!is_new) return;
   c.both.compute(Eigen::MatrixXd::Identity(numbers.size(), numbers.size()) +
-                 c.second->difference() * c.system.between());
+                 c.second->difference_times(c.system.between()));
 }
 
 // Solves with the matrix of couple_levels(), in place.
@@ -161,7 +161,7 @@ void solve_coupled(ContactCorrection& c) {
   if (c.second == nullptr) return;
   const auto& rows = c.system.rows();
   const Eigen::VectorXd seen = (rows.transpose() * c.answer).cast<double>();
-  Eigen::VectorXf back = rows * c.both.solve(c.second->difference() * seen).cast<float>();
+  Eigen::VectorXf back = rows * c.both.solve(c.second->difference_times(seen)).cast<float>();
   c.system.solve(back);
   c.answer -= back;
 }
@@ -186,7 +186,7 @@ void apply_low_rank(const Model& model, ContactCorrection& c, Positions& r, Posi
     for (int k = 1; k < stencil.free; ++k) seen += stencil.weight[k] * c.solve.seen(stencil.vertex[k]);
     c.answer[i] = static_cast<float>(seen.dot(directions[i].axis));
   }
-  if (c.second != nullptr) c.answer += c.system.rows() * (c.second->difference() * c.coarse).cast<float>();
+  if (c.second != nullptr) c.answer += c.system.rows() * c.second->difference_times(c.coarse).cast<float>();
   solve_coupled(c);
   add_answer(c, c.part, r);
   finish(model, c, r, z);

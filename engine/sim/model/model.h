@@ -68,6 +68,7 @@ struct Part {
   double size = 0;                        // diagonal of the rest bounding box [m]
   double mass = 0;                        // of the free vertices [kg]
   bool floats = false;                    // nothing holds it: A has its translations as known eigenvectors
+  double drag = 0;                        // beta/h
 };
 
 // As a System it is A = w M/h^2 + (e theta^2 + beta/h) L + springs of handles.
@@ -132,7 +133,6 @@ struct Model : System {
     std::vector<double> value;
   };
   SparseRows damping;
-  double drag = 0;  // beta/h
 
   ElementChunk chunk(int index) const;
   const Part& part_of(std::int32_t vertex) const;

@@ -156,7 +156,7 @@ Eigen::SparseMatrix<double> ModelValues::system_matrix(Model& model, double damp
   model.mean_stiffness = elastic_.diagonal().sum() / static_cast<double>(elements_.size());
   model.couplings.clear();
   model.damping = {};
-  model.drag = drag;
+  model.parts.front().drag = drag;
   if (damping > 0) model.damping.begin.push_back(0);
   Eigen::SparseMatrix<double> matrix(model.free, model.free);
   matrix.reserve(elastic_.nonZeros() / 2 + model.free);

@@ -14,8 +14,19 @@ struct HandleMotion {
   Eigen::AngleAxisd turn;
 };
 
-// Fits a rigid motion to the held vertices (Kabsch 1976, "A solution for the best rotation to relate two sets of
-// vectors").
+// Returns the part that hard handles hold; null where they hold none or several.
+const Part* held_part(const Model& model) {
+  const Part* held = nullptr;
+  for (const Part& part : model.parts) {
+    if (part.held == 0) continue;
+    if (held != nullptr) return nullptr;
+    held = &part;
+  }
+  return held;
+}
+
+// Fits a rigid motion to the held vertices, which belong to one part (Kabsch 1976, "A solution for the best rotation to
+// relate two sets of vectors").
 HandleMotion motion_of_handles(const Model& model, const State& state, const OpenWorkspace& w) {
   const int held = model.vertices - model.free;
   const auto before = state.x.bottomRows(held), after = w.current.x.bottomRows(held);
@@ -27,21 +38,32 @@ HandleMotion motion_of_handles(const Model& model, const State& state, const Ope
   return {from.transpose(), to.transpose(), Eigen::AngleAxisd(Mat3(u * svd.matrixV().transpose()))};
 }
 
+// Tells whether the turning of some part matters beside its own motion.
+bool turns_much(const StepContext& c) {
+  constexpr double little = 1e-5;  // of the kinetic energy of the part's free motion
+  const Model& model = c.model;
+  for (std::size_t p = 0; p < model.parts.size(); ++p) {
+    const Part& part = model.parts[p];
+    double way = 0;
+    for (int v = part.first_free; v < part.first_free + part.free; ++v)
+      way += model.mass[v] * (c.w.y.row(v) - c.state.x.row(v)).squaredNorm();
+    const double energy = little * way / (2 * model.time_step * model.time_step);
+    if (c.w.turning.energy_of(p) > energy) return true;
+  }
+  return false;
+}
+
 // Finds how turning parts depart from the straight motions h v, which stretch them, and whether that matters.
 void find_turning(StepContext& c) {
   const Model& model = c.model;
   OpenWorkspace& w = c.w;
-  constexpr double little = 1e-5;  // of the kinetic energy of the body's free motion
   w.turns = false;
   if (c.inputs.solver.levels < 2) return;
   const TimedPhase timed(w.clock, Phase::matrix, "turn");
   w.second_level.prepare(model);
-  double way = 0;
-  for (int v = 0; v < model.free; ++v) way += model.mass[v] * (w.y.row(v) - c.state.x.row(v)).squaredNorm();
-  const double energy = little * way / (2 * model.time_step * model.time_step);
   w.motion = model.time_step * c.state.v;
   w.turning.take_velocity(w.second_level.system(), c.state.x, w.motion);
-  w.turns = w.turning.energy() > energy;
+  w.turns = turns_much(c);
   if (w.turns) w.turning.correct(model, w.second_level.system(), c.state.x, w.solve_scratch, w.turned);
 }
 
@@ -82,12 +104,14 @@ void fit_handles_and_turning(StepContext& c) {
 
 bool handles_turn_far(const StepContext& c) {
   constexpr double least_turn = 0.3;  // [rad]; elements that straight ways of smaller turns deform recover soon
-  return c.spreads_handles && !(motion_of_handles(c.model, c.state, c.w).turn.angle() < least_turn);
+  if (!c.spreads_handles || held_part(c.model) == nullptr) return false;
+  return !(motion_of_handles(c.model, c.state, c.w).turn.angle() < least_turn);
 }
 
 void turn_with_handles(StepContext& c) {
   const Model& model = c.model;
   OpenWorkspace& w = c.w;
+  const Part& part = *held_part(model);
   const HandleMotion motion = motion_of_handles(model, c.state, w);
   TimedPhase timed(w.clock, Phase::solve, "solve");
   Positions& shares = w.scratch;
@@ -97,7 +121,8 @@ void turn_with_handles(StepContext& c) {
   shares = w.direction;
   timed.next(Phase::evaluate, "turn with handles");
   for (const bool wholly : {false, true}) {
-    for (int v = 0; v < model.free; ++v) {
+    w.trial.x.topRows(model.free) = w.current.x.topRows(model.free);
+    for (int v = part.first_free; v < part.first_free + part.free; ++v) {
       const double share = wholly ? 1 : shares(v, 0);
       const Vec3 q = c.state.x.row(v), free_way = w.y.row(v) - c.state.x.row(v);
       w.trial.x.row(v) = (Eigen::AngleAxisd(share * motion.turn.angle(), motion.turn.axis()) * (q - motion.from) +

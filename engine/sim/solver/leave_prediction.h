@@ -20,7 +20,7 @@ bool leaves_prediction(StepContext& c);
 void fit_handles_and_turning(StepContext& c);
 
 // Tells whether the hard handles turn so far in the step that straight ways to their targets lead through each other:
-// the body would start torn and inside out.
+// the body would start torn and inside out. Says no where the handles hold several parts, whose turns differ.
 bool handles_turn_far(const StepContext& c);
 
 // Tries two first iterates in which the body turns with its handles, for an evaluation each and one more solve. In the
