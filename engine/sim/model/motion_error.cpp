@@ -5,31 +5,53 @@
 
 namespace supple {
 
-double mass_length(const Model& model, const Positions& displacement) {
+namespace {
+
+double mass_length(const Model& model, const Part& part, const Positions& d) {
   double sum = 0;
-  for (int v = 0; v < model.free; ++v) sum += model.mass[v] * displacement.row(v).squaredNorm();
+  for (int v = part.first_free; v < part.first_free + part.free; ++v) sum += model.mass[v] * d.row(v).squaredNorm();
   return std::sqrt(sum);
 }
 
-namespace {
-
-double mass_distance(const Model& model, const Positions& a, const Positions& b) {
+double mass_distance(const Model& model, const Part& part, const Positions& a, const Positions& b) {
   double sum = 0;
-  for (int v = 0; v < model.free; ++v) sum += model.mass[v] * (a.row(v) - b.row(v)).squaredNorm();
+  for (int v = part.first_free; v < part.first_free + part.free; ++v)
+    sum += model.mass[v] * (a.row(v) - b.row(v)).squaredNorm();
   return std::sqrt(sum);
+}
+
+// Returns how far a part counts as moving in a step from q to x [m sqrt(kg)].
+double own_motion(const Model& model, const Part& part, const Positions& q, const Positions& y, const Positions& x) {
+  constexpr double least_share = 0.01, least_of_size = 1e-7;
+  const double least = least_of_size * part.size * std::sqrt(part.mass);
+  return std::max({mass_distance(model, part, x, q), least_share * mass_distance(model, part, y, q), least});
+}
+
+// Returns the largest of the parts' errors; one that is not a number counts as the largest.
+template <class ErrorOfPart>
+double largest_error(const Model& model, const ErrorOfPart& error_of) {
+  double largest = 0;
+  for (const Part& part : model.parts) {
+    const double error = error_of(part);
+    if (std::isnan(error)) return error;
+    largest = std::max(largest, error);
+  }
+  return largest;
 }
 
 }  // namespace
 
-double motion_error(const Model& model, const Positions& q, const Positions& y, const Positions& x, double distance) {
-  constexpr double least_share = 0.01, least_of_size = 1e-7;
-  const double least = least_of_size * model.size * std::sqrt(model.total_mass);
-  return distance / std::max({mass_distance(model, x, q), least_share * mass_distance(model, y, q), least});
-}
-
 double motion_error(const Model& model, const Positions& q, const Positions& y, const Positions& x,
                     const Positions& solved) {
-  return motion_error(model, q, y, solved, mass_distance(model, x, solved));
+  return largest_error(model, [&](const Part& part) {
+    return mass_distance(model, part, x, solved) / own_motion(model, part, q, y, solved);
+  });
+}
+
+double estimated_motion_error(const Model& model, const Positions& q, const Positions& y, const Positions& x,
+                              const Positions& d, double times) {
+  return largest_error(
+      model, [&](const Part& part) { return times * mass_length(model, part, d) / own_motion(model, part, q, y, x); });
 }
 
 }  // namespace supple

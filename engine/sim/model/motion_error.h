@@ -5,17 +5,17 @@
 
 namespace supple {
 
-// Returns the length of a displacement of the free vertices, sqrt(sum of m |d|^2) [m sqrt(kg)].
-double mass_length(const Model& model, const Positions& displacement);
-
 // Returns the error of motion of a step from q to x: how far x is from the solved step x*, over the step's own motion,
-// |x - x*|_M / |x* - q|_M. A body that hardly moves has no motion to compare with: it counts as moving by a hundredth
-// of what it would do freely, y - q, and by 1e-7 of its size at least. Equation 12 divides by what there is to gain,
-// which a stiff body makes so large that it does not see whether the body turns. All n x 3 in the model's order.
+// |x - x*|_M / |x* - q|_M, with |d|^2_M the sum of m |d|^2 over the free vertices. It is the largest of the errors of
+// the model's parts, so that a fast body does not hide that a slow one is far from where it should be. A body that
+// hardly moves has no motion to compare with: it counts as moving by a hundredth of what it would do freely, y - q, and
+// by 1e-7 of its size at least. Equation 12 divides by what there is to gain, which a stiff body makes so large that it
+// does not see whether the body turns. All n x 3 in the model's order.
 double motion_error(const Model& model, const Positions& q, const Positions& y, const Positions& x,
                     const Positions& solved);
-// Returns the error of motion where only the distance from the solved step is known [m sqrt(kg)]; x stands for the
-// solved step.
-double motion_error(const Model& model, const Positions& q, const Positions& y, const Positions& x, double distance);
+// Returns the error of motion where the solved step is not known: x* is taken to lie `times` the way d (n_free x 3)
+// from x, and the step's own motion to be that to x.
+double estimated_motion_error(const Model& model, const Positions& q, const Positions& y, const Positions& x,
+                              const Positions& d, double times);
 
 }  // namespace supple

@@ -85,7 +85,7 @@ double motion_estimate(const Model& model, const StepInputs& inputs, const Posit
     w.second_level.add_to(model, w.scratch, w.threads, d);
   }
   const double more = std::sqrt(std::max(1.0, report.remaining_estimate / report.decrement));
-  return motion_error(model, q, w.y, w.current.x, more * mass_length(model, d));
+  return estimated_motion_error(model, q, w.y, w.current.x, d, more);
 }
 
 bool is_near_enough(const Model& model, const StepInputs& inputs, const Positions* q, double above_start,
