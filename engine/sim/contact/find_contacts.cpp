@@ -56,31 +56,57 @@ double lagged_force(const Contact& contact, double depth_before, double depth_un
   return std::min(mass_over_h2 * std::max(0.0, depth_unhindered), pressing);
 }
 
-// Finds a common way out where the body starts so deep inside a collider that it cannot leave it in this step.
-void find_way_out(const Model& model, const StepInputs& inputs, ContactWork& work) {
+std::size_t index_of_part(const Model& model, std::int32_t vertex) {
+  return static_cast<std::size_t>(&model.part_of(vertex) - model.parts.data());
+}
+
+// Holds the points between vertices that lie on one part's faces.
+struct PartFaces {
+  std::vector<Vec3> places;            // at the start of the step, for all colliders
+  std::vector<double> least_distance;  // by collider: the least signed distance at the start [m]
+};
+
+std::vector<PartFaces> faces_by_part(const Model& model, const ContactWork& work) {
+  constexpr double far = std::numeric_limits<double>::infinity();
+  std::vector<PartFaces> faces(model.parts.size(), {{}, std::vector<double>(work.faces.size(), far)});
+  for (std::size_t c = 0; c < work.faces.size(); ++c) {
+    for (const FacePoint& face : work.faces[c].points) {
+      auto& [places, least] = faces[index_of_part(model, face.stencil.vertex[0])];
+      least[c] = std::min(least[c], face.field);
+      places.push_back(face.stencil.at(*work.begin));
+    }
+  }
+  return faces;
+}
+
+// Finds a common way out for a part that starts so deep inside a collider that it cannot leave it in this step.
+void find_way_out(const Model& model, const StepInputs& inputs, std::size_t p, const PartFaces& faces,
+                  ContactWork& work) {
   const std::vector<Collider>& colliders = *inputs.colliders;
-  const double push_out = push_out_of(model, inputs, model.size);
+  const Part& part = model.parts[p];
+  const double push_out = push_out_of(model, inputs, part.size);
   const VertexSearch search{model, inputs, work.start, work};
   std::vector<std::size_t> deep;
-  std::vector<Vec3> between;  // vertices
   for (std::size_t c = 0; c < colliders.size(); ++c) {
-    double least = search.deepest_start(c, -push_out);
-    for (const FacePoint& face : work.faces[c].points) {
-      least = std::min(least, face.field);
-      between.push_back(face.stencil.at(*work.begin));
-    }
+    const double least = std::min(search.deepest_start(c, part, -push_out), faces.least_distance[c]);
     if (least < -push_out) deep.push_back(c);
   }
-  work.way_out.assign(colliders.size(), Vec3::Zero());
   if (deep.empty()) return;
   std::vector<Eigen::Isometry3d> poses;
   for (const ColliderMotion& motion : inputs.collider_motions) poses.push_back(motion.start);
-  Positions points(model.free + std::ssize(between), 3);
-  points.topRows(model.free) = work.start;
-  for (std::size_t i = 0; i < between.size(); ++i) points.row(model.free + Eigen::Index(i)) = between[i].transpose();
+  Positions points(part.free + std::ssize(faces.places), 3);
+  points.topRows(part.free) = work.start.middleRows(part.first_free, part.free);
+  for (std::size_t i = 0; i < faces.places.size(); ++i)
+    points.row(part.free + Eigen::Index(i)) = faces.places[i].transpose();
   const std::optional<WayOut> way =
-      way_out(Obstacles(colliders, poses), points, 0.1 * push_out, furthest_way_out * model.size);
-  for (const std::size_t c : deep) work.way_out[c] = way ? way->direction : Vec3::Zero();
+      way_out(Obstacles(colliders, poses), points, 0.1 * push_out, furthest_way_out * part.size);
+  for (const std::size_t c : deep) work.way_out[c * model.parts.size() + p] = way ? way->direction : Vec3::Zero();
+}
+
+void find_ways_out(const Model& model, const StepInputs& inputs, ContactWork& work) {
+  work.way_out.assign(inputs.colliders->size() * model.parts.size(), Vec3::Zero());
+  const std::vector<PartFaces> faces = faces_by_part(model, work);
+  for (std::size_t p = 0; p < model.parts.size(); ++p) find_way_out(model, inputs, p, faces[p], work);
 }
 
 // Keeps the memories of solids that are the same as before, if the number of vertices is the same.
@@ -150,7 +176,7 @@ void begin_contacts(const Model& model, const StepInputs& inputs, const Position
     if (inputs.solver.contact.points == ContactPoints::surface)
       begin_face_points(model, collider, view, q, y, threads, work.faces[c]);
   }
-  find_way_out(model, inputs, work);
+  find_ways_out(model, inputs, work);
 }
 
 namespace {
@@ -163,7 +189,9 @@ class Planes {
       : model_(model),
         x_(x),
         view_(view),
-        way_out_(work.way_out[c]),
+        way_out_(&work.way_out[c * model.parts.size()]),
+        some_leave_(
+            std::any_of(way_out_, way_out_ + model.parts.size(), [](const Vec3& way) { return !way.isZero(0); })),
         start_(*work.begin),
         prediction_(*work.prediction),
         pressed_at_first_(work.pressed_at_first),
@@ -175,8 +203,8 @@ class Planes {
   void of_vertex(int v, const Way& way, double field, double reach, QueryMemory& near,
                  std::vector<Contact>& list) const {
     Contact contact = contact_at(ContactStencil::at_vertex(v), v);
-    if (is_leaving() && field <= 0) {
-      leave(view_, way, way_out_, field, push_out(v), near, contact);
+    if (is_leaving(v) && field <= 0) {
+      leave(view_, way, way_out(v), field, push_out(v), near, contact);
       return list.push_back(contact);
     }
     const std::optional<SurfacePoint> surface = view_.holding(way, field, reach, near);
@@ -189,8 +217,9 @@ class Planes {
     const double reach = reach_of(way.length, view_.length_to(face.stencil.at(prediction_), way));
     if (way.length + reach < view_.clear(face.field)) return;
     Contact contact = contact_at(face.stencil, model_.vertices + number);
-    if (is_leaving() && face.field <= 0) {
-      leave(view_, way, way_out_, face.field, push_out(face.stencil.vertex[0]), face.near, contact);
+    const std::int32_t corner = face.stencil.vertex[0];
+    if (is_leaving(corner) && face.field <= 0) {
+      leave(view_, way, way_out(corner), face.field, push_out(corner), face.near, contact);
       return list.push_back(contact);
     }
     const std::optional<SurfacePoint> surface = plane_of(view_, face, way, reach, face.near);
@@ -207,7 +236,8 @@ class Planes {
   double size_at(std::int32_t vertex) const { return model_.part_of(vertex).size; }
   double push_out(std::int32_t vertex) const { return push_out_of(model_, inputs_, size_at(vertex)); }
 
-  bool is_leaving() const { return !way_out_.isZero(0); }
+  const Vec3& way_out(std::int32_t vertex) const { return way_out_[index_of_part(model_, vertex)]; }
+  bool is_leaving(std::int32_t vertex) const { return some_leave_ && !way_out(vertex).isZero(0); }
 
   Contact contact_at(const ContactStencil& stencil, std::int32_t number) const {
     const double unit =
@@ -220,13 +250,15 @@ class Planes {
   void add(const SurfacePoint& surface, const Way& way, double field, double slack, QueryMemory& near, Contact& contact,
            std::vector<Contact>& list) const {
     contact.normal = view_.end().linear() * surface.normal;
-    if (is_leaving() && contact.normal.dot(way_out_) < 0.5) return;  // the points that leave pull it through
-    const double fastest = push_out(contact.stencil.vertex[0]);
+    const std::int32_t corner = contact.stencil.vertex[0];
+    if (is_leaving(corner) && contact.normal.dot(way_out(corner)) < 0.5)
+      return;  // the points that leave pull it through
+    const double fastest = push_out(corner);
     const double deep = field < -fastest ? std::max(0.0, -view_.closest(way.a, near).distance - fastest) : 0;
     contact.offset = contact.normal.dot(view_.end() * surface.point) - std::max(slack, deep);
     contact.depth = std::max(0.0, -gap(contact, x_));
     if (friction_ > 0) {
-      contact.stick = inputs_.solver.contact.stick * size_at(contact.stencil.vertex[0]) * model_.time_step;
+      contact.stick = inputs_.solver.contact.stick * size_at(corner) * model_.time_step;
       contact.origin = view_.carried(way.q);
       const double depth_before = deep > 0 ? 0 : std::max(-field - slack, pressed_at_first(contact.number));
       contact.friction = friction_ * lagged_force(contact, depth_before, -gap(contact, prediction_),
@@ -239,7 +271,8 @@ class Planes {
   const Model& model_;
   const Positions& x_;
   const ColliderView& view_;
-  const Vec3& way_out_;
+  const Vec3* way_out_;  // by part
+  bool some_leave_;
   const Positions& start_;
   const Positions& prediction_;
   const std::vector<double>& pressed_at_first_;

@@ -35,9 +35,10 @@ struct ContactWork {
   std::vector<double> group_free_move;   // the same, start to prediction [m]
   std::vector<double> collider_move;     // how far a collider's own points near a group move, colliders x groups [m]
   std::vector<ColliderTraits> traits;    // by collider
-  std::vector<Vec3> way_out;             // by collider: the way out of it; zero: the body does not start deep inside
-  Positions start;                       // q of the free vertices [m]
-  std::vector<FacePoints> faces;         // by collider
+  // The way by which each part leaves each collider, colliders x parts; zero: the part does not start deep inside.
+  std::vector<Vec3> way_out;
+  Positions start;                // q of the free vertices [m]
+  std::vector<FacePoints> faces;  // by collider
   // How deep the vertices that touch are pressed into colliders when a film begins, colliders x free; empty in every
   // other step, and where nothing touches (solver/first_forces.h) [m].
   std::vector<double> pressed_at_first;

@@ -58,11 +58,11 @@ struct VertexSearch {
     return known;
   }
 
-  // Returns the least signed distance of all vertices at the start of the step, as far as it is below `above`.
-  double deepest_start(std::size_t c, double above) const {
+  // Returns the least signed distance of a part's vertices at the start of the step, as far as it is below `above`.
+  double deepest_start(std::size_t c, const Part& part, double above) const {
     const ColliderView own = view(c);
     double least = above;
-    for (int v = 0; v < model.free; ++v) {
+    for (int v = part.first_free; v < part.first_free + part.free; ++v) {
       if (work.group_distance[c * vertex_groups(model) + v / vertices_a_group] >= above) continue;
       const Vec3 place = own.at_start(work.start.row(v));
       if (own.certain_distance(place, memory(c, v)) >= above) continue;

@@ -2,21 +2,50 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "sim/solver/place_iterate.h"
 
 namespace supple {
 
-bool is_still(const StepContext& c) {
+namespace {
+
+// Tells whether a part moves so little that the forces on it must be balanced.
+bool is_still(const StepContext& c, const Part& part) {
   const Model& model = c.model;
   const OpenWorkspace& w = c.w;
-  constexpr double little = 0.01;  // of the energy of the body's free motion in the step
+  constexpr double little = 0.01;  // of the energy of the part's free motion in the step
   double way = 0, free_way = 0;
-  for (int v = 0; v < model.free; ++v) {
+  for (int v = part.first_free; v < part.first_free + part.free; ++v) {
     way += model.mass[v] * c.state.v.row(v).squaredNorm();
     free_way += model.mass[v] * (w.y.row(v) - c.state.x.row(v)).squaredNorm();
   }
   return model.time_step * model.time_step * way < little * free_way;
+}
+
+bool is_between_vertices(const Contact& contact) { return contact.depth > 0 && !contact.stencil.is_vertex(); }
+
+// Sets the trial iterate to the current one, and calls move(part) for each part that is to be moved there: for the only
+// part, or for those of several that have such a contact or of which `also(part)` is true.
+template <class Counts, class Also, class Move>
+void set_trial_by_parts(const StepContext& c, const Counts& counts, const Also& also, const Move& move) {
+  const Model& model = c.model;
+  if (model.parts.size() == 1) return move(model.parts.front());
+  OpenWorkspace& w = c.w;
+  w.trial.x.topRows(model.free) = w.current.x.topRows(model.free);
+  std::vector<char> is_chosen(model.parts.size(), 0);
+  for (const Contact& contact : w.current.contacts) {
+    if (counts(contact)) is_chosen[&model.part_of(contact.stencil.vertex[0]) - model.parts.data()] = 1;
+  }
+  for (std::size_t p = 0; p < model.parts.size(); ++p) {
+    if (is_chosen[p] != 0 || also(model.parts[p])) move(model.parts[p]);
+  }
+}
+
+}  // namespace
+
+bool is_still(const StepContext& c) {
+  return std::ranges::any_of(c.model.parts, [&](const Part& part) { return is_still(c, part); });
 }
 
 namespace {
@@ -40,24 +69,32 @@ void start_from_trial_below(double share, const StepContext& c) {
 }  // namespace
 
 void start_without_fall(StepContext& c) {
-  const int free = c.model.free;
   OpenWorkspace& w = c.w;
   const TimedPhase timed(w.clock, Phase::evaluate, "start without fall");
-  w.trial.x.topRows(free) = (c.state.x + c.model.time_step * c.state.v).topRows(free);
-  if (w.turns) w.trial.x.topRows(free) += w.turned;
+  const auto move = [&](const Part& part) {
+    const int first = part.first_free, free = part.free;
+    w.trial.x.middleRows(first, free) = (c.state.x + c.model.time_step * c.state.v).middleRows(first, free);
+    if (w.turns) w.trial.x.middleRows(first, free) += w.turned.middleRows(first, free);
+  };
+  set_trial_by_parts(
+      c, [](const Contact& contact) { return contact.depth > 0; }, [&](const Part& part) { return is_still(c, part); },
+      move);
   start_from_trial_below(1, c);
 }
 
 bool touches_between_vertices(const StepContext& c) {
-  return std::ranges::any_of(c.w.current.contacts,
-                             [](const Contact& contact) { return contact.depth > 0 && !contact.stencil.is_vertex(); });
+  return std::ranges::any_of(c.w.current.contacts, is_between_vertices);
 }
 
 void start_where_it_was(StepContext& c) {
   constexpr double far_better = 0.25;  // share of the current g
   OpenWorkspace& w = c.w;
   const TimedPhase timed(w.clock, Phase::evaluate, "start where it was");
-  w.trial.x.topRows(c.model.free) = c.state.x.topRows(c.model.free);
+  const auto move = [&](const Part& part) {
+    w.trial.x.middleRows(part.first_free, part.free) = c.state.x.middleRows(part.first_free, part.free);
+  };
+  set_trial_by_parts(
+      c, is_between_vertices, [](const Part&) { return false; }, move);
   if (inertial_energy(c.model, w, w.trial.x) < far_better * w.current.g || c.model.energy_may_be_negative)
     start_from_trial_below(far_better, c);
 }

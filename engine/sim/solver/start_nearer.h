@@ -1,11 +1,12 @@
-// Moves the first iterate nearer to where the body was, where that is better than what the body would do freely.
+// Moves the first iterate nearer to where the body was, where that is better than what the body would do freely. Of
+// several bodies, only those are moved that give cause for it.
 #pragma once
 
 #include "sim/solver/step_context.h"
 
 namespace supple {
 
-// Tells whether the body hangs still, or lies: it moves so little that the forces on it must be balanced.
+// Tells whether a body hangs still, or lies: it moves so little that the forces on it must be balanced.
 bool is_still(const StepContext& c);
 
 // Starts from q + h v where that is better. y contains the fall of the step, which leaves a body that rests on
