@@ -229,7 +229,13 @@ Vec3 MovingSurface::pseudonormal(const Pose& pose, std::int32_t t, const Vec3& w
   return normalized_or_zero(count == 2 ? edge_normal(pose, vertex[0], vertex[1]) : vertex_normal(pose, vertex[0]));
 }
 
-std::optional<MovingSurface::Place> MovingSurface::closest(const Pose& pose, const Vec3& p, double most) const {
+Vec3 MovingSurface::normal_at_start(std::int32_t vertex) const {
+  return normalized_or_zero(vertex_normal(start_, vertex));
+}
+Vec3 MovingSurface::normal_at_end(std::int32_t vertex) const { return normalized_or_zero(vertex_normal(end_, vertex)); }
+
+std::optional<MovingSurface::Place> MovingSurface::closest(const Pose& pose, const Vec3& p, double most,
+                                                           const Facing* facing) const {
   struct Waiting {
     double squared;
     std::int32_t child;
@@ -247,6 +253,7 @@ std::optional<MovingSurface::Place> MovingSurface::closest(const Pose& pose, con
       const Foot own = foot_in_triangle({corner(pose, t, 0) - p, corner(pose, t, 1) - p, corner(pose, t, 2) - p});
       const double squared = own.offset.squaredNorm();
       if (!(triangle < 0 ? squared <= least : squared < least)) continue;
+      if (facing != nullptr && unit_normal(pose, t).dot(facing->direction) > facing->most) continue;
       least = squared;
       triangle = t;
       foot = own;

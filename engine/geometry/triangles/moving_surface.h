@@ -40,10 +40,26 @@ class MovingSurface {
     double distance;  // negative inside [m]
     Vec3 normal;      // gradient of the distance, of unit length; the pseudonormal where the point is on the surface
   };
+  // Leaves out the triangles whose normals are too near a direction: their cosines with it are above `most`. A vertex
+  // of another body is not held by what faces the way that it does itself, such as the side of a cube at the edge of a
+  // lid.
+  struct Facing {
+    Vec3 direction;  // of unit length, or zero to leave out none
+    double most;
+  };
   // Returns nothing where the surface is further away than `most` [m]. A point counts as on the surface within a
   // billionth of the largest coordinate. Where all triangles around have no area, the point is outside.
-  std::optional<Place> closest_at_start(const Vec3& p, double most) const { return closest(start_, p, most); }
-  std::optional<Place> closest_at_end(const Vec3& p, double most) const { return closest(end_, p, most); }
+  // facing: triangles that are left out; null to take all.
+  std::optional<Place> closest_at_start(const Vec3& p, double most, const Facing* facing = nullptr) const {
+    return closest(start_, p, most, facing);
+  }
+  std::optional<Place> closest_at_end(const Vec3& p, double most, const Facing* facing = nullptr) const {
+    return closest(end_, p, most, facing);
+  }
+
+  // Returns the pseudonormal of a vertex, of unit length; zero where no triangle there has an area.
+  Vec3 normal_at_start(std::int32_t vertex) const;
+  Vec3 normal_at_end(std::int32_t vertex) const;
 
   // Describes how a point enters.
   struct Entry {
@@ -108,7 +124,7 @@ class MovingSurface {
   Vec3 edge_normal(const Pose& pose, std::int32_t a, std::int32_t b) const;
   Vec3 vertex_normal(const Pose& pose, std::int32_t vertex) const;
   Vec3 pseudonormal(const Pose& pose, std::int32_t t, const Vec3& weights) const;
-  std::optional<Place> closest(const Pose& pose, const Vec3& p, double most) const;
+  std::optional<Place> closest(const Pose& pose, const Vec3& p, double most, const Facing* facing) const;
   Place seen_from(const Vec3& p, const Pose& pose, std::int32_t t, const Vec3& weights, const Vec3& offset) const;
 
   Bounds swept_box(std::int32_t node, const Vec3& carried) const;

@@ -53,14 +53,15 @@ struct EdgeGraph {
   int vertices() const { return static_cast<int>(mass.size()); }
 };
 
+using EdgeList = std::vector<std::pair<std::int32_t, std::int32_t>>;
+
 // Lists the edges of the tetrahedra of each part, in both directions.
-using Edges = std::vector<std::pair<std::int32_t, std::int32_t>>;
-std::vector<Edges> edges_by_part(const Model& model) {
+std::vector<EdgeList> edges_by_part(const Model& model) {
   const PartNumbers numbers(model);
-  std::vector<Edges> edges(model.parts.size());
+  std::vector<EdgeList> edges(model.parts.size());
   for_each_element(model, [&](const ElementView& element) {
     if (element.kind != ElementKind::tetrahedron) return;
-    Edges& list = edges[numbers.part_of(element.corner[0])];
+    EdgeList& list = edges[numbers.part_of(element.corner[0])];
     for (const std::int32_t a : element.corner) {
       for (const std::int32_t b : element.corner) {
         if (a != b) list.emplace_back(numbers.in_part(a), numbers.in_part(b));
@@ -70,7 +71,7 @@ std::vector<Edges> edges_by_part(const Model& model) {
   return edges;
 }
 
-EdgeGraph graph_of(const Model& model, const Part& part, Edges edges) {
+EdgeGraph graph_of(const Model& model, const Part& part, EdgeList edges) {
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   EdgeGraph graph;
@@ -278,7 +279,7 @@ std::vector<int> wanted_clusters(const Model& model) {
 
 Clusters make_clusters(const Model& model, const std::vector<int>& counts) {
   SUPPLE_CHECK(counts.size(), ==, model.parts.size());
-  std::vector<Edges> edges = edges_by_part(model);
+  std::vector<EdgeList> edges = edges_by_part(model);
   Clusters clusters;
   clusters.of.assign(model.vertices, {});
   clusters.weight.assign(model.vertices, {});

@@ -38,10 +38,13 @@ double longest_edge_squared(const Model& model, const Positions& q) {
   return longest;
 }
 
+// Returns the depth below which contact of a body's points with a piece begins [m]. size: of the body [m].
+double slack_of(const FacePoints::Piece& piece, double size) { return std::min(usual_depth(size), piece.most_slack); }
+
 // Tells whether a triangle whose corners lie outside a bulge may reach deeper than the slack: its points are at most
 // 1/sqrt(3) of the longest edge from a corner, so that it cuts off a cap of at most this edge^2 / (6 radius).
-bool is_finer(const FacePoints::Piece& piece, double thickness, double edge_squared) {
-  return edge_squared > 6 * (piece.piece.bulge + thickness) * piece.slack;
+bool is_finer(const FacePoints::Piece& piece, double slack, double thickness, double edge_squared) {
+  return edge_squared > 6 * (piece.piece.bulge + thickness) * slack;
 }
 
 // Returns the point of a triangle with these weights: of the triangle, an edge or a vertex, after weights that are next
@@ -120,8 +123,8 @@ struct TriangleSearch {
   }
 
   // Returns the distance from a piece beyond which a place needs no point; a negative distance is a depth.
-  double furthest(double reach, const FacePoints::Piece& piece) const {
-    return faces.thickness + (at_start ? reach - piece.slack : -unheld * piece.slack);
+  double furthest(double reach, double slack) const {
+    return faces.thickness + (at_start ? reach - slack : -unheld * slack);
   }
 
   // Returns the normal of the surface that holds a place which an iterate has led into the collider. Beyond the middle
@@ -135,23 +138,22 @@ struct TriangleSearch {
 
   // Adds the candidates of one triangle against one piece.
   void examine(Eigen::Index triangle, const TriangleCorners& corners, double within, const FacePoints::Piece& piece,
-               std::vector<FacePoints::Candidate>& found) const {
+               double slack, std::vector<FacePoints::Candidate>& found) const {
     const ShapeProbe probe(piece.piece.shape);
     QueryMemory near;
     const TriangleInShape search(probe, piece.piece.half_thickness, corners, near);
     double radius = 0;
     for (const Vec3& corner : corners) radius = std::max(radius, (corner - search.center().point).norm());
     if (std::max(search.bound(), search.center().surface.distance - radius) > within) return;
-    if (search.distance_at_nearest_corner() - search.bound() <= piece.slack) return;
+    if (search.distance_at_nearest_corner() - search.bound() <= slack) return;
     const TriangleInShape::Descent least = search.descend();
     for (int i = 0; i < least.count; ++i) {
       const TrianglePlace& place = least.places[i];
-      if (place.surface.distance > within || place.surface.distance + piece.slack > least.at_corners) continue;
+      if (place.surface.distance > within || place.surface.distance + slack > least.at_corners) continue;
       const ContactStencil stencil = stencil_at(model, triangle, place.weights);
       if (stencil.is_vertex() || stencil.free == 0) continue;
       const Vec3 normal = at_start ? place.surface.normal : normal_at(stencil, place);
-      found.push_back(
-          {stencil, piece.slack, seen_from * piece.slack * straight_out(corners, place.weights, normal), near});
+      found.push_back({stencil, slack, seen_from * slack * straight_out(corners, place.weights, normal), near});
     }
   }
 
@@ -174,10 +176,11 @@ struct TriangleSearch {
     for (int t = group * group_size; t < end_of(model, group); ++t) {
       const TriangleCorners places = corners(t);
       const double edge = longest_edge_squared(places), reached = at_start ? reach(t) : 0;
+      const double size = model.part_of(model.surface(t, 0)).size;
       for (const FacePoints::Piece& piece : faces.pieces) {
-        const double within = furthest(reached, piece);
-        if (!is_finer(piece, faces.thickness, edge) || !meets_box(places, piece.box, within)) continue;
-        examine(t, places, within, piece, found);
+        const double slack = slack_of(piece, size), within = furthest(reached, slack);
+        if (!is_finer(piece, slack, faces.thickness, edge) || !meets_box(places, piece.box, within)) continue;
+        examine(t, places, within, piece, slack, found);
       }
     }
   }
@@ -224,17 +227,19 @@ void search_all(const TriangleSearch& search, Threads* threads, FacePoints& face
   }
 }
 
-// Keeps the pieces of a collider that are finer than the longest edge of the surface.
+// Keeps the pieces of a collider that are finer than the longest edge of the surface, for the smallest body.
 void choose_pieces(const Model& model, const Collider& collider, const Positions& q, FacePoints& faces) {
   faces.pieces.clear();
   double longest = -1;
+  double size = model.size;
+  for (const Part& part : model.parts) size = std::min(size, part.size);
   for (ShapePiece& shape : pieces_of(collider.shape)) {
     if (std::isinf(shape.bulge)) continue;
-    const double slack = usual_depth(model.size, collider, shape.half_thickness);
+    const double most_slack = most_depth(collider, shape.half_thickness);
     const Bounds box = shape.shape.bounds();
-    FacePoints::Piece piece{std::move(shape), slack, box};
+    FacePoints::Piece piece{std::move(shape), most_slack, box};
     if (longest < 0) longest = longest_edge_squared(model, q);
-    if (is_finer(piece, collider.thickness, longest)) faces.pieces.push_back(std::move(piece));
+    if (is_finer(piece, slack_of(piece, size), collider.thickness, longest)) faces.pieces.push_back(std::move(piece));
   }
 }
 

@@ -31,8 +31,8 @@ struct FacePoint {
 struct FacePoints {
   struct Piece {
     ShapePiece piece;
-    double slack;  // [m]
-    Bounds box;    // around it, in the collider's frame
+    double most_slack;  // that it allows bodies of any size [m]
+    Bounds box;         // around it, in the collider's frame
   };
   std::vector<Piece> pieces;          // parts of the collider that may be finer than the surface
   double thickness = 0;               // of the collider's layer [m]

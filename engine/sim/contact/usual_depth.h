@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 
 #include "sim/model/inputs.h"
 
@@ -11,11 +12,16 @@ namespace supple {
 // Returns the depth in a collider that is thick beside the body [m]. size: the size of the body [m].
 inline double usual_depth(double size) { return 0.004 * size; }
 
-// Returns the depth in any collider; a thin one allows a quarter of half its thickness, layer included [m].
-// half_thickness: half the thickness of the collider's shape [m]; 0 where it is not known.
+// Returns the largest depth that a thin collider allows any body: a quarter of half its thickness, layer included [m].
+// half_thickness: half the thickness of the collider's shape [m]; 0 where it is not known, which allows every depth.
+inline double most_depth(const Collider& collider, double half_thickness) {
+  if (half_thickness <= 0) return std::numeric_limits<double>::infinity();
+  return 0.25 * (half_thickness + collider.thickness);
+}
+
+// Returns the depth in any collider [m].
 inline double usual_depth(double size, const Collider& collider, double half_thickness) {
-  if (half_thickness <= 0) return usual_depth(size);
-  return std::min(usual_depth(size), 0.25 * (half_thickness + collider.thickness));
+  return std::min(usual_depth(size), most_depth(collider, half_thickness));
 }
 
 }  // namespace supple
