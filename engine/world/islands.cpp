@@ -172,7 +172,6 @@ Islands::Together& Islands::together(const std::vector<std::size_t>& island) {
 StepInputs Islands::inputs_of(const std::vector<std::size_t>& island, const Model& joined) const {
   StepInputs inputs = bodies_[island.front()]->inputs();
   inputs.solver.matrix = StartMatrix::system;
-  inputs.solver.levels = 1;  // TEMPORARY
   inputs.targets.resize(std::ssize(joined.handled), 3);
   inputs.middle_targets.resize(joined.scheme.theta < 1 ? std::ssize(joined.handled) : 0, 3);
   Eigen::Index row = 0;

@@ -5,11 +5,11 @@
 #include <algorithm>
 
 #include "geometry/triangles/shared_depth.h"
+#include "scene/building/overlaps.h"
 
 namespace supple {
 namespace {
 
-constexpr double tolerated = 1e-4;  // depth at the start that does not count, over the smaller body's size
 
 double size_of(const Body& body) { return bounds_of(body.description.mesh.rest).diagonal(); }
 
@@ -32,7 +32,7 @@ std::vector<BodyDepth> overlaps_of_bodies(const std::vector<Body>& bodies, const
   for (const BodyPairs::Near& pair : pairs.near(PairKind::meeting, points)) {
     if (!share_space(pair.mesh_a, pair.mesh_b)) continue;
     const BodyDepth overlap = depth_of(bodies, pair);
-    if (overlap.depth <= 0 || overlap.share > tolerated) found.push_back(overlap);
+    if (overlap.depth <= 0 || overlap.share > tolerated_overlap) found.push_back(overlap);
   }
   return found;
 }

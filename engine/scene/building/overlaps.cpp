@@ -12,7 +12,6 @@
 namespace supple {
 namespace {
 
-constexpr double tolerated = 1e-4;  // depth that does not count, over the body's size
 constexpr double small_move = 0.1;  // the largest move that is still small, over the body's size
 
 bool lies_in(const Bounds& box, const Vec3& point) {
@@ -108,7 +107,7 @@ void find_overlaps(const SceneDef& scene, std::vector<Body>& bodies, std::vector
     const Positions vertices = start_positions(body.def.start, rest, body.seed, body.description.name);
     Positions points = vertices;
     append(points, places_between(set, obstacles, body, vertices));
-    body.overlaps = overlaps_of(set, obstacles, points, vertices.rows(), tolerated * size);
+    body.overlaps = overlaps_of(set, obstacles, points, vertices.rows(), tolerated_overlap * size);
     if (body.overlaps.empty()) continue;
     if (body.def.start_inside == StartInside::error) {
       problems.push_back({body.def.place, overlap_text(body)});

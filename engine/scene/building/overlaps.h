@@ -7,6 +7,8 @@
 
 namespace supple {
 
+constexpr double tolerated_overlap = 1e-4;  // depth at the start that does not count, over the (smaller) body's size
+
 // Sets Body::overlaps, and Body::start_move where the scene wants the body moved and a small move is enough. Adds a
 // problem for each overlap that the scene refuses.
 void find_overlaps(const SceneDef& scene, std::vector<Body>& bodies, std::vector<Problem>& problems);

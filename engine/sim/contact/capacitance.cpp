@@ -15,9 +15,21 @@ bool same(const ContactStencil& a, const ContactStencil& b) {
   return a.is_vertex() && b.is_vertex() ? a.vertex[0] == b.vertex[0] : a == b;
 }
 
+// Tells whether two stencils are equal or, between surfaces, nearly so: a point that slides on a triangle has other
+// weights in each iterate. Wrong by 0.02, the weights of a stiffness of 1e4 m/h^2 leave four times m/h^2 unknown.
+bool alike(const ContactStencil& a, const ContactStencil& b) {
+  constexpr double much = 0.02;
+  if (same(a, b)) return true;
+  if (!a.is_between_surfaces() || a.count != b.count || a.vertex != b.vertex) return false;
+  for (int k = 0; k < a.count; ++k) {
+    if (std::abs(a.weight[k] - b.weight[k]) > much) return false;
+  }
+  return true;
+}
+
 // Tells whether two directions are equal, or so nearly that a correction may take one for the other.
 bool alike(const StiffDirection& s, const StiffDirection& t) {
-  return same(s.stencil, t.stencil) && s.axis.dot(t.axis) >= 0.999 &&
+  return alike(s.stencil, t.stencil) && s.axis.dot(t.axis) >= 0.999 &&
          std::abs(s.stiffness - t.stiffness) <= 0.1 * s.stiffness;
 }
 

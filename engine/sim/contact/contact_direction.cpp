@@ -30,7 +30,8 @@ void find_stiff_directions(const Model& model, const std::vector<Contact>& conta
 // takes about half as long as a solve with A.
 std::size_t most_coupled_directions(const Model& model) {
   const double numbers = static_cast<double>(model.factor.stored_numbers());
-  return std::max<std::size_t>(250, static_cast<std::size_t>(std::cbrt(45 * numbers)));
+  const std::size_t parts = model.parts.size(), of_parts = parts > 1 ? std::min<std::size_t>(250 * parts, 1200) : 250;
+  return std::max(of_parts, static_cast<std::size_t>(std::cbrt(45 * numbers)));
 }
 
 namespace {

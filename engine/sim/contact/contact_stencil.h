@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "base/types.h"
@@ -20,6 +21,7 @@ struct ContactStencil {
 
   static ContactStencil at_vertex(std::int32_t v) { return {{v, v, v, v}}; }
   bool is_vertex() const { return count == 1; }
+  bool is_between_surfaces() const { return std::abs(weight[0] + weight[1] + weight[2] + weight[3]) < 0.5; }
 
   // Returns the sum of vectors by vertex: u of positions, or its motion. x must have rows for all vertices.
   Vec3 at(const Positions& x) const {

@@ -91,6 +91,7 @@ void find_way_out(const Model& model, const StepInputs& inputs, std::size_t p, c
 }
 
 void find_ways_out(const Model& model, const StepInputs& inputs, ContactWork& work) {
+  if (!has_colliders(inputs)) return;
   work.way_out.assign(inputs.colliders->size() * model.parts.size(), Vec3::Zero());
   const std::vector<PartFaces> faces = faces_by_part(model, work);
   for (std::size_t p = 0; p < model.parts.size(); ++p) find_way_out(model, inputs, p, faces[p], work);
@@ -225,7 +226,7 @@ class Planes {
   double size_at(std::int32_t vertex) const { return model_.part_of(vertex).size; }
   double push_out(std::int32_t vertex) const { return push_out_of(model_, inputs_, size_at(vertex)); }
 
-  const Vec3& way_out(std::int32_t vertex) const { return way_out_[index_of_part(model_, vertex)]; }
+  const Vec3& way_out(std::int32_t vertex) const { return way_out_[model_.part_number(vertex)]; }
   bool is_leaving(std::int32_t vertex) const { return some_leave_ && !way_out(vertex).isZero(0); }
 
   Contact contact_at(const ContactStencil& stencil, std::int32_t number) const {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "geometry/triangles/moving_surface.h"
 #include "sim/contact/contact_order.h"
 #include "sim/contact/lagged_force.h"
 #include "sim/contact/reach.h"
@@ -10,12 +12,51 @@
 #include "sim/model/joined_model.h"
 
 namespace supple {
+
+struct SurfaceWork::Parts {
+  struct Surface {
+    Triangles triangles;                    // rows of its part's vertices, in the order of the part's own model
+    std::vector<std::int32_t> points;       // vertices of the joined model that may touch others, ascending
+    std::vector<char> sharp;                // by point: whether faces at it look in very different directions at rest
+    double edge = 0;                        // the mean length of the surface's edges at rest [m]
+    std::unique_ptr<MovingSurface> moving;  // null where nothing touches this part
+    Vec3 carried = Vec3::Zero();            // the mean motion of the part from q to the present iterate [m]
+    double own_move = 0;                    // how far its vertices move beside that at most [m]
+    Vec3 carried_freely = Vec3::Zero();     // the mean motion of the part from q to the prediction [m]
+    double free_move = 0;                   // how far its vertices move beside that at most [m]
+  };
+  // What is known of a point where the step begins.
+  struct Beginning {
+    bool is_known = false;
+    std::optional<MovingSurface::Place> place;  // nothing: outside, far from the surface
+  };
+
+  std::uint64_t structure = 0;                     // of the model that the surfaces belong to
+  std::vector<Surface> surfaces;                   // by part
+  std::vector<std::vector<Beginning>> beginnings;  // by meeting and point
+  std::vector<std::vector<Contact>> by_chunk;      // scratch
+};
+
+SurfaceWork::SurfaceWork() = default;
+SurfaceWork::~SurfaceWork() = default;
+SurfaceWork::SurfaceWork(SurfaceWork&&) noexcept = default;
+SurfaceWork& SurfaceWork::operator=(SurfaceWork&&) noexcept = default;
+
+SurfaceWork::Parts& SurfaceWork::parts() {
+  if (parts_ == nullptr) parts_ = std::make_unique<Parts>();
+  return *parts_;
+}
+
 namespace {
+
+using Work = SurfaceWork::Parts;
 
 using Place = MovingSurface::Place;
 using Entry = MovingSurface::Entry;
+using Facing = MovingSurface::Facing;
 
 constexpr int points_a_chunk = 128;  // a thread takes so many; fixed, so that results do not depend on threads
+constexpr double same_way = 0.5;     // cosine of normals; a point is not held by a face that looks as it does itself
 constexpr double deepest = 0.5;      // points that begin a step deeper than this are not found, over the body's size
 
 // Lists the triangles of a part, with its vertices numbered as in its own model.
@@ -43,18 +84,50 @@ std::vector<std::int32_t> points_of(const Part& part, const Triangles& triangles
   return points;
 }
 
-void make_surfaces(const Model& model, const StepInputs& inputs, SurfaceWork& work) {
+Vec3 rest_normal(const Triangles& triangles, Eigen::Index t, const Positions& rest) {
+  const Vec3 first = rest.row(triangles(t, 0)).transpose();
+  const Vec3 edge = rest.row(triangles(t, 1)).transpose() - first,
+             other = rest.row(triangles(t, 2)).transpose() - first;
+  return edge.cross(other).normalized();
+}
+
+// Finds the points at which the normals of two faces are far apart, and the mean length of edges.
+void describe_surface(const Model& model, const Part& part, Work::Surface& surface) {
+  constexpr double least_cosine = 0.5;
+  const Positions rest = rows_of(part, model.rest);
+  const Triangles& triangles = surface.triangles;
+  std::vector<std::vector<Vec3>> normals(std::size_t(rest.rows()));
+  double edges = 0;
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      normals[triangles(t, k)].push_back(rest_normal(triangles, t, rest));
+      edges += (rest.row(triangles(t, k)) - rest.row(triangles(t, (k + 1) % 3))).norm();
+    }
+  }
+  surface.edge = edges / std::max<double>(1, double(triangles.size()));
+  for (const std::int32_t v : surface.points) {
+    const std::vector<Vec3>& at = normals[v < model.free ? v - part.first_free : v - part.first_held + part.free];
+    bool is_sharp = false;
+    for (const Vec3& one : at) {
+      for (const Vec3& other : at) is_sharp |= one.dot(other) < least_cosine;
+    }
+    surface.sharp.push_back(is_sharp);
+  }
+}
+
+void make_surfaces(const Model& model, const StepInputs& inputs, Work& work) {
   if (work.structure != model.structure) {
     work.surfaces.clear();
     for (const Part& part : model.parts) {
-      SurfaceWork::Surface& surface = work.surfaces.emplace_back();
+      Work::Surface& surface = work.surfaces.emplace_back();
       surface.triangles = triangles_of(model, part);
       surface.points = points_of(part, surface.triangles);
+      describe_surface(model, part, surface);
     }
   }
   work.structure = model.structure;
   for (const Meeting& meeting : inputs.meetings) {
-    SurfaceWork::Surface& surface = work.surfaces[meeting.surface];
+    Work::Surface& surface = work.surfaces[meeting.surface];
     if (surface.moving != nullptr) continue;
     const Part& part = model.parts[meeting.surface];
     surface.moving = std::make_unique<MovingSurface>(surface.triangles, rows_of(part, model.rest));
@@ -75,11 +148,22 @@ double most_moved(const std::vector<std::int32_t>& points, const Positions& q, c
   return std::sqrt(most);
 }
 
+// Tells whether the surface's own points, which are finer, touch the other part. Then the other part's points follow
+// from them, but for edges and corners: each contact of two surfaces that lie on one another would count twice, and the
+// contacts would nearly depend on each other.
+bool meets_finer_points(const StepInputs& inputs, const Meeting& meeting, const Work& work) {
+  const bool both_ways = std::ranges::any_of(inputs.meetings, [&](const Meeting& other) {
+    return other.points == meeting.surface && other.surface == meeting.points;
+  });
+  const double own = work.surfaces[meeting.points].edge, other = work.surfaces[meeting.surface].edge;
+  return both_ways && (own > other || (own == other && meeting.points > meeting.surface));
+}
+
 // Examines the points of one part before the surface of another, at one iterate.
 class Pair {
  public:
   Pair(const Model& model, const StepInputs& inputs, const Meeting& meeting, const Positions& q, const Positions& y,
-       const Positions& x, SurfaceWork& work, std::vector<SurfaceWork::Beginning>& beginnings)
+       const Positions& x, Work& work, std::vector<Work::Beginning>& beginnings)
       : model_(model),
         solver_(inputs.solver),
         meeting_(meeting),
@@ -88,8 +172,10 @@ class Pair {
         x_(x),
         part_(model.parts[meeting.surface]),
         surface_(work.surfaces[meeting.surface]),
+        own_(work.surfaces[meeting.points]),
         points_(work.surfaces[meeting.points].points),
         beginnings_(beginnings),
+        only_sharp_(meets_finer_points(inputs, meeting, work)),
         size_(std::min(part_.size, model.parts[meeting.points].size)),
         fall_(model.time_step * model.time_step * inputs.gravity.norm()) {}
 
@@ -97,6 +183,7 @@ class Pair {
 
   // Adds the contact of a point, if there is one. index: of the point among those of its part.
   void find(std::size_t index, std::vector<Contact>& list) const {
+    if (only_sharp_ && !own_.sharp[index]) return;
     const std::int32_t v = points_[index];
     const Vec3 a = q_.row(v).transpose(), b = x_.row(v).transpose();
     const double way = (b - a - surface_.carried).norm();
@@ -104,12 +191,13 @@ class Pair {
     if (!surface_.moving->is_near(a, b, surface_.carried, reach)) return;
     const std::optional<Place>& before = beginning(index, a);
     const std::optional<Place> held =
-        before && before->distance <= 0 ? leaving(*before, b, reach, way) : arriving(before, a, b, reach, way);
+        before && before->distance <= 0 ? leaving(*before, v, b, reach, way) : arriving(before, v, a, b, reach, way);
     if (held) add(v, *held, before ? before->distance : reach, list);
   }
 
   // Lowers a share to where a point that arrives is deeper than it may be.
   double share_to_impact(std::size_t index, double least) const {
+    if (only_sharp_ && !own_.sharp[index]) return 1;
     const std::int32_t v = points_[index];
     const Vec3 a = q_.row(v).transpose(), b = x_.row(v).transpose();
     if (!surface_.moving->is_near(a, b, surface_.carried, 0)) return 1;
@@ -138,24 +226,52 @@ class Pair {
 
   // Returns the place closest to a point where the step began.
   const std::optional<Place>& beginning(std::size_t index, const Vec3& a) const {
-    SurfaceWork::Beginning& known = beginnings_[index];
-    if (!known.is_known) known = {true, surface_.moving->closest_at_start(a, deepest * part_.size)};
+    Work::Beginning& known = beginnings_[index];
+    if (known.is_known) return known.place;
+    const MovingSurface* own = own_.moving.get();
+    const Facing facing{own == nullptr ? Vec3::Zero() : own->normal_at_start(own_vertex(points_[index])), same_way};
+    known = {true, over_face(surface_.moving->closest_at_start(a, deepest * part_.size, &facing), a, q_)};
     return known.place;
   }
 
-  // Returns the unit normal of a triangle at the end of the step.
-  Vec3 normal_at_end(std::int32_t triangle) const {
-    const Vec3 p0 = x_.row(corner(triangle, 0)).transpose();
-    const Vec3 edge = x_.row(corner(triangle, 1)).transpose() - p0,
-               other = x_.row(corner(triangle, 2)).transpose() - p0;
+  // Returns the place closest to a point of an iterate.
+  std::optional<Place> closest(std::int32_t v, const Vec3& b, double most) const {
+    const MovingSurface* own = own_.moving.get();
+    const Facing facing{own == nullptr ? Vec3::Zero() : own->normal_at_end(own_vertex(v)), same_way};
+    return over_face(surface_.moving->closest_at_end(b, most, &facing), b, x_);
+  }
+
+  // Returns the place as that of its face, if the point is over the face or beside it by no more than the usual depth.
+  // Equal boxes on one another have their edges in one place: round-off alone would decide whether a lid carries them.
+  std::optional<Place> over_face(std::optional<Place> place, const Vec3& p, const Positions& x) const {
+    if (!place) return place;
+    const Vec3 normal = normal_of(place->triangle, x), offset = p - place->point;
+    if (normal.isZero(0)) return place;
+    const double above = normal.dot(offset);
+    if ((offset - above * normal).norm() > usual_depth(size_)) return place;
+    place->normal = normal;
+    place->distance = above;
+    return place;
+  }
+
+  std::int32_t own_vertex(std::int32_t v) const {
+    const Part& part = model_.parts[meeting_.points];
+    return v < model_.free ? v - part.first_free : v - part.first_held + part.free;
+  }
+
+  // Returns the unit normal of a triangle; zero where it has no area.
+  Vec3 normal_of(std::int32_t triangle, const Positions& x) const {
+    const Vec3 first = x.row(corner(triangle, 0)).transpose();
+    const Vec3 edge = x.row(corner(triangle, 1)).transpose() - first;
+    const Vec3 other = x.row(corner(triangle, 2)).transpose() - first;
     const Vec3 normal = edge.cross(other);
     const double length = normal.norm();
-    return length > 0 ? Vec3(normal / length) : Vec3::Zero();
+    return length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero());
   }
 
   // Returns the place that a triangle's point has at the end of the step.
   std::optional<Place> place_at_end(std::int32_t triangle, const Vec3& weights, const Vec3& p) const {
-    Place place{triangle, weights, Vec3::Zero(), 0, normal_at_end(triangle)};
+    Place place{triangle, weights, Vec3::Zero(), 0, normal_of(triangle, x_)};
     if (place.normal.isZero(0)) return std::nullopt;
     for (int k = 0; k < 3; ++k) place.point += weights[k] * x_.row(corner(triangle, k)).transpose();
     place.distance = place.normal.dot(p - place.point);
@@ -163,22 +279,22 @@ class Pair {
   }
 
   // Finds the place that holds a point which began the step inside.
-  std::optional<Place> leaving(const Place& before, const Vec3& b, double reach, double way) const {
+  std::optional<Place> leaving(const Place& before, std::int32_t v, const Vec3& b, double reach, double way) const {
     const double most = std::max(reach, -before.distance + way + 2 * surface_.own_move);
-    const std::optional<Place> here = surface_.moving->closest_at_end(b, (1 + 1e-6) * most);
+    const std::optional<Place> here = closest(v, b, (1 + 1e-6) * most);
     if (!here) return std::nullopt;
     if (here->distance >= reach) return std::nullopt;
-    if (here->distance >= 0 || here->normal.dot(normal_at_end(before.triangle)) > 0) return here;
+    if (here->distance >= 0 || here->normal.dot(normal_of(before.triangle, x_)) > 0) return here;
     return place_at_end(before.triangle, before.weights, b);
   }
 
   // Finds the place that holds a point which began the step outside.
-  std::optional<Place> arriving(const std::optional<Place>& before, const Vec3& a, const Vec3& b, double reach,
-                                double way) const {
+  std::optional<Place> arriving(const std::optional<Place>& before, std::int32_t v, const Vec3& a, const Vec3& b,
+                                double reach, double way) const {
     const double moved = way + 2 * surface_.own_move;
     const bool may_enter = !before || before->distance <= moved;
     const std::optional<Entry> entry = may_enter ? surface_.moving->first_entry(a, b, surface_.carried) : std::nullopt;
-    const std::optional<Place> here = surface_.moving->closest_at_end(b, std::max(reach, entry ? moved : 0));
+    const std::optional<Place> here = closest(v, b, std::max(reach, entry ? moved : 0));
     if (!entry) return here && here->distance >= 0 && here->distance < reach ? here : std::nullopt;
     const std::optional<Place> entered = place_at_end(entry->triangle, entry->weights, b);
     if (!here || !entered) return entered;
@@ -238,17 +354,18 @@ class Pair {
   const Meeting& meeting_;
   const Positions &q_, &y_, &x_;
   const Part& part_;
-  const SurfaceWork::Surface& surface_;
+  const Work::Surface &surface_, &own_;
   const std::vector<std::int32_t>& points_;
-  std::vector<SurfaceWork::Beginning>& beginnings_;
+  std::vector<Work::Beginning>& beginnings_;
+  bool only_sharp_;
   double size_;  // of the smaller part [m]
   double fall_;  // in one step from rest: one part may rest on what holds it while the other falls [m]
 };
 
 // Moves the surfaces to the positions of an iterate.
-void move_surfaces(const Model& model, const Positions& q, const Positions& x, SurfaceWork& work) {
+void move_surfaces(const Model& model, const Positions& q, const Positions& x, Work& work) {
   for (std::size_t p = 0; p < work.surfaces.size(); ++p) {
-    SurfaceWork::Surface& surface = work.surfaces[p];
+    Work::Surface& surface = work.surfaces[p];
     if (surface.moving == nullptr) continue;
     surface.carried = mean_motion(surface.points, q, x);
     surface.own_move = most_moved(surface.points, q, x, surface.carried);
@@ -259,11 +376,12 @@ void move_surfaces(const Model& model, const Positions& q, const Positions& x, S
 }  // namespace
 
 void begin_surfaces(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& y,
-                    SurfaceWork& work) {
+                    SurfaceWork& all) {
   if (inputs.meetings.empty()) return;
+  Work& work = all.parts();
   make_surfaces(model, inputs, work);
   for (std::size_t p = 0; p < work.surfaces.size(); ++p) {
-    SurfaceWork::Surface& surface = work.surfaces[p];
+    Work::Surface& surface = work.surfaces[p];
     if (surface.moving == nullptr) continue;
     surface.moving->set_start(rows_of(model.parts[p], q));
     surface.carried_freely = mean_motion(surface.points, q, y);
@@ -275,8 +393,9 @@ void begin_surfaces(const Model& model, const StepInputs& inputs, const Position
 }
 
 void find_surface_contacts(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& y,
-                           const Positions& x, Threads* threads, SurfaceWork& work, std::vector<Contact>& found) {
+                           const Positions& x, Threads* threads, SurfaceWork& all, std::vector<Contact>& found) {
   if (inputs.meetings.empty()) return;
+  Work& work = all.parts();
   move_surfaces(model, q, x, work);
   const std::size_t before = found.size();
   for (std::size_t m = 0; m < inputs.meetings.size(); ++m) {
@@ -295,8 +414,9 @@ void find_surface_contacts(const Model& model, const StepInputs& inputs, const P
 }
 
 void stop_at_surfaces(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& x,
-                      SurfaceWork& work, std::vector<double>& shares) {
+                      SurfaceWork& all, std::vector<double>& shares) {
   if (inputs.meetings.empty()) return;
+  Work& work = all.parts();
   move_surfaces(model, q, x, work);
   for (std::size_t m = 0; m < inputs.meetings.size(); ++m) {
     const Meeting& meeting = inputs.meetings[m];

@@ -10,38 +10,28 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "base/threads.h"
-#include "geometry/triangles/moving_surface.h"
 #include "sim/contact/contact.h"
 #include "sim/model/inputs.h"
 #include "sim/model/model.h"
 
 namespace supple {
 
-// Holds the surfaces of a joined model's parts, and what a step knows of its beginning.
-struct SurfaceWork {
-  struct Surface {
-    Triangles triangles;                    // rows of its part's vertices, in the order of the part's own model
-    std::vector<std::int32_t> points;       // vertices of the joined model that may touch others, ascending
-    std::unique_ptr<MovingSurface> moving;  // null where nothing touches this part
-    Vec3 carried = Vec3::Zero();            // the mean motion of the part from q to the present iterate [m]
-    double own_move = 0;                    // how far its vertices move beside that at most [m]
-    Vec3 carried_freely = Vec3::Zero();     // the mean motion of the part from q to the prediction [m]
-    double free_move = 0;                   // how far its vertices move beside that at most [m]
-  };
-  // What is known of a point where the step begins.
-  struct Beginning {
-    bool is_known = false;
-    std::optional<MovingSurface::Place> place;  // nothing: outside, far from the surface
-  };
+// Holds the surfaces of a joined model's parts, and what a step knows of its beginning; empty while nothing meets.
+class SurfaceWork {
+ public:
+  SurfaceWork();
+  ~SurfaceWork();
+  SurfaceWork(SurfaceWork&&) noexcept;
+  SurfaceWork& operator=(SurfaceWork&&) noexcept;
 
-  std::uint64_t structure = 0;                     // of the model that the surfaces belong to
-  std::vector<Surface> surfaces;                   // by part
-  std::vector<std::vector<Beginning>> beginnings;  // by meeting and point
-  std::vector<std::vector<Contact>> by_chunk;      // scratch
+  struct Parts;  // surface_contacts.cpp
+  Parts& parts();
+
+ private:
+  std::unique_ptr<Parts> parts_;
 };
 
 // Prepares a step from q (n x 3, with the held vertices at the start of the step).

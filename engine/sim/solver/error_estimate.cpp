@@ -80,7 +80,7 @@ double motion_estimate(const Model& model, const StepInputs& inputs, const Posit
   if (report.failed || report.decrement <= 0) return 0;
   Positions& d = w.trial.gradient;
   d = w.direction;
-  if (model.parts.size() == 1 && inputs.solver.levels < 2 && !w.second_level_serves && w.second_level.begin(model, w.current.x)) {
+  if (inputs.solver.levels < 2 && !w.second_level_serves && w.second_level.begin(model, w.current.x)) {
     w.scratch = -w.current.gradient;
     w.second_level.add_to(model, w.scratch, w.threads, d);
   }
