@@ -179,12 +179,12 @@ TEST(Hessian, OfSpringsAndContactsIsTheDerivativeOfTheGradient) {
   begin_step(model, inputs, state, w);
   w.current.x = test::shaken(w.current.x, 0.02, 5);
   for (int v = 0; v < 5; ++v) {
-    Contact contact{ContactStencil::at_vertex(v), 0, Vec3(0.6, 0, 0.8), 0, 1e3, 0.01};
+    Contact contact{ContactStencil::at_vertex(v), {0}, Vec3(0.6, 0, 0.8), 0, 1e3, 0.01};
     contact.offset = contact.normal.dot(w.current.x.row(v)) + 0.01;  // the vertex lies inside the plane
     w.current.contacts.push_back(contact);
   }
   Contact face{{{model.surface(0, 0), model.surface(0, 1), model.surface(0, 2)}, {0.5, 0.3, 0.2}, 3, 3},
-               0,
+               {0},
                Vec3(0, 0.8, 0.6),
                0,
                2e3,
