@@ -1,6 +1,7 @@
 #include "world/islands.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 
 #include "scene/definition/meeting.h"
@@ -124,6 +125,7 @@ bool Islands::may_touch(std::size_t a, std::size_t b, double pushed) const {
 
 std::vector<std::vector<std::size_t>> Islands::find() {
   const std::size_t count = bodies_.size();
+  touches_.clear();
   Groups groups(count);
   std::vector<std::array<std::size_t, 2>> pairs;
   for (std::size_t a = 0; a < count; ++a) {
@@ -216,6 +218,25 @@ StepReport report_of_part(const Model& joined, const Part& part, const StepRepor
 
 }  // namespace
 
+void Islands::note_touches(const std::vector<std::size_t>& island, const Model& joined, const Positions& x,
+                           const std::vector<Contact>& contacts) {
+  std::map<std::pair<std::size_t, std::size_t>, BodyTouch> by_pair;
+  for (const Contact& contact : contacts) {
+    if (contact.other.is_collider()) continue;
+    const std::size_t point = island[joined.part_number(contact.number)], other = island[contact.other.part];
+    const auto [a, b] = std::pair(std::min(point, other), std::max(point, other));
+    const double above = gap(contact, x), inside = -(above + contact.offset);
+    if (above >= 0 && inside <= 0) continue;
+    BodyTouch& touch = by_pair.try_emplace({a, b}, BodyTouch{.a = a, .b = b}).first->second;
+    ++touch.contacts;
+    touch.depth = std::max(touch.depth, inside);
+    const Vec3 on_point = -2 * contact.stiffness * std::min(0.0, above) * contact.normal;
+    touch.force += point == b ? on_point : Vec3(-on_point);
+  }
+  for (const auto& [pair, touch] : by_pair) touches_.push_back(touch);
+  std::ranges::sort(touches_, {}, [](const BodyTouch& touch) { return std::pair(touch.a, touch.b); });
+}
+
 int Islands::step(const std::vector<std::size_t>& island) {
   Together& all = together(island);
   const Model& model = all.model;
@@ -232,6 +253,7 @@ int Islands::step(const std::vector<std::size_t>& island) {
   if (all.rule == nullptr) all.rule = solvers_.rule(scene_.bodies[island.front()].solver.method, model);
   OpenWorkspace& w = all.workspace.open();
   const StepReport& report = supple::step(model, inputs, state, w, *all.rule);
+  if (!report.failed) note_touches(island, model, w.current.x, w.current.contacts);
   int failed = -1;
   std::int32_t first_input = 0;
   for (std::size_t p = 0; p < island.size(); ++p) {

@@ -13,6 +13,14 @@
 
 namespace supple {
 
+// Tells how two bodies touched each other at the end of a step.
+struct BodyTouch {
+  std::size_t a, b;           // the bodies, the earlier one first
+  int contacts = 0;           // points of either body that touch the other
+  double depth = 0;           // of the deepest of these points in the other body [m]
+  Vec3 force = Vec3::Zero();  // of a on b [N]
+};
+
 class Islands {
  public:
   // All that is passed must outlive this object. bodies: those of the scene, in its order.
@@ -23,6 +31,9 @@ class Islands {
   // Returns the islands of the step that was prepared, each as its bodies in the order of the scene, in the order of
   // their first bodies. Bodies that nothing may touch are islands of their own.
   std::vector<std::vector<std::size_t>> find();
+
+  // Returns the touches of the steps that were made since find(), ordered by body.
+  const std::vector<BodyTouch>& touches() const { return touches_; }
 
   // Makes the step of an island of several bodies. Returns the body whose step failed, or -1; then no state changes.
   int step(const std::vector<std::size_t>& island);
@@ -35,13 +46,16 @@ class Islands {
   bool may_touch(std::size_t a, std::size_t b, double pushed) const;
   MovingSurface& surface_of(std::size_t body) const;
   Together& together(const std::vector<std::size_t>& island);
+  void note_touches(const std::vector<std::size_t>& island, const Model& joined, const Positions& x,
+                    const std::vector<Contact>& contacts);
   StepInputs inputs_of(const std::vector<std::size_t>& island, const Model& joined) const;
 
   const SceneDef& scene_;
   const std::vector<std::unique_ptr<MovingBody>>& bodies_;
   Solvers solvers_;
   Threads* threads_;
-  std::vector<Way> ways_;                            // by body
+  std::vector<Way> ways_;  // by body
+  std::vector<BodyTouch> touches_;
   std::vector<std::unique_ptr<Together>> together_;  // of the last steps, the latest used first
 };
 

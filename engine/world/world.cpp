@@ -4,7 +4,6 @@
 #include "base/hash.h"
 #include "base/trace.h"
 #include "sim/solver/step.h"
-#include "world/islands.h"
 
 namespace supple {
 
@@ -62,6 +61,7 @@ const Script& World::script() const { return parts_->script.value(); }
 const SceneDef& World::scene() const { return parts_->scene; }
 const std::vector<Body>& World::bodies() const { return parts_->bodies; }
 const CollisionSet& World::colliders() const { return parts_->colliders; }
+const std::vector<BodyTouch>& World::touches() const { return parts_->islands->touches(); }
 std::size_t World::size() const { return parts_->bodies.size(); }
 MovingBody& World::body(std::size_t index) { return *parts_->moving.at(index); }
 const MovingBody& World::body(std::size_t index) const { return *parts_->moving.at(index); }

@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "scene/replay/script.h"
-#include "world/moving_body.h"
+#include "world/islands.h"
 #include "world/world_state.h"
 
 namespace supple {
@@ -71,6 +71,9 @@ class World {
   // Computes the inputs of one substep of the frame that was entered, for those who make the step themselves. Changes
   // no result.
   void prepare(int substep);
+
+  // Returns how bodies touched each other at the end of the step that was made last, ordered by body.
+  const std::vector<BodyTouch>& touches() const;
 
   std::size_t size() const;  // number of bodies
   MovingBody& body(std::size_t index);
