@@ -91,6 +91,7 @@ name = "tangled"
 box = { extent = [0.4, 0.1, 0.1], cells = [8, 2, 2] }
 material = { model = "neo-hookean", young = 1e5, poisson = 0.4 }
 start = { random = [0.4, 0.1, 0.1] }
+contact = { meets = false }
 )";
   ASSERT_EQ(film("first", {}).status, 0);
   ASSERT_GT(rows("first").front().bodies.back().newton_iterations, 0);

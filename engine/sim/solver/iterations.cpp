@@ -8,6 +8,7 @@
 #include "sim/solver/lbfgs.h"
 #include "sim/solver/line_search.h"
 #include "sim/solver/place_iterate.h"
+#include "sim/solver/total_momentum.h"
 #include "sim/solver/unforeseen_contacts.h"
 
 namespace supple {
@@ -44,7 +45,9 @@ struct Descent {
 Descent next_direction(const Model& model, const StepInputs& inputs, OpenWorkspace& w, SearchRule& rule) {
   const TimedPhase timed(w.clock, Phase::other, "direction");
   for (;;) {
-    const double slope = w.report.slope = rule.direction(model, inputs, w);
+    w.report.slope = rule.direction(model, inputs, w);
+    if (is_isolated(model, w.current.contacts)) w.report.slope += restore_common_translation(model, w);
+    const double slope = w.report.slope;
     if (below_resolution(model, w)) return {true, slope};
     if (slope < 0) return {false, slope};
     if (!rule.forget()) return {true, slope};

@@ -5,6 +5,7 @@
 
 #include "sim/contact/usual_depth.h"
 #include "sim/solver/place_iterate.h"
+#include "sim/solver/total_momentum.h"
 
 namespace supple {
 
@@ -44,6 +45,8 @@ void stop_at_impacts(StepContext& c, const std::vector<Impact>& impacts) {
     if (impacts[p].share < 1)
       x.middleRows(first, free) = q.middleRows(first, free) + impacts[p].share * (x - q).middleRows(first, free);
   }
+  const bool by_colliders = std::ranges::any_of(impacts, [](const Impact& impact) { return impact.collider >= 0; });
+  if (!by_colliders && is_isolated(c.model, {})) keep_center(c.model, c.w.y, x);
   for (std::size_t p = 0; p < impacts.size(); ++p) {
     const int collider = impacts[p].collider;
     if (collider >= 0 && c.inputs.collider_motions[collider].moves())
