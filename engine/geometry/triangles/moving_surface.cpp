@@ -302,6 +302,18 @@ bool MovingSurface::any_triangle(const Bounds& box, const Vec3& carried, const V
 
 std::optional<MovingSurface::Entry> MovingSurface::first_entry(const Vec3& a, const Vec3& b, const Vec3& carried,
                                                                double latest) const {
+  return first_passing(a, b, carried, latest, false);
+}
+
+// Seen backwards in time, the point enters where it last left.
+std::optional<MovingSurface::Entry> MovingSurface::last_exit(const Vec3& a, const Vec3& b, const Vec3& carried) const {
+  std::optional<Entry> exit = first_passing(a, b, carried, 1, true);
+  if (exit) exit->share = 1 - exit->share;
+  return exit;
+}
+
+std::optional<MovingSurface::Entry> MovingSurface::first_passing(const Vec3& a, const Vec3& b, const Vec3& carried,
+                                                                 double latest, bool is_backwards) const {
   const double roundoff = roundoff_at(a, b);
   std::optional<Entry> first;
   any_triangle(box_of_path(a, b, carried, roundoff_at(a, b) + roundoff_at(b, carried)), carried, [&](std::int32_t t) {
@@ -310,6 +322,7 @@ std::optional<MovingSurface::Entry> MovingSurface::first_entry(const Vec3& a, co
       seen.start[std::size_t(k)] = corner(start_, t, k) - a;
       seen.end[std::size_t(k)] = corner(end_, t, k) - b;
     }
+    if (is_backwards) std::swap(seen.start, seen.end);
     const std::optional<Passage> passage = first_passage(seen, roundoff, latest);
     if (passage && (!first || passage->share < first->share)) {
       first = Entry{t, passage->weights, passage->share, passage->normal};

@@ -72,6 +72,9 @@ class MovingSurface {
   // of the step. What counts as passing is said in point_passage.h.
   std::optional<Entry> first_entry(const Vec3& a, const Vec3& b, const Vec3& carried, double latest = 1) const;
 
+  // Finds where a point that moves from a to b last passes through a triangle from inside.
+  std::optional<Entry> last_exit(const Vec3& a, const Vec3& b, const Vec3& carried) const;
+
   // Tells whether a point that moves from a to b may come nearer than `margin` [m] to the surface, by the boxes in
   // which the point and each triangle move.
   bool is_near(const Vec3& a, const Vec3& b, const Vec3& carried, double margin) const;
@@ -127,6 +130,8 @@ class MovingSurface {
   std::optional<Place> closest(const Pose& pose, const Vec3& p, double most, const Facing* facing) const;
   Place seen_from(const Vec3& p, const Pose& pose, std::int32_t t, const Vec3& weights, const Vec3& offset) const;
 
+  std::optional<Entry> first_passing(const Vec3& a, const Vec3& b, const Vec3& carried, double latest,
+                                     bool is_backwards) const;
   Bounds swept_box(std::int32_t node, const Vec3& carried) const;
   template <class Visit>
   bool any_triangle(const Bounds& box, const Vec3& carried, const Visit& visit) const;

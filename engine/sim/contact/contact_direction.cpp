@@ -12,6 +12,7 @@ void find_stiff_directions(const Model& model, const std::vector<Contact>& conta
   for (const Contact& contact : contacts) {
     if (contact.depth > 0) stiff.push_back({contact.stencil, contact.normal, 2 * contact.stiffness});
   }
+  correction.normals = stiff.size();
   for (const Contact& contact : contacts) {
     if (contact.friction <= 0) continue;  // friction is lagged: a point may have left and still be rubbed
     const double along = friction_stiffness(contact, x);
@@ -30,7 +31,7 @@ void find_stiff_directions(const Model& model, const std::vector<Contact>& conta
 // takes about half as long as a solve with A.
 std::size_t most_coupled_directions(const Model& model) {
   const double numbers = static_cast<double>(model.factor.stored_numbers());
-  const std::size_t parts = model.parts.size(), of_parts = parts > 1 ? std::min<std::size_t>(250 * parts, 1200) : 250;
+  const std::size_t parts = model.parts.size(), of_parts = parts > 1 ? std::min<std::size_t>(250 * parts, 4000) : 250;
   return std::max(of_parts, static_cast<std::size_t>(std::cbrt(45 * numbers)));
 }
 
@@ -58,6 +59,27 @@ std::size_t affordable(const Model& model, const std::vector<StiffDirection>& wa
   for (std::size_t i = 0; i < wanted.size(); ++i) couple(wanted[i], static_cast<Eigen::Index>(i), lists);
   for (const CoupledDirections& list : lists) largest = std::max(largest, list.members.size());
   return largest <= most ? wanted.size() : wanted.size() * most / largest;
+}
+
+// Leaves out some tangents of a joined model, so that there are no more than `most` directions with the normals, of
+// which `normals` come first: those of the points of lowest rank stay, and also represent their neighbours. A point
+// that would slide where it should stick takes a bounded force with it, which the line search sees; without some
+// normals, a search of bodies that lie on each other comes to a stand.
+void leave_out_tangents(std::size_t normals, std::size_t most, std::vector<StiffDirection>& wanted) {
+  constexpr double least_share = 0.25;  // of the directions, for tangents
+  const std::size_t tangents = wanted.size() - normals;
+  const std::size_t room =
+      std::max(most - std::min(most, normals), static_cast<std::size_t>(least_share * double(most)));
+  if (tangents <= room) return;
+  std::vector<std::uint32_t> ranks;
+  for (std::size_t i = normals; i < wanted.size(); ++i) ranks.push_back(rank_of(wanted[i].stencil.vertex[0]));
+  std::nth_element(ranks.begin(), ranks.begin() + static_cast<std::ptrdiff_t>(room), ranks.end());
+  const std::uint32_t limit = ranks[room];
+  const auto is_dropped = [&](const StiffDirection& s) { return rank_of(s.stencil.vertex[0]) >= limit; };
+  const auto first = wanted.begin() + static_cast<std::ptrdiff_t>(normals);
+  wanted.erase(std::remove_if(first, wanted.end(), is_dropped), wanted.end());
+  for (std::size_t i = normals; i < wanted.size(); ++i)
+    wanted[i].stiffness *= static_cast<double>(tangents) / static_cast<double>(wanted.size() - normals);
 }
 
 // Splits the wanted directions: those of the vertices of lowest rank enter the system, as many as it may have, and also
@@ -213,6 +235,7 @@ void apply_inverse(const Model& model, const ContactSettings& settings, ContactC
     return apply_both_levels(model, c, scratch, r, z);
   }
   if (settings.direction == ContactDirection::diagonal) return apply_diagonal(model, c, scratch, r, z);
+  if (model.parts.size() > 1) leave_out_tangents(c.normals, most_coupled_directions(model), c.wanted);
   split(c, affordable(model, c.wanted));
   if (!c.system.set(system_of(model, c), c.together, c.threads)) c.rest = c.wanted;
   c.part = part_of(system_of(model, c), c.system.directions());

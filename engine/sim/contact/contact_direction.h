@@ -30,6 +30,7 @@ struct ContactCorrection {
   const System* matrix = nullptr;              // called A here: the step's matrix in force; null: the model's A
   Threads* threads = nullptr;                  // null: the calling thread works alone
   std::vector<StiffDirection> wanted;          // stiff directions of the contacts in force: normals, then tangents
+  std::size_t normals = 0;                     // how many of them are normals
   std::vector<StiffDirection> together, rest;  // those that `system` couples, and those scaled by themselves
   Capacitance system;
   PartedSolve solve;

@@ -28,7 +28,8 @@ struct SurfaceWork::Parts {
   // What is known of a point where the step begins.
   struct Beginning {
     bool is_known = false;
-    std::optional<MovingSurface::Place> place;  // nothing: outside, far from the surface
+    std::optional<MovingSurface::Place> place;  // that may hold it; nothing: outside, far from the surface
+    double nearest = 0;                         // how far away the surface is at all; 0 where it is far [m]
   };
 
   std::uint64_t structure = 0;                     // of the model that the surfaces belong to
@@ -57,6 +58,7 @@ using Facing = MovingSurface::Facing;
 
 constexpr int points_a_chunk = 128;  // a thread takes so many; fixed, so that results do not depend on threads
 constexpr double same_way = 0.5;     // cosine of normals; a point is not held by a face that looks as it does itself
+constexpr double opposite = -0.3;    // cosine of normals below which they belong to opposite sides
 constexpr double deepest = 0.5;      // points that begin a step deeper than this are not found, over the body's size
 
 // Lists the triangles of a part, with its vertices numbered as in its own model.
@@ -190,9 +192,10 @@ class Pair {
     const double reach = reach_at(v, way);
     if (!surface_.moving->is_near(a, b, surface_.carried, reach)) return;
     const std::optional<Place>& before = beginning(index, a);
-    const std::optional<Place> held =
-        before && before->distance <= 0 ? leaving(*before, v, b, reach, way) : arriving(before, v, a, b, reach, way);
-    if (held) add(v, *held, before ? before->distance : reach, list);
+    double field = before ? before->distance : reach;
+    const std::optional<Place> held = field <= 0 ? leaving(*before, v, b, reach, way)
+                                                 : arriving(v, a, b, reach, way, beginnings_[index].nearest, field);
+    if (held) add(v, *held, field, list);
   }
 
   // Lowers a share to where a point that arrives is deeper than it may be.
@@ -229,29 +232,54 @@ class Pair {
     Work::Beginning& known = beginnings_[index];
     if (known.is_known) return known.place;
     const MovingSurface* own = own_.moving.get();
-    const Facing facing{own == nullptr ? Vec3::Zero() : own->normal_at_start(own_vertex(points_[index])), same_way};
-    known = {true, over_face(surface_.moving->closest_at_start(a, deepest * part_.size, &facing), a, q_)};
+    const Vec3 facing = own == nullptr ? Vec3(Vec3::Zero()) : own->normal_at_start(own_vertex(points_[index]));
+    const auto find = [&](const Facing* without) {
+      return surface_.moving->closest_at_start(a, deepest * part_.size, without);
+    };
+    known.place = closest(a, facing, q_, find, &known.nearest);
+    known.is_known = true;
     return known.place;
   }
 
   // Returns the place closest to a point of an iterate.
   std::optional<Place> closest(std::int32_t v, const Vec3& b, double most) const {
     const MovingSurface* own = own_.moving.get();
-    const Facing facing{own == nullptr ? Vec3::Zero() : own->normal_at_end(own_vertex(v)), same_way};
-    return over_face(surface_.moving->closest_at_end(b, most, &facing), b, x_);
+    const Vec3 facing = own == nullptr ? Vec3(Vec3::Zero()) : own->normal_at_end(own_vertex(v));
+    return closest(b, facing, x_,
+                   [&](const Facing* without) { return surface_.moving->closest_at_end(b, most, without); });
   }
 
-  // Returns the place as that of its face, if the point is over the face or beside it by no more than the usual depth.
-  // Equal boxes on one another have their edges in one place: round-off alone would decide whether a lid carries them.
-  std::optional<Place> over_face(std::optional<Place> place, const Vec3& p, const Positions& x) const {
+  // Returns the place closest to a point among those that do not face the way of the point itself. find(without): the
+  // closest place without some triangles; nearest: set to how far
+  // away the surface is at all. Whether the point is inside follows from the place that is closest of all.
+  template <class Find>
+  std::optional<Place> closest(const Vec3& p, const Vec3& facing, const Positions& x, const Find& find,
+                               double* nearest = nullptr) const {
+    std::optional<Place> place = find(nullptr);
     if (!place) return place;
-    const Vec3 normal = normal_of(place->triangle, x), offset = p - place->point;
-    if (normal.isZero(0)) return place;
-    const double above = normal.dot(offset);
-    if ((offset - above * normal).norm() > usual_depth(size_)) return place;
-    place->normal = normal;
-    place->distance = above;
+    if (nearest != nullptr) *nearest = std::abs(place->distance);
+    const bool is_inside = place->distance < 0;
+    if (normal_of(place->triangle, x).dot(facing) > same_way) {
+      const Facing without{facing, same_way};
+      place = find(&without);
+      if (!place) return place;
+    }
+    if (is_over_face(*place, p, x)) {
+      place->normal = normal_of(place->triangle, x);
+      place->distance = place->normal.dot(p - place->point);
+    } else if (!is_inside && place->distance < 0) {
+      place->normal = (p - place->point).normalized();
+      place->distance = -place->distance;
+    }
     return place;
+  }
+
+  // Tells whether a point is over a place's face, and neither beside nor below it by more than the usual depth. Equal
+  // boxes on one another have their edges in one place: round-off alone would decide whether a lid carries them.
+  bool is_over_face(const Place& place, const Vec3& p, const Positions& x) const {
+    const Vec3 normal = normal_of(place.triangle, x), offset = p - place.point;
+    const double above = normal.dot(offset), beside = (offset - above * normal).norm();
+    return !normal.isZero(0) && above >= -usual_depth(size_) && beside <= usual_depth(size_);
   }
 
   std::int32_t own_vertex(std::int32_t v) const {
@@ -288,19 +316,35 @@ class Pair {
     return place_at_end(before.triangle, before.weights, b);
   }
 
-  // Finds the place that holds a point which began the step outside.
-  std::optional<Place> arriving(const std::optional<Place>& before, std::int32_t v, const Vec3& a, const Vec3& b,
-                                double reach, double way) const {
+  // Finds the place that holds a point which began the step outside: where it came in, or what is closest on that side.
+  // A point that is outside again may have cut a corner; if it left on the far side, it is held where it came in.
+  // field: the distance where the step began, which becomes that of the end where a point is inside and never came in:
+  // beside sharp features, and where surfaces cross themselves, the side at the beginning is not sure.
+  std::optional<Place> arriving(std::int32_t v, const Vec3& a, const Vec3& b, double reach, double way, double nearest,
+                                double& field) const {
     const double moved = way + 2 * surface_.own_move;
-    const bool may_enter = !before || before->distance <= moved;
-    const std::optional<Entry> entry = may_enter ? surface_.moving->first_entry(a, b, surface_.carried) : std::nullopt;
+    const std::optional<Entry> entry =
+        nearest <= moved ? surface_.moving->first_entry(a, b, surface_.carried) : std::nullopt;
     const std::optional<Place> here = closest(v, b, std::max(reach, entry ? moved : 0));
-    if (!entry) return here && here->distance >= 0 && here->distance < reach ? here : std::nullopt;
+    const std::optional<Place> near = here && here->distance < reach ? here : std::nullopt;
+    if (!entry) {
+      if (near) field = std::min(field, near->distance);
+      return near;
+    }
     const std::optional<Place> entered = place_at_end(entry->triangle, entry->weights, b);
-    if (!here || !entered) return entered;
-    const bool on_one_side = here->normal.dot(entered->normal) > 0;
-    if (!on_one_side) return entered;
-    return here->distance < reach ? here : std::nullopt;
+    if (!entered) return near;
+    if (here && here->distance < 0) return is_held_by(*entered, *here) ? entered : here;
+    const std::optional<Entry> exit = surface_.moving->last_exit(a, b, surface_.carried);
+    const bool left_on_far_side = exit && normal_of(exit->triangle, x_).dot(entered->normal) < opposite;
+    return left_on_far_side ? entered : near;
+  }
+
+  // Tells whether a point inside is held by the place where it came in, rather than by the closest one: where the two
+  // are on opposite sides, or beside each other unless the closest one is many times nearer.
+  static bool is_held_by(const Place& entered, const Place& closest) {
+    constexpr double far_deeper = 10, one_side = 0.5;
+    const double cosine = closest.normal.dot(entered.normal);
+    return cosine < opposite || (cosine < one_side && entered.distance > far_deeper * closest.distance);
   }
 
   ContactStencil stencil_of(std::int32_t point, const Place& place) const {
