@@ -194,10 +194,8 @@ std::vector<std::string> RowTally::warnings() const {
                                  count_text(body.collapsed, "element")));
   }
   for (const MetTally& pair : met_)
-    list.push_back(
-        fmt::format("bodies '{}' and '{}' pass through each other from frame {} on: bodies do not collide with each "
-                    "other",
-                    pair.bodies[0], pair.bodies[1], pair.frame));
+    list.push_back(fmt::format("bodies '{}' and '{}' pass through each other from frame {} on: these two do not meet",
+                               pair.bodies[0], pair.bodies[1], pair.frame));
   for (std::string& warning : penetrations()) list.push_back(std::move(warning));
   for (std::string& warning : missing_in_pictures()) list.push_back(std::move(warning));
   return list;
