@@ -24,9 +24,6 @@ std::vector<BodyDepth> overlaps_of_bodies(const std::vector<Body>& bodies, const
 // Tells of two bodies that overlap at the start, and of what becomes of that.
 std::string start_overlap_text(const std::vector<Body>& bodies, const BodyDepth& overlap);
 
-// Tells of two bodies that are deep in each other at a time that is given in words, such as "in frame 12".
-std::string deep_text(const std::vector<Body>& bodies, const BodyDepth& overlap, const std::string& when);
-
 // Finds, each once, the pairs of bodies that meet and are deep in each other.
 class DeepBodies {
  public:
