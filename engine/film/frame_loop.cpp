@@ -8,7 +8,6 @@
 #include "base/timing.h"
 #include "base/trace.h"
 #include "film/plan/shipped_files.h"
-#include "scene/building/warnings.h"
 
 namespace supple {
 
@@ -76,19 +75,8 @@ void FrameLoop::record(int frame, FrameRow& row) {
   for (std::size_t b = 0; states_ && b < world_.size(); ++b)
     states_->add(world_.body(b).model(), world_.body(b).state());
   row.state_hash = world_.hash();
-  find_meetings(row);
+  pairs_.record(row);
   save_outputs(frame, row);
-}
-
-// Notes the bodies that have met in this frame.
-void FrameLoop::find_meetings(FrameRow& row) {
-  if (meetings_.none_left()) return;
-  const Zone zone("meetings");
-  std::vector<Positions> points;
-  for (std::size_t b = 0; b < world_.size(); ++b)
-    points.push_back(in_input_order(world_.body(b).model(), world_.body(b).state().x));
-  for (const auto& [a, b] : meetings_.find(points))
-    row.met.push_back({world_.bodies()[a].def.name, world_.bodies()[b].def.name});
 }
 
 void FrameLoop::save_outputs(int frame, const FrameRow& row) {
@@ -146,8 +134,7 @@ FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
       graphs_(plan.pictures != FilmPictures::none &&
               (world_.scene().text.error_graph || world_.scene().text.time_graph)),
       verifier_(start.verifier ? &*start.verifier : nullptr),
-      meetings_(film.world.bodies()) {
-  look_for_meetings();
+      pairs_(film.world, log.whole_rows()) {
   if (plan.pictures != FilmPictures::none) {
     drawn_.emplace(world_.script(), world_.bodies(), std::move(film.drawn), world_.colliders(), caption_font());
     if (film.info.framed) drawn_->frame_motion(*film.info.framed);
@@ -167,20 +154,6 @@ FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
     for (const auto& body : recorders_) last_motion_.push_back(body->present_motion());
   }
   if (!plan.record.empty()) states_.emplace(plan.record, start.record_head, first_);
-}
-
-// Leaves out the pairs of bodies whose meeting is meant, and those that met in the frames of an earlier run.
-void FrameLoop::look_for_meetings() {
-  if (meetings_.none_left()) return;
-  std::vector<std::array<std::string, 2>> met;
-  log_.whole_rows().each([&met](const FrameRow& row) { met.insert(met.end(), row.met.begin(), row.met.end()); });
-  const auto meant = [this](std::size_t body) { return is_meant(world_.bodies()[body].def, WarningKind::overlap); };
-  for (std::size_t b = 0; b < world_.size(); ++b) {
-    for (std::size_t a = 0; a < b; ++a) {
-      const std::array names = {world_.bodies()[a].def.name, world_.bodies()[b].def.name};
-      if (meant(a) || meant(b) || std::ranges::find(met, names) != met.end()) meetings_.leave_out(a, b);
-    }
-  }
 }
 
 // Restores the state at which an earlier run took its checkpoint.

@@ -13,8 +13,8 @@
 #include "film/progress.h"
 #include "film/record/body_recorder.h"
 #include "film/record/film_log.h"
+#include "film/record/pair_recorder.h"
 #include "output/motion/pose_table.h"
-#include "scene/building/body_meetings.h"
 
 namespace supple {
 
@@ -41,9 +41,7 @@ class FrameLoop {
 
   std::string compare_with_record(int frame);
   void save_outputs(int frame, const FrameRow& row);
-  void find_meetings(FrameRow& row);
   void keep_motion();
-  void look_for_meetings();
   void resume(const WorldState& checkpoint);
   void keep_checkpoint_before();
   void add_checkpoint();
@@ -65,7 +63,7 @@ class FrameLoop {
   std::optional<DrawnFilm> drawn_;      // only with pictures
   std::vector<Positions> last_motion_;  // of the bodies at the end of the last frame, where the pictures need it [m]
   std::vector<std::unique_ptr<BodyRecorder>> recorders_;  // of each body
-  BodyMeetings meetings_;                                 // finds meetings that no earlier frame has had
+  PairRecorder pairs_;                                    // notes the pairs of bodies that touch
   std::optional<PoseTableWriter> poses_;                  // only with colliders
   std::optional<StateRecorder> states_;                   // for --record
   std::optional<Pictures> pictures_;                      // last, so that its threads end first

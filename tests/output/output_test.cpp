@@ -96,7 +96,7 @@ TEST(Profile, LeavesOutWhatWasNotUsedAndTheFirstFrame) {
   std::vector<FrameRow> rows(3, row);
   rows[1].step_ms = rows[2].step_ms = 2;
   const std::string json = profile_json(rows);
-  for (const char* absent : {"render_ms", "compress_ms", "\"error\"", "jiggle", "collide_ms"})
+  for (const char* absent : {"render_ms", "compress_ms", "\"error\"", "jiggle", "collide_ms", "\"pairs\"", "\"deep\""})
     EXPECT_EQ(json.find(absent), std::string::npos) << absent;
   EXPECT_EQ(summarize(rows)[0].rest.max, 2);
   EXPECT_EQ(summarize(rows)[0].first, 100);
@@ -126,6 +126,8 @@ TEST(Profile, RowsComeBackFromTheirText) {
   body.stop_reason = "round-off";
   body.budget_cuts = {{4, -1}, {2, 1}};
   row.bodies = {body, BodyRow{}};
+  row.pairs = {{{"soft", "other"}, 12, 0.1 + 0.2, 1.0 / 3}, {{"soft", "third"}, 1, 0.05, 0, true}};
+  row.deep = {{{"other", "third"}, 0.02, {0.1, -0.2, 0.3}}};
   const std::string line = row_line(row);
   EXPECT_EQ(line.find('\n'), std::string::npos);
   const FrameRow back = row_of_line(line, "a line");
@@ -136,6 +138,17 @@ TEST(Profile, RowsComeBackFromTheirText) {
   EXPECT_EQ(back.bodies[0].budget_cuts, body.budget_cuts);
   EXPECT_EQ(back.bodies[0].skin_excess, 1.75);
   EXPECT_EQ(back.bodies[0].in_picture, 0.25);
+  ASSERT_EQ(back.pairs.size(), 2u);
+  EXPECT_EQ(back.pairs[0].bodies, row.pairs[0].bodies);
+  EXPECT_EQ(back.pairs[0].contacts, 12);
+  EXPECT_EQ(back.pairs[0].penetration, row.pairs[0].penetration);
+  EXPECT_EQ(back.pairs[0].force, row.pairs[0].force);
+  EXPECT_FALSE(back.pairs[0].expected);
+  EXPECT_TRUE(back.pairs[1].expected);
+  ASSERT_EQ(back.deep.size(), 1u);
+  EXPECT_EQ(back.deep[0].bodies, row.deep[0].bodies);
+  EXPECT_EQ(back.deep[0].share, 0.02);
+  EXPECT_EQ(back.deep[0].place, row.deep[0].place);
   EXPECT_FALSE(back.draw_ms || back.bodies[1].contact || back.bodies[1].jiggle || back.bodies[1].skin_excess);
 
   const test::TemporaryFolder folder;
@@ -234,6 +247,68 @@ TEST(Profile, TellsWhatEachColliderDidAndWarnsOfDepthsAboveAHundredth) {
   EXPECT_EQ(line("ground"), "  soft          ground              9.0e-03         0            15            30");
   EXPECT_EQ(line("press"), "  soft          press               5.0e-02         2             0             0");
   EXPECT_EQ(line("wall"), "");
+}
+
+// Four frames in which 'a' and 'b' touch, except in the first, and are deep in the last two.
+std::vector<FrameRow> rows_of_a_pair() {
+  std::vector<FrameRow> rows(4);
+  for (int frame = 0; frame < 4; ++frame) {
+    rows[frame].frame = frame;
+    rows[frame].bodies.resize(2);
+    const double depth = frame == 2 ? 0.05 : frame == 3 ? 0.02 : 0.005;
+    if (frame > 0) rows[frame].pairs = {{{"a", "b"}, 3, depth, 10.0 * frame}};
+  }
+  return rows;
+}
+
+TEST(Profile, TellsHowPairsOfBodiesTouched) {
+  std::vector<FrameRow> rows = rows_of_a_pair();
+  rows[1].pairs.push_back({{"a", "c"}, 1, 0, 0});
+  const std::string table = profile_table(rows);
+  EXPECT_NE(table.find("\n  body          other body      penetration  at frame force N, mean          most\n"
+                       "  a             b                   5.0e-02         2            15            30\n"
+                       "  a             c                   0.0e+00         -             0             0\n"),
+            std::string::npos)
+      << table;
+  for (FrameRow& row : rows) row.pairs.clear();
+  EXPECT_EQ(profile_table(rows).find("other body"), std::string::npos);
+}
+
+TEST(Profile, WarnsOfPairsOfBodiesThatAreDeepInEachOther) {
+  std::vector<FrameRow> rows = rows_of_a_pair();
+  EXPECT_EQ(warnings_of(rows),
+            std::vector<std::string>{
+                "bodies 'a' and 'b' were up to 5 % of the smaller one's size deep in each other (at frame 2; above 1 % "
+                "in 2 of 4 frames): substeps or more solver.iterations make that less"});
+  rows[2].pairs[0].expected = true;
+  ASSERT_EQ(warnings_of(rows).size(), 1u);
+  EXPECT_NE(warnings_of(rows)[0].find("up to 2 % of the smaller one's size deep in each other (at frame 3; above 1 % "
+                                      "in 1 of 4 frames)"),
+            std::string::npos)
+      << warnings_of(rows)[0];
+  rows[3].pairs[0].expected = true;
+  EXPECT_TRUE(warnings_of(rows).empty());
+  EXPECT_NE(profile_table(rows).find("5.0e-02         2"), std::string::npos) << "the table tells it all the same";
+}
+
+TEST(Profile, WarnsOfDepthsThatContactsDidNotShowAndOncePerPair) {
+  std::vector<FrameRow> rows = rows_of_a_pair();
+  rows[1].deep = {{{"b", "c"}, 0.03, {0.5, 0.25, -1}}};
+  const std::string missed =
+      "bodies 'b' and 'c' were 3 % of the smaller one's size deep in each other in frame 1, at [0.5, 0.25, -1], and "
+      "their contacts never showed more than 1 %: substeps or more solver.iterations make that less";
+  ASSERT_EQ(warnings_of(rows).size(), 2u);
+  EXPECT_EQ(warnings_of(rows)[1], missed);
+  rows[1].deep = {{{"a", "b"}, 0.03, {0, 0, 0}}};
+  ASSERT_EQ(warnings_of(rows).size(), 1u);
+  EXPECT_NE(warnings_of(rows)[0].find("up to 5 % of the smaller one's size deep in each other (at frame 2;"),
+            std::string::npos)
+      << warnings_of(rows)[0];
+  rows[1].deep[0].share = 0.2;
+  ASSERT_EQ(warnings_of(rows).size(), 1u);
+  EXPECT_NE(warnings_of(rows)[0].find("up to 20 % of the smaller one's size deep in each other (at frame 1;"),
+            std::string::npos)
+      << warnings_of(rows)[0];
 }
 
 TEST(RunFolder, TakesOverItsOwnAndRefusesWhatOthersLeft) {

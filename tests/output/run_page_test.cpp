@@ -56,6 +56,32 @@ TEST(RunPage, HoldsEveryFramesValuesForItsCursor) {
   EXPECT_EQ(data["series"][7], (std::vector<double>{0, 1, 2, 3, 4, 5}));
 }
 
+TEST(RunPage, ShowsPairsOfBodiesThatTouched) {
+  const test::TemporaryFolder folder;
+  RunRecord run = small_run(folder.path, 3);
+  run.rows[1].pairs = {{{"soft", "hard & <wet>"}, 7, 0.004, 1}};
+  const std::string page = run_page(run);
+  const nlohmann::json data = data_of(page);
+  ASSERT_EQ(data["series"].size(), 11u);
+  EXPECT_EQ(data["series"][9], (std::vector<double>{0, 7, 0}));
+  EXPECT_EQ(data["series"][10], (std::vector<double>{0, 0.004, 0}));
+  EXPECT_NE(page.find("soft and hard &amp; &lt;wet&gt;"), std::string::npos);
+  EXPECT_NE(page.find("Deepest point inside another body"), std::string::npos);
+}
+
+TEST(RunPage, ShowsTheDeepestPairsWhereThereAreMoreThanColours) {
+  const test::TemporaryFolder folder;
+  RunRecord run = small_run(folder.path, 3);
+  for (int pair = 0; pair < 10; ++pair)
+    run.rows[1].pairs.push_back({{"soft", "ball " + std::to_string(pair)}, 1, 0.001 * (pair + 1), 0});
+  const std::string page = run_page(run);
+  EXPECT_EQ(data_of(page)["series"].size(), 9u + 2 * 8u);
+  EXPECT_NE(page.find("(the 8 deepest pairs)"), std::string::npos);
+  EXPECT_LT(page.find("soft and ball 9"), page.find("soft and ball 2"));
+  EXPECT_EQ(page.find("soft and ball 1<"), std::string::npos);
+  EXPECT_EQ(page.find("soft and ball 1 "), std::string::npos);
+}
+
 TEST(RunPage, SaysWhatHelpsOnlyWhereTheFilmIsSlowerThanAsked) {
   const test::TemporaryFolder folder;
   RunRecord run = small_run(folder.path, 6);

@@ -1,7 +1,7 @@
 // Tells whether two meshes are partly in the same place. Edges that pass through triangles tell, and vertices inside
 // elements where one mesh lies whole within the other. Meshes that touch, on a face, an edge or a point, do not share
 // space. Not here: how deep they are in each other (geometry/triangles/shared_depth.h), and which bodies of a scene
-// share space, and since when (scene/building/body_meetings.h, body_depths.h).
+// share space, and since when (scene/building/body_passings.h, body_depths.h).
 #pragma once
 
 #include "geometry/meshes/mesh.h"

@@ -39,6 +39,40 @@ std::vector<FrameSeries> by_body(const std::vector<FrameRow>& rows, const std::s
   return result;
 }
 
+// Returns the deepest rows of all pairs of bodies that touched each other, the deepest pair first.
+std::vector<PairRow> deepest_of_pairs(const std::vector<FrameRow>& rows) {
+  std::vector<PairRow> deepest;
+  for (const FrameRow& row : rows) {
+    for (const PairRow& pair : row.pairs) {
+      const auto known = std::ranges::find(deepest, pair.bodies, &PairRow::bodies);
+      if (known == deepest.end()) {
+        deepest.push_back(pair);
+      } else if (pair.penetration > known->penetration) {
+        *known = pair;
+      }
+    }
+  }
+  std::ranges::stable_sort(deepest, std::ranges::greater(), &PairRow::penetration);
+  return deepest;
+}
+
+// Makes a graph with a series for each pair of bodies that touched each other, or for the deepest ones where there are
+// more pairs than colours. In a frame without a row of theirs they do not touch, and their value is 0.
+FrameGraph pairs_graph(const std::vector<FrameRow>& rows, std::string title,
+                       const std::function<double(const PairRow&)>& value) {
+  std::vector<PairRow> shown = deepest_of_pairs(rows);
+  if (shown.size() > colors.size()) title += fmt::format(" (the {} deepest pairs)", colors.size());
+  shown.resize(std::min(shown.size(), colors.size()));
+  FrameGraph graph{std::move(title), "", false, {}};
+  for (const PairRow& one : shown) {
+    graph.series.push_back(by_frame(rows, one.bodies[0] + " and " + one.bodies[1], [&](const FrameRow& row) {
+      const auto pair = std::ranges::find(row.pairs, one.bodies, &PairRow::bodies);
+      return pair == row.pairs.end() ? 0 : value(*pair);
+    }));
+  }
+  return graph;
+}
+
 // Makes the graph of one of the errors, with the estimate and what was measured of each body.
 FrameGraph errors_graph(const std::vector<FrameRow>& rows, const char* title, double BodyRow::*estimate,
                         std::optional<double> BodyRow::*measured) {
@@ -76,8 +110,13 @@ std::vector<FrameGraph> graphs_of(const std::vector<FrameRow>& rows) {
   FrameGraph depth{
       "Deepest point inside a collider, over the body's size", "", false,
       by_body(rows, "", [](const BodyRow& body) { return body.contact ? body.contact->penetration : none; })};
+  const FrameGraph pair_contacts = pairs_graph(rows, "Points of two bodies that touch each other",
+                                               [](const PairRow& pair) { return pair.contacts; });
+  const FrameGraph pair_depth = pairs_graph(rows, "Deepest point inside another body, over the smaller body's size",
+                                            [](const PairRow& pair) { return pair.penetration; });
   std::vector<FrameGraph> graphs;
-  for (FrameGraph& graph : std::array{times, errors, motion_errors, stretch, contacts, depth}) {
+  for (FrameGraph& graph :
+       std::array{times, errors, motion_errors, stretch, contacts, depth, pair_contacts, pair_depth}) {
     if (!graph.series.empty()) graphs.push_back(std::move(graph));
   }
   return graphs;

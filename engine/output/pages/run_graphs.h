@@ -22,7 +22,8 @@ struct FrameGraph {
   bool first_apart = false;  // the first frame may leave the axis: it compiles shaders and warms caches
 };
 
-// Returns the graphs for which the rows have values: times, errors, stretch, contacts, penetration. There must be rows.
+// Returns the graphs for which the rows have values: times, errors, stretch, contacts and penetration of bodies in
+// colliders, and of pairs of bodies. There must be rows.
 std::vector<FrameGraph> graphs_of(const std::vector<FrameRow>& rows);
 
 // Returns a graph as HTML. first: the number of its first series on the page, for the script. from, to: the times of

@@ -31,6 +31,22 @@ struct ContactRow {
   std::vector<ColliderRow> colliders = {};
 };
 
+// Describes how two bodies touched each other at the end of a frame.
+struct PairRow {
+  std::array<std::string, 2> bodies;
+  int contacts = 0;        // points of either body that touch the other
+  double penetration = 0;  // of the deepest of them in the other body, over the smaller body's size
+  double force = 0;        // between the bodies [N]
+  bool expected = false;   // the depth is meant, or the bodies overlapped at the start and are still coming apart
+};
+
+// Describes two bodies that meet and are deep in each other, as their positions alone show it.
+struct DeepRow {
+  std::array<std::string, 2> bodies;
+  double share = 0;               // of the depth in the smaller body's size
+  std::array<double, 3> place{};  // of the deepest vertex [m]
+};
+
 // Holds what a body has and what it was given since the film began (sim/measures/energies.h) [J].
 struct BalanceRow {
   double total = 0, put_in = 0, from_nothing = 0, exchanged = 0;
@@ -81,7 +97,9 @@ struct FrameRow {
   std::optional<double> draw_ms, render_ms;  // absent where nothing is drawn
   std::optional<double> compress_ms;         // of the frame's file; absent without one
   std::uint64_t state_hash = 0;
-  std::vector<std::array<std::string, 2>> met;  // pairs of bodies that are in the same place, first in this frame
+  std::vector<std::array<std::string, 2>> met;  // bodies that pass through each other, first in this frame
+  std::vector<DeepRow> deep;                    // bodies that are deep in each other, first in this frame
+  std::vector<PairRow> pairs;                   // bodies that touch each other
   std::vector<BodyRow> bodies;
 };
 
@@ -102,8 +120,8 @@ struct StageSummary {
 std::vector<StageSummary> summarize(const std::vector<FrameRow>& rows);
 
 // Says what went wrong physically and did not end the run, a sentence for each body and kind: energy from nothing,
-// elements that are inverted or without volume at the end, bodies that pass through each other, and depths inside
-// colliders (penetration_warnings).
+// elements that are inverted or without volume at the end, bodies that pass through each other or are deep in each
+// other, and depths inside colliders (penetration_warnings).
 std::vector<std::string> warnings_of(const std::vector<FrameRow>& rows);
 
 class FrameRows;  // frame_rows.h
@@ -119,7 +137,8 @@ std::string row_line(const FrameRow& row);
 FrameRow row_of_line(const std::string& line, const std::string& source);
 std::vector<FrameRow> read_profile(const std::filesystem::path& path);
 
-// Gives a table for people: the stages, then the solver's figures by body, and then what each collider did to it.
+// Gives a table for people: the stages, then the solver's figures by body, then what each collider did to it, and then
+// what bodies did to each other.
 std::string profile_table(const std::vector<FrameRow>& rows);
 
 // Tells for each body and collider where the body's surface was deeper inside than it should be.

@@ -85,6 +85,15 @@ Json json_of(const Distribution& d) {
           {"max", rounded_ms(d.max)}, {"mean", rounded_ms(d.mean)}, {"total", rounded_ms(d.total)}};
 }
 
+Json json_of(const PairRow& pair) {
+  Json row = {
+      {"bodies", pair.bodies}, {"contacts", pair.contacts}, {"penetration", pair.penetration}, {"force", pair.force}};
+  if (pair.expected) row["expected"] = true;
+  return row;
+}
+
+Json json_of(const DeepRow& pair) { return {{"bodies", pair.bodies}, {"share", pair.share}, {"place", pair.place}}; }
+
 Json json_of(const FrameRow& row) {
   Json frame = {{"frame", row.frame}, {"time_s", row.time_s}, {"step_ms", rounded_ms(row.step_ms)}};
   if (row.change_ms) frame["change_ms"] = rounded_ms(*row.change_ms);
@@ -93,6 +102,8 @@ Json json_of(const FrameRow& row) {
   if (row.compress_ms) frame["compress_ms"] = rounded_ms(*row.compress_ms);
   frame["state_hash"] = hash_text_form(row.state_hash);
   if (!row.met.empty()) frame["met"] = row.met;
+  for (const DeepRow& pair : row.deep) frame["deep"].push_back(json_of(pair));
+  for (const PairRow& pair : row.pairs) frame["pairs"].push_back(json_of(pair));
   frame["bodies"] = Json::array();
   for (const BodyRow& body : row.bodies) frame["bodies"].push_back(json_of(body));
   return frame;
@@ -162,6 +173,24 @@ BodyRow body_row(const Json& json) {
   return row;
 }
 
+PairRow pair_row(const Json& json) {
+  PairRow row;
+  json.at("bodies").get_to(row.bodies);
+  json.at("contacts").get_to(row.contacts);
+  json.at("penetration").get_to(row.penetration);
+  json.at("force").get_to(row.force);
+  row.expected = json.value("expected", false);
+  return row;
+}
+
+DeepRow deep_row(const Json& json) {
+  DeepRow row;
+  json.at("bodies").get_to(row.bodies);
+  json.at("share").get_to(row.share);
+  json.at("place").get_to(row.place);
+  return row;
+}
+
 FrameRow frame_row(const Json& json) {
   FrameRow row;
   json.at("frame").get_to(row.frame);
@@ -173,6 +202,8 @@ FrameRow frame_row(const Json& json) {
   read_if_there(json, "compress_ms", row.compress_ms);
   row.state_hash = std::stoull(json.at("state_hash").get<std::string>(), nullptr, 16);
   if (json.contains("met")) json.at("met").get_to(row.met);
+  for (const Json& pair : json.value("deep", Json::array())) row.deep.push_back(deep_row(pair));
+  for (const Json& pair : json.value("pairs", Json::array())) row.pairs.push_back(pair_row(pair));
   for (const Json& body : json.at("bodies")) row.bodies.push_back(body_row(body));
   return row;
 }

@@ -44,6 +44,24 @@ void add_touches(const FrameRow& row, const BodyRow& body, std::vector<TouchTall
   }
 }
 
+void add_pairs(const FrameRow& row, std::vector<PairTally>& list) {
+  for (const PairRow& pair : row.pairs) {
+    auto found = std::ranges::find(list, pair.bodies, &PairTally::bodies);
+    if (found == list.end()) found = list.insert(list.end(), {pair.bodies});
+    if (pair.penetration > found->deepest) {
+      found->deepest = pair.penetration;
+      found->deepest_frame = row.frame;
+    }
+    if (!pair.expected && pair.penetration > found->unexpected) {
+      found->unexpected = pair.penetration;
+      found->unexpected_frame = row.frame;
+    }
+    found->deep_frames += !pair.expected && pair.penetration > deep;
+    found->force_sum += pair.force;
+    found->largest_force = std::max(found->largest_force, pair.force);
+  }
+}
+
 void add_energy(const FrameRow& row, const BalanceRow& balance, BodyTally& tally) {
   if (balance.from_nothing <= much_energy * balance.exchanged) return;
   if (tally.first_gain < 0) tally.first_gain = row.frame;
@@ -107,6 +125,8 @@ void RowTally::add(const FrameRow& row) {
     stages_[s].sum += *value;
   }
   for (const std::array<std::string, 2>& bodies : row.met) met_.push_back({bodies, row.frame});
+  for (const DeepRow& pair : row.deep) deep_.push_back({pair, row.frame});
+  add_pairs(row, pairs_);
   for (std::size_t body = 0; body < row.bodies.size(); ++body) add_body(row, body);
 }
 
@@ -147,6 +167,46 @@ std::vector<std::string> RowTally::penetrations() const {
         "substeps make that less",
         one.body, 100 * one.deepest, one.collider, one.deepest_frame, 100 * deep, one.deep_frames, frames_));
   }
+  return list;
+}
+
+namespace {
+
+// Tells of two bodies that contact did not keep apart. missed: what their positions alone showed; null: nothing. Of
+// both depths the larger one is told.
+std::string pair_text(const PairTally& pair, const DeepTally* missed, int frames) {
+  const bool missed_more = missed != nullptr && missed->found.share > pair.unexpected;
+  return fmt::format(
+      "bodies '{}' and '{}' were up to {:.2g} % of the smaller one's size deep in each other (at frame {}; above {:g} "
+      "% in {} of {} frames): substeps or more solver.iterations make that less",
+      pair.bodies[0], pair.bodies[1], 100 * (missed_more ? missed->found.share : pair.unexpected),
+      missed_more ? missed->frame : pair.unexpected_frame, 100 * deep, pair.deep_frames, frames);
+}
+
+// Tells of two bodies that were deep in each other although their contacts never showed such a depth.
+std::string missed_text(const DeepTally& pair) {
+  const auto& [bodies, share, place] = pair.found;
+  return fmt::format(
+      "bodies '{}' and '{}' were {:.2g} % of the smaller one's size deep in each other in frame {}, at [{:.3g}, "
+      "{:.3g}, {:.3g}], and their contacts never showed more than {:g} %: substeps or more solver.iterations make that "
+      "less",
+      bodies[0], bodies[1], 100 * share, pair.frame, place[0], place[1], place[2], 100 * deep);
+}
+
+}  // namespace
+
+std::vector<std::string> RowTally::depths_of_pairs() const {
+  std::vector<std::string> list;
+  std::vector<const DeepTally*> missed;  // those that no sentence tells yet
+  for (const DeepTally& pair : deep_) missed.push_back(&pair);
+  for (const PairTally& pair : pairs_) {
+    if (pair.deep_frames == 0) continue;
+    const auto is_same = [&pair](const DeepTally* one) { return one->found.bodies == pair.bodies; };
+    const auto also = std::ranges::find_if(missed, is_same);
+    list.push_back(pair_text(pair, also == missed.end() ? nullptr : *also, frames_));
+    if (also != missed.end()) missed.erase(also);
+  }
+  for (const DeepTally* pair : missed) list.push_back(missed_text(*pair));
   return list;
 }
 
@@ -194,10 +254,9 @@ std::vector<std::string> RowTally::warnings() const {
                                  count_text(body.collapsed, "element")));
   }
   for (const MetTally& pair : met_)
-    list.push_back(
-        fmt::format("bodies '{}' and '{}' pass through each other from frame {} on: bodies do not collide with each "
-                    "other",
-                    pair.bodies[0], pair.bodies[1], pair.frame));
+    list.push_back(fmt::format("bodies '{}' and '{}' pass through each other from frame {} on: these two do not meet",
+                               pair.bodies[0], pair.bodies[1], pair.frame));
+  for (std::string& warning : depths_of_pairs()) list.push_back(std::move(warning));
   for (std::string& warning : penetrations()) list.push_back(std::move(warning));
   for (std::string& warning : missing_in_pictures()) list.push_back(std::move(warning));
   return list;
@@ -211,6 +270,19 @@ std::string RowTally::touch_table() const {
       text = fmt::format("\n  {:<14}{:<14}{:>13}{:>10}{:>14}{:>14}\n", "body", "collider", "penetration", "at frame",
                          "force N, mean", "most");
     text += fmt::format("  {:<14}{:<14}{:>13.1e}{:>10}{:>14.3g}{:>14.3g}\n", one.body, one.collider, one.deepest,
+                        one.deepest > 0 ? fmt::format("{}", one.deepest_frame) : "-", one.force_sum / frames_,
+                        one.largest_force);
+  }
+  return text;
+}
+
+std::string RowTally::pair_table() const {
+  std::string text;
+  for (const PairTally& one : pairs_) {
+    if (text.empty())
+      text = fmt::format("\n  {:<14}{:<14}{:>13}{:>10}{:>14}{:>14}\n", "body", "other body", "penetration", "at frame",
+                         "force N, mean", "most");
+    text += fmt::format("  {:<14}{:<14}{:>13.1e}{:>10}{:>14.3g}{:>14.3g}\n", one.bodies[0], one.bodies[1], one.deepest,
                         one.deepest > 0 ? fmt::format("{}", one.deepest_frame) : "-", one.force_sum / frames_,
                         one.largest_force);
   }
@@ -249,7 +321,7 @@ std::string RowTally::table() const {
     }
     text += '\n';
   }
-  return text + touch_table();
+  return text + touch_table() + pair_table();
 }
 
 namespace {

@@ -47,6 +47,22 @@ struct TouchTally {
   double force_sum = 0, largest_force = 0;  // [N]
 };
 
+// Tallies what two bodies did to each other.
+struct PairTally {
+  std::array<std::string, 2> bodies;
+  double deepest = 0;  // over the smaller body's size
+  int deepest_frame = 0;
+  double unexpected = 0;  // the deepest of those depths that are not expected (PairRow)
+  int unexpected_frame = 0, deep_frames = 0;
+  double force_sum = 0, largest_force = 0;  // [N]
+};
+
+// Tells when two bodies that meet were first deep in each other.
+struct DeepTally {
+  DeepRow found;
+  int frame;
+};
+
 // Tells since when two bodies pass through each other.
 struct MetTally {
   std::array<std::string, 2> bodies;
@@ -71,6 +87,8 @@ class RowTally {
   std::vector<StageSummary> stages() const;
   std::vector<std::string> warnings() const;
   std::vector<std::string> penetrations() const;
+  // Tells, a sentence for each pair, which bodies were deeper in each other than they should be.
+  std::vector<std::string> depths_of_pairs() const;
   std::vector<std::string> missing_in_pictures() const;
   // Leaves out the bodies of which that is meant.
   std::string unsolved_text(const std::vector<std::string>& meant = {}) const;
@@ -80,6 +98,7 @@ class RowTally {
  private:
   void add_body(const FrameRow& row, std::size_t body);
   std::string touch_table() const;
+  std::string pair_table() const;
 
   int frames_ = 0;
   bool measured_ = false, touching_ = false;
@@ -87,6 +106,8 @@ class RowTally {
   StageTally stages_[5];  // in the order of stage_names
   std::vector<BodyTally> bodies_;
   std::vector<TouchTally> touches_;
+  std::vector<PairTally> pairs_;
+  std::vector<DeepTally> deep_;
   std::vector<MetTally> met_;
   std::vector<UnsolvedStep> unsolved_;
 };

@@ -10,7 +10,6 @@
 namespace supple {
 namespace {
 
-
 double size_of(const Body& body) { return bounds_of(body.description.mesh.rest).diagonal(); }
 
 BodyDepth depth_of(const std::vector<Body>& bodies, const BodyPairs::Near& pair) {
@@ -46,14 +45,6 @@ std::string start_overlap_text(const std::vector<Body>& bodies, const BodyDepth&
       "{}, by up to {:.3g} m ({:.2g} % of the smaller one's size) at {}: they are pushed apart gently while the film "
       "runs",
       pair, overlap.depth, 100 * overlap.share, place_text(overlap.place));
-}
-
-std::string deep_text(const std::vector<Body>& bodies, const BodyDepth& overlap, const std::string& when) {
-  return fmt::format(
-      "bodies '{}' and '{}' were {:.2g} m deep in each other {} ({:.2g} % of the smaller one's size), at {}: substeps "
-      "or more solver.iterations make that less",
-      bodies[overlap.a].def.name, bodies[overlap.b].def.name, overlap.depth, when, 100 * overlap.share,
-      place_text(overlap.place));
 }
 
 std::vector<BodyDepth> DeepBodies::find(const std::vector<Positions>& points) {

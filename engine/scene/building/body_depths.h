@@ -1,6 +1,6 @@
 // Finds bodies that meet (scene/definition/meeting.h) and are nevertheless in each other: those that start so, which
 // contact pushes apart, and those that are deep in each other while the film runs. The warning is `overlap`. Not here:
-// bodies that pass through each other (body_meetings.h), and bodies in colliders (overlaps.h).
+// bodies that pass through each other (body_passings.h), and bodies in colliders (overlaps.h).
 #pragma once
 
 #include <string>
@@ -23,9 +23,6 @@ std::vector<BodyDepth> overlaps_of_bodies(const std::vector<Body>& bodies, const
 
 // Tells of two bodies that overlap at the start, and of what becomes of that.
 std::string start_overlap_text(const std::vector<Body>& bodies, const BodyDepth& overlap);
-
-// Tells of two bodies that are deep in each other at a time that is given in words, such as "in frame 12".
-std::string deep_text(const std::vector<Body>& bodies, const BodyDepth& overlap, const std::string& when);
 
 // Finds, each once, the pairs of bodies that meet and are deep in each other.
 class DeepBodies {

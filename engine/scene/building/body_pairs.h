@@ -1,5 +1,5 @@
 // Holds the pairs of a scene's bodies that a search still looks for, and finds those of them that are near each other.
-// What is then asked of a pair is in body_meetings.h and body_depths.h.
+// What is then asked of a pair is in body_passings.h and body_depths.h.
 #pragma once
 
 #include <vector>

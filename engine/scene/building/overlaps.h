@@ -1,5 +1,5 @@
 // Finds the bodies that start inside colliders, and decides what is done about each. Their warning is `inside`; the
-// warning `overlap` is of two bodies in the same place (body_meetings.h, body_depths.h). Not here: how a body that
+// warning `overlap` is of two bodies in the same place (body_passings.h, body_depths.h). Not here: how a body that
 // stays inside is pushed out while the film runs (sim/contact/way_out.h).
 #pragma once
 

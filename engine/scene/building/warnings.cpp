@@ -7,7 +7,7 @@
 
 #include "geometry/meshes/cloth.h"
 #include "scene/building/body_depths.h"
-#include "scene/building/body_meetings.h"
+#include "scene/building/body_passings.h"
 #include "scene/building/collision_set.h"
 #include "scene/building/overlaps.h"
 #include "scene/building/thin_bodies.h"
@@ -153,7 +153,7 @@ void warn_of_fall(const SceneDef& scene, const Body& body, std::vector<Warning>&
 
 // Warns of bodies that start in the same place, whether they meet or pass through each other. Either of them may say
 // that it is meant.
-void warn_of_meetings(const std::vector<Body>& bodies, std::vector<Warning>& list) {
+void warn_of_shared_space(const std::vector<Body>& bodies, std::vector<Warning>& list) {
   if (bodies.size() < 2) return;
   std::vector<Positions> points;
   for (const Body& body : bodies) points.push_back(first_positions(body));
@@ -162,10 +162,9 @@ void warn_of_meetings(const std::vector<Body>& bodies, std::vector<Warning>& lis
     list.push_back(at(WarningKind::overlap, other.place, std::move(message)));
     list.back().meant = is_meant(one, WarningKind::overlap) || is_meant(other, WarningKind::overlap);
   };
-  for (const auto& [a, b] : BodyMeetings(bodies).find(points))
+  for (const auto& [a, b] : BodyPassings(bodies).find(points))
     warn(a, b,
-         fmt::format("bodies '{}' and '{}' pass through each other from the start on: bodies do not collide with each "
-                     "other",
+         fmt::format("bodies '{}' and '{}' pass through each other from the start on: these two do not meet",
                      bodies[a].def.name, bodies[b].def.name));
   for (const BodyDepth& overlap : overlaps_of_bodies(bodies, points))
     warn(overlap.a, overlap.b, start_overlap_text(bodies, overlap));
@@ -261,7 +260,7 @@ std::vector<Warning> warnings(const SceneDef& scene, const std::vector<Body>& bo
     warn_of_delay(body, list);
     for (std::size_t i = first; i < list.size(); ++i) list[i].meant = is_meant(body.def, *list[i].kind);
   }
-  warn_of_meetings(bodies, list);
+  warn_of_shared_space(bodies, list);
   return list;
 }
 

@@ -1,6 +1,6 @@
 // Tells which bodies of a scene meet, which means that they touch and push each other, and with how much friction. Two
 // bodies meet where both allow it (BodyContactDef) and nothing about them is in the way. Not here: contact with
-// colliders (sim/contact/), and what is said of bodies that overlap (scene/building/body_depths.h, body_meetings.h).
+// colliders (sim/contact/), and what is said of bodies that overlap (scene/building/body_depths.h, body_passings.h).
 #pragma once
 
 #include <cstddef>

@@ -20,7 +20,7 @@ enum class WarningKind {
   regions,    // their stiffnesses are far apart
   thin,       // a bar or a plate with few elements across
   delay,      // chebyshev's delay leaves no iteration to accelerate
-  overlap,    // two bodies are in the same place (body_meetings.h, body_depths.h; `inside`: overlaps.h)
+  overlap,    // two bodies are in the same place (body_passings.h, body_depths.h; `inside`: overlaps.h)
   skin,       // the skin reaches far beyond the elements
   unsolved,   // steps are left unsolved; known at the end of a film
 };

@@ -1,8 +1,8 @@
-#include "scene/building/body_meetings.h"
+#include "scene/building/body_passings.h"
 
 namespace supple {
 
-std::vector<std::array<std::size_t, 2>> BodyMeetings::find(const std::vector<Positions>& points) {
+std::vector<std::array<std::size_t, 2>> BodyPassings::find(const std::vector<Positions>& points) {
   std::vector<std::array<std::size_t, 2>> found;
   if (none_left()) return found;
   for (const BodyPairs::Near& pair : pairs_.near(PairKind::passing, points)) {

@@ -11,10 +11,10 @@
 
 namespace supple {
 
-class BodyMeetings {
+class BodyPassings {
  public:
   // bodies: the bodies of the scene; they must outlive this object. With one body nothing is computed.
-  explicit BodyMeetings(const std::vector<Body>& bodies) : pairs_(bodies) {}
+  explicit BodyPassings(const std::vector<Body>& bodies) : pairs_(bodies) {}
 
   // Leaves a pair out of find() from now on.
   void leave_out(std::size_t a, std::size_t b) { pairs_.leave_out(a, b); }

@@ -11,11 +11,11 @@
 #include "support/program.h"
 
 namespace supple {
-namespace meetings_test {
+namespace passings_test {
 
 using test::Result;
 
-class Meetings : public testing::Test {
+class Passings : public testing::Test {
  protected:
   Result run(const std::string& verb, const std::string& scene, std::vector<std::string> more = {}) {
     std::ofstream(folder_.path / "scene.toml") << scene;
@@ -44,13 +44,12 @@ const std::string meets_none = "contact = { meets = false }\n";
 const std::string ground = "[[collider]]\nshape = { half_space = { normal = [0, 1, 0] } }\n";
 
 std::string words(const std::string& a, const std::string& b, int frame) {
-  return fmt::format(
-      "bodies '{}' and '{}' pass through each other from frame {} on: bodies do not collide with each other", a, b,
-      frame);
+  return fmt::format("bodies '{}' and '{}' pass through each other from frame {} on: these two do not meet", a, b,
+                     frame);
 }
 
 // The upper cube falls 0.2 m until it meets the lower one, which takes 0.2 s.
-TEST_F(Meetings, OfCubesThatAreDroppedOnEachOtherAreWarnedOf) {
+TEST_F(Passings, OfCubesThatAreDroppedOnEachOtherAreWarnedOf) {
   const std::string scene =
       "frames = 12\n" + cube("lower", meets_none) + cube("upper", "position = [0, 0.4, 0]") + ground;
   const std::string expected = words("lower", "upper", 5);
@@ -65,7 +64,7 @@ TEST_F(Meetings, OfCubesThatAreDroppedOnEachOtherAreWarnedOf) {
   EXPECT_EQ(run("check", scene).out.find("pass through"), std::string::npos) << "they do not at the start";
 }
 
-TEST_F(Meetings, AreToldOnceWhereAFilmIsResumed) {
+TEST_F(Passings, AreToldOnceWhereAFilmIsResumed) {
   const std::string scene =
       "frames = 12\n" + cube("lower", meets_none) + cube("upper", "position = [0, 0.4, 0]") + ground;
   film(scene, {"--frames", "8", "--checkpoint-every", "4"});
@@ -77,7 +76,7 @@ TEST_F(Meetings, AreToldOnceWhereAFilmIsResumed) {
   EXPECT_EQ(resumed["summary"]["warnings"].size(), 1u);
 }
 
-TEST_F(Meetings, AreNotWhatBodiesHaveThatFlyPastEachOtherOrStandSideBySide) {
+TEST_F(Passings, AreNotWhatBodiesHaveThatFlyPastEachOtherOrStandSideBySide) {
   EXPECT_EQ(film("frames = 12\ngravity = [0, 0, 0]\n" + cube("a", "position = [-0.5, 0, 0]\nvelocity = [3, 0, 0]") +
                  cube("b", "position = [0.5, 0.2001, 0]\nvelocity = [-3, 0, 0]") + cube("c", "position = [0, 3, 0]") +
                  cube("d", "position = [0.2, 3, 0]"))
@@ -86,7 +85,7 @@ TEST_F(Meetings, AreNotWhatBodiesHaveThatFlyPastEachOtherOrStandSideBySide) {
   EXPECT_FALSE(profile().dump().find("met\"") != std::string::npos);
 }
 
-TEST_F(Meetings, OfAClothAndABodyAndOfCrossedBarsAreWarnedOf) {
+TEST_F(Passings, OfAClothAndABodyAndOfCrossedBarsAreWarnedOf) {
   const std::string cloth =
       "[[body]]\nname = \"cloth\"\ncloth = { extent = [0.6, 0.6], cells = [6, 6], stretch = 120 }\n"
       "turn_deg = [-90, 0, 0]\nposition = [0, 0.4, 0]\n";
@@ -102,10 +101,9 @@ TEST_F(Meetings, OfAClothAndABodyAndOfCrossedBarsAreWarnedOf) {
   EXPECT_EQ(film(bars).err, "warning: " + words("along", "across", 0) + "\n");
 }
 
-TEST_F(Meetings, AtTheStartAreToldByCheck) {
+TEST_F(Passings, AtTheStartAreToldByCheck) {
   const std::string scene = cube("a", meets_none) + cube("b", "position = [0.1, 0.1, 0]") + ground;
-  const std::string expected =
-      "bodies 'a' and 'b' pass through each other from the start on: bodies do not collide with each other";
+  const std::string expected = "bodies 'a' and 'b' pass through each other from the start on: these two do not meet";
   EXPECT_NE(run("check", scene).out.find(expected), std::string::npos);
   const auto list = nlohmann::json::parse(run("check", scene, {"--json", "--set=body.a.meant=[\"overlap\"]"}).out);
   ASSERT_EQ(list["warnings"].size(), 1u) << list.dump();
@@ -121,10 +119,10 @@ TEST_F(Meetings, AtTheStartAreToldByCheck) {
       << "the boxes around them overlap, and they do not";
 }
 
-TEST_F(Meetings, OfABodyAloneAreNot) {
+TEST_F(Passings, OfABodyAloneAreNot) {
   EXPECT_EQ(film("frames = 3\n" + cube("alone", "") + ground).err, "");
   EXPECT_FALSE(profile()["frames"][0].contains("met"));
 }
 
-}  // namespace meetings_test
+}  // namespace passings_test
 }  // namespace supple

@@ -1,0 +1,96 @@
+#include "film/record/pair_recorder.h"
+
+#include <algorithm>
+
+#include "base/trace.h"
+#include "scene/building/warnings.h"
+
+namespace supple {
+namespace {
+
+template <class List, class Value>
+bool contains(const List& list, const Value& value) {
+  return std::ranges::find(list, value) != list.end();
+}
+
+}  // namespace
+
+PairRecorder::PairRecorder(const World& world, const FrameRows& earlier)
+    : world_(world), passings_(world.bodies()), deep_(world.bodies()) {
+  if (world_.bodies().size() < 2) return;
+  std::vector<Positions> start;
+  for (const Body& body : world_.bodies()) start.push_back(first_positions(body));
+  for (const BodyDepth& overlap : overlaps_of_bodies(world_.bodies(), start)) {
+    coming_apart_.push_back(names(overlap.a, overlap.b));
+    deep_.leave_out(overlap.a, overlap.b);
+  }
+  std::vector<Names> met, deep;
+  earlier.each([&](const FrameRow& row) {
+    met.insert(met.end(), row.met.begin(), row.met.end());
+    for (const DeepRow& pair : row.deep) deep.push_back(pair.bodies);
+    note_who_came_apart(row);
+  });
+  leave_out_known(met, deep);
+}
+
+PairRecorder::Names PairRecorder::names(std::size_t a, std::size_t b) const {
+  return {world_.bodies()[a].def.name, world_.bodies()[b].def.name};
+}
+
+// Tells whether one of both bodies says that overlaps are meant.
+bool PairRecorder::is_meant(std::size_t a, std::size_t b) const {
+  const std::vector<Body>& bodies = world_.bodies();
+  return supple::is_meant(bodies[a].def, WarningKind::overlap) || supple::is_meant(bodies[b].def, WarningKind::overlap);
+}
+
+// Leaves out what is meant, and the pairs that an earlier run has found.
+void PairRecorder::leave_out_known(const std::vector<Names>& met, const std::vector<Names>& deep) {
+  for (std::size_t b = 0; b < world_.bodies().size(); ++b) {
+    for (std::size_t a = 0; a < b; ++a) {
+      const bool meant = is_meant(a, b);
+      if (meant || contains(met, names(a, b))) passings_.leave_out(a, b);
+      if (meant || contains(deep, names(a, b))) deep_.leave_out(a, b);
+    }
+  }
+}
+
+void PairRecorder::record(FrameRow& row) {
+  if (world_.size() < 2) return;
+  const Zone zone("pairs of bodies");
+  note_touches(row);
+  if (passings_.none_left() && deep_.none_left()) return;
+  std::vector<Positions> points;
+  for (std::size_t b = 0; b < world_.size(); ++b)
+    points.push_back(in_input_order(world_.body(b).model(), world_.body(b).state().x));
+  find_passings(points, row);
+  find_deep(points, row);
+}
+
+void PairRecorder::note_touches(FrameRow& row) {
+  for (const BodyTouch& touch : world_.touches()) {
+    const double size = std::min(world_.body(touch.a).model().size, world_.body(touch.b).model().size);
+    row.pairs.push_back(
+        {names(touch.a, touch.b), touch.contacts, touch.depth / size, touch.force.norm(), is_meant(touch.a, touch.b)});
+  }
+  note_who_came_apart(row);
+  for (PairRow& pair : row.pairs) pair.expected = pair.expected || contains(coming_apart_, pair.bodies);
+}
+
+// Forgets the pairs that overlapped at the start and that the contacts of this frame show no longer deep.
+void PairRecorder::note_who_came_apart(const FrameRow& row) {
+  std::erase_if(coming_apart_, [&row](const Names& names) {
+    const auto pair = std::ranges::find(row.pairs, names, &PairRow::bodies);
+    return pair == row.pairs.end() || pair->penetration <= DeepBodies::deep;
+  });
+}
+
+void PairRecorder::find_passings(const std::vector<Positions>& points, FrameRow& row) {
+  for (const auto& [a, b] : passings_.find(points)) row.met.push_back(names(a, b));
+}
+
+void PairRecorder::find_deep(const std::vector<Positions>& points, FrameRow& row) {
+  for (const BodyDepth& found : deep_.find(points))
+    row.deep.push_back({names(found.a, found.b), found.share, {found.place.x(), found.place.y(), found.place.z()}});
+}
+
+}  // namespace supple
