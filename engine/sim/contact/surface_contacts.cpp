@@ -190,8 +190,10 @@ class Pair {
     const Vec3 a = q_.row(v).transpose(), b = x_.row(v).transpose();
     const double way = (b - a - surface_.carried).norm();
     const double reach = reach_at(v, way);
-    if (!surface_.moving->is_near(a, b, surface_.carried, reach)) return;
+    const bool is_near = surface_.moving->is_near(a, b, surface_.carried, reach);
+    if (!is_near && !is_in_box(a)) return;
     const std::optional<Place>& before = beginning(index, a);
+    if (!is_near && (!before || before->distance >= 0)) return;
     double field = before ? before->distance : reach;
     const std::optional<Place> held = field <= 0 ? leaving(*before, v, b, reach, way)
                                                  : arriving(v, a, b, reach, way, beginnings_[index].nearest, field);
@@ -218,6 +220,12 @@ class Pair {
   }
 
  private:
+  // Tells whether a place is in the surface's box where the step began, and may be inside, far from all triangles.
+  bool is_in_box(const Vec3& a) const {
+    const Bounds& box = surface_.moving->bounds_at_start();
+    return (a.array() >= box.lower.array()).all() && (a.array() <= box.upper.array()).all();
+  }
+
   std::int32_t corner(std::int32_t triangle, int k) const {
     return joined_vertex(part_, surface_.triangles(triangle, k));
   }

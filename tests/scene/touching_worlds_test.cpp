@@ -1,0 +1,205 @@
+// Tests worlds whose bodies touch each other: against a wall in their middle, against what must be kept, and for the
+// same bits however the film is made.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "baselines/make_rule.h"
+#include "support/scene_text.h"
+#include "world/world.h"
+
+namespace supple {
+namespace touching_worlds_test {
+
+struct Played {
+  explicit Played(const std::string& text, int count = 1)
+      : threads(count), world(test::scene_of(text), assemble(test::scene_of(text))) {
+    world.start({make_rule, settings_of}, &threads);
+  }
+  void play(int first, int end) {
+    for (int frame = first; frame < end; ++frame) ASSERT_TRUE(world.play(frame)) << frame;
+  }
+  Positions places(std::size_t body) const {
+    return in_input_order(world.body(body).model(), world.body(body).state().x);
+  }
+  // Returns the sums of m v and of m |v|^2 / 2 over all bodies.
+  Vec3 momentum() const {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t b = 0; b < world.size(); ++b) sum += momentum(b);
+    return sum;
+  }
+  Vec3 momentum(std::size_t body) const {
+    const Model& model = world.body(body).model();
+    Vec3 sum = Vec3::Zero();
+    for (int v = 0; v < model.free; ++v) sum += model.mass[v] * world.body(body).state().v.row(v).transpose();
+    return sum;
+  }
+
+  Threads threads;
+  World world;
+};
+
+std::string cube(const std::string& name, double x, double speed, const std::string& keys = "") {
+  return fmt::format(
+      "[[body]]\nname = \"{}\"\nbox = {{ extent = [0.2, 0.2, 0.2], cells = [4, 4, 4] }}\nposition = [{}, 0.5, 0]\n"
+      "velocity = [{}, 0, 0]\nmaterial = {{ model = \"stable-neo-hookean\", young = 1e5, poisson = 0.4 }}\n{}\n",
+      name, x, speed, keys);
+}
+const std::string no_gravity = "gravity = [0, 0, 0]\n";
+const std::string smooth = "contact = { friction = 0 }";
+const std::string wall = "[[collider]]\nname = \"wall\"\nshape = { half_space = { normal = [-1, 0, 0] } }\n";
+constexpr double diagonal = 0.2 * 1.7320508;  // of the cube [m]
+
+TEST(TouchingWorlds, TwoCubesThatMeetHeadOnAreEachOthersWall) {
+  Played two(no_gravity + cube("left", -0.25, 2, smooth) + cube("right", 0.25, -2, smooth));
+  Played one(no_gravity + cube("left", -0.25, 2) + wall);
+  for (int frame = 0; frame < 60; ++frame) {
+    two.play(frame, frame + 1);
+    one.play(frame, frame + 1);
+    EXPECT_LT((two.places(0) - one.places(0)).rowwise().norm().maxCoeff(), 0.01 * diagonal) << frame;
+  }
+}
+
+TEST(TouchingWorlds, MomentumIsKept) {
+  Played played(no_gravity + cube("left", -0.25, 3) + cube("right", 0.25, -1, "turn_deg = [10, 20, 30]"));
+  const Vec3 before = played.momentum();
+  const double one = played.momentum(0).norm();
+  double exchanged = 0;
+  for (int frame = 0; frame < 20; ++frame) {
+    const Vec3 left = played.momentum(0);
+    played.play(frame, frame + 1);
+    exchanged += (played.momentum(0) - left).norm();
+    EXPECT_LT((played.momentum() - before).norm(), 1e-12 * exchanged + 1e-14 * one) << frame;
+  }
+  EXPECT_GT(exchanged, 0.5 * one);
+}
+
+TEST(TouchingWorlds, ABodyThatNothingTouchesMakesItsOwnStep) {
+  Played together(no_gravity + cube("left", -0.25, 2) + cube("right", 2, 1) + wall);
+  Played alone(no_gravity + cube("left", -0.25, 2) + wall);
+  together.play(0, 10);
+  alone.play(0, 10);
+  EXPECT_EQ(together.places(0), alone.places(0));
+}
+
+TEST(TouchingWorlds, BodiesThatDoNotMeetPassThroughEachOther) {
+  Played played(no_gravity + cube("left", -0.25, 2, "contact = { meets = false }") + cube("right", 0.25, -2));
+  played.play(0, 10);
+  const double way = 2 * 10.0 / 24;
+  EXPECT_NEAR(played.places(0).col(0).mean(), -0.25 + way, 1e-3 * way);
+}
+
+TEST(TouchingWorlds, ABodyRestsOnAnother) {
+  const std::string ground = "[[collider]]\nname = \"ground\"\nshape = { half_space = { normal = [0, 1, 0] } }\n";
+  std::string low = cube("low", 0, 0), high = cube("high", 0.03, 0);
+  low.replace(low.find("0.5, 0]"), 7, "0.101, 0]");
+  high.replace(high.find("0.5, 0]"), 7, "0.31, 0.02]");
+  Played played(low + high + ground);
+  played.play(0, 60);
+  const Positions before = played.places(1);
+  played.play(60, 90);
+  EXPECT_LT((played.places(1) - before).rowwise().norm().maxCoeff(), 1e-4 * diagonal);
+  ASSERT_EQ(played.world.touches().size(), 1u);
+  const BodyTouch& touch = played.world.touches().front();
+  const double weight = played.world.body(1).model().total_mass * 9.81;
+  EXPECT_NEAR(touch.force.y(), weight, 0.01 * weight);
+  EXPECT_LT(touch.depth, 0.005 * diagonal);
+  EXPECT_NEAR(played.world.body(1).report().contact_force.y(), weight, 0.01 * weight);
+}
+
+// The sum of Gauss' integral over all pairs of edges is the number of times that two closed curves go around each other
+// (Arai 2013, "A rigorous numerical algorithm for computing the linking number of links", equation 2).
+double linking(const std::vector<Vec3>& one, const std::vector<Vec3>& other) {
+  const auto angle = [](const Vec3& a, const Vec3& b, const Vec3& c) {
+    return 2 * std::atan2(a.dot(b.cross(c)), a.norm() * b.norm() * c.norm() + a.dot(b) * c.norm() +
+                                                 b.dot(c) * a.norm() + c.dot(a) * b.norm());
+  };
+  double sum = 0;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    for (std::size_t j = 0; j < other.size(); ++j) {
+      const Vec3 &p = one[i], &q = one[(i + 1) % one.size()], &r = other[j], &s = other[(j + 1) % other.size()];
+      sum += angle(r - p, s - p, s - q) + angle(r - p, s - q, r - q);
+    }
+  }
+  return sum / (4 * 3.14159265358979);
+}
+
+// Returns the middle line of a ring whose axis is z or x at rest: the means of the vertices of each of 24 sectors.
+std::vector<Vec3> middle_line(const Positions& rest, const Positions& x) {
+  constexpr int sectors = 24;
+  std::vector<Vec3> line(sectors, Vec3::Zero());
+  std::vector<int> count(sectors, 0);
+  const Vec3 center = rest.colwise().mean().transpose();
+  const Eigen::RowVector3d extent = rest.colwise().maxCoeff() - rest.colwise().minCoeff();
+  const int across = extent[2] > extent[0] ? 2 : 0;
+  for (Eigen::Index v = 0; v < rest.rows(); ++v) {
+    const double turn = std::atan2(rest(v, 1) - center[1], rest(v, across) - center[across]) / (2 * 3.14159265358979);
+    const auto sector = static_cast<std::size_t>((turn + 1) * sectors) % sectors;
+    line[sector] += x.row(v).transpose();
+    ++count[sector];
+  }
+  for (int s = 0; s < sectors; ++s) line[s] /= count[s];
+  return line;
+}
+
+TEST(TouchingWorlds, LinkedRingsStayLinked) {
+  for (const double speed : {1.0, 8.0, 20.0}) {
+    const auto ring = [&](const char* name, double y, double turn, double v, const char* keys) {
+      return fmt::format(
+          "[[body]]\nname = \"{}\"\nshape = \"shapes/ring.toml\"\nscale = 0.25\nvertices = 400\n"
+          "position = [0, {}, 0]\nturn_deg = [0, {}, 0]\nvelocity = [0, {}, 0]\n"
+          "material = {{ model = \"stable-neo-hookean\", young = 2e5, poisson = 0.4 }}\n{}\n",
+          name, y, turn, v, keys);
+    };
+    Played played(
+        no_gravity +
+        ring("held", 1, 0, 0, "[[body.handles]]\nname = \"hook\"\nselect = { box = [[0, 0.85, 0], [1, 1, 1]] }") +
+        ring("thrown", 0.71, 90, -speed, ""));
+    const auto linked = [&] {
+      const auto line = [&](std::size_t b) {
+        return middle_line(played.world.bodies()[b].description.mesh.rest, played.places(b));
+      };
+      return std::abs(linking(line(0), line(1)));
+    };
+    EXPECT_NEAR(linked(), 1, 1e-6) << speed;
+    for (int frame = 0; frame < 30; ++frame) {
+      played.play(frame, frame + 1);
+      EXPECT_NEAR(linked(), 1, 1e-6) << speed << ", frame " << frame;
+    }
+  }
+}
+
+const std::string pile = [] {
+  std::string text =
+      "[[collider]]\nname = \"ground\"\nshape = { half_space = { normal = [0, 1, 0] } }\nfriction = 0.5\n";
+  for (int i = 0; i < 3; ++i) {
+    std::string one = cube(fmt::format("c{}", i), 0.04 * i, 0);
+    one.replace(one.find("0.5, 0]"), 7, fmt::format("{}, 0]", 0.12 + 0.22 * i));
+    text += one;
+  }
+  return text;
+}();
+
+TEST(TouchingWorlds, HaveTheSameBitsForAllThreads) {
+  Played one(pile, 1), two(pile, 2);
+  one.play(0, 20);
+  two.play(0, 20);
+  EXPECT_EQ(one.world.hash(), two.world.hash());
+}
+
+TEST(TouchingWorlds, GoOnFromAnyState) {
+  Played whole(pile), parts(pile);
+  std::vector<WorldState> states;
+  for (int frame = 0; frame < 20; ++frame) {
+    whole.play(frame, frame + 1);
+    states.push_back(whole.world.state());
+  }
+  for (const int from : {3, 11, 7}) {
+    parts.world.restore(states[from]);
+    parts.play(from + 1, 20);
+    EXPECT_EQ(parts.world.hash(), whole.world.hash()) << from;
+  }
+}
+
+}  // namespace touching_worlds_test
+}  // namespace supple
