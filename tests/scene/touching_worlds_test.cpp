@@ -85,12 +85,14 @@ TEST(TouchingWorlds, ABodyThatNothingTouchesMakesItsOwnStep) {
 TEST(TouchingWorlds, BodiesThatDoNotMeetPassThroughEachOther) {
   Played played(no_gravity + cube("left", -0.25, 2, "contact = { meets = false }") + cube("right", 0.25, -2));
   played.play(0, 10);
-  const double way = 2 * 10.0 / 24;
+  const double way = 2 * 10.0 / 30;
   EXPECT_NEAR(played.places(0).col(0).mean(), -0.25 + way, 1e-3 * way);
 }
 
 TEST(TouchingWorlds, ABodyRestsOnAnother) {
-  const std::string ground = "[[collider]]\nname = \"ground\"\nshape = { half_space = { normal = [0, 1, 0] } }\n";
+  const std::string ground =
+      "[[collider]]\nname = \"ground\"\nshape = { half_space = { normal = [0, 1, 0] } }\n"
+      "friction = 0.5\n";
   std::string low = cube("low", 0, 0), high = cube("high", 0.03, 0);
   low.replace(low.find("0.5, 0]"), 7, "0.101, 0]");
   high.replace(high.find("0.5, 0]"), 7, "0.31, 0.02]");
@@ -98,7 +100,7 @@ TEST(TouchingWorlds, ABodyRestsOnAnother) {
   played.play(0, 60);
   const Positions before = played.places(1);
   played.play(60, 90);
-  EXPECT_LT((played.places(1) - before).rowwise().norm().maxCoeff(), 1e-4 * diagonal);
+  EXPECT_LT((played.places(1) - before).rowwise().norm().maxCoeff(), 1e-3 * diagonal) << "in a second";
   ASSERT_EQ(played.world.touches().size(), 1u);
   const BodyTouch& touch = played.world.touches().front();
   const double weight = played.world.body(1).model().total_mass * 9.81;
@@ -143,7 +145,11 @@ std::vector<Vec3> middle_line(const Positions& rest, const Positions& x) {
 }
 
 TEST(TouchingWorlds, LinkedRingsStayLinked) {
-  for (const double speed : {1.0, 8.0, 20.0}) {
+  struct Throw {
+    double speed;
+    int substeps;
+  };
+  for (const auto& [speed, substeps] : {Throw{1, 1}, {12, 1}, {20, 4}}) {
     const auto ring = [&](const char* name, double y, double turn, double v, const char* keys) {
       return fmt::format(
           "[[body]]\nname = \"{}\"\nshape = \"shapes/ring.toml\"\nscale = 0.25\nvertices = 400\n"
@@ -152,7 +158,7 @@ TEST(TouchingWorlds, LinkedRingsStayLinked) {
           name, y, turn, v, keys);
     };
     Played played(
-        no_gravity +
+        fmt::format("substeps = {}\n", substeps) + no_gravity +
         ring("held", 1, 0, 0, "[[body.handles]]\nname = \"hook\"\nselect = { box = [[0, 0.85, 0], [1, 1, 1]] }") +
         ring("thrown", 0.71, 90, -speed, ""));
     const auto linked = [&] {
@@ -164,7 +170,7 @@ TEST(TouchingWorlds, LinkedRingsStayLinked) {
     EXPECT_NEAR(linked(), 1, 1e-6) << speed;
     for (int frame = 0; frame < 30; ++frame) {
       played.play(frame, frame + 1);
-      EXPECT_NEAR(linked(), 1, 1e-6) << speed << ", frame " << frame;
+      EXPECT_NEAR(linked(), 1, 1e-6) << speed << " x " << substeps << ", frame " << frame;
     }
   }
 }
