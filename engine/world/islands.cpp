@@ -4,6 +4,7 @@
 #include <map>
 #include <numeric>
 
+#include "base/trace.h"
 #include "scene/definition/meeting.h"
 #include "sim/contact/part_contacts.h"
 #include "sim/model/joined_model.h"
@@ -134,6 +135,7 @@ std::vector<std::vector<std::size_t>> Islands::find() {
     }
   }
   if (pairs.empty()) return groups.lists();
+  const Zone zone("islands");
   find_ways();
   // An island may push its bodies off their ways, as far as they go beside each other, and into others.
   std::vector<double> pushed(count, 0.0);
