@@ -114,6 +114,7 @@ MovingSurface& Islands::surface_of(std::size_t body) const {
 bool Islands::may_touch(std::size_t a, std::size_t b, double pushed) const {
   constexpr double near = 0.01;  // of the smaller body's size
   const Model &one = bodies_[a]->model(), &other = bodies_[b]->model();
+  if (one.surface.rows() == 0 || other.surface.rows() == 0) return false;
   const double h = one.time_step;
   const double margin = near * std::min(one.size, other.size) + 0.25 * h * h * scene_.gravity.norm() + pushed;
   for (int k = 0; k < 3; ++k) {
@@ -172,10 +173,13 @@ Islands::Together& Islands::together(const std::vector<std::size_t>& island) {
   return *together_.front();
 }
 
-// The bodies of an island are solved as the first of them says, with as many iterations as any of them asks for.
+// Islands are solved by the quasi-Newton method, with the settings of their first body and as many iterations as any
+// body asks for. Other methods have matrices without room for contacts between bodies.
 StepInputs Islands::inputs_of(const std::vector<std::size_t>& island, const Model& joined) const {
   StepInputs inputs = bodies_[island.front()]->inputs();
+  inputs.solver = solvers_.settings(Method::quasi_newton, scene_.bodies[island.front()].solver.settings);
   inputs.solver.matrix = StartMatrix::system;
+  inputs.solver.budget_ms = bodies_[island.front()]->inputs().solver.budget_ms;  // none where cuts are repeated
   inputs.targets.resize(std::ssize(joined.handled), 3);
   inputs.middle_targets.resize(joined.scheme.theta < 1 ? std::ssize(joined.handled) : 0, 3);
   Eigen::Index row = 0;
@@ -252,7 +256,7 @@ int Islands::step(const std::vector<std::size_t>& island) {
     set_rows(model.parts[p], bodies_[island[p]]->state().v, state.v);
     state.time = bodies_[island[p]]->state().time;
   }
-  if (all.rule == nullptr) all.rule = solvers_.rule(scene_.bodies[island.front()].solver.method, model);
+  if (all.rule == nullptr) all.rule = solvers_.rule(Method::quasi_newton, model);
   OpenWorkspace& w = all.workspace.open();
   const StepReport& report = supple::step(model, inputs, state, w, *all.rule);
   if (!report.failed) note_touches(island, model, w.current.x, w.current.contacts);

@@ -107,6 +107,7 @@ const Model& MovingBody::model_of_step() {
 
 void MovingBody::take_step(const Positions& x, Positions v, double time, std::vector<Contact> contacts,
                            StepReport report) {
+  is_in_island_ = true;
   OpenWorkspace& w = workspace_.open();
   w.prepare(model_, inputs_.solver);
   w.current.x = x;
@@ -120,6 +121,7 @@ void MovingBody::take_step(const Positions& x, Positions v, double time, std::ve
 }
 
 const StepReport& MovingBody::step() {
+  is_in_island_ = false;
   untangled_ = body_.def.solver.untangle && is_tangled(model_, state_.x);
   if (!untangled_) return supple::step(model_, inputs_, state_, workspace_.open(), *rule_);
   StepInputs inputs = inputs_;

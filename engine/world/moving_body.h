@@ -42,6 +42,8 @@ class MovingBody {
   void repeat(const std::optional<BudgetCuts>& cuts);
   // Tells whether the last step was made with the as-rigid-as-possible material.
   bool untangled() const { return untangled_; }
+  // Tells whether the last step was made together with other bodies (islands.h).
+  bool is_in_island() const { return is_in_island_; }
 
   // Puts the body into one of its states, earlier or later. The model's values are recomputed where other handles hold
   // than at present; Model::id then changes.
@@ -88,7 +90,7 @@ class MovingBody {
   std::optional<ModelValues> values_;  // made when the model first changes
   std::optional<Model> rigid_;         // the as-rigid-as-possible model; made when it is first needed
   std::uint64_t rigid_for_ = 0;        // id of the model that rigid_ was made for
-  bool untangled_ = false;
+  bool untangled_ = false, is_in_island_ = false;
 };
 
 }  // namespace supple

@@ -128,7 +128,8 @@ std::string BodyRecorder::failure() const {
 
 void BodyRecorder::measure_errors() {
   row_->error_measured = true;
-  if (moving().untangled()) return;  // another energy has another minimum
+  // Another energy has another minimum, and so has a body without those that it touches.
+  if (moving().untangled() || moving().is_in_island()) return;
   const Zone zone("reference error", body().def.name);
   if (metered_model_ != model().id) error_meter_ = solvers_.error_meter(model(), threads_);
   metered_model_ = model().id;
