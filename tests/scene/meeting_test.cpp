@@ -87,6 +87,12 @@ TEST(Meeting, NeedsOneIntegrator) {
   EXPECT_FALSE(both_ways(scene, 1, 2));
 }
 
+TEST(Meeting, NeedsOnePrecisionOfTheFactor) {
+  const SceneDef scene = test::scene_of(cube("a", "solver = { factor = \"double\" }\n") + cube("b") + cube("c"));
+  EXPECT_FALSE(both_ways(scene, 0, 1));
+  EXPECT_TRUE(both_ways(scene, 1, 2));
+}
+
 TEST(Meeting, HasTheGeometricMeanOfBothFrictions) {
   const SceneDef scene =
       test::scene_of(cube("a", "contact = { friction = 0.2 }") + cube("b") + cube("c", "contact = { friction = 0 }"));

@@ -12,6 +12,8 @@ bool both_are_cloth(const BodyDef& a, const BodyDef& b) { return a.cloth && b.cl
 
 bool integrators_differ(const BodyDef& a, const BodyDef& b) { return a.solver.integrator != b.solver.integrator; }
 
+bool factors_differ(const BodyDef& a, const BodyDef& b) { return a.solver.precision != b.solver.precision; }
+
 bool allows_meeting(const BodyDef& body, const BodyDef& other) {
   return !body.contact.meets || asks_to_meet(body, other);
 }
@@ -29,11 +31,14 @@ std::string why_not_meet(const BodyDef& a, const BodyDef& b) {
   if (integrators_differ(a, b))
     return fmt::format("bodies that meet need the same solver.integrator, and these have '{}' and '{}'",
                        name_of(a.solver.integrator), name_of(b.solver.integrator));
+  if (factors_differ(a, b))
+    return fmt::format("bodies that meet need the same solver.factor, and these have '{}' and '{}'",
+                       name_of(a.solver.precision), name_of(b.solver.precision));
   return "";
 }
 
 bool meet(const BodyDef& a, const BodyDef& b) {
-  return !both_are_cloth(a, b) && !integrators_differ(a, b) && both_allow_meeting(a, b);
+  return !both_are_cloth(a, b) && !integrators_differ(a, b) && !factors_differ(a, b) && both_allow_meeting(a, b);
 }
 
 bool meet(const SceneDef& scene, std::size_t a, std::size_t b) {

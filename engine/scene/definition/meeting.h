@@ -24,7 +24,7 @@ bool asks_to_meet(const BodyDef& body, const BodyDef& other);
 
 // Says why two bodies cannot meet, whatever their definitions allow; empty where they can. A solid can be touched. A
 // cloth has no inside: its vertices touch solids, and it can't be touched itself. Bodies that meet make their steps
-// together, and so with one integrator.
+// together, and so with one integrator and one precision of the factor.
 std::string why_not_meet(const BodyDef& a, const BodyDef& b);
 
 // Returns the coefficient of Coulomb's law between two bodies: the geometric mean of their shares.
