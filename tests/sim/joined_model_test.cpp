@@ -96,7 +96,7 @@ TEST(JoinedModel, HasTheEnergyAndForcesOfItsBodies) {
   EXPECT_NEAR(w.current.g, sum, 1e-12 * std::abs(sum));
 }
 
-// Where no parts meet, the minimum of all is the minima of each.
+// If no parts meet, each body ends the common step where it ends its own.
 TEST(JoinedModel, StepsAsItsBodiesDo) {
   const Bodies all;
   StepInputs inputs = still_inputs(all.joined);

@@ -39,8 +39,8 @@ Foot foot_on_edges(const std::array<Vec3, 3>& corners, const Vec3& weights) {
   return best;
 }
 
-// Where the triangle is a needle, round-off hides on which side of an edge the foot lies, so all edges are looked at;
-// where it is almost a line, they are as near as the plane, whose normal is unknown.
+// Round-off hides on which side of an edge of a needle the foot lies, so all edges of a needle are looked at. The
+// normal of a triangle that is almost a line is unknown, and its edges are as near as its plane.
 Foot foot_in_triangle(const std::array<Vec3, 3>& corners) {
   constexpr double needle = 1e-12, almost_a_line = 1e-24;  // squared sine of the angle at the first corner
   const Vec3 ab = corners[1] - corners[0], ac = corners[2] - corners[0], area = ab.cross(ac);

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "sim/model/element_view.h"
+#include "sim/model/joined_model.h"
 
 namespace supple {
 namespace {
@@ -26,15 +27,12 @@ class PartNumbers {
     for (std::size_t p = 0; p < model.parts.size(); ++p) {
       const Part& part = model.parts[p];
       for (int v = 0; v < part.free + part.held; ++v)
-        place_[of_model(part, v)] = {static_cast<std::int32_t>(p), static_cast<std::int32_t>(v)};
+        place_[joined_vertex(part, v)] = {static_cast<std::int32_t>(p), static_cast<std::int32_t>(v)};
     }
   }
 
   std::size_t part_of(std::int32_t vertex) const { return static_cast<std::size_t>(place_[vertex].part); }
   std::int32_t in_part(std::int32_t vertex) const { return place_[vertex].number; }
-  static std::int32_t of_model(const Part& part, std::int32_t number) {
-    return number < part.free ? part.first_free + number : part.first_held + (number - part.free);
-  }
 
  private:
   struct Place {
@@ -77,8 +75,8 @@ EdgeGraph graph_of(const Model& model, const Part& part, EdgeList edges) {
   EdgeGraph graph;
   graph.rest.resize(part.free + part.held, 3);
   for (int v = 0; v < part.free + part.held; ++v) {
-    graph.rest.row(v) = model.rest.row(PartNumbers::of_model(part, v));
-    graph.mass.push_back(model.mass[PartNumbers::of_model(part, v)]);
+    graph.rest.row(v) = model.rest.row(joined_vertex(part, v));
+    graph.mass.push_back(model.mass[joined_vertex(part, v)]);
   }
   graph.begin.assign(graph.mass.size() + 1, 0);
   for (const auto& [from, to] : edges) {
@@ -219,10 +217,10 @@ void add_clusters(const Part& part, const EdgeGraph& graph, int count, Clusters&
     distances = all_distances(graph, centers);
   }
   const std::int32_t first = clusters.count();
-  for (const std::int32_t center : centers) clusters.center.push_back(PartNumbers::of_model(part, center));
+  for (const std::int32_t center : centers) clusters.center.push_back(joined_vertex(part, center));
   for (int v = 0; v < graph.vertices(); ++v) {
     const auto [of, weight] = weights_of(distances, std::size_t(v));
-    const std::int32_t vertex = PartNumbers::of_model(part, v);
+    const std::int32_t vertex = joined_vertex(part, v);
     for (int k = 0; k < Clusters::most_of_vertex; ++k) clusters.of[vertex][k] = first + of[k];
     clusters.weight[vertex] = weight;
   }

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 
+#include "sim/model/joined_model.h"
+
 namespace supple {
 
 std::vector<Contact> contacts_of_part(const Model& joined, const Part& part, const std::vector<Contact>& contacts,
                                       const Positions& x) {
-  const auto own_vertex = [&](std::int32_t v) {
-    return v < joined.free ? v - part.first_free : v - part.first_held + part.free;
-  };
   std::vector<Contact> own;
   for (Contact contact : contacts) {
     const ContactStencil all = contact.stencil;
@@ -20,7 +19,7 @@ std::vector<Contact> contacts_of_part(const Model& joined, const Part& part, con
         others += all.weight[k] * x.row(all.vertex[k]).transpose();
         continue;
       }
-      stencil.vertex[stencil.count] = own_vertex(all.vertex[k]);
+      stencil.vertex[stencil.count] = own_vertex(joined, part, all.vertex[k]);
       stencil.weight[stencil.count] = all.weight[k];
       ++stencil.count;
       stencil.free += all.vertex[k] < joined.free;

@@ -25,7 +25,7 @@ struct SurfaceWork::Parts {
     Vec3 carried_freely = Vec3::Zero();     // the mean motion of the part from q to the prediction [m]
     double free_move = 0;                   // how far its vertices move beside that at most [m]
   };
-  // What is known of a point where the step begins.
+  // Holds what is known of a point when the step begins.
   struct Beginning {
     bool is_known = false;
     std::optional<MovingSurface::Place> place;  // that may hold it; nothing: outside, far from the surface
@@ -70,9 +70,7 @@ Triangles triangles_of(const Model& model, const Part& part) {
   Triangles triangles(std::ssize(own), 3);
   for (std::size_t i = 0; i < own.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
-      const std::int32_t v = model.surface(own[i], k);
-      triangles(static_cast<Eigen::Index>(i), k) =
-          v < model.free ? v - part.first_free : v - part.first_held + part.free;
+      triangles(static_cast<Eigen::Index>(i), k) = own_vertex(model, part, model.surface(own[i], k));
     }
   }
   return triangles;
@@ -108,7 +106,7 @@ void describe_surface(const Model& model, const Part& part, Work::Surface& surfa
   }
   surface.edge = edges / std::max<double>(1, double(triangles.size()));
   for (const std::int32_t v : surface.points) {
-    const std::vector<Vec3>& at = normals[v < model.free ? v - part.first_free : v - part.first_held + part.free];
+    const std::vector<Vec3>& at = normals[own_vertex(model, part, v)];
     bool is_sharp = false;
     for (const Vec3& one : at) {
       for (const Vec3& other : at) is_sharp |= one.dot(other) < least_cosine;
@@ -240,7 +238,9 @@ class Pair {
     Work::Beginning& known = beginnings_[index];
     if (known.is_known) return known.place;
     const MovingSurface* own = own_.moving.get();
-    const Vec3 facing = own == nullptr ? Vec3(Vec3::Zero()) : own->normal_at_start(own_vertex(points_[index]));
+    const Vec3 facing = own == nullptr
+                            ? Vec3(Vec3::Zero())
+                            : own->normal_at_start(own_vertex(model_, model_.parts[meeting_.points], points_[index]));
     const auto find = [&](const Facing* without) {
       return surface_.moving->closest_at_start(a, deepest * part_.size, without);
     };
@@ -252,7 +252,8 @@ class Pair {
   // Returns the place closest to a point of an iterate.
   std::optional<Place> closest(std::int32_t v, const Vec3& b, double most) const {
     const MovingSurface* own = own_.moving.get();
-    const Vec3 facing = own == nullptr ? Vec3(Vec3::Zero()) : own->normal_at_end(own_vertex(v));
+    const Vec3 facing =
+        own == nullptr ? Vec3(Vec3::Zero()) : own->normal_at_end(own_vertex(model_, model_.parts[meeting_.points], v));
     return closest(b, facing, x_,
                    [&](const Facing* without) { return surface_.moving->closest_at_end(b, most, without); });
   }
@@ -288,11 +289,6 @@ class Pair {
     const Vec3 normal = normal_of(place.triangle, x), offset = p - place.point;
     const double above = normal.dot(offset), beside = (offset - above * normal).norm();
     return !normal.isZero(0) && above >= -usual_depth(size_) && beside <= usual_depth(size_);
-  }
-
-  std::int32_t own_vertex(std::int32_t v) const {
-    const Part& part = model_.parts[meeting_.points];
-    return v < model_.free ? v - part.first_free : v - part.first_held + part.free;
   }
 
   // Returns the unit normal of a triangle; zero where it has no area.

@@ -16,9 +16,14 @@ namespace supple {
 // integrator and precision.
 Model join(const std::vector<const Model*>& bodies);
 
-// Returns the vertex of a joined model that is a vertex of one of its bodies. own_free: the body's free vertices.
+// Returns the vertex of a joined model that is a vertex of one of its bodies.
 inline std::int32_t joined_vertex(const Part& part, std::int32_t vertex) {
   return vertex < part.free ? part.first_free + vertex : part.first_held + (vertex - part.free);
+}
+
+// Returns the vertex of a body that is a vertex of the joined model, which must belong to the part.
+inline std::int32_t own_vertex(const Model& joined, const Part& part, std::int32_t vertex) {
+  return vertex < joined.free ? vertex - part.first_free : vertex - part.first_held + part.free;
 }
 
 // Returns the rows of a part (its vertices x 3, in the order of its own model) among those of a joined model.
