@@ -5,10 +5,12 @@ namespace supple {
 
 #define SUPPLE_DECLARE(variant) extern const LocalKernels local_kernels_##variant;
 SUPPLE_VARIANTS(SUPPLE_DECLARE)
+#undef SUPPLE_DECLARE
 
 const LocalKernels& local_kernels(int variant) {
 #define SUPPLE_ENTRY(variant) &local_kernels_##variant,
   static constexpr const LocalKernels* table[] = {SUPPLE_VARIANTS(SUPPLE_ENTRY)};
+#undef SUPPLE_ENTRY
   return *table[variant];
 }
 

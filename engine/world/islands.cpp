@@ -6,7 +6,9 @@
 
 #include "base/trace.h"
 #include "scene/definition/meeting.h"
+#include "sim/contact/own_surface.h"
 #include "sim/contact/part_contacts.h"
+#include "sim/model/element_view.h"
 #include "sim/model/joined_model.h"
 #include "sim/solver/begin_step.h"
 #include "sim/solver/search_rule.h"
@@ -76,9 +78,21 @@ struct Islands::Together {
   }
 };
 
+struct Islands::Own {
+  std::uint64_t structure = 0;
+  std::unique_ptr<OwnSurface> surface;
+  std::unique_ptr<MovingSurface> moving;
+  bool touched = false;  // in the last step: then the next one is looked at first, which saves work alone
+};
+
 Islands::Islands(const SceneDef& scene, const std::vector<std::unique_ptr<MovingBody>>& bodies, const Solvers& solvers,
                  Threads* threads)
-    : scene_(scene), bodies_(bodies), solvers_(solvers), threads_(threads), ways_(bodies.size()) {}
+    : scene_(scene),
+      bodies_(bodies),
+      solvers_(solvers),
+      threads_(threads),
+      ways_(bodies.size()),
+      owns_(bodies.size()) {}
 Islands::~Islands() = default;
 
 void Islands::find_ways() {
@@ -175,7 +189,7 @@ Islands::Together& Islands::together(const std::vector<std::size_t>& island) {
 
 // Islands are solved by the quasi-Newton method, with the settings of their first body and as many iterations as any
 // body asks for. Other methods have matrices without room for contacts between bodies.
-StepInputs Islands::inputs_of(const std::vector<std::size_t>& island, const Model& joined) const {
+StepInputs Islands::inputs_of(const std::vector<std::size_t>& island, const Selves& selves, const Model& joined) const {
   StepInputs inputs = bodies_[island.front()]->inputs();
   inputs.solver = solvers_.settings(Method::quasi_newton, scene_.bodies[island.front()].solver.settings);
   inputs.solver.matrix = StartMatrix::system;
@@ -192,7 +206,7 @@ StepInputs Islands::inputs_of(const std::vector<std::size_t>& island, const Mode
   }
   for (std::size_t s = 0; s < island.size(); ++s) {
     for (std::size_t p = 0; p < island.size(); ++p) {
-      if (p == s || !joined.parts[s].solid || !meet(scene_, island[p], island[s])) continue;
+      if (p == s ? !selves[s] : !joined.parts[s].solid || !meet(scene_, island[p], island[s])) continue;
       inputs.meetings.push_back({static_cast<std::int32_t>(p), static_cast<std::int32_t>(s),
                                  pair_friction(scene_.bodies[island[p]], scene_.bodies[island[s]])});
     }
@@ -243,10 +257,88 @@ void Islands::note_touches(const std::vector<std::size_t>& island, const Model& 
   std::ranges::sort(touches_, {}, [](const BodyTouch& touch) { return std::pair(touch.a, touch.b); });
 }
 
+Islands::Own& Islands::own_of(std::size_t body) {
+  Own& own = owns_[body];
+  const Model& model = bodies_[body]->model();
+  if (own.structure == model.structure) return own;
+  own.structure = model.structure;
+  own.surface = std::make_unique<OwnSurface>(tetrahedra_of(model), model.surface, model.rest, model.size);
+  own.moving = std::make_unique<MovingSurface>(model.surface, model.rest);
+  own.touched = false;
+  return own;
+}
+
+bool Islands::begins_in_itself(std::size_t body, const Positions& q) {
+  const Own& own = own_of(body);
+  own.moving->set_start(q);
+  own.moving->set_end(q);
+  return own.surface->overlaps(*own.moving, q);
+}
+
+bool Islands::comes_through_itself(std::size_t body, const Positions& q) {
+  const Zone zone("touching itself");
+  const Own& own = own_of(body);
+  const Positions& x = bodies_[body]->state().x;
+  own.moving->set_start(q);
+  own.moving->set_end(x);
+  return own.surface->touches(*own.moving, q, x, (x - q).colwise().mean().transpose());
+}
+
+// Which bodies touch themselves in a step must follow from the states alone, and not from whether a body was looked at
+// before its step or after it: those that begin in themselves come first, then those that come through themselves in
+// the step of these.
 int Islands::step(const std::vector<std::size_t>& island) {
+  std::vector<std::size_t> able;  // members
+  for (std::size_t m = 0; m < island.size(); ++m)
+    if (meets_itself(scene_.bodies[island[m]])) able.push_back(m);
+  if (able.empty()) return step_once(island, Selves(island.size(), 0));
+  std::vector<State> before;
+  for (const std::size_t b : island) before.push_back(bodies_[b]->state());
+  Selves selves(island.size(), 0);
+  bool begun = false;  // whether those that begin in themselves are known
+  const auto find_those_that_begin_so = [&] {
+    bool any = false;
+    for (const std::size_t m : able) {
+      selves[m] = begins_in_itself(island[m], before[m].x);
+      any |= selves[m] != 0;
+    }
+    begun = true;
+    return any;
+  };
+  if (std::ranges::any_of(able, [&](std::size_t m) { return owns_[island[m]].touched; })) find_those_that_begin_so();
+  const std::size_t touched_before = touches_.size();
+  for (double wasted = 0;;) {
+    const int failed = step_once(island, selves);
+    if (failed >= 0) return failed;
+    std::vector<std::size_t> through;
+    for (const std::size_t m : able)
+      if (!selves[m] && comes_through_itself(island[m], before[m].x)) through.push_back(m);
+    if (through.empty()) {
+      if (wasted > 0) {
+        for (const std::size_t b : island) bodies_[b]->add_time(wasted / double(island.size()));
+      }
+      break;
+    }
+    for (const std::size_t b : island) wasted += bodies_[b]->report().step_ms;
+    if (begun || !find_those_that_begin_so()) {
+      for (const std::size_t m : through) selves[m] = 1;
+    }
+    touches_.resize(touched_before);
+    for (std::size_t m = 0; m < island.size(); ++m) bodies_[island[m]]->state_ = before[m];
+  }
+  for (const std::size_t m : able) owns_[island[m]].touched = selves[m] != 0;
+  return -1;
+}
+
+int Islands::step_once(const std::vector<std::size_t>& island, const Selves& selves) {
+  if (island.size() > 1 || selves.front()) return step_together(island, selves);
+  return bodies_[island.front()]->step().failed ? static_cast<int>(island.front()) : -1;
+}
+
+int Islands::step_together(const std::vector<std::size_t>& island, const Selves& selves) {
   Together& all = together(island);
   const Model& model = all.model;
-  const StepInputs inputs = inputs_of(island, model);
+  const StepInputs inputs = inputs_of(island, selves, model);
   State& state = all.state;
   state = {};
   state.x.resize(model.vertices, 3);

@@ -3,6 +3,10 @@
 // (sim/model/joined_model.h), and ends in the bodies' own states and reports. A body that nothing may touch makes its
 // own step. Islands depend on the states where a step begins, and nothing of an island's solver outlives a step, so
 // that a film that is resumed finds the same ones.
+//
+// Whether a body touches itself is seen by the step that it makes without regard to that: where it begins in itself, or
+// comes through its own surface (sim/contact/own_surface.h), the step is made again, with contact of the body with
+// itself. So a body that does not touch itself pays for the look alone, and keeps its bits.
 #pragma once
 
 #include <memory>
@@ -13,9 +17,9 @@
 
 namespace supple {
 
-// Tells how two bodies touched each other at the end of a step.
+// Tells how two bodies touched each other, or one touched itself, at the end of a step.
 struct BodyTouch {
-  std::size_t a, b;           // the bodies, the earlier one first
+  std::size_t a, b;           // the bodies, the earlier one first; equal where a body touched itself
   int contacts = 0;           // points of either body that touch the other
   double depth = 0;           // of the deepest of these points in the other body [m]
   Vec3 force = Vec3::Zero();  // of a on b [N]
@@ -35,26 +39,35 @@ class Islands {
   // Returns the touches of the steps that were made since find(), ordered by body.
   const std::vector<BodyTouch>& touches() const { return touches_; }
 
-  // Makes the step of an island of several bodies. Returns the body whose step failed, or -1; then no state changes.
+  // Makes the step of an island. Returns the body whose step failed, or -1; if one failed, no state changes.
   int step(const std::vector<std::size_t>& island);
 
  private:
   struct Way;       // of a body over the step that was prepared
   struct Together;  // a joined model, with what its steps need
+  struct Own;       // what a body needs to know whether it touches itself
+  // Tells by body of an island which touch themselves.
+  using Selves = std::vector<char>;
 
   void find_ways();
   bool may_touch(std::size_t a, std::size_t b, double pushed) const;
   MovingSurface& surface_of(std::size_t body) const;
   Together& together(const std::vector<std::size_t>& island);
+  int step_once(const std::vector<std::size_t>& island, const Selves& selves);
+  int step_together(const std::vector<std::size_t>& island, const Selves& selves);
+  Own& own_of(std::size_t body);
+  bool begins_in_itself(std::size_t body, const Positions& q);
+  bool comes_through_itself(std::size_t body, const Positions& q);
   void note_touches(const std::vector<std::size_t>& island, const Model& joined, const Positions& x,
                     const std::vector<Contact>& contacts);
-  StepInputs inputs_of(const std::vector<std::size_t>& island, const Model& joined) const;
+  StepInputs inputs_of(const std::vector<std::size_t>& island, const Selves& selves, const Model& joined) const;
 
   const SceneDef& scene_;
   const std::vector<std::unique_ptr<MovingBody>>& bodies_;
   Solvers solvers_;
   Threads* threads_;
   std::vector<Way> ways_;  // by body
+  std::vector<Own> owns_;  // by body
   std::vector<BodyTouch> touches_;
   std::vector<std::unique_ptr<Together>> together_;  // of the last steps, the latest used first
 };

@@ -120,6 +120,12 @@ void MovingBody::take_step(const Positions& x, Positions v, double time, std::ve
   state_.memory = {};
 }
 
+void MovingBody::add_time(double ms) {
+  StepReport& report = workspace_.open().report;
+  report.step_ms += ms;
+  report.other_ms += ms;
+}
+
 const StepReport& MovingBody::step() {
   is_in_island_ = false;
   untangled_ = body_.def.solver.untangle && is_tangled(model_, state_.x);

@@ -70,6 +70,8 @@ class MovingBody {
   // order; contacts: those that act on the body.
   const Model& model_of_step();
   void take_step(const Positions& x, Positions v, double time, std::vector<Contact> contacts, StepReport report);
+  // Adds to the last step's time [ms].
+  void add_time(double ms);
 
   void switch_handles(double time);
   // Makes the description's handles hold as the state says. Returns false when they held so already.

@@ -113,16 +113,11 @@ bool World::Parts::step(const std::vector<std::size_t>& island, int substep, con
   for (const std::size_t b : island) {
     if (watch.prepared) watch.prepared(b, substep);
   }
-  if (island.size() > 1) {
-    const int failed = islands->step(island);
-    for (const std::size_t b : island) {
-      if (watch.made && (failed < 0 || b == std::size_t(failed))) watch.made(b, substep);
-    }
-    return failed < 0;
+  const int failed = islands->step(island);
+  for (const std::size_t b : island) {
+    if (watch.made && (failed < 0 || b == std::size_t(failed))) watch.made(b, substep);
   }
-  const bool failed = moving[island.front()]->step().failed;
-  if (watch.made) watch.made(island.front(), substep);
-  return !failed;
+  return failed < 0;
 }
 
 bool World::step(const StepWatch& watch) {

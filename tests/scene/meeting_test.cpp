@@ -53,6 +53,15 @@ TEST(Meeting, IsWhatAllSolidsDoByDefault) {
   }
 }
 
+TEST(Meeting, WithItselfIsWhatASolidDoesUnlessItSaysOtherwise) {
+  const SceneDef scene =
+      test::scene_of(cube("a") + cube("b", "contact = { self = false }") + cube("c", meets("false")));
+  EXPECT_TRUE(meets_itself(scene.bodies[0]));
+  EXPECT_FALSE(meets_itself(scene.bodies[1]));
+  EXPECT_TRUE(meet(scene, 0, 1));
+  EXPECT_TRUE(meets_itself(scene.bodies[2]));
+}
+
 TEST(Meeting, IsLeftOutByABodyThatMeetsNone) {
   for (const char* none : {"false", "[]"}) {
     const SceneDef scene = test::scene_of(cube("a") + cube("b", meets(none)) + cube("c", meets("[\"a\", \"b\"]")));

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "baselines/make_rule.h"
+#include "sim/contact/own_surface.h"
+#include "sim/model/element_view.h"
 #include "support/scene_text.h"
 #include "world/world.h"
 
@@ -205,6 +207,79 @@ TEST(TouchingWorlds, GoOnFromAnyState) {
     parts.play(from + 1, 20);
     EXPECT_EQ(parts.world.hash(), whole.world.hash()) << from;
   }
+}
+
+// A ring whose lowest and highest parts are held and moved towards each other until the one would be in the other.
+std::string squeezed_ring(const char* self) {
+  return no_gravity + fmt::format(
+                          "[[body]]\nname = \"ring\"\nshape = \"shapes/ring.toml\"\nscale = 0.25\nvertices = 900\n"
+                          "material = {{ model = \"stable-neo-hookean\", young = 2e5, poisson = 0.4 }}\n"
+                          "contact = {{ self = {} }}\n"
+                          "[[body.handles]]\nname = \"low\"\nselect = {{ box = [[0, 0, 0], [1, 0.04, 1]] }}\n"
+                          "[[body.handles]]\nname = \"high\"\nselect = {{ box = [[0, 0.96, 0], [1, 1, 1]] }}\n"
+                          "keys = [{{ t = 0 }}, {{ t = 1, move = [0, -0.32, 0] }}]\n",
+                          self);
+}
+
+bool overlaps_itself(const Played& played) {
+  const Model& model = played.world.body(0).model();
+  const Positions& x = played.world.body(0).state().x;
+  MovingSurface moving(model.surface, model.rest);
+  moving.set_start(x);
+  moving.set_end(x);
+  return OwnSurface(tetrahedra_of(model), model.surface, model.rest, model.size).overlaps(moving, x);
+}
+
+TEST(TouchingWorlds, ABodyTouchesItself) {
+  Played played(squeezed_ring("true")), through(squeezed_ring("false"));
+  int touches = 0;
+  for (int frame = 0; frame < 36; ++frame) {
+    played.play(frame, frame + 1);
+    for (const BodyTouch& touch : played.world.touches()) {
+      EXPECT_EQ(touch.a, touch.b);
+      EXPECT_LT(touch.depth, 0.01 * played.world.body(0).model().size) << frame;
+      ++touches;
+    }
+  }
+  EXPECT_GT(touches, 8);
+  EXPECT_TRUE(played.world.body(0).is_in_island());
+  bool was_through = false;
+  for (int frame = 0; frame < 36; ++frame) {
+    through.play(frame, frame + 1);
+    EXPECT_TRUE(through.world.touches().empty());
+    was_through |= overlaps_itself(through);
+  }
+  EXPECT_TRUE(was_through) << "it would not have touched itself";
+}
+
+TEST(TouchingWorlds, ABodyThatTouchesItselfKeepsItsBits) {
+  const std::string ring = squeezed_ring("true");
+  Played whole(ring, 1), other(ring, 2), parts(ring);
+  std::vector<WorldState> states;
+  for (int frame = 0; frame < 34; ++frame) {
+    whole.play(frame, frame + 1);
+    states.push_back(whole.world.state());
+  }
+  other.play(0, 34);
+  EXPECT_EQ(other.world.hash(), whole.world.hash());
+  ASSERT_FALSE(whole.world.touches().empty());
+  for (const int from : {31, 12, 28}) {
+    parts.world.restore(states[from]);
+    parts.play(from + 1, 34);
+    EXPECT_EQ(parts.world.hash(), whole.world.hash()) << from;
+  }
+}
+
+TEST(TouchingWorlds, ABodyThatDoesNotTouchItselfMakesItsOwnStep) {
+  std::string apart = squeezed_ring("true");
+  apart.replace(apart.find("-0.32"), 5, "-0.10");
+  std::string without = squeezed_ring("false");
+  without.replace(without.find("-0.32"), 5, "-0.10");
+  Played one(apart), other(without);
+  one.play(0, 15);
+  other.play(0, 15);
+  EXPECT_FALSE(one.world.body(0).is_in_island());
+  EXPECT_EQ(one.world.hash(), other.world.hash());
 }
 
 }  // namespace touching_worlds_test

@@ -55,7 +55,6 @@ void PairRecorder::leave_out_known(const std::vector<Names>& met, const std::vec
 }
 
 void PairRecorder::record(FrameRow& row) {
-  if (world_.size() < 2) return;
   const Zone zone("pairs of bodies");
   note_touches(row);
   if (passings_.none_left() && deep_.none_left()) return;

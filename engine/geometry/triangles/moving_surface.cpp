@@ -3,10 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "base/error.h"
+#include "geometry/triangles/moving_boxes.h"
 #include "geometry/triangles/point_passage.h"
 
 namespace supple {
@@ -52,20 +52,6 @@ Foot foot_in_triangle(const std::array<Vec3, 3>& corners) {
   return foot_on_edges(corners, squared > needle * rectangle ? weights : Vec3(Vec3::Zero()));
 }
 
-// Returns by how much each of four boxes that move is beyond another box, along the axis on which it is furthest
-// beyond; not positive where they meet.
-template <class Boxes>
-auto gaps(const Boxes& start, const Boxes& end, const Vec3& carried, const Bounds& box) {
-  auto most = Boxes::Lanes::Constant(-infinity).eval();
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto k = std::size_t(axis);
-    const auto lower = start.lower[k].min(end.lower[k] - carried[axis]);
-    const auto upper = start.upper[k].max(end.upper[k] - carried[axis]);
-    most = most.max(lower - box.upper[axis]).max(box.lower[axis] - upper);
-  }
-  return most;
-}
-
 template <class Boxes>
 auto squared_distances(const Boxes& boxes, const Vec3& p) {
   auto sum = Boxes::Lanes::Zero().eval();
@@ -74,25 +60,6 @@ auto squared_distances(const Boxes& boxes, const Vec3& p) {
     sum += (boxes.lower[k] - p[axis]).max(p[axis] - boxes.upper[k]).max(0).square();
   }
   return sum;
-}
-
-// Returns the box around four boxes.
-template <class Boxes>
-Bounds whole_box(const Boxes& boxes) {
-  const auto &l = boxes.lower, &u = boxes.upper;
-  return {Vec3(l[0].minCoeff(), l[1].minCoeff(), l[2].minCoeff()),
-          Vec3(u[0].maxCoeff(), u[1].maxCoeff(), u[2].maxCoeff())};
-}
-
-// Returns the box in which a point moves, with so much around it.
-Bounds box_of_path(const Vec3& a, const Vec3& b, const Vec3& carried, double margin) {
-  const Vec3 end = b - carried;
-  return {a.cwiseMin(end).array() - margin, a.cwiseMax(end).array() + margin};
-}
-
-// Returns by how much coordinates of this size may be wrong after a difference or two.
-double roundoff_at(const Vec3& a, const Vec3& b) {
-  return 4 * std::numeric_limits<double>::epsilon() * a.cwiseAbs().cwiseMax(b.cwiseAbs()).maxCoeff();
 }
 
 Vec3 normalized_or_zero(const Vec3& v) {
@@ -235,7 +202,7 @@ Vec3 MovingSurface::normal_at_start(std::int32_t vertex) const {
 Vec3 MovingSurface::normal_at_end(std::int32_t vertex) const { return normalized_or_zero(vertex_normal(end_, vertex)); }
 
 std::optional<MovingSurface::Place> MovingSurface::closest(const Pose& pose, const Vec3& p, double most,
-                                                           const Facing* facing) const {
+                                                           const Takes* takes) const {
   struct Waiting {
     double squared;
     std::int32_t child;
@@ -253,7 +220,7 @@ std::optional<MovingSurface::Place> MovingSurface::closest(const Pose& pose, con
       const Foot own = foot_in_triangle({corner(pose, t, 0) - p, corner(pose, t, 1) - p, corner(pose, t, 2) - p});
       const double squared = own.offset.squaredNorm();
       if (!(triangle < 0 ? squared <= least : squared < least)) continue;
-      if (facing != nullptr && unit_normal(pose, t).dot(facing->direction) > facing->most) continue;
+      if (takes != nullptr && !(*takes)(t)) continue;
       least = squared;
       triangle = t;
       foot = own;
@@ -264,6 +231,24 @@ std::optional<MovingSurface::Place> MovingSurface::closest(const Pose& pose, con
     const int first = stack.size();
     for (int c = 0; c < node.count; ++c)
       if (squared[c] <= least) stack.push_below(first, {squared[c], node.child[std::size_t(c)]}, is_further);
+  }
+  if (triangle < 0) return std::nullopt;
+  return seen_from(p, pose, triangle, foot.weights, foot.offset);
+}
+
+std::optional<MovingSurface::Place> MovingSurface::closest_among(const Pose& pose,
+                                                                 std::span<const std::int32_t> triangles, const Vec3& p,
+                                                                 double most, const Takes& takes) const {
+  double least = most * most;
+  std::int32_t triangle = -1;
+  Foot foot;
+  for (const std::int32_t t : triangles) {
+    const Foot own = foot_in_triangle({corner(pose, t, 0) - p, corner(pose, t, 1) - p, corner(pose, t, 2) - p});
+    const double squared = own.offset.squaredNorm();
+    if (!(triangle < 0 ? squared <= least : squared < least) || !takes(t)) continue;
+    least = squared;
+    triangle = t;
+    foot = own;
   }
   if (triangle < 0) return std::nullopt;
   return seen_from(p, pose, triangle, foot.weights, foot.offset);
@@ -305,6 +290,13 @@ std::optional<MovingSurface::Entry> MovingSurface::first_entry(const Vec3& a, co
   return first_passing(a, b, carried, latest, false);
 }
 
+std::optional<MovingSurface::Entry> MovingSurface::first_entry(std::span<const std::int32_t> triangles, const Vec3& a,
+                                                               const Vec3& b, double latest) const {
+  std::optional<Entry> first;
+  for (const std::int32_t t : triangles) take_if_earlier(t, a, b, roundoff_at(a, b), latest, false, first);
+  return first;
+}
+
 // Seen backwards in time, the point enters where it last left.
 std::optional<MovingSurface::Entry> MovingSurface::last_exit(const Vec3& a, const Vec3& b, const Vec3& carried) const {
   std::optional<Entry> exit = first_passing(a, b, carried, 1, true);
@@ -316,21 +308,25 @@ std::optional<MovingSurface::Entry> MovingSurface::first_passing(const Vec3& a, 
                                                                  double latest, bool is_backwards) const {
   const double roundoff = roundoff_at(a, b);
   std::optional<Entry> first;
-  any_triangle(box_of_path(a, b, carried, roundoff_at(a, b) + roundoff_at(b, carried)), carried, [&](std::int32_t t) {
-    SeenTriangle seen;
-    for (int k = 0; k < 3; ++k) {
-      seen.start[std::size_t(k)] = corner(start_, t, k) - a;
-      seen.end[std::size_t(k)] = corner(end_, t, k) - b;
-    }
-    if (is_backwards) std::swap(seen.start, seen.end);
-    const std::optional<Passage> passage = first_passage(seen, roundoff, latest);
-    if (passage && (!first || passage->share < first->share)) {
-      first = Entry{t, passage->weights, passage->share, passage->normal};
-      latest = passage->share;
-    }
+  any_triangle(box_of_path(a, b, carried, roundoff + roundoff_at(b, carried)), carried, [&](std::int32_t t) {
+    take_if_earlier(t, a, b, roundoff, latest, is_backwards, first);
     return false;
   });
   return first;
+}
+
+// Puts the passage through a triangle, if there is one up to `latest`, in the place of a later one.
+void MovingSurface::take_if_earlier(std::int32_t t, const Vec3& a, const Vec3& b, double roundoff, double latest,
+                                    bool is_backwards, std::optional<Entry>& first) const {
+  SeenTriangle seen;
+  for (int k = 0; k < 3; ++k) {
+    seen.start[std::size_t(k)] = corner(start_, t, k) - a;
+    seen.end[std::size_t(k)] = corner(end_, t, k) - b;
+  }
+  if (is_backwards) std::swap(seen.start, seen.end);
+  const std::optional<Passage> passage = first_passage(seen, roundoff, first ? first->share : latest);
+  if (passage && (!first || passage->share < first->share))
+    first = Entry{t, passage->weights, passage->share, passage->normal};
 }
 
 bool MovingSurface::is_near(const Vec3& a, const Vec3& b, const Vec3& carried, double margin) const {
@@ -368,18 +364,6 @@ bool MovingSurface::any_leaf_of(const MovingSurface& other, double margin, const
 
 bool MovingSurface::may_meet(const MovingSurface& other, double margin, const Vec3& carried) const {
   return any_leaf_of(other, margin, carried, [](const Node&) { return true; });
-}
-
-void MovingSurface::find_near_vertices(const MovingSurface& other, double margin, const Vec3& carried,
-                                       std::vector<std::int32_t>& found) const {
-  found.clear();
-  any_leaf_of(other, margin, carried, [&](const Node& leaf) {
-    for (std::int32_t i = 0; i < leaf.vertices; ++i) {
-      const std::int32_t v = other.own_vertices_[std::size_t(leaf.first_vertex + i)];
-      if (is_near(other.start_.x.row(v), other.end_.x.row(v), carried, margin)) found.push_back(v);
-    }
-    return false;
-  });
 }
 
 }  // namespace supple

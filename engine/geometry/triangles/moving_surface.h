@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -40,21 +41,27 @@ class MovingSurface {
     double distance;  // negative inside [m]
     Vec3 normal;      // gradient of the distance, of unit length; the pseudonormal where the point is on the surface
   };
-  // Leaves out the triangles whose normals are too near a direction: their cosines with it are above `most`. A vertex
-  // of another body is not held by what faces the way that it does itself, such as the side of a cube at the edge of a
-  // lid.
-  struct Facing {
-    Vec3 direction;  // of unit length, or zero to leave out none
-    double most;
-  };
+  // Tells which triangles a query takes. A vertex of another body, for instance, is not held by what faces the way that
+  // it does itself, such as the side of a cube at the edge of a lid.
+  using Takes = std::function<bool(std::int32_t triangle)>;
   // Returns nothing where the surface is further away than `most` [m]. A point counts as on the surface within a
   // billionth of the largest coordinate. Where all triangles around have no area, the point is outside.
-  // facing: triangles that are left out; null to take all.
-  std::optional<Place> closest_at_start(const Vec3& p, double most, const Facing* facing = nullptr) const {
-    return closest(start_, p, most, facing);
+  // takes: null to take all.
+  std::optional<Place> closest_at_start(const Vec3& p, double most, const Takes* takes = nullptr) const {
+    return closest(start_, p, most, takes);
   }
-  std::optional<Place> closest_at_end(const Vec3& p, double most, const Facing* facing = nullptr) const {
-    return closest(end_, p, most, facing);
+  std::optional<Place> closest_at_end(const Vec3& p, double most, const Takes* takes = nullptr) const {
+    return closest(end_, p, most, takes);
+  }
+
+  // These look at some triangles alone, all of them [m].
+  std::optional<Place> closest_at_start(std::span<const std::int32_t> triangles, const Vec3& p, double most,
+                                        const Takes& takes) const {
+    return closest_among(start_, triangles, p, most, takes);
+  }
+  std::optional<Place> closest_at_end(std::span<const std::int32_t> triangles, const Vec3& p, double most,
+                                      const Takes& takes) const {
+    return closest_among(end_, triangles, p, most, takes);
   }
 
   // Returns the pseudonormal of a vertex, of unit length; zero where no triangle there has an area.
@@ -72,6 +79,10 @@ class MovingSurface {
   // of the step. What counts as passing is said in point_passage.h.
   std::optional<Entry> first_entry(const Vec3& a, const Vec3& b, const Vec3& carried, double latest = 1) const;
 
+  // Looks at some triangles alone.
+  std::optional<Entry> first_entry(std::span<const std::int32_t> triangles, const Vec3& a, const Vec3& b,
+                                   double latest) const;
+
   // Finds where a point that moves from a to b last passes through a triangle from inside.
   std::optional<Entry> last_exit(const Vec3& a, const Vec3& b, const Vec3& carried) const;
 
@@ -83,12 +94,16 @@ class MovingSurface {
   // groups of up to four of its triangles move.
   bool may_meet(const MovingSurface& other, double margin, const Vec3& carried) const;
 
-  // Finds the other surface's vertices for which is_near() holds, each once and in the order of its tree. It is quicker
-  // than to ask for each vertex.
-  void find_near_vertices(const MovingSurface& other, double margin, const Vec3& carried,
-                          std::vector<std::int32_t>& found) const;
+  // Looks for vertices of the surface and triangles of its own that may come nearer than `margin` [m] to each other.
+  // Calls visit(vertex, triangle) for each pair whose boxes do, until one call returns true; tells whether one did.
+  // Triangles of one leaf of the tree are not paired with its vertices, nor are parts of the surface whose normals at
+  // the start all point the same way: cosines above `same_way`. Without these, a smooth surface would meet itself at
+  // each vertex.
+  using VisitPair = std::function<bool(std::int32_t vertex, std::int32_t triangle)>;
+  bool any_own_pair(double margin, const Vec3& carried, double same_way, const VisitPair& visit) const;
 
   const Triangles& triangles() const { return triangles_; }
+  const Positions& start() const { return start_.x; }
   const Bounds& bounds_at_start() const { return start_.bounds; }
   const Bounds& bounds_at_end() const { return end_.bounds; }
 
@@ -116,6 +131,8 @@ class MovingSurface {
     double on_surface = 0;  // nearer than this, the vector to a point has no reliable direction [m]
   };
 
+  struct OwnSearch;  // own_pairs.cpp
+
   std::int32_t add_node(const TriangleTree& tree, std::int32_t from);
   void list_triangles_around();
   void list_own_vertices();
@@ -127,11 +144,15 @@ class MovingSurface {
   Vec3 edge_normal(const Pose& pose, std::int32_t a, std::int32_t b) const;
   Vec3 vertex_normal(const Pose& pose, std::int32_t vertex) const;
   Vec3 pseudonormal(const Pose& pose, std::int32_t t, const Vec3& weights) const;
-  std::optional<Place> closest(const Pose& pose, const Vec3& p, double most, const Facing* facing) const;
+  std::optional<Place> closest(const Pose& pose, const Vec3& p, double most, const Takes* takes) const;
+  std::optional<Place> closest_among(const Pose& pose, std::span<const std::int32_t> triangles, const Vec3& p,
+                                     double most, const Takes& takes) const;
   Place seen_from(const Vec3& p, const Pose& pose, std::int32_t t, const Vec3& weights, const Vec3& offset) const;
 
   std::optional<Entry> first_passing(const Vec3& a, const Vec3& b, const Vec3& carried, double latest,
                                      bool is_backwards) const;
+  void take_if_earlier(std::int32_t t, const Vec3& a, const Vec3& b, double roundoff, double latest, bool is_backwards,
+                       std::optional<Entry>& first) const;
   Bounds swept_box(std::int32_t node, const Vec3& carried) const;
   template <class Visit>
   bool any_triangle(const Bounds& box, const Vec3& carried, const Visit& visit) const;

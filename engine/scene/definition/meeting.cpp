@@ -45,6 +45,8 @@ bool meet(const SceneDef& scene, std::size_t a, std::size_t b) {
   return a != b && meet(scene.bodies.at(a), scene.bodies.at(b));
 }
 
+bool meets_itself(const BodyDef& body) { return body.contact.self && !body.cloth; }
+
 double pair_friction(const BodyDef& a, const BodyDef& b) { return std::sqrt(a.contact.friction * b.contact.friction); }
 
 }  // namespace supple

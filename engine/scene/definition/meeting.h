@@ -13,8 +13,11 @@ namespace supple {
 // Tells whether two bodies that are not the same one meet.
 bool meet(const BodyDef& a, const BodyDef& b);
 
-// Tells the same of two bodies of a scene, by their indices. No body meets itself.
+// Tells the same of two bodies of a scene, by their indices; false where they are one.
 bool meet(const SceneDef& scene, std::size_t a, std::size_t b);
+
+// Tells whether a body touches itself. Only a solid can be touched.
+bool meets_itself(const BodyDef& body);
 
 // Tells whether the definitions of both bodies allow that they meet.
 bool both_allow_meeting(const BodyDef& a, const BodyDef& b);

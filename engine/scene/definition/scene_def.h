@@ -147,12 +147,13 @@ struct Names<ColorSource> {
                                        Name{ColorSource::body, "body"}};
 };
 
-// Says what a body does with other bodies (meeting.h). The table solver.contact is about how contact with colliders is
+// Says what a body does with other bodies and with itself (meeting.h). The table solver.contact is about how contact with colliders is
 // computed, and a collider has its own friction.
 struct BodyContactDef {
   // Names the only bodies that it meets, none where the list is empty. Nothing: it meets all.
   std::optional<std::vector<std::string>> meets;
   FilePlace meets_place;  // of `meets` in the file, for messages once all bodies are known
+  bool self = true;       // whether it touches itself, if it is a solid
   double friction = 0.5;  // its share of the coefficient of Coulomb's law between it and another body
 };
 

@@ -174,7 +174,7 @@ Pattern read_pattern(const ConfigTable& table, const BodyDef& body) {
 // (meeting_check.h).
 BodyContactDef read_contact(const ConfigTable& body) {
   BodyContactDef contact;
-  const auto table = body.table({"contact", "", "with other bodies"});
+  const auto table = body.table({"contact", "", "with other bodies and with itself"});
   if (!table) return contact;
   const auto meets = table->boolean_or_texts(
       {"meets", "",
@@ -186,6 +186,7 @@ BodyContactDef read_contact(const ConfigTable& body) {
     contact.meets.emplace();
   }
   contact.meets_place = table->place("meets");
+  contact.self = table->boolean({"self", "", "whether it touches itself, if it is a solid"}, contact.self);
   contact.friction = table->number({"friction", "",
                                     "its share of Coulomb's coefficient between two bodies, which is the geometric "
                                     "mean of both; with a collider the collider's counts"},

@@ -34,6 +34,9 @@ void for_each_element(const Model& model, const Visit& visit) {
   for (const Model::ChunkRange& range : model.chunks) for_each_element(model, range, visit);
 }
 
+// Returns the tetrahedra of a model, by its vertices.
+Tetrahedra tetrahedra_of(const Model& model);
+
 // Returns F of a tetrahedron.
 inline Mat3 deformation_gradient(const Positions& x, const ElementView& element) {
   Mat3 edges, inverse;

@@ -91,10 +91,13 @@ struct SolverSettings {
   ChebyshevSettings chebyshev;
 };
 
-// Says that points of one part of a model touch the surface of another (contact/surface_contacts.h).
+// Says that points of one part of a model touch the surface of another, or that a part touches itself
+// (contact/surface_contacts.h).
 struct Meeting {
   std::int32_t points = 0, surface = 0;  // parts; the second one is solid
   double friction = 0;                   // coefficient of Coulomb's law between the two
+
+  bool is_own() const { return points == surface; }
 };
 
 // Holds all that comes from outside for one step of one body, or of several that are joined in a model.

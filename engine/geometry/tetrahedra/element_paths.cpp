@@ -1,0 +1,143 @@
+#include "geometry/tetrahedra/element_paths.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace supple {
+namespace {
+
+using Face = std::array<std::int32_t, 3>;
+
+Face sorted(std::int32_t a, std::int32_t b, std::int32_t c) {
+  Face face = {a, b, c};
+  std::sort(face.begin(), face.end());
+  return face;
+}
+
+Face face_opposite(const Tetrahedra& tets, Eigen::Index element, int corner) {
+  return sorted(tets(element, (corner + 1) % 4), tets(element, (corner + 2) % 4), tets(element, (corner + 3) % 4));
+}
+
+// Returns six times the volume of a tetrahedron, positive where det[b - a, c - a, d - a] is.
+double volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) { return (b - a).cross(c - a).dot(d - a); }
+
+// Returns the barycentric coordinates of a point; nothing where the element is inverted or has no volume.
+std::optional<Eigen::Vector4d> coordinates(const std::array<Vec3, 4>& corners, const Vec3& p) {
+  const double whole = volume(corners[0], corners[1], corners[2], corners[3]);
+  if (!(whole > 0)) return std::nullopt;
+  Eigen::Vector4d shares;
+  for (int k = 0; k < 4; ++k) {
+    std::array<Vec3, 4> moved = corners;
+    moved[std::size_t(k)] = p;
+    shares[k] = volume(moved[0], moved[1], moved[2], moved[3]) / whole;
+  }
+  return shares;
+}
+
+}  // namespace
+
+ElementPaths::ElementPaths(Tetrahedra tets, const Triangles& triangles, const Positions& rest)
+    : tets_(std::move(tets)) {
+  for (std::int32_t e = 0; e < tets_.rows(); ++e) rest_volume_.push_back(volume_of(rest, e));
+  beyond_.assign(std::size_t(tets_.rows()), {-1, -1, -1, -1});
+  std::map<Face, std::array<std::int32_t, 2>> open;  // faces that one element has so far
+  for (std::int32_t e = 0; e < tets_.rows(); ++e) {
+    for (int k = 0; k < 4; ++k) {
+      const auto [at, is_new] = open.try_emplace(face_opposite(tets_, e, k), std::array<std::int32_t, 2>{e, k});
+      if (is_new) continue;
+      const auto [other, corner] = at->second;
+      beyond_[std::size_t(e)][std::size_t(k)] = other;
+      beyond_[std::size_t(other)][std::size_t(corner)] = e;
+      open.erase(at);
+    }
+  }
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    const auto at = open.find(sorted(triangles(t, 0), triangles(t, 1), triangles(t, 2)));
+    face_.push_back(at == open.end() ? std::array<std::int32_t, 2>{-1, -1} : at->second);
+  }
+  std::vector<std::set<std::int32_t>> around(static_cast<std::size_t>(rest.rows())), at(around);
+  for (std::int32_t e = 0; e < tets_.rows(); ++e) {
+    for (int i = 0; i < 4; ++i) {
+      at[std::size_t(tets_(e, i))].insert(e);
+      for (int j = 0; j < 4; ++j) around[std::size_t(tets_(e, i))].insert(tets_(e, j));
+    }
+  }
+  begin_.push_back(0);
+  elements_begin_.push_back(0);
+  for (std::size_t v = 0; v < around.size(); ++v) {
+    neighbours_.insert(neighbours_.end(), around[v].begin(), around[v].end());
+    begin_.push_back(static_cast<std::int32_t>(neighbours_.size()));
+    elements_.insert(elements_.end(), at[v].begin(), at[v].end());
+    elements_begin_.push_back(static_cast<std::int32_t>(elements_.size()));
+  }
+}
+
+// The shares of the line's end in an element fall below zero for the corners opposite to the faces through which it may
+// leave; it leaves through the face whose share is zero first.
+std::optional<std::int32_t> ElementPaths::element_at_end(const Positions& x, std::int32_t triangle, const Vec3& from,
+                                                         const Vec3& to) const {
+  constexpr int most_elements = 1000;    // of a line; round-off could make it run in circles
+  constexpr double on_the_face = 1e-10;  // of a share: counts as inside
+  auto [element, entered] = face_[std::size_t(triangle)];
+  for (int i = 0; element >= 0 && i < most_elements; ++i) {
+    std::array<Vec3, 4> corners;
+    for (int k = 0; k < 4; ++k) corners[std::size_t(k)] = x.row(tets_(element, k));
+    const auto end = coordinates(corners, to), start = coordinates(corners, from);
+    if (!end) return std::nullopt;
+    if (end->minCoeff() >= -on_the_face) return element;
+    int left = -1;
+    double first = infinity;
+    for (int k = 0; k < 4; ++k) {
+      if (k == entered || !((*end)[k] < -on_the_face)) continue;
+      const double share = (*start)[k] / ((*start)[k] - (*end)[k]);
+      if (share >= first) continue;
+      first = share;
+      left = k;
+    }
+    if (left < 0) return std::nullopt;
+    const std::int32_t next = beyond_[std::size_t(element)][std::size_t(left)];
+    if (next < 0) return std::nullopt;
+    const auto& back = beyond_[std::size_t(next)];
+    entered = static_cast<std::int32_t>(std::find(back.begin(), back.end(), element) - back.begin());
+    element = next;
+  }
+  return std::nullopt;
+}
+
+bool ElementPaths::are_neighbours(std::int32_t a, std::int32_t b) const {
+  const auto first = neighbours_.begin() + begin_[std::size_t(a)],
+             last = neighbours_.begin() + begin_[std::size_t(a) + 1];
+  return std::binary_search(first, last, b);
+}
+
+// Returns six times the volume.
+double ElementPaths::volume_of(const Positions& x, std::int32_t element) const {
+  const auto tet = tets_.row(element);
+  return volume(x.row(tet[0]), x.row(tet[1]), x.row(tet[2]), x.row(tet[3]));
+}
+
+bool ElementPaths::is_collapsed_at(const Positions& x, std::int32_t vertex) const {
+  constexpr double least = 0.1;
+  const auto first = elements_.begin() + elements_begin_[std::size_t(vertex)],
+             last = elements_.begin() + elements_begin_[std::size_t(vertex) + 1];
+  return std::any_of(first, last, [&](std::int32_t element) {
+    return volume_of(x, element) < least * rest_volume_[std::size_t(element)];
+  });
+}
+
+double ElementPaths::inverted_share(const Positions& x) const {
+  Eigen::Index count = 0;
+  for (std::int32_t e = 0; e < tets_.rows(); ++e) count += !(volume_of(x, e) > 0);
+  return double(count) / double(tets_.rows());
+}
+
+bool ElementPaths::has_neighbour(std::int32_t element, std::int32_t vertex) const {
+  for (int k = 0; k < 4; ++k)
+    if (are_neighbours(vertex, tets_(element, k))) return true;
+  return false;
+}
+
+}  // namespace supple

@@ -1,0 +1,76 @@
+// Finds where a solid touches itself: points of its surface that come through a triangle of it from outside, or are
+// inside another part of it. A point is not inside because it is behind a triangle, as all of the body's far side is:
+// it is inside where a line from that triangle leads to it through elements that are not its own (element_paths.h).
+// Nothing is asked of a point and a triangle near it, which share an element or nearly so, nor where elements are
+// turned inside out and have no outside.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "geometry/tetrahedra/element_paths.h"
+#include "geometry/triangles/moving_surface.h"
+
+namespace supple {
+
+class OwnSurface {
+ public:
+  static constexpr double same_way = 0.5;  // cosine of normals; a point does not touch a face that looks as it does
+  static constexpr double against = -0.1;  // the same for a point that begins a step behind the face
+
+  // tets, triangles: of the body, with its boundary. rest: n x 3 [m]; size: of the body [m].
+  OwnSurface(Tetrahedra tets, Triangles triangles, const Positions& rest, double size);
+
+  // Tells whether the body touches itself on the way that the surface goes in a step: whether a point is inside when it
+  // begins, or comes through a triangle. Not if the body begins tangled: more than a hundredth of its elements are
+  // inverted. q, x: start and end, n x 3 [m]; carried: the common motion [m].
+  bool touches(const MovingSurface& moving, const Positions& q, const Positions& x, const Vec3& carried) const;
+  // Tells whether a point is inside at q alone; the surface's start must be there.
+  bool overlaps(const MovingSurface& moving, const Positions& q) const;
+
+  // Lists vertices with the triangles that each may touch.
+  struct Pairs {
+    std::vector<std::int32_t> vertices;   // ascending
+    std::vector<std::int32_t> begin;      // where each vertex's triangles begin, and the end
+    std::vector<std::int32_t> triangles;  // ascending
+    std::vector<double> motion;           // by vertex: how far it moves beside one of its triangles at most [m]
+
+    std::span<const std::int32_t> of(std::size_t index) const {
+      return {triangles.data() + begin[index], std::size_t(begin[index + 1] - begin[index])};
+    }
+  };
+  // Finds the pairs that may come nearer than `margin` [m] in the step, and those in which the vertex may begin inside.
+  void find_pairs(const MovingSurface& moving, const Positions& q, const Positions& x, double margin,
+                  const Vec3& carried, Pairs& pairs) const;
+
+  // Returns the place of the surface out of which a vertex has the shortest way, if it begins the step inside.
+  // triangles: that it may touch.
+  std::optional<MovingSurface::Place> place_around(const MovingSurface& moving, const Positions& q, std::int32_t vertex,
+                                                   std::span<const std::int32_t> triangles) const;
+
+  // Tells whether a vertex and a triangle are so near in the mesh that they are not asked whether they touch.
+  bool are_neighbours(std::int32_t vertex, std::int32_t triangle) const;
+  // Tells whether two triangles are within a distance at rest [m].
+  bool are_near_at_rest(std::int32_t a, std::int32_t b, double distance) const;
+  double edge() const { return edge_; }  // the mean length of the surface's edges at rest [m]
+
+ private:
+  struct Motion;
+  bool meets(const MovingSurface& moving, const Positions& q, const Positions& x, const Vec3& carried) const;
+  // Points that are deeper inside than half an edge are left out, within these limits, over the body's size.
+  static constexpr double least_deep = 0.006, most_deep = 0.02;
+
+  bool passes(const Positions& q, const Positions& x, std::int32_t vertex, std::int32_t triangle) const;
+  bool is_collapsed_around(const Positions& x, std::int32_t vertex, std::int32_t triangle) const;
+  Vec3 facing(const Positions& x, std::int32_t vertex) const;
+
+  ElementPaths paths_;
+  Triangles triangles_;
+  std::vector<std::int32_t> around_begin_, around_;  // the triangles at each vertex
+  Positions centroids_;                              // of the triangles at rest [m]
+  std::vector<double> radius_;                       // by triangle, from its centroid at rest [m]
+  double edge_ = 0, deep_ = 0;
+};
+
+}  // namespace supple

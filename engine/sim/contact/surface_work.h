@@ -1,0 +1,52 @@
+// Holds what a step knows of the surfaces of a joined model's parts, for the searches of surface_contacts.h.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "geometry/triangles/moving_surface.h"
+#include "sim/contact/own_surface.h"
+#include "sim/contact/surface_contacts.h"
+
+namespace supple {
+
+struct SurfaceWork::Parts {
+  using Place = MovingSurface::Place;
+
+  struct Surface {
+    Triangles triangles;                    // rows of its part's vertices, in the order of the part's own model
+    std::vector<std::int32_t> points;       // vertices of the joined model that may touch others, ascending
+    std::vector<char> sharp;                // by point: whether faces at it look in very different directions at rest
+    double edge = 0;                        // the mean length of the surface's edges at rest [m]
+    std::unique_ptr<MovingSurface> moving;  // null where nothing touches this part
+    std::unique_ptr<OwnSurface> own;        // null where the part does not touch itself
+    Vec3 carried = Vec3::Zero();            // the mean motion of the part from q to the present iterate [m]
+    double own_move = 0;                    // how far its vertices move beside that at most [m]
+    Vec3 carried_freely = Vec3::Zero();     // the mean motion of the part from q to the prediction [m]
+    double free_move = 0;                   // how far its vertices move beside that at most [m]
+  };
+  // Holds what is known of a point when the step begins.
+  struct Beginning {
+    bool is_known = false;
+    std::optional<Place> place;  // that may hold it; nothing: outside, far from the surface
+    double nearest = 0;          // how far away the surface is at all; 0 where it is far [m]
+  };
+  // Holds what a part knows in a step of the points that may touch it itself.
+  struct OwnPoints {
+    OwnSurface::Pairs pairs;                   // by vertices and triangles of the part's own model
+    Positions found_for;                       // the end of the motion for which they were found [m]
+    std::vector<std::optional<Place>> inside;  // by vertex: the place out of which it has to come, if it begins inside
+  };
+
+  std::uint64_t structure = 0;                     // of the model that the surfaces belong to
+  std::vector<Surface> surfaces;                   // by part
+  std::vector<std::vector<Beginning>> beginnings;  // by meeting and point; of meetings of two parts
+  std::vector<OwnPoints> own_points;               // by part
+  std::vector<std::vector<Contact>> by_chunk;      // scratch
+};
+
+// Makes the surfaces of a model's parts, and readies those that something touches.
+void make_surfaces(const Model& model, const StepInputs& inputs, SurfaceWork::Parts& work);
+
+}  // namespace supple

@@ -1,0 +1,116 @@
+#include "sim/contact/touched_surface.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "sim/contact/lagged_force.h"
+#include "sim/contact/reach.h"
+#include "sim/contact/usual_depth.h"
+#include "sim/model/joined_model.h"
+
+namespace supple {
+namespace {
+
+// Adds a vertex to a stencil, before those with larger numbers.
+void add_vertex(const Model& model, std::int32_t vertex, double weight, ContactStencil& stencil) {
+  int at = stencil.count++;
+  for (; at > 0 && stencil.vertex[at - 1] > vertex; --at) {
+    stencil.vertex[at] = stencil.vertex[at - 1];
+    stencil.weight[at] = stencil.weight[at - 1];
+  }
+  stencil.vertex[at] = vertex;
+  stencil.weight[at] = weight;
+  stencil.free += vertex < model.free;
+}
+
+}  // namespace
+
+TouchedSurface::TouchedSurface(const Model& model, const StepInputs& inputs, const Meeting& meeting, const Positions& q,
+                               const Positions& y, const Positions& x, const Work& work)
+    : model_(model),
+      solver_(inputs.solver),
+      meeting_(meeting),
+      q_(q),
+      y_(y),
+      x_(x),
+      part_(model.parts[meeting.surface]),
+      surface_(work.surfaces[meeting.surface]),
+      size_(std::min(part_.size, model.parts[meeting.points].size)),
+      fall_(model.time_step * model.time_step * inputs.gravity.norm()) {}
+
+std::int32_t TouchedSurface::corner(std::int32_t triangle, int k) const {
+  return joined_vertex(part_, surface_.triangles(triangle, k));
+}
+
+double TouchedSurface::reach_at(std::int32_t v, double way) const {
+  const double freely = ((y_.row(v) - q_.row(v)).transpose() - surface_.carried_freely).norm();
+  return reach_of(way + surface_.own_move, std::max(freely + surface_.free_move, fall_));
+}
+
+double TouchedSurface::share_to_impact(const Entry& entry, const Vec3& a, const Vec3& b) const {
+  Vec3 pace = b - a;
+  for (int k = 0; k < 3; ++k) {
+    const std::int32_t c = corner(entry.triangle, k);
+    pace -= entry.weights[k] * (x_.row(c) - q_.row(c)).transpose();
+  }
+  const double falls = -entry.normal.dot(pace), allowed = usual_depth(size_);
+  return falls * (1 - entry.share) > allowed ? entry.share + allowed / falls : 1;
+}
+
+bool TouchedSurface::is_over_face(const Place& place, const Vec3& p, const Positions& x) const {
+  const Vec3 normal = normal_of(place.triangle, x), offset = p - place.point;
+  const double above = normal.dot(offset), beside = (offset - above * normal).norm();
+  return !normal.isZero(0) && above >= -usual_depth(size_) && beside <= usual_depth(size_);
+}
+
+Vec3 TouchedSurface::normal_of(std::int32_t triangle, const Positions& x) const {
+  const Vec3 first = x.row(corner(triangle, 0)).transpose();
+  const Vec3 edge = x.row(corner(triangle, 1)).transpose() - first;
+  const Vec3 other = x.row(corner(triangle, 2)).transpose() - first;
+  const Vec3 normal = edge.cross(other);
+  const double length = normal.norm();
+  return length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero());
+}
+
+std::optional<MovingSurface::Place> TouchedSurface::place_at_end(std::int32_t triangle, const Vec3& weights,
+                                                                 const Vec3& p) const {
+  Place place{triangle, weights, Vec3::Zero(), 0, normal_of(triangle, x_)};
+  if (place.normal.isZero(0)) return std::nullopt;
+  for (int k = 0; k < 3; ++k) place.point += weights[k] * x_.row(corner(triangle, k)).transpose();
+  place.distance = place.normal.dot(p - place.point);
+  return place;
+}
+
+ContactStencil TouchedSurface::stencil_of(std::int32_t point, const Place& place) const {
+  constexpr double least_weight = 1e-9;
+  ContactStencil stencil{};
+  stencil.count = stencil.free = 0;
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    if (place.weights[k] < least_weight) continue;
+    add_vertex(model_, corner(place.triangle, k), -place.weights[k], stencil);
+    sum += place.weights[k];
+  }
+  add_vertex(model_, point, sum, stencil);
+  return stencil;
+}
+
+void TouchedSurface::add(std::int32_t v, const Place& place, double field, std::vector<Contact>& list) const {
+  Contact contact{stencil_of(v, place), {-1, meeting_.surface}, place.normal, 0, 0, 0, v};
+  if (contact.stencil.free == 0) return;
+  const double h = model_.time_step, mass = contact.stencil.mass(model_.mass);
+  const double fastest = solver_.contact.push_out * size_ * h;
+  const double deep = std::max(0.0, -field - fastest);
+  contact.offset = -deep;
+  contact.stiffness = solver_.contact.stiffness / (h * h) * mass;
+  contact.depth = std::max(0.0, -gap(contact, x_));
+  if (meeting_.friction > 0) {
+    contact.stick = solver_.contact.stick * size_ * h;
+    contact.origin = contact.stencil.at(q_);
+    contact.friction = meeting_.friction * lagged_force(contact, deep > 0 ? 0 : -field, -gap(contact, y_),
+                                                        model_.scheme.inertia * mass / (h * h));
+  }
+  list.push_back(contact);
+}
+
+}  // namespace supple

@@ -1,0 +1,64 @@
+// Describes one iterate of a step in which points of a part meet a part's surface: what its triangles are like there,
+// and which contact a place of it makes with a point. What the searches of two parts
+// (surface_contacts.cpp) and of one with itself (own_points.h) share.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "sim/contact/contact.h"
+#include "sim/contact/surface_work.h"
+
+namespace supple {
+
+class TouchedSurface {
+ public:
+  using Work = SurfaceWork::Parts;
+  using Place = MovingSurface::Place;
+  using Entry = MovingSurface::Entry;
+
+  // All that is passed must outlive this object. q, y, x: start of the step, prediction and iterate, of the joined
+  // model.
+  TouchedSurface(const Model& model, const StepInputs& inputs, const Meeting& meeting, const Positions& q,
+                 const Positions& y, const Positions& x, const Work& work);
+
+ protected:
+  static constexpr double same_way = 0.5;   // cosine of normals; a point is not held by a face that looks as it does
+  static constexpr double opposite = -0.3;  // cosine of normals below which they belong to opposite sides
+
+  std::int32_t corner(std::int32_t triangle, int k) const;
+
+  // Returns how far from the surface a vertex needs a plane [m]. way: that it has made, beside the surface's own.
+  double reach_at(std::int32_t v, double way) const;
+
+  // Tells whether a point is over a place's face, and neither beside nor below it by more than the usual depth. Equal
+  // boxes on one another have their edges in one place: round-off alone would decide whether a lid carries them.
+  bool is_over_face(const Place& place, const Vec3& p, const Positions& x) const;
+
+  // Returns the unit normal of a triangle; zero where it has no area.
+  Vec3 normal_of(std::int32_t triangle, const Positions& x) const;
+
+  // Returns the place that a triangle's point has at the end of the step, seen from a point.
+  std::optional<Place> place_at_end(std::int32_t triangle, const Vec3& weights, const Vec3& p) const;
+
+  // Returns the share of the way from q to x at which a point that enters is deeper than usual; 1: it never is.
+  double share_to_impact(const Entry& entry, const Vec3& a, const Vec3& b) const;
+
+  // Adds the contact with the plane through a place, lowered by as much of the depth as need not be corrected in this
+  // step. field: the distance where the step began, negative inside [m].
+  void add(std::int32_t v, const Place& place, double field, std::vector<Contact>& list) const;
+
+  const Model& model_;
+  const SolverSettings& solver_;
+  const Meeting& meeting_;
+  const Positions &q_, &y_, &x_;
+  const Part& part_;
+  const Work::Surface& surface_;
+  double size_;  // of the smaller part [m]
+  double fall_;  // in one step from rest: one part may rest on what holds it while the other falls [m]
+
+ private:
+  ContactStencil stencil_of(std::int32_t point, const Place& place) const;
+};
+
+}  // namespace supple
