@@ -166,13 +166,16 @@ void add_answer(ContactCorrection& c, const FactorPart& part, Positions& r) {
 void couple_levels(ContactCorrection& c) {
   if (c.second == nullptr) return;
   Eigen::VectorXd numbers(c.second->columns());
-  const bool is_new =
-      c.system.know_rows(c.second->pose(), c.second->columns(), [&](const StiffDirection& s, float* row) {
-        numbers.setZero();
-        for (int k = 0; k < s.stencil.free; ++k)
-          c.second->restrict_one(s.stencil.vertex[k], s.stencil.weight[k] * s.axis, numbers.data());
-        Eigen::Map<Eigen::VectorXf>(row, numbers.size()) = numbers.cast<float>();
-      });
+  const auto find_row = [&](const StiffDirection& s, float* row) {
+    numbers.setZero();
+    for (int k = 0; k < s.stencil.free; ++k)
+      c.second->restrict_one(s.stencil.vertex[k], s.stencil.weight[k] * s.axis, numbers.data());
+    Eigen::Map<Eigen::VectorXf>(row, numbers.size()) = numbers.cast<float>();
+  };
+  const CoarseSystem& coarse = c.second->system();
+  std::vector<int> first_column;
+  for (int part = 0; part <= coarse.parts(); ++part) first_column.push_back(coarse.first_column(part));
+  const bool is_new = c.system.know_rows(c.second->pose(), first_column, find_row, c.threads);
   if (!is_new) return;
   c.both.compute(Eigen::MatrixXd::Identity(numbers.size(), numbers.size()) +
                  c.second->difference_times(c.system.between()));
@@ -226,7 +229,9 @@ void apply_both_levels(const Model& model, ContactCorrection& c, SolveScratch& s
 
 }  // namespace
 
-void begin_corrections(const Model& model, ContactCorrection& c) { c.system.begin_step(system_of(model, c)); }
+void begin_corrections(const Model& model, ContactCorrection& c) {
+  c.system.begin_step(system_of(model, c), model.parts);
+}
 
 void apply_inverse(const Model& model, const ContactSettings& settings, ContactCorrection& c, SolveScratch& scratch,
                    Positions& r, Positions& z) {

@@ -1,0 +1,379 @@
+#include "sim/contact/block_factor.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <map>
+
+namespace supple {
+namespace {
+
+using Numbers = BlockFactor::RowMatrix;
+
+// Ensures that a matrix has room for rows and columns; keeps its first ones.
+void make_room(Numbers& numbers, Eigen::Index rows, Eigen::Index columns, Eigen::Index kept_rows,
+               Eigen::Index kept_columns) {
+  if (numbers.rows() >= rows && numbers.cols() >= columns) return;
+  Numbers larger(rows + rows / 4, columns + columns / 4);
+  if (kept_rows > 0) larger.topLeftCorner(kept_rows, kept_columns) = numbers.topLeftCorner(kept_rows, kept_columns);
+  numbers.swap(larger);
+}
+
+// Calls work(own, other, count) for each of some parts: where its columns of W begin among those of these parts, where
+// among those of a sorted list of parts that contains them, and how many they are.
+template <class Work>
+void match_parts(const std::vector<int>& parts, const std::vector<int>& among, const std::vector<int>& first_column,
+                 const Work& work) {
+  int own = 0, other = 0;
+  std::size_t k = 0;
+  for (const int part : parts) {
+    for (; among[k] != part; ++k) other += first_column[among[k] + 1] - first_column[among[k]];
+    const int count = first_column[part + 1] - first_column[part];
+    work(own, other, count);
+    own += count;
+  }
+}
+
+int columns_of(const std::vector<int>& parts, const std::vector<int>& first_column) {
+  int sum = 0;
+  for (const int part : parts) sum += first_column[part + 1] - first_column[part];
+  return sum;
+}
+
+}  // namespace
+
+void BlockFactor::Column::keep(Eigen::Index count) {
+  factored = std::min(factored, count);
+  keep_rows(count);
+}
+
+void BlockFactor::Column::keep_rows(Eigen::Index count) {
+  seen_members = std::min(seen_members, count);
+  if (summed > count || count == 0) {
+    summed = 0;
+    has_product = false;
+  }
+}
+
+void BlockFactor::begin(const Members& members, const std::vector<GroupKey>& keys) { replace(members, keys, {}); }
+
+// Columns keep their memory, which is of use where there is one.
+void BlockFactor::begin(std::vector<GroupKey> keys, std::vector<Members> members) {
+  std::vector<Eigen::Index> sizes;
+  for (const Members& group : members) sizes.push_back(std::ssize(group));
+  const std::vector<int> order = elimination_order(keys, sizes);
+  columns_.resize(order.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    Column& column = columns_[k];
+    column.key = keys[order[k]];
+    column.members = std::move(members[order[k]]);
+    column.below.clear();
+    column.keep(0);
+  }
+  is_linked_ = false;
+}
+
+// Columns whose group has no members any more stay, and cost nothing. A group that is new would have to come last to
+// leave the others as they are, so all are put into a better order.
+void BlockFactor::replace(const Members& members, const std::vector<GroupKey>& keys,
+                          const std::vector<Eigen::Index>& place) {
+  std::map<GroupKey, int> numbers;
+  std::vector<GroupKey> group_keys;
+  std::vector<Members> groups;
+  for (const Eigen::Index member : members) {
+    const auto [at, is_new] = numbers.try_emplace(keys[member], static_cast<int>(groups.size()));
+    if (is_new) {
+      group_keys.push_back(keys[member]);
+      groups.emplace_back();
+    }
+    groups[at->second].push_back(member);
+  }
+  std::size_t present = 0;
+  for (const Column& column : columns_) present += numbers.count(column.key);
+  if (place.empty() || present < groups.size()) return begin(std::move(group_keys), std::move(groups));
+  std::vector<Eigen::Index> kept;
+  for (Column& column : columns_) {
+    const auto at = numbers.find(column.key);
+    Members now = at != numbers.end() ? std::move(groups[at->second]) : Members();
+    Eigen::Index same = 0;
+    const auto most = static_cast<Eigen::Index>(std::min(column.members.size(), now.size()));
+    while (same < most && place[column.members[same]] == now[same]) ++same;
+    if (same < column.size()) column.is_new = true;
+    column.members = std::move(now);
+    column.keep(same);
+    kept.push_back(same);
+  }
+  for (Column& column : columns_) {
+    for (Block& block : column.below) block.known = std::min(block.known, kept[block.group]);
+  }
+}
+
+void BlockFactor::append(Eigen::Index member, const GroupKey& key) {
+  const auto has_key = [&](const Column& column) { return column.key == key; };
+  auto at = std::find_if(columns_.begin(), columns_.end(), has_key);
+  if (at == columns_.end()) {
+    at = columns_.emplace(at);
+    at->key = key;
+    is_linked_ = false;
+  }
+  at->members.push_back(member);
+}
+
+// Finds which blocks there are; those that are known already stay.
+void BlockFactor::link() {
+  if (is_linked_) return;
+  is_linked_ = true;
+  std::vector<GroupKey> keys;
+  for (const Column& column : columns_) keys.push_back(column.key);
+  const std::vector<std::vector<int>> below = blocks_below(keys);
+  const int count = static_cast<int>(columns_.size());
+  updates_.assign(columns_.size(), {});
+  levels_.clear();
+  std::vector<std::size_t> level(columns_.size(), 0);
+  for (int g = 0; g < count; ++g) {
+    Column& column = columns_[g];
+    std::vector<Block> blocks;
+    auto old = column.below.begin();
+    for (const int group : below[g]) {
+      updates_[group].push_back({g, static_cast<int>(blocks.size())});
+      if (old != column.below.end() && old->group == group) {
+        blocks.push_back(std::move(*old++));
+      } else {
+        blocks.push_back({group, {}, 0});
+      }
+    }
+    column.below.swap(blocks);
+    std::vector<int> parts;
+    for (const std::int32_t part : column.key) {
+      if (part >= 0) parts.push_back(part);
+    }
+    for (const Update& update : updates_[g]) {
+      level[g] = std::max(level[g], level[update.column] + 1);
+      const std::vector<int>& more = columns_[update.column].parts;
+      parts.insert(parts.end(), more.begin(), more.end());
+    }
+    std::sort(parts.begin(), parts.end());
+    parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
+    if (parts != column.parts) column.keep_rows(0);
+    column.parts.swap(parts);
+    if (level[g] == levels_.size()) levels_.emplace_back();
+    levels_[level[g]].push_back(g);
+  }
+}
+
+// Returns how many operations are needed to compute a column anew.
+long BlockFactor::operations(int group) const {
+  const long own = columns_[group].size();
+  long rows = own, width = own;
+  for (const Block& block : columns_[group].below) rows += columns_[block.group].size();
+  for (const Update& update : updates_[group]) width += columns_[update.column].size();
+  return own * rows * width;
+}
+
+long BlockFactor::work() const {
+  long sum = 0;
+  for (const Column& column : columns_) sum += column.size() * column.size() * (column.size() - column.factored);
+  return sum / 16;
+}
+
+bool BlockFactor::compute(const Fill& fill, Threads* threads) {
+  link();
+  std::vector<char> done;
+  std::vector<std::pair<int, Block*>> blocks;
+  for (const std::vector<int>& level : levels_) {
+    long work = 0;
+    blocks.clear();
+    for (const int group : level) {
+      work += operations(group) / 16;
+      for (Block& block : columns_[group].below) blocks.emplace_back(group, &block);
+    }
+    done.assign(level.size(), 0);
+    run_chunks(threads, static_cast<int>(level.size()), work,
+               [&](int k) { done[k] = factor_diagonal(level[k], fill); });
+    if (std::find(done.begin(), done.end(), 0) != done.end()) return false;
+    run_chunks(threads, static_cast<int>(blocks.size()), work,
+               [&](int k) { factor_block(blocks[k].first, *blocks[k].second, fill); });
+  }
+  for (Column& column : columns_) column.is_new = false;
+  return true;
+}
+
+// Subtracts from entries between members of a group and of a column what earlier columns have in both. target: the
+// entries from a row and a column on.
+void BlockFactor::subtract_updates(int column, int group, Eigen::Index first_row, Eigen::Index first_column,
+                                   Eigen::Ref<RowMatrix> target) const {
+  for (const Update& update : updates_[column]) {
+    const Column& earlier = columns_[update.column];
+    const auto from = earlier.below.begin() + update.block;
+    const auto at = std::lower_bound(from, earlier.below.end(), group,
+                                     [](const Block& block, int number) { return block.group < number; });
+    if (at == earlier.below.end() || at->group != group || earlier.size() == 0) continue;
+    target.noalias() -= at->numbers.block(first_row, 0, target.rows(), earlier.size()) *
+                        from->numbers.block(first_column, 0, target.cols(), earlier.size()).transpose();
+  }
+}
+
+bool BlockFactor::factor_diagonal(int group, const Fill& fill) {
+  Column& column = columns_[group];
+  const bool is_acted_on = std::any_of(updates_[group].begin(), updates_[group].end(),
+                                       [&](const Update& update) { return columns_[update.column].is_new; });
+  if (is_acted_on) {
+    column.is_new = true;
+    column.keep(0);
+    for (Block& block : column.below) block.known = 0;
+  }
+  const Eigen::Index n = column.size(), first = column.first = column.factored, more = n - first;
+  if (more == 0) return true;
+  column.is_new = true;
+  RowMatrix& lower = column.lower;
+  if (lower.rows() < n) {
+    RowMatrix larger = RowMatrix::Zero(n + n / 2, n + n / 2);
+    larger.topLeftCorner(first, first) = lower.topLeftCorner(first, first);
+    lower.swap(larger);
+  }
+  const std::span<const Eigen::Index> members(column.members);
+  fill(members.subspan(first), members, first, lower.block(first, 0, more, n));
+  auto below = lower.block(first, 0, more, first);
+  auto corner = lower.block(first, first, more, more);
+  for (const Update& update : updates_[group]) {
+    const Column& earlier = columns_[update.column];
+    if (earlier.size() == 0) continue;
+    const RowMatrix& numbers = earlier.below[update.block].numbers;
+    const auto rows = numbers.block(first, 0, more, earlier.size());
+    if (first > 0) below.noalias() -= rows * numbers.topLeftCorner(first, earlier.size()).transpose();
+    corner.selfadjointView<Eigen::Lower>().rankUpdate(rows, -1);
+  }
+  if (first > 0) {
+    auto right = below.transpose();
+    lower.topLeftCorner(first, first).triangularView<Eigen::Lower>().solveInPlace(right);
+    corner.selfadjointView<Eigen::Lower>().rankUpdate(below, -1);
+  }
+  const Eigen::LLT<Eigen::Ref<RowMatrix>> done(corner);
+  column.factored = n;
+  return done.info() == Eigen::Success;
+}
+
+// Rows that are known get the column's new members, and the others all.
+void BlockFactor::factor_block(int group, Block& block, const Fill& fill) const {
+  const Column& column = columns_[group];
+  const Members& members = columns_[block.group].members;
+  const auto rows = static_cast<Eigen::Index>(members.size()), n = column.size();
+  make_room(block.numbers, rows, n, block.known, column.first);
+  const auto compute_rows = [&](Eigen::Index first_row, Eigen::Index count, Eigen::Index first) {
+    if (count == 0 || first == n) return;
+    auto target = block.numbers.block(first_row, first, count, n - first);
+    fill(std::span(members).subspan(first_row, count), std::span(column.members).subspan(first), n, target);
+    subtract_updates(group, block.group, first_row, first, target);
+    if (first > 0)
+      target.noalias() -=
+          block.numbers.block(first_row, 0, count, first) * column.lower.block(first, 0, n - first, first).transpose();
+    auto right = target.transpose();
+    column.lower.block(first, first, n - first, n - first).triangularView<Eigen::Lower>().solveInPlace(right);
+  };
+  compute_rows(0, block.known, column.first);
+  compute_rows(block.known, rows - block.known, 0);
+  block.known = rows;
+}
+
+void BlockFactor::solve(Eigen::VectorXf& numbers) const {
+  std::vector<Eigen::VectorXf> parts(columns_.size());
+  for (std::size_t g = 0; g < columns_.size(); ++g) parts[g] = numbers(columns_[g].members);
+  for (std::size_t g = 0; g < columns_.size(); ++g) {
+    const Column& column = columns_[g];
+    const Eigen::Index n = column.size();
+    if (n == 0) continue;
+    column.lower.topLeftCorner(n, n).triangularView<Eigen::Lower>().solveInPlace(parts[g]);
+    for (const Block& block : column.below)
+      parts[block.group].noalias() -= block.numbers.topLeftCorner(block.known, n) * parts[g];
+  }
+  for (std::size_t g = columns_.size(); g-- > 0;) {
+    const Column& column = columns_[g];
+    const Eigen::Index n = column.size();
+    if (n == 0) continue;
+    for (const Block& block : column.below)
+      parts[g].noalias() -= block.numbers.topLeftCorner(block.known, n).transpose() * parts[block.group];
+    column.lower.topLeftCorner(n, n).triangularView<Eigen::Lower>().transpose().solveInPlace(parts[g]);
+    numbers(column.members) = parts[g];
+  }
+}
+
+void BlockFactor::forget_rows() {
+  for (Column& column : columns_) column.keep_rows(0);
+}
+
+bool BlockFactor::multiply_rows(const RowMatrix& rows, const std::vector<int>& first_column, Threads* threads) {
+  bool any = false;
+  std::vector<char> is_new;
+  for (const std::vector<int>& level : levels_) {
+    long work = 0;
+    for (const int group : level)
+      work += operations(group) / std::max<long>(columns_[group].size(), 1) *
+              columns_of(columns_[group].parts, first_column) / 16;
+    is_new.assign(level.size(), 0);
+    run_chunks(threads, static_cast<int>(level.size()), work, [&](int k) {
+      see_rows(level[k], rows, first_column);
+      is_new[k] = sum_product(level[k]);
+    });
+    any |= std::find(is_new.begin(), is_new.end(), 1) != is_new.end();
+  }
+  return any;
+}
+
+void BlockFactor::see_rows(int group, const RowMatrix& rows, const std::vector<int>& first_column) {
+  Column& column = columns_[group];
+  const Eigen::Index n = column.size(), first = column.seen_members, more = n - first;
+  const Eigen::Index r = columns_of(column.parts, first_column);
+  if (column.seen.rows() < n || column.seen.cols() != r) column.seen.conservativeResize(n + n / 2, r);
+  if (more == 0 || r == 0) {
+    column.seen_members = n;
+    return;
+  }
+  auto added = column.seen.middleRows(first, more);
+  int to = 0;
+  for (const int part : column.parts) {
+    const int from = first_column[part], count = first_column[part + 1] - from;
+    for (Eigen::Index i = 0; i < more; ++i)
+      added.row(i).segment(to, count) = rows.row(column.members[first + i]).segment(from, count);
+    to += count;
+  }
+  if (first > 0) added.noalias() -= column.lower.block(first, 0, more, first) * column.seen.topRows(first);
+  RowMatrix product;
+  for (const Update& update : updates_[group]) {
+    const Column& earlier = columns_[update.column];
+    const Eigen::Index size = earlier.size();
+    if (size == 0 || earlier.seen.cols() == 0) continue;
+    product.noalias() = earlier.below[update.block].numbers.block(first, 0, more, size) * earlier.seen.topRows(size);
+    match_parts(earlier.parts, column.parts, first_column,
+                [&](int from, int at, int count) { added.middleCols(at, count) -= product.middleCols(from, count); });
+  }
+  column.lower.block(first, first, more, more).triangularView<Eigen::Lower>().solveInPlace(added);
+  column.seen_members = n;
+}
+
+bool BlockFactor::sum_product(int group) {
+  Column& column = columns_[group];
+  const Eigen::Index n = column.size(), r = column.seen.cols();
+  if (column.summed == n && column.has_product) return false;
+  if (column.summed == 0) column.product.setZero(r, r);
+  column.product.selfadjointView<Eigen::Lower>().rankUpdate(
+      column.seen.middleRows(column.summed, n - column.summed).transpose());
+  column.summed = n;
+  column.has_product = true;
+  return true;
+}
+
+void BlockFactor::add_product(const std::vector<int>& first_column, Eigen::MatrixXd& sum) const {
+  std::vector<int> place;
+  for (const Column& column : columns_) {
+    place.clear();
+    for (const int part : column.parts) {
+      for (int c = first_column[part]; c < first_column[part + 1]; ++c) place.push_back(c);
+    }
+    for (std::size_t j = 0; j < place.size(); ++j) {
+      for (std::size_t i = j; i < place.size(); ++i)
+        sum(place[i], place[j]) +=
+            static_cast<double>(column.product(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
+    }
+  }
+}
+
+}  // namespace supple
