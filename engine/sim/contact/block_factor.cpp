@@ -7,15 +7,30 @@
 namespace supple {
 namespace {
 
-using Numbers = BlockFactor::RowMatrix;
-
 // Ensures that a matrix has room for rows and columns; keeps its first ones.
-void make_room(Numbers& numbers, Eigen::Index rows, Eigen::Index columns, Eigen::Index kept_rows,
+void make_room(Eigen::MatrixXf& numbers, Eigen::Index rows, Eigen::Index columns, Eigen::Index kept_rows,
                Eigen::Index kept_columns) {
   if (numbers.rows() >= rows && numbers.cols() >= columns) return;
-  Numbers larger(rows + rows / 4, columns + columns / 4);
+  Eigen::MatrixXf larger(rows + rows / 4, columns + columns / 4);
   if (kept_rows > 0) larger.topLeftCorner(kept_rows, kept_columns) = numbers.topLeftCorner(kept_rows, kept_columns);
   numbers.swap(larger);
+}
+
+// Solves X L^T = B in place. Eigen's own function works number by number in panels of 48.
+template <class Lower>
+void solve_from_right(const Lower& lower, Eigen::Ref<Eigen::MatrixXf> b) {
+  constexpr Eigen::Index width = 16;
+  for (Eigen::Index first = 0; first < b.cols(); first += width) {
+    const Eigen::Index end = std::min(first + width, b.cols());
+    if (first > 0)
+      b.middleCols(first, end - first).noalias() -=
+          b.leftCols(first) * lower.block(first, 0, end - first, first).transpose();
+    for (Eigen::Index j = first; j < end; ++j) {
+      if (j > first)
+        b.col(j).noalias() -= b.middleCols(first, j - first) * lower.row(j).segment(first, j - first).transpose();
+      b.col(j) /= lower(j, j);
+    }
+  }
 }
 
 // Calls work(own, other, count) for each of some parts: where its columns of W begin among those of these parts, where
@@ -61,7 +76,7 @@ void BlockFactor::begin(std::vector<GroupKey> keys, std::vector<Members> members
   std::vector<Eigen::Index> sizes;
   for (const Members& group : members) sizes.push_back(std::ssize(group));
   const std::vector<int> order = elimination_order(keys, sizes);
-  columns_.resize(order.size());
+  columns_.resize(ordered_ = order.size());
   for (std::size_t k = 0; k < order.size(); ++k) {
     Column& column = columns_[k];
     column.key = keys[order[k]];
@@ -72,8 +87,7 @@ void BlockFactor::begin(std::vector<GroupKey> keys, std::vector<Members> members
   is_linked_ = false;
 }
 
-// Columns whose group has no members any more stay, and cost nothing. A group that is new would have to come last to
-// leave the others as they are, so all are put into a better order.
+// Columns whose group has no members any more stay, and cost nothing. If a group is new, all are put into a new order.
 void BlockFactor::replace(const Members& members, const std::vector<GroupKey>& keys,
                           const std::vector<Eigen::Index>& place) {
   std::map<GroupKey, int> numbers;
@@ -87,6 +101,8 @@ void BlockFactor::replace(const Members& members, const std::vector<GroupKey>& k
     }
     groups[at->second].push_back(member);
   }
+  if (columns_.size() > ordered_) is_linked_ = false;
+  columns_.resize(std::min(columns_.size(), ordered_));
   std::size_t present = 0;
   for (const Column& column : columns_) present += numbers.count(column.key);
   if (place.empty() || present < groups.size()) return begin(std::move(group_keys), std::move(groups));
@@ -103,19 +119,43 @@ void BlockFactor::replace(const Members& members, const std::vector<GroupKey>& k
     kept.push_back(same);
   }
   for (Column& column : columns_) {
+    std::erase_if(column.below, [&](const Block& block) { return block.group >= std::ssize(columns_); });
     for (Block& block : column.below) block.known = std::min(block.known, kept[block.group]);
   }
 }
 
 void BlockFactor::append(Eigen::Index member, const GroupKey& key) {
   const auto has_key = [&](const Column& column) { return column.key == key; };
-  auto at = std::find_if(columns_.begin(), columns_.end(), has_key);
+  const bool is_dense = columns_.size() == 1 && has_key(columns_[0]);
+  auto at = std::find_if(columns_.begin() + (is_dense ? 0 : std::ptrdiff_t(ordered_)), columns_.end(), has_key);
   if (at == columns_.end()) {
     at = columns_.emplace(at);
     at->key = key;
     is_linked_ = false;
   }
   at->members.push_back(member);
+}
+
+// The columns of what was appended are dense where the groups hang together. Where they cost more than all others, all
+// members are put into the order of their groups.
+void BlockFactor::begin_if_appended_cost_much() {
+  long ordered = 0, appended = 0;
+  for (std::size_t g = 0; g < columns_.size(); ++g)
+    (g < ordered_ ? ordered : appended) += operations(static_cast<int>(g));
+  if (appended <= ordered) return;
+  std::vector<GroupKey> keys;
+  std::vector<Members> groups;
+  for (Column& column : columns_) {
+    if (column.members.empty()) continue;
+    const auto at = static_cast<std::size_t>(std::find(keys.begin(), keys.end(), column.key) - keys.begin());
+    if (at == keys.size()) {
+      keys.push_back(column.key);
+      groups.emplace_back();
+    }
+    groups[at].insert(groups[at].end(), column.members.begin(), column.members.end());
+  }
+  begin(std::move(keys), std::move(groups));
+  link();
 }
 
 // Finds which blocks there are; those that are known already stay.
@@ -177,6 +217,7 @@ long BlockFactor::work() const {
 
 bool BlockFactor::compute(const Fill& fill, Threads* threads) {
   link();
+  if (columns_.size() > ordered_) begin_if_appended_cost_much();
   std::vector<char> done;
   std::vector<std::pair<int, Block*>> blocks;
   for (const std::vector<int>& level : levels_) {
@@ -200,7 +241,7 @@ bool BlockFactor::compute(const Fill& fill, Threads* threads) {
 // Subtracts from entries between members of a group and of a column what earlier columns have in both. target: the
 // entries from a row and a column on.
 void BlockFactor::subtract_updates(int column, int group, Eigen::Index first_row, Eigen::Index first_column,
-                                   Eigen::Ref<RowMatrix> target) const {
+                                   Eigen::Ref<Eigen::MatrixXf> target) const {
   for (const Update& update : updates_[column]) {
     const Column& earlier = columns_[update.column];
     const auto from = earlier.below.begin() + update.block;
@@ -237,7 +278,7 @@ bool BlockFactor::factor_diagonal(int group, const Fill& fill) {
   for (const Update& update : updates_[group]) {
     const Column& earlier = columns_[update.column];
     if (earlier.size() == 0) continue;
-    const RowMatrix& numbers = earlier.below[update.block].numbers;
+    const Eigen::MatrixXf& numbers = earlier.below[update.block].numbers;
     const auto rows = numbers.block(first, 0, more, earlier.size());
     if (first > 0) below.noalias() -= rows * numbers.topLeftCorner(first, earlier.size()).transpose();
     corner.selfadjointView<Eigen::Lower>().rankUpdate(rows, -1);
@@ -261,13 +302,14 @@ void BlockFactor::factor_block(int group, Block& block, const Fill& fill) const 
   const auto compute_rows = [&](Eigen::Index first_row, Eigen::Index count, Eigen::Index first) {
     if (count == 0 || first == n) return;
     auto target = block.numbers.block(first_row, first, count, n - first);
-    fill(std::span(members).subspan(first_row, count), std::span(column.members).subspan(first), n, target);
+    Eigen::Map<RowMatrix, 0, Eigen::OuterStride<>> transposed(target.data(), n - first, count,
+                                                              Eigen::OuterStride<>(target.outerStride()));
+    fill(std::span(column.members).subspan(first), std::span(members).subspan(first_row, count), count, transposed);
     subtract_updates(group, block.group, first_row, first, target);
     if (first > 0)
       target.noalias() -=
           block.numbers.block(first_row, 0, count, first) * column.lower.block(first, 0, n - first, first).transpose();
-    auto right = target.transpose();
-    column.lower.block(first, first, n - first, n - first).triangularView<Eigen::Lower>().solveInPlace(right);
+    solve_from_right(column.lower.block(first, first, n - first, n - first), target);
   };
   compute_rows(0, block.known, column.first);
   compute_rows(block.known, rows - block.known, 0);

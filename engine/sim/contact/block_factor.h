@@ -32,6 +32,7 @@ class BlockFactor {
   // Does the same, but keeps what it can. place: the numbers that earlier members have now, by their earlier numbers;
   // -1 for those that are gone.
   void replace(const Members& members, const std::vector<GroupKey>& keys, const std::vector<Eigen::Index>& place);
+  // Adds a member. What is appended comes after all groups, and leaves their factor as it is, until the next replace().
   void append(Eigen::Index member, const GroupKey& key);
 
   // Returns a rough count of the operations of the next compute().
@@ -53,9 +54,9 @@ class BlockFactor {
 
  private:
   struct Block {
-    int group;               // of its rows
-    RowMatrix numbers;       // in its top left corner
-    Eigen::Index known = 0;  // rows that it holds already
+    int group;                // of its rows
+    Eigen::MatrixXf numbers;  // in its top left corner
+    Eigen::Index known = 0;   // rows that it holds already
   };
   struct Column {
     GroupKey key;
@@ -83,16 +84,18 @@ class BlockFactor {
     int block;
   };
   void begin(std::vector<GroupKey> keys, std::vector<Members> members);
+  void begin_if_appended_cost_much();
   void link();
   long operations(int group) const;
   void subtract_updates(int column, int group, Eigen::Index first_row, Eigen::Index first_column,
-                        Eigen::Ref<RowMatrix> target) const;
+                        Eigen::Ref<Eigen::MatrixXf> target) const;
   bool factor_diagonal(int group, const Fill& fill);
   void factor_block(int group, Block& block, const Fill& fill) const;
   void see_rows(int group, const RowMatrix& rows, const std::vector<int>& first_column);
   bool sum_product(int group);
 
-  std::vector<Column> columns_;               // in the order of elimination
+  std::vector<Column> columns_;               // in the order of elimination, and then those that were appended
+  std::size_t ordered_ = 0;                   // how many of them were not
   std::vector<std::vector<Update>> updates_;  // by column: the blocks that act on it
   std::vector<std::vector<int>> levels_;      // each has columns on which only columns of earlier levels act
   bool is_linked_ = false;
