@@ -188,11 +188,17 @@ TEST(Capacitance, IsThatOfTheDenseSystemWhateverComesAndGoes) {
         EXPECT_TRUE(know_rows(bodies, pose, by_two, &two));
         expect_dense_product(bodies, pose, system);
       }
-      const Directions more = some_of(random_directions(bodies, 12, axes, static_cast<unsigned>(round)), 0.5, random);
-      ASSERT_TRUE(system.append(bodies.system, more, nullptr));
-      ASSERT_TRUE(by_two.append(bodies.system, more, &two));
-      expect_dense(bodies, system);
-      EXPECT_EQ(know_rows(bodies, pose, system), round % 3 == 0 || !more.empty());
+      // Few and many directions are appended, in one call or in two.
+      bool any = false;
+      for (int call = 0; call < 1 + round % 2; ++call) {
+        const Directions made = random_directions(bodies, round % 4 == 3 ? 60 : 8, axes, 10u * round + call);
+        const Directions more = some_of(made, 0.7, random);
+        any |= !more.empty();
+        ASSERT_TRUE(system.append(bodies.system, more, nullptr));
+        ASSERT_TRUE(by_two.append(bodies.system, more, &two));
+        expect_dense(bodies, system);
+      }
+      EXPECT_EQ(know_rows(bodies, pose, system), round % 3 == 0 || any);
       EXPECT_FALSE(know_rows(bodies, pose, system));
       expect_dense_product(bodies, pose, system);
       know_rows(bodies, pose, by_two, &two);
