@@ -176,7 +176,7 @@ TEST(Capacitance, IsThatOfTheDenseSystemWhateverComesAndGoes) {
     Capacitance system, by_two;
     system.begin_step(bodies.system, bodies.parts);
     by_two.begin_step(bodies.system, bodies.parts);
-    for (int round = 0; round < 30; ++round) {
+    for (int round = 0; round < 16; ++round) {
       const Directions wanted = some_of(all, round % 5 == 0 ? 0.1 : round % 5 == 1 ? 0.97 : 0.6, random);
       ASSERT_TRUE(system.set(bodies.system, wanted, nullptr));
       ASSERT_TRUE(by_two.set(bodies.system, wanted, &two));

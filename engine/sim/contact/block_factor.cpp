@@ -90,16 +90,18 @@ void BlockFactor::begin(std::vector<GroupKey> keys, std::vector<Members> members
 // Columns whose group has no members any more stay, and cost nothing. If a group is new, all are put into a new order.
 void BlockFactor::replace(const Members& members, const std::vector<GroupKey>& keys,
                           const std::vector<Eigen::Index>& place) {
-  std::map<GroupKey, int> numbers;
+  std::map<GroupKey, std::size_t> numbers;
   std::vector<GroupKey> group_keys;
   std::vector<Members> groups;
+  std::size_t group = 0;
   for (const Eigen::Index member : members) {
-    const auto [at, is_new] = numbers.try_emplace(keys[member], static_cast<int>(groups.size()));
-    if (is_new) {
-      group_keys.push_back(keys[member]);
+    const GroupKey& key = keys[member];
+    if (groups.empty() || key != group_keys[group]) group = numbers.try_emplace(key, groups.size()).first->second;
+    if (group == groups.size()) {
+      group_keys.push_back(key);
       groups.emplace_back();
     }
-    groups[at->second].push_back(member);
+    groups[group].push_back(member);
   }
   if (columns_.size() > ordered_) is_linked_ = false;
   columns_.resize(std::min(columns_.size(), ordered_));
@@ -396,8 +398,9 @@ bool BlockFactor::sum_product(int group) {
   const Eigen::Index n = column.size(), r = column.seen.cols();
   if (column.summed == n && column.has_product) return false;
   if (column.summed == 0) column.product.setZero(r, r);
-  column.product.selfadjointView<Eigen::Lower>().rankUpdate(
-      column.seen.middleRows(column.summed, n - column.summed).transpose());
+  const Eigen::Index more = n - column.summed;
+  if (more > 0 && r > 0)
+    column.product.selfadjointView<Eigen::Lower>().rankUpdate(column.seen.middleRows(column.summed, more).transpose());
   column.summed = n;
   column.has_product = true;
   return true;

@@ -183,33 +183,29 @@ float Capacitance::entry(const ContactStencil& a, const ContactStencil& b) const
   return static_cast<float>(sum);
 }
 
-// Consecutive directions of one point share an entry.
+// Consecutive directions of one point share the entries between points.
 void Capacitance::fill(std::span<const Eigen::Index> rows, std::span<const Eigen::Index> columns, Eigen::Index shift,
                        Eigen::Ref<RowMatrix> block) const {
-  const auto of = [&](std::span<const Eigen::Index> list, Eigen::Index i) -> const StiffDirection& {
-    return directions_[list[i]];
-  };
-  const auto end_of_point = [&](std::span<const Eigen::Index> list, Eigen::Index first) {
-    Eigen::Index end = first + 1;
-    while (end < std::ssize(list) && same(of(list, first).stencil, of(list, end).stencil)) ++end;
-    return end;
-  };
-  const auto columns_of_row = [&](Eigen::Index i) { return std::min(std::ssize(columns), shift + i + 1); };
-  for (Eigen::Index first = 0, end = 0; first < std::ssize(rows); first = end) {
-    end = end_of_point(rows, first);
-    for (Eigen::Index from = 0, to = 0; from < columns_of_row(end - 1); from = to) {
-      to = end_of_point(columns, from);
-      const float between = entry(of(rows, first).stencil, of(columns, from).stencil);
-      for (Eigen::Index i = first; i < end; ++i) {
-        const Vec3& axis = of(rows, i).axis;
-        const Eigen::Index last = std::min<Eigen::Index>(to, columns_of_row(i));
-        for (Eigen::Index j = from; j < last; ++j)
-          block(i, j) = static_cast<float>(axis.dot(of(columns, j).axis)) * between;
-      }
+  const auto count = std::ssize(columns);
+  std::vector<Vec3> axes;
+  std::vector<float> between(columns.size());
+  for (const Eigen::Index column : columns) axes.push_back(directions_[column].axis);
+  const ContactStencil* point = nullptr;
+  Eigen::Index known = 0;  // entries of the point
+  for (Eigen::Index i = 0; i < std::ssize(rows); ++i) {
+    const StiffDirection& own = directions_[rows[i]];
+    const Eigen::Index end = std::min(count, shift + i + 1);
+    if (point == nullptr || !same(own.stencil, *point)) known = 0;
+    point = &own.stencil;
+    for (; known < end; ++known) {
+      const ContactStencil& other = directions_[columns[known]].stencil;
+      const bool is_next = known == 0 || !same(other, directions_[columns[known - 1]].stencil);
+      between[known] = is_next ? entry(own.stencil, other) : between[known - 1];
     }
-    for (Eigen::Index i = first; i < end; ++i) {
-      if (shift + i < std::ssize(columns)) block(i, shift + i) += static_cast<float>(1 / of(rows, i).stiffness);
-    }
+    float* const values = &block(i, 0);
+    const Vec3 axis = own.axis;
+    for (Eigen::Index j = 0; j < end; ++j) values[j] = static_cast<float>(axis.dot(axes[j])) * between[j];
+    if (shift + i < count) values[shift + i] += static_cast<float>(1 / own.stiffness);
   }
 }
 
