@@ -41,17 +41,17 @@ void take_out(std::vector<int>& sorted, int group) {
 
 }  // namespace
 
-void PartNumbers::set(const std::vector<Part>& parts) {
+void VertexParts::set(const std::vector<Part>& parts) {
   ends_.clear();
   for (std::size_t p = 0; p + 1 < parts.size(); ++p) ends_.push_back(parts[p].first_free + parts[p].free);
 }
 
-std::int32_t PartNumbers::of(std::int32_t vertex) const {
+std::int32_t VertexParts::of(std::int32_t vertex) const {
   return static_cast<std::int32_t>(std::upper_bound(ends_.begin(), ends_.end(), vertex) - ends_.begin());
 }
 
 // The vertices of a stencil ascend, and so do their parts.
-GroupKey PartNumbers::of(const ContactStencil& stencil) const {
+GroupKey VertexParts::of(const ContactStencil& stencil) const {
   GroupKey key{-1, -1, -1, -1};
   std::size_t count = 0;
   for (int k = 0; k < stencil.free; ++k) {

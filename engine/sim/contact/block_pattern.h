@@ -16,10 +16,10 @@ namespace supple {
 using GroupKey = std::array<std::int32_t, 4>;
 
 // Tells to which part a vertex belongs.
-class PartNumbers {
+class VertexParts {
  public:
-  PartNumbers() = default;  // one part
-  explicit PartNumbers(const std::vector<Part>& parts) { set(parts); }
+  VertexParts() = default;  // one part
+  explicit VertexParts(const std::vector<Part>& parts) { set(parts); }
   void set(const std::vector<Part>& parts);
   int count() const { return static_cast<int>(ends_.size()) + 1; }
   std::int32_t of(std::int32_t vertex) const;

@@ -82,7 +82,7 @@ class Capacitance {
             Eigen::Ref<RowMatrix> block) const;
   float entry(const ContactStencil& a, const ContactStencil& b) const;
 
-  PartNumbers parts_;
+  VertexParts parts_;
   std::vector<StiffDirection> directions_;
   std::vector<GroupKey> keys_;  // by direction: the parts on which it acts
   std::vector<CoupledDirections> lists_;

@@ -62,7 +62,7 @@ double most_operations(const Model& model) {
 // Counts the operations that factor the system of these directions, which are coupled as listed.
 double operations_of(const Model& model, const std::vector<StiffDirection>& directions,
                      const std::vector<CoupledDirections>& lists) {
-  const PartNumbers parts(model.parts);
+  const VertexParts parts(model.parts);
   double sum = 0;
   for (const CoupledDirections& list : lists) {
     std::map<GroupKey, Eigen::Index> groups;

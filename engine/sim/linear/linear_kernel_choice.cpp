@@ -5,10 +5,12 @@ namespace supple {
 
 #define SUPPLE_DECLARE(variant) extern const LinearKernels linear_kernels_##variant;
 SUPPLE_VARIANTS(SUPPLE_DECLARE)
+#undef SUPPLE_DECLARE
 
 const LinearKernels& linear_kernels(int variant) {
 #define SUPPLE_ENTRY(variant) &linear_kernels_##variant,
   static constexpr const LinearKernels* table[] = {SUPPLE_VARIANTS(SUPPLE_ENTRY)};
+#undef SUPPLE_ENTRY
   return *table[variant];
 }
 
