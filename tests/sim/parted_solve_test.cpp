@@ -127,6 +127,14 @@ TEST(InverseEntries, OfPartsThatDoNotHoldTogetherAreZero) {
     }
   }
   EXPECT_EQ(apart, 2 * count * count);
+  // They take no memory: two equal trees have twice what one has.
+  std::vector<std::int32_t> of_one;
+  for (const std::int32_t a : all) {
+    if (model.input_of[a] < count) of_one.push_back(a);
+  }
+  InverseEntries one_part;
+  one_part.learn(model.factor, of_one, nullptr);
+  EXPECT_EQ(entries.stored_numbers(), 2 * one_part.stored_numbers());
 }
 
 // Tests every instruction set with lengths around its registers; each product is the same whatever stands beside it.

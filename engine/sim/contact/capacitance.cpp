@@ -1,6 +1,5 @@
 #include "sim/contact/capacitance.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -81,12 +80,14 @@ std::size_t couple(const StiffDirection& direction, Eigen::Index number, std::ve
 
 void Capacitance::clear() {
   directions_.clear();
+  keys_.clear();
   lists_.clear();
   rows_of_ = 0;
 }
 
-void Capacitance::begin_step(const System& system) {
+void Capacitance::begin_step(const System& system, const std::vector<Part>& parts) {
   clear();
+  parts_.set(parts);
   if (entries_.stored_numbers() > system.factor.stored_numbers()) entries_.clear();
 }
 
@@ -111,31 +112,40 @@ bool Capacitance::set(const System& system, const std::vector<StiffDirection>& w
   }
   for (std::size_t i = 0; i < ordered.size(); ++i) couple(ordered[i], static_cast<Eigen::Index>(i), lists_);
   directions_.swap(ordered);
+  keys_.clear();
+  for (const StiffDirection& direction : directions_) keys_.push_back(parts_.of(direction.stencil));
   keep_rows(place);
   factors_.resize(std::max(factors_.size(), lists_.size()));
   for (std::size_t i = 0; i < lists_.size(); ++i) {
-    Eigen::Index kept = 0;
     if (!place.empty() && i < lists_before.size()) {
-      const std::vector<Eigen::Index>&was = lists_before[i].members, &is = lists_[i].members;
-      const std::size_t most = std::min(was.size(), is.size());
-      while (std::size_t(kept) < most && place[was[kept]] == is[kept]) ++kept;
+      factors_[i].replace(lists_[i].members, keys_, place);
+    } else {
+      factors_[i].begin(lists_[i].members, keys_);
     }
-    factors_[i].keep(kept);
   }
   return append(system, {}, threads);
 }
 
 // A list that has grown at its end keeps its factor; where lists were merged, all are factored again.
 bool Capacitance::append(const System& system, const std::vector<StiffDirection>& more, Threads* threads) {
+  bool is_merged = false;
   for (const StiffDirection& direction : more) {
     const std::size_t count = lists_.size();
-    const std::size_t home = couple(direction, static_cast<Eigen::Index>(directions_.size()), lists_);
+    const auto number = static_cast<Eigen::Index>(directions_.size());
+    const std::size_t home = couple(direction, number, lists_);
     directions_.push_back(direction);
+    keys_.push_back(parts_.of(direction.stencil));
     factors_.resize(std::max(factors_.size(), lists_.size()));
-    if (lists_.size() > count) factors_[home].keep(0);
-    if (lists_.size() < count) {
-      for (Factor& factor : factors_) factor.keep(0);
+    is_merged |= lists_.size() < count;
+    if (is_merged) continue;
+    if (lists_.size() > count) {
+      factors_[home].begin({number}, keys_);
+    } else {
+      factors_[home].append(number, keys_.back());
     }
+  }
+  if (is_merged) {
+    for (std::size_t i = 0; i < lists_.size(); ++i) factors_[i].begin(lists_[i].members, keys_);
   }
   std::vector<std::int32_t> touched;
   for (const StiffDirection& direction : directions_) {
@@ -145,16 +155,22 @@ bool Capacitance::append(const System& system, const std::vector<StiffDirection>
   if (entries_of_ != system.id) entries_.clear();
   entries_of_ = system.id;
   entries_.learn(system.factor, touched, threads);
-  long work = 0;
-  for (std::size_t i = 0; i < lists_.size(); ++i) {
-    const auto size = static_cast<long>(lists_[i].members.size());
-    work += size * size * (size - factors_[i].factored) / 16;
-  }
-  std::vector<char> done(lists_.size());
-  run_chunks(threads, static_cast<int>(lists_.size()), work, [&](int i) { done[i] = extend(lists_[i], factors_[i]); });
-  if (std::find(done.begin(), done.end(), 0) == done.end()) return true;
+  if (extend(threads)) return true;
   clear();
   return false;
+}
+
+// Threads share lists where there are several, and else the blocks of the only one.
+bool Capacitance::extend(Threads* threads) {
+  long work = 0;
+  for (std::size_t i = 0; i < lists_.size(); ++i) work += factors_[i].work();
+  std::vector<char> done(lists_.size());
+  Threads* const inside = lists_.size() == 1 ? threads : nullptr;
+  const BlockFactor::Fill fill_block = [this](auto rows, auto columns, Eigen::Index shift,
+                                              Eigen::Ref<RowMatrix> block) { fill(rows, columns, shift, block); };
+  run_chunks(inside != nullptr ? nullptr : threads, static_cast<int>(lists_.size()), work,
+             [&](int i) { done[i] = factors_[i].compute(fill_block, inside); });
+  return std::find(done.begin(), done.end(), 0) == done.end();
 }
 
 // Returns the entry of A^-1 between two points: the mean of the entries among their vertices, by both points' weights.
@@ -167,59 +183,34 @@ float Capacitance::entry(const ContactStencil& a, const ContactStencil& b) const
   return static_cast<float>(sum);
 }
 
-// Consecutive directions of one point share an entry.
-void Capacitance::fill_row(const CoupledDirections& list, Eigen::Index row, float* values) const {
-  const StiffDirection& own = directions_[list.members[row]];
-  const ContactStencil* other = nullptr;
-  float between = 0;
-  for (Eigen::Index j = 0; j <= row; ++j) {
-    const StiffDirection& s = directions_[list.members[j]];
-    if (other == nullptr || !same(s.stencil, *other)) between = entry(own.stencil, s.stencil);
-    other = &s.stencil;
-    values[j] = static_cast<float>(own.axis.dot(s.axis)) * between;
+// Consecutive directions of one point share the entries between points.
+void Capacitance::fill(std::span<const Eigen::Index> rows, std::span<const Eigen::Index> columns, Eigen::Index shift,
+                       Eigen::Ref<RowMatrix> block) const {
+  const auto count = std::ssize(columns);
+  std::vector<Vec3> axes;
+  std::vector<float> between(columns.size());
+  for (const Eigen::Index column : columns) axes.push_back(directions_[column].axis);
+  const ContactStencil* point = nullptr;
+  Eigen::Index known = 0;  // entries of the point
+  for (Eigen::Index i = 0; i < std::ssize(rows); ++i) {
+    const StiffDirection& own = directions_[rows[i]];
+    const Eigen::Index end = std::min(count, shift + i + 1);
+    if (point == nullptr || !same(own.stencil, *point)) known = 0;
+    point = &own.stencil;
+    for (; known < end; ++known) {
+      const ContactStencil& other = directions_[columns[known]].stencil;
+      const bool is_next = known == 0 || !same(other, directions_[columns[known - 1]].stencil);
+      between[known] = is_next ? entry(own.stencil, other) : between[known - 1];
+    }
+    float* const values = &block(i, 0);
+    const Vec3 axis = own.axis;
+    for (Eigen::Index j = 0; j < end; ++j) values[j] = static_cast<float>(axis.dot(axes[j])) * between[j];
+    if (shift + i < count) values[shift + i] += static_cast<float>(1 / own.stiffness);
   }
-  values[row] += static_cast<float>(1 / own.stiffness);
-}
-
-void Capacitance::Factor::keep(Eigen::Index members) {
-  factored = std::min(factored, members);
-  seen_members = std::min(seen_members, members);
-  if (summed > members) summed = 0;
-}
-
-bool Capacitance::extend(const CoupledDirections& list, Factor& factor) {
-  const auto n = static_cast<Eigen::Index>(list.members.size()), first = factor.factored, more = n - first;
-  if (more == 0) return true;
-  RowMatrix& lower = factor.lower;
-  if (lower.rows() < n) {
-    RowMatrix larger = RowMatrix::Zero(n + n / 2, n + n / 2);
-    larger.topLeftCorner(first, first) = lower.topLeftCorner(first, first);
-    lower.swap(larger);
-  }
-  for (Eigen::Index i = first; i < n; ++i) fill_row(list, i, lower.row(i).data());
-  auto below = lower.block(first, 0, more, first);
-  auto corner = lower.block(first, first, more, more);
-  if (first > 0) {
-    auto right = below.transpose();
-    lower.topLeftCorner(first, first).triangularView<Eigen::Lower>().solveInPlace(right);
-    corner.selfadjointView<Eigen::Lower>().rankUpdate(below, -1);
-  }
-  const Eigen::LLT<Eigen::Ref<RowMatrix>> done(corner);
-  factor.factored = n;
-  return done.info() == Eigen::Success;
 }
 
 void Capacitance::solve(Eigen::VectorXf& answer) const {
-  Eigen::VectorXf part;
-  for (std::size_t i = 0; i < lists_.size(); ++i) {
-    const std::vector<Eigen::Index>& members = lists_[i].members;
-    const auto n = static_cast<Eigen::Index>(members.size());
-    part = answer(members);
-    const auto lower = factors_[i].lower.topLeftCorner(n, n).triangularView<Eigen::Lower>();
-    lower.solveInPlace(part);
-    lower.transpose().solveInPlace(part);
-    answer(members) = part;
-  }
+  for (std::size_t i = 0; i < lists_.size(); ++i) factors_[i].solve(answer);
 }
 
 // Moves the rows of directions that stay to where these are now.
@@ -236,12 +227,14 @@ void Capacitance::keep_rows(const std::vector<Eigen::Index>& place) {
   known_.swap(known);
 }
 
-bool Capacitance::know_rows(std::uint64_t pose, int r, const FindRow& find_row) {
+bool Capacitance::know_rows(std::uint64_t pose, const std::vector<int>& first_column, const FindRow& find_row,
+                            Threads* threads) {
+  const int r = first_column.back();
   if (rows_of_ != pose) {
     rows_of_ = pose;
     known_.clear();
     lists_counted_ = 0;
-    for (Factor& factor : factors_) factor.seen_members = factor.summed = 0;
+    for (BlockFactor& factor : factors_) factor.forget_rows();
   }
   const std::size_t before = known_.size(), count = directions_.size();
   if (before < count || rows_.cols() != r) rows_.conservativeResize(static_cast<Eigen::Index>(count), r);
@@ -250,33 +243,14 @@ bool Capacitance::know_rows(std::uint64_t pose, int r, const FindRow& find_row) 
     if (known_[i] == 0) find_row(directions_[i], rows_.row(static_cast<Eigen::Index>(i)).data());
     known_[i] = 1;
   }
+  const std::vector<int> first = parts_.count() > 1 ? first_column : std::vector<int>{0, r};
   bool is_new = lists_counted_ != lists_.size();
-  for (std::size_t i = 0; i < lists_.size(); ++i) is_new |= count_rows(lists_[i], factors_[i]);
+  for (std::size_t i = 0; i < lists_.size(); ++i) is_new |= factors_[i].multiply_rows(rows_, first, threads);
   if (!is_new) return false;
   lists_counted_ = lists_.size();
   between_.setZero(r, r);
-  for (std::size_t i = 0; i < lists_.size(); ++i)
-    between_.triangularView<Eigen::Lower>() += factors_[i].product.cast<double>();
+  for (std::size_t i = 0; i < lists_.size(); ++i) factors_[i].add_product(first, between_);
   between_.triangularView<Eigen::StrictlyUpper>() = between_.transpose();
-  return true;
-}
-
-bool Capacitance::count_rows(const CoupledDirections& list, Factor& factor) const {
-  const auto n = static_cast<Eigen::Index>(list.members.size()), r = rows_.cols();
-  if (factor.summed == n) return false;
-  const Eigen::Index first = factor.seen_members, more = n - first;
-  if (factor.seen.rows() < n || factor.seen.cols() != r) factor.seen.conservativeResize(n + n / 2, r);
-  if (more > 0) {
-    auto added = factor.seen.middleRows(first, more);
-    for (Eigen::Index i = 0; i < more; ++i) added.row(i) = rows_.row(list.members[first + i]);
-    if (first > 0) added.noalias() -= factor.lower.block(first, 0, more, first) * factor.seen.topRows(first);
-    factor.lower.block(first, first, more, more).triangularView<Eigen::Lower>().solveInPlace(added);
-    factor.seen_members = n;
-  }
-  if (factor.summed == 0) factor.product.setZero(r, r);
-  factor.product.selfadjointView<Eigen::Lower>().rankUpdate(
-      factor.seen.middleRows(factor.summed, n - factor.summed).transpose());
-  factor.summed = n;
   return true;
 }
 

@@ -1,13 +1,16 @@
-// The small dense system of the Woodbury identity, K^-1 + N^T A^-1 N over some stiff directions: it gives the forces at
+// The small system of the Woodbury identity, K^-1 + N^T A^-1 N over some stiff directions: it gives the forces at
 // contacts that keep them from moving. It takes the entries of A^-1 among the vertices of touching points alone, which
 // are kept from step to step as long as A stays. Directions at right angles do not feel each other, because A is the
-// same for x, y and z: on flat ground normals and both tangents are three systems. All in single precision.
+// same for x, y and z: on flat ground normals and both tangents are three systems. Nor do directions that act on no
+// common part of a model: a system is sparse by blocks (block_factor.h), and dense for a body alone. All in single
+// precision.
 #pragma once
 
 #include <functional>
 #include <vector>
 
 #include "base/types.h"
+#include "sim/contact/block_factor.h"
 #include "sim/contact/contact_stencil.h"
 #include "sim/linear/inverse_entries.h"
 #include "sim/model/system.h"
@@ -46,7 +49,8 @@ class Capacitance {
   void clear();
 
   // Makes a step independent of earlier ones, except for entries that would be computed again with the same result.
-  void begin_step(const System& system);
+  // parts: of the model whose vertices the directions will act on; without this call it has one.
+  void begin_step(const System& system, const std::vector<Part>& parts);
 
   // Builds the system of these directions, which must be sorted by their points' first vertices. What the present
   // system has of them, or nearly so, stays as it is, because a correction need not be exact. Returns false when the
@@ -57,13 +61,14 @@ class Capacitance {
   // Solves in place; the numbers are ordered by direction.
   void solve(Eigen::VectorXf& answer) const;
 
-  using RowMatrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  using RowMatrix = BlockFactor::RowMatrix;
 
-  // Makes ready rows(), W, of what each direction is on r coarse motions, and between(), W^T C^-1 W for the system's
-  // matrix C. `find_row` writes the r numbers of a direction; it is asked once for each of a pose (which is not 0), for
-  // as long as the direction stays. Returns whether anything is new.
+  // Makes ready rows(), W, of what each direction is on some coarse motions, and between(), W^T C^-1 W for the system's
+  // matrix C. first_column: where the motions of each part begin, and r, the number of all. `find_row` writes the r
+  // numbers of a direction, which are 0 for parts on which it does not act; it is asked once for each of a pose (which
+  // is not 0), for as long as the direction stays. Returns whether anything is new.
   using FindRow = std::function<void(const StiffDirection&, float* row)>;
-  bool know_rows(std::uint64_t pose, int r, const FindRow& find_row);
+  bool know_rows(std::uint64_t pose, const std::vector<int>& first_column, const FindRow& find_row, Threads* threads);
   const RowMatrix& rows() const { return rows_; }
   const Eigen::MatrixXd& between() const { return between_; }
 
@@ -71,26 +76,17 @@ class Capacitance {
   std::int64_t kept_numbers() const { return entries_.stored_numbers(); }
 
  private:
-  struct Factor {
-    RowMatrix lower;            // Cholesky factor L, in its top left corner
-    Eigen::Index factored = 0;  // members that it holds already
-    RowMatrix seen;             // L^-1 W, in its upper rows
-    Eigen::Index seen_members = 0;
-    Eigen::MatrixXf product;  // W^T (L L^T)^-1 W, the lower triangle
-    Eigen::Index summed = 0;  // members that it holds already
-
-    // Leaves what belongs to this many first members.
-    void keep(Eigen::Index members);
-  };
-  bool extend(const CoupledDirections& list, Factor& factor);
+  bool extend(Threads* threads);
   void keep_rows(const std::vector<Eigen::Index>& place);
-  bool count_rows(const CoupledDirections& list, Factor& factor) const;
-  void fill_row(const CoupledDirections& list, Eigen::Index row, float* values) const;
+  void fill(std::span<const Eigen::Index> rows, std::span<const Eigen::Index> columns, Eigen::Index shift,
+            Eigen::Ref<RowMatrix> block) const;
   float entry(const ContactStencil& a, const ContactStencil& b) const;
 
+  VertexParts parts_;
   std::vector<StiffDirection> directions_;
+  std::vector<GroupKey> keys_;  // by direction: the parts on which it acts
   std::vector<CoupledDirections> lists_;
-  std::vector<Factor> factors_;  // of the lists
+  std::vector<BlockFactor> factors_;  // of the lists
   InverseEntries entries_;
   std::uint64_t entries_of_ = 0;  // System::id
   std::uint64_t rows_of_ = 0;     // the pose of the rows; 0: there are none

@@ -11,7 +11,7 @@ constexpr int most_marches_of_ray = 200;  // a ray that needs more only grazes t
 constexpr double least_bend = 0.1;
 
 // Tells whether two normals belong to the two sides of a wall, not of an edge.
-bool opposite(const Vec3& a, const Vec3& b) { return a.dot(b) < -0.5; }
+bool are_opposite(const Vec3& a, const Vec3& b) { return a.dot(b) < -0.5; }
 // Tells whether two normals belong to one smooth side.
 bool on_one_side(const Vec3& a, const Vec3& b) { return a.dot(b) > 0.5; }
 
@@ -21,7 +21,7 @@ bool on_one_side(const Vec3& a, const Vec3& b) { return a.dot(b) > 0.5; }
 // sideways. A vertex that was inside already may slide around the edge.
 bool is_held_by(const SurfacePoint& entered, const SurfacePoint& closest, const Way& way, bool was_outside) {
   constexpr double far_deeper = 10;
-  if (opposite(closest.normal, entered.normal)) return true;
+  if (are_opposite(closest.normal, entered.normal)) return true;
   return was_outside && !on_one_side(closest.normal, entered.normal) &&
          entered.normal.dot(entered.point - way.b) < -far_deeper * closest.distance;
 }
@@ -154,7 +154,7 @@ std::optional<SurfacePoint> ColliderView::holding(const Way& way, double field_a
   // The vertex is outside again. A way that cuts a corner may pass; one that leaves on the far side may not.
   const std::optional<double> back = meets(way, 1, 0, here.distance, near);
   const SurfacePoint left = back ? closest(at(way, 1 - *back), near) : here;
-  if (opposite(left.normal, entered->surface.normal)) return entered->surface;
+  if (are_opposite(left.normal, entered->surface.normal)) return entered->surface;
   return here.distance < reach ? std::optional(here) : std::nullopt;
 }
 

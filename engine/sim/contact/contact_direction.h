@@ -4,9 +4,9 @@
 //   diagonal  H = P A^-1 P + N diag(1 / (a + k)) N^T,  P = I - N N^T, a the diagonal of A: each stiff direction is
 //             treated by itself. This costs almost nothing.
 //   low_rank  H = (A + K)^-1 = A^-1 - A^-1 N (K^-1 + N^T A^-1 N)^-1 N^T A^-1 (Woodbury). This costs one solve and parts
-//             of it (linear/parted_solve.h), and a small dense system (capacitance.h). When there are more stiff
-//             directions than that system may have, it contains those of some vertices, which also represent their
-//             neighbours: K'. Each of the others, R, is scaled by itself: H = T (A + K')^-1 T,
+//             of it (linear/parted_solve.h), and a small system (capacitance.h). When there are more stiff directions
+//             than that system may have, it contains those of some vertices, which also represent their neighbours: K'.
+//             Each of the others, R, is scaled by itself: H = T (A + K')^-1 T,
 //             T = I - R diag(1 - sqrt(a / (a + k))) R^T.
 // The second of these uses A^-1 + Z D Z^T in place of A^-1 for directions that have a second level
 // (coarse/second_level.h).
@@ -45,7 +45,8 @@ struct ContactCorrection {
   Eigen::PartialPivLU<Eigen::MatrixXd> both;  // of 1 + D W^T C^-1 W, for the system's rows W = N^T Z and its matrix C
 };
 
-// Returns the largest number of mutually coupled directions that a body's system may have.
+// Returns the largest number of mutually coupled directions that the system of a body alone may have. For several
+// bodies, the operations of their factor are limited.
 std::size_t most_coupled_directions(const Model& model);
 
 // Lists in correction.wanted the stiff directions of the contacts found at x.

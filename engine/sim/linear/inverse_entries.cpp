@@ -16,42 +16,55 @@ constexpr std::size_t line = 64 / sizeof(float);  // numbers of a cache line
 void InverseEntries::prepare(const CholeskyFactor& factor) {
   if (!to_root_.empty()) return;
   const PanelsView view = factor.view();
-  slot_of_.assign(factor.size(), -1);
+  place_of_.assign(factor.size(), {});
   to_root_.resize(view.panels);
+  tree_of_.resize(view.panels);
+  std::int32_t trees = 0;
   for (int panel = view.panels - 1; panel >= 0; --panel) {
     const std::int32_t parent = factor.parent_of(panel);
     to_root_[panel] = view.width[panel] + (parent >= 0 ? to_root_[parent] : 0);
+    tree_of_[panel] = parent >= 0 ? tree_of_[parent] : trees++;
   }
+  trees_.resize(trees);
 }
 
 void InverseEntries::learn(const CholeskyFactor& factor, const std::vector<std::int32_t>& unknowns, Threads* threads) {
   prepare(factor);
   fresh_.clear();
   for (const std::int32_t unknown : unknowns) {
-    if (slot_of_[unknown] < 0) fresh_.push_back(unknown);
+    if (place_of_[unknown].slot < 0) fresh_.push_back(unknown);
   }
   std::sort(fresh_.begin(), fresh_.end());
   fresh_.erase(std::unique(fresh_.begin(), fresh_.end()), fresh_.end());
   learn_columns(factor, threads);
-  asked_.clear();
-  for (const std::int32_t unknown : unknowns) asked_.push_back(slot_of_[unknown]);
-  std::sort(asked_.begin(), asked_.end());
-  asked_.erase(std::unique(asked_.begin(), asked_.end()), asked_.end());
-  if (std::includes(slots_.begin(), slots_.end(), asked_.begin(), asked_.end())) return;
-  slots_.swap(asked_);
+  for (Tree& tree : trees_) tree.asked.clear();
+  for (const std::int32_t unknown : unknowns) trees_[place_of_[unknown].tree].asked.push_back(place_of_[unknown].slot);
+  rows_.clear();
+  for (std::size_t t = 0; t < trees_.size(); ++t) {
+    Tree& tree = trees_[t];
+    std::sort(tree.asked.begin(), tree.asked.end());
+    tree.asked.erase(std::unique(tree.asked.begin(), tree.asked.end()), tree.asked.end());
+    if (std::includes(tree.slots.begin(), tree.slots.end(), tree.asked.begin(), tree.asked.end())) continue;
+    tree.slots.swap(tree.asked);
+    const int tiles = (static_cast<int>(tree.slots.size()) + product_tile - 1) / product_tile;
+    for (int row = 0; row < tiles; ++row) rows_.emplace_back(static_cast<std::int32_t>(t), row);
+  }
   learn_products(factor, threads);
 }
 
 void InverseEntries::learn_columns(const CholeskyFactor& factor, Threads* threads) {
   if (fresh_.empty()) return;
-  const std::size_t before = columns_.size();
-  columns_.resize(before + fresh_.size());
-  for (std::size_t k = 0; k < fresh_.size(); ++k) {
-    slot_of_[fresh_[k]] = static_cast<std::int32_t>(before + k);
-    columns_[before + k].panel = factor.panel_of(fresh_[k]);
-    stored_ += columns_[before + k].size = to_root_[columns_[before + k].panel];
+  for (const std::int32_t unknown : fresh_) {
+    const std::int32_t panel = factor.panel_of(unknown), tree = tree_of_[panel];
+    std::vector<Column>& columns = trees_[tree].columns;
+    place_of_[unknown] = {tree, static_cast<std::int32_t>(columns.size())};
+    columns.push_back({panel, to_root_[panel], {}});
+    stored_ += to_root_[panel] + std::ssize(columns);
   }
-  products_.resize(first_product(static_cast<std::int32_t>(columns_.size())), std::numeric_limits<float>::quiet_NaN());
+  for (Tree& tree : trees_) {
+    tree.products.resize(first_product(static_cast<std::int32_t>(tree.columns.size())),
+                         std::numeric_limits<float>::quiet_NaN());
+  }
   const bool single = factor.precision() == Precision::single_precision;
   const int batches = static_cast<int>((fresh_.size() + columns_together - 1) / columns_together);
   const int at_once = std::min(batches, threads != nullptr ? threads->count() : 1);
@@ -86,7 +99,8 @@ void InverseEntries::learn_together(const CholeskyFactor& factor, int first, int
     linear_kernels().down_many_double(view, part.data(), panels, x);
   }
   for (int k = 0; k < count; ++k) {
-    Column& column = columns_[slot_of_[unknowns[k]]];
+    const Place place = place_of_[unknowns[k]];
+    Column& column = trees_[place.tree].columns[place.slot];
     column.numbers.resize((std::size_t(column.size) + line - 1) / line * line);
     float* to = column.numbers.data() + column.numbers.size() - column.size;
     for (std::int32_t panel = column.panel; panel >= 0; panel = factor.parent_of(panel)) {
@@ -97,22 +111,24 @@ void InverseEntries::learn_together(const CholeskyFactor& factor, int first, int
 }
 
 void InverseEntries::learn_products(const CholeskyFactor& factor, Threads* threads) {
-  const int tiles = (static_cast<int>(slots_.size()) + product_tile - 1) / product_tile;
-  run_chunks(threads, tiles, long(tiles) * tiles * 100, [&](int row) {
-    for (int column = 0; column <= row; ++column) learn_tile(factor, row, column);
+  long tiles = 0;
+  for (const auto& [tree, row] : rows_) tiles += 2 * row + 1;
+  run_chunks(threads, static_cast<int>(rows_.size()), tiles * 100, [&](int k) {
+    const auto [tree, row] = rows_[k];
+    for (int column = 0; column <= row; ++column) learn_tile(factor, trees_[tree], row, column);
   });
 }
 
 // Computes the products between the slots of two tiles, unless they are known.
-void InverseEntries::learn_tile(const CholeskyFactor& factor, int row, int column) {
+void InverseEntries::learn_tile(const CholeskyFactor& factor, Tree& tree, int row, int column) const {
   const auto slot = [&](int tile, int i) -> const std::int32_t& {
-    return slots_[std::min<std::size_t>(std::size_t(tile) * product_tile + i, slots_.size() - 1)];
+    return tree.slots[std::min<std::size_t>(std::size_t(tile) * product_tile + i, tree.slots.size() - 1)];
   };
   bool known = true;
   for (int i = 0; i < product_tile; ++i) {
     for (int j = 0; j < product_tile; ++j) {
       const auto [low, high] = std::minmax(slot(row, i), slot(column, j));
-      known = known && !std::isnan(products_[first_product(high) + low]);
+      known = known && !std::isnan(tree.products[first_product(high) + low]);
     }
   }
   if (known) return;
@@ -120,11 +136,11 @@ void InverseEntries::learn_tile(const CholeskyFactor& factor, int row, int colum
   std::int32_t count[product_tile * product_tile];
   float products[product_tile * product_tile];
   for (int i = 0; i < product_tile; ++i) {
-    const Column& own = columns_[slot(row, i)];
+    const Column& own = tree.columns[slot(row, i)];
     a[i] = own.end();
-    b[i] = columns_[slot(column, i)].end();
+    b[i] = tree.columns[slot(column, i)].end();
     for (int j = 0; j < product_tile; ++j) {
-      const std::int32_t meeting = factor.meeting_of(own.panel, columns_[slot(column, j)].panel);
+      const std::int32_t meeting = factor.meeting_of(own.panel, tree.columns[slot(column, j)].panel);
       count[i * product_tile + j] = meeting >= 0 ? to_root_[meeting] : 0;
     }
   }
@@ -132,7 +148,7 @@ void InverseEntries::learn_tile(const CholeskyFactor& factor, int row, int colum
   for (int i = 0; i < product_tile; ++i) {
     for (int j = 0; j < product_tile; ++j) {
       const auto [low, high] = std::minmax(slot(row, i), slot(column, j));
-      products_[first_product(high) + low] = products[i * product_tile + j];
+      tree.products[first_product(high) + low] = products[i * product_tile + j];
     }
   }
 }

@@ -2,7 +2,9 @@
 // on its unknown's path to the root of the elimination tree (Davis 2006, "Direct methods for sparse linear systems",
 // section 3.2). Two paths are the same from where they meet, so that a product needs only the common ends of two
 // columns. Columns of neighbours, which share most of their paths, are computed together, so that L is read once for
-// many. The result depends on the factor alone: not on what was asked for before, nor on the number of threads.
+// many. Unknowns in different trees of the elimination forest, such as those of different bodies, have the entry 0,
+// which is neither computed nor stored. The result depends on the factor alone: not on what was asked for before, nor
+// on the number of threads.
 #pragma once
 
 #include <algorithm>
@@ -22,20 +24,31 @@ class InverseEntries {
 
   // Returns the entry of A^-1 for two unknowns that were learned in one call.
   float entry(std::int32_t a, std::int32_t b) const {
-    const auto [low, high] = std::minmax(slot_of_[a], slot_of_[b]);
-    return products_[first_product(high) + low];
+    const Place &of_a = place_of_[a], &of_b = place_of_[b];
+    if (of_a.tree != of_b.tree) return 0;
+    const auto [low, high] = std::minmax(of_a.slot, of_b.slot);
+    return trees_[of_a.tree].products[first_product(high) + low];
   }
 
   // Returns how many numbers are kept.
-  std::int64_t stored_numbers() const { return stored_ + static_cast<std::int64_t>(products_.size()); }
+  std::int64_t stored_numbers() const { return stored_; }
   void clear() { *this = {}; }
 
  private:
+  struct Place {
+    std::int32_t tree = 0;
+    std::int32_t slot = -1;  // in the tree; -1: not known
+  };
   struct Column {
     std::int32_t panel;            // panel of the column's unknown
     std::int32_t size;             // numbers from the panel's first unknown to the root's last one
     AlignedVector<float> numbers;  // the numbers of the column, at the end of whole cache lines
     const float* end() const { return numbers.data() + numbers.size(); }
+  };
+  struct Tree {
+    std::vector<Column> columns;             // by slot
+    std::vector<float> products;             // by slot and earlier slot or itself; NaN: not known
+    std::vector<std::int32_t> slots, asked;  // slots of the last calls, ascending: products of `slots` are known
   };
   static std::size_t first_product(std::int32_t slot) { return std::size_t(slot) * (slot + 1) / 2; }
   void prepare(const CholeskyFactor& factor);
@@ -43,16 +56,16 @@ class InverseEntries {
   template <class T>
   void learn_together(const CholeskyFactor& factor, int first, int count, void* room);
   void learn_products(const CholeskyFactor& factor, Threads* threads);
-  void learn_tile(const CholeskyFactor& factor, int row, int column);
+  void learn_tile(const CholeskyFactor& factor, Tree& tree, int row, int column) const;
 
-  std::vector<std::int32_t> slot_of_;  // by unknown; -1: not known
+  std::vector<std::int32_t> tree_of_;  // by panel
+  std::vector<Place> place_of_;        // by unknown
   std::vector<std::int32_t> to_root_;  // by panel: unknowns on the path from it to the root
-  std::vector<Column> columns_;        // by slot
-  std::vector<float> products_;        // by slot and earlier slot or itself; NaN: not known
-  std::vector<std::int32_t> slots_;    // slots of the last call, ascending: their products are known
+  std::vector<Tree> trees_;
   std::int64_t stored_ = 0;
   // Scratch memory
-  std::vector<std::int32_t> fresh_, asked_;
+  std::vector<std::int32_t> fresh_;
+  std::vector<std::pair<std::int32_t, int>> rows_;  // trees with new products, and their rows of tiles
   std::vector<AlignedVector<double>> rooms_;
 };
 

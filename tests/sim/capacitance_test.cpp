@@ -1,0 +1,367 @@
+// Tests the small system of stiff directions against dense matrices, for models of one part and of several.
+#include "sim/contact/capacitance.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <numeric>
+#include <random>
+
+#include "support/sparse_matrices.h"
+
+namespace supple {
+namespace capacitance_test {
+
+using Directions = std::vector<StiffDirection>;
+using Random = std::mt19937;
+
+// Holds a matrix with a block for each part, as that of a joined model, and the inverse of the matrix.
+struct Bodies {
+  System system;
+  std::vector<Part> parts;
+  Eigen::MatrixXd inverse;
+  std::vector<int> first_column{0};  // of coarse motions, by part
+
+  Bodies(int count, int size) {
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int p = 0; p < count; ++p) {
+      const int first = p * size;
+      const test::Sparse block = test::random_matrix(size, 3, static_cast<unsigned>(p + 1));
+      for (int column = 0; column < size; ++column) {
+        for (test::Sparse::InnerIterator at(block, column); at; ++at)
+          entries.emplace_back(first + static_cast<int>(at.row()), first + column, at.value());
+        if (column > 0) entries.emplace_back(first + column, first + column - 1, 0.01);
+      }
+      Part part;
+      part.first_free = first;
+      part.free = size;
+      parts.push_back(part);
+      first_column.push_back(first_column.back() + (p % 3 == 1 ? 0 : 4));
+    }
+    system.id = 1;
+    system.matrix.resize(count * size, count * size);
+    system.matrix.setFromTriplets(entries.begin(), entries.end());
+    system.factor.factorize(system.matrix, Precision::double_precision);
+    inverse = test::dense(system.matrix).inverse();
+  }
+  int part_of(std::int32_t vertex) const { return vertex / parts[0].free; }
+};
+
+Vec3 random_axis(Random& random) {
+  std::normal_distribution<double> number;
+  return Vec3(number(random), number(random), number(random)).normalized();
+}
+
+// Makes a direction of a vertex of one part, and of a triangle of another one, if that is another one.
+StiffDirection random_direction(const Bodies& bodies, int part, int other, const Vec3& axis, Random& random) {
+  const auto vertex_of = [&](int p) {
+    const Part& of = bodies.parts[p];
+    return of.first_free + static_cast<std::int32_t>(random() % static_cast<unsigned>(of.free - 2));
+  };
+  std::uniform_real_distribution<double> between(0.5, 2);
+  const double stiffness = between(random) / bodies.inverse.diagonal().mean();
+  const std::int32_t vertex = vertex_of(part), corner = vertex_of(other);
+  if (part == other) return {ContactStencil::at_vertex(vertex), axis, stiffness};
+  ContactStencil stencil;
+  stencil.count = stencil.free = 4;
+  if (vertex < corner) {
+    stencil.vertex = {vertex, corner, corner + 1, corner + 2};
+    stencil.weight = {1, -0.5, -0.3, -0.2};
+  } else {
+    stencil.vertex = {corner, corner + 1, corner + 2, vertex};
+    stencil.weight = {-0.5, -0.3, -0.2, 1};
+  }
+  return {stencil, axis, stiffness};
+}
+
+// Makes directions of neighbours in a ring of parts, of some that are further from each other, and of parts alone. Each
+// place has three directions. axes: those that occur, or none for axes of any direction.
+Directions random_directions(const Bodies& bodies, int places, const std::vector<Vec3>& axes, unsigned seed) {
+  Random random(seed);
+  const int count = static_cast<int>(bodies.parts.size());
+  Directions all;
+  for (int i = 0; i < places; ++i) {
+    const int part = static_cast<int>(random() % static_cast<unsigned>(count));
+    const int step = i % 7 == 0 ? 3 : i % 2;
+    StiffDirection made = random_direction(bodies, part, (part + step) % count, Vec3::UnitX(), random);
+    for (std::size_t k = 0; k < 3; ++k) {
+      made.axis = axes.empty() ? random_axis(random) : axes[k % axes.size()];
+      all.push_back(made);
+    }
+  }
+  return all;
+}
+
+Directions sorted(Directions directions) {
+  std::stable_sort(directions.begin(), directions.end(), [](const StiffDirection& a, const StiffDirection& b) {
+    return a.stencil.vertex[0] < b.stencil.vertex[0];
+  });
+  return directions;
+}
+
+// Leaves out each direction with some probability.
+Directions some_of(const Directions& all, double share, Random& random) {
+  Directions some;
+  for (const StiffDirection& direction : all) {
+    if (static_cast<double>(random() % 1000) < 1000 * share) some.push_back(direction);
+  }
+  return sorted(some);
+}
+
+Eigen::MatrixXd dense_matrix(const Bodies& bodies, const Directions& directions) {
+  const auto n = std::ssize(directions);
+  Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(bodies.inverse.rows(), n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const ContactStencil& stencil = directions[i].stencil;
+    for (int k = 0; k < stencil.free; ++k) weights(stencil.vertex[k], i) += stencil.weight[k];
+  }
+  Eigen::MatrixXd matrix = weights.transpose() * bodies.inverse * weights;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) matrix(i, j) *= directions[i].axis.dot(directions[j].axis);
+    matrix(i, i) += 1 / directions[i].stiffness;
+  }
+  return matrix;
+}
+
+// Writes what a direction is on the coarse motions: any numbers, which belong to the direction and the pose.
+void find_row(const Bodies& bodies, double pose, const StiffDirection& s, float* row) {
+  std::fill_n(row, bodies.first_column.back(), 0.0f);
+  for (int k = 0; k < s.stencil.free; ++k) {
+    const int part = bodies.part_of(s.stencil.vertex[k]);
+    for (int c = bodies.first_column[part]; c < bodies.first_column[part + 1]; ++c)
+      row[c] += static_cast<float>(s.stencil.weight[k] * std::sin(pose + s.stencil.vertex[k] + 3.0 * c * s.axis.x()));
+  }
+}
+
+bool know_rows(const Bodies& bodies, std::uint64_t pose, Capacitance& system, Threads* threads = nullptr) {
+  const auto find = [&](const StiffDirection& s, float* row) { find_row(bodies, static_cast<double>(pose), s, row); };
+  return system.know_rows(pose, bodies.first_column, find, threads);
+}
+
+Eigen::VectorXf solved(const Capacitance& system) {
+  Eigen::VectorXf answer(std::ssize(system.directions()));
+  for (Eigen::Index i = 0; i < answer.size(); ++i) answer[i] = std::sin(1.0f + 2.0f * static_cast<float>(i));
+  system.solve(answer);
+  return answer;
+}
+
+void expect_dense(const Bodies& bodies, const Capacitance& system) {
+  const Eigen::MatrixXd matrix = dense_matrix(bodies, system.directions());
+  Eigen::VectorXd wanted(matrix.rows());
+  for (Eigen::Index i = 0; i < wanted.size(); ++i) wanted[i] = std::sin(1.0f + 2.0f * static_cast<float>(i));
+  wanted = matrix.llt().solve(wanted);
+  EXPECT_LT((solved(system).cast<double>() - wanted).norm(), 2e-5 * wanted.norm());
+}
+
+void expect_dense_product(const Bodies& bodies, std::uint64_t pose, const Capacitance& system) {
+  Capacitance::RowMatrix rows(std::ssize(system.directions()), bodies.first_column.back());
+  for (Eigen::Index i = 0; i < rows.rows(); ++i)
+    find_row(bodies, static_cast<double>(pose), system.directions()[i], rows.row(i).data());
+  EXPECT_EQ(system.rows().topRows(rows.rows()), rows);
+  const Eigen::MatrixXd w = rows.cast<double>();
+  const Eigen::MatrixXd wanted = w.transpose() * dense_matrix(bodies, system.directions()).llt().solve(w);
+  ASSERT_EQ(system.between().rows(), wanted.rows());
+  EXPECT_LT((system.between() - wanted).norm(), 2e-5 * wanted.norm());
+}
+
+const std::vector<Vec3> world_axes = {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+
+// The groups of directions of eight parts come and go, grow and shrink. Two threads make the same bits as one.
+TEST(Capacitance, IsThatOfTheDenseSystemWhateverComesAndGoes) {
+  const Bodies bodies(8, 30);
+  for (const std::vector<Vec3>& axes : {std::vector<Vec3>(), world_axes, {Vec3::UnitX(), Vec3(0.6, 0.8, 0)}}) {
+    const Directions all = random_directions(bodies, 70, axes, 1);
+    Random random(2);
+    Threads two(2);
+    Capacitance system, by_two;
+    system.begin_step(bodies.system, bodies.parts);
+    by_two.begin_step(bodies.system, bodies.parts);
+    for (int round = 0; round < 16; ++round) {
+      const Directions wanted = some_of(all, round % 5 == 0 ? 0.1 : round % 5 == 1 ? 0.97 : 0.6, random);
+      ASSERT_TRUE(system.set(bodies.system, wanted, nullptr));
+      ASSERT_TRUE(by_two.set(bodies.system, wanted, &two));
+      EXPECT_EQ(system.directions().size(), wanted.size());
+      expect_dense(bodies, system);
+      const std::uint64_t pose = 1 + static_cast<std::uint64_t>(round) / 4;
+      if (round % 3 > 0) {
+        EXPECT_TRUE(know_rows(bodies, pose, system));
+        EXPECT_TRUE(know_rows(bodies, pose, by_two, &two));
+        expect_dense_product(bodies, pose, system);
+      }
+      // Few and many directions are appended, in one call or in two.
+      bool any = false;
+      for (int call = 0; call < 1 + round % 2; ++call) {
+        const Directions made = random_directions(bodies, round % 4 == 3 ? 60 : 8, axes, 10u * round + call);
+        const Directions more = some_of(made, 0.7, random);
+        any |= !more.empty();
+        ASSERT_TRUE(system.append(bodies.system, more, nullptr));
+        ASSERT_TRUE(by_two.append(bodies.system, more, &two));
+        expect_dense(bodies, system);
+      }
+      EXPECT_EQ(know_rows(bodies, pose, system), round % 3 == 0 || any);
+      EXPECT_FALSE(know_rows(bodies, pose, system));
+      expect_dense_product(bodies, pose, system);
+      know_rows(bodies, pose, by_two, &two);
+      EXPECT_EQ(solved(system), solved(by_two));
+      EXPECT_EQ(system.between(), by_two.between());
+    }
+  }
+}
+
+TEST(Capacitance, JoinsListsThatANewDirectionCouples) {
+  const Bodies bodies(5, 30);
+  Capacitance system;
+  system.begin_step(bodies.system, bodies.parts);
+  ASSERT_TRUE(system.set(bodies.system, sorted(random_directions(bodies, 40, world_axes, 3)), nullptr));
+  know_rows(bodies, 1, system);
+  ASSERT_TRUE(system.append(bodies.system, random_directions(bodies, 1, {Vec3(0.6, 0, 0.8)}, 4), nullptr));
+  EXPECT_TRUE(know_rows(bodies, 1, system));
+  expect_dense(bodies, system);
+  expect_dense_product(bodies, 1, system);
+}
+
+// Groups that go leave nothing in the products of those that stay.
+TEST(Capacitance, ForgetsGroupsThatHaveGone) {
+  const Bodies bodies(6, 30);
+  const Directions all = sorted(random_directions(bodies, 40, {}, 5));
+  for (int gone = 0; gone < 6; ++gone) {
+    Capacitance system;
+    system.begin_step(bodies.system, bodies.parts);
+    ASSERT_TRUE(system.set(bodies.system, all, nullptr));
+    know_rows(bodies, 1, system);
+    Directions left;
+    for (const StiffDirection& s : all) {
+      if (bodies.part_of(s.stencil.vertex[0]) != gone) left.push_back(s);
+    }
+    ASSERT_LT(left.size(), all.size());
+    ASSERT_TRUE(system.set(bodies.system, left, nullptr));
+    expect_dense(bodies, system);
+    EXPECT_TRUE(know_rows(bodies, 1, system));
+    expect_dense_product(bodies, 1, system);
+  }
+}
+
+// Memory that is left from larger groups must not change the order of any sum. Many groups are as small as the products
+// that Eigen computes in another way than large ones.
+TEST(Capacitance, OfAStepDoesNotDependOnEarlierSteps) {
+  const Bodies bodies(8, 30);
+  const Directions earlier = sorted(random_directions(bodies, 80, {}, 6));
+  for (unsigned seed = 7; seed < 27; ++seed) {
+    const Directions all = random_directions(bodies, seed % 2 == 0 ? 50 : 20, {}, seed);
+    Capacitance used, fresh;
+    used.begin_step(bodies.system, bodies.parts);
+    ASSERT_TRUE(used.set(bodies.system, earlier, nullptr));
+    know_rows(bodies, 1, used);
+    std::vector<Eigen::VectorXf> answers;
+    std::vector<Eigen::MatrixXd> products;
+    for (Capacitance* system : {&used, &fresh}) {
+      system->begin_step(bodies.system, bodies.parts);
+      for (int round = 0; round < 4; ++round) {
+        const Directions wanted = sorted(Directions(all.begin(), all.end() - 3 * (3 - round)));
+        ASSERT_TRUE(system->set(bodies.system, wanted, nullptr));
+        know_rows(bodies, 2, *system);
+        ASSERT_TRUE(system->append(bodies.system, random_directions(bodies, 3, {}, 100 + seed), nullptr));
+        know_rows(bodies, 2, *system);
+        answers.push_back(solved(*system));
+        products.push_back(system->between());
+      }
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_EQ(answers[k], answers[k + 4]) << seed << " " << k;
+      EXPECT_EQ(products[k], products[k + 4]) << seed << " " << k;
+    }
+  }
+}
+
+// The dense factor of one list of directions, which keeps what belongs to the first directions and grows at its end.
+struct DenseFactor {
+  Capacitance::RowMatrix lower, seen;
+  Eigen::MatrixXf product;
+  Eigen::Index factored = 0, summed = 0;
+
+  void extend(const Bodies& bodies, const Capacitance& system, Eigen::Index kept) {
+    const Directions& all = system.directions();
+    const auto n = std::ssize(all), first = std::min(factored, kept), more = n - first;
+    InverseEntries entries;
+    std::vector<std::int32_t> vertices;
+    for (const StiffDirection& s : all) vertices.push_back(s.stencil.vertex[0]);
+    entries.learn(bodies.system.factor, vertices, nullptr);
+    lower.conservativeResize(n, n);
+    for (Eigen::Index i = first; i < n; ++i) {
+      for (Eigen::Index j = 0; j <= i; ++j)
+        lower(i, j) = static_cast<float>(all[i].axis.dot(all[j].axis)) * entries.entry(vertices[i], vertices[j]);
+      lower(i, i) += static_cast<float>(1 / all[i].stiffness);
+    }
+    auto below = lower.block(first, 0, more, first);
+    auto corner = lower.block(first, first, more, more);
+    if (first > 0) {
+      auto right = below.transpose();
+      lower.topLeftCorner(first, first).triangularView<Eigen::Lower>().solveInPlace(right);
+      corner.selfadjointView<Eigen::Lower>().rankUpdate(below, -1);
+    }
+    const Eigen::LLT<Eigen::Ref<Capacitance::RowMatrix>> done(corner);
+    const auto r = system.rows().cols();
+    seen.conservativeResize(n, r);
+    auto added = seen.middleRows(first, more);
+    added = system.rows().middleRows(first, more);
+    if (first > 0) added.noalias() -= below * seen.topRows(first);
+    corner.triangularView<Eigen::Lower>().solveInPlace(added);
+    if (summed > kept) summed = 0;
+    if (summed == 0) product.setZero(r, r);
+    product.selfadjointView<Eigen::Lower>().rankUpdate(seen.middleRows(summed, n - summed).transpose());
+    factored = summed = n;
+  }
+  Eigen::VectorXf solve(Eigen::VectorXf answer) const {
+    lower.triangularView<Eigen::Lower>().solveInPlace(answer);
+    lower.triangularView<Eigen::Lower>().transpose().solveInPlace(answer);
+    return answer;
+  }
+};
+
+TEST(Capacitance, OfOnePartHasTheBitsOfADenseFactor) {
+  const Bodies bodies(1, 80);
+  const Directions all = sorted(random_directions(bodies, 60, {}, 9));
+  Capacitance system;
+  system.begin_step(bodies.system, bodies.parts);
+  DenseFactor dense;
+  const auto expect_same = [&](Eigen::Index kept) {
+    know_rows(bodies, 1, system);
+    dense.extend(bodies, system, kept);
+    Eigen::VectorXf right(std::ssize(system.directions()));
+    for (Eigen::Index i = 0; i < right.size(); ++i) right[i] = std::sin(1.0f + 2.0f * static_cast<float>(i));
+    EXPECT_EQ(solved(system), dense.solve(right));
+    const Eigen::MatrixXd product = dense.product.cast<double>();
+    EXPECT_EQ(Eigen::MatrixXd(system.between().triangularView<Eigen::Lower>()),
+              Eigen::MatrixXd(product.triangularView<Eigen::Lower>()));
+  };
+  ASSERT_TRUE(system.set(bodies.system, Directions(all.begin(), all.begin() + 120), nullptr));
+  expect_same(0);
+  ASSERT_TRUE(system.append(bodies.system, Directions(all.begin() + 120, all.begin() + 140), nullptr));
+  expect_same(120);
+  Directions fewer = all;
+  fewer.erase(fewer.begin() + 90, fewer.begin() + 96);
+  ASSERT_TRUE(system.set(bodies.system, fewer, nullptr));
+  expect_same(90);
+}
+
+TEST(BlockPattern, OfAChainOfPartsHasWorkThatGrowsWithItsLength) {
+  const auto operations = [](int links) {
+    std::vector<GroupKey> keys;
+    for (int k = 0; k < links; ++k) {
+      keys.push_back({k, k + 1, -1, -1});
+      keys.push_back({k, -1, -1, -1});
+    }
+    return factor_operations(keys, std::vector<Eigen::Index>(keys.size(), 30));
+  };
+  EXPECT_LT(operations(400), 2.1 * operations(200));
+}
+
+TEST(BlockPattern, HasABlockWhereAnEarlierColumnActs) {
+  // A ring of four parts: what is left when the first pair has gone is a triangle.
+  const std::vector<GroupKey> ring = {{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 3, -1, -1}, {0, 3, -1, -1}};
+  const std::vector<std::vector<int>> below = {{1, 3}, {2, 3}, {3}, {}};
+  EXPECT_EQ(blocks_below(ring), below);
+}
+
+}  // namespace capacitance_test
+}  // namespace supple
