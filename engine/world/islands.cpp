@@ -70,6 +70,7 @@ struct Islands::Together {
   std::unique_ptr<SearchRule> rule;
   Workspace workspace;
   State state;
+  StepInputs inputs;  // of the last step
 
   Together(const std::vector<const Model*>& models, Threads* threads) : model(join(models)), workspace(threads) {
     for (const Model* of : models) members.push_back(of->id);
@@ -246,7 +247,8 @@ void Islands::note_touches(const std::vector<std::size_t>& island, const Model& 
 int Islands::step(const std::vector<std::size_t>& island) {
   Together& all = together(island);
   const Model& model = all.model;
-  const StepInputs inputs = inputs_of(island, model);
+  const StepInputs& inputs = all.inputs = inputs_of(island, model);
+  last_step_ = {island, &model, &inputs};
   State& state = all.state;
   state = {};
   state.x.resize(model.vertices, 3);

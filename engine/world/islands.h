@@ -21,6 +21,13 @@ struct BodyTouch {
   Vec3 force = Vec3::Zero();  // of a on b [N]
 };
 
+// Names the step of an island that was made last, for those who repeat it. It holds until the next step is made.
+struct JoinedStep {
+  std::vector<std::size_t> bodies;     // the parts of the model, in their order
+  const Model* model = nullptr;        // the joined one; null: no island has made a step
+  const StepInputs* inputs = nullptr;  // of the step
+};
+
 class Islands {
  public:
   // All that is passed must outlive this object. bodies: those of the scene, in its order.
@@ -34,6 +41,9 @@ class Islands {
 
   // Returns the touches of the steps that were made since find(), ordered by body.
   const std::vector<BodyTouch>& touches() const { return touches_; }
+
+  // Returns the step that step() made last.
+  const JoinedStep& last_step() const { return last_step_; }
 
   // Makes the step of an island of several bodies. Returns the body whose step failed, or -1; then no state changes.
   int step(const std::vector<std::size_t>& island);
@@ -56,6 +66,7 @@ class Islands {
   Threads* threads_;
   std::vector<Way> ways_;  // by body
   std::vector<BodyTouch> touches_;
+  JoinedStep last_step_;
   std::vector<std::unique_ptr<Together>> together_;  // of the last steps, the latest used first
 };
 
