@@ -1,5 +1,6 @@
 #include "app/solvers.h"
 
+#include "baselines/joined_reference.h"
 #include "baselines/make_rule.h"
 #include "baselines/reference.h"
 
@@ -14,7 +15,7 @@ class ReferenceMeter : public ErrorMeter {
   MeasuredErrors step_errors(const Model& model, const StepInputs& inputs, const State& before,
                              const State& after) override {
     const auto [error, motion] = reference_.step_errors(model, inputs, before, after, workspace_);
-    return {error, motion};
+    return {error, motion, true};
   }
 
  private:
@@ -22,11 +23,22 @@ class ReferenceMeter : public ErrorMeter {
   OpenWorkspace workspace_;
 };
 
+std::vector<MeasuredErrors> errors_of_parts(const Model& joined, const StepInputs& inputs, const State& before,
+                                            const State& after, Threads& threads) {
+  OpenWorkspace workspace;
+  workspace.threads = &threads;
+  const JoinedErrors errors = joined_errors(joined, inputs, before, after, workspace);
+  std::vector<MeasuredErrors> list;
+  for (const double motion : errors.motion) list.push_back({errors.error, motion, errors.converged});
+  return list;
+}
+
 }  // namespace
 
 FilmSolvers all_solvers() {
   return {{make_rule, settings_of},
-          [](const Model& model, Threads& threads) { return std::make_unique<ReferenceMeter>(model, threads); }};
+          [](const Model& model, Threads& threads) { return std::make_unique<ReferenceMeter>(model, threads); },
+          errors_of_parts};
 }
 
 }  // namespace supple

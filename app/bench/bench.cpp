@@ -65,7 +65,8 @@ constexpr auto sections_by_name = std::to_array<NamedSection>({
     {"scenes", bench_scenes},     {"profiles", bench_profiles}, {"minima", bench_minima},
     {"sweeps", bench_sweeps},     {"substeps", bench_substeps}, {"hanging", bench_hanging},
     {"turning", bench_turning},   {"ablation", bench_ablation}, {"contact", bench_contact},
-    {"matrix", bench_matrix},     {"scaling", bench_scaling},   {"roofline", bench_roofline},
+    {"touching", bench_touching}, {"matrix", bench_matrix},     {"scaling", bench_scaling},
+    {"roofline", bench_roofline},
 });
 static_assert(std::ranges::equal(sections_by_name, benchmark_names, {}, &NamedSection::name, &BenchmarkName::name),
               "every benchmark that is offered has a section, in the same order");

@@ -34,6 +34,7 @@ inline constexpr std::array benchmark_names = {
     BenchmarkName{"turning", "stiff bodies that roll, topple, swing and spin, against their solved motion", 2},
     BenchmarkName{"ablation", "from the published settings to ours", 0.3},
     BenchmarkName{"contact", "contact three ways", 0.5},
+    BenchmarkName{"touching", "bodies that meet: oracles, cost, error", 15},
     BenchmarkName{"matrix", "what directions start from, beside the paper's", 8},
     BenchmarkName{"scaling", "milliseconds and bytes against vertices", 3},
     BenchmarkName{"roofline", "bytes and operations by stage", 0.5},

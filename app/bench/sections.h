@@ -38,6 +38,8 @@ ReportSection bench_turning(const BenchSetting& setting);
 // engineering.cpp
 ReportSection bench_ablation(const BenchSetting& setting);
 ReportSection bench_contact(const BenchSetting& setting);
+// touching.cpp
+ReportSection bench_touching(const BenchSetting& setting);
 // matrix.cpp
 ReportSection bench_matrix(const BenchSetting& setting);
 // scaling.cpp

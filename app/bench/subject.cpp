@@ -57,6 +57,14 @@ BenchState read_snapshot(const Subject& subject, int frame, const std::filesyste
 
 }  // namespace
 
+SceneDef scene_of_text(const std::string& text, const std::string& name, const std::vector<std::string>& settings) {
+  Config config = Config::parse(text, name, assets_folder());
+  for (const std::string& setting : settings) config.set(setting, exclusive_keys());
+  SceneDef scene = read_scene(config);
+  config.finish();
+  return scene;
+}
+
 Solvers scenes_own_solver() { return {make_rule, settings_of}; }
 
 std::string text_of(const DirectionStart& start) {

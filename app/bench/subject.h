@@ -27,6 +27,9 @@ struct DirectionStart {
 };
 std::string text_of(const DirectionStart& start);  // "system, two levels"
 
+// Returns the scene of a text that a section has written, with "path=value" settings. name: what messages call it.
+SceneDef scene_of_text(const std::string& text, const std::string& name, const std::vector<std::string>& settings = {});
+
 // These functions return the solver that a scene names, or another solver in its place.
 Solvers scenes_own_solver();
 Solvers solver_instead(Method method, int iterations, DirectionStart start = {});

@@ -7,9 +7,7 @@
 
 #include "app/bench/sections.h"
 #include "base/interrupts.h"
-#include "film/plan/shipped_files.h"
 #include "scene/building/collision_set.h"
-#include "scene/reading/scene_reader.h"
 
 namespace supple {
 namespace {
@@ -20,14 +18,6 @@ std::vector<std::string> paper_settings() { return {"solver.levels=1"}; }
 std::vector<std::string> solved_settings() { return {"solver.iterations=200"}; }
 std::vector<std::string> settings_again() { return {"solver.iterations=400"}; }
 
-SceneDef scene_of(const std::string& text, const std::vector<std::string>& settings) {
-  Config config = Config::parse(text, "turning body", assets_folder());
-  for (const std::string& setting : settings) config.set(setting, exclusive_keys());
-  SceneDef scene = read_scene(config);
-  config.finish();
-  return scene;
-}
-
 State spun(const Model& model, State state, const Vec3& spin) {
   const Vec3 center = mass_mean(model, state.x);
   for (int v = 0; v < model.vertices; ++v)
@@ -37,7 +27,7 @@ State spun(const Model& model, State state, const Vec3& spin) {
 
 TurningFilm play(const TurningCase& turning, const std::vector<std::string>& settings, Threads& threads) {
   if (interrupted()) throw BenchInterrupted{};
-  const SceneDef scene = scene_of(turning.scene, settings);
+  const SceneDef scene = scene_of_text(turning.scene, "turning body", settings);
   World world(scene, assemble(scene));
   world.start(scenes_own_solver(), &threads);
   MovingBody& body = world.body(0);

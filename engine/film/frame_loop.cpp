@@ -134,6 +134,7 @@ FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
       graphs_(plan.pictures != FilmPictures::none &&
               (world_.scene().text.error_graph || world_.scene().text.time_graph)),
       verifier_(start.verifier ? &*start.verifier : nullptr),
+      errors_(film.world, solvers, threads_),
       pairs_(film.world, log.whole_rows()) {
   if (plan.pictures != FilmPictures::none) {
     drawn_.emplace(world_.script(), world_.bodies(), std::move(film.drawn), world_.colliders(), caption_font());
@@ -144,7 +145,7 @@ FrameLoop::FrameLoop(const FilmPlan& plan, LoadedFilm& film, FilmStart& start, c
   if (graphs_) log_.whole_rows().each([&](const FrameRow& row) { graphed_.push_back(graph_point(row)); });
   world_.start(solvers.steps, &threads_);
   for (std::size_t b = 0; b < world_.size(); ++b) {
-    recorders_.push_back(std::make_unique<BodyRecorder>(world_, b, folder, solvers, threads_, first_));
+    recorders_.push_back(std::make_unique<BodyRecorder>(world_, b, folder, errors_, first_));
     if (!start.repeated.empty()) recorders_.back()->repeat(start.repeated[b]);
   }
   const std::size_t colliders = world_.colliders().scene_colliders.size();

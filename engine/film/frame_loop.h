@@ -62,6 +62,7 @@ class FrameLoop {
   WorldState checkpoint_before_;        // taken before the frame in progress; empty when the film keeps none
   std::optional<DrawnFilm> drawn_;      // only with pictures
   std::vector<Positions> last_motion_;  // of the bodies at the end of the last frame, where the pictures need it [m]
+  WorldErrors errors_;                  // measures steps where the plan asks for it
   std::vector<std::unique_ptr<BodyRecorder>> recorders_;  // of each body
   PairRecorder pairs_;                                    // notes the pairs of bodies that touch
   std::optional<PoseTableWriter> poses_;                  // only with colliders

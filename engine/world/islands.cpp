@@ -72,6 +72,7 @@ struct Islands::Together {
   std::unique_ptr<SearchRule> rule;
   Workspace workspace;
   State state;
+  StepInputs inputs;  // of the last step
 
   Together(const std::vector<const Model*>& models, Threads* threads) : model(join(models)), workspace(threads) {
     for (const Model* of : models) members.push_back(of->id);
@@ -338,7 +339,8 @@ int Islands::step_once(const std::vector<std::size_t>& island, const Selves& sel
 int Islands::step_together(const std::vector<std::size_t>& island, const Selves& selves) {
   Together& all = together(island);
   const Model& model = all.model;
-  const StepInputs inputs = inputs_of(island, selves, model);
+  const StepInputs& inputs = all.inputs = inputs_of(island, selves, model);
+  last_step_ = {island, &model, &inputs};
   State& state = all.state;
   state = {};
   state.x.resize(model.vertices, 3);

@@ -25,6 +25,13 @@ struct BodyTouch {
   Vec3 force = Vec3::Zero();  // of a on b [N]
 };
 
+// Names the step of an island that was made last, for those who repeat it. It holds until the next step is made.
+struct JoinedStep {
+  std::vector<std::size_t> bodies;     // the parts of the model, in their order
+  const Model* model = nullptr;        // the joined one; null: no island has made a step
+  const StepInputs* inputs = nullptr;  // of the step
+};
+
 class Islands {
  public:
   // All that is passed must outlive this object. bodies: those of the scene, in its order.
@@ -38,6 +45,9 @@ class Islands {
 
   // Returns the touches of the steps that were made since find(), ordered by body.
   const std::vector<BodyTouch>& touches() const { return touches_; }
+
+  // Returns the step that several bodies, or one that touches itself, made last.
+  const JoinedStep& last_step() const { return last_step_; }
 
   // Makes the step of an island. Returns the body whose step failed, or -1; if one failed, no state changes.
   int step(const std::vector<std::size_t>& island);
@@ -69,6 +79,7 @@ class Islands {
   std::vector<Way> ways_;  // by body
   std::vector<Own> owns_;  // by body
   std::vector<BodyTouch> touches_;
+  JoinedStep last_step_;
   std::vector<std::unique_ptr<Together>> together_;  // of the last steps, the latest used first
 };
 

@@ -62,6 +62,7 @@ const SceneDef& World::scene() const { return parts_->scene; }
 const std::vector<Body>& World::bodies() const { return parts_->bodies; }
 const CollisionSet& World::colliders() const { return parts_->colliders; }
 const std::vector<BodyTouch>& World::touches() const { return parts_->islands->touches(); }
+const JoinedStep& World::joined_step() const { return parts_->islands->last_step(); }
 std::size_t World::size() const { return parts_->bodies.size(); }
 MovingBody& World::body(std::size_t index) { return *parts_->moving.at(index); }
 const MovingBody& World::body(std::size_t index) const { return *parts_->moving.at(index); }

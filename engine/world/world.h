@@ -74,6 +74,9 @@ class World {
 
   // Returns how bodies touched each other at the end of the step that was made last, ordered by body.
   const std::vector<BodyTouch>& touches() const;
+  // Returns the last step that bodies made together. Where MovingBody::is_in_island() holds for a body whose step was
+  // just made, it is the step of that body.
+  const JoinedStep& joined_step() const;
 
   std::size_t size() const;  // number of bodies
   MovingBody& body(std::size_t index);

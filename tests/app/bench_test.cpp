@@ -1,6 +1,7 @@
 // Tests the parts of `supple bench`, and the program itself on its shortest benchmark.
 #include "app/bench/sections.h"
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -10,6 +11,7 @@
 #include <limits>
 
 #include "app/bench/section_file.h"
+#include "app/bench/touching_film.h"
 #include "support/bodies.h"
 #include "support/places.h"
 #include "support/program.h"
@@ -98,6 +100,31 @@ TEST(Bench, SectionsSurviveTheirFiles) {
   EXPECT_TRUE(back->plots[0].series[0].thick);
   EXPECT_FALSE(read_section(folder.path / "s.json", "another machine"));
   EXPECT_FALSE(read_section(folder.path / "none.json", "this machine"));
+}
+
+TEST(Bench, FilmsOfTouchingBodiesCountAStepOfSeveralBodiesOnce) {
+  const auto cube = [](const char* name, double x) {
+    return fmt::format(
+        "[[body]]\nname = \"{}\"\nbox = {{ extent = [0.2, 0.2, 0.2], cells = [3, 3, 3] }}\nmaterial = \"rubber\"\n"
+        "position = [{:g}, 0, 0]\nvelocity = [{:g}, 0, 0]\n",
+        name, x, -4 * x);
+  };
+  Threads threads(1);
+  TouchingFilm film("gravity = [0, 0, 0]\n" + cube("left", -0.11) + cube("right", 0.11), threads);
+  const double before = film.momentum(0).norm();
+  ASSERT_TRUE(film.play());
+  EXPECT_EQ(film.work().largest_island, 2u);
+  EXPECT_EQ(film.work().iterations, film.world().body(0).report().iterations);
+  EXPECT_GT(film.work().iterations, 0);
+  EXPECT_LT(film.momentum().norm(), 1e-12 * before);
+  EXPECT_EQ(film.frames(), 1);
+}
+
+TEST(Bench, RanksAreTheNearestOnes) {
+  EXPECT_EQ(rank_of({3, 1, 2, 4}, 0.5), 2);
+  EXPECT_EQ(rank_of({3, 1, 2, 4}, 0.99), 4);
+  EXPECT_EQ(rank_of({3, 1, 2, 4}, 1), 4);
+  EXPECT_TRUE(std::isnan(rank_of({}, 0.5)));
 }
 
 // Both methods run at the default ten iterations, with the default delay and radius.

@@ -81,6 +81,27 @@ TEST_F(TouchingBodies, HaveRowsInTheFramesInWhichTheyTouch) {
   EXPECT_NE(result.out.find("body          other body      penetration  at frame"), std::string::npos) << result.out;
 }
 
+TEST_F(TouchingBodies, HaveMeasuredErrorsThatChangeNoBits) {
+  const std::string scene =
+      "frames = 6\n" + cube("lower", "") + cube("upper", "position = [0.02, 0.25, 0.03]") + ground;
+  const auto hashes = [this] {
+    std::vector<std::string> list;
+    for (const json& frame : profile()["frames"]) list.push_back(frame["state_hash"]);
+    return list;
+  };
+  film(scene);
+  const std::vector<std::string> plain = hashes();
+  film(scene, {"--error-every", "2"});
+  EXPECT_EQ(hashes(), plain);
+  const json whole = profile();
+  for (std::size_t frame = 0; frame < plain.size(); ++frame) {
+    for (const json& body : whole["frames"][frame]["bodies"]) {
+      EXPECT_EQ(body.contains("error"), frame % 2 == 0) << frame;
+      EXPECT_EQ(body.contains("motion_error"), frame % 2 == 0) << frame;
+    }
+  }
+}
+
 TEST_F(TouchingBodies, HaveNoRowsWhereTheyAreApart) {
   const Result result = film("frames = 3\n" + in_place + cube("lower", "") + cube("upper", "position = [0, 1, 0]"));
   EXPECT_EQ(frames_with("pairs"), std::vector<int>());

@@ -117,6 +117,7 @@ TEST(Profile, RowsComeBackFromTheirText) {
   body.name = "soft";
   body.objective_end = 0.1 + 0.2;
   body.error_measured = true;
+  body.reference_converged = false;
   body.jiggle = 1.0 / 3;
   body.skin_excess = 1.75;
   body.in_picture = 0.25;
@@ -135,6 +136,7 @@ TEST(Profile, RowsComeBackFromTheirText) {
   EXPECT_EQ(back.state_hash, row.state_hash);
   EXPECT_EQ(back.bodies[0].objective_end, body.objective_end);  // all seventeen digits
   EXPECT_TRUE(back.bodies[0].error_measured && !back.bodies[0].error);
+  EXPECT_TRUE(!back.bodies[0].reference_converged && back.bodies[1].reference_converged);
   EXPECT_EQ(back.bodies[0].budget_cuts, body.budget_cuts);
   EXPECT_EQ(back.bodies[0].skin_excess, 1.75);
   EXPECT_EQ(back.bodies[0].in_picture, 0.25);

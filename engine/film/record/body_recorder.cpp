@@ -59,13 +59,12 @@ std::string failure_text(int frame, const std::string& body, const StepFailure& 
 
 }  // namespace
 
-BodyRecorder::BodyRecorder(World& world, std::size_t body, const RunFolder& folder, const FilmSolvers& solvers,
-                           Threads& threads, int kept_frames)
+BodyRecorder::BodyRecorder(World& world, std::size_t body, const RunFolder& folder, WorldErrors& errors,
+                           int kept_frames)
     : world_(world),
       body_(body),
       folder_(folder),
-      solvers_(solvers),
-      threads_(threads),
+      errors_(errors),
       motion_(folder.motion(world.bodies()[body].def.name), world.body(body).model().vertices, kept_frames),
       origin_(motion_origin(world.bodies()[body].description.mesh.rest)) {
   const Body& recorded = world.bodies()[body];
@@ -97,7 +96,7 @@ void BodyRecorder::begin_frame(int frame, bool measure_error, BodyRow& row) {
 void BodyRecorder::before_step(int substep) {
   const Zone zone("energy budget", body().def.name);
   if (repeated_ != nullptr) moving().repeat(cuts_at(*repeated_, frame_, substep));
-  if (is_measured(substep)) before_ = state();
+  if (is_measured(substep)) errors_.before_step(body_);
   OpenWorkspace& w = moving().workspace();
   w.prepare(model(), moving().inputs().solver);
   if (!energy_budget_.knows_springs()) energy_budget_.know_springs(model(), moving().targets_at_start(), state());
@@ -128,14 +127,11 @@ std::string BodyRecorder::failure() const {
 
 void BodyRecorder::measure_errors() {
   row_->error_measured = true;
-  // Another energy has another minimum, and so has a body without those that it touches.
-  if (moving().untangled() || moving().is_in_island()) return;
-  const Zone zone("reference error", body().def.name);
-  if (metered_model_ != model().id) error_meter_ = solvers_.error_meter(model(), threads_);
-  metered_model_ = model().id;
-  const MeasuredErrors errors = error_meter_->step_errors(model(), moving().inputs(), before_, state());
-  row_->error = errors.error;
-  row_->motion_error = errors.motion;
+  const std::optional<MeasuredErrors> errors = errors_.of_step(body_);
+  if (!errors) return;
+  row_->error = errors->error;
+  row_->motion_error = errors->motion;
+  row_->reference_converged = errors->converged;
 }
 
 void BodyRecorder::measure_contact() {

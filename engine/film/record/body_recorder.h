@@ -2,9 +2,9 @@
 // the steps that the world makes, and makes none.
 #pragma once
 
-#include "film/plan/film_solvers.h"
 #include "film/record/field_writer.h"
 #include "film/record/repeated_cuts.h"
+#include "film/record/world_errors.h"
 #include "output/motion/force_file.h"
 #include "output/motion/point_cache.h"
 #include "output/run/profile.h"
@@ -18,8 +18,7 @@ class BodyRecorder {
  public:
   // The world must have been started; it and all that is passed by reference must outlive this object. kept_frames: the
   // number of frames of an earlier run's motion, which stay and are continued.
-  BodyRecorder(World& world, std::size_t body, const RunFolder& folder, const FilmSolvers& solvers, Threads& threads,
-               int kept_frames = 0);
+  BodyRecorder(World& world, std::size_t body, const RunFolder& folder, WorldErrors& errors, int kept_frames = 0);
 
   // Goes on after a frame of an earlier run, once the world has been restored. row: the body's row of that frame.
   void resume(const BodyRow& row);
@@ -67,17 +66,13 @@ class BodyRecorder {
   World& world_;
   std::size_t body_;
   const RunFolder& folder_;
-  const FilmSolvers& solvers_;
-  Threads& threads_;
+  WorldErrors& errors_;
   const CutsByFrame* repeated_ = nullptr;  // null: the clock ends the steps that have a budget
   int frame_ = 0;                          // in progress
   bool measures_error_ = false;
   BodyRow* row_ = nullptr;  // the body's row of the frame in progress
   EnergyBudget energy_budget_;
-  Positions start_of_step_;                  // q [m]
-  State before_;                             // the state before the step whose errors are measured
-  std::unique_ptr<ErrorMeter> error_meter_;  // made when an error is first asked for
-  std::uint64_t metered_model_ = 0;          // id of the model's values for which the meter is valid
+  Positions start_of_step_;  // q [m]
   PointCacheWriter motion_;
   std::optional<ForceFileWriter> forces_;  // where there are colliders
   Vec3 origin_;                            // of the files of motion [m]

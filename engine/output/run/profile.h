@@ -65,6 +65,8 @@ struct StepRow {
   bool error_measured = false;
   std::optional<double> error;         // equation 12; null where the start is already the minimum to round-off
   std::optional<double> motion_error;  // how far the solved motion is, over the step's own motion
+  // False where the reference of the two errors did not converge: they are those against the lowest iterate it found.
+  bool reference_converged = true;
 };
 
 // Holds what a body shows at the end of a frame, with the steps that moved it.

@@ -34,6 +34,7 @@ void add_step(const StepRow& step, Json& row) {
               {"unsolved", step.unsolved}});
   if (step.error_measured) row["error"] = step.error ? Json(*step.error) : Json(nullptr);
   if (step.motion_error) row["motion_error"] = *step.motion_error;
+  if (!step.reference_converged) row["reference_converged"] = false;
 }
 
 void add_contact(const ContactRow& contact, Json& row) {
@@ -130,6 +131,7 @@ void read_step(const Json& json, StepRow& row) {
   json.at("error_estimate").get_to(row.error_estimate);
   row.motion_estimate = json.value("motion_estimate", 0.0);
   read_if_there(json, "motion_error", row.motion_error);
+  row.reference_converged = json.value("reference_converged", true);
   const int trials = row.newton_iterations > 0 ? 0 : row.line_search;
   row.unsolved = json.value("unsolved", is_unsolved(row.error_estimate, row.iterations, trials));
   row.error_measured = json.contains("error");

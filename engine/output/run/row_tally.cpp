@@ -87,6 +87,7 @@ void RowTally::add_body(const FrameRow& row, std::size_t number) {
   if (body.jiggle) tally.jiggle = std::max(tally.jiggle.value_or(*body.jiggle), *body.jiggle);
   if (body.error) tally.errors.push_back(*body.error);
   if (body.motion_error) tally.motion_errors.push_back(*body.motion_error);
+  tally.unsure_errors += !body.reference_converged;
   measured_ = measured_ || body.error_measured;
   if (body.contact) {
     tally.collide.push_back(body.contact->collide_ms);
@@ -262,6 +263,17 @@ std::vector<std::string> RowTally::warnings() const {
   return list;
 }
 
+// Says where measured errors are those against a reference that did not converge.
+std::string RowTally::unsure_text() const {
+  std::string text;
+  for (const BodyTally& body : bodies_) {
+    if (body.unsure_errors > 0)
+      text += fmt::format("  {:<14}the reference did not converge in {}, whose errors may be larger\n", body.name,
+                          count_text(body.unsure_errors, "frame"));
+  }
+  return text;
+}
+
 std::string RowTally::touch_table() const {
   std::string text;
   for (const TouchTally& one : touches_) {
@@ -321,7 +333,7 @@ std::string RowTally::table() const {
     }
     text += '\n';
   }
-  return text + touch_table() + pair_table();
+  return text + unsure_text() + touch_table() + pair_table();
 }
 
 namespace {

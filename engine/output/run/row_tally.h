@@ -24,6 +24,7 @@ struct BodyTally {
   std::vector<double> step, collide, errors, motion_errors;
   double trials = 0, iterations = 0, stretch = 0, deepest = 0, estimates = 0, motion_estimates = 0;
   int contacts = 0, frames = 0;
+  int unsure_errors = 0;  // frames in which the reference of the errors did not converge
   std::optional<double> jiggle;
   // Energy from nothing: where it first was much, and where most [J].
   int first_gain = -1, worst_gain = -1;
@@ -97,6 +98,7 @@ class RowTally {
 
  private:
   void add_body(const FrameRow& row, std::size_t body);
+  std::string unsure_text() const;
   std::string touch_table() const;
   std::string pair_table() const;
 

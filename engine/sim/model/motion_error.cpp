@@ -39,13 +39,23 @@ double largest_error(const Model& model, const ErrorOfPart& error_of) {
   return largest;
 }
 
+double motion_error_of(const Model& model, const Part& part, const Positions& q, const Positions& y, const Positions& x,
+                       const Positions& solved) {
+  return mass_distance(model, part, x, solved) / own_motion(model, part, q, y, solved);
+}
+
 }  // namespace
 
 double motion_error(const Model& model, const Positions& q, const Positions& y, const Positions& x,
                     const Positions& solved) {
-  return largest_error(model, [&](const Part& part) {
-    return mass_distance(model, part, x, solved) / own_motion(model, part, q, y, solved);
-  });
+  return largest_error(model, [&](const Part& part) { return motion_error_of(model, part, q, y, x, solved); });
+}
+
+std::vector<double> motion_errors(const Model& model, const Positions& q, const Positions& y, const Positions& x,
+                                  const Positions& solved) {
+  std::vector<double> errors;
+  for (const Part& part : model.parts) errors.push_back(motion_error_of(model, part, q, y, x, solved));
+  return errors;
 }
 
 double estimated_motion_error(const Model& model, const Positions& q, const Positions& y, const Positions& x,

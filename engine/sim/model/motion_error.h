@@ -1,6 +1,8 @@
 // Defines the error of motion of a step, which sees whether bodies turn.
 #pragma once
 
+#include <vector>
+
 #include "sim/model/model.h"
 
 namespace supple {
@@ -13,6 +15,9 @@ namespace supple {
 // does not see whether the body turns. All n x 3 in the model's order.
 double motion_error(const Model& model, const Positions& q, const Positions& y, const Positions& x,
                     const Positions& solved);
+// Returns the error of motion of each of the model's parts.
+std::vector<double> motion_errors(const Model& model, const Positions& q, const Positions& y, const Positions& x,
+                                  const Positions& solved);
 // Returns the error of motion where the solved step is not known: x* is taken to lie `times` the way d (n_free x 3)
 // from x, and the step's own motion to be that to x.
 double estimated_motion_error(const Model& model, const Positions& q, const Positions& y, const Positions& x,

@@ -1,0 +1,123 @@
+// Measures how the time of a step grows with the number of bodies of one island: a row of cubes that lean on each
+// other.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "app/bench/sections.h"
+#include "app/bench/touching_film.h"
+#include "app/bench/touching_tables.h"
+
+namespace supple {
+namespace {
+
+constexpr int settling_frames = 15, timed_frames = 10;
+constexpr double leaning_deg = 2;
+
+// Returns the scene of a row of cubes on ground that slopes down, without friction, to a wall: each leans on the next.
+// The ground is level, and gravity is turned.
+std::string leaning_row(int count) {
+  constexpr double edge = 0.1, gap_between = 1e-4;
+  const double angle = leaning_deg * std::numbers::pi / 180;
+  std::string text = fmt::format("frames = {}\ngravity = [{:.17g}, {:.17g}, 0]\n", settling_frames + timed_frames,
+                                 -9.81 * std::sin(angle), -9.81 * std::cos(angle));
+  for (int i = 0; i < count; ++i) {
+    text += fmt::format(
+        "[[body]]\nname = \"cube-{}\"\nbox = {{ extent = [{:g}, {:g}, {:g}], cells = [2, 2, 2] }}\n"
+        "position = [{:.17g}, {:g}, 0]\nmaterial = {{ model = \"stable-neo-hookean\", young = 1e5, poisson = 0.4 }}\n"
+        "density = 1000\n",
+        i + 1, edge, edge, edge, (edge + gap_between) * (i + 0.5), gap_between);
+  }
+  return text + ground_text(0) + "[[collider]]\nname = \"wall\"\nshape = { half_space = { normal = [1, 0, 0] } }\n";
+}
+
+// Holds what was measured of one row.
+struct LeaningRow {
+  int bodies = 0, vertices = 0, contacts = 0, collider_contacts = 0;
+  std::size_t island = 0;  // bodies of the largest one
+  double ms = 0;           // of a step, median
+  double trials = 0;       // an iteration
+};
+
+LeaningRow measure_row(int count, const BenchSetting& setting) {
+  TouchingFilm film(leaning_row(count), *setting.threads);
+  LeaningRow row;
+  row.bodies = count;
+  for (std::size_t b = 0; b < film.world().size(); ++b) row.vertices += film.world().body(b).model().vertices;
+  std::vector<double> ms;
+  int iterations = 0, trials = 0;
+  if (film.play_until(settling_frames)) {
+    while (film.frames() < settling_frames + timed_frames && film.play()) {
+      ms.push_back(film.work().ms);
+      iterations += film.work().iterations;
+      trials += film.work().trials;
+      row.contacts = std::max(row.contacts, film.work().contacts);
+      row.collider_contacts = std::max(row.collider_contacts, film.work().collider_contacts);
+      row.island = std::max(row.island, film.work().largest_island);
+    }
+  }
+  row.ms = rank_of(ms, 0.5);
+  row.trials = double(trials) / std::max(1, iterations);
+  return row;
+}
+
+// Returns the slope of log y over log x by least squares: the exponent p of y ~ x^p.
+double exponent_over_bodies(const std::vector<LeaningRow>& rows) {
+  double sx = 0, sy = 0, sxx = 0, sxy = 0;
+  const auto n = static_cast<double>(rows.size());
+  for (const LeaningRow& row : rows) {
+    const double x = std::log(row.bodies), y = std::log(row.ms);
+    sx += x, sy += y, sxx += x * x, sxy += x * y;
+  }
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+}  // namespace
+
+RowOfBodies row_of_bodies(const BenchSetting& setting) {
+  std::vector<LeaningRow> rows;
+  for (const int count : {1, 5, 20, 80}) {
+    say_doing(setting, fmt::format("a row of {} cubes", count));
+    rows.push_back(measure_row(count, setting));
+  }
+  RowOfBodies result{{"touching-row", "A row of cubes, each of which leans on the next"}, {}};
+  ReportTable& table = result.table;
+  table.note = fmt::format(
+      "Cubes of 0.1 m with 27 vertices, stable Neo-Hookean with 1e5 Pa, without friction on ground that slopes by {:g} "
+      "degrees towards a wall. The time is the median of {} frames of one step, after {} in which the row settles. The "
+      "exponent is the p of bodies^p to which this row and those above it fit best, by least squares of logarithms.",
+      leaning_deg, timed_frames, settling_frames);
+  table.columns = {"bodies",
+                   "bodies of the largest island",
+                   "vertices",
+                   "contacts between bodies, most",
+                   "contacts with colliders, most",
+                   "a step [ms]",
+                   "a step and body [ms]",
+                   "trials an iteration",
+                   "exponent",
+                   "exponent, aim: below"};
+  PlotSeries series{"a step"};
+  series.thick = true;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const LeaningRow& row = rows[i];
+    const double exponent =
+        i == 0 ? std::nan("") : exponent_over_bodies({rows.begin(), rows.begin() + std::ptrdiff_t(i) + 1});
+    table.rows.push_back({std::to_string(row.bodies), std::to_string(row.island), std::to_string(row.vertices),
+                          std::to_string(row.contacts), std::to_string(row.collider_contacts), number_text(row.ms),
+                          number_text(row.ms / row.bodies), number_text(row.trials), number_text(exponent),
+                          i == 0 ? "" : "1.2"});
+    series.x.push_back(row.bodies);
+    series.y.push_back(row.ms);
+  }
+  result.plot = {"touching-row-ms", "A step against the number of bodies that lean on each other"};
+  result.plot.x_label = "bodies";
+  result.plot.y_label = "time [ms]";
+  result.plot.log_x = true;
+  result.plot.series.push_back(std::move(series));
+  return result;
+}
+
+}  // namespace supple
