@@ -57,6 +57,10 @@ void add_pairs(const FrameRow& row, std::vector<PairTally>& list) {
       found->unexpected_frame = row.frame;
     }
     found->deep_frames += !pair.expected && pair.penetration > deep;
+    if (pair.coming_apart) {
+      found->left = pair.penetration;
+      found->left_frame = row.frame;
+    }
     found->force_sum += pair.force;
     found->largest_force = std::max(found->largest_force, pair.force);
   }
@@ -116,6 +120,7 @@ void RowTally::add_body(const FrameRow& row, std::size_t number) {
 void RowTally::add(const FrameRow& row) {
   const bool first = frames_++ == 0;
   last_hash_ = row.state_hash;
+  last_frame_ = row.frame;
   if (first) touching_ = !row.bodies.empty() && row.bodies.front().contact.has_value();
   for (std::size_t s = 0; s < std::size(stage_list); ++s) {
     const std::optional<double> value = stage_list[s].get(row);
@@ -183,6 +188,14 @@ std::string pair_text(const PairTally& pair, const DeepTally* missed, int frames
       missed_more ? missed->frame : pair.unexpected_frame, 100 * deep, pair.deep_frames, frames);
 }
 
+// Tells of two bodies that overlapped at the start, and that contact has not pushed out of each other.
+std::string left_text(const PairTally& pair) {
+  return fmt::format(
+      "bodies '{}' and '{}' overlapped at the start and have not come apart: in the last frame, {}, {:.2g} % of the "
+      "smaller one's size is left; more frames or a larger solver.contact.push_out may part them",
+      pair.bodies[0], pair.bodies[1], pair.left_frame, 100 * pair.left);
+}
+
 // Tells of two bodies that were deep in each other although their contacts never showed such a depth.
 std::string missed_text(const DeepTally& pair) {
   const auto& [bodies, share, place] = pair.found;
@@ -200,6 +213,7 @@ std::vector<std::string> RowTally::depths_of_pairs() const {
   std::vector<const DeepTally*> missed;  // those that no sentence tells yet
   for (const DeepTally& pair : deep_) missed.push_back(&pair);
   for (const PairTally& pair : pairs_) {
+    if (pair.left_frame >= 0 && pair.left_frame == last_frame_) list.push_back(left_text(pair));
     if (pair.deep_frames == 0) continue;
     const auto is_same = [&pair](const DeepTally* one) { return one->found.bodies == pair.bodies; };
     const auto also = std::ranges::find_if(missed, is_same);

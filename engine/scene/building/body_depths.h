@@ -34,6 +34,8 @@ class DeepBodies {
 
   // Leaves a pair out of find() from now on.
   void leave_out(std::size_t a, std::size_t b) { pairs_.leave_out(a, b); }
+  // Finds a pair again that was left out.
+  void take_in(std::size_t a, std::size_t b) { pairs_.take_in(a, b); }
   // Tells whether find() has nothing to look for, as the bodies are defined now.
   bool none_left() const { return !pairs_.has(PairKind::meeting); }
 
