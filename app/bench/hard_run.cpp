@@ -5,12 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "app/bench/case_text.h"
 #include "app/bench/comparison.h"
 #include "app/bench/sections.h"
 #include "app/bench/stability_matrix.h"
-#include "film/plan/shipped_files.h"
 #include "scene/definition/rotation.h"
-#include "scene/reading/scene_reader.h"
 #include "sim/measures/energies.h"
 #include "sim/measures/measures.h"
 #include "sim/model/motion_error.h"
@@ -19,22 +18,8 @@
 namespace supple {
 namespace {
 
-constexpr double usual_young = 3e4, usual_poisson = 0.35;
 constexpr double much_motion = 0.05;  // error of motion of a step
-constexpr double much_energy = 0.2;   // energy from nothing over the exchanged energy, above which a run warns
 constexpr double much_volume = 0.05, far_apart = 1e-3;
-
-SceneDef scene_of(const std::string& text) {
-  Config config = Config::parse(text, "hard case", assets_folder());
-  SceneDef scene = read_scene(config);
-  config.finish();
-  return scene;
-}
-
-std::string filled(std::string text, const std::string& word, const std::string& value) {
-  if (const std::size_t at = text.find(word); at != std::string::npos) text.replace(at, word.size(), value);
-  return text;
-}
 
 }  // namespace
 
@@ -144,7 +129,7 @@ class HardRun {
       : hard_(hard),
         keeps_volume_(hard.keeps_volume && knows_volume(material.name)),
         turn_(rotation_from_degrees(variation.turn_deg).toRotationMatrix()),
-        scene_(scene_of(text(hard, table_of(hard, material, 1), variation, turn_))),
+        scene_(scene_of_case(text(hard, table_of(hard, material, 1), variation, turn_))),
         world_(scene_, prepared(material, variation)) {
     world_.start(scenes_own_solver(), &threads);
     if (hard.turns_a_second > 0) body().restore(spinning(model(), body().state(), hard.turns_a_second, turn_));
@@ -172,7 +157,7 @@ class HardRun {
     if (hard_.far_stiffness == 1 && hard_.near_stiffness == 1 && hard_.far_density == 1) return bodies;
     std::vector<Material> materials;
     for (const double stiffer : {hard_.near_stiffness, hard_.far_stiffness}) {
-      const SceneDef scene = scene_of(text(hard_, table_of(hard_, material, stiffer), variation, turn_));
+      const SceneDef scene = scene_of_case(text(hard_, table_of(hard_, material, stiffer), variation, turn_));
       materials.push_back(scene.bodies.front().substance.material);
     }
     make_halves_differ(body.description, hard_, std::move(materials));

@@ -18,7 +18,7 @@ inline constexpr std::array benchmark_names = {
     BenchmarkName{"figure7", "L-BFGS, Chebyshev, Newton", 0.3},
     BenchmarkName{"figure8", "initial Hessians", 0.3},
     BenchmarkName{"figure10", "a bar shaken hard", 0.5},
-    BenchmarkName{"stability", "hard cases for every material, each with a rule", 2},
+    BenchmarkName{"stability", "hard cases for every material, each with a rule", 6},
     BenchmarkName{"figure13", "window of L-BFGS", 0.3},
     BenchmarkName{"figure14", "how often the full step satisfies Armijo's and Wolfe's conditions", 0.2},
     BenchmarkName{"figure15", "the interval of equation 11", 0.3},

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "app/bench/meeting_run.h"
 #include "app/bench/sections.h"
 #include "app/bench/small_picture.h"
 
@@ -190,7 +191,12 @@ ReportSection bench_stability(const BenchSetting& setting) {
       "panel. Surfaces seen from inside are red.";
   section.text = fmt::format("{} runs: {} keep their rule, {} break it; {} of those without a warning.", counts.runs,
                              counts.passed, counts.runs - counts.passed, counts.silent);
-  section.tables = {std::move(tables.ends), returns.table(), std::move(tables.errors), std::move(tables.work)};
+  MeetingTables meeting = meeting_tables(setting);
+  section.text += fmt::format(
+      " Of bodies that meet, {} runs: {} keep their rules, {} break one; {} of those without a warning.",
+      meeting.counts.runs, meeting.counts.runs - meeting.counts.failed, meeting.counts.failed, meeting.counts.silent);
+  section.tables = {std::move(tables.ends),   std::move(meeting.ends), returns.table(),
+                    std::move(tables.errors), std::move(tables.work),  std::move(meeting.figures)};
   return section;
 }
 

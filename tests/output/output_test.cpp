@@ -127,7 +127,7 @@ TEST(Profile, RowsComeBackFromTheirText) {
   body.stop_reason = "round-off";
   body.budget_cuts = {{4, -1}, {2, 1}};
   row.bodies = {body, BodyRow{}};
-  row.pairs = {{{"soft", "other"}, 12, 0.1 + 0.2, 1.0 / 3}, {{"soft", "third"}, 1, 0.05, 0, true}};
+  row.pairs = {{{"soft", "other"}, 12, 0.1 + 0.2, 1.0 / 3}, {{"soft", "third"}, 1, 0.05, 0, true, true}};
   row.deep = {{{"other", "third"}, 0.02, {0.1, -0.2, 0.3}}};
   const std::string line = row_line(row);
   EXPECT_EQ(line.find('\n'), std::string::npos);
@@ -146,7 +146,9 @@ TEST(Profile, RowsComeBackFromTheirText) {
   EXPECT_EQ(back.pairs[0].penetration, row.pairs[0].penetration);
   EXPECT_EQ(back.pairs[0].force, row.pairs[0].force);
   EXPECT_FALSE(back.pairs[0].expected);
+  EXPECT_FALSE(back.pairs[0].coming_apart);
   EXPECT_TRUE(back.pairs[1].expected);
+  EXPECT_TRUE(back.pairs[1].coming_apart);
   ASSERT_EQ(back.deep.size(), 1u);
   EXPECT_EQ(back.deep[0].bodies, row.deep[0].bodies);
   EXPECT_EQ(back.deep[0].share, 0.02);

@@ -17,11 +17,12 @@ bool contains(const List& list, const Value& value) {
 
 PairRecorder::PairRecorder(const World& world, const FrameRows& earlier)
     : world_(world), passings_(world.bodies()), deep_(world.bodies()) {
-  if (world_.bodies().size() < 2) return;
   std::vector<Positions> start;
   for (const Body& body : world_.bodies()) start.push_back(first_positions(body));
+  for (const BodyDepth& overlap : bodies_in_themselves(world_.bodies(), start))
+    coming_apart_.push_back({overlap.a, overlap.b, names(overlap.a, overlap.b)});
   for (const BodyDepth& overlap : overlaps_of_bodies(world_.bodies(), start)) {
-    coming_apart_.push_back(names(overlap.a, overlap.b));
+    coming_apart_.push_back({overlap.a, overlap.b, names(overlap.a, overlap.b)});
     deep_.leave_out(overlap.a, overlap.b);
   }
   std::vector<Names> met, deep;
@@ -41,6 +42,10 @@ PairRecorder::Names PairRecorder::names(std::size_t a, std::size_t b) const {
 bool PairRecorder::is_meant(std::size_t a, std::size_t b) const {
   const std::vector<Body>& bodies = world_.bodies();
   return supple::is_meant(bodies[a].def, WarningKind::overlap) || supple::is_meant(bodies[b].def, WarningKind::overlap);
+}
+
+bool PairRecorder::is_coming_apart(const Names& names) const {
+  return std::ranges::find(coming_apart_, names, &Overlap::names) != coming_apart_.end();
 }
 
 // Leaves out what is meant, and the pairs that an earlier run has found.
@@ -72,14 +77,20 @@ void PairRecorder::note_touches(FrameRow& row) {
         {names(touch.a, touch.b), touch.contacts, touch.depth / size, touch.force.norm(), is_meant(touch.a, touch.b)});
   }
   note_who_came_apart(row);
-  for (PairRow& pair : row.pairs) pair.expected = pair.expected || contains(coming_apart_, pair.bodies);
+  for (PairRow& pair : row.pairs) {
+    pair.coming_apart = !pair.expected && is_coming_apart(pair.bodies);
+    pair.expected = pair.expected || pair.coming_apart;
+  }
 }
 
-// Forgets the pairs that overlapped at the start and that the contacts of this frame show no longer deep.
+// Forgets the pairs that overlapped at the start and that the contacts of this frame show no longer deep. Contacts that
+// are not found show nothing, so positions are asked about these pairs again.
 void PairRecorder::note_who_came_apart(const FrameRow& row) {
-  std::erase_if(coming_apart_, [&row](const Names& names) {
-    const auto pair = std::ranges::find(row.pairs, names, &PairRow::bodies);
-    return pair == row.pairs.end() || pair->penetration <= DeepBodies::deep;
+  std::erase_if(coming_apart_, [&](const Overlap& overlap) {
+    const auto pair = std::ranges::find(row.pairs, overlap.names, &PairRow::bodies);
+    const bool is_apart = pair == row.pairs.end() || pair->penetration <= DeepBodies::deep;
+    if (is_apart && overlap.a != overlap.b && !is_meant(overlap.a, overlap.b)) deep_.take_in(overlap.a, overlap.b);
+    return is_apart;
   });
 }
 

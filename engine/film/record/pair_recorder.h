@@ -15,7 +15,8 @@
 namespace supple {
 
 // A depth is expected where one of both bodies says that overlaps are meant, and in bodies that overlap at the start of
-// the film, up to the first frame in which their contacts are no deeper than DeepBodies::deep.
+// the film, up to the first frame in which their contacts are no deeper than DeepBodies::deep. From that frame on,
+// positions have their say again, in case that contacts are not found at all.
 class PairRecorder {
  public:
   // world: before its first frame; it must outlive this object. earlier: the rows of an earlier run whose film is
@@ -27,9 +28,14 @@ class PairRecorder {
 
  private:
   using Names = std::array<std::string, 2>;
+  struct Overlap {
+    std::size_t a, b;
+    Names names;
+  };
 
   Names names(std::size_t a, std::size_t b) const;
   bool is_meant(std::size_t a, std::size_t b) const;
+  bool is_coming_apart(const Names& names) const;
   void leave_out_known(const std::vector<Names>& met, const std::vector<Names>& deep);
   void note_touches(FrameRow& row);
   void note_who_came_apart(const FrameRow& row);
@@ -37,9 +43,9 @@ class PairRecorder {
   void find_deep(const std::vector<Positions>& points, FrameRow& row);
 
   const World& world_;
-  BodyPassings passings_;            // finds pairs that no earlier frame has had
-  DeepBodies deep_;                  // does the same
-  std::vector<Names> coming_apart_;  // pairs that overlapped at the start and have been deep in each other since
+  BodyPassings passings_;              // finds pairs that no earlier frame has had
+  DeepBodies deep_;                    // does the same
+  std::vector<Overlap> coming_apart_;  // pairs that overlapped at the start and have been deep in each other since
 };
 
 }  // namespace supple

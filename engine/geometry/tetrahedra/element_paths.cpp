@@ -2,12 +2,25 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <map>
-#include <set>
+#include <span>
 #include <utility>
 
 namespace supple {
 namespace {
+
+// Groups numbers by keys from 0 on: those of key k are list[begin[k] .. begin[k + 1]), in the order in which they came.
+struct ByKey {
+  std::vector<std::int32_t> begin, list;
+
+  // key_of(i): of each number i from 0 to count - 1.
+  template <class KeyOf>
+  ByKey(std::size_t keys, std::int32_t count, const KeyOf& key_of) : begin(keys + 1, 0), list(std::size_t(count)) {
+    for (std::int32_t i = 0; i < count; ++i) ++begin[std::size_t(key_of(i)) + 1];
+    for (std::size_t k = 0; k < keys; ++k) begin[k + 1] += begin[k];
+    std::vector<std::int32_t> next(begin.begin(), begin.end() - 1);
+    for (std::int32_t i = 0; i < count; ++i) list[std::size_t(next[std::size_t(key_of(i))]++)] = i;
+  }
+};
 
 using Face = std::array<std::int32_t, 3>;
 
@@ -17,8 +30,11 @@ Face sorted(std::int32_t a, std::int32_t b, std::int32_t c) {
   return face;
 }
 
-Face face_opposite(const Tetrahedra& tets, Eigen::Index element, int corner) {
-  return sorted(tets(element, (corner + 1) % 4), tets(element, (corner + 2) % 4), tets(element, (corner + 3) % 4));
+// face: four times the element, plus the corner opposite.
+Face face_of(const Tetrahedra& tets, std::int32_t face) {
+  const Eigen::Index e = face / 4;
+  const int k = face % 4;
+  return sorted(tets(e, (k + 1) % 4), tets(e, (k + 2) % 4), tets(e, (k + 3) % 4));
 }
 
 // Returns six times the volume of a tetrahedron, positive where det[b - a, c - a, d - a] is.
@@ -42,36 +58,50 @@ std::optional<Eigen::Vector4d> coordinates(const std::array<Vec3, 4>& corners, c
 ElementPaths::ElementPaths(Tetrahedra tets, const Triangles& triangles, const Positions& rest)
     : tets_(std::move(tets)) {
   for (std::int32_t e = 0; e < tets_.rows(); ++e) rest_volume_.push_back(volume_of(rest, e));
+  join_elements(triangles, rest.rows());
+  list_around(rest.rows());
+}
+
+void ElementPaths::join_elements(const Triangles& triangles, Eigen::Index vertices) {
   beyond_.assign(std::size_t(tets_.rows()), {-1, -1, -1, -1});
-  std::map<Face, std::array<std::int32_t, 2>> open;  // faces that one element has so far
-  for (std::int32_t e = 0; e < tets_.rows(); ++e) {
-    for (int k = 0; k < 4; ++k) {
-      const auto [at, is_new] = open.try_emplace(face_opposite(tets_, e, k), std::array<std::int32_t, 2>{e, k});
-      if (is_new) continue;
-      const auto [other, corner] = at->second;
-      beyond_[std::size_t(e)][std::size_t(k)] = other;
-      beyond_[std::size_t(other)][std::size_t(corner)] = e;
-      open.erase(at);
+  const ByKey by_lowest(std::size_t(vertices), std::int32_t(4 * tets_.rows()),
+                        [&](std::int32_t face) { return face_of(tets_, face)[0]; });
+  const auto faces_at = [&](std::int32_t lowest) {
+    return std::span(by_lowest.list)
+        .subspan(std::size_t(by_lowest.begin[std::size_t(lowest)]),
+                 std::size_t(by_lowest.begin[std::size_t(lowest) + 1] - by_lowest.begin[std::size_t(lowest)]));
+  };
+  for (std::int32_t v = 0; v < vertices; ++v) {
+    for (const std::int32_t one : faces_at(v)) {
+      for (const std::int32_t other : faces_at(v)) {
+        if (other != one && face_of(tets_, one) == face_of(tets_, other))
+          beyond_[std::size_t(one / 4)][std::size_t(one % 4)] = other / 4;
+      }
     }
   }
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-    const auto at = open.find(sorted(triangles(t, 0), triangles(t, 1), triangles(t, 2)));
-    face_.push_back(at == open.end() ? std::array<std::int32_t, 2>{-1, -1} : at->second);
+    const Face face = sorted(triangles(t, 0), triangles(t, 1), triangles(t, 2));
+    const auto own = faces_at(face[0]);
+    const auto at = std::ranges::find_if(own, [&](std::int32_t one) { return face_of(tets_, one) == face; });
+    face_.push_back(at == own.end() ? std::array<std::int32_t, 2>{-1, -1}
+                                    : std::array<std::int32_t, 2>{*at / 4, *at % 4});
   }
-  std::vector<std::set<std::int32_t>> around(static_cast<std::size_t>(rest.rows())), at(around);
-  for (std::int32_t e = 0; e < tets_.rows(); ++e) {
-    for (int i = 0; i < 4; ++i) {
-      at[std::size_t(tets_(e, i))].insert(e);
-      for (int j = 0; j < 4; ++j) around[std::size_t(tets_(e, i))].insert(tets_(e, j));
-    }
-  }
+}
+
+void ElementPaths::list_around(Eigen::Index vertices) {
+  ByKey corners(std::size_t(vertices), std::int32_t(tets_.size()), [&](std::int32_t i) { return tets_(i / 4, i % 4); });
+  elements_begin_ = std::move(corners.begin);
+  elements_ = std::move(corners.list);
+  for (std::int32_t& element : elements_) element /= 4;
   begin_.push_back(0);
-  elements_begin_.push_back(0);
-  for (std::size_t v = 0; v < around.size(); ++v) {
-    neighbours_.insert(neighbours_.end(), around[v].begin(), around[v].end());
+  std::vector<std::int32_t> around;
+  for (std::size_t v = 0; v < std::size_t(vertices); ++v) {
+    around.clear();
+    for (auto i = elements_begin_[v]; i < elements_begin_[v + 1]; ++i)
+      for (int k = 0; k < 4; ++k) around.push_back(tets_(elements_[std::size_t(i)], k));
+    std::sort(around.begin(), around.end());
+    neighbours_.insert(neighbours_.end(), around.begin(), std::unique(around.begin(), around.end()));
     begin_.push_back(static_cast<std::int32_t>(neighbours_.size()));
-    elements_.insert(elements_.end(), at[v].begin(), at[v].end());
-    elements_begin_.push_back(static_cast<std::int32_t>(elements_.size()));
   }
 }
 

@@ -38,6 +38,8 @@ class ElementPaths {
   bool has_neighbour(std::int32_t element, std::int32_t vertex) const;
 
  private:
+  void join_elements(const Triangles& triangles, Eigen::Index vertices);
+  void list_around(Eigen::Index vertices);
   double volume_of(const Positions& x, std::int32_t element) const;
 
   Tetrahedra tets_;

@@ -65,7 +65,8 @@ FrameGraph pairs_graph(const std::vector<FrameRow>& rows, std::string title,
   shown.resize(std::min(shown.size(), colors.size()));
   FrameGraph graph{std::move(title), "", false, {}};
   for (const PairRow& one : shown) {
-    graph.series.push_back(by_frame(rows, one.bodies[0] + " and " + one.bodies[1], [&](const FrameRow& row) {
+    const std::string other = one.bodies[0] == one.bodies[1] ? "itself" : one.bodies[1];
+    graph.series.push_back(by_frame(rows, one.bodies[0] + " and " + other, [&](const FrameRow& row) {
       const auto pair = std::ranges::find(row.pairs, one.bodies, &PairRow::bodies);
       return pair == row.pairs.end() ? 0 : value(*pair);
     }));
@@ -110,10 +111,12 @@ std::vector<FrameGraph> graphs_of(const std::vector<FrameRow>& rows) {
   FrameGraph depth{
       "Deepest point inside a collider, over the body's size", "", false,
       by_body(rows, "", [](const BodyRow& body) { return body.contact ? body.contact->penetration : none; })};
-  const FrameGraph pair_contacts = pairs_graph(rows, "Points of two bodies that touch each other",
-                                               [](const PairRow& pair) { return pair.contacts; });
-  const FrameGraph pair_depth = pairs_graph(rows, "Deepest point inside another body, over the smaller body's size",
-                                            [](const PairRow& pair) { return pair.penetration; });
+  const FrameGraph pair_contacts =
+      pairs_graph(rows, "Points of two bodies that touch each other, or of one that touches itself",
+                  [](const PairRow& pair) { return pair.contacts; });
+  const FrameGraph pair_depth =
+      pairs_graph(rows, "Deepest point inside another body or its own, over the smaller body's size",
+                  [](const PairRow& pair) { return pair.penetration; });
   std::vector<FrameGraph> graphs;
   for (FrameGraph& graph :
        std::array{times, errors, motion_errors, stretch, contacts, depth, pair_contacts, pair_depth}) {

@@ -34,10 +34,11 @@ struct ContactRow {
 // Describes how two bodies touched each other at the end of a frame.
 struct PairRow {
   std::array<std::string, 2> bodies;
-  int contacts = 0;        // points of either body that touch the other
-  double penetration = 0;  // of the deepest of them in the other body, over the smaller body's size
-  double force = 0;        // between the bodies [N]
-  bool expected = false;   // the depth is meant, or the bodies overlapped at the start and are still coming apart
+  int contacts = 0;           // points of either body that touch the other
+  double penetration = 0;     // of the deepest of them in the other body, over the smaller body's size
+  double force = 0;           // between the bodies [N]
+  bool expected = false;      // the depth is meant, or the bodies overlapped at the start and are still coming apart
+  bool coming_apart = false;  // the second of these, and it is not meant
 };
 
 // Describes two bodies that meet and are deep in each other, as their positions alone show it.

@@ -90,6 +90,7 @@ Json json_of(const PairRow& pair) {
   Json row = {
       {"bodies", pair.bodies}, {"contacts", pair.contacts}, {"penetration", pair.penetration}, {"force", pair.force}};
   if (pair.expected) row["expected"] = true;
+  if (pair.coming_apart) row["coming_apart"] = true;
   return row;
 }
 
@@ -182,6 +183,7 @@ PairRow pair_row(const Json& json) {
   json.at("penetration").get_to(row.penetration);
   json.at("force").get_to(row.force);
   row.expected = json.value("expected", false);
+  row.coming_apart = json.value("coming_apart", false);
   return row;
 }
 

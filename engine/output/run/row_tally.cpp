@@ -57,6 +57,10 @@ void add_pairs(const FrameRow& row, std::vector<PairTally>& list) {
       found->unexpected_frame = row.frame;
     }
     found->deep_frames += !pair.expected && pair.penetration > deep;
+    if (pair.coming_apart) {
+      found->left = pair.penetration;
+      found->left_frame = row.frame;
+    }
     found->force_sum += pair.force;
     found->largest_force = std::max(found->largest_force, pair.force);
   }
@@ -117,6 +121,7 @@ void RowTally::add_body(const FrameRow& row, std::size_t number) {
 void RowTally::add(const FrameRow& row) {
   const bool first = frames_++ == 0;
   last_hash_ = row.state_hash;
+  last_frame_ = row.frame;
   if (first) touching_ = !row.bodies.empty() && row.bodies.front().contact.has_value();
   for (std::size_t s = 0; s < std::size(stage_list); ++s) {
     const std::optional<double> value = stage_list[s].get(row);
@@ -173,15 +178,35 @@ std::vector<std::string> RowTally::penetrations() const {
 
 namespace {
 
-// Tells of two bodies that contact did not keep apart. missed: what their positions alone showed; null: nothing. Of
-// both depths the larger one is told.
+bool is_one_body(const std::array<std::string, 2>& bodies) { return bodies[0] == bodies[1]; }
+
+// Tells of two bodies that contact did not keep apart, or of one that it did not keep out of itself. missed: what their
+// positions alone showed; null: nothing. Of both depths the larger one is told.
 std::string pair_text(const PairTally& pair, const DeepTally* missed, int frames) {
   const bool missed_more = missed != nullptr && missed->found.share > pair.unexpected;
+  if (is_one_body(pair.bodies))
+    return fmt::format(
+        "body '{}' was up to {:.2g} % of its size deep in itself (at frame {}; above {:g} % in {} of {} frames): "
+        "substeps or more solver.iterations make that less",
+        pair.bodies[0], 100 * pair.unexpected, pair.unexpected_frame, 100 * deep, pair.deep_frames, frames);
   return fmt::format(
       "bodies '{}' and '{}' were up to {:.2g} % of the smaller one's size deep in each other (at frame {}; above {:g} "
       "% in {} of {} frames): substeps or more solver.iterations make that less",
       pair.bodies[0], pair.bodies[1], 100 * (missed_more ? missed->found.share : pair.unexpected),
       missed_more ? missed->frame : pair.unexpected_frame, 100 * deep, pair.deep_frames, frames);
+}
+
+// Tells of two bodies that overlapped at the start, and that contact has not pushed out of each other.
+std::string left_text(const PairTally& pair) {
+  if (is_one_body(pair.bodies))
+    return fmt::format(
+        "body '{}' overlapped itself at the start and has not come apart: in the last frame, {}, {:.2g} % of its size "
+        "is left; more frames or a larger solver.contact.push_out may part it",
+        pair.bodies[0], pair.left_frame, 100 * pair.left);
+  return fmt::format(
+      "bodies '{}' and '{}' overlapped at the start and have not come apart: in the last frame, {}, {:.2g} % of the "
+      "smaller one's size is left; more frames or a larger solver.contact.push_out may part them",
+      pair.bodies[0], pair.bodies[1], pair.left_frame, 100 * pair.left);
 }
 
 // Tells of two bodies that were deep in each other although their contacts never showed such a depth.
@@ -201,6 +226,7 @@ std::vector<std::string> RowTally::depths_of_pairs() const {
   std::vector<const DeepTally*> missed;  // those that no sentence tells yet
   for (const DeepTally& pair : deep_) missed.push_back(&pair);
   for (const PairTally& pair : pairs_) {
+    if (pair.left_frame >= 0 && pair.left_frame == last_frame_) list.push_back(left_text(pair));
     if (pair.deep_frames == 0) continue;
     const auto is_same = [&pair](const DeepTally* one) { return one->found.bodies == pair.bodies; };
     const auto also = std::ranges::find_if(missed, is_same);
@@ -294,7 +320,8 @@ std::string RowTally::pair_table() const {
     if (text.empty())
       text = fmt::format("\n  {:<14}{:<14}{:>13}{:>10}{:>14}{:>14}\n", "body", "other body", "penetration", "at frame",
                          "force N, mean", "most");
-    text += fmt::format("  {:<14}{:<14}{:>13.1e}{:>10}{:>14.3g}{:>14.3g}\n", one.bodies[0], one.bodies[1], one.deepest,
+    text += fmt::format("  {:<14}{:<14}{:>13.1e}{:>10}{:>14.3g}{:>14.3g}\n", one.bodies[0],
+                        is_one_body(one.bodies) ? "itself" : one.bodies[1], one.deepest,
                         one.deepest > 0 ? fmt::format("{}", one.deepest_frame) : "-", one.force_sum / frames_,
                         one.largest_force);
   }

@@ -55,6 +55,8 @@ struct PairTally {
   int deepest_frame = 0;
   double unexpected = 0;  // the deepest of those depths that are not expected (PairRow)
   int unexpected_frame = 0, deep_frames = 0;
+  double left = 0;      // of an overlap at the start, in the last row that shows the bodies coming apart
+  int left_frame = -1;  // the frame of that row
   double force_sum = 0, largest_force = 0;  // [N]
 };
 
@@ -102,7 +104,7 @@ class RowTally {
   std::string touch_table() const;
   std::string pair_table() const;
 
-  int frames_ = 0;
+  int frames_ = 0, last_frame_ = -1;
   bool measured_ = false, touching_ = false;
   std::uint64_t last_hash_ = 0;
   StageTally stages_[5];  // in the order of stage_names

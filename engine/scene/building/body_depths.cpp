@@ -6,6 +6,8 @@
 
 #include "geometry/triangles/shared_depth.h"
 #include "scene/building/overlaps.h"
+#include "scene/definition/meeting.h"
+#include "sim/contact/own_surface.h"
 
 namespace supple {
 namespace {
@@ -36,7 +38,37 @@ std::vector<BodyDepth> overlaps_of_bodies(const std::vector<Body>& bodies, const
   return found;
 }
 
+std::vector<BodyDepth> bodies_in_themselves(const std::vector<Body>& bodies, const std::vector<Positions>& points) {
+  std::vector<BodyDepth> found;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const TetMesh& mesh = bodies[b].description.mesh;
+    if (!meets_itself(bodies[b].def) || mesh.tets.rows() == 0) continue;
+    const Triangles triangles = boundary_faces(mesh.tets);
+    const double size = size_of(bodies[b]);
+    const OwnSurface own(mesh.tets, triangles, mesh.rest, size);
+    MovingSurface moving(triangles, mesh.rest);
+    moving.set_start(points[b]);
+    moving.set_end(points[b]);
+    if (!own.overlaps(moving, points[b])) continue;
+    OwnSurface::Pairs pairs;
+    own.find_pairs(moving, points[b], points[b], 0, Vec3::Zero(), pairs);
+    BodyDepth deepest{b, b, 0, 0, Vec3::Zero()};
+    for (std::size_t i = 0; i < pairs.vertices.size(); ++i) {
+      const auto place = own.place_around(moving, points[b], pairs.vertices[i], pairs.of(i));
+      if (place && -place->distance > deepest.depth)
+        deepest = {b, b, -place->distance, -place->distance / size, points[b].row(pairs.vertices[i]).transpose()};
+    }
+    if (deepest.share > tolerated_overlap) found.push_back(deepest);
+  }
+  return found;
+}
+
 std::string start_overlap_text(const std::vector<Body>& bodies, const BodyDepth& overlap) {
+  if (overlap.a == overlap.b)
+    return fmt::format(
+        "body '{}' overlaps itself at the start, by up to {:.3g} m ({:.2g} % of its size) at {}: it is pushed apart "
+        "gently while the film runs; what is deeper in it than half an edge is left out until it has come apart",
+        bodies[overlap.a].def.name, overlap.depth, 100 * overlap.share, place_text(overlap.place));
   const std::string pair =
       fmt::format("bodies '{}' and '{}' overlap at the start", bodies[overlap.a].def.name, bodies[overlap.b].def.name);
   if (overlap.depth <= 0)

@@ -9,9 +9,9 @@ namespace supple {
 BodyPairs::BodyPairs(const std::vector<Body>& bodies)
     : bodies_(bodies), surfaces_(bodies.size()), looked_for_(bodies.size() * bodies.size(), 1) {}
 
-void BodyPairs::leave_out(std::size_t a, std::size_t b) {
+void BodyPairs::look_for(std::size_t a, std::size_t b, bool wanted) {
   if (a > b) std::swap(a, b);
-  looked_for_.at(a * bodies_.size() + b) = 0;
+  looked_for_.at(a * bodies_.size() + b) = wanted ? 1 : 0;
 }
 
 bool BodyPairs::looks_for(std::size_t a, std::size_t b, PairKind kind) const {

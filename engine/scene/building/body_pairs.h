@@ -22,7 +22,9 @@ class BodyPairs {
   explicit BodyPairs(const std::vector<Body>& bodies);
 
   // Leaves a pair out from now on.
-  void leave_out(std::size_t a, std::size_t b);
+  void leave_out(std::size_t a, std::size_t b) { look_for(a, b, false); }
+  // Looks for a pair again that was left out.
+  void take_in(std::size_t a, std::size_t b) { look_for(a, b, true); }
 
   // Tells whether a pair of this kind is looked for.
   bool has(PairKind kind) const;
@@ -36,6 +38,7 @@ class BodyPairs {
   std::vector<Near> near(PairKind kind, const std::vector<Positions>& points);
 
  private:
+  void look_for(std::size_t a, std::size_t b, bool wanted);
   bool looks_for(std::size_t a, std::size_t b, PairKind kind) const;
   const Triangles& surface_of(std::size_t body);
 

@@ -151,10 +151,9 @@ void warn_of_fall(const SceneDef& scene, const Body& body, std::vector<Warning>&
                                 body.def.name)));
 }
 
-// Warns of bodies that start in the same place, whether they meet or pass through each other. Either of them may say
-// that it is meant.
+// Warns of bodies that start in the same place, whether they meet or pass through each other, or in themselves. Either
+// of them may say that it is meant.
 void warn_of_shared_space(const std::vector<Body>& bodies, std::vector<Warning>& list) {
-  if (bodies.size() < 2) return;
   std::vector<Positions> points;
   for (const Body& body : bodies) points.push_back(first_positions(body));
   const auto warn = [&](std::size_t a, std::size_t b, std::string message) {
@@ -167,6 +166,8 @@ void warn_of_shared_space(const std::vector<Body>& bodies, std::vector<Warning>&
          fmt::format("bodies '{}' and '{}' pass through each other from the start on: these two do not meet",
                      bodies[a].def.name, bodies[b].def.name));
   for (const BodyDepth& overlap : overlaps_of_bodies(bodies, points))
+    warn(overlap.a, overlap.b, start_overlap_text(bodies, overlap));
+  for (const BodyDepth& overlap : bodies_in_themselves(bodies, points))
     warn(overlap.a, overlap.b, start_overlap_text(bodies, overlap));
 }
 
