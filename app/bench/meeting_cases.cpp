@@ -30,10 +30,11 @@ std::string opening(int frames, std::string_view keys = "") {
   return fmt::format("frames = {}\nfps = {:g}\n{}", frames, frame_rate, keys);
 }
 
-constexpr std::string_view weightless = "gravity = [0, 0, 0]\n";
+constexpr std::string_view no_gravity = "gravity = [0, 0, 0]\n";
 // Without damping, a soft body under another one swings for longer than these films last.
 constexpr std::string_view damped = "[solver]\ndamping = 0.002\n";
-constexpr std::string_view ground = "[[collider]]\nshape = { half_space = { normal = [0, 1, 0] } }\nfriction = 0.5\n";
+constexpr std::string_view rubbing_ground =
+    "[[collider]]\nshape = { half_space = { normal = [0, 1, 0] } }\nfriction = 0.5\n";
 
 // Returns a scene of two cubes whose middles are `least` to `most` apart [m]. The second one is turned about its own
 // middle. Both the way between them and the turn are random.
@@ -48,7 +49,7 @@ std::string in_each_other(int seed, double least, double most, double length) {
   const auto at = [](const Vec3& center, double high) {  // a position is that of the middle of the underside
     return "position = " + list_text(center - Vec3(0, high / 2, 0));
   };
-  return opening(90, weightless) + cube("first", edge, other_cells, at(Vec3::Zero(), edge)) +
+  return opening(90, no_gravity) + cube("first", edge, other_cells, at(Vec3::Zero(), edge)) +
          cube("second", length, inner_cells,
               fmt::format("{}\nstart = {{ turn_deg = {} }}", at(middle, length), list_text(turn)));
 }
@@ -77,7 +78,7 @@ std::string squeezed(double move) {
                     "keys = [{{ t = 0 }}, {{ t = 1, move = {} }}]",
                     list_text(Vec3(side * (edge + free), -0.75 * edge, 0)), face, list_text(Vec3(-side * move, 0, 0))));
   };
-  return opening(90, weightless) + std::string(damped) + jaw("left", -1) +
+  return opening(90, no_gravity) + std::string(damped) + jaw("left", -1) +
          cube("middle", edge, inner_cells, fmt::format("position = {}", list_text(Vec3(0, -edge / 2, 0)))) +
          jaw("right", 1);
 }
@@ -101,7 +102,7 @@ std::string fallen(double lower_density, double upper_density) {
   };
   return opening(120) + std::string(damped) + one("lower", other_cells, lower_density, "position = [0, 0.002, 0]") +
          one("upper", inner_cells, upper_density, "position = [0.03, 0.24, 0.02]\nvelocity = [0, -0.5, 0]") +
-         std::string(ground);
+         std::string(rubbing_ground);
 }
 
 void add_falls(std::vector<MeetingCase>& list) {
@@ -121,7 +122,7 @@ void add_impacts(std::vector<MeetingCase>& list) {
   for (const double sizes : {3.0, 10.0}) {
     MeetingCase meeting{fmt::format("an impact of {:g} edges a frame", sizes), {}};
     meeting.scenes.push_back(
-        opening(30, weightless) +
+        opening(30, no_gravity) +
         cube("left", edge, other_cells,
              fmt::format("position = [-0.5, 0, 0]\nvelocity = {}", list_text(Vec3(sizes * edge * frame_rate, 0, 0)))) +
         cube("right", edge, inner_cells, "position = [0, 0.02, 0.01]\nturn_deg = [10, 20, 30]"));

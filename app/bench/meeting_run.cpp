@@ -13,6 +13,7 @@
 #include "base/interrupts.h"
 #include "film/record/body_recorder.h"
 #include "film/record/pair_recorder.h"
+#include "film/record/world_errors.h"
 #include "output/run/row_tally.h"
 #include "scene/building/body_depths.h"
 #include "sim/measures/energies.h"
@@ -75,11 +76,12 @@ class MeetingRun {
       : meeting_(meeting),
         world_(scene, assemble(scene)),
         folder_(folder),
-        solvers_{scenes_own_solver(), {}},
+        solvers_{scenes_own_solver(), {}, {}},
+        errors_(world_, solvers_, threads),
         pairs_(world_, FrameRows()) {
     world_.start(solvers_.steps, &threads);
     for (std::size_t b = 0; b < world_.size(); ++b)
-      recorders_.push_back(std::make_unique<BodyRecorder>(world_, b, folder_, solvers_, threads));
+      recorders_.push_back(std::make_unique<BodyRecorder>(world_, b, folder_, errors_));
   }
 
   MeetingOutcome play();
@@ -95,6 +97,7 @@ class MeetingRun {
   World world_;
   RunFolder folder_;
   FilmSolvers solvers_;
+  WorldErrors errors_;
   PairRecorder pairs_;
   std::vector<std::unique_ptr<BodyRecorder>> recorders_;
 };
