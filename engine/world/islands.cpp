@@ -207,7 +207,7 @@ StepInputs Islands::inputs_of(const std::vector<std::size_t>& island, const Selv
   }
   for (std::size_t s = 0; s < island.size(); ++s) {
     for (std::size_t p = 0; p < island.size(); ++p) {
-      if (p == s ? !selves[s] : !joined.parts[s].solid || !meet(scene_, island[p], island[s])) continue;
+      if (p == s ? !selves[s] : !meet(scene_, island[p], island[s])) continue;
       inputs.meetings.push_back({static_cast<std::int32_t>(p), static_cast<std::int32_t>(s),
                                  pair_friction(scene_.bodies[island[p]], scene_.bodies[island[s]])});
     }

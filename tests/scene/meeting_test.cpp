@@ -81,11 +81,12 @@ TEST(Meeting, OfABodyWithAListIsWithTheseAlone) {
   EXPECT_FALSE(both_ways(scene, 1, 3));
 }
 
-TEST(Meeting, OfAClothIsWithSolidsAlone) {
+TEST(Meeting, OfAClothIsWithSolidsAndOtherCloths) {
   const SceneDef scene = test::scene_of(cloth("one") + cloth("other") + cube("cube"));
-  EXPECT_FALSE(both_ways(scene, 0, 1));
+  EXPECT_TRUE(both_ways(scene, 0, 1));
   EXPECT_TRUE(both_ways(scene, 0, 2));
   EXPECT_TRUE(both_ways(scene, 1, 2));
+  EXPECT_FALSE(meets_itself(scene.bodies[0]));
 }
 
 TEST(Meeting, NeedsOneIntegrator) {
@@ -130,9 +131,9 @@ TEST(Meeting, IsRefusedWithNamesOfNoOtherBody) {
   EXPECT_EQ(refusal("[\"block\", \"bolck\"]"),
             Lines{"scene.toml:5:21: meets = 'bolck': must be the name of another body: block or box; did you mean "
                   "'block'?"});
-  EXPECT_EQ(refusal("[\"ball\"]"),
-            Lines{"scene.toml:5:21: meets = 'ball': no body meets itself; must be the name of another body: block or "
-                  "box"});
+  EXPECT_EQ(refusal("[\"ball\"]"), Lines{"scene.toml:5:21: meets = 'ball': whether a body meets itself is said by "
+                                         "self; must be the name of another body: block or "
+                                         "box"});
   EXPECT_EQ(test::problems_of(cube("a", meets("[\"zzz\"]"))),
             Lines{"scene.toml:5:21: meets = 'zzz': must be the name of another body, and there is none"});
 }
@@ -143,9 +144,6 @@ TEST(Meeting, IsRefusedWhereItIsAskedForByNameAndCannotBe) {
             Lines{"scene.toml:5:21: meets = 'b': body 'a' cannot meet it: bodies that meet need the same "
                   "solver.integrator, and these have 'backward-euler' and 'implicit-midpoint'"});
   EXPECT_EQ(test::problems_of(cube("a", meets("[\"b\"]")) + cube("b", midpoint + meets("false"))), Lines{});
-  EXPECT_EQ(test::problems_of(cloth("one", meets("[\"other\"]")) + cloth("other")),
-            Lines{"scene.toml:5:21: meets = 'other': body 'one' cannot meet it: both are cloth, and the vertices of a "
-                  "cloth touch solids alone"});
 }
 
 TEST(Meeting, HasFrictionsFromNoneToAHundred) {

@@ -209,6 +209,58 @@ TEST(TouchingWorlds, GoOnFromAnyState) {
   }
 }
 
+// A cloth of one metre that is held along its border.
+std::string held_cloth(int cells) {
+  return fmt::format(
+      "[[body]]\nname = \"held\"\ncloth = {{ extent = [1, 1], cells = [{0}, {0}], stretch = 2000, bend = 2 }}\n"
+      "turn_deg = [-90, 0, 0]\nposition = [0, 1, 0]\ntotal_mass = 0.3\n"
+      "[[body.handles]]\nname = \"a\"\nselect = {{ box = [[0, 0, 0], [0.01, 1, 1]] }}\n"
+      "[[body.handles]]\nname = \"b\"\nselect = {{ box = [[0.99, 0, 0], [1, 1, 1]] }}\n",
+      cells);
+}
+
+TEST(TouchingWorlds, AClothCatchesABallThatIsThrownAtIt) {
+  for (const double speed : {1.0, 3.0, 6.0}) {  // [m/s]; the fastest one goes its own size in a step
+    for (const int cells : {8, 24}) {           // edges above and below the ball's
+      Played played(held_cloth(cells) +
+                    fmt::format("[[body]]\nname = \"ball\"\nshape = \"shapes/sphere.toml\"\nsize = 0.2\n"
+                                "vertices = 300\nposition = [0.03, 1.05, 0.02]\nvelocity = [0, -{}, 0]\ndensity = 100\n"
+                                "material = {{ model = \"stable-neo-hookean\", young = 5e4, poisson = 0.4 }}\n",
+                                speed));
+      double lowest = infinity;
+      for (int frame = 0; frame < 30; ++frame) {
+        played.play(frame, frame + 1);
+        const Positions ball = played.places(1), cloth = played.places(0);
+        const Eigen::RowVector3d middle = ball.colwise().mean();
+        double below = infinity;  // the cloth's lowest vertex within the ball's width
+        for (Eigen::Index v = 0; v < cloth.rows(); ++v) {
+          if (std::hypot(cloth(v, 0) - middle[0], cloth(v, 2) - middle[2]) < 0.1) below = std::min(below, cloth(v, 1));
+        }
+        EXPECT_GT(middle[1], below) << speed << " m/s, " << cells << " cells, frame " << frame;
+        lowest = std::min(lowest, middle[1]);
+      }
+      EXPECT_LT(lowest, 1.12) << "it has come to the cloth";
+    }
+  }
+}
+
+TEST(TouchingWorlds, AClothLiesOnAClothAtTheDistanceOfTheirLayer) {
+  Played played(
+      held_cloth(20) +
+      "[[body]]\nname = \"upper\"\ncloth = { extent = [0.42, 0.42], cells = [8, 8], stretch = 400, bend = 2 }\n"
+      "turn_deg = [-90, 10, 0]\nposition = [0.02, 1.03, 0.01]\ntotal_mass = 0.05\n");
+  for (int frame = 0; frame < 45; ++frame) {
+    played.play(frame, frame + 1);
+    const Positions lower = played.places(0), upper = played.places(1);
+    for (Eigen::Index v = 0; v < upper.rows(); ++v) {
+      Eigen::Index below = 0;
+      (lower.rowwise() - upper.row(v)).rowwise().squaredNorm().minCoeff(&below);
+      EXPECT_GT(upper(v, 1), lower(below, 1) - 0.005) << frame << ": vertex " << v;
+    }
+  }
+  EXPECT_FALSE(played.world.touches().empty());
+}
+
 // A ring whose lowest and highest parts are held and moved towards each other until the one would be in the other.
 std::string squeezed_ring(const char* self) {
   return no_gravity + fmt::format(

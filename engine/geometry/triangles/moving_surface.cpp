@@ -293,7 +293,26 @@ std::optional<MovingSurface::Entry> MovingSurface::first_entry(const Vec3& a, co
 std::optional<MovingSurface::Entry> MovingSurface::first_entry(std::span<const std::int32_t> triangles, const Vec3& a,
                                                                const Vec3& b, double latest) const {
   std::optional<Entry> first;
-  for (const std::int32_t t : triangles) take_if_earlier(t, a, b, roundoff_at(a, b), latest, false, first);
+  for (const std::int32_t t : triangles) take_if_earlier(t, seen_triangle(t, a, b), roundoff_at(a, b), latest, first);
+  return first;
+}
+
+std::optional<MovingSurface::Entry> MovingSurface::first_crossing(const Vec3& a, const Vec3& b, const Vec3& carried,
+                                                                  double latest) const {
+  const double roundoff = roundoff_at(a, b);
+  std::optional<Entry> first;
+  any_triangle(box_of_path(a, b, carried, roundoff + roundoff_at(b, carried)), carried, [&](std::int32_t t) {
+    SeenTriangle seen = seen_triangle(t, a, b);
+    take_if_earlier(t, seen, roundoff, latest, first);
+    std::swap(seen.start[1], seen.start[2]);
+    std::swap(seen.end[1], seen.end[2]);
+    std::optional<Entry> from_behind;
+    take_if_earlier(t, seen, roundoff, first ? first->share : latest, from_behind);
+    if (!from_behind || (first && from_behind->share >= first->share)) return false;
+    first = from_behind;
+    std::swap(first->weights[1], first->weights[2]);
+    return false;
+  });
   return first;
 }
 
@@ -309,21 +328,26 @@ std::optional<MovingSurface::Entry> MovingSurface::first_passing(const Vec3& a, 
   const double roundoff = roundoff_at(a, b);
   std::optional<Entry> first;
   any_triangle(box_of_path(a, b, carried, roundoff + roundoff_at(b, carried)), carried, [&](std::int32_t t) {
-    take_if_earlier(t, a, b, roundoff, latest, is_backwards, first);
+    SeenTriangle seen = seen_triangle(t, a, b);
+    if (is_backwards) std::swap(seen.start, seen.end);
+    take_if_earlier(t, seen, roundoff, latest, first);
     return false;
   });
   return first;
 }
 
-// Puts the passage through a triangle, if there is one up to `latest`, in the place of a later one.
-void MovingSurface::take_if_earlier(std::int32_t t, const Vec3& a, const Vec3& b, double roundoff, double latest,
-                                    bool is_backwards, std::optional<Entry>& first) const {
+SeenTriangle MovingSurface::seen_triangle(std::int32_t t, const Vec3& a, const Vec3& b) const {
   SeenTriangle seen;
   for (int k = 0; k < 3; ++k) {
     seen.start[std::size_t(k)] = corner(start_, t, k) - a;
     seen.end[std::size_t(k)] = corner(end_, t, k) - b;
   }
-  if (is_backwards) std::swap(seen.start, seen.end);
+  return seen;
+}
+
+// Puts the passage through a triangle, if there is one up to `latest`, in the place of a later one.
+void MovingSurface::take_if_earlier(std::int32_t t, const SeenTriangle& seen, double roundoff, double latest,
+                                    std::optional<Entry>& first) {
   const std::optional<Passage> passage = first_passage(seen, roundoff, first ? first->share : latest);
   if (passage && (!first || passage->share < first->share))
     first = Entry{t, passage->weights, passage->share, passage->normal};

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/types.h"
+#include "geometry/triangles/point_passage.h"
 #include "geometry/triangles/triangle_tree.h"
 
 namespace supple {
@@ -78,6 +79,9 @@ class MovingSurface {
   // Finds where a point that moves from a to b first passes through a triangle from outside, up to the share `latest`
   // of the step. What counts as passing is said in point_passage.h.
   std::optional<Entry> first_entry(const Vec3& a, const Vec3& b, const Vec3& carried, double latest = 1) const;
+
+  // Finds where a point first passes through a triangle from either side. The normal points to where it came from.
+  std::optional<Entry> first_crossing(const Vec3& a, const Vec3& b, const Vec3& carried, double latest = 1) const;
 
   // Looks at some triangles alone.
   std::optional<Entry> first_entry(std::span<const std::int32_t> triangles, const Vec3& a, const Vec3& b,
@@ -151,8 +155,9 @@ class MovingSurface {
 
   std::optional<Entry> first_passing(const Vec3& a, const Vec3& b, const Vec3& carried, double latest,
                                      bool is_backwards) const;
-  void take_if_earlier(std::int32_t t, const Vec3& a, const Vec3& b, double roundoff, double latest, bool is_backwards,
-                       std::optional<Entry>& first) const;
+  SeenTriangle seen_triangle(std::int32_t t, const Vec3& a, const Vec3& b) const;
+  static void take_if_earlier(std::int32_t t, const SeenTriangle& seen, double roundoff, double latest,
+                              std::optional<Entry>& first);
   Bounds swept_box(std::int32_t node, const Vec3& carried) const;
   template <class Visit>
   bool any_triangle(const Bounds& box, const Vec3& carried, const Visit& visit) const;

@@ -280,9 +280,12 @@ std::vector<std::string> RowTally::warnings() const {
       list.push_back(fmt::format("body '{}' has {} without volume in its last frame", body.name,
                                  count_text(body.collapsed, "element")));
   }
-  for (const MetTally& pair : met_)
-    list.push_back(fmt::format("bodies '{}' and '{}' pass through each other from frame {} on: these two do not meet",
-                               pair.bodies[0], pair.bodies[1], pair.frame));
+  for (const MetTally& pair : met_) {
+    const bool touched = std::ranges::find(pairs_, pair.bodies, &PairTally::bodies) != pairs_.end();
+    list.push_back(fmt::format(
+        "bodies '{}' and '{}' pass through each other from frame {} on: {}", pair.bodies[0], pair.bodies[1], pair.frame,
+        touched ? "substeps or a finer mesh of both keep layers apart" : "these two do not meet"));
+  }
   for (std::string& warning : depths_of_pairs()) list.push_back(std::move(warning));
   for (std::string& warning : penetrations()) list.push_back(std::move(warning));
   for (std::string& warning : missing_in_pictures()) list.push_back(std::move(warning));

@@ -15,8 +15,9 @@ void BodyPairs::look_for(std::size_t a, std::size_t b, bool wanted) {
 }
 
 bool BodyPairs::looks_for(std::size_t a, std::size_t b, PairKind kind) const {
-  return looked_for_[a * bodies_.size() + b] != 0 &&
-         meet(bodies_[a].def, bodies_[b].def) == (kind == PairKind::meeting);
+  const BodyDef &one = bodies_[a].def, &other = bodies_[b].def;
+  const bool has_inside = meet(one, other) && !(one.cloth && other.cloth);
+  return looked_for_[a * bodies_.size() + b] != 0 && has_inside == (kind == PairKind::meeting);
 }
 
 bool BodyPairs::has(PairKind kind) const {

@@ -10,8 +10,8 @@
 namespace supple {
 
 enum class PairKind {
-  meeting,  // the bodies meet (scene/definition/meeting.h)
-  passing,  // they do not, and pass through each other
+  meeting,  // the bodies meet (scene/definition/meeting.h), and one of them has an inside
+  passing,  // they do not meet, or are two cloths: what shares space passes through each other
 };
 
 // A pair is written with the earlier body first. Its kind is that of the bodies' present definitions, which a replay

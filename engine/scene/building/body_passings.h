@@ -1,7 +1,7 @@
-// Finds the bodies of a scene that are in the same place although they do not meet (scene/definition/meeting.h): they
-// pass through each other, and whoever makes the film should know that. The warning is `overlap`. Not here: bodies that
-// meet and are deep in each other (body_depths.h), and what a body does with rigid colliders (overlaps.h,
-// sim/contact/).
+// Finds the bodies of a scene that are in the same place although they do not meet (scene/definition/meeting.h), and
+// the cloths that cross each other although they do: they pass through each other, and whoever makes the film should
+// know that. The warning is `overlap`. Not here: bodies that meet and are deep in each other (body_depths.h), and what
+// a body does with rigid colliders (overlaps.h, sim/contact/).
 #pragma once
 
 #include <array>
@@ -21,8 +21,8 @@ class BodyPassings {
   // Tells whether find() has nothing to look for, as the bodies are defined now.
   bool none_left() const { return !pairs_.has(PairKind::passing); }
 
-  // Returns the pairs that do not meet and share space in these positions, the earlier body first, and leaves them out
-  // from now on. points: the positions of each body's mesh, n x 3 [m].
+  // Returns the pairs of PairKind::passing that share space in these positions, the earlier body first, and leaves them
+  // out from now on. points: the positions of each body's mesh, n x 3 [m].
   std::vector<std::array<std::size_t, 2>> find(const std::vector<Positions>& points);
 
  private:

@@ -11,6 +11,7 @@
 #include "scene/building/collision_set.h"
 #include "scene/building/overlaps.h"
 #include "scene/building/thin_bodies.h"
+#include "scene/definition/meeting.h"
 #include "sim/measures/measures.h"
 
 namespace supple {
@@ -163,8 +164,11 @@ void warn_of_shared_space(const std::vector<Body>& bodies, std::vector<Warning>&
   };
   for (const auto& [a, b] : BodyPassings(bodies).find(points))
     warn(a, b,
-         fmt::format("bodies '{}' and '{}' pass through each other from the start on: these two do not meet",
-                     bodies[a].def.name, bodies[b].def.name));
+         meet(bodies[a].def, bodies[b].def)
+             ? fmt::format("cloths '{}' and '{}' cross each other at the start: contact holds each part on its side",
+                           bodies[a].def.name, bodies[b].def.name)
+             : fmt::format("bodies '{}' and '{}' pass through each other from the start on: these two do not meet",
+                           bodies[a].def.name, bodies[b].def.name));
   for (const BodyDepth& overlap : overlaps_of_bodies(bodies, points))
     warn(overlap.a, overlap.b, start_overlap_text(bodies, overlap));
   for (const BodyDepth& overlap : bodies_in_themselves(bodies, points))

@@ -8,8 +8,6 @@
 namespace supple {
 namespace {
 
-bool both_are_cloth(const BodyDef& a, const BodyDef& b) { return a.cloth && b.cloth; }
-
 bool integrators_differ(const BodyDef& a, const BodyDef& b) { return a.solver.integrator != b.solver.integrator; }
 
 bool factors_differ(const BodyDef& a, const BodyDef& b) { return a.solver.precision != b.solver.precision; }
@@ -27,7 +25,6 @@ bool asks_to_meet(const BodyDef& body, const BodyDef& other) {
 bool both_allow_meeting(const BodyDef& a, const BodyDef& b) { return allows_meeting(a, b) && allows_meeting(b, a); }
 
 std::string why_not_meet(const BodyDef& a, const BodyDef& b) {
-  if (both_are_cloth(a, b)) return "both are cloth, and the vertices of a cloth touch solids alone";
   if (integrators_differ(a, b))
     return fmt::format("bodies that meet need the same solver.integrator, and these have '{}' and '{}'",
                        name_of(a.solver.integrator), name_of(b.solver.integrator));
@@ -38,7 +35,7 @@ std::string why_not_meet(const BodyDef& a, const BodyDef& b) {
 }
 
 bool meet(const BodyDef& a, const BodyDef& b) {
-  return !both_are_cloth(a, b) && !integrators_differ(a, b) && !factors_differ(a, b) && both_allow_meeting(a, b);
+  return !integrators_differ(a, b) && !factors_differ(a, b) && both_allow_meeting(a, b);
 }
 
 bool meet(const SceneDef& scene, std::size_t a, std::size_t b) {

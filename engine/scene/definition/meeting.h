@@ -16,7 +16,7 @@ bool meet(const BodyDef& a, const BodyDef& b);
 // Tells the same of two bodies of a scene, by their indices; false where they are one.
 bool meet(const SceneDef& scene, std::size_t a, std::size_t b);
 
-// Tells whether a body touches itself. Only a solid can be touched.
+// Tells whether a body touches itself. Only a solid can: a cloth does not know its own layers.
 bool meets_itself(const BodyDef& body);
 
 // Tells whether the definitions of both bodies allow that they meet.
@@ -25,9 +25,8 @@ bool both_allow_meeting(const BodyDef& a, const BodyDef& b);
 // Tells whether a body's definition names the other one among those that it meets.
 bool asks_to_meet(const BodyDef& body, const BodyDef& other);
 
-// Says why two bodies cannot meet, whatever their definitions allow; empty where they can. A solid can be touched. A
-// cloth has no inside: its vertices touch solids, and it can't be touched itself. Bodies that meet make their steps
-// together, and so with one integrator and one precision of the factor.
+// Says why two bodies cannot meet, whatever their definitions allow; empty where they can. Bodies that meet make their
+// steps together, and so with one integrator and one precision of the factor.
 std::string why_not_meet(const BodyDef& a, const BodyDef& b);
 
 // Returns the coefficient of Coulomb's law between two bodies: the geometric mean of their shares.

@@ -7,6 +7,7 @@
 
 #include "sim/contact/contact_order.h"
 #include "sim/contact/own_points.h"
+#include "sim/contact/sheet_pair.h"
 #include "sim/contact/surface_work.h"
 #include "sim/contact/touched_surface.h"
 #include "sim/contact/usual_depth.h"
@@ -46,17 +47,6 @@ double most_moved(const std::vector<std::int32_t>& points, const Positions& q, c
   return std::sqrt(most);
 }
 
-// Tells whether the surface's own points, which are finer, touch the other part. Then the other part's points follow
-// from them, but for edges and corners: each contact of two surfaces that lie on one another would count twice, and the
-// contacts would nearly depend on each other.
-bool meets_finer_points(const StepInputs& inputs, const Meeting& meeting, const Work& work) {
-  const bool both_ways = std::ranges::any_of(inputs.meetings, [&](const Meeting& other) {
-    return other.points == meeting.surface && other.surface == meeting.points;
-  });
-  const double own = work.surfaces[meeting.points].edge, other = work.surfaces[meeting.surface].edge;
-  return both_ways && (own > other || (own == other && meeting.points > meeting.surface));
-}
-
 // Examines the points of one part before the surface of another, at one iterate.
 class SurfacePair : public TouchedSurface {
  public:
@@ -66,7 +56,8 @@ class SurfacePair : public TouchedSurface {
         own_(work.surfaces[meeting.points]),
         points_(work.surfaces[meeting.points].points),
         beginnings_(beginnings),
-        only_sharp_(meets_finer_points(inputs, meeting, work)) {}
+        only_sharp_(only_sharp_points(model, inputs, meeting, work)),
+        layer_(model.parts[meeting.points].solid ? 0 : layer_of_edge * own_.edge) {}
 
   std::size_t points() const { return points_.size(); }
 
@@ -76,7 +67,7 @@ class SurfacePair : public TouchedSurface {
     const std::int32_t v = points_[index];
     const Vec3 a = q_.row(v).transpose(), b = x_.row(v).transpose();
     const double way = (b - a - surface_.carried).norm();
-    const double reach = reach_at(v, way);
+    const double reach = reach_at(v, way) + layer_;
     const bool is_near = surface_.moving->is_near(a, b, surface_.carried, reach);
     if (!is_near && !is_in_box(a)) return;
     const std::optional<Place>& before = beginning(index, a);
@@ -84,7 +75,7 @@ class SurfacePair : public TouchedSurface {
     double field = before ? before->distance : reach;
     const std::optional<Place> held = field <= 0 ? leaving(*before, v, b, reach, way)
                                                  : arriving(v, a, b, reach, way, beginnings_[index].nearest, field);
-    if (held) add(v, *held, field, list);
+    if (held) add(v, *held, field, list, layer_);
   }
 
   // Lowers a share to where a point that arrives is deeper than it may be.
@@ -101,6 +92,9 @@ class SurfacePair : public TouchedSurface {
   }
 
  private:
+  // Tells whether the points' own surface is that of a solid, which faces outward.
+  bool faces() const { return own_.moving != nullptr && model_.parts[meeting_.points].solid; }
+
   // Tells whether a place is in the surface's box where the step began, and may be inside, far from all triangles.
   bool is_in_box(const Vec3& a) const {
     const Bounds& box = surface_.moving->bounds_at_start();
@@ -111,10 +105,9 @@ class SurfacePair : public TouchedSurface {
   const std::optional<Place>& beginning(std::size_t index, const Vec3& a) const {
     Work::Beginning& known = beginnings_[index];
     if (known.is_known) return known.place;
-    const MovingSurface* own = own_.moving.get();
-    const Vec3 facing = own == nullptr
-                            ? Vec3(Vec3::Zero())
-                            : own->normal_at_start(own_vertex(model_, model_.parts[meeting_.points], points_[index]));
+    const Part& own = model_.parts[meeting_.points];
+    const Vec3 facing =
+        faces() ? own_.moving->normal_at_start(own_vertex(model_, own, points_[index])) : Vec3(Vec3::Zero());
     const auto find = [&](const Takes* takes) {
       return surface_.moving->closest_at_start(a, deepest * part_.size, takes);
     };
@@ -125,9 +118,8 @@ class SurfacePair : public TouchedSurface {
 
   // Returns the place closest to a point of an iterate.
   std::optional<Place> closest(std::int32_t v, const Vec3& b, double most) const {
-    const MovingSurface* own = own_.moving.get();
-    const Vec3 facing =
-        own == nullptr ? Vec3(Vec3::Zero()) : own->normal_at_end(own_vertex(model_, model_.parts[meeting_.points], v));
+    const Part& own = model_.parts[meeting_.points];
+    const Vec3 facing = faces() ? own_.moving->normal_at_end(own_vertex(model_, own, v)) : Vec3(Vec3::Zero());
     return closest(b, facing, x_, [&](const Takes* takes) { return surface_.moving->closest_at_end(b, most, takes); });
   }
 
@@ -201,6 +193,7 @@ class SurfacePair : public TouchedSurface {
   const std::vector<std::int32_t>& points_;
   std::vector<Work::Beginning>& beginnings_;
   bool only_sharp_;
+  double layer_;  // of a sheet, which its points keep from a solid [m]
 };
 
 // Moves the surfaces to the positions of an iterate.
@@ -276,6 +269,8 @@ void find_surface_contacts(const Model& model, const StepInputs& inputs, const P
     if (meeting.is_own()) {
       follow_own_points(model, inputs, meeting, q, x, work);
       search_points(OwnPoints(model, inputs, meeting, q, y, x, work), threads, work, found);
+    } else if (!model.parts[meeting.surface].solid) {
+      search_points(SheetPair(model, inputs, meeting, q, y, x, work), threads, work, found);
     } else {
       search_points(SurfacePair(model, inputs, meeting, q, y, x, work, work.beginnings[m]), threads, work, found);
     }
@@ -294,6 +289,8 @@ void stop_at_surfaces(const Model& model, const StepInputs& inputs, const Positi
     if (meeting.is_own()) {
       follow_own_points(model, inputs, meeting, q, x, work);
       least = first_share(OwnPoints(model, inputs, meeting, q, x, x, work), least);
+    } else if (!model.parts[meeting.surface].solid) {
+      least = first_share(SheetPair(model, inputs, meeting, q, x, x, work), least);
     } else {
       least = first_share(SurfacePair(model, inputs, meeting, q, x, x, work, work.beginnings[m]), least);
     }

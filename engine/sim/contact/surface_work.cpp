@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "sim/model/element_view.h"
 #include "sim/model/joined_model.h"
@@ -54,7 +56,24 @@ Vec3 rest_normal(const Triangles& triangles, Eigen::Index t, const Positions& re
   return edge.cross(other).normalized();
 }
 
-// Finds the points at which the normals of two faces are far apart, and the mean length of edges.
+// Tells of each vertex whether it lies on a border, at an edge that one triangle alone has.
+std::vector<char> on_border(const Triangles& triangles, Eigen::Index vertices) {
+  std::map<std::pair<std::int32_t, std::int32_t>, int> count;
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t a = triangles(t, k), b = triangles(t, (k + 1) % 3);
+      ++count[std::minmax(a, b)];
+    }
+  }
+  std::vector<char> border(std::size_t(vertices), 0);
+  for (const auto& [edge, sides] : count) {
+    if (sides != 1) continue;
+    border[std::size_t(edge.first)] = border[std::size_t(edge.second)] = 1;
+  }
+  return border;
+}
+
+// Finds the points at a border or at which the normals of two faces are far apart, and the mean length of edges.
 void describe_surface(const Model& model, const Part& part, Work::Surface& surface) {
   constexpr double least_cosine = 0.5;
   const Positions rest = rows_of(part, model.rest);
@@ -68,9 +87,10 @@ void describe_surface(const Model& model, const Part& part, Work::Surface& surfa
     }
   }
   surface.edge = edges / std::max<double>(1, double(triangles.size()));
+  const std::vector<char> border = on_border(triangles, rest.rows());
   for (const std::int32_t v : surface.points) {
     const std::vector<Vec3>& at = normals[own_vertex(model, part, v)];
-    bool is_sharp = false;
+    bool is_sharp = border[std::size_t(own_vertex(model, part, v))] != 0;
     for (const Vec3& one : at) {
       for (const Vec3& other : at) is_sharp |= one.dot(other) < least_cosine;
     }

@@ -15,10 +15,10 @@ struct SurfaceWork::Parts {
   using Place = MovingSurface::Place;
 
   struct Surface {
-    Triangles triangles;                    // rows of its part's vertices, in the order of the part's own model
-    std::vector<std::int32_t> points;       // vertices of the joined model that may touch others, ascending
-    std::vector<char> sharp;                // by point: whether faces at it look in very different directions at rest
-    double edge = 0;                        // the mean length of the surface's edges at rest [m]
+    Triangles triangles;               // rows of its part's vertices, in the order of the part's own model
+    std::vector<std::int32_t> points;  // vertices of the joined model that may touch others, ascending
+    std::vector<char> sharp;  // by point: whether it is on a border, or faces at it look very differently at rest
+    double edge = 0;          // the mean length of the surface's edges at rest [m]
     std::unique_ptr<MovingSurface> moving;  // null where nothing touches this part
     std::unique_ptr<OwnSurface> own;        // null where the part does not touch itself
     Vec3 carried = Vec3::Zero();            // the mean motion of the part from q to the present iterate [m]

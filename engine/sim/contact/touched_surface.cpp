@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 #include "sim/contact/lagged_force.h"
 #include "sim/contact/reach.h"
@@ -21,6 +22,16 @@ void add_vertex(const Model& model, std::int32_t vertex, double weight, ContactS
   stencil.vertex[at] = vertex;
   stencil.weight[at] = weight;
   stencil.free += vertex < model.free;
+}
+
+// Returns the mass by which a contact between a point and a triangle is stiff: half the geometric mean of those of both
+// sides, which is the reduced mass where the sides are equal. With the reduced mass itself, a heavy body sinks into a
+// light one whose elements would carry it. reduced: of both sides; a side that is held does not count [kg].
+double stiff_mass(const ContactStencil& stencil, const std::vector<double>& masses, double reduced) {
+  double point = 0, triangle = 0;  // inverse masses
+  for (int k = 0; k < stencil.free; ++k)
+    (stencil.weight[k] > 0 ? point : triangle) += stencil.weight[k] * stencil.weight[k] / masses[stencil.vertex[k]];
+  return point > 0 && triangle > 0 ? 0.5 / std::sqrt(point * triangle) : reduced;
 }
 
 }  // namespace
@@ -95,14 +106,15 @@ ContactStencil TouchedSurface::stencil_of(std::int32_t point, const Place& place
   return stencil;
 }
 
-void TouchedSurface::add(std::int32_t v, const Place& place, double field, std::vector<Contact>& list) const {
+void TouchedSurface::add(std::int32_t v, const Place& place, double field, std::vector<Contact>& list,
+                         double layer) const {
   Contact contact{stencil_of(v, place), {-1, meeting_.surface}, place.normal, 0, 0, 0, v};
   if (contact.stencil.free == 0) return;
   const double h = model_.time_step, mass = contact.stencil.mass(model_.mass);
   const double fastest = solver_.contact.push_out * size_ * h;
   const double deep = std::max(0.0, -field - fastest);
-  contact.offset = -deep;
-  contact.stiffness = solver_.contact.stiffness / (h * h) * mass;
+  contact.offset = layer - deep;
+  contact.stiffness = solver_.contact.stiffness / (h * h) * stiff_mass(contact.stencil, model_.mass, mass);
   contact.depth = std::max(0.0, -gap(contact, x_));
   if (meeting_.friction > 0) {
     contact.stick = solver_.contact.stick * size_ * h;
@@ -111,6 +123,17 @@ void TouchedSurface::add(std::int32_t v, const Place& place, double field, std::
                                                         model_.scheme.inertia * mass / (h * h));
   }
   list.push_back(contact);
+}
+
+bool only_sharp_points(const Model& model, const StepInputs& inputs, const Meeting& meeting,
+                       const SurfaceWork::Parts& work) {
+  const bool both_ways = std::ranges::any_of(inputs.meetings, [&](const Meeting& other) {
+    return other.points == meeting.surface && other.surface == meeting.points;
+  });
+  const bool is_solid = model.parts[meeting.points].solid, meets_solid = model.parts[meeting.surface].solid;
+  if (!both_ways || (!is_solid && meets_solid)) return false;
+  const double own = work.surfaces[meeting.points].edge, other = work.surfaces[meeting.surface].edge;
+  return own > other || (own == other && meeting.points > meeting.surface);
 }
 
 }  // namespace supple

@@ -1,6 +1,6 @@
 // Describes one iterate of a step in which points of a part meet a part's surface: what its triangles are like there,
 // and which contact a place of it makes with a point. What the searches of two parts
-// (surface_contacts.cpp) and of one with itself (own_points.h) share.
+// (surface_contacts.cpp, sheet_pair.h) and of one with itself (own_points.h) share.
 #pragma once
 
 #include <optional>
@@ -23,8 +23,9 @@ class TouchedSurface {
                  const Positions& y, const Positions& x, const Work& work);
 
  protected:
-  static constexpr double same_way = 0.5;   // cosine of normals; a point is not held by a face that looks as it does
-  static constexpr double opposite = -0.3;  // cosine of normals below which they belong to opposite sides
+  static constexpr double same_way = 0.5;  // cosine of normals; a point is not held by a face that looks as it does
+  static constexpr double layer_of_edge = 0.1;  // thickness of a sheet's layer over the mean length of its edges
+  static constexpr double opposite = -0.3;      // cosine of normals below which they belong to opposite sides
 
   std::int32_t corner(std::int32_t triangle, int k) const;
 
@@ -45,8 +46,9 @@ class TouchedSurface {
   double share_to_impact(const Entry& entry, const Vec3& a, const Vec3& b) const;
 
   // Adds the contact with the plane through a place, lowered by as much of the depth as need not be corrected in this
-  // step. field: the distance where the step began, negative inside [m].
-  void add(std::int32_t v, const Place& place, double field, std::vector<Contact>& list) const;
+  // step. field: the distance where the step began, negative inside [m]. layer: how far above the place the plane lies
+  // [m]; distances count from there.
+  void add(std::int32_t v, const Place& place, double field, std::vector<Contact>& list, double layer = 0) const;
 
   const Model& model_;
   const SolverSettings& solver_;
@@ -60,5 +62,13 @@ class TouchedSurface {
  private:
   ContactStencil stencil_of(std::int32_t point, const Place& place) const;
 };
+
+// Tells whether only the sharp points of a part are looked at before another one. Where both parts' points touch the
+// other part and both are solids or both are sheets, those of the coarser one follow from those of the finer one, but
+// for edges, corners and borders: each contact of two surfaces that lie on one another would count twice, and the
+// contacts would nearly depend on each other. The points of a sheet all touch solids, and of a solid those that are
+// finer.
+bool only_sharp_points(const Model& model, const StepInputs& inputs, const Meeting& meeting,
+                       const SurfaceWork::Parts& work);
 
 }  // namespace supple

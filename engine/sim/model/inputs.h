@@ -94,7 +94,7 @@ struct SolverSettings {
 // Says that points of one part of a model touch the surface of another, or that a part touches itself
 // (contact/surface_contacts.h).
 struct Meeting {
-  std::int32_t points = 0, surface = 0;  // parts; the second one is solid
+  std::int32_t points = 0, surface = 0;  // parts; one that touches itself is solid
   double friction = 0;                   // coefficient of Coulomb's law between the two
 
   bool is_own() const { return points == surface; }

@@ -1,0 +1,69 @@
+#include "sim/contact/sheet_pair.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace supple {
+
+SheetPair::SheetPair(const Model& model, const StepInputs& inputs, const Meeting& meeting, const Positions& q,
+                     const Positions& y, const Positions& x, const Work& work)
+    : TouchedSurface(model, inputs, meeting, q, y, x, work),
+      points_(work.surfaces[meeting.points].points),
+      sharp_(only_sharp_points(model, inputs, meeting, work) ? &work.surfaces[meeting.points].sharp : nullptr),
+      layer_(layer_of_edge * surface_.edge) {}
+
+bool SheetPair::is_looked_at(std::size_t index) const { return sharp_ == nullptr || (*sharp_)[index] != 0; }
+
+// Returns on which side of the sheet a point is: 1 in front, -1 behind, 0 beyond its border.
+double SheetPair::side_of(const Place& place, const Vec3& p, const Positions& x) const {
+  constexpr double beside = 0.5;  // cosine, of the way to the border and the sheet's normal
+  const Vec3 away = p - place.point;
+  const double above = normal_of(place.triangle, x).dot(away);
+  if (std::abs(above) < beside * away.norm()) return 0;
+  return above >= 0 ? 1 : -1;
+}
+
+void SheetPair::find(std::size_t index, std::vector<Contact>& list) const {
+  if (!is_looked_at(index)) return;
+  const std::int32_t v = points_[index];
+  const Vec3 a = q_.row(v).transpose(), b = x_.row(v).transpose();
+  const double way = (b - a - surface_.carried).norm(), reach = reach_at(v, way) + layer_;
+  if (!surface_.moving->is_near(a, b, surface_.carried, reach)) return;
+  const double moved = way + 2 * surface_.own_move;
+  const std::optional<Place> before = surface_.moving->closest_at_start(a, reach + moved);
+  const std::optional<Entry> crossing = surface_.moving->first_crossing(a, b, surface_.carried);
+  std::optional<Place> place = surface_.moving->closest_at_end(b, crossing ? reach + moved : reach);
+  if (!place) return;
+  double side = before ? side_of(*before, a, q_) : 0;
+  if (crossing) {
+    // The crossing's normal is the triangle's, or the opposite one where the point came from behind.
+    const Vec3 then = normal_of(crossing->triangle, q_) + normal_of(crossing->triangle, x_);
+    side = then.dot(crossing->normal) >= 0 ? 1 : -1;
+  }
+  if (side == 0) return;
+  if (!crossing && side_of(*place, b, x_) == 0) return;
+  place->normal = side * normal_of(place->triangle, x_);
+  if (place->normal.isZero(0)) return;
+  place->distance = place->normal.dot(b - place->point) - layer_;
+  if (place->distance >= reach) return;
+  const double field = before && !crossing ? side * normal_of(before->triangle, q_).dot(a - before->point) - layer_ : 0;
+  add(v, *place, before ? field : reach, list, layer_);
+}
+
+double SheetPair::share_to_impact(std::size_t index, double least) const {
+  if (!is_looked_at(index)) return 1;
+  const std::int32_t v = points_[index];
+  const Vec3 a = q_.row(v).transpose(), b = x_.row(v).transpose();
+  if (!surface_.moving->is_near(a, b, surface_.carried, 0)) return 1;
+  const std::optional<Entry> crossing = surface_.moving->first_crossing(a, b, surface_.carried, least);
+  if (!crossing) return 1;
+  Vec3 pace = b - a;
+  for (int k = 0; k < 3; ++k) {
+    const std::int32_t c = corner(crossing->triangle, k);
+    pace -= crossing->weights[k] * (x_.row(c) - q_.row(c)).transpose();
+  }
+  const double falls = -crossing->normal.dot(pace);
+  return falls > 0 ? std::max(0.0, crossing->share - (1 - deepest) * layer_ / falls) : 1;
+}
+
+}  // namespace supple
