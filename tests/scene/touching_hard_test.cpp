@@ -127,15 +127,16 @@ TEST(TouchingHard, ACubeOnOneAThousandTimesAsLightStaysAboveItOrIsSaidToBeDeepIn
   Played played(fallen(3e4, "density = 1\n", 3e4, "density = 1000\n"));
   ASSERT_NEAR(played.world.body(1).model().total_mass / played.world.body(0).model().total_mass, 1000, 1e-6);
   double deepest = 0;
+  bool is_through = false;
   for (int frame = 0; frame < 45; ++frame) {
     ASSERT_TRUE(played.play(frame)) << frame;
     deepest = std::max(deepest, played.depth());
-    EXPECT_GT(played.places(1).col(1).mean(), played.places(0).col(1).mean()) << frame;
+    is_through |= played.places(1).col(1).mean() < played.places(0).col(1).mean();
   }
   const std::vector<std::string> said = played.tally.warnings();
   const bool tells = std::ranges::any_of(
       said, [](const std::string& warning) { return warning.find("deep in each other") != std::string::npos; });
-  EXPECT_TRUE(deepest <= DeepBodies::deep || tells) << deepest;
+  EXPECT_TRUE((deepest <= DeepBodies::deep && !is_through) || tells) << deepest;
 }
 
 }  // namespace touching_hard_test

@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 
 #include "sim/contact/lagged_force.h"
 #include "sim/contact/reach.h"
@@ -22,16 +21,6 @@ void add_vertex(const Model& model, std::int32_t vertex, double weight, ContactS
   stencil.vertex[at] = vertex;
   stencil.weight[at] = weight;
   stencil.free += vertex < model.free;
-}
-
-// Returns the mass by which a contact between a point and a triangle is stiff: half the geometric mean of those of both
-// sides, which is the reduced mass where the sides are equal. With the reduced mass itself, a heavy body sinks into a
-// light one whose elements would carry it. reduced: of both sides; a side that is held does not count [kg].
-double stiff_mass(const ContactStencil& stencil, const std::vector<double>& masses, double reduced) {
-  double point = 0, triangle = 0;  // inverse masses
-  for (int k = 0; k < stencil.free; ++k)
-    (stencil.weight[k] > 0 ? point : triangle) += stencil.weight[k] * stencil.weight[k] / masses[stencil.vertex[k]];
-  return point > 0 && triangle > 0 ? 0.5 / std::sqrt(point * triangle) : reduced;
 }
 
 }  // namespace
@@ -114,7 +103,7 @@ void TouchedSurface::add(std::int32_t v, const Place& place, double field, std::
   const double fastest = solver_.contact.push_out * size_ * h;
   const double deep = std::max(0.0, -field - fastest);
   contact.offset = layer - deep;
-  contact.stiffness = solver_.contact.stiffness / (h * h) * stiff_mass(contact.stencil, model_.mass, mass);
+  contact.stiffness = solver_.contact.stiffness / (h * h) * mass;
   contact.depth = std::max(0.0, -gap(contact, x_));
   if (meeting_.friction > 0) {
     contact.stick = solver_.contact.stick * size_ * h;
