@@ -8,6 +8,7 @@
 #include "scene/definition/meeting.h"
 #include "sim/contact/own_surface.h"
 #include "sim/contact/part_contacts.h"
+#include "sim/contact/surface_contacts.h"
 #include "sim/model/element_view.h"
 #include "sim/model/joined_model.h"
 #include "sim/solver/begin_step.h"
@@ -62,6 +63,7 @@ struct Islands::Way {
   Bounds swept;              // of the body from q to y
   Vec3 mean = Vec3::Zero();  // its mean motion [m]
   std::uint64_t structure = 0;
+  double layer = 0;  // of a sheet, at which contact holds others [m]
   mutable std::unique_ptr<MovingSurface> surface;
   mutable bool is_moved = false;  // whether the surface goes the way of this step
 };
@@ -108,8 +110,11 @@ void Islands::find_ways() {
     way.swept.include(end.lower);
     way.swept.include(end.upper);
     way.is_moved = false;
-    if (way.structure != body.model().structure) way.surface.reset();
+    if (way.structure == body.model().structure) continue;
+    way.surface.reset();
     way.structure = body.model().structure;
+    way.layer =
+        body.model().parts.front().solid ? 0 : layer_of_edge * mean_edge(body.model().surface, body.model().rest);
   }
 }
 
@@ -131,7 +136,8 @@ bool Islands::may_touch(std::size_t a, std::size_t b, double pushed) const {
   const Model &one = bodies_[a]->model(), &other = bodies_[b]->model();
   if (one.surface.rows() == 0 || other.surface.rows() == 0) return false;
   const double h = one.time_step;
-  const double margin = near * std::min(one.size, other.size) + 0.25 * h * h * scene_.gravity.norm() + pushed;
+  const double margin = near * std::min(one.size, other.size) + 0.25 * h * h * scene_.gravity.norm() + pushed +
+                        ways_[a].layer + ways_[b].layer;
   for (int k = 0; k < 3; ++k) {
     if (ways_[a].swept.lower[k] - margin > ways_[b].swept.upper[k] ||
         ways_[b].swept.lower[k] - margin > ways_[a].swept.upper[k])
@@ -287,7 +293,8 @@ bool Islands::comes_through_itself(std::size_t body, const Positions& q) {
 
 // Which bodies touch themselves in a step must follow from the states alone, and not from whether a body was looked at
 // before its step or after it: those that begin in themselves come first, then those that come through themselves in
-// the step of these.
+// the step of these. A step with a budget of time is made once, by what begins in itself alone: its cuts are repeated
+// in other runs, and those of a step that is thrown away are not known there.
 int Islands::step(const std::vector<std::size_t>& island) {
   std::vector<std::size_t> able;  // members
   for (std::size_t m = 0; m < island.size(); ++m)
@@ -306,26 +313,37 @@ int Islands::step(const std::vector<std::size_t>& island) {
     begun = true;
     return any;
   };
+  const auto is_on_clock = [&](std::size_t b) {
+    const StepInputs& inputs = bodies_[b]->inputs();
+    return inputs.solver.budget_ms > 0 || inputs.repeated_cuts.has_value();
+  };
+  if (std::ranges::any_of(island, is_on_clock)) {
+    find_those_that_begin_so();
+    return step_once(island, selves);
+  }
   if (std::ranges::any_of(able, [&](std::size_t m) { return owns_[island[m]].touched; })) find_those_that_begin_so();
   const std::size_t touched_before = touches_.size();
-  for (double wasted = 0;;) {
+  std::vector<double> wasted(island.size(), 0.0);  // [ms]
+  for (;;) {
     const int failed = step_once(island, selves);
-    if (failed >= 0) return failed;
+    if (failed >= 0 && (begun || !find_those_that_begin_so())) return failed;
+    if (failed >= 0) {
+      touches_.resize(touched_before);
+      continue;
+    }
     std::vector<std::size_t> through;
     for (const std::size_t m : able)
       if (!selves[m] && comes_through_itself(island[m], before[m].x)) through.push_back(m);
-    if (through.empty()) {
-      if (wasted > 0) {
-        for (const std::size_t b : island) bodies_[b]->add_time(wasted / double(island.size()));
-      }
-      break;
-    }
-    for (const std::size_t b : island) wasted += bodies_[b]->report().step_ms;
+    if (through.empty()) break;
+    for (std::size_t m = 0; m < island.size(); ++m) wasted[m] += bodies_[island[m]]->report().step_ms;
     if (begun || !find_those_that_begin_so()) {
       for (const std::size_t m : through) selves[m] = 1;
     }
     touches_.resize(touched_before);
     for (std::size_t m = 0; m < island.size(); ++m) bodies_[island[m]]->state_ = before[m];
+  }
+  for (std::size_t m = 0; m < island.size(); ++m) {
+    if (wasted[m] > 0) bodies_[island[m]]->add_time(wasted[m]);
   }
   for (const std::size_t m : able) owns_[island[m]].touched = selves[m] != 0;
   return -1;

@@ -4,6 +4,7 @@
 
 #include "base/trace.h"
 #include "scene/building/warnings.h"
+#include "scene/definition/meeting.h"
 
 namespace supple {
 namespace {
@@ -53,7 +54,7 @@ void PairRecorder::leave_out_known(const std::vector<Names>& met, const std::vec
   for (std::size_t b = 0; b < world_.bodies().size(); ++b) {
     for (std::size_t a = 0; a < b; ++a) {
       const bool meant = is_meant(a, b);
-      if (meant || contains(met, names(a, b))) passings_.leave_out(a, b);
+      if (meant || contains(met, names(a, b)) || contains(deep, names(a, b))) passings_.leave_out(a, b);
       if (meant || contains(deep, names(a, b))) deep_.leave_out(a, b);
     }
   }
@@ -95,7 +96,14 @@ void PairRecorder::note_who_came_apart(const FrameRow& row) {
 }
 
 void PairRecorder::find_passings(const std::vector<Positions>& points, FrameRow& row) {
-  for (const auto& [a, b] : passings_.find(points)) row.met.push_back(names(a, b));
+  const std::vector<Body>& bodies = world_.bodies();
+  for (const auto& [a, b] : passings_.find(points)) {
+    if (meet(bodies[a].def, bodies[b].def)) {
+      row.deep.push_back({names(a, b), 0, {0, 0, 0}});
+    } else {
+      row.met.push_back(names(a, b));
+    }
+  }
 }
 
 void PairRecorder::find_deep(const std::vector<Positions>& points, FrameRow& row) {

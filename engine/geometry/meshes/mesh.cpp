@@ -103,6 +103,14 @@ Triangles boundary_faces(const Tetrahedra& tets) {
   return faces;
 }
 
+double mean_edge(const Triangles& triangles, const Positions& points) {
+  double sum = 0;
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    for (int k = 0; k < 3; ++k) sum += (points.row(triangles(t, k)) - points.row(triangles(t, (k + 1) % 3))).norm();
+  }
+  return sum / std::max<double>(1, static_cast<double>(triangles.size()));
+}
+
 std::vector<char> inside_elements(const TetMesh& mesh, const Positions& points) {
   std::vector<char> inside(static_cast<std::size_t>(points.rows()), 0);
   if (inside.empty()) return inside;

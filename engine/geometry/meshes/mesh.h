@@ -46,6 +46,9 @@ Manifoldness manifoldness(const TetMesh& mesh);
 // dropped.
 TetMesh submesh(const TetMesh& mesh, const std::vector<char>& keep);
 
+// Returns the mean length of the edges of triangles, each counted once for each of its triangles [m].
+double mean_edge(const Triangles& triangles, const Positions& points);
+
 // Tells which points lie inside an element.
 std::vector<char> inside_elements(const TetMesh& mesh, const Positions& points);
 

@@ -140,7 +140,7 @@ std::optional<std::int32_t> ElementPaths::element_at_end(const Positions& x, std
 bool ElementPaths::are_neighbours(std::int32_t a, std::int32_t b) const {
   const auto first = neighbours_.begin() + begin_[std::size_t(a)],
              last = neighbours_.begin() + begin_[std::size_t(a) + 1];
-  return std::binary_search(first, last, b);
+  return a == b || std::binary_search(first, last, b);
 }
 
 // Returns six times the volume.

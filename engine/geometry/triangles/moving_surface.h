@@ -1,4 +1,4 @@
-// Represents the closed surface of a body that moves in a step: each vertex moves evenly from its place at the start to
+// Represents the surface of a body that moves in a step, a closed one or a sheet, whose places have no inside: each vertex moves evenly from its place at the start to
 // that at the end. It finds the closest place of the surface at both times, and where a point that moves evenly too
 // first enters. The boxes of its tree follow the vertices; which triangles they hold is fixed by the rest positions.
 // The sign of a distance is that of the angle-weighted pseudonormal (Baerentzen, Aanaes, Signed distance computation

@@ -209,9 +209,15 @@ std::string left_text(const PairTally& pair) {
       pair.bodies[0], pair.bodies[1], pair.left_frame, 100 * pair.left);
 }
 
-// Tells of two bodies that were deep in each other although their contacts never showed such a depth.
+// Tells of two bodies that were deep in each other although their contacts never showed such a depth, or of two cloths
+// that cross each other, which have no depth.
 std::string missed_text(const DeepTally& pair) {
   const auto& [bodies, share, place] = pair.found;
+  if (share == 0)
+    return fmt::format(
+        "cloths '{}' and '{}' cross each other from frame {} on: their edges are not held apart; substeps or finer "
+        "meshes of both make that less likely",
+        bodies[0], bodies[1], pair.frame);
   return fmt::format(
       "bodies '{}' and '{}' were {:.2g} % of the smaller one's size deep in each other in frame {}, at [{:.3g}, "
       "{:.3g}, {:.3g}], and their contacts never showed more than {:g} %: substeps or more solver.iterations make that "
@@ -280,12 +286,9 @@ std::vector<std::string> RowTally::warnings() const {
       list.push_back(fmt::format("body '{}' has {} without volume in its last frame", body.name,
                                  count_text(body.collapsed, "element")));
   }
-  for (const MetTally& pair : met_) {
-    const bool touched = std::ranges::find(pairs_, pair.bodies, &PairTally::bodies) != pairs_.end();
-    list.push_back(fmt::format(
-        "bodies '{}' and '{}' pass through each other from frame {} on: {}", pair.bodies[0], pair.bodies[1], pair.frame,
-        touched ? "substeps or a finer mesh of both keep layers apart" : "these two do not meet"));
-  }
+  for (const MetTally& pair : met_)
+    list.push_back(fmt::format("bodies '{}' and '{}' pass through each other from frame {} on: these two do not meet",
+                               pair.bodies[0], pair.bodies[1], pair.frame));
   for (std::string& warning : depths_of_pairs()) list.push_back(std::move(warning));
   for (std::string& warning : penetrations()) list.push_back(std::move(warning));
   for (std::string& warning : missing_in_pictures()) list.push_back(std::move(warning));

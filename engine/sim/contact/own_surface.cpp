@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geometry/triangles/point_passage.h"
+#include "sim/contact/usual_depth.h"
 
 namespace supple {
 namespace {
@@ -66,17 +67,16 @@ struct OwnSurface::Motion {
 
 OwnSurface::OwnSurface(Tetrahedra tets, Triangles triangles, const Positions& rest, double size)
     : paths_(std::move(tets), triangles, rest), triangles_(std::move(triangles)), centroids_(triangles_.rows(), 3) {
-  double edges = 0;
   for (Eigen::Index t = 0; t < triangles_.rows(); ++t) {
     centroids_.row(t) = (rest.row(triangles_(t, 0)) + rest.row(triangles_(t, 1)) + rest.row(triangles_(t, 2))) / 3;
     double radius = 0;
     for (int k = 0; k < 3; ++k) {
-      edges += (rest.row(triangles_(t, k)) - rest.row(triangles_(t, (k + 1) % 3))).norm();
       radius = std::max(radius, (rest.row(triangles_(t, k)) - centroids_.row(t)).norm());
     }
     radius_.push_back(radius);
   }
-  edge_ = edges / std::max<double>(1, double(triangles_.size()));
+  edge_ = mean_edge(triangles_, rest);
+  shallow_ = usual_depth(size);
   deep_ = std::max(least_deep * size, std::min(most_deep * size, 0.5 * edge_));
   around_begin_.assign(static_cast<std::size_t>(rest.rows()) + 1, 0);
   for (Eigen::Index i = 0; i < triangles_.size(); ++i) ++around_begin_[std::size_t(triangles_.data()[i]) + 1];
@@ -86,6 +86,8 @@ OwnSurface::OwnSurface(Tetrahedra tets, Triangles triangles, const Positions& re
   for (std::int32_t t = 0; t < triangles_.rows(); ++t)
     for (int k = 0; k < 3; ++k) around_[std::size_t(next[std::size_t(triangles_(t, k))]++)] = t;
 }
+
+double OwnSurface::most_cosine(double above) const { return above < -shallow_ ? against : same_way; }
 
 bool OwnSurface::are_neighbours(std::int32_t vertex, std::int32_t triangle) const {
   for (int k = 0; k < 3; ++k)
@@ -143,7 +145,7 @@ bool OwnSurface::meets(const MovingSurface& moving, const Positions& q, const Po
     if (above <= -deep_ || are_neighbours(v, t)) return false;
     const Motion::Approach approach = motion.approach(v, t);
     if (above < 0) {
-      may_begin_inside |= approach.nearest <= deep_ && facing(q, v).dot(motion.normal.row(t)) < against;
+      may_begin_inside |= approach.nearest <= deep_ && !(facing(q, v).dot(motion.normal.row(t)) > most_cosine(above));
       return false;
     }
     return approach.nearest <= 0 && motion.above_at_end(v, t, triangles_) < 0 &&
@@ -176,7 +178,7 @@ void OwnSurface::find_pairs(const MovingSurface& moving, const Positions& q, con
     if (above <= -deep_) return false;
     const Motion::Approach approach = motion.approach(v, t);
     if (approach.nearest > (above < 0 ? deep_ : margin) || are_neighbours(v, t)) return false;
-    if (facing(q, v).dot(motion.normal.row(t)) > (above < 0 ? against : same_way)) return false;
+    if (facing(q, v).dot(motion.normal.row(t)) > most_cosine(above)) return false;
     found.push_back({v, t, approach.motion});
     return false;
   });

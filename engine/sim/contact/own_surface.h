@@ -17,7 +17,8 @@ namespace supple {
 class OwnSurface {
  public:
   static constexpr double same_way = 0.5;  // cosine of normals; a point does not touch a face that looks as it does
-  static constexpr double against = -0.1;  // the same for a point that begins a step behind the face
+  static constexpr double against = -0.1;  // the same for a point deeper behind the face than contact presses it, since
+                                           // most points near such a face are on the next side of an edge of the body
 
   // tets, triangles: of the body, with its boundary. rest: n x 3 [m]; size: of the body [m].
   OwnSurface(Tetrahedra tets, Triangles triangles, const Positions& rest, double size);
@@ -34,7 +35,7 @@ class OwnSurface {
     std::vector<std::int32_t> vertices;   // ascending
     std::vector<std::int32_t> begin;      // where each vertex's triangles begin, and the end
     std::vector<std::int32_t> triangles;  // ascending
-    std::vector<double> motion;           // by vertex: how far it moves beside one of its triangles at most [m]
+    std::vector<double> motion;           // by vertex: how far it moves beside one of its triangles at most, to x [m]
 
     std::span<const std::int32_t> of(std::size_t index) const {
       return {triangles.data() + begin[index], std::size_t(begin[index + 1] - begin[index])};
@@ -61,6 +62,7 @@ class OwnSurface {
   // Points that are deeper inside than half an edge are left out, within these limits, over the body's size.
   static constexpr double least_deep = 0.006, most_deep = 0.02;
 
+  double most_cosine(double above) const;  // of normals, for a point that begins so far above a face
   bool passes(const Positions& q, const Positions& x, std::int32_t vertex, std::int32_t triangle) const;
   bool is_collapsed_around(const Positions& x, std::int32_t vertex, std::int32_t triangle) const;
   Vec3 facing(const Positions& x, std::int32_t vertex) const;
@@ -70,7 +72,7 @@ class OwnSurface {
   std::vector<std::int32_t> around_begin_, around_;  // the triangles at each vertex
   Positions centroids_;                              // of the triangles at rest [m]
   std::vector<double> radius_;                       // by triangle, from its centroid at rest [m]
-  double edge_ = 0, deep_ = 0;
+  double edge_ = 0, shallow_ = 0, deep_ = 0;         // [m]
 };
 
 }  // namespace supple

@@ -75,7 +75,7 @@ class SurfacePair : public TouchedSurface {
     double field = before ? before->distance : reach;
     const std::optional<Place> held = field <= 0 ? leaving(*before, v, b, reach, way)
                                                  : arriving(v, a, b, reach, way, beginnings_[index].nearest, field);
-    if (held) add(v, *held, field, list, layer_);
+    if (held) add(v, *held, field - layer_, list, layer_);
   }
 
   // Lowers a share to where a point that arrives is deeper than it may be.

@@ -79,14 +79,12 @@ void describe_surface(const Model& model, const Part& part, Work::Surface& surfa
   const Positions rest = rows_of(part, model.rest);
   const Triangles& triangles = surface.triangles;
   std::vector<std::vector<Vec3>> normals(std::size_t(rest.rows()));
-  double edges = 0;
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
     for (int k = 0; k < 3; ++k) {
       normals[triangles(t, k)].push_back(rest_normal(triangles, t, rest));
-      edges += (rest.row(triangles(t, k)) - rest.row(triangles(t, (k + 1) % 3))).norm();
     }
   }
-  surface.edge = edges / std::max<double>(1, double(triangles.size()));
+  surface.edge = mean_edge(triangles, rest);
   const std::vector<char> border = on_border(triangles, rest.rows());
   for (const std::int32_t v : surface.points) {
     const std::vector<Vec3>& at = normals[own_vertex(model, part, v)];

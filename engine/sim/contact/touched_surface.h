@@ -23,9 +23,8 @@ class TouchedSurface {
                  const Positions& y, const Positions& x, const Work& work);
 
  protected:
-  static constexpr double same_way = 0.5;  // cosine of normals; a point is not held by a face that looks as it does
-  static constexpr double layer_of_edge = 0.1;  // thickness of a sheet's layer over the mean length of its edges
-  static constexpr double opposite = -0.3;      // cosine of normals below which they belong to opposite sides
+  static constexpr double same_way = 0.5;   // cosine of normals; a point is not held by a face that looks as it does
+  static constexpr double opposite = -0.3;  // cosine of normals below which they belong to opposite sides
 
   std::int32_t corner(std::int32_t triangle, int k) const;
 
@@ -63,11 +62,11 @@ class TouchedSurface {
   ContactStencil stencil_of(std::int32_t point, const Place& place) const;
 };
 
-// Tells whether only the sharp points of a part are looked at before another one. Where both parts' points touch the
-// other part and both are solids or both are sheets, those of the coarser one follow from those of the finer one, but
-// for edges, corners and borders: each contact of two surfaces that lie on one another would count twice, and the
-// contacts would nearly depend on each other. The points of a sheet all touch solids, and of a solid those that are
-// finer.
+// Tells whether only the sharp points of a part are looked at before another one. Of two solids, or of two sheets,
+// whose points touch each other, those of the coarser one follow from those of the finer one, but for edges, corners
+// and borders: each contact of two surfaces that lie on one another would count twice, and the contacts would nearly
+// depend on each other. Of a sheet and a solid, all points of the sheet are looked at, and those of the solid only
+// where it is the finer one.
 bool only_sharp_points(const Model& model, const StepInputs& inputs, const Meeting& meeting,
                        const SurfaceWork::Parts& work);
 
