@@ -55,34 +55,37 @@ std::optional<Eigen::Vector4d> coordinates(const std::array<Vec3, 4>& corners, c
 
 }  // namespace
 
-ElementPaths::ElementPaths(Tetrahedra tets, const Triangles& triangles, const Positions& rest)
-    : tets_(std::move(tets)) {
+ElementPaths::ElementPaths(Tetrahedra tets, Triangles triangles, const Positions& rest)
+    : tets_(std::move(tets)), triangles_(std::move(triangles)) {
   for (std::int32_t e = 0; e < tets_.rows(); ++e) rest_volume_.push_back(volume_of(rest, e));
-  join_elements(triangles, rest.rows());
   list_around(rest.rows());
 }
 
-void ElementPaths::join_elements(const Triangles& triangles, Eigen::Index vertices) {
+void ElementPaths::join_elements() const {
   beyond_.assign(std::size_t(tets_.rows()), {-1, -1, -1, -1});
-  const ByKey by_lowest(std::size_t(vertices), std::int32_t(4 * tets_.rows()),
-                        [&](std::int32_t face) { return face_of(tets_, face)[0]; });
+  std::vector<Face> faces;
+  for (std::int32_t face = 0; face < 4 * tets_.rows(); ++face) faces.push_back(face_of(tets_, face));
+  const ByKey by_lowest(begin_.size() - 1, std::int32_t(faces.size()),
+                        [&](std::int32_t face) { return faces[std::size_t(face)][0]; });
   const auto faces_at = [&](std::int32_t lowest) {
-    return std::span(by_lowest.list)
-        .subspan(std::size_t(by_lowest.begin[std::size_t(lowest)]),
-                 std::size_t(by_lowest.begin[std::size_t(lowest) + 1] - by_lowest.begin[std::size_t(lowest)]));
+    const auto first = std::size_t(by_lowest.begin[std::size_t(lowest)]);
+    return std::span(by_lowest.list).subspan(first, std::size_t(by_lowest.begin[std::size_t(lowest) + 1]) - first);
   };
-  for (std::int32_t v = 0; v < vertices; ++v) {
-    for (const std::int32_t one : faces_at(v)) {
-      for (const std::int32_t other : faces_at(v)) {
-        if (other != one && face_of(tets_, one) == face_of(tets_, other))
-          beyond_[std::size_t(one / 4)][std::size_t(one % 4)] = other / 4;
+  for (std::int32_t v = 0; v + 1 < std::ssize(begin_); ++v) {
+    const auto own = faces_at(v);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const std::int32_t one = own[i], other = own[j];
+        if (faces[std::size_t(one)] != faces[std::size_t(other)]) continue;
+        beyond_[std::size_t(one / 4)][std::size_t(one % 4)] = other / 4;
+        beyond_[std::size_t(other / 4)][std::size_t(other % 4)] = one / 4;
       }
     }
   }
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-    const Face face = sorted(triangles(t, 0), triangles(t, 1), triangles(t, 2));
+  for (Eigen::Index t = 0; t < triangles_.rows(); ++t) {
+    const Face face = sorted(triangles_(t, 0), triangles_(t, 1), triangles_(t, 2));
     const auto own = faces_at(face[0]);
-    const auto at = std::ranges::find_if(own, [&](std::int32_t one) { return face_of(tets_, one) == face; });
+    const auto at = std::ranges::find_if(own, [&](std::int32_t one) { return faces[std::size_t(one)] == face; });
     face_.push_back(at == own.end() ? std::array<std::int32_t, 2>{-1, -1}
                                     : std::array<std::int32_t, 2>{*at / 4, *at % 4});
   }
@@ -111,6 +114,7 @@ std::optional<std::int32_t> ElementPaths::element_at_end(const Positions& x, std
                                                          const Vec3& to) const {
   constexpr int most_elements = 1000;    // of a line; round-off could make it run in circles
   constexpr double on_the_face = 1e-10;  // of a share: counts as inside
+  if (beyond_.empty()) join_elements();
   auto [element, entered] = face_[std::size_t(triangle)];
   for (int i = 0; element >= 0 && i < most_elements; ++i) {
     std::array<Vec3, 4> corners;

@@ -12,11 +12,13 @@
 
 namespace supple {
 
+// What paths need to know of the elements is found when the first one is asked for, so that a body that never comes
+// near itself does not pay for it: two threads may not ask for paths at once.
 class ElementPaths {
  public:
   // tets: of a solid whose vertices are at `rest`, n x 3 [m]. triangles: its boundary, by vertices of the solid, in any
   // order; those that are no face of an element belong to none.
-  ElementPaths(Tetrahedra tets, const Triangles& triangles, const Positions& rest);
+  ElementPaths(Tetrahedra tets, Triangles triangles, const Positions& rest);
 
   // Returns the element that contains the end of a straight line which begins at a triangle of the boundary and leads
   // through elements alone. Nothing: the line leaves the elements, or comes to one that has no volume or is inverted.
@@ -38,15 +40,18 @@ class ElementPaths {
   bool has_neighbour(std::int32_t element, std::int32_t vertex) const;
 
  private:
-  void join_elements(const Triangles& triangles, Eigen::Index vertices);
+  void join_elements() const;
   void list_around(Eigen::Index vertices);
   double volume_of(const Positions& x, std::int32_t element) const;
 
   Tetrahedra tets_;
-  std::vector<double> rest_volume_;                  // by element, times six [m^3]
-  std::vector<std::array<std::int32_t, 4>> beyond_;  // by element: the one behind the face opposite a corner; -1: none
-  std::vector<std::array<std::int32_t, 2>> face_;    // by triangle: its element, and the corner opposite; -1: none
-  std::vector<std::int32_t> begin_, neighbours_;     // by vertex, ascending
+  std::vector<double> rest_volume_;  // by element, times six [m^3]
+  Triangles triangles_;
+  mutable std::vector<std::array<std::int32_t, 4>>
+      beyond_;  // by element: the one behind the face opposite a corner; -1: none
+  mutable std::vector<std::array<std::int32_t, 2>>
+      face_;                                             // by triangle: its element, and the corner opposite; -1: none
+  std::vector<std::int32_t> begin_, neighbours_;         // by vertex, ascending
   std::vector<std::int32_t> elements_begin_, elements_;  // at each vertex
 };
 
