@@ -36,8 +36,8 @@ class EnergyOfAll {
       mass += world_.body(b).model().total_mass;
       size = std::max(size, world_.body(b).model().size);
     }
-    // What is pushed out leaves no faster than this (sim/contact/contact.h). No more can come of it than all of the
-    // mass at that speed has.
+    // Contact pushes points out no faster than this (sim/contact/contact.h), and so gives at most the energy of all
+    // mass at that speed.
     const double speed = world_.scene().bodies.front().solver.settings.contact.push_out * size;
     if (starts_inside) given_ = 0.5 * mass * speed * speed;
   }

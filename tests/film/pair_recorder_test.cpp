@@ -1,5 +1,5 @@
-// What is recorded and told of bodies that overlap at the start: that they are still coming apart, that they have not
-// come apart by the end, and that contact does not find them.
+// Tests what a film records and tells of bodies that overlap at the start: it says that they are still coming apart, that
+// they have not come apart by the end, or that contact does not find them.
 #include "film/record/pair_recorder.h"
 
 #include <fmt/format.h>

@@ -12,8 +12,8 @@
 
 namespace supple {
 
-// What paths need to know of the elements is found when the first one is asked for, so that a body that never comes
-// near itself does not pay for it: two threads may not ask for paths at once.
+// The first path that is asked for finds out which elements lie beyond which faces, so that a body that never comes near
+// itself does not pay for that. Two threads may not ask for paths at once.
 class ElementPaths {
  public:
   // tets: of a solid whose vertices are at `rest`, n x 3 [m]. triangles: its boundary, by vertices of the solid, in any
