@@ -53,13 +53,26 @@ const std::string smooth = "contact = { friction = 0 }";
 const std::string wall = "[[collider]]\nname = \"wall\"\nshape = { half_space = { normal = [-1, 0, 0] } }\n";
 constexpr double diagonal = 0.2 * 1.7320508;  // of the cube [m]
 
-TEST(TouchingWorlds, TwoCubesThatMeetHeadOnAreEachOthersWall) {
-  Played two(no_gravity + cube("left", -0.25, 2, smooth) + cube("right", 0.25, -2, smooth));
-  Played one(no_gravity + cube("left", -0.25, 2) + wall);
-  for (int frame = 0; frame < 60; ++frame) {
+// Plays two cubes that meet head-on beside one that meets a wall in their middle. Returns the most that the left ones
+// are apart, over their diagonal. With four steps a frame, a step begins with the faces in one place, as far as
+// round-off lets it. At 8 m/s a step leads the cubes through each other.
+double most_apart(double speed, int substeps, int frames) {
+  const std::string head = no_gravity + fmt::format("substeps = {}\n", substeps);
+  Played two(head + cube("left", -0.25, speed, smooth) + cube("right", 0.25, -speed, smooth));
+  Played one(head + cube("left", -0.25, speed) + wall);
+  double most = 0;
+  for (int frame = 0; frame < frames; ++frame) {
     two.play(frame, frame + 1);
     one.play(frame, frame + 1);
-    EXPECT_LT((two.places(0) - one.places(0)).rowwise().norm().maxCoeff(), 0.01 * diagonal) << frame;
+    most = std::max(most, (two.places(0) - one.places(0)).rowwise().norm().maxCoeff() / diagonal);
+  }
+  return most;
+}
+
+TEST(TouchingWorlds, TwoCubesThatMeetHeadOnAreEachOthersWall) {
+  for (const int substeps : {1, 2, 4}) {
+    EXPECT_LT(most_apart(2, substeps, 60), 0.01) << substeps;
+    EXPECT_LT(most_apart(8, substeps, 3), 0.05) << substeps;
   }
 }
 

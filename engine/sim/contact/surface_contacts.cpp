@@ -125,14 +125,15 @@ class SurfacePair : public TouchedSurface {
 
   // Returns the place closest to a point among those that do not face the way of the point itself. find(takes): the
   // closest place among some triangles; nearest: set to how far away the surface is at all. Whether the point is inside
-  // follows from the place that is closest of all.
+  // follows from the place that is closest of all, but where the point is on the surface there: the edges of equal
+  // boxes that lie on one another are on their sides.
   template <class Find>
   std::optional<Place> closest(const Vec3& p, const Vec3& facing, const Positions& x, const Find& find,
                                double* nearest = nullptr) const {
     std::optional<Place> place = find(nullptr);
     if (!place) return place;
     if (nearest != nullptr) *nearest = std::abs(place->distance);
-    const bool is_inside = place->distance < 0;
+    const bool is_outside = place->distance > usual_depth(size_);
     if (normal_of(place->triangle, x).dot(facing) > same_way) {
       const Takes others = [&](std::int32_t t) { return !(normal_of(t, x).dot(facing) > same_way); };
       place = find(&others);
@@ -141,7 +142,7 @@ class SurfacePair : public TouchedSurface {
     if (is_over_face(*place, p, x)) {
       place->normal = normal_of(place->triangle, x);
       place->distance = place->normal.dot(p - place->point);
-    } else if (!is_inside && place->distance < 0) {
+    } else if (is_outside && place->distance < 0) {
       place->normal = (p - place->point).normalized();
       place->distance = -place->distance;
     }

@@ -35,7 +35,8 @@ void set_trial_by_parts(const StepContext& c, const Counts& counts, const Also& 
   w.trial.x.topRows(model.free) = w.current.x.topRows(model.free);
   std::vector<char> is_chosen(model.parts.size(), 0);
   for (const Contact& contact : w.current.contacts) {
-    if (counts(contact)) is_chosen[&model.part_of(contact.stencil.vertex[0]) - model.parts.data()] = 1;
+    if (!counts(contact)) continue;
+    for (int k = 0; k < contact.stencil.count; ++k) is_chosen[model.part_number(contact.stencil.vertex[k])] = 1;
   }
   for (std::size_t p = 0; p < model.parts.size(); ++p) {
     if (is_chosen[p] != 0 || also(model.parts[p])) move(model.parts[p]);
