@@ -1,9 +1,9 @@
-// Represents the surface of a body that moves in a step, a closed one or a sheet, whose places have no inside: each vertex moves evenly from its place at the start to
-// that at the end. It finds the closest place of the surface at both times, and where a point that moves evenly too
-// first enters. The boxes of its tree follow the vertices; which triangles they hold is fixed by the rest positions.
-// The sign of a distance is that of the angle-weighted pseudonormal (Baerentzen, Aanaes, Signed distance computation
-// using the angle weighted pseudonormal, 2005), which is right where the surface does not cross itself. Solids that
-// keep their shape are in solids/triangle_solid.h.
+// Represents the surface of a body that moves in a step, a closed one or a sheet, whose places have no inside: each
+// vertex moves evenly from its place at the start to that at the end. It finds the closest place of the surface at both
+// times, and where a point that moves evenly too first enters. The boxes of its tree follow the vertices; which
+// triangles they hold is fixed by the rest positions. The sign of a distance is that of the angle-weighted pseudonormal
+// (Baerentzen, Aanaes, Signed distance computation using the angle weighted pseudonormal, 2005), which is right where
+// the surface does not cross itself. Solids that keep their shape are in solids/triangle_solid.h.
 #pragma once
 
 #include <array>

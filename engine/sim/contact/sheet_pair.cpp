@@ -5,11 +5,11 @@
 
 namespace supple {
 
-SheetPair::SheetPair(const Model& model, const StepInputs& inputs, const Meeting& meeting, const Positions& q,
+SheetPair::SheetPair(const Model& model, const StepInputs& inputs, std::size_t meeting, const Positions& q,
                      const Positions& y, const Positions& x, const Work& work)
-    : TouchedSurface(model, inputs, meeting, q, y, x, work),
-      points_(work.surfaces[meeting.points].points),
-      sharp_(only_sharp_points(model, inputs, meeting, work) ? &work.surfaces[meeting.points].sharp : nullptr),
+    : TouchedSurface(model, inputs, inputs.meetings[meeting], q, y, x, work),
+      points_(work.surfaces[meeting_.points].points),
+      sharp_(work.only_sharp[meeting] != 0 ? &work.surfaces[meeting_.points].sharp : nullptr),
       layer_(layer_of_edge * surface_.edge) {}
 
 bool SheetPair::is_looked_at(std::size_t index) const { return sharp_ == nullptr || (*sharp_)[index] != 0; }

@@ -10,8 +10,9 @@ namespace supple {
 
 class SheetPair : public TouchedSurface {
  public:
-  SheetPair(const Model& model, const StepInputs& inputs, const Meeting& meeting, const Positions& q,
-            const Positions& y, const Positions& x, const Work& work);
+  // meeting: its number in the inputs.
+  SheetPair(const Model& model, const StepInputs& inputs, std::size_t meeting, const Positions& q, const Positions& y,
+            const Positions& x, const Work& work);
 
   std::size_t points() const { return points_.size(); }
 

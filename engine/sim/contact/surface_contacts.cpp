@@ -50,14 +50,16 @@ double most_moved(const std::vector<std::int32_t>& points, const Positions& q, c
 // Examines the points of one part before the surface of another, at one iterate.
 class SurfacePair : public TouchedSurface {
  public:
-  SurfacePair(const Model& model, const StepInputs& inputs, const Meeting& meeting, const Positions& q,
-              const Positions& y, const Positions& x, const Work& work, std::vector<Work::Beginning>& beginnings)
-      : TouchedSurface(model, inputs, meeting, q, y, x, work),
-        own_(work.surfaces[meeting.points]),
-        points_(work.surfaces[meeting.points].points),
-        beginnings_(beginnings),
-        only_sharp_(only_sharp_points(model, inputs, meeting, work)),
-        layer_(model.parts[meeting.points].solid ? 0 : layer_of_edge * own_.edge) {}
+  SurfacePair(const Model& model, const StepInputs& inputs, std::size_t meeting, const Positions& q, const Positions& y,
+              const Positions& x, Work& work)
+      : TouchedSurface(model, inputs, inputs.meetings[meeting], q, y, x, work),
+        own_(work.surfaces[meeting_.points]),
+        points_(own_.points),
+        beginnings_(work.beginnings[meeting]),
+        only_sharp_(work.only_sharp[meeting] != 0),
+        layer_(model.parts[meeting_.points].solid ? 0 : layer_of_edge * own_.edge) {
+    beginnings_.resize(points_.size());
+  }
 
   std::size_t points() const { return points_.size(); }
 
@@ -222,6 +224,7 @@ void begin_surfaces(const Model& model, const StepInputs& inputs, const Position
     surface.carried_freely = mean_motion(surface.points, q, y);
     surface.free_move = most_moved(surface.points, q, y, surface.carried_freely);
   }
+  work.only_sharp = only_sharp_points(model, inputs, work);
   work.beginnings.resize(inputs.meetings.size());
   work.own_points.resize(model.parts.size());
   for (std::size_t m = 0; m < inputs.meetings.size(); ++m) {
@@ -229,7 +232,7 @@ void begin_surfaces(const Model& model, const StepInputs& inputs, const Position
     if (meeting.is_own()) {
       begin_own_points(model, inputs, meeting, q, y, work);
     } else {
-      work.beginnings[m].assign(work.surfaces[meeting.points].points.size(), {});
+      work.beginnings[m].clear();
     }
   }
 }
@@ -270,10 +273,12 @@ void find_surface_contacts(const Model& model, const StepInputs& inputs, const P
     if (meeting.is_own()) {
       follow_own_points(model, inputs, meeting, q, x, work);
       search_points(OwnPoints(model, inputs, meeting, q, y, x, work), threads, work, found);
+    } else if (are_apart(model, inputs, meeting, work)) {
+      continue;
     } else if (!model.parts[meeting.surface].solid) {
-      search_points(SheetPair(model, inputs, meeting, q, y, x, work), threads, work, found);
+      search_points(SheetPair(model, inputs, m, q, y, x, work), threads, work, found);
     } else {
-      search_points(SurfacePair(model, inputs, meeting, q, y, x, work, work.beginnings[m]), threads, work, found);
+      search_points(SurfacePair(model, inputs, m, q, y, x, work), threads, work, found);
     }
   }
   std::sort(found.begin() + static_cast<std::ptrdiff_t>(before), found.end(), comes_before);
@@ -290,10 +295,12 @@ void stop_at_surfaces(const Model& model, const StepInputs& inputs, const Positi
     if (meeting.is_own()) {
       follow_own_points(model, inputs, meeting, q, x, work);
       least = first_share(OwnPoints(model, inputs, meeting, q, x, x, work), least);
+    } else if (are_apart(model, inputs, meeting, work)) {
+      continue;
     } else if (!model.parts[meeting.surface].solid) {
-      least = first_share(SheetPair(model, inputs, meeting, q, x, x, work), least);
+      least = first_share(SheetPair(model, inputs, m, q, x, x, work), least);
     } else {
-      least = first_share(SurfacePair(model, inputs, meeting, q, x, x, work, work.beginnings[m]), least);
+      least = first_share(SurfacePair(model, inputs, m, q, x, x, work), least);
     }
     shares[meeting.points] = std::min(shares[meeting.points], least);
     shares[meeting.surface] = std::min(shares[meeting.surface], least);

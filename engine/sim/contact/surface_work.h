@@ -41,7 +41,8 @@ struct SurfaceWork::Parts {
 
   std::uint64_t structure = 0;                     // of the model that the surfaces belong to
   std::vector<Surface> surfaces;                   // by part
-  std::vector<std::vector<Beginning>> beginnings;  // by meeting and point; of meetings of two parts
+  std::vector<std::vector<Beginning>> beginnings;  // by meeting and point; empty where no point was asked
+  std::vector<char> only_sharp;                    // by meeting: whether it is about its part's sharp points alone
   std::vector<OwnPoints> own_points;               // by part
   std::vector<std::vector<Contact>> by_chunk;      // scratch
 };

@@ -114,15 +114,38 @@ void TouchedSurface::add(std::int32_t v, const Place& place, double field, std::
   list.push_back(contact);
 }
 
-bool only_sharp_points(const Model& model, const StepInputs& inputs, const Meeting& meeting,
-                       const SurfaceWork::Parts& work) {
-  const bool both_ways = std::ranges::any_of(inputs.meetings, [&](const Meeting& other) {
-    return other.points == meeting.surface && other.surface == meeting.points;
-  });
-  const bool is_solid = model.parts[meeting.points].solid, meets_solid = model.parts[meeting.surface].solid;
-  if (!both_ways || (!is_solid && meets_solid)) return false;
-  const double own = work.surfaces[meeting.points].edge, other = work.surfaces[meeting.surface].edge;
-  return own > other || (own == other && meeting.points > meeting.surface);
+std::vector<char> only_sharp_points(const Model& model, const StepInputs& inputs, const SurfaceWork::Parts& work) {
+  std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
+  for (const Meeting& meeting : inputs.meetings) pairs.emplace_back(meeting.points, meeting.surface);
+  std::ranges::sort(pairs);
+  std::vector<char> only_sharp;
+  for (const Meeting& meeting : inputs.meetings) {
+    const bool both_ways = std::ranges::binary_search(pairs, std::pair(meeting.surface, meeting.points));
+    const bool is_solid = model.parts[meeting.points].solid, meets_solid = model.parts[meeting.surface].solid;
+    const double own = work.surfaces[meeting.points].edge, other = work.surfaces[meeting.surface].edge;
+    const bool is_coarser = own > other || (own == other && meeting.points > meeting.surface);
+    only_sharp.push_back(both_ways && (is_solid || !meets_solid) && is_coarser);
+  }
+  return only_sharp;
+}
+
+// The boxes are compared in the frame that moves with the surface.
+bool are_apart(const Model& model, const StepInputs& inputs, const Meeting& meeting, const SurfaceWork::Parts& work) {
+  const SurfaceWork::Parts::Surface &own = work.surfaces[meeting.points], &other = work.surfaces[meeting.surface];
+  if (own.moving == nullptr) return false;
+  const auto swept = [&](const MovingSurface& moving) {
+    Bounds box = moving.bounds_at_start();
+    box.include(moving.bounds_at_end().lower - other.carried);
+    box.include(moving.bounds_at_end().upper - other.carried);
+    return box;
+  };
+  const double way = own.own_move + (own.carried - other.carried).norm();
+  const double freely = own.free_move + (own.carried_freely - other.carried_freely).norm();
+  const double fall = model.time_step * model.time_step * inputs.gravity.norm();
+  const double layers = layer_of_edge * (own.edge + other.edge);  // no part has a thicker one
+  const double reach = (1 + 1e-6) * reach_of(way + other.own_move, std::max(freely + other.free_move, fall)) + layers;
+  const Bounds one = swept(*own.moving), two = swept(*other.moving);
+  return ((one.lower.array() - reach > two.upper.array()) || (two.lower.array() - reach > one.upper.array())).any();
 }
 
 }  // namespace supple

@@ -62,12 +62,15 @@ class TouchedSurface {
   ContactStencil stencil_of(std::int32_t point, const Place& place) const;
 };
 
-// Tells whether only the sharp points of a part are looked at before another one. Of two solids, or of two sheets,
-// whose points touch each other, those of the coarser one follow from those of the finer one, but for edges, corners
-// and borders: each contact of two surfaces that lie on one another would count twice, and the contacts would nearly
-// depend on each other. Of a sheet and a solid, all points of the sheet are looked at, and those of the solid only
-// where it is the finer one.
-bool only_sharp_points(const Model& model, const StepInputs& inputs, const Meeting& meeting,
-                       const SurfaceWork::Parts& work);
+// Tells of each meeting whether only the sharp points of its part are looked at. Of two solids, or of two sheets, whose
+// points touch each other, those of the coarser one follow from those of the finer one, but for edges, corners and
+// borders: each contact of two surfaces that lie on one another would count twice, and the contacts would nearly depend
+// on each other. Of a sheet and a solid, all points of the sheet are looked at, and those of the solid only where it is
+// the finer one.
+std::vector<char> only_sharp_points(const Model& model, const StepInputs& inputs, const SurfaceWork::Parts& work);
+
+// Tells whether the two parts of a meeting are so far apart, on all of their ways to an iterate, that no point of the
+// one needs a plane of the other. It compares boxes alone. The surfaces must be at the iterate.
+bool are_apart(const Model& model, const StepInputs& inputs, const Meeting& meeting, const SurfaceWork::Parts& work);
 
 }  // namespace supple
