@@ -123,20 +123,47 @@ Eigen::MatrixXd dense_matrix(const Bodies& bodies, const Directions& directions)
   return matrix;
 }
 
-// Writes what a direction is on the coarse motions: any numbers, which belong to the direction and the pose.
-void find_row(const Bodies& bodies, double pose, const StiffDirection& s, float* row) {
-  std::fill_n(row, bodies.first_column.back(), 0.0f);
-  for (int k = 0; k < s.stencil.free; ++k) {
-    const int part = bodies.part_of(s.stencil.vertex[k]);
-    for (int c = bodies.first_column[part]; c < bodies.first_column[part + 1]; ++c)
-      row[c] += static_cast<float>(s.stencil.weight[k] * std::sin(pose + s.stencil.vertex[k] + 3.0 * c * s.axis.x()));
-  }
-}
+// Holds motions of all parts, of any numbers, which belong to the direction and the pose. D is positive definite.
+struct Motions {
+  AddedMotions added;
+  std::vector<Eigen::MatrixXd> difference;  // by part
 
-bool know_rows(const Bodies& bodies, std::uint64_t pose, Capacitance& system, Threads* threads = nullptr) {
-  const auto find = [&](const StiffDirection& s, float* row) { find_row(bodies, static_cast<double>(pose), s, row); };
-  return system.know_rows(pose, bodies.first_column, find, threads);
-}
+  Motions(const Bodies& bodies, std::uint64_t pose) {
+    Random random(static_cast<unsigned>(pose));
+    std::normal_distribution<double> normal;
+    for (std::size_t part = 0; part < bodies.parts.size(); ++part) {
+      const int count = bodies.first_column[part + 1] - bodies.first_column[part];
+      const Eigen::MatrixXd any = Eigen::MatrixXd::NullaryExpr(count, count, [&] { return normal(random); });
+      difference.push_back(bodies.inverse.diagonal().mean() / std::max(count, 1) * any * any.transpose());
+    }
+    added.pose = pose;
+    added.first_column = bodies.first_column;
+    added.difference = [this](int part) -> const Eigen::MatrixXd& { return difference[std::size_t(part)]; };
+    added.add_row = [&bodies, pose](const StiffDirection& s, double* row) {
+      for (int k = 0; k < s.stencil.free; ++k) {
+        const int part = bodies.part_of(s.stencil.vertex[k]);
+        for (int c = bodies.first_column[part]; c < bodies.first_column[part + 1]; ++c)
+          row[c] += s.stencil.weight[k] * std::sin(double(pose) + s.stencil.vertex[k] + 3.0 * c * s.axis.x());
+      }
+    };
+  }
+  // Returns W of some directions.
+  Eigen::MatrixXd rows(const Directions& directions) const {
+    Eigen::MatrixXd transposed = Eigen::MatrixXd::Zero(added.first_column.back(), std::ssize(directions));
+    for (Eigen::Index i = 0; i < transposed.cols(); ++i) added.add_row(directions[std::size_t(i)], &transposed(0, i));
+    return transposed.transpose();
+  }
+  // Returns W D W^T.
+  Eigen::MatrixXd products(const Directions& directions) const {
+    const Eigen::MatrixXd w = rows(directions);
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(w.rows(), w.rows());
+    for (std::size_t part = 0; part < difference.size(); ++part) {
+      const Eigen::MatrixXd own = w.middleCols(added.first_column[part], difference[part].rows());
+      sum += own * difference[part] * own.transpose();
+    }
+    return sum;
+  }
+};
 
 Eigen::VectorXf solved(const Capacitance& system) {
   Eigen::VectorXf answer(std::ssize(system.directions()));
@@ -145,99 +172,98 @@ Eigen::VectorXf solved(const Capacitance& system) {
   return answer;
 }
 
-void expect_dense(const Bodies& bodies, const Capacitance& system) {
-  const Eigen::MatrixXd matrix = dense_matrix(bodies, system.directions());
+void expect_dense(const Bodies& bodies, const Capacitance& system, const Motions* motions = nullptr) {
+  Eigen::MatrixXd matrix = dense_matrix(bodies, system.directions());
+  if (motions != nullptr) matrix += motions->products(system.directions());
   Eigen::VectorXd wanted(matrix.rows());
   for (Eigen::Index i = 0; i < wanted.size(); ++i) wanted[i] = std::sin(1.0f + 2.0f * static_cast<float>(i));
   wanted = matrix.llt().solve(wanted);
   EXPECT_LT((solved(system).cast<double>() - wanted).norm(), 2e-5 * wanted.norm());
 }
 
-void expect_dense_product(const Bodies& bodies, std::uint64_t pose, const Capacitance& system) {
-  Capacitance::RowMatrix rows(std::ssize(system.directions()), bodies.first_column.back());
-  for (Eigen::Index i = 0; i < rows.rows(); ++i)
-    find_row(bodies, static_cast<double>(pose), system.directions()[i], rows.row(i).data());
-  EXPECT_EQ(system.rows().topRows(rows.rows()), rows);
-  const Eigen::MatrixXd w = rows.cast<double>();
-  const Eigen::MatrixXd wanted = w.transpose() * dense_matrix(bodies, system.directions()).llt().solve(w);
-  ASSERT_EQ(system.between().rows(), wanted.rows());
-  EXPECT_LT((system.between() - wanted).norm(), 2e-5 * wanted.norm());
+void expect_rows(const Capacitance& system, const Motions& motions) {
+  const Eigen::MatrixXd w = motions.rows(system.directions());
+  Eigen::VectorXd y(w.cols());
+  Eigen::VectorXf f(w.rows());
+  for (Eigen::Index c = 0; c < y.size(); ++c) y[c] = std::cos(2.0 + double(c));
+  for (Eigen::Index i = 0; i < f.size(); ++i) f[i] = std::cos(1.0f + 3.0f * static_cast<float>(i));
+  EXPECT_LT((system.seen_by_directions(y).cast<double>() - w * y).norm(), 1e-5 * (w * y).norm());
+  const Eigen::VectorXd back = w.transpose() * f.cast<double>();
+  EXPECT_LT((system.seen_by_motions(f) - back).norm(), 1e-5 * back.norm());
 }
 
 const std::vector<Vec3> world_axes = {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
 
-// The groups of directions of eight parts come and go, grow and shrink. Two threads make the same bits as one.
-TEST(Capacitance, IsThatOfTheDenseSystemWhateverComesAndGoes) {
-  const Bodies bodies(8, 30);
-  for (const std::vector<Vec3>& axes : {std::vector<Vec3>(), world_axes, {Vec3::UnitX(), Vec3(0.6, 0.8, 0)}}) {
-    const Directions all = random_directions(bodies, 70, axes, 1);
-    Random random(2);
-    Threads two(2);
-    Capacitance system, by_two;
-    system.begin_step(bodies.system, bodies.parts);
-    by_two.begin_step(bodies.system, bodies.parts);
-    for (int round = 0; round < 16; ++round) {
-      const Directions wanted = some_of(all, round % 5 == 0 ? 0.1 : round % 5 == 1 ? 0.97 : 0.6, random);
-      ASSERT_TRUE(system.set(bodies.system, wanted, nullptr));
-      ASSERT_TRUE(by_two.set(bodies.system, wanted, &two));
-      EXPECT_EQ(system.directions().size(), wanted.size());
-      expect_dense(bodies, system);
-      const std::uint64_t pose = 1 + static_cast<std::uint64_t>(round) / 4;
-      if (round % 3 > 0) {
-        EXPECT_TRUE(know_rows(bodies, pose, system));
-        EXPECT_TRUE(know_rows(bodies, pose, by_two, &two));
-        expect_dense_product(bodies, pose, system);
-      }
-      // Few and many directions are appended, in one call or in two.
-      bool any = false;
-      for (int call = 0; call < 1 + round % 2; ++call) {
-        const Directions made = random_directions(bodies, round % 4 == 3 ? 60 : 8, axes, 10u * round + call);
-        const Directions more = some_of(made, 0.7, random);
-        any |= !more.empty();
-        ASSERT_TRUE(system.append(bodies.system, more, nullptr));
-        ASSERT_TRUE(by_two.append(bodies.system, more, &two));
-        expect_dense(bodies, system);
-      }
-      EXPECT_EQ(know_rows(bodies, pose, system), round % 3 == 0 || any);
-      EXPECT_FALSE(know_rows(bodies, pose, system));
-      expect_dense_product(bodies, pose, system);
-      know_rows(bodies, pose, by_two, &two);
-      EXPECT_EQ(solved(system), solved(by_two));
-      EXPECT_EQ(system.between(), by_two.between());
+// The groups of directions of some parts come and go, grow and shrink, with motions and without. Two threads make the
+// same bits as one.
+void expect_dense_whatever_comes_and_goes(const Bodies& bodies, const std::vector<Vec3>& axes) {
+  const Directions all = random_directions(bodies, 70, axes, 1);
+  Random random(2);
+  Threads two(2);
+  Capacitance system, by_two;
+  system.begin_step(bodies.system, bodies.parts);
+  by_two.begin_step(bodies.system, bodies.parts);
+  for (int round = 0; round < 16; ++round) {
+    const Motions made(bodies, 1 + static_cast<std::uint64_t>(round) / 4);
+    const Motions* motions = round % 3 > 0 ? &made : nullptr;
+    for (Capacitance* one : {&system, &by_two}) one->add_motions(motions != nullptr ? &made.added : nullptr);
+    const Directions wanted = some_of(all, round % 5 == 0 ? 0.1 : round % 5 == 1 ? 0.97 : 0.6, random);
+    ASSERT_TRUE(system.set(bodies.system, wanted, nullptr));
+    ASSERT_TRUE(by_two.set(bodies.system, wanted, &two));
+    EXPECT_EQ(system.directions().size(), wanted.size());
+    expect_dense(bodies, system, motions);
+    // Few and many directions are appended, in one call or in two.
+    for (int call = 0; call < 1 + round % 2; ++call) {
+      const Directions more =
+          some_of(random_directions(bodies, round % 4 == 3 ? 60 : 8, axes, 10u * round + call), 0.7, random);
+      ASSERT_TRUE(system.append(bodies.system, more, nullptr));
+      ASSERT_TRUE(by_two.append(bodies.system, more, &two));
+      expect_dense(bodies, system, motions);
+      if (motions != nullptr) expect_rows(system, *motions);
     }
+    EXPECT_EQ(solved(system), solved(by_two));
+  }
+}
+
+TEST(Capacitance, IsThatOfTheDenseSystemWhateverComesAndGoes) {
+  for (const std::vector<Vec3>& axes : {std::vector<Vec3>(), world_axes, {Vec3::UnitX(), Vec3(0.6, 0.8, 0)}}) {
+    expect_dense_whatever_comes_and_goes(Bodies(8, 30), axes);
+    expect_dense_whatever_comes_and_goes(Bodies(1, 240), axes);
   }
 }
 
 TEST(Capacitance, JoinsListsThatANewDirectionCouples) {
-  const Bodies bodies(5, 30);
-  Capacitance system;
-  system.begin_step(bodies.system, bodies.parts);
-  ASSERT_TRUE(system.set(bodies.system, sorted(random_directions(bodies, 40, world_axes, 3)), nullptr));
-  know_rows(bodies, 1, system);
-  ASSERT_TRUE(system.append(bodies.system, random_directions(bodies, 1, {Vec3(0.6, 0, 0.8)}, 4), nullptr));
-  EXPECT_TRUE(know_rows(bodies, 1, system));
-  expect_dense(bodies, system);
-  expect_dense_product(bodies, 1, system);
+  for (const int parts : {1, 5}) {
+    const Bodies bodies(parts, 150 / parts);
+    const Motions motions(bodies, 1);
+    for (const Motions* added : {static_cast<const Motions*>(nullptr), &motions}) {
+      Capacitance system;
+      system.add_motions(added != nullptr ? &added->added : nullptr);
+      system.begin_step(bodies.system, bodies.parts);
+      ASSERT_TRUE(system.set(bodies.system, sorted(random_directions(bodies, 40, world_axes, 3)), nullptr));
+      ASSERT_TRUE(system.append(bodies.system, random_directions(bodies, 1, {Vec3(0.6, 0, 0.8)}, 4), nullptr));
+      expect_dense(bodies, system, added);
+    }
+  }
 }
 
-// Groups that go leave nothing in the products of those that stay.
+// Groups that go leave nothing in the factor of those that stay.
 TEST(Capacitance, ForgetsGroupsThatHaveGone) {
   const Bodies bodies(6, 30);
+  const Motions motions(bodies, 1);
   const Directions all = sorted(random_directions(bodies, 40, {}, 5));
   for (int gone = 0; gone < 6; ++gone) {
     Capacitance system;
+    system.add_motions(&motions.added);
     system.begin_step(bodies.system, bodies.parts);
     ASSERT_TRUE(system.set(bodies.system, all, nullptr));
-    know_rows(bodies, 1, system);
     Directions left;
     for (const StiffDirection& s : all) {
       if (bodies.part_of(s.stencil.vertex[0]) != gone) left.push_back(s);
     }
     ASSERT_LT(left.size(), all.size());
     ASSERT_TRUE(system.set(bodies.system, left, nullptr));
-    expect_dense(bodies, system);
-    EXPECT_TRUE(know_rows(bodies, 1, system));
-    expect_dense_product(bodies, 1, system);
+    expect_dense(bodies, system, &motions);
   }
 }
 
@@ -245,39 +271,33 @@ TEST(Capacitance, ForgetsGroupsThatHaveGone) {
 // that Eigen computes in another way than large ones.
 TEST(Capacitance, OfAStepDoesNotDependOnEarlierSteps) {
   const Bodies bodies(8, 30);
+  const Motions one(bodies, 1), other(bodies, 2);
   const Directions earlier = sorted(random_directions(bodies, 80, {}, 6));
   for (unsigned seed = 7; seed < 27; ++seed) {
     const Directions all = random_directions(bodies, seed % 2 == 0 ? 50 : 20, {}, seed);
     Capacitance used, fresh;
+    used.add_motions(&one.added);
     used.begin_step(bodies.system, bodies.parts);
     ASSERT_TRUE(used.set(bodies.system, earlier, nullptr));
-    know_rows(bodies, 1, used);
     std::vector<Eigen::VectorXf> answers;
-    std::vector<Eigen::MatrixXd> products;
     for (Capacitance* system : {&used, &fresh}) {
+      system->add_motions(&other.added);
       system->begin_step(bodies.system, bodies.parts);
       for (int round = 0; round < 4; ++round) {
         const Directions wanted = sorted(Directions(all.begin(), all.end() - 3 * (3 - round)));
         ASSERT_TRUE(system->set(bodies.system, wanted, nullptr));
-        know_rows(bodies, 2, *system);
         ASSERT_TRUE(system->append(bodies.system, random_directions(bodies, 3, {}, 100 + seed), nullptr));
-        know_rows(bodies, 2, *system);
         answers.push_back(solved(*system));
-        products.push_back(system->between());
       }
     }
-    for (std::size_t k = 0; k < 4; ++k) {
-      EXPECT_EQ(answers[k], answers[k + 4]) << seed << " " << k;
-      EXPECT_EQ(products[k], products[k + 4]) << seed << " " << k;
-    }
+    for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(answers[k], answers[k + 4]) << seed << " " << k;
   }
 }
 
 // The dense factor of one list of directions, which keeps what belongs to the first directions and grows at its end.
 struct DenseFactor {
-  Capacitance::RowMatrix lower, seen;
-  Eigen::MatrixXf product;
-  Eigen::Index factored = 0, summed = 0;
+  BlockFactor::RowMatrix lower;
+  Eigen::Index factored = 0;
 
   void extend(const Bodies& bodies, const Capacitance& system, Eigen::Index kept) {
     const Directions& all = system.directions();
@@ -299,17 +319,8 @@ struct DenseFactor {
       lower.topLeftCorner(first, first).triangularView<Eigen::Lower>().solveInPlace(right);
       corner.selfadjointView<Eigen::Lower>().rankUpdate(below, -1);
     }
-    const Eigen::LLT<Eigen::Ref<Capacitance::RowMatrix>> done(corner);
-    const auto r = system.rows().cols();
-    seen.conservativeResize(n, r);
-    auto added = seen.middleRows(first, more);
-    added = system.rows().middleRows(first, more);
-    if (first > 0) added.noalias() -= below * seen.topRows(first);
-    corner.triangularView<Eigen::Lower>().solveInPlace(added);
-    if (summed > kept) summed = 0;
-    if (summed == 0) product.setZero(r, r);
-    product.selfadjointView<Eigen::Lower>().rankUpdate(seen.middleRows(summed, n - summed).transpose());
-    factored = summed = n;
+    const Eigen::LLT<Eigen::Ref<BlockFactor::RowMatrix>> done(corner);
+    factored = n;
   }
   Eigen::VectorXf solve(Eigen::VectorXf answer) const {
     lower.triangularView<Eigen::Lower>().solveInPlace(answer);
@@ -325,14 +336,10 @@ TEST(Capacitance, OfOnePartHasTheBitsOfADenseFactor) {
   system.begin_step(bodies.system, bodies.parts);
   DenseFactor dense;
   const auto expect_same = [&](Eigen::Index kept) {
-    know_rows(bodies, 1, system);
     dense.extend(bodies, system, kept);
     Eigen::VectorXf right(std::ssize(system.directions()));
     for (Eigen::Index i = 0; i < right.size(); ++i) right[i] = std::sin(1.0f + 2.0f * static_cast<float>(i));
     EXPECT_EQ(solved(system), dense.solve(right));
-    const Eigen::MatrixXd product = dense.product.cast<double>();
-    EXPECT_EQ(Eigen::MatrixXd(system.between().triangularView<Eigen::Lower>()),
-              Eigen::MatrixXd(product.triangularView<Eigen::Lower>()));
   };
   ASSERT_TRUE(system.set(bodies.system, Directions(all.begin(), all.begin() + 120), nullptr));
   expect_same(0);

@@ -286,8 +286,8 @@ bool MovingSurface::any_triangle(const Bounds& box, const Vec3& carried, const V
 }
 
 std::optional<MovingSurface::Entry> MovingSurface::first_entry(const Vec3& a, const Vec3& b, const Vec3& carried,
-                                                               double latest) const {
-  return first_passing(a, b, carried, latest, false);
+                                                               double latest, const Takes* takes) const {
+  return first_passing(a, b, carried, latest, false, takes);
 }
 
 std::optional<MovingSurface::Entry> MovingSurface::first_entry(std::span<const std::int32_t> triangles, const Vec3& a,
@@ -318,16 +318,18 @@ std::optional<MovingSurface::Entry> MovingSurface::first_crossing(const Vec3& a,
 
 // Seen backwards in time, the point enters where it last left.
 std::optional<MovingSurface::Entry> MovingSurface::last_exit(const Vec3& a, const Vec3& b, const Vec3& carried) const {
-  std::optional<Entry> exit = first_passing(a, b, carried, 1, true);
+  std::optional<Entry> exit = first_passing(a, b, carried, 1, true, nullptr);
   if (exit) exit->share = 1 - exit->share;
   return exit;
 }
 
 std::optional<MovingSurface::Entry> MovingSurface::first_passing(const Vec3& a, const Vec3& b, const Vec3& carried,
-                                                                 double latest, bool is_backwards) const {
+                                                                 double latest, bool is_backwards,
+                                                                 const Takes* takes) const {
   const double roundoff = roundoff_at(a, b);
   std::optional<Entry> first;
   any_triangle(box_of_path(a, b, carried, roundoff + roundoff_at(b, carried)), carried, [&](std::int32_t t) {
+    if (takes != nullptr && !(*takes)(t)) return false;
     SeenTriangle seen = seen_triangle(t, a, b);
     if (is_backwards) std::swap(seen.start, seen.end);
     take_if_earlier(t, seen, roundoff, latest, first);

@@ -78,7 +78,8 @@ class MovingSurface {
   };
   // Finds where a point that moves from a to b first passes through a triangle from outside, up to the share `latest`
   // of the step. What counts as passing is said in point_passage.h.
-  std::optional<Entry> first_entry(const Vec3& a, const Vec3& b, const Vec3& carried, double latest = 1) const;
+  std::optional<Entry> first_entry(const Vec3& a, const Vec3& b, const Vec3& carried, double latest = 1,
+                                   const Takes* takes = nullptr) const;
 
   // Finds where a point first passes through a triangle from either side. The normal points to where it came from.
   std::optional<Entry> first_crossing(const Vec3& a, const Vec3& b, const Vec3& carried, double latest = 1) const;
@@ -154,7 +155,7 @@ class MovingSurface {
   Place seen_from(const Vec3& p, const Pose& pose, std::int32_t t, const Vec3& weights, const Vec3& offset) const;
 
   std::optional<Entry> first_passing(const Vec3& a, const Vec3& b, const Vec3& carried, double latest,
-                                     bool is_backwards) const;
+                                     bool is_backwards, const Takes* takes) const;
   SeenTriangle seen_triangle(std::int32_t t, const Vec3& a, const Vec3& b) const;
   static void take_if_earlier(std::int32_t t, const SeenTriangle& seen, double roundoff, double latest,
                               std::optional<Entry>& first);

@@ -165,19 +165,7 @@ void BlockFactor::link() {
       }
     }
     column.below.swap(blocks);
-    std::vector<int> parts;
-    for (const std::int32_t part : column.key) {
-      if (part >= 0) parts.push_back(part);
-    }
-    for (const Update& update : updates_[g]) {
-      level[g] = std::max(level[g], level[update.column] + 1);
-      const std::vector<int>& more = columns_[update.column].parts;
-      parts.insert(parts.end(), more.begin(), more.end());
-    }
-    std::sort(parts.begin(), parts.end());
-    parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
-    if (parts != column.parts) column.keep_rows(0);
-    column.parts.swap(parts);
+    for (const Update& update : updates_[g]) level[g] = std::max(level[g], level[update.column] + 1);
     if (level[g] == levels_.size()) levels_.emplace_back();
     levels_[level[g]].push_back(g);
   }

@@ -44,13 +44,12 @@ class BlockFactor {
   // Solves C x = b in place for the members' numbers in a vector.
   void solve(Eigen::VectorXf& numbers) const;
 
-  // Computes W^T C^-1 W. rows: W, by number of the member; first_column: where the columns of each part begin, and
-  // their number. A member has zeros in columns of parts that its group does not act on. Returns whether the product is
+  // Computes W^T C^-1 W, for members of one group. rows: W, by number of the member. Returns whether the product is
   // new.
-  bool multiply_rows(const RowMatrix& rows, const std::vector<int>& first_column, Threads* threads);
+  bool multiply_rows(const RowMatrix& rows);
   void forget_rows();
   // Adds the lower triangle of that product.
-  void add_product(const std::vector<int>& first_column, Eigen::MatrixXd& sum) const;
+  void add_product(Eigen::MatrixXd& sum) const;
 
  private:
   struct Block {
@@ -66,8 +65,7 @@ class BlockFactor {
     Eigen::Index first = 0;     // members that it held before the present compute()
     std::vector<Block> below;   // ascending
     bool is_new = false;        // whether its numbers are others than after the last compute()
-    std::vector<int> parts;     // those of its group, and of the columns that act on it, ascending
-    RowMatrix seen;             // its rows of L^-1 W for the columns of these parts, in its upper rows
+    RowMatrix seen;             // its rows of L^-1 W, in its upper rows
     Eigen::Index seen_members = 0;
     Eigen::MatrixXf product;  // the product of these rows with themselves, the lower triangle
     Eigen::Index summed = 0;  // members that it holds already
@@ -91,8 +89,8 @@ class BlockFactor {
                         Eigen::Ref<Eigen::MatrixXf> target) const;
   bool factor_diagonal(int group, const Fill& fill);
   void factor_block(int group, Block& block, const Fill& fill) const;
-  void see_rows(int group, const RowMatrix& rows, const std::vector<int>& first_column);
-  bool sum_product(int group);
+  static void see_rows(const RowMatrix& rows, Column& column);
+  static bool sum_product(Column& column);
 
   std::vector<Column> columns_;               // in the order of elimination, and then those that were appended
   std::size_t ordered_ = 0;                   // how many of them were not

@@ -52,6 +52,8 @@ bool coupled(const CoupledDirections& list, const Vec3& axis) {
          });
 }
 
+std::uint64_t pose_of(const AddedMotions* motions) { return motions != nullptr ? motions->pose : 0; }
+
 void add_axis(CoupledDirections& list, const Vec3& axis) {
   if (list.axes.size() > most_axes || std::find(list.axes.begin(), list.axes.end(), axis) != list.axes.end()) return;
   list.axes.push_back(axis);
@@ -78,11 +80,20 @@ std::size_t couple(const StiffDirection& direction, Eigen::Index number, std::ve
   return home;
 }
 
+// Motions couple all directions that act on a common part.
+std::size_t Capacitance::home_of(const StiffDirection& direction, Eigen::Index number) {
+  if (motions_ == nullptr || !has_several_parts()) return couple(direction, number, lists_);
+  if (lists_.empty()) lists_.emplace_back();
+  lists_[0].members.push_back(number);
+  return 0;
+}
+
 void Capacitance::clear() {
   directions_.clear();
   keys_.clear();
   lists_.clear();
-  rows_of_ = 0;
+  begin_.clear();
+  motions_of_ = 0;
 }
 
 void Capacitance::begin_step(const System& system, const std::vector<Part>& parts) {
@@ -99,7 +110,8 @@ bool Capacitance::set(const System& system, const std::vector<StiffDirection>& w
   std::vector<CoupledDirections> lists_before;
   before.swap(directions_);
   lists_before.swap(lists_);
-  if (entries_of_ != system.id) before.clear();
+  if (entries_of_ != system.id || (has_several_parts() && motions_of_ != pose_of(motions_))) before.clear();
+  begin_.clear();
   std::vector<bool> taken(wanted.size(), false);
   std::vector<Eigen::Index> place;  // where the earlier directions are now; -1: gone
   for (const StiffDirection& direction : before) {
@@ -110,7 +122,7 @@ bool Capacitance::set(const System& system, const std::vector<StiffDirection>& w
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     if (!taken[i]) ordered.push_back(wanted[i]);
   }
-  for (std::size_t i = 0; i < ordered.size(); ++i) couple(ordered[i], static_cast<Eigen::Index>(i), lists_);
+  for (std::size_t i = 0; i < ordered.size(); ++i) home_of(ordered[i], static_cast<Eigen::Index>(i));
   directions_.swap(ordered);
   keys_.clear();
   for (const StiffDirection& direction : directions_) keys_.push_back(parts_.of(direction.stencil));
@@ -132,7 +144,7 @@ bool Capacitance::append(const System& system, const std::vector<StiffDirection>
   for (const StiffDirection& direction : more) {
     const std::size_t count = lists_.size();
     const auto number = static_cast<Eigen::Index>(directions_.size());
-    const std::size_t home = couple(direction, number, lists_);
+    const std::size_t home = home_of(direction, number);
     directions_.push_back(direction);
     keys_.push_back(parts_.of(direction.stencil));
     factors_.resize(std::max(factors_.size(), lists_.size()));
@@ -152,12 +164,16 @@ bool Capacitance::append(const System& system, const std::vector<StiffDirection>
     const auto first = direction.stencil.vertex.begin();
     touched.insert(touched.end(), first, first + direction.stencil.free);
   }
+  know_motions();
   if (entries_of_ != system.id) entries_.clear();
   entries_of_ = system.id;
   entries_.learn(system.factor, touched, threads);
-  if (extend(threads)) return true;
-  clear();
-  return false;
+  if (!extend(threads)) {
+    clear();
+    return false;
+  }
+  couple_motions();
+  return true;
 }
 
 // Threads share lists where there are several, and else the blocks of the only one.
@@ -207,51 +223,7 @@ void Capacitance::fill(std::span<const Eigen::Index> rows, std::span<const Eigen
     for (Eigen::Index j = 0; j < end; ++j) values[j] = static_cast<float>(axis.dot(axes[j])) * between[j];
     if (shift + i < count) values[shift + i] += static_cast<float>(1 / own.stiffness);
   }
-}
-
-void Capacitance::solve(Eigen::VectorXf& answer) const {
-  for (std::size_t i = 0; i < lists_.size(); ++i) factors_[i].solve(answer);
-}
-
-// Moves the rows of directions that stay to where these are now.
-void Capacitance::keep_rows(const std::vector<Eigen::Index>& place) {
-  if (rows_of_ == 0) return;
-  RowMatrix rows(std::ssize(directions_), rows_.cols());
-  std::vector<char> known(directions_.size(), 0);
-  for (std::size_t i = 0; i < std::min(place.size(), known_.size()); ++i) {
-    if (place[i] < 0 || known_[i] == 0) continue;
-    rows.row(place[i]) = rows_.row(static_cast<Eigen::Index>(i));
-    known[place[i]] = 1;
-  }
-  rows_.swap(rows);
-  known_.swap(known);
-}
-
-bool Capacitance::know_rows(std::uint64_t pose, const std::vector<int>& first_column, const FindRow& find_row,
-                            Threads* threads) {
-  const int r = first_column.back();
-  if (rows_of_ != pose) {
-    rows_of_ = pose;
-    known_.clear();
-    lists_counted_ = 0;
-    for (BlockFactor& factor : factors_) factor.forget_rows();
-  }
-  const std::size_t before = known_.size(), count = directions_.size();
-  if (before < count || rows_.cols() != r) rows_.conservativeResize(static_cast<Eigen::Index>(count), r);
-  known_.resize(count, 0);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (known_[i] == 0) find_row(directions_[i], rows_.row(static_cast<Eigen::Index>(i)).data());
-    known_[i] = 1;
-  }
-  const std::vector<int> first = parts_.count() > 1 ? first_column : std::vector<int>{0, r};
-  bool is_new = lists_counted_ != lists_.size();
-  for (std::size_t i = 0; i < lists_.size(); ++i) is_new |= factors_[i].multiply_rows(rows_, first, threads);
-  if (!is_new) return false;
-  lists_counted_ = lists_.size();
-  between_.setZero(r, r);
-  for (std::size_t i = 0; i < lists_.size(); ++i) factors_[i].add_product(first, between_);
-  between_.triangularView<Eigen::StrictlyUpper>() = between_.transpose();
-  return true;
+  if (motions_ != nullptr && has_several_parts()) add_products_of_motions(rows, columns, block);
 }
 
 }  // namespace supple

@@ -4,8 +4,14 @@
 // same for x, y and z: on flat ground normals and both tangents are three systems. Nor do directions that act on no
 // common part of a model: a system is sparse by blocks (block_factor.h), and dense for a body alone. All in single
 // precision.
+//
+// Where B^-1 = A^-1 + Z D Z^T takes the place of A^-1, the matrix is C + W D W^T, with W = N^T Z. Of several parts this
+// has the blocks of C, and is factored as it stands, whenever Z moves. Of a body alone, C keeps its factor and its
+// three systems, and W D W^T is added by (C + W D W^T)^-1 = C^-1 - C^-1 W (1 + D W^T C^-1 W)^-1 D W^T C^-1 (Woodbury).
+// With that for several parts, too, a row of 80 cubes took 3.5 times as long, since all columns of W hang together.
 #pragma once
 
+#include <Eigen/LU>
 #include <functional>
 #include <vector>
 
@@ -40,6 +46,16 @@ struct CoupledDirections {
 // of the list.
 std::size_t couple(const StiffDirection& direction, Eigen::Index number, std::vector<CoupledDirections>& lists);
 
+// Describes motions Z of a model's parts, such that B^-1 = A^-1 + Z D Z^T takes the place of A^-1
+// (coarse/second_level.h).
+struct AddedMotions {
+  std::uint64_t pose = 0;         // another one wherever Z or D are others; not 0
+  std::vector<int> first_column;  // where the columns of Z of each part begin, and r, the number of all
+  // Adds what a direction is on the columns of Z to r numbers. They are 0 for parts on which it does not act.
+  std::function<void(const StiffDirection&, double* row)> add_row;
+  std::function<const Eigen::MatrixXd&(int part)> difference;  // the block of D
+};
+
 class Capacitance {
  public:
   // Returns the directions in the order of their numbers, which is not that in which they were set.
@@ -52,6 +68,10 @@ class Capacitance {
   // parts: of the model whose vertices the directions will act on; without this call it has one.
   void begin_step(const System& system, const std::vector<Part>& parts);
 
+  // Says which motions the systems have that are built from now on; null: none. They must stay as they are until the
+  // next call.
+  void add_motions(const AddedMotions* motions) { motions_ = motions; }
+
   // Builds the system of these directions, which must be sorted by their points' first vertices. What the present
   // system has of them, or nearly so, stays as it is, because a correction need not be exact. Returns false when the
   // system is not positive definite. threads: null for the calling one alone.
@@ -61,26 +81,28 @@ class Capacitance {
   // Solves in place; the numbers are ordered by direction.
   void solve(Eigen::VectorXf& answer) const;
 
-  using RowMatrix = BlockFactor::RowMatrix;
-
-  // Makes ready rows(), W, of what each direction is on some coarse motions, and between(), W^T C^-1 W for the system's
-  // matrix C. first_column: where the motions of each part begin, and r, the number of all. `find_row` writes the r
-  // numbers of a direction, which are 0 for parts on which it does not act; it is asked once for each of a pose (which
-  // is not 0), for as long as the direction stays. Returns whether anything is new.
-  using FindRow = std::function<void(const StiffDirection&, float* row)>;
-  bool know_rows(std::uint64_t pose, const std::vector<int>& first_column, const FindRow& find_row, Threads* threads);
-  const RowMatrix& rows() const { return rows_; }
-  const Eigen::MatrixXd& between() const { return between_; }
+  // Returns W y, for W = N^T Z, which has a row for each direction, and r numbers.
+  Eigen::VectorXf seen_by_directions(const Eigen::VectorXd& y) const;
+  // Returns W^T f for numbers by direction.
+  Eigen::VectorXd seen_by_motions(const Eigen::VectorXf& f) const;
 
   // Returns how many numbers of A^-1 and of its factor are kept from step to step.
   std::int64_t kept_numbers() const { return entries_.stored_numbers(); }
 
  private:
+  using RowMatrix = BlockFactor::RowMatrix;
+
+  bool has_several_parts() const { return parts_.count() > 1; }
+  void know_motions();
   bool extend(Threads* threads);
+  void couple_motions();
   void keep_rows(const std::vector<Eigen::Index>& place);
   void fill(std::span<const Eigen::Index> rows, std::span<const Eigen::Index> columns, Eigen::Index shift,
             Eigen::Ref<RowMatrix> block) const;
+  void add_products_of_motions(std::span<const Eigen::Index> rows, std::span<const Eigen::Index> columns,
+                               Eigen::Ref<RowMatrix> block) const;
   float entry(const ContactStencil& a, const ContactStencil& b) const;
+  std::size_t home_of(const StiffDirection& direction, Eigen::Index number);
 
   VertexParts parts_;
   std::vector<StiffDirection> directions_;
@@ -89,11 +111,18 @@ class Capacitance {
   std::vector<BlockFactor> factors_;  // of the lists
   InverseEntries entries_;
   std::uint64_t entries_of_ = 0;  // System::id
-  std::uint64_t rows_of_ = 0;     // the pose of the rows; 0: there are none
-  RowMatrix rows_;
-  std::vector<char> known_;        // by direction: whether its row is known
-  std::size_t lists_counted_ = 0;  // in `between_`
-  Eigen::MatrixXd between_;
+
+  const AddedMotions* motions_ = nullptr;
+  std::uint64_t motions_of_ = 0;  // the pose of the motions that the system has; 0: it has none
+  // Of several parts: W and W D, for the columns of the parts on which a direction acts.
+  std::vector<std::size_t> begin_;  // by direction: where its numbers begin in the next two, and the end
+  std::vector<float> row_, row_times_;
+  // Of one part:
+  RowMatrix rows_;                             // W
+  std::vector<char> known_;                    // by direction: whether its row is known
+  std::size_t lists_counted_ = 0;              // in `between_`
+  Eigen::MatrixXd between_;                    // W^T C^-1 W, for the matrix C without the motions
+  Eigen::PartialPivLU<Eigen::MatrixXd> both_;  // of 1 + D W^T C^-1 W
 };
 
 }  // namespace supple

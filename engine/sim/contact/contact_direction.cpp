@@ -59,33 +59,28 @@ double most_operations(const Model& model) {
   return std::max(std::min(of_all, of_a_part * static_cast<double>(model.parts.size())), 15 * numbers);
 }
 
-// Counts the operations that factor the system of these directions, which are coupled as listed.
-double operations_of(const Model& model, const std::vector<StiffDirection>& directions,
-                     const std::vector<CoupledDirections>& lists) {
+// Counts the operations that factor the system of these directions, if all that act on a common part are coupled.
+double operations_of(const Model& model, const std::vector<StiffDirection>& directions) {
   const VertexParts parts(model.parts);
-  double sum = 0;
-  for (const CoupledDirections& list : lists) {
-    std::map<GroupKey, Eigen::Index> groups;
-    for (const Eigen::Index member : list.members) ++groups[parts.of(directions[member].stencil)];
-    std::vector<GroupKey> keys;
-    std::vector<Eigen::Index> sizes;
-    for (const auto& [key, size] : groups) {
-      keys.push_back(key);
-      sizes.push_back(size);
-    }
-    sum += factor_operations(keys, sizes);
+  std::map<GroupKey, Eigen::Index> groups;
+  for (const StiffDirection& direction : directions) ++groups[parts.of(direction.stencil)];
+  std::vector<GroupKey> keys;
+  std::vector<Eigen::Index> sizes;
+  for (const auto& [key, size] : groups) {
+    keys.push_back(key);
+    sizes.push_back(size);
   }
-  return sum;
+  return factor_operations(keys, sizes);
 }
 
 // Returns how many of the wanted directions the system may have, so that it does not exceed its limit.
 std::size_t affordable(const Model& model, const std::vector<StiffDirection>& wanted) {
-  std::vector<CoupledDirections> lists;
-  for (std::size_t i = 0; i < wanted.size(); ++i) couple(wanted[i], static_cast<Eigen::Index>(i), lists);
   if (model.parts.size() > 1) {
-    const double share = std::cbrt(most_operations(model) / std::max(operations_of(model, wanted, lists), 1.0));
+    const double share = std::cbrt(most_operations(model) / std::max(operations_of(model, wanted), 1.0));
     return share >= 1 ? wanted.size() : static_cast<std::size_t>(share * static_cast<double>(wanted.size()));
   }
+  std::vector<CoupledDirections> lists;
+  for (std::size_t i = 0; i < wanted.size(); ++i) couple(wanted[i], static_cast<Eigen::Index>(i), lists);
   const std::size_t most = most_coupled_directions(model);
   std::size_t largest = 0;
   for (const CoupledDirections& list : lists) largest = std::max(largest, list.members.size());
@@ -194,39 +189,21 @@ void add_answer(ContactCorrection& c, const FactorPart& part, Positions& r) {
   c.solve.pass_on(part);
 }
 
-// Prepares the solves with C + N^T Z D Z^T N, where C is the matrix of the system on the first level alone:
-// (C + W D W^T)^-1 = C^-1 - C^-1 W (1 + D W^T C^-1 W)^-1 D W^T C^-1 (Woodbury).
-void couple_levels(ContactCorrection& c) {
-  if (c.second == nullptr) return;
-  Eigen::VectorXd numbers(c.second->columns());
-  const auto find_row = [&](const StiffDirection& s, float* row) {
-    numbers.setZero();
+// Says which motions the system has in addition to A^-1: those of the second level.
+void add_second_level(ContactCorrection& c) {
+  SecondLevel* const second = c.second;
+  if (second == nullptr) return c.system.add_motions(nullptr);
+  const CoarseSystem& coarse = second->system();
+  c.motions.pose = second->pose();
+  c.motions.first_column.clear();
+  for (int part = 0; part <= coarse.parts(); ++part) c.motions.first_column.push_back(coarse.first_column(part));
+  c.motions.add_row = [second](const StiffDirection& s, double* row) {
     for (int k = 0; k < s.stencil.free; ++k)
-      c.second->restrict_one(s.stencil.vertex[k], s.stencil.weight[k] * s.axis, numbers.data());
-    Eigen::Map<Eigen::VectorXf>(row, numbers.size()) = numbers.cast<float>();
+      second->restrict_one(s.stencil.vertex[k], s.stencil.weight[k] * s.axis, row);
   };
-  const CoarseSystem& coarse = c.second->system();
-  std::vector<int> first_column;
-  for (int part = 0; part <= coarse.parts(); ++part) first_column.push_back(coarse.first_column(part));
-  const bool is_new = c.system.know_rows(c.second->pose(), first_column, find_row, c.threads);
-  if (!is_new) return;
-  c.both.compute(Eigen::MatrixXd::Identity(numbers.size(), numbers.size()) +
-                 c.second->difference_times(c.system.between()));
+  c.motions.difference = [second](int part) -> const Eigen::MatrixXd& { return second->difference(part); };
+  c.system.add_motions(&c.motions);
 }
-
-// Solves with the matrix of couple_levels(), in place.
-void solve_coupled(ContactCorrection& c) {
-  c.system.solve(c.answer);
-  if (c.second == nullptr) return;
-  const auto& rows = c.system.rows();
-  const Eigen::VectorXd seen = (rows.transpose() * c.answer).cast<double>();
-  Eigen::VectorXf back = rows * c.both.solve(c.second->difference_times(seen)).cast<float>();
-  c.system.solve(back);
-  c.answer -= back;
-}
-
-// Adds the forces -N answer on the second level.
-void add_coarse_answer(ContactCorrection& c) { c.coarse -= (c.system.rows().transpose() * c.answer).cast<double>(); }
 
 void finish(const Model& model, ContactCorrection& c, const Positions& r, Positions& z) {
   c.solve.finish(z.data());
@@ -245,12 +222,12 @@ void apply_low_rank(const Model& model, ContactCorrection& c, Positions& r, Posi
     for (int k = 1; k < stencil.free; ++k) seen += stencil.weight[k] * c.solve.seen(stencil.vertex[k]);
     c.answer[i] = static_cast<float>(seen.dot(directions[i].axis));
   }
-  if (c.second != nullptr) c.answer += c.system.rows() * c.second->difference_times(c.coarse).cast<float>();
-  solve_coupled(c);
+  if (c.second != nullptr) c.answer += c.system.seen_by_directions(c.second->difference_times(c.coarse));
+  c.system.solve(c.answer);
   add_answer(c, c.part, r);
   finish(model, c, r, z);
   if (c.second == nullptr) return;
-  add_coarse_answer(c);
+  c.coarse -= c.system.seen_by_motions(c.answer);
   c.second->add(model, c.coarse, c.threads, z);
 }
 
@@ -268,6 +245,7 @@ void begin_corrections(const Model& model, ContactCorrection& c) {
 
 void apply_inverse(const Model& model, const ContactSettings& settings, ContactCorrection& c, SolveScratch& scratch,
                    Positions& r, Positions& z) {
+  add_second_level(c);
   if (c.wanted.empty()) {
     c.system.clear();
     return apply_both_levels(model, c, scratch, r, z);
@@ -281,7 +259,6 @@ void apply_inverse(const Model& model, const ContactSettings& settings, ContactC
   if (c.system.directions().empty()) {
     apply_both_levels(model, c, scratch, r, z);
   } else {
-    couple_levels(c);
     if (c.second != nullptr) c.second->restrict(model, r, c.threads, c.coarse);
     apply_low_rank(model, c, r, z);
   }
@@ -305,8 +282,7 @@ void bend(const Model& model, const Eigen::VectorXf& off, const std::vector<Stif
   c.answer.resize(static_cast<Eigen::Index>(c.system.directions().size()));
   c.answer.head(before) = off;
   std::copy(gaps.begin(), gaps.end(), c.answer.data() + before);
-  couple_levels(c);
-  solve_coupled(c);
+  c.system.solve(c.answer);
   const FactorPart part = part_of(system_of(model, c), c.system.directions());
   c.push.setZero(model.free, 3);
   c.back.resize(model.free, 3);
@@ -314,8 +290,7 @@ void bend(const Model& model, const Eigen::VectorXf& off, const std::vector<Stif
   add_answer(c, part, c.push);
   finish(model, c, c.push, c.back);
   if (c.second != nullptr) {
-    c.coarse.setZero(c.second->columns());
-    add_coarse_answer(c);
+    c.coarse = -c.system.seen_by_motions(c.answer);
     c.second->add(model, c.coarse, c.threads, c.back);
   }
   for (const StiffDirection& s : c.rest) scale_rest(system_of(model, c), s, c.back);

@@ -13,7 +13,6 @@
 // All of these H are symmetric and positive definite.
 #pragma once
 
-#include <Eigen/LU>
 #include <vector>
 
 #include "sim/coarse/second_level.h"
@@ -41,8 +40,8 @@ struct ContactCorrection {
   Positions unbent;                     // the direction before foresee_contacts [m]
   // The second level of directions (coarse/second_level.h); null: there is none.
   SecondLevel* second = nullptr;
-  Eigen::VectorXd coarse;                     // Z^T of the forces in hand, r
-  Eigen::PartialPivLU<Eigen::MatrixXd> both;  // of 1 + D W^T C^-1 W, for the system's rows W = N^T Z and its matrix C
+  Eigen::VectorXd coarse;  // Z^T of the forces in hand, r
+  AddedMotions motions;    // those of the second level, for the system
 };
 
 // Returns the largest number of mutually coupled directions that the system of a body alone may have. For several

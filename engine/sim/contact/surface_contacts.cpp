@@ -32,6 +32,7 @@ using Takes = MovingSurface::Takes;
 
 constexpr int points_a_chunk = 128;  // a thread takes so many; fixed, so that results do not depend on threads
 constexpr double deepest = 0.5;      // points that begin a step deeper than this are not found, over the body's size
+constexpr double on_surface = 0.1;   // of the usual depth; a point that is no further outside may count as inside
 
 // Returns the mean motion of some vertices from q to x [m].
 Vec3 mean_motion(const std::vector<std::int32_t>& points, const Positions& q, const Positions& x) {
@@ -118,11 +119,16 @@ class SurfacePair : public TouchedSurface {
     return known.place;
   }
 
+  // Returns the way that a point faces at an iterate; 0 for that of a sheet.
+  Vec3 facing_at_end(std::int32_t v) const {
+    if (!faces()) return Vec3::Zero();
+    return own_.moving->normal_at_end(own_vertex(model_, model_.parts[meeting_.points], v));
+  }
+
   // Returns the place closest to a point of an iterate.
   std::optional<Place> closest(std::int32_t v, const Vec3& b, double most) const {
-    const Part& own = model_.parts[meeting_.points];
-    const Vec3 facing = faces() ? own_.moving->normal_at_end(own_vertex(model_, own, v)) : Vec3(Vec3::Zero());
-    return closest(b, facing, x_, [&](const Takes* takes) { return surface_.moving->closest_at_end(b, most, takes); });
+    return closest(b, facing_at_end(v), x_,
+                   [&](const Takes* takes) { return surface_.moving->closest_at_end(b, most, takes); });
   }
 
   // Returns the place closest to a point among those that do not face the way of the point itself. find(takes): the
@@ -135,7 +141,7 @@ class SurfacePair : public TouchedSurface {
     std::optional<Place> place = find(nullptr);
     if (!place) return place;
     if (nearest != nullptr) *nearest = std::abs(place->distance);
-    const bool is_outside = place->distance > usual_depth(size_);
+    const bool is_outside = place->distance > on_surface * usual_depth(size_);
     if (normal_of(place->triangle, x).dot(facing) > same_way) {
       const Takes others = [&](std::int32_t t) { return !(normal_of(t, x).dot(facing) > same_way); };
       place = find(&others);
@@ -168,8 +174,10 @@ class SurfacePair : public TouchedSurface {
   std::optional<Place> arriving(std::int32_t v, const Vec3& a, const Vec3& b, double reach, double way, double nearest,
                                 double& field) const {
     const double moved = way + 2 * surface_.own_move;
+    const Vec3 facing = facing_at_end(v);
+    const Takes takes = [&](std::int32_t t) { return !(normal_of(t, x_).dot(facing) > same_way); };
     const std::optional<Entry> entry =
-        nearest <= moved ? surface_.moving->first_entry(a, b, surface_.carried) : std::nullopt;
+        nearest <= moved ? surface_.moving->first_entry(a, b, surface_.carried, 1, &takes) : std::nullopt;
     const std::optional<Place> here = closest(v, b, std::max(reach, entry ? moved : 0));
     const std::optional<Place> near = here && here->distance < reach ? here : std::nullopt;
     if (!entry) {
