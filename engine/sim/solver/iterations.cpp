@@ -114,6 +114,14 @@ void accept(const Model& model, const StepInputs& inputs, OpenWorkspace& w, Sear
   if (w.watch) w.watch(w.current.x);
 }
 
+// Tells whether bodies that touch each other went so little of a direction's way that what the rule learned from
+// earlier iterates is about other contacts. Eight creatures that settle in a bowl take 1.1 evaluations an iteration in
+// place of 2.3.
+bool was_cut_short(const Model& model, const IterationRecord& record) {
+  constexpr double most = 0.3;
+  return model.parts.size() > 1 && record.alpha < most;
+}
+
 }  // namespace
 
 void fail(const Model& model, OpenWorkspace& w, const char* phase, double objective) {
@@ -214,6 +222,7 @@ bool Iterations::advance(const SearchLimits& limits) {
     return false;
   }
   accept(model_, inputs_, w_, rule_, before, change, record);
+  if (was_cut_short(model_, record)) rule_.forget();
   decrements_.add(-slope, record.decrease);
   if (absurd(model_, w_.current.g, start_)) {
     fail(model_, w_, "line search", w_.current.g);
