@@ -143,7 +143,24 @@ bool Islands::may_touch(std::size_t a, std::size_t b, double pushed) const {
         ways_[b].swept.lower[k] - margin > ways_[a].swept.upper[k])
       return false;
   }
-  return surface_of(a).may_meet(surface_of(b), margin, ways_[a].mean);
+  if (surface_of(a).may_meet(surface_of(b), margin, ways_[a].mean)) return true;
+  // Bodies that go the same way meet where a collider stops the first of them.
+  return (may_be_stopped(a) || may_be_stopped(b)) && surface_of(a).may_meet(surface_of(b), margin, Vec3::Zero());
+}
+
+// Tells whether a body may come to a collider on its way.
+bool Islands::may_be_stopped(std::size_t body) const {
+  const StepInputs& inputs = bodies_[body]->inputs();
+  const Vec3 center = ways_[body].swept.center();
+  const double radius = 0.5 * ways_[body].swept.diagonal();
+  for (std::size_t c = 0; c < collider_count(inputs); ++c) {
+    const Collider& collider = (*inputs.colliders)[c];
+    const ColliderMotion& motion = inputs.collider_motions[c];
+    if (motion.moves()) return true;
+    const double distance = collider.shape.distance(motion.start.inverse() * center);
+    if (collider.shape.certainty() * distance - collider.thickness <= radius) return true;
+  }
+  return false;
 }
 
 std::vector<std::vector<std::size_t>> Islands::find() {

@@ -6,6 +6,7 @@
 
 #include "app/bench/linked_rings.h"
 #include "baselines/make_rule.h"
+#include "scene/building/body_depths.h"
 #include "sim/contact/own_surface.h"
 #include "sim/model/element_view.h"
 #include "support/scene_text.h"
@@ -234,6 +235,49 @@ TEST(TouchingWorlds, AClothLiesOnAClothAtTheDistanceOfTheirLayer) {
       (lower.rowwise() - upper.row(v)).rowwise().squaredNorm().minCoeff(&below);
       EXPECT_GT(upper(v, 1), lower(below, 1) - 0.005) << frame << ": vertex " << v;
     }
+  }
+  EXPECT_FALSE(played.world.touches().empty());
+}
+
+// No vertex of one strip is over the other one: only their edges can hold it.
+TEST(TouchingWorlds, EdgesOfClothsHoldEachOther) {
+  const auto strip = [](const char* name, double turn_deg, const char* keys) {
+    return fmt::format(
+        "[[body]]\nname = \"{}\"\ncloth = {{ extent = [1, 0.05], cells = [4, 1], stretch = 400, bend = 2 }}\n"
+        "turn_deg = [-90, {}, 0]\n{}\n",
+        name, turn_deg, keys);
+  };
+  for (const double speed : {0.0, 3.0, 12.0}) {
+    Played played(
+        strip("held", 0,
+              "position = [0, 1, 0]\ntotal_mass = 0.05\n"
+              "[[body.handles]]\nname = \"a\"\nselect = { box = [[0, 0, 0], [0.01, 1, 1]] }\n"
+              "[[body.handles]]\nname = \"b\"\nselect = { box = [[0.99, 0, 0], [1, 1, 1]] }") +
+        strip("thrown", 90,
+              fmt::format("position = [0.12, 1.1, 0.05]\ntotal_mass = 0.02\nvelocity = [0, {}, 0]", -speed).c_str()));
+    played.play(0, 20);
+    // The middle of the thrown one lies over the held one, and its ends hang down.
+    const Positions thrown = played.places(1);
+    EXPECT_GT(thrown.col(1).maxCoeff(), 0.8) << speed;
+    EXPECT_LT(thrown.col(1).minCoeff(), 0.95) << speed;
+  }
+}
+
+// The layers fall at one speed, and come near each other only because the ball stops the lowest one.
+TEST(TouchingWorlds, LayersOfClothStayInTheirOrder) {
+  std::string text =
+      "[[collider]]\nname = \"ball\"\nshape = { sphere = { radius = 0.3 } }\nposition = [0, 0.35, 0]\nfriction = 0.4\n";
+  for (int layer = 0; layer < 4; ++layer)
+    text += fmt::format(
+        "[[body]]\nname = \"cloth-{}\"\ncloth = {{ extent = [0.7, 0.7], cells = [9, 9], stretch = 400, bend = 2 }}\n"
+        "turn_deg = [90, {}, 0]\nposition = [0, {}, 0]\ntotal_mass = 0.2\n",
+        layer, 17 * layer, 0.8 + 0.05 * layer);
+  Played played(text);
+  for (int frame = 0; frame < 30; ++frame) {
+    played.play(frame, frame + 1);
+    std::vector<Positions> places;
+    for (std::size_t b = 0; b < played.world.size(); ++b) places.push_back(played.places(b));
+    EXPECT_TRUE(overlaps_of_bodies(played.world.bodies(), places).empty()) << frame;
   }
   EXPECT_FALSE(played.world.touches().empty());
 }

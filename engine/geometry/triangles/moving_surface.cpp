@@ -360,6 +360,21 @@ bool MovingSurface::is_near(const Vec3& a, const Vec3& b, const Vec3& carried, d
   return any_triangle(box, carried, [](std::int32_t) { return true; });
 }
 
+void MovingSurface::visit_triangles_near(const std::array<Vec3, 2>& start, const std::array<Vec3, 2>& end,
+                                         const Vec3& carried, double margin, const VisitTriangle& visit) const {
+  Bounds box;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double reach = margin + roundoff_at(start[k], end[k]) + roundoff_at(end[k], carried);
+    const Bounds path = box_of_path(start[k], end[k], carried, reach);
+    box.include(path.lower);
+    box.include(path.upper);
+  }
+  any_triangle(box, carried, [&](std::int32_t t) {
+    visit(t);
+    return false;
+  });
+}
+
 // Returns the box in which the node's triangles move, in the frame that moves by `carried`.
 Bounds MovingSurface::swept_box(std::int32_t node, const Vec3& carried) const {
   const Bounds start = whole_box(start_.boxes[std::size_t(node)]), end = whole_box(end_.boxes[std::size_t(node)]);

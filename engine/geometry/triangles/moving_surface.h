@@ -95,6 +95,12 @@ class MovingSurface {
   // which the point and each triangle move.
   bool is_near(const Vec3& a, const Vec3& b, const Vec3& carried, double margin) const;
 
+  // Calls visit(triangle) for each one to which an edge may come nearer than `margin` [m], by the boxes in which both
+  // move. start, end: the edge's ends at both times.
+  using VisitTriangle = std::function<void(std::int32_t triangle)>;
+  void visit_triangles_near(const std::array<Vec3, 2>& start, const std::array<Vec3, 2>& end, const Vec3& carried,
+                            double margin, const VisitTriangle& visit) const;
+
   // Tells whether a point of the other surface may come nearer than `margin` [m] to this one, by the boxes in which
   // groups of up to four of its triangles move.
   bool may_meet(const MovingSurface& other, double margin, const Vec3& carried) const;

@@ -215,8 +215,8 @@ std::string missed_text(const DeepTally& pair) {
   const auto& [bodies, share, place] = pair.found;
   if (share == 0)
     return fmt::format(
-        "cloths '{}' and '{}' cross each other from frame {} on: their edges are not held apart; substeps or finer "
-        "meshes of both make that less likely",
+        "cloths '{}' and '{}' cross each other from frame {} on: substeps or more solver.iterations make that less "
+        "likely",
         bodies[0], bodies[1], pair.frame);
   return fmt::format(
       "bodies '{}' and '{}' were {:.2g} % of the smaller one's size deep in each other in frame {}, at [{:.3g}, "

@@ -7,6 +7,7 @@
 
 #include "sim/contact/contact_order.h"
 #include "sim/contact/own_points.h"
+#include "sim/contact/sheet_edges.h"
 #include "sim/contact/sheet_pair.h"
 #include "sim/contact/surface_work.h"
 #include "sim/contact/touched_surface.h"
@@ -285,11 +286,13 @@ void find_surface_contacts(const Model& model, const StepInputs& inputs, const P
       continue;
     } else if (!model.parts[meeting.surface].solid) {
       search_points(SheetPair(model, inputs, m, q, y, x, work), threads, work, found);
+      if (SheetEdges::are_asked(model, inputs, m))
+        search_points(SheetEdges(model, inputs, m, q, y, x, work), threads, work, found);
     } else {
       search_points(SurfacePair(model, inputs, m, q, y, x, work), threads, work, found);
     }
   }
-  std::sort(found.begin() + static_cast<std::ptrdiff_t>(before), found.end(), comes_before);
+  std::stable_sort(found.begin() + static_cast<std::ptrdiff_t>(before), found.end(), comes_before);
 }
 
 void stop_at_surfaces(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& x,
@@ -307,6 +310,8 @@ void stop_at_surfaces(const Model& model, const StepInputs& inputs, const Positi
       continue;
     } else if (!model.parts[meeting.surface].solid) {
       least = first_share(SheetPair(model, inputs, m, q, x, x, work), least);
+      if (SheetEdges::are_asked(model, inputs, m))
+        least = first_share(SheetEdges(model, inputs, m, q, x, x, work), least);
     } else {
       least = first_share(SurfacePair(model, inputs, m, q, x, x, work), least);
     }

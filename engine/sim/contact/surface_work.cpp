@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "sim/model/element_view.h"
@@ -73,6 +74,19 @@ std::vector<char> on_border(const Triangles& triangles, Eigen::Index vertices) {
   return border;
 }
 
+void list_edges(const Part& part, Work::Surface& surface) {
+  std::set<std::pair<std::int32_t, std::int32_t>> known;
+  surface.edge_begin = {0};
+  for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const std::int32_t a = surface.triangles(t, k), b = surface.triangles(t, (k + 1) % 3);
+      if (known.insert(std::minmax(a, b)).second)
+        surface.edges.push_back({joined_vertex(part, std::min(a, b)), joined_vertex(part, std::max(a, b))});
+    }
+    surface.edge_begin.push_back(static_cast<std::int32_t>(surface.edges.size()));
+  }
+}
+
 // Finds the points at a border or at which the normals of two faces are far apart, and the mean length of edges.
 void describe_surface(const Model& model, const Part& part, Work::Surface& surface) {
   constexpr double least_cosine = 0.5;
@@ -106,6 +120,7 @@ void make_surfaces(const Model& model, const StepInputs& inputs, Work& work) {
       surface.triangles = triangles_of(model, part);
       surface.points = points_of(part, surface.triangles);
       describe_surface(model, part, surface);
+      if (!part.solid) list_edges(part, surface);
     }
   }
   work.structure = model.structure;

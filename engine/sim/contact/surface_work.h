@@ -1,6 +1,7 @@
 // Holds what a step knows of the surfaces of a joined model's parts, for the searches of surface_contacts.h.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -19,6 +20,10 @@ struct SurfaceWork::Parts {
     std::vector<std::int32_t> points;  // vertices of the joined model that may touch others, ascending
     std::vector<char> sharp;  // by point: whether it is on a border, or faces at it look very differently at rest
     double edge = 0;          // the mean length of the surface's edges at rest [m]
+    // Of a sheet:
+    std::vector<std::array<std::int32_t, 2>> edges;  // vertices of the joined model
+    std::vector<std::int32_t>
+        edge_begin;  // by triangle: where its edges begin that no earlier triangle has, and the end
     std::unique_ptr<MovingSurface> moving;  // null where nothing touches this part
     std::unique_ptr<OwnSurface> own;        // null where the part does not touch itself
     Vec3 carried = Vec3::Zero();            // the mean motion of the part from q to the present iterate [m]

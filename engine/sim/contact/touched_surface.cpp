@@ -9,10 +9,9 @@
 #include "sim/model/joined_model.h"
 
 namespace supple {
-namespace {
 
 // Adds a vertex to a stencil, before those with larger numbers.
-void add_vertex(const Model& model, std::int32_t vertex, double weight, ContactStencil& stencil) {
+void TouchedSurface::add_vertex(std::int32_t vertex, double weight, ContactStencil& stencil) const {
   int at = stencil.count++;
   for (; at > 0 && stencil.vertex[at - 1] > vertex; --at) {
     stencil.vertex[at] = stencil.vertex[at - 1];
@@ -20,10 +19,8 @@ void add_vertex(const Model& model, std::int32_t vertex, double weight, ContactS
   }
   stencil.vertex[at] = vertex;
   stencil.weight[at] = weight;
-  stencil.free += vertex < model.free;
+  stencil.free += vertex < model_.free;
 }
-
-}  // namespace
 
 TouchedSurface::TouchedSurface(const Model& model, const StepInputs& inputs, const Meeting& meeting, const Positions& q,
                                const Positions& y, const Positions& x, const Work& work)
@@ -88,16 +85,21 @@ ContactStencil TouchedSurface::stencil_of(std::int32_t point, const Place& place
   double sum = 0;
   for (int k = 0; k < 3; ++k) {
     if (place.weights[k] < least_weight) continue;
-    add_vertex(model_, corner(place.triangle, k), -place.weights[k], stencil);
+    add_vertex(corner(place.triangle, k), -place.weights[k], stencil);
     sum += place.weights[k];
   }
-  add_vertex(model_, point, sum, stencil);
+  add_vertex(point, sum, stencil);
   return stencil;
 }
 
 void TouchedSurface::add(std::int32_t v, const Place& place, double field, std::vector<Contact>& list,
                          double layer) const {
-  Contact contact{stencil_of(v, place), {-1, meeting_.surface}, place.normal, 0, 0, 0, v};
+  add(stencil_of(v, place), v, place.normal, field, list, layer);
+}
+
+void TouchedSurface::add(const ContactStencil& stencil, std::int32_t number, const Vec3& normal, double field,
+                         std::vector<Contact>& list, double layer) const {
+  Contact contact{stencil, {-1, meeting_.surface}, normal, 0, 0, 0, number};
   if (contact.stencil.free == 0) return;
   const double h = model_.time_step, mass = contact.stencil.mass(model_.mass);
   const double fastest = solver_.contact.push_out * size_ * h;
@@ -121,10 +123,10 @@ std::vector<char> only_sharp_points(const Model& model, const StepInputs& inputs
   std::vector<char> only_sharp;
   for (const Meeting& meeting : inputs.meetings) {
     const bool both_ways = std::ranges::binary_search(pairs, std::pair(meeting.surface, meeting.points));
-    const bool is_solid = model.parts[meeting.points].solid, meets_solid = model.parts[meeting.surface].solid;
+    const bool is_solid = model.parts[meeting.points].solid;
     const double own = work.surfaces[meeting.points].edge, other = work.surfaces[meeting.surface].edge;
     const bool is_coarser = own > other || (own == other && meeting.points > meeting.surface);
-    only_sharp.push_back(both_ways && (is_solid || !meets_solid) && is_coarser);
+    only_sharp.push_back(both_ways && is_solid && is_coarser);
   }
   return only_sharp;
 }

@@ -3,6 +3,7 @@
 // (surface_contacts.cpp, sheet_pair.h) and of one with itself (own_points.h) share.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -48,6 +49,18 @@ class TouchedSurface {
   // step. field: the distance where the step began, negative inside [m]. layer: how far above the place the plane lies
   // [m]; distances count from there.
   void add(std::int32_t v, const Place& place, double field, std::vector<Contact>& list, double layer = 0) const;
+  // Adds that of a stencil with a normal. number: of the point.
+  void add(const ContactStencil& stencil, std::int32_t number, const Vec3& normal, double field,
+           std::vector<Contact>& list, double layer) const;
+
+  // Makes a stencil of vertices with weights that are not 0.
+  template <std::size_t N>
+  ContactStencil stencil_of(const std::array<std::int32_t, N>& vertices, const std::array<double, N>& weights) const {
+    ContactStencil stencil{};
+    stencil.count = stencil.free = 0;
+    for (std::size_t k = 0; k < N; ++k) add_vertex(vertices[k], weights[k], stencil);
+    return stencil;
+  }
 
   const Model& model_;
   const SolverSettings& solver_;
@@ -59,14 +72,15 @@ class TouchedSurface {
   double fall_;  // in one step from rest: one part may rest on what holds it while the other falls [m]
 
  private:
+  void add_vertex(std::int32_t vertex, double weight, ContactStencil& stencil) const;
   ContactStencil stencil_of(std::int32_t point, const Place& place) const;
 };
 
-// Tells of each meeting whether only the sharp points of its part are looked at. Of two solids, or of two sheets, whose
-// points touch each other, those of the coarser one follow from those of the finer one, but for edges, corners and
-// borders: each contact of two surfaces that lie on one another would count twice, and the contacts would nearly depend
-// on each other. Of a sheet and a solid, all points of the sheet are looked at, and those of the solid only where it is
-// the finer one.
+// Tells of each meeting whether only the sharp points of its part are looked at. Of two solids whose points touch each
+// other, those of the coarser one follow from those of the finer one, but for edges and corners: each contact of two
+// surfaces that lie on one another would count twice, and the contacts would nearly depend on each other. Of a sheet
+// and a solid, all points of the sheet are looked at, and those of the solid only where it is the finer one. Of two
+// sheets all are looked at: with those of one alone, ten layers that fall on a ball come through each other.
 std::vector<char> only_sharp_points(const Model& model, const StepInputs& inputs, const SurfaceWork::Parts& work);
 
 // Tells whether the two parts of a meeting are so far apart, on all of their ways to an iterate, that no point of the

@@ -1,0 +1,43 @@
+// Finds where edges of a sheet touch edges of another one: at borders, and between vertices that lie beside each
+// other's triangles. The vertices alone (sheet_pair.h) would let two narrow strips pass that cross each other, and the
+// borders of wide ones. Of two edges, the way through the step decides which one is above: that the volume of the
+// tetrahedron of their ends changes its sign while they meet is found from the start, the end and the time between
+// (Provot 1997, "Collision and self-collision handling in cloth model dedicated to design garments", has the
+// condition).
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "sim/contact/touched_surface.h"
+
+namespace supple {
+
+class SheetEdges : public TouchedSurface {
+ public:
+  // Tells whether a meeting is one whose edges are looked at: of two sheets, in one of its two directions.
+  static bool are_asked(const Model& model, const StepInputs& inputs, std::size_t meeting);
+
+  SheetEdges(const Model& model, const StepInputs& inputs, std::size_t meeting, const Positions& q, const Positions& y,
+             const Positions& x, const Work& work);
+
+  std::size_t points() const { return own_.edges.size(); }
+
+  // Adds the contacts of an edge.
+  void find(std::size_t index, std::vector<Contact>& list) const;
+
+  // Returns the share of the way at which an edge that crosses others is as deep in their layer as it may be; 1: it
+  // never is. least: later impacts do not matter.
+  double share_to_impact(std::size_t index, double least) const;
+
+ private:
+  using Edge = std::array<std::int32_t, 2>;
+
+  template <class Visit>
+  void visit_edges_near(const Edge& edge, double margin, const Visit& visit) const;
+
+  const Work::Surface& own_;
+  double layer_;  // [m]
+};
+
+}  // namespace supple
