@@ -128,6 +128,7 @@ void add_impacts(std::vector<MeetingCase>& list) {
         cube("right", edge, inner_cells, "position = [0, 0.02, 0.01]\nturn_deg = [10, 20, 30]"));
     meeting.stays_whole = false;
     meeting.order = Vec3::UnitX();
+    meeting.ordered_frames = 1;  // later they fly on beside each other
     list.push_back(std::move(meeting));
   }
 }

@@ -3,6 +3,7 @@
 // cases of one body (hard_cases.h), and how a case is played (meeting_run.h).
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,9 @@ struct MeetingCase {
   std::vector<double> stiffness = {};  // of each body, over the usual one; 1 for those beyond the list
   bool stays_whole = true;             // nothing is inverted or without volume at the end
   bool comes_to_rest = false;          // at the end nothing moves but slowly
-  // The direction in which each body lies from the one before it, in all frames; zero: any.
+  // The direction in which each body lies from the one before it, at the ends of the first frames; zero: any.
   Vec3 order = Vec3::Zero();
+  int ordered_frames = std::numeric_limits<int>::max();
   double alone_from = 0;  // from this time on, nothing does work on the bodies from outside [s]
 };
 
