@@ -85,7 +85,8 @@ std::string fallen(double lower_young, const std::string& lower, double upper_yo
 }
 
 // Each vertex is pushed out no faster than push_out sizes a second, which gives the energy of all mass at this speed.
-// Before the cubes come apart, planes that move out also press them, and some of what that gives stays with them.
+// Before the cubes come apart, planes that move out also press them, and as much again may stay with them: of twelve
+// random starts, half end above the first of these.
 TEST(TouchingHard, CubesThatStartPartlyInEachOtherComeApart) {
   Played played("gravity = [0, 0, 0]\n" + cube("first", 4, 3e4, "") +
                 cube("second", 3, 3e4, "position = [0.13, 0.04, 0.03]\nstart = { turn_deg = [20, 30, 10] }"));
@@ -99,12 +100,12 @@ TEST(TouchingHard, CubesThatStartPartlyInEachOtherComeApart) {
   for (int frame = 0; frame < 60; ++frame) {
     ASSERT_TRUE(played.play(frame)) << frame;
     const double now = played.energy();
-    EXPECT_LT(now - start, 12 * given) << frame;
+    EXPECT_LT(now - start, 6 * given) << frame;
     if (played.world.touches().empty() && played.overlaps().empty()) lowest = std::min(lowest, now);
     EXPECT_LT(now - lowest, 0.01 * given) << frame;
   }
   EXPECT_TRUE(played.overlaps().empty()) << played.depth();
-  EXPECT_LT(lowest - start, 3 * given);
+  EXPECT_LT(lowest - start, 2 * given);
 }
 
 TEST(TouchingHard, ASoftCubeThatFallsOnOneTenThousandTimesAsStiffStaysOutside) {

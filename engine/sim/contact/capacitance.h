@@ -5,10 +5,11 @@
 // common part of a model: a system is sparse by blocks (block_factor.h), and dense for a body alone. All in single
 // precision.
 //
-// Where B^-1 = A^-1 + Z D Z^T takes the place of A^-1, the matrix is C + W D W^T, with W = N^T Z. Of several parts this
-// has the blocks of C, and is factored as it stands, whenever Z moves. Of a body alone, C keeps its factor and its
-// three systems, and W D W^T is added by (C + W D W^T)^-1 = C^-1 - C^-1 W (1 + D W^T C^-1 W)^-1 D W^T C^-1 (Woodbury).
-// With that for several parts, too, a row of 80 cubes took 3.5 times as long, since all columns of W hang together.
+// The second level of directions puts B^-1 = A^-1 + Z D Z^T in the place of A^-1. The matrix is then C + W D W^T, where
+// C is what it was, and W = N^T Z. For several parts this matrix has the blocks of C. It is factored as it stands,
+// whenever Z moves. For a body alone C keeps its factor and its three systems, and the rest is added by (C + W D
+// W^T)^-1 = C^-1 - C^-1 W (1 + D W^T C^-1 W)^-1 D W^T C^-1 (Woodbury). Done so for several parts, it took a row of 80
+// cubes 3.5 times as long, because all columns of W are coupled there.
 #pragma once
 
 #include <Eigen/LU>
@@ -114,10 +115,10 @@ class Capacitance {
 
   const AddedMotions* motions_ = nullptr;
   std::uint64_t motions_of_ = 0;  // the pose of the motions that the system has; 0: it has none
-  // Of several parts: W and W D, for the columns of the parts on which a direction acts.
+  // Several parts have W and W D here, each row with the columns of the parts on which its direction acts.
   std::vector<std::size_t> begin_;  // by direction: where its numbers begin in the next two, and the end
   std::vector<float> row_, row_times_;
-  // Of one part:
+  // One part has all columns of W here.
   RowMatrix rows_;                             // W
   std::vector<char> known_;                    // by direction: whether its row is known
   std::size_t lists_counted_ = 0;              // in `between_`

@@ -8,7 +8,7 @@
 namespace supple {
 namespace {
 
-using Ends = std::array<std::int32_t, 2>;
+using Edge = SurfaceWork::Parts::Edge;
 
 // Describes two edges at one time.
 struct TwoEdges {
@@ -21,7 +21,7 @@ struct TwoEdges {
       : from(a), other_from(c), way(b - a), other_way(d - c), across(way.cross(other_way)) {
     volume = (from - other_from).dot(across);
   }
-  TwoEdges(const Ends& one, const Ends& other, const Positions& x)
+  TwoEdges(const Edge& one, const Edge& other, const Positions& x)
       : TwoEdges(x.row(one[0]), x.row(one[1]), x.row(other[0]), x.row(other[1])) {}
 
   // Tells whether their lines are far from parallel, and so have closest places.
@@ -43,14 +43,14 @@ struct TwoEdges {
 };
 
 // Returns two edges at a share of the way from q to x.
-TwoEdges at_share(const Ends& one, const Ends& other, const Positions& q, const Positions& x, double share) {
+TwoEdges at_share(const Edge& one, const Edge& other, const Positions& q, const Positions& x, double share) {
   const auto place = [&](std::int32_t v) { return Vec3(((1 - share) * q.row(v) + share * x.row(v)).transpose()); };
   return {place(one[0]), place(one[1]), place(other[0]), place(other[1])};
 }
 
 // Returns the first share of the way from q to x at which two edges pass through each other. The volume is a cubic
 // function of the share; two roots in one interval are not found.
-std::optional<double> passage(const Ends& one, const Ends& other, const Positions& q, const Positions& x) {
+std::optional<double> passage(const Edge& one, const Edge& other, const Positions& q, const Positions& x) {
   constexpr int intervals = 8, halvings = 27;
   constexpr double beyond = 1e-6;
   double before = TwoEdges(one, other, q).volume;
@@ -80,7 +80,7 @@ SheetEdges::SheetEdges(const Model& model, const StepInputs& inputs, std::size_t
                        const Positions& y, const Positions& x, const Work& work)
     : TouchedSurface(model, inputs, inputs.meetings[meeting], q, y, x, work),
       own_(work.surfaces[meeting_.points]),
-      layer_(0.5 * layer_of_edge * std::min(own_.edge, surface_.edge)) {}
+      layer_(0.5 * std::min(own_.layer, surface_.layer)) {}
 
 // An edge is in the boxes of all triangles that have it, so that one of them is enough.
 template <class Visit>

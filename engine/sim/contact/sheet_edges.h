@@ -6,7 +6,6 @@
 // condition).
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "sim/contact/touched_surface.h"
@@ -31,7 +30,7 @@ class SheetEdges : public TouchedSurface {
   double share_to_impact(std::size_t index, double least) const;
 
  private:
-  using Edge = std::array<std::int32_t, 2>;
+  using Edge = Work::Edge;
 
   template <class Visit>
   void visit_edges_near(const Edge& edge, double margin, const Visit& visit) const;

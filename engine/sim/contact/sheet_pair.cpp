@@ -10,7 +10,7 @@ SheetPair::SheetPair(const Model& model, const StepInputs& inputs, std::size_t m
     : TouchedSurface(model, inputs, inputs.meetings[meeting], q, y, x, work),
       points_(work.surfaces[meeting_.points].points),
       sharp_(work.only_sharp[meeting] != 0 ? &work.surfaces[meeting_.points].sharp : nullptr),
-      layer_(layer_of_edge * surface_.edge) {}
+      layer_(surface_.layer) {}
 
 bool SheetPair::is_looked_at(std::size_t index) const { return sharp_ == nullptr || (*sharp_)[index] != 0; }
 
@@ -57,12 +57,7 @@ double SheetPair::share_to_impact(std::size_t index, double least) const {
   if (!surface_.moving->is_near(a, b, surface_.carried, 0)) return 1;
   const std::optional<Entry> crossing = surface_.moving->first_crossing(a, b, surface_.carried, least);
   if (!crossing) return 1;
-  Vec3 pace = b - a;
-  for (int k = 0; k < 3; ++k) {
-    const std::int32_t c = corner(crossing->triangle, k);
-    pace -= crossing->weights[k] * (x_.row(c) - q_.row(c)).transpose();
-  }
-  const double falls = -crossing->normal.dot(pace);
+  const double falls = way_into(*crossing, a, b);
   return falls > 0 ? std::max(0.0, crossing->share - (1 - deepest) * layer_ / falls) : 1;
 }
 

@@ -59,7 +59,7 @@ class SurfacePair : public TouchedSurface {
         points_(own_.points),
         beginnings_(work.beginnings[meeting]),
         only_sharp_(work.only_sharp[meeting] != 0),
-        layer_(model.parts[meeting_.points].solid ? 0 : layer_of_edge * own_.edge) {
+        layer_(own_.layer) {
     beginnings_.resize(points_.size());
   }
 
@@ -269,6 +269,21 @@ double first_share(const Search& search, double least) {
   return least;
 }
 
+// Calls visit(search) for each search that a meeting needs at an iterate. meeting: its number in the inputs.
+template <class Visit>
+void visit_searches(const Model& model, const StepInputs& inputs, std::size_t meeting, const Positions& q,
+                    const Positions& y, const Positions& x, Work& work, const Visit& visit) {
+  const Meeting& of = inputs.meetings[meeting];
+  if (of.is_own()) {
+    follow_own_points(model, inputs, of, q, x, work);
+    return visit(OwnPoints(model, inputs, of, q, y, x, work));
+  }
+  if (are_apart(model, inputs, of, work)) return;
+  if (model.parts[of.surface].solid) return visit(SurfacePair(model, inputs, meeting, q, y, x, work));
+  visit(SheetPair(model, inputs, meeting, q, y, x, work));
+  if (SheetEdges::are_asked(model, inputs, meeting)) visit(SheetEdges(model, inputs, meeting, q, y, x, work));
+}
+
 }  // namespace
 
 void find_surface_contacts(const Model& model, const StepInputs& inputs, const Positions& q, const Positions& y,
@@ -277,21 +292,9 @@ void find_surface_contacts(const Model& model, const StepInputs& inputs, const P
   Work& work = all.parts();
   move_surfaces(model, q, x, work);
   const std::size_t before = found.size();
-  for (std::size_t m = 0; m < inputs.meetings.size(); ++m) {
-    const Meeting& meeting = inputs.meetings[m];
-    if (meeting.is_own()) {
-      follow_own_points(model, inputs, meeting, q, x, work);
-      search_points(OwnPoints(model, inputs, meeting, q, y, x, work), threads, work, found);
-    } else if (are_apart(model, inputs, meeting, work)) {
-      continue;
-    } else if (!model.parts[meeting.surface].solid) {
-      search_points(SheetPair(model, inputs, m, q, y, x, work), threads, work, found);
-      if (SheetEdges::are_asked(model, inputs, m))
-        search_points(SheetEdges(model, inputs, m, q, y, x, work), threads, work, found);
-    } else {
-      search_points(SurfacePair(model, inputs, m, q, y, x, work), threads, work, found);
-    }
-  }
+  for (std::size_t m = 0; m < inputs.meetings.size(); ++m)
+    visit_searches(model, inputs, m, q, y, x, work,
+                   [&](const auto& search) { search_points(search, threads, work, found); });
   std::stable_sort(found.begin() + static_cast<std::ptrdiff_t>(before), found.end(), comes_before);
 }
 
@@ -303,18 +306,7 @@ void stop_at_surfaces(const Model& model, const StepInputs& inputs, const Positi
   for (std::size_t m = 0; m < inputs.meetings.size(); ++m) {
     const Meeting& meeting = inputs.meetings[m];
     double least = std::max(shares[meeting.points], shares[meeting.surface]);
-    if (meeting.is_own()) {
-      follow_own_points(model, inputs, meeting, q, x, work);
-      least = first_share(OwnPoints(model, inputs, meeting, q, x, x, work), least);
-    } else if (are_apart(model, inputs, meeting, work)) {
-      continue;
-    } else if (!model.parts[meeting.surface].solid) {
-      least = first_share(SheetPair(model, inputs, m, q, x, x, work), least);
-      if (SheetEdges::are_asked(model, inputs, m))
-        least = first_share(SheetEdges(model, inputs, m, q, x, x, work), least);
-    } else {
-      least = first_share(SurfacePair(model, inputs, m, q, x, x, work), least);
-    }
+    visit_searches(model, inputs, m, q, x, x, work, [&](const auto& search) { least = first_share(search, least); });
     shares[meeting.points] = std::min(shares[meeting.points], least);
     shares[meeting.surface] = std::min(shares[meeting.surface], least);
   }

@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <map>
 #include <set>
 #include <utility>
 
@@ -57,23 +56,7 @@ Vec3 rest_normal(const Triangles& triangles, Eigen::Index t, const Positions& re
   return edge.cross(other).normalized();
 }
 
-// Tells of each vertex whether it lies on a border, at an edge that one triangle alone has.
-std::vector<char> on_border(const Triangles& triangles, Eigen::Index vertices) {
-  std::map<std::pair<std::int32_t, std::int32_t>, int> count;
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      const std::int32_t a = triangles(t, k), b = triangles(t, (k + 1) % 3);
-      ++count[std::minmax(a, b)];
-    }
-  }
-  std::vector<char> border(std::size_t(vertices), 0);
-  for (const auto& [edge, sides] : count) {
-    if (sides != 1) continue;
-    border[std::size_t(edge.first)] = border[std::size_t(edge.second)] = 1;
-  }
-  return border;
-}
-
+// Lists the edges of a sheet.
 void list_edges(const Part& part, Work::Surface& surface) {
   std::set<std::pair<std::int32_t, std::int32_t>> known;
   surface.edge_begin = {0};
@@ -87,7 +70,7 @@ void list_edges(const Part& part, Work::Surface& surface) {
   }
 }
 
-// Finds the points at a border or at which the normals of two faces are far apart, and the mean length of edges.
+// Finds the points at which the normals of two faces are far apart, and the mean length of edges.
 void describe_surface(const Model& model, const Part& part, Work::Surface& surface) {
   constexpr double least_cosine = 0.5;
   const Positions rest = rows_of(part, model.rest);
@@ -99,10 +82,9 @@ void describe_surface(const Model& model, const Part& part, Work::Surface& surfa
     }
   }
   surface.edge = mean_edge(triangles, rest);
-  const std::vector<char> border = on_border(triangles, rest.rows());
   for (const std::int32_t v : surface.points) {
     const std::vector<Vec3>& at = normals[own_vertex(model, part, v)];
-    bool is_sharp = border[std::size_t(own_vertex(model, part, v))] != 0;
+    bool is_sharp = false;
     for (const Vec3& one : at) {
       for (const Vec3& other : at) is_sharp |= one.dot(other) < least_cosine;
     }
@@ -120,7 +102,9 @@ void make_surfaces(const Model& model, const StepInputs& inputs, Work& work) {
       surface.triangles = triangles_of(model, part);
       surface.points = points_of(part, surface.triangles);
       describe_surface(model, part, surface);
-      if (!part.solid) list_edges(part, surface);
+      if (part.solid) continue;
+      surface.layer = layer_of_edge * surface.edge;
+      list_edges(part, surface);
     }
   }
   work.structure = model.structure;

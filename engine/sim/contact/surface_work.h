@@ -14,16 +14,17 @@ namespace supple {
 
 struct SurfaceWork::Parts {
   using Place = MovingSurface::Place;
+  using Edge = std::array<std::int32_t, 2>;  // vertices of the joined model
 
   struct Surface {
     Triangles triangles;               // rows of its part's vertices, in the order of the part's own model
     std::vector<std::int32_t> points;  // vertices of the joined model that may touch others, ascending
-    std::vector<char> sharp;  // by point: whether it is on a border, or faces at it look very differently at rest
-    double edge = 0;          // the mean length of the surface's edges at rest [m]
-    // Of a sheet:
-    std::vector<std::array<std::int32_t, 2>> edges;  // vertices of the joined model
-    std::vector<std::int32_t>
-        edge_begin;  // by triangle: where its edges begin that no earlier triangle has, and the end
+    std::vector<char> sharp;           // by point: whether faces at it look very differently at rest
+    double edge = 0;                   // the mean length of the surface's edges at rest [m]
+    double layer = 0;                  // how far a sheet keeps others from it; 0 for a solid [m]
+    std::vector<Edge> edges;           // each edge of a sheet once; a solid's are not listed
+    // Tells by triangle of a sheet where those of its edges begin that no earlier triangle has, and where all end.
+    std::vector<std::int32_t> edge_begin;
     std::unique_ptr<MovingSurface> moving;  // null where nothing touches this part
     std::unique_ptr<OwnSurface> own;        // null where the part does not touch itself
     Vec3 carried = Vec3::Zero();            // the mean motion of the part from q to the present iterate [m]

@@ -44,13 +44,17 @@ double TouchedSurface::reach_at(std::int32_t v, double way) const {
   return reach_of(way + surface_.own_move, std::max(freely + surface_.free_move, fall_));
 }
 
-double TouchedSurface::share_to_impact(const Entry& entry, const Vec3& a, const Vec3& b) const {
+double TouchedSurface::way_into(const Entry& entry, const Vec3& a, const Vec3& b) const {
   Vec3 pace = b - a;
   for (int k = 0; k < 3; ++k) {
     const std::int32_t c = corner(entry.triangle, k);
     pace -= entry.weights[k] * (x_.row(c) - q_.row(c)).transpose();
   }
-  const double falls = -entry.normal.dot(pace), allowed = usual_depth(size_);
+  return -entry.normal.dot(pace);
+}
+
+double TouchedSurface::share_to_impact(const Entry& entry, const Vec3& a, const Vec3& b) const {
+  const double falls = way_into(entry, a, b), allowed = usual_depth(size_);
   return falls * (1 - entry.share) > allowed ? entry.share + allowed / falls : 1;
 }
 
@@ -144,8 +148,8 @@ bool are_apart(const Model& model, const StepInputs& inputs, const Meeting& meet
   const double way = own.own_move + (own.carried - other.carried).norm();
   const double freely = own.free_move + (own.carried_freely - other.carried_freely).norm();
   const double fall = model.time_step * model.time_step * inputs.gravity.norm();
-  const double layers = layer_of_edge * (own.edge + other.edge);  // no part has a thicker one
-  const double reach = (1 + 1e-6) * reach_of(way + other.own_move, std::max(freely + other.free_move, fall)) + layers;
+  const double reach =
+      (1 + 1e-6) * reach_of(way + other.own_move, std::max(freely + other.free_move, fall)) + own.layer + other.layer;
   const Bounds one = swept(*own.moving), two = swept(*other.moving);
   return ((one.lower.array() - reach > two.upper.array()) || (two.lower.array() - reach > one.upper.array())).any();
 }

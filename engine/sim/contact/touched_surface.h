@@ -42,6 +42,10 @@ class TouchedSurface {
   // Returns the place that a triangle's point has at the end of the step, seen from a point.
   std::optional<Place> place_at_end(std::int32_t triangle, const Vec3& weights, const Vec3& p) const;
 
+  // Returns how far a point that moves from a to b comes in the step into the side on which it enters, beside the
+  // triangle's own motion [m].
+  double way_into(const Entry& entry, const Vec3& a, const Vec3& b) const;
+
   // Returns the share of the way from q to x at which a point that enters is deeper than usual; 1: it never is.
   double share_to_impact(const Entry& entry, const Vec3& a, const Vec3& b) const;
 
