@@ -143,9 +143,9 @@ bool Islands::may_touch(std::size_t a, std::size_t b, double pushed) const {
         ways_[b].swept.lower[k] - margin > ways_[a].swept.upper[k])
       return false;
   }
-  if (surface_of(a).may_meet(surface_of(b), margin, ways_[a].mean)) return true;
-  // Bodies that go the same way meet where a collider stops the first of them.
-  return (may_be_stopped(a) || may_be_stopped(b)) && surface_of(a).may_meet(surface_of(b), margin, Vec3::Zero());
+  // Bodies that go the same way meet where a collider stops the first of them, so all of their ways count then.
+  const Vec3 carried = may_be_stopped(a) || may_be_stopped(b) ? Vec3(Vec3::Zero()) : ways_[a].mean;
+  return surface_of(a).may_meet(surface_of(b), margin, carried);
 }
 
 // Tells whether a body may come to a collider on its way.
