@@ -2,11 +2,6 @@
 
 namespace supple {
 
-void Bounds::include(const Vec3& point) {
-  lower = lower.cwiseMin(point);
-  upper = upper.cwiseMax(point);
-}
-
 bool Bounds::empty() const { return (lower.array() > upper.array()).any(); }
 Vec3 Bounds::extent() const { return empty() ? Vec3(Vec3::Zero()) : Vec3(upper - lower); }
 Vec3 Bounds::center() const { return 0.5 * (lower + upper); }

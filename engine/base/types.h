@@ -26,7 +26,10 @@ struct Bounds {
   Vec3 lower = Vec3(1e300, 1e300, 1e300);
   Vec3 upper = Vec3(-1e300, -1e300, -1e300);
 
-  void include(const Vec3& point);
+  void include(const Vec3& point) {
+    lower = lower.cwiseMin(point);
+    upper = upper.cwiseMax(point);
+  }
   bool empty() const;
   Vec3 extent() const;
   Vec3 center() const;

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 
+#include "base/disjoint_sets.h"
 #include "base/trace.h"
 #include "scene/definition/meeting.h"
+#include "sim/contact/own_sheet.h"
 #include "sim/contact/own_surface.h"
 #include "sim/contact/part_contacts.h"
-#include "sim/contact/surface_contacts.h"
+#include "sim/contact/sheet_layer.h"
 #include "sim/model/element_view.h"
 #include "sim/model/joined_model.h"
 #include "sim/solver/begin_step.h"
@@ -20,31 +21,15 @@ namespace {
 
 constexpr std::size_t most_kept = 16;  // joined models that are kept for later steps
 
-// Groups numbers that are joined, directly or through others.
-class Groups {
- public:
-  explicit Groups(std::size_t count) : first_(count) { std::iota(first_.begin(), first_.end(), std::size_t(0)); }
-  std::size_t of(std::size_t i) const {
-    while (first_[i] != i) i = first_[i];
-    return i;
+// Returns the members of each set, in the order of their first members.
+std::vector<std::vector<std::size_t>> lists_of(DisjointSets& sets) {
+  std::vector<std::vector<std::size_t>> by_first(sets.size()), lists;
+  for (std::size_t i = 0; i < sets.size(); ++i) by_first[sets.of(i)].push_back(i);
+  for (auto& list : by_first) {
+    if (!list.empty()) lists.push_back(std::move(list));
   }
-  void join(std::size_t a, std::size_t b) {
-    const std::size_t one = of(a), other = of(b);
-    first_[std::max(one, other)] = std::min(one, other);
-  }
-  // Returns the members of each group, in the order of their first members.
-  std::vector<std::vector<std::size_t>> lists() const {
-    std::vector<std::vector<std::size_t>> by_first(first_.size()), lists;
-    for (std::size_t i = 0; i < first_.size(); ++i) by_first[of(i)].push_back(i);
-    for (auto& list : by_first) {
-      if (!list.empty()) lists.push_back(std::move(list));
-    }
-    return lists;
-  }
-
- private:
-  std::vector<std::size_t> first_;  // a number of the same group that is lower, or the number itself
-};
+  return lists;
+}
 
 // Returns where a body's vertices would go if nothing touched them, with hard handles at their targets (n x 3) [m].
 Positions free_motion(const Model& model, const StepInputs& inputs, const State& state) {
@@ -83,7 +68,8 @@ struct Islands::Together {
 
 struct Islands::Own {
   std::uint64_t structure = 0;
-  std::unique_ptr<OwnSurface> surface;
+  std::unique_ptr<OwnSurface> surface;  // of a solid
+  std::unique_ptr<OwnSheet> sheet;      // of a cloth
   std::unique_ptr<MovingSurface> moving;
   bool touched = false;  // in the last step: then the next one is looked at first, which saves work alone
 };
@@ -113,8 +99,7 @@ void Islands::find_ways() {
     if (way.structure == body.model().structure) continue;
     way.surface.reset();
     way.structure = body.model().structure;
-    way.layer =
-        body.model().parts.front().solid ? 0 : layer_of_edge * mean_edge(body.model().surface, body.model().rest);
+    way.layer = body.model().parts.front().solid ? 0 : sheet_layer(mean_edge(body.model().surface, body.model().rest));
   }
 }
 
@@ -166,14 +151,14 @@ bool Islands::may_be_stopped(std::size_t body) const {
 std::vector<std::vector<std::size_t>> Islands::find() {
   const std::size_t count = bodies_.size();
   touches_.clear();
-  Groups groups(count);
+  DisjointSets groups(count);
   std::vector<std::array<std::size_t, 2>> pairs;
   for (std::size_t a = 0; a < count; ++a) {
     for (std::size_t b = a + 1; b < count; ++b) {
       if (meet(scene_, a, b)) pairs.push_back({a, b});
     }
   }
-  if (pairs.empty()) return groups.lists();
+  if (pairs.empty()) return lists_of(groups);
   const Zone zone("islands");
   find_ways();
   // An island may push its bodies off their ways, as far as they go beside each other, and into others.
@@ -185,13 +170,13 @@ std::vector<std::vector<std::size_t>> Islands::find() {
       groups.join(a, b);
       grows = true;
     }
-    for (const std::vector<std::size_t>& island : groups.lists()) {
+    for (const std::vector<std::size_t>& island : lists_of(groups)) {
       double most = 0;
       for (const std::size_t a : island) most = std::max(most, (ways_[a].mean - ways_[island.front()].mean).norm());
       for (const std::size_t a : island) pushed[a] = most;
     }
   }
-  return groups.lists();
+  return lists_of(groups);
 }
 
 Islands::Together& Islands::together(const std::vector<std::size_t>& island) {
@@ -286,17 +271,21 @@ Islands::Own& Islands::own_of(std::size_t body) {
   const Model& model = bodies_[body]->model();
   if (own.structure == model.structure) return own;
   own.structure = model.structure;
-  own.surface = std::make_unique<OwnSurface>(tetrahedra_of(model), model.surface, model.rest, model.size);
   own.moving = std::make_unique<MovingSurface>(model.surface, model.rest);
+  if (model.parts.front().solid) {
+    own.surface = std::make_unique<OwnSurface>(tetrahedra_of(model), model.surface, model.rest, model.size);
+  } else {
+    own.sheet = std::make_unique<OwnSheet>(*own.moving, model.rest);
+  }
   own.touched = false;
   return own;
 }
 
 bool Islands::begins_in_itself(std::size_t body, const Positions& q) {
   const Own& own = own_of(body);
-  own.moving->set_start(q);
   own.moving->set_end(q);
-  return own.surface->overlaps(*own.moving, q);
+  own.moving->set_start(q);
+  return own.sheet != nullptr ? own.sheet->overlaps(*own.moving, q) : own.surface->overlaps(*own.moving, q);
 }
 
 bool Islands::comes_through_itself(std::size_t body, const Positions& q) {
@@ -305,7 +294,9 @@ bool Islands::comes_through_itself(std::size_t body, const Positions& q) {
   const Positions& x = bodies_[body]->state().x;
   own.moving->set_start(q);
   own.moving->set_end(x);
-  return own.surface->touches(*own.moving, q, x, (x - q).colwise().mean().transpose());
+  const Vec3 carried = (x - q).colwise().mean().transpose();
+  return own.sheet != nullptr ? own.sheet->touches(*own.moving, q, x, carried)
+                              : own.surface->touches(*own.moving, q, x, carried);
 }
 
 // Which bodies touch themselves in a step must follow from the states alone, and not from whether a body was looked at

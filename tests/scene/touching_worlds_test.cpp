@@ -7,6 +7,7 @@
 #include "app/bench/linked_rings.h"
 #include "baselines/make_rule.h"
 #include "scene/building/body_depths.h"
+#include "sim/contact/own_sheet.h"
 #include "sim/contact/own_surface.h"
 #include "sim/model/element_view.h"
 #include "support/scene_text.h"
@@ -280,6 +281,41 @@ TEST(TouchingWorlds, LayersOfClothStayInTheirOrder) {
     EXPECT_TRUE(overlaps_of_bodies(played.world.bodies(), places).empty()) << frame;
   }
   EXPECT_FALSE(played.world.touches().empty());
+}
+
+// A strip of cloth whose end is folded over the rest, which is held, and let go.
+std::string folded_strip(const char* self) {
+  return fmt::format(
+      "[[body]]\nname = \"strip\"\ncloth = {{ extent = [0.8, 0.2], cells = [20, 5], stretch = 400, bend = 0.5 }}\n"
+      "position = [0, 0.5, 0]\nturn_deg = [90, 0, 0]\ntotal_mass = 0.1\ncontact = {{ self = {} }}\n"
+      "[[body.handles]]\nname = \"table\"\nselect = {{ box = [[0, 0, 0], [0.45, 1, 1]] }}\n"
+      "[[body.handles]]\nname = \"end\"\nselect = {{ box = [[0.98, 0, 0], [1, 1, 1]] }}\nuntil = 0.5\n"
+      "stiffness = 300\nkeys = [{{ t = 0 }}, {{ t = 0.25, move = [-0.35, 0.3, 0] }},\n"
+      "{{ t = 0.5, move = [-0.65, 0.1, 0] }}]\n",
+      self);
+}
+
+bool crosses_itself(const Played& played) {
+  const Model& model = played.world.body(0).model();
+  const Positions& x = played.world.body(0).state().x;
+  MovingSurface moving(model.surface, model.rest);
+  moving.set_start(x);
+  moving.set_end(x);
+  return OwnSheet(moving, model.rest).crossing(moving, x).has_value();
+}
+
+TEST(TouchingWorlds, AClothTouchesItself) {
+  Played played(folded_strip("true")), through(folded_strip("false"));
+  int touches = 0, crossed = 0;
+  for (int frame = 0; frame < 45; ++frame) {
+    played.play(frame, frame + 1);
+    through.play(frame, frame + 1);
+    touches += !played.world.touches().empty();
+    EXPECT_FALSE(crosses_itself(played)) << frame;
+    crossed += crosses_itself(through);
+  }
+  EXPECT_GT(touches, 8);
+  EXPECT_GT(crossed, 8) << "it would not have touched itself";
 }
 
 // A ring whose lowest and highest parts are held and moved towards each other until the one would be in the other.

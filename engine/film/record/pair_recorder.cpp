@@ -52,10 +52,10 @@ bool PairRecorder::is_coming_apart(const Names& names) const {
 // Leaves out what is meant, and the pairs that an earlier run has found.
 void PairRecorder::leave_out_known(const std::vector<Names>& met, const std::vector<Names>& deep) {
   for (std::size_t b = 0; b < world_.bodies().size(); ++b) {
-    for (std::size_t a = 0; a < b; ++a) {
-      const bool meant = is_meant(a, b);
-      if (meant || contains(met, names(a, b)) || contains(deep, names(a, b))) passings_.leave_out(a, b);
-      if (meant || contains(deep, names(a, b))) deep_.leave_out(a, b);
+    for (std::size_t a = 0; a <= b; ++a) {
+      const bool meant = is_meant(a, b), is_known = contains(deep, names(a, b));
+      if (meant || is_known || contains(met, names(a, b))) passings_.leave_out(a, b);
+      if (a < b && (meant || is_known)) deep_.leave_out(a, b);
     }
   }
 }
@@ -63,6 +63,7 @@ void PairRecorder::leave_out_known(const std::vector<Names>& met, const std::vec
 void PairRecorder::record(FrameRow& row) {
   const Zone zone("pairs of bodies");
   note_touches(row);
+  find_crossed(row);
   if (passings_.none_left() && deep_.none_left()) return;
   std::vector<Positions> points;
   for (std::size_t b = 0; b < world_.size(); ++b)
@@ -93,6 +94,16 @@ void PairRecorder::note_who_came_apart(const FrameRow& row) {
     if (is_apart && overlap.a != overlap.b && !is_meant(overlap.a, overlap.b)) deep_.take_in(overlap.a, overlap.b);
     return is_apart;
   });
+}
+
+// A cloth can have come to cross itself only where it has touched itself.
+void PairRecorder::find_crossed(FrameRow& row) {
+  for (const BodyTouch& touch : world_.touches()) {
+    if (touch.a != touch.b) continue;
+    const MovingBody& body = world_.body(touch.a);
+    if (passings_.crosses_itself(touch.a, in_input_order(body.model(), body.state().x)))
+      row.deep.push_back({names(touch.a, touch.a), 0, {0, 0, 0}});
+  }
 }
 
 void PairRecorder::find_passings(const std::vector<Positions>& points, FrameRow& row) {

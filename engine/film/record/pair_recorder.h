@@ -39,6 +39,7 @@ class PairRecorder {
   void leave_out_known(const std::vector<Names>& met, const std::vector<Names>& deep);
   void note_touches(FrameRow& row);
   void note_who_came_apart(const FrameRow& row);
+  void find_crossed(FrameRow& row);
   void find_passings(const std::vector<Positions>& points, FrameRow& row);
   void find_deep(const std::vector<Positions>& points, FrameRow& row);
 

@@ -81,9 +81,8 @@ MovingSurface::MovingSurface(Triangles triangles, const Positions& rest) : trian
   empty.lower.fill(Boxes::Lanes::Constant(infinity));
   empty.upper.fill(Boxes::Lanes::Constant(-infinity));
   start_.boxes.assign(nodes_.size(), empty);
-  end_.boxes = start_.boxes;
-  set_start(rest);
-  set_end(rest);
+  set(start_, rest);
+  end_ = start_;
 }
 
 // Returns the index of the new node.
@@ -129,10 +128,19 @@ void MovingSurface::list_own_vertices() {
   }
 }
 
+void MovingSurface::set_start(const Positions& x) {
+  if (x.rows() == end_.x.rows() && x == end_.x) {
+    start_ = end_;
+  } else {
+    set(start_, x);
+  }
+}
+
 // Children have larger indices than their node, so that their boxes are known when its own are made.
-void MovingSurface::set(Pose& pose, const Positions& x) const {
+void MovingSurface::set(Pose& pose, const Positions& x) {
   SUPPLE_CHECK(x.rows(), ==, std::ssize(around_start_) - 1);
   pose.x = x;
+  pose.number = ++poses_;
   for (std::size_t n = nodes_.size(); n-- > 0;) {
     const Node& node = nodes_[n];
     for (int c = 0; c < node.count; ++c) {
@@ -302,18 +310,31 @@ std::optional<MovingSurface::Entry> MovingSurface::first_crossing(const Vec3& a,
   const double roundoff = roundoff_at(a, b);
   std::optional<Entry> first;
   any_triangle(box_of_path(a, b, carried, roundoff + roundoff_at(b, carried)), carried, [&](std::int32_t t) {
-    SeenTriangle seen = seen_triangle(t, a, b);
-    take_if_earlier(t, seen, roundoff, latest, first);
-    std::swap(seen.start[1], seen.start[2]);
-    std::swap(seen.end[1], seen.end[2]);
-    std::optional<Entry> from_behind;
-    take_if_earlier(t, seen, roundoff, first ? first->share : latest, from_behind);
-    if (!from_behind || (first && from_behind->share >= first->share)) return false;
-    first = from_behind;
-    std::swap(first->weights[1], first->weights[2]);
+    take_first_crossing(t, a, b, roundoff, latest, first);
     return false;
   });
   return first;
+}
+
+std::optional<MovingSurface::Entry> MovingSurface::first_crossing(std::span<const std::int32_t> triangles,
+                                                                  const Vec3& a, const Vec3& b, double latest) const {
+  std::optional<Entry> first;
+  for (const std::int32_t t : triangles) take_first_crossing(t, a, b, roundoff_at(a, b), latest, first);
+  return first;
+}
+
+// Puts the passage through a triangle from either side, if there is one, in the place of a later one.
+void MovingSurface::take_first_crossing(std::int32_t t, const Vec3& a, const Vec3& b, double roundoff, double latest,
+                                        std::optional<Entry>& first) const {
+  SeenTriangle seen = seen_triangle(t, a, b);
+  take_if_earlier(t, seen, roundoff, latest, first);
+  std::swap(seen.start[1], seen.start[2]);
+  std::swap(seen.end[1], seen.end[2]);
+  std::optional<Entry> from_behind;
+  take_if_earlier(t, seen, roundoff, first ? first->share : latest, from_behind);
+  if (!from_behind || (first && from_behind->share >= first->share)) return;
+  first = from_behind;
+  std::swap(first->weights[1], first->weights[2]);
 }
 
 // Seen backwards in time, the point enters where it last left.

@@ -25,13 +25,22 @@ namespace supple {
 // moves by it, so that few triangles need a closer look where all move fast together. It changes no answer of
 // first_entry; the other queries answer "yes" less often the better it fits.
 class MovingSurface {
+  // The nodes of the binary tree are packed so that each has up to four children: nodes, or the triangles of a leaf.
+  static constexpr int width = 4;
+  static_assert(width == TriangleTree::leaf_size);
+  struct Boxes {
+    using Lanes = Eigen::Array<double, width, 1>;
+    std::array<Lanes, 3> lower, upper;  // by axis, of a node's children; empty where there is no child [m]
+  };
+
  public:
   // triangles: at least one, m x 3; those without area do no harm, nor do edges with more than two triangles. rest: all
   // vertices of the body, n x 3 [m]; at first, they are the places at the start and at the end.
   MovingSurface(Triangles triangles, const Positions& rest);
 
-  // Sets the places of the vertices at the start and at the end of the step, n x 3 [m].
-  void set_start(const Positions& x) { set(start_, x); }
+  // Sets the places of the vertices at the start and at the end of the step, n x 3 [m]. It is quick to start where the
+  // surface has ended.
+  void set_start(const Positions& x);
   void set_end(const Positions& x) { set(end_, x); }
 
   // Describes the place of the surface that is closest to a point.
@@ -84,7 +93,9 @@ class MovingSurface {
   // Finds where a point first passes through a triangle from either side. The normal points to where it came from.
   std::optional<Entry> first_crossing(const Vec3& a, const Vec3& b, const Vec3& carried, double latest = 1) const;
 
-  // Looks at some triangles alone.
+  // These look at some triangles alone.
+  std::optional<Entry> first_crossing(std::span<const std::int32_t> triangles, const Vec3& a, const Vec3& b,
+                                      double latest) const;
   std::optional<Entry> first_entry(std::span<const std::int32_t> triangles, const Vec3& a, const Vec3& b,
                                    double latest) const;
 
@@ -113,15 +124,33 @@ class MovingSurface {
   using VisitPair = std::function<bool(std::int32_t vertex, std::int32_t triangle)>;
   bool any_own_pair(double margin, const Vec3& carried, double same_way, const VisitPair& visit) const;
 
+  // Tells what a sheet's parts, which are those of the tree, have to do with each other.
+  struct SheetParts {
+    std::vector<char> is_connected;               // by node: whether its triangles hang together by vertices
+    std::vector<std::vector<std::int32_t>> rims;  // by node: vertices that other triangles have too, ascending
+    // Holds boxes around the normals of what each node's children hold, for one pose; known from query to query.
+    struct Normals {
+      std::uint64_t pose = 0;
+      std::vector<Boxes> normals;
+    };
+    Normals start, end;
+  };
+  SheetParts sheet_parts() const;
+
+  // Looks for triangles of a sheet that may come nearer than `margin` [m] to each other. Calls visit(one, other) for
+  // pairs of triangles whose boxes do, each pair once, until one call returns true; tells whether one did. Left out are
+  // triangles of a part that hangs together and is nearly flat: there is a direction to which all of its normals have
+  // an angle well below a right one, at the start and at the end (Volino and Magnenat-Thalmann 1994, "Efficient
+  // self-collision detection on smoothly discretized surface animations using geometrical shape regularity").
+  using VisitTriangles = std::function<bool(std::int32_t one, std::int32_t other)>;
+  bool any_own_triangles(SheetParts& parts, double margin, const Vec3& carried, const VisitTriangles& visit) const;
+
   const Triangles& triangles() const { return triangles_; }
   const Positions& start() const { return start_.x; }
   const Bounds& bounds_at_start() const { return start_.bounds; }
   const Bounds& bounds_at_end() const { return end_.bounds; }
 
  private:
-  // The nodes of the binary tree are packed so that each has up to four children: nodes, or the triangles of a leaf.
-  static constexpr int width = 4;
-  static_assert(width == TriangleTree::leaf_size);
   struct Node {
     // Each is the index of a node, which is larger than its own, or the complement of a triangle.
     std::array<std::int32_t, width> child;
@@ -130,24 +159,24 @@ class MovingSurface {
 
     bool is_leaf() const { return child[0] < 0; }
   };
-  struct Boxes {
-    using Lanes = Eigen::Array<double, width, 1>;
-    std::array<Lanes, 3> lower, upper;  // by axis, of a node's children; empty where there is no child [m]
-  };
   // Holds the surface at one time.
   struct Pose {
     Positions x;               // n x 3 [m]
+    std::uint64_t number = 0;  // of the pose among all that were set
     std::vector<Boxes> boxes;  // one for each node
     Bounds bounds;
     double on_surface = 0;  // nearer than this, the vector to a point has no reliable direction [m]
   };
 
-  struct OwnSearch;  // own_pairs.cpp
+  struct OwnSearch;    // own_pairs.cpp
+  struct SheetSearch;  // own_triangles.cpp
 
+  std::array<Boxes::Lanes, 3> unit_normals(const Pose& pose, const Node& leaf) const;
+  void find_normals(const Pose& pose, SheetParts::Normals& of) const;
   std::int32_t add_node(const TriangleTree& tree, std::int32_t from);
   void list_triangles_around();
   void list_own_vertices();
-  void set(Pose& pose, const Positions& x) const;
+  void set(Pose& pose, const Positions& x);
 
   std::span<const std::int32_t> around(std::int32_t vertex) const;
   Vec3 corner(const Pose& pose, std::int32_t t, int k) const { return pose.x.row(triangles_(t, k)); }
@@ -163,6 +192,8 @@ class MovingSurface {
   std::optional<Entry> first_passing(const Vec3& a, const Vec3& b, const Vec3& carried, double latest,
                                      bool is_backwards, const Takes* takes) const;
   SeenTriangle seen_triangle(std::int32_t t, const Vec3& a, const Vec3& b) const;
+  void take_first_crossing(std::int32_t t, const Vec3& a, const Vec3& b, double roundoff, double latest,
+                           std::optional<Entry>& first) const;
   static void take_if_earlier(std::int32_t t, const SeenTriangle& seen, double roundoff, double latest,
                               std::optional<Entry>& first);
   Bounds swept_box(std::int32_t node, const Vec3& carried) const;
@@ -176,6 +207,7 @@ class MovingSurface {
   std::vector<std::int32_t> around_start_;  // where each vertex's triangles begin in around_; n + 1
   std::vector<std::int32_t> around_;
   std::vector<std::int32_t> own_vertices_;  // of the leaves: each vertex belongs to one that has a triangle at it
+  std::uint64_t poses_ = 0;                 // that were set
   Pose start_, end_;
 };
 

@@ -32,4 +32,20 @@ std::vector<TriangleEdge> sorted_edges(const Triangles& triangles) {
   return edges;
 }
 
+EdgesByTriangle edges_by_triangle(const Triangles& triangles) {
+  EdgesByTriangle all;
+  all.begin.assign(std::size_t(triangles.rows()) + 1, 0);
+  std::vector<TriangleEdge> own;  // the first of those between the same vertices
+  for (const TriangleEdge& edge : sorted_edges(triangles)) {
+    if (own.empty() || own.back().low != edge.low || own.back().high != edge.high) own.push_back(edge);
+  }
+  std::ranges::sort(own, {}, [](const TriangleEdge& edge) { return std::pair(edge.triangle, edge.side); });
+  for (const TriangleEdge& edge : own) {
+    all.edges.push_back({edge.low, edge.high});
+    ++all.begin[std::size_t(edge.triangle) + 1];
+  }
+  for (std::size_t t = 1; t < all.begin.size(); ++t) all.begin[t] += all.begin[t - 1];
+  return all;
+}
+
 }  // namespace supple

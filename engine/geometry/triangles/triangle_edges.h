@@ -1,7 +1,9 @@
 // Lists the edges of triangles so that those between the same vertices follow one another.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "geometry/meshes/mesh.h"
@@ -18,5 +20,17 @@ struct TriangleEdge {
 // Returns three edges for each triangle, in the order of low, high, triangle and side. The vertices' names must not be
 // negative.
 std::vector<TriangleEdge> sorted_edges(const Triangles& triangles);
+
+// Lists each edge once, at the first triangle that has it.
+struct EdgesByTriangle {
+  std::vector<std::array<std::int32_t, 2>> edges;  // two vertices, the lower one first
+  std::vector<std::int32_t> begin;                 // where each triangle's edges begin, and the end
+
+  std::span<const std::array<std::int32_t, 2>> of(std::int32_t triangle) const {
+    const auto first = std::size_t(begin[std::size_t(triangle)]), end = std::size_t(begin[std::size_t(triangle) + 1]);
+    return {edges.data() + first, end - first};
+  }
+};
+EdgesByTriangle edges_by_triangle(const Triangles& triangles);
 
 }  // namespace supple

@@ -210,9 +210,13 @@ std::string left_text(const PairTally& pair) {
 }
 
 // Tells of two bodies that were deep in each other although their contacts never showed such a depth, or of two cloths
-// that cross each other, which have no depth.
+// that cross each other, or of one that crosses itself, which have no depth.
 std::string missed_text(const DeepTally& pair) {
   const auto& [bodies, share, place] = pair.found;
+  if (share == 0 && is_one_body(bodies))
+    return fmt::format(
+        "cloth '{}' crosses itself from frame {} on: substeps or more solver.iterations make that less likely",
+        bodies[0], pair.frame);
   if (share == 0)
     return fmt::format(
         "cloths '{}' and '{}' cross each other from frame {} on: substeps or more solver.iterations make that less "

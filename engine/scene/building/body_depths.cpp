@@ -47,8 +47,8 @@ std::vector<BodyDepth> bodies_in_themselves(const std::vector<Body>& bodies, con
     const double size = size_of(bodies[b]);
     const OwnSurface own(mesh.tets, triangles, mesh.rest, size);
     MovingSurface moving(triangles, mesh.rest);
-    moving.set_start(points[b]);
     moving.set_end(points[b]);
+    moving.set_start(points[b]);
     if (!own.overlaps(moving, points[b])) continue;
     OwnSurface::Pairs pairs;
     own.find_pairs(moving, points[b], points[b], 0, Vec3::Zero(), pairs);

@@ -162,7 +162,13 @@ void warn_of_shared_space(const std::vector<Body>& bodies, std::vector<Warning>&
     list.push_back(at(WarningKind::overlap, other.place, std::move(message)));
     list.back().meant = is_meant(one, WarningKind::overlap) || is_meant(other, WarningKind::overlap);
   };
-  for (const auto& [a, b] : BodyPassings(bodies).find(points))
+  BodyPassings passings(bodies);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (passings.crosses_itself(b, points[b]))
+      warn(b, b, fmt::format("cloth '{}' crosses itself at the start: contact holds each part on its side",
+                             bodies[b].def.name));
+  }
+  for (const auto& [a, b] : passings.find(points))
     warn(a, b,
          meet(bodies[a].def, bodies[b].def)
              ? fmt::format("cloths '{}' and '{}' cross each other at the start: contact holds each part on its side",

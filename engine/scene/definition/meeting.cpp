@@ -42,7 +42,7 @@ bool meet(const SceneDef& scene, std::size_t a, std::size_t b) {
   return a != b && meet(scene.bodies.at(a), scene.bodies.at(b));
 }
 
-bool meets_itself(const BodyDef& body) { return body.contact.self && !body.cloth; }
+bool meets_itself(const BodyDef& body) { return body.contact.self; }
 
 double pair_friction(const BodyDef& a, const BodyDef& b) { return std::sqrt(a.contact.friction * b.contact.friction); }
 

@@ -16,7 +16,7 @@ bool meet(const BodyDef& a, const BodyDef& b);
 // Tells the same of two bodies of a scene, by their indices; false where they are one.
 bool meet(const SceneDef& scene, std::size_t a, std::size_t b);
 
-// Tells whether a body touches itself. Only a solid can: a cloth does not know its own layers.
+// Tells whether a body touches itself.
 bool meets_itself(const BodyDef& body);
 
 // Tells whether the definitions of both bodies allow that they meet.

@@ -153,7 +153,7 @@ struct BodyContactDef {
   // Names the only bodies that it meets, none where the list is empty. Nothing: it meets all.
   std::optional<std::vector<std::string>> meets;
   FilePlace meets_place;  // of `meets` in the file, for messages once all bodies are known
-  bool self = true;       // whether it touches itself, if it is a solid
+  bool self = true;       // whether it touches itself
   double friction = 0.5;  // its share of the coefficient of Coulomb's law between it and another body
 };
 

@@ -186,7 +186,7 @@ BodyContactDef read_contact(const ConfigTable& body) {
     contact.meets.emplace();
   }
   contact.meets_place = table->place("meets");
-  contact.self = table->boolean({"self", "", "whether it touches itself, if it is a solid"}, contact.self);
+  contact.self = table->boolean({"self", "", "whether it touches itself"}, contact.self);
   contact.friction = table->number({"friction", "",
                                     "its share of Coulomb's coefficient between two bodies, which is the geometric "
                                     "mean of both; with a collider the collider's counts"},

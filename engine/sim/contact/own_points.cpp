@@ -11,14 +11,17 @@ namespace {
 
 using Work = SurfaceWork::Parts;
 
-// Returns how much nearer than foreseen points may come before they are looked for again [m].
-double slack_of(const Part& part) { return 0.01 * part.size; }
+// Returns how near to the outside of the surface points are looked at, where they come no nearer than foreseen [m]: a
+// part of the body may fall on another one that rests.
+double margin_of(const Model& model, const StepInputs& inputs, const Part& part, const Work::Surface& surface) {
+  const double near = part.solid ? 0.01 * part.size : surface.layer;
+  return near + 0.25 * model.time_step * model.time_step * inputs.gravity.norm();
+}
 
-// Returns how near to the outside of the surface points are looked at: a part of the body may fall on another one that
-// rests, and points may come nearer than foreseen [m].
-double margin_of(const Model& model, const StepInputs& inputs, const Part& part) {
-  constexpr double near = 0.01;  // of the body's size
-  return near * part.size + slack_of(part) + 0.25 * model.time_step * model.time_step * inputs.gravity.norm();
+// Returns how much nearer than foreseen points may come before they are looked for again [m]. A sheet has many pairs
+// that are nearly near: a larger slack costs it more than it saves.
+double slack_of(const Part& part, const Work::Surface& surface) {
+  return part.solid ? 0.01 * part.size : 2 * surface.layer;
 }
 
 // Lists the points for motions from q to x.
@@ -29,7 +32,12 @@ void find_points(const Model& model, const StepInputs& inputs, const Meeting& me
   Work::OwnPoints& near = work.own_points[meeting.points];
   const Positions start = rows_of(part, q);
   near.found_for = rows_of(part, x);
-  surface.own->find_pairs(*surface.moving, start, near.found_for, margin_of(model, inputs, part), carried, near.pairs);
+  const double margin = margin_of(model, inputs, part, surface) + slack_of(part, surface);
+  if (surface.own_sheet != nullptr) {
+    surface.own_sheet->find_pairs(*surface.moving, start, near.found_for, margin, carried, near.of_sheet);
+    return;
+  }
+  surface.own->find_pairs(*surface.moving, start, near.found_for, margin, carried, near.pairs);
   near.inside.clear();
   for (std::size_t i = 0; i < near.pairs.vertices.size(); ++i)
     near.inside.push_back(surface.own->place_around(*surface.moving, start, near.pairs.vertices[i], near.pairs.of(i)));
@@ -50,7 +58,7 @@ void follow_own_points(const Model& model, const StepInputs& inputs, const Meeti
   const Positions apart = rows_of(part, x) - work.own_points[meeting.points].found_for;
   const Eigen::RowVector3d mean = apart.colwise().mean();
   const double most = std::sqrt((apart.rowwise() - mean).rowwise().squaredNorm().maxCoeff());
-  if (2 * most <= slack_of(part)) return;
+  if (2 * most <= slack_of(part, work.surfaces[meeting.points])) return;
   find_points(model, inputs, meeting, q, x, work.surfaces[meeting.points].carried, work);
 }
 

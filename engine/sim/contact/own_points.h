@@ -37,7 +37,7 @@ class OwnPoints : public TouchedSurface {
   const Work::OwnPoints& near_;
 };
 
-// Finds which points of a part may touch it in a step that begins, and which of them are inside.
+// Finds which points of a part, a solid or a sheet, may touch it in a step that begins, and which of them are inside.
 void begin_own_points(const Model& model, const StepInputs& inputs, const Meeting& meeting, const Positions& q,
                       const Positions& y, SurfaceWork::Parts& work);
 

@@ -1,18 +1,16 @@
 // Finds where edges of a sheet touch edges of another one: at borders, and between vertices that lie beside each
 // other's triangles. The vertices alone (sheet_pair.h) would let two narrow strips pass that cross each other, and the
-// borders of wide ones. Of two edges, the way through the step decides which one is above: that the volume of the
-// tetrahedron of their ends changes its sign while they meet is found from the start, the end and the time between
-// (Provot 1997, "Collision and self-collision handling in cloth model dedicated to design garments", has the
-// condition).
+// borders of wide ones. Of two edges, the way through the step decides which one is above
+// (geometry/triangles/two_edges.h).
 #pragma once
 
 #include <vector>
 
-#include "sim/contact/touched_surface.h"
+#include "sim/contact/touched_edges.h"
 
 namespace supple {
 
-class SheetEdges : public TouchedSurface {
+class SheetEdges : public TouchedEdges {
  public:
   // Tells whether a meeting is one whose edges are looked at: of two sheets, in one of its two directions.
   static bool are_asked(const Model& model, const StepInputs& inputs, std::size_t meeting);
@@ -30,13 +28,10 @@ class SheetEdges : public TouchedSurface {
   double share_to_impact(std::size_t index, double least) const;
 
  private:
-  using Edge = Work::Edge;
-
   template <class Visit>
-  void visit_edges_near(const Edge& edge, double margin, const Visit& visit) const;
+  void visit_edges_near(const EdgeEnds& edge, double margin, const Visit& visit) const;
 
   const Work::Surface& own_;
-  double layer_;  // [m]
 };
 
 }  // namespace supple

@@ -7,6 +7,7 @@
 
 #include "sim/contact/contact_order.h"
 #include "sim/contact/own_points.h"
+#include "sim/contact/own_sheet_points.h"
 #include "sim/contact/sheet_edges.h"
 #include "sim/contact/sheet_pair.h"
 #include "sim/contact/surface_work.h"
@@ -276,7 +277,8 @@ void visit_searches(const Model& model, const StepInputs& inputs, std::size_t me
   const Meeting& of = inputs.meetings[meeting];
   if (of.is_own()) {
     follow_own_points(model, inputs, of, q, x, work);
-    return visit(OwnPoints(model, inputs, of, q, y, x, work));
+    if (model.parts[of.points].solid) return visit(OwnPoints(model, inputs, of, q, y, x, work));
+    return visit(OwnSheetPoints(model, inputs, of, q, y, x, work));
   }
   if (are_apart(model, inputs, of, work)) return;
   if (model.parts[of.surface].solid) return visit(SurfacePair(model, inputs, meeting, q, y, x, work));

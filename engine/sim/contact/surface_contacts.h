@@ -1,6 +1,6 @@
 // Finds where the parts of a joined model touch each other in a step: points of one part, which are the vertices of its
 // surface, against the surface of another part, which is a solid or a sheet (sheet_pair.h), or of the same one
-// (own_points.h). Of two solids, all points of the finer one count, and of the other one those at sharp edges and
+// (own_points.h, own_sheet_points.h). Of two solids, all points of the finer one count, and of the other one those at sharp edges and
 // corners. As for colliders, a point gets the plane of the place that holds it before it touches. That place is a
 // triangle of the other surface with barycentric weights; the contact acts on the point and the triangle's vertices,
 // equal and opposite (contact_stencil.h). Not here: which parts meet (StepInputs::meetings), the energies of the planes
@@ -20,9 +20,6 @@
 #include "sim/model/model.h"
 
 namespace supple {
-
-// The thickness of the layer on both sides of a sheet, over the mean length of its edges.
-constexpr double layer_of_edge = 0.1;
 
 // Holds the surfaces of a joined model's parts, and what a step knows of its beginning; empty while nothing meets.
 class SurfaceWork {

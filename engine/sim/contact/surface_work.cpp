@@ -2,9 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <set>
 #include <utility>
 
+#include "geometry/triangles/triangle_edges.h"
+#include "sim/contact/sheet_layer.h"
 #include "sim/model/element_view.h"
 #include "sim/model/joined_model.h"
 
@@ -58,16 +59,10 @@ Vec3 rest_normal(const Triangles& triangles, Eigen::Index t, const Positions& re
 
 // Lists the edges of a sheet.
 void list_edges(const Part& part, Work::Surface& surface) {
-  std::set<std::pair<std::int32_t, std::int32_t>> known;
-  surface.edge_begin = {0};
-  for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      const std::int32_t a = surface.triangles(t, k), b = surface.triangles(t, (k + 1) % 3);
-      if (known.insert(std::minmax(a, b)).second)
-        surface.edges.push_back({joined_vertex(part, std::min(a, b)), joined_vertex(part, std::max(a, b))});
-    }
-    surface.edge_begin.push_back(static_cast<std::int32_t>(surface.edges.size()));
-  }
+  EdgesByTriangle all = edges_by_triangle(surface.triangles);
+  for (const EdgeEnds& edge : all.edges)
+    surface.edges.push_back({joined_vertex(part, edge[0]), joined_vertex(part, edge[1])});
+  surface.edge_begin = std::move(all.begin);
 }
 
 // Finds the points at which the normals of two faces are far apart, and the mean length of edges.
@@ -103,7 +98,7 @@ void make_surfaces(const Model& model, const StepInputs& inputs, Work& work) {
       surface.points = points_of(part, surface.triangles);
       describe_surface(model, part, surface);
       if (part.solid) continue;
-      surface.layer = layer_of_edge * surface.edge;
+      surface.layer = sheet_layer(surface.edge);
       list_edges(part, surface);
     }
   }
@@ -113,7 +108,10 @@ void make_surfaces(const Model& model, const StepInputs& inputs, Work& work) {
     const Part& part = model.parts[meeting.surface];
     if (surface.moving == nullptr)
       surface.moving = std::make_unique<MovingSurface>(surface.triangles, rows_of(part, model.rest));
-    if (meeting.is_own() && surface.own == nullptr)
+    if (!meeting.is_own()) continue;
+    if (!part.solid && surface.own_sheet == nullptr)
+      surface.own_sheet = std::make_unique<OwnSheet>(*surface.moving, rows_of(part, model.rest));
+    if (part.solid && surface.own == nullptr)
       surface.own = std::make_unique<OwnSurface>(elements_of(model, part), surface.triangles, rows_of(part, model.rest),
                                                  part.size);
   }

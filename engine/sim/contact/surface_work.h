@@ -1,12 +1,13 @@
 // Holds what a step knows of the surfaces of a joined model's parts, for the searches of surface_contacts.h.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "geometry/triangles/moving_surface.h"
+#include "geometry/triangles/two_edges.h"
+#include "sim/contact/own_sheet.h"
 #include "sim/contact/own_surface.h"
 #include "sim/contact/surface_contacts.h"
 
@@ -14,7 +15,6 @@ namespace supple {
 
 struct SurfaceWork::Parts {
   using Place = MovingSurface::Place;
-  using Edge = std::array<std::int32_t, 2>;  // vertices of the joined model
 
   struct Surface {
     Triangles triangles;               // rows of its part's vertices, in the order of the part's own model
@@ -22,11 +22,12 @@ struct SurfaceWork::Parts {
     std::vector<char> sharp;           // by point: whether faces at it look very differently at rest
     double edge = 0;                   // the mean length of the surface's edges at rest [m]
     double layer = 0;                  // how far a sheet keeps others from it; 0 for a solid [m]
-    std::vector<Edge> edges;           // each edge of a sheet once; a solid's are not listed
+    std::vector<EdgeEnds> edges;       // each edge of a sheet once, by vertices of the joined model; none of a solid
     // Tells by triangle of a sheet where those of its edges begin that no earlier triangle has, and where all end.
     std::vector<std::int32_t> edge_begin;
     std::unique_ptr<MovingSurface> moving;  // null where nothing touches this part
-    std::unique_ptr<OwnSurface> own;        // null where the part does not touch itself
+    std::unique_ptr<OwnSurface> own;        // of a solid; null where it does not touch itself
+    std::unique_ptr<OwnSheet> own_sheet;    // of a sheet; null where it does not touch itself
     Vec3 carried = Vec3::Zero();            // the mean motion of the part from q to the present iterate [m]
     double own_move = 0;                    // how far its vertices move beside that at most [m]
     Vec3 carried_freely = Vec3::Zero();     // the mean motion of the part from q to the prediction [m]
@@ -43,6 +44,7 @@ struct SurfaceWork::Parts {
     OwnSurface::Pairs pairs;                   // by vertices and triangles of the part's own model
     Positions found_for;                       // the end of the motion for which they were found [m]
     std::vector<std::optional<Place>> inside;  // by vertex: the place out of which it has to come, if it begins inside
+    OwnSheet::Pairs of_sheet;                  // the same of a sheet, which has no inside
   };
 
   std::uint64_t structure = 0;                     // of the model that the surfaces belong to

@@ -1,0 +1,30 @@
+// Makes the contacts of an edge of a sheet with an edge of another one, or of the same one, at one iterate. Which edges
+// may touch is found elsewhere (sheet_edges.h, own_sheet_points.h).
+#pragma once
+
+#include <vector>
+
+#include "geometry/triangles/two_edges.h"
+#include "sim/contact/touched_surface.h"
+
+namespace supple {
+
+class TouchedEdges : public TouchedSurface {
+ protected:
+  // layer: how far apart the edges are kept [m].
+  TouchedEdges(const Model& model, const StepInputs& inputs, const Meeting& meeting, const Positions& q,
+               const Positions& y, const Positions& x, const Work& work, double layer)
+      : TouchedSurface(model, inputs, meeting, q, y, x, work), layer_(layer) {}
+
+  // Adds the contact of two edges, if there is one. reach: how far apart they need a plane [m]. Edges that pass through
+  // each other twice in a step are taken as if they did not.
+  void add_edges(const EdgeEnds& edge, const EdgeEnds& other, double reach, std::vector<Contact>& list) const;
+
+  // Returns the share of the way at which edges that pass through each other are as deep in the layer as they may be,
+  // or `least` where that is no later impact.
+  double share_to_impact(const EdgeEnds& edge, const EdgeEnds& other, double least) const;
+
+  double layer_;  // [m]
+};
+
+}  // namespace supple
