@@ -9,6 +9,8 @@ namespace supple {
 // touching_impacts.cpp
 ReportTable head_on_table(const BenchSetting& setting);
 ReportTable linked_rings_table(const BenchSetting& setting);
+// touching_knot.cpp
+ReportTable knot_table(const BenchSetting& setting);
 // touching_spheres.cpp
 ReportTable hertz_table(const BenchSetting& setting);
 // touching_at_rest.cpp

@@ -55,7 +55,8 @@ class MeshCacheTest : public testing::Test {
     const Result result = run(folder_.path, words);
     EXPECT_EQ(result.status, 0) << result.err;
     std::string left;
-    for (const auto& frame : test::profile_of(folder_.path / out)["frames"]) left += frame["state_hash"];
+    const auto whole = test::profile_of(folder_.path / out);
+    for (const auto& frame : whole["frames"]) left += frame["state_hash"];
     return left + test::read_file(folder_.path / out / "frames" / "000001.png");
   }
 
@@ -126,7 +127,8 @@ TEST_F(MeshCacheTest, IsSharedByRunsAtTheSameTime) {
       fs::create_directories(place);
       const Result result = run(place, {"render", "../s.toml", "--quiet", "--no-images"});
       EXPECT_EQ(result.status, 0) << result.err;
-      for (const auto& frame : test::profile_of(place / "out" / "s")["frames"]) left[i] += frame["state_hash"];
+      const auto whole = test::profile_of(place / "out" / "s");
+      for (const auto& frame : whole["frames"]) left[i] += frame["state_hash"];
     });
   for (std::thread& thread : runs) thread.join();
   EXPECT_EQ(left[0], left[1]);

@@ -85,7 +85,8 @@ TEST(Profile, TracesOnlyWhenAskedAndChangesNoResult) {
     arguments.insert(arguments.end(), more.begin(), more.end());
     EXPECT_EQ(run(folder.path, arguments).status, 0);
     std::vector<std::string> list;
-    for (const auto& frame : test::profile_of(out)["frames"]) list.push_back(frame["state_hash"]);
+    const auto whole = test::profile_of(out);
+    for (const auto& frame : whole["frames"]) list.push_back(frame["state_hash"]);
     return list;
   };
   const std::vector<std::string> traced = hashes({"--trace"});

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "support/bodies.h"
 #include "support/program.h"
@@ -47,6 +48,13 @@ class TouchingBodies : public testing::Test {
     }));
   }
 
+  std::vector<std::string> hashes() const {
+    const json whole = profile();
+    std::vector<std::string> list;
+    for (const json& frame : whole["frames"]) list.push_back(frame["state_hash"]);
+    return list;
+  }
+
   test::TemporaryFolder folder_;
 };
 
@@ -84,11 +92,6 @@ TEST_F(TouchingBodies, HaveRowsInTheFramesInWhichTheyTouch) {
 TEST_F(TouchingBodies, HaveMeasuredErrorsThatChangeNoBits) {
   const std::string scene =
       "frames = 6\n" + cube("lower", "") + cube("upper", "position = [0.02, 0.25, 0.03]") + ground;
-  const auto hashes = [this] {
-    std::vector<std::string> list;
-    for (const json& frame : profile()["frames"]) list.push_back(frame["state_hash"]);
-    return list;
-  };
   film(scene);
   const std::vector<std::string> plain = hashes();
   film(scene, {"--error-every", "2"});
@@ -100,6 +103,53 @@ TEST_F(TouchingBodies, HaveMeasuredErrorsThatChangeNoBits) {
       EXPECT_EQ(body.contains("motion_error"), frame % 2 == 0) << frame;
     }
   }
+}
+
+// A cloth that falls over two cubes and onto itself, while friction and stiffness change.
+const std::string covered =
+    "frames = 36\n" + cube("lower", "") + cube("upper", "position = [0.02, 0.25, 0.03]") + ground +
+    "[[body]]\nname = \"cloth\"\ncloth = { extent = [0.8, 0.5], cells = [20, 12], stretch = 200, bend = 0.5 }\n"
+    "turn_deg = [80, 15, 0]\nposition = [0, 0.6, 0]\ntotal_mass = 0.1\n";
+std::string change(const char* path, double at, const char* to) {
+  return fmt::format("[[change]]\nt = {}\npath = \"{}\"\nvalue = {}\n", at, path, to);
+}
+const std::string changes = change("body.cloth.contact.friction", 0.3, "0.1") +
+                            change("body.cloth.cloth.stretch", 0.5, "60") +
+                            change("body.upper.contact.friction", 0.5, "0.9") +
+                            change("body.cloth.contact.self", 0.7, "false") +
+                            change("body.cloth.contact.self", 0.8, "true") +
+                            change("body.upper.contact.meets", 0.9, "false");
+
+TEST_F(TouchingBodies, HaveTheSameBitsForAllThreadsWithPicturesAndAfterTwentyKills) {
+  film(covered, {"--no-video", "--threads", "1"}, changes);
+  const std::vector<std::string> whole = hashes();
+  ASSERT_EQ(whole.size(), 36u);
+  for (const char* threads : {"2", "4"}) {
+    film(covered, {"--no-video", "--threads", threads}, changes);
+    EXPECT_EQ(hashes(), whole) << threads;
+  }
+  film(covered, {"--set", "output.width=160", "--set", "output.height=90"}, changes);
+  EXPECT_EQ(hashes(), whole);
+  std::mt19937 dice(3);
+  std::filesystem::remove_all(folder_.path / "film");
+  std::vector<std::string> arguments = {"replay", "replay.toml", "--no-images", "--no-video", "--checkpoint-every",
+                                        "1",      "--out",       "film"};
+  const std::vector<std::string> first = arguments;
+  arguments.push_back("--resume");
+  int kills = 0, ends = 0;
+  while (kills < 20) {
+    const bool is_begun = std::filesystem::exists(folder_.path / "film" / "run.json");
+    const Result result = test::run_and_kill(folder_.path, is_begun ? arguments : first, 60 + int(dice() % 200));
+    ASSERT_TRUE(result.status == 0 || result.status == -SIGKILL) << result.err;
+    kills += result.status < 0;
+    if (result.status != 0) continue;
+    EXPECT_EQ(hashes(), whole);
+    std::filesystem::remove_all(folder_.path / "film");
+    ++ends;
+  }
+  const Result result = test::run(folder_.path, arguments);
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(hashes(), whole) << kills << " kills, " << ends << " ends";
 }
 
 TEST_F(TouchingBodies, HaveNoRowsWhereTheyAreApart) {

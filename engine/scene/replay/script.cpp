@@ -260,9 +260,7 @@ std::string Script::replay_json() const { return parts_->replay ? parts_->replay
 std::vector<LiveKey> Script::live() const {
   Config document = parts_->document_at(at_start, parts_->changes.size());
   open_tables(document);
-  for (const BodyDef& body : parts_->start.bodies) {
-    if (parts_->start.bodies.size() > 1) open_table_of(document, "body." + body.name + ".contact.meets");
-  }
+  for (const BodyDef& body : parts_->start.bodies) open_table_of(document, "body." + body.name + ".contact.self");
   (void)read_scene(document);
   return live_keys(document);
 }

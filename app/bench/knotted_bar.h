@@ -1,0 +1,20 @@
+// Tells whether a bar is knotted, from the positions of its vertices.
+#pragma once
+
+#include <vector>
+
+#include "base/types.h"
+
+namespace supple {
+
+// Returns the determinant of the knot that an open curve of straight edges makes when its ends are led away far
+// outside: 1 for a curve that can be pulled straight, 3 for an overhand knot. Two knots of one determinant are not told
+// apart (Livingston 1993, "Knot theory", chapter 3, has the determinant of the equations that colours of a diagram
+// obey). The ends must lead outward. line: at least two points [m].
+int knot_determinant(const std::vector<Vec3>& line);
+
+// Returns the middle line of a bar: the means of the vertices in each of 80 shells of distance from one end, along the
+// surface at rest. triangles: of its surface. rest, x: n x 3; the end is at the largest first coordinate at rest [m].
+std::vector<Vec3> middle_line_of_bar(const Triangles& triangles, const Positions& rest, const Positions& x);
+
+}  // namespace supple
