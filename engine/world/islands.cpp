@@ -130,7 +130,18 @@ bool Islands::may_touch(std::size_t a, std::size_t b, double pushed) const {
   }
   // Bodies that go the same way meet where a collider stops the first of them, so all of their ways count then.
   const Vec3 carried = may_be_stopped(a) || may_be_stopped(b) ? Vec3(Vec3::Zero()) : ways_[a].mean;
-  return surface_of(a).may_meet(surface_of(b), margin, carried);
+  return surface_of(a).may_meet(surface_of(b), margin, carried) || is_within(a, b) || is_within(b, a);
+}
+
+// Tells whether a body begins the step wholly within another one, far from its surface.
+bool Islands::is_within(std::size_t inner, std::size_t outer) const {
+  const Model& model = bodies_[inner]->model();
+  if (!bodies_[outer]->model().parts.front().solid) return false;
+  const Bounds &own = surface_of(inner).bounds_at_start(), &other = surface_of(outer).bounds_at_start();
+  if ((own.lower.array() < other.lower.array()).any() || (own.upper.array() > other.upper.array()).any()) return false;
+  const Vec3 point = bodies_[inner]->state().x.row(model.surface(0, 0));
+  const auto place = surface_of(outer).closest_at_start(point, bodies_[outer]->model().size);
+  return place && place->distance < 0;
 }
 
 // Tells whether a body may come to a collider on its way.

@@ -61,6 +61,7 @@ class Islands {
 
   void find_ways();
   bool may_touch(std::size_t a, std::size_t b, double pushed) const;
+  bool is_within(std::size_t inner, std::size_t outer) const;
   bool may_be_stopped(std::size_t body) const;
   MovingSurface& surface_of(std::size_t body) const;
   Together& together(const std::vector<std::size_t>& island);

@@ -108,6 +108,26 @@ TEST(TouchingHard, CubesThatStartPartlyInEachOtherComeApart) {
   EXPECT_LT(lowest - start, 2 * given);
 }
 
+// The small cube leaves by one side: if each of its points left by the side that is closest to it, it would stay, torn.
+TEST(TouchingHard, ASmallCubeThatStartsWhollyInsideAnotherLeavesItWhole) {
+  for (const char* turn : {"[0, 0, 0]", "[10, 20, 30]", "[60, 5, 45]"}) {
+    Played played("gravity = [0, 0, 0]\n" + cube("outer", 4, 3e4, "") +
+                  "[[body]]\nname = \"inner\"\nbox = { extent = [0.08, 0.08, 0.08], cells = [3, 3, 3] }\n"
+                  "material = { model = \"stable-neo-hookean\", young = 3e4, poisson = 0.35 }\n"
+                  "position = [0.02, 0.065, 0.01]\nturn_deg = " +
+                  turn + "\n");
+    EXPECT_GT(played.depth(), 0.3) << turn;
+    double longest = 0;
+    const double size = played.world.body(1).model().size;
+    for (int frame = 0; frame < 45; ++frame) {
+      ASSERT_TRUE(played.play(frame)) << frame;
+      longest = std::max(longest, bounds_of(played.places(1)).diagonal());
+    }
+    EXPECT_TRUE(played.overlaps().empty()) << turn << " " << played.depth();
+    EXPECT_LT(longest, 1.5 * size) << turn;
+  }
+}
+
 TEST(TouchingHard, ASoftCubeThatFallsOnOneTenThousandTimesAsStiffStaysOutside) {
   Played played(fallen(3e8, "", 3e4, ""));
   bool touched = false;

@@ -11,17 +11,21 @@ namespace {
 
 using Work = SurfaceWork::Parts;
 
+// Returns what counts as near in a part [m]. A long thin solid has edges that are short beside its size.
+double near_in(const Part& part, const Work::Surface& surface) {
+  return part.solid ? std::min(0.01 * part.size, 0.25 * surface.edge) : surface.layer;
+}
+
 // Returns how near to the outside of the surface points are looked at, where they come no nearer than foreseen [m]: a
 // part of the body may fall on another one that rests.
 double margin_of(const Model& model, const StepInputs& inputs, const Part& part, const Work::Surface& surface) {
-  const double near = part.solid ? 0.01 * part.size : surface.layer;
-  return near + 0.25 * model.time_step * model.time_step * inputs.gravity.norm();
+  return near_in(part, surface) + 0.25 * model.time_step * model.time_step * inputs.gravity.norm();
 }
 
 // Returns how much nearer than foreseen points may come before they are looked for again [m]. A sheet has many pairs
 // that are nearly near: a larger slack costs it more than it saves.
 double slack_of(const Part& part, const Work::Surface& surface) {
-  return part.solid ? 0.01 * part.size : 2 * surface.layer;
+  return part.solid ? near_in(part, surface) : 2 * surface.layer;
 }
 
 // Lists the points for motions from q to x.

@@ -3,7 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <utility>
 
 #include "sim/contact/contact_order.h"
 #include "sim/contact/own_points.h"
@@ -62,6 +64,9 @@ class SurfacePair : public TouchedSurface {
         only_sharp_(work.only_sharp[meeting] != 0),
         layer_(own_.layer) {
     beginnings_.resize(points_.size());
+    Work::CommonWay& way = work.common_ways[meeting];
+    if (!std::exchange(way.is_known, true)) way.out = common_way_out();
+    common_ = &way.out;
   }
 
   std::size_t points() const { return points_.size(); }
@@ -77,6 +82,7 @@ class SurfacePair : public TouchedSurface {
     if (!is_near && !is_in_box(a)) return;
     const std::optional<Place>& before = beginning(index, a);
     if (!is_near && (!before || before->distance >= 0)) return;
+    if (*common_ && before && before->distance <= 0) return leave_commonly(v, a, b, reach, list);
     double field = before ? before->distance : reach;
     const std::optional<Place> held = field <= 0 ? leaving(*before, v, b, reach, way)
                                                  : arriving(v, a, b, reach, way, beginnings_[index].nearest, field);
@@ -159,6 +165,47 @@ class SurfacePair : public TouchedSurface {
     return place;
   }
 
+  // Returns the place across whose plane all points that begin the step inside leave, where at least half of the part
+  // does so. Each would otherwise leave by what is closest to it, to all sides, and the part would stay, torn. Of the
+  // places that are closest to the points, the one is taken whose plane all have passed first.
+  std::optional<Place> common_way_out() const {
+    constexpr std::size_t samples = 16;  // if less than half of so many are inside, no others are asked
+    if (own_.moving == nullptr || points_.empty()) return std::nullopt;
+    if (!is_in_box(own_.moving->bounds_at_start().center())) return std::nullopt;
+    std::vector<std::size_t> inside;
+    const auto ask = [&](std::size_t index) {
+      const std::optional<Place>& place = beginning(index, q_.row(points_[index]).transpose());
+      if (place && place->distance < 0) inside.push_back(index);
+    };
+    const std::size_t few = std::min(samples, points_.size());
+    for (std::size_t i = 0; i < few; ++i) ask(i * points_.size() / few);
+    if (2 * inside.size() < few) return std::nullopt;
+    inside.clear();
+    for (std::size_t i = 0; i < points_.size(); ++i) ask(i);
+    if (2 * inside.size() < points_.size()) return std::nullopt;
+    std::optional<Place> best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::size_t i : inside) {
+      Place place = *beginnings_[i].place;
+      place.normal = normal_of(place.triangle, q_);
+      if (place.normal.isZero(0)) continue;
+      double furthest = 0;
+      for (const std::size_t k : inside)
+        furthest = std::max(furthest, place.normal.dot(place.point - q_.row(points_[k]).transpose()));
+      if (!(furthest < least)) continue;
+      least = furthest;
+      best = place;
+    }
+    return best;
+  }
+
+  // Adds the contact of a point that leaves so.
+  void leave_commonly(std::int32_t v, const Vec3& a, const Vec3& b, double reach, std::vector<Contact>& list) const {
+    const Place& way = **common_;
+    const std::optional<Place> held = place_at_end(way.triangle, way.weights, b);
+    if (held && held->distance < reach) add(v, *held, way.normal.dot(a - way.point) - layer_, list, layer_);
+  }
+
   // Finds the place that holds a point which began the step inside.
   std::optional<Place> leaving(const Place& before, std::int32_t v, const Vec3& b, double reach, double way) const {
     const double most = std::max(reach, -before.distance + way + 2 * surface_.own_move);
@@ -207,6 +254,7 @@ class SurfacePair : public TouchedSurface {
   std::vector<Work::Beginning>& beginnings_;
   bool only_sharp_;
   double layer_;  // of a sheet, which its points keep from a solid [m]
+  const std::optional<Place>* common_;
 };
 
 // Moves the surfaces to the positions of an iterate.
@@ -236,6 +284,7 @@ void begin_surfaces(const Model& model, const StepInputs& inputs, const Position
   }
   work.only_sharp = only_sharp_points(model, inputs, work);
   work.beginnings.resize(inputs.meetings.size());
+  work.common_ways.assign(inputs.meetings.size(), {});
   work.own_points.resize(model.parts.size());
   for (std::size_t m = 0; m < inputs.meetings.size(); ++m) {
     const Meeting& meeting = inputs.meetings[m];

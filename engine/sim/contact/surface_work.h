@@ -39,6 +39,11 @@ struct SurfaceWork::Parts {
     std::optional<Place> place;  // that may hold it; nothing: outside, far from the surface
     double nearest = 0;          // how far away the surface is at all; 0 where it is far [m]
   };
+  // Holds the place across whose plane a part leaves another one, of which at least half of it begins the step inside.
+  struct CommonWay {
+    bool is_known = false;
+    std::optional<Place> out;
+  };
   // Holds what a part knows in a step of the points that may touch it itself.
   struct OwnPoints {
     OwnSurface::Pairs pairs;                   // by vertices and triangles of the part's own model
@@ -50,6 +55,7 @@ struct SurfaceWork::Parts {
   std::uint64_t structure = 0;                     // of the model that the surfaces belong to
   std::vector<Surface> surfaces;                   // by part
   std::vector<std::vector<Beginning>> beginnings;  // by meeting and point; empty where no point was asked
+  std::vector<CommonWay> common_ways;              // by meeting
   std::vector<char> only_sharp;                    // by meeting: whether it is about its part's sharp points alone
   std::vector<OwnPoints> own_points;               // by part
   std::vector<std::vector<Contact>> by_chunk;      // scratch
