@@ -6,7 +6,8 @@
 //
 // Whether a body touches itself is seen by the step that it makes without regard to that: where it begins in itself, or
 // comes through its own surface (sim/contact/own_surface.h), the step is made again, with contact of the body with
-// itself. So a body that does not touch itself pays for the look alone, and keeps its bits.
+// itself. So a body that does not touch itself pays for the look alone, and keeps its bits. A cloth is asked by
+// sim/contact/own_sheet.h.
 #pragma once
 
 #include <memory>

@@ -113,12 +113,10 @@ const std::string covered =
 std::string change(const char* path, double at, const char* to) {
   return fmt::format("[[change]]\nt = {}\npath = \"{}\"\nvalue = {}\n", at, path, to);
 }
-const std::string changes = change("body.cloth.contact.friction", 0.3, "0.1") +
-                            change("body.cloth.cloth.stretch", 0.5, "60") +
-                            change("body.upper.contact.friction", 0.5, "0.9") +
-                            change("body.cloth.contact.self", 0.7, "false") +
-                            change("body.cloth.contact.self", 0.8, "true") +
-                            change("body.upper.contact.meets", 0.9, "false");
+const std::string changes =
+    change("body.cloth.contact.friction", 0.3, "0.1") + change("body.cloth.cloth.stretch", 0.5, "60") +
+    change("body.upper.contact.friction", 0.5, "0.9") + change("body.cloth.contact.self", 0.7, "false") +
+    change("body.cloth.contact.self", 0.8, "true") + change("body.upper.contact.meets", 0.9, "false");
 
 TEST_F(TouchingBodies, HaveTheSameBitsForAllThreadsWithPicturesAndAfterTwentyKills) {
   film(covered, {"--no-video", "--threads", "1"}, changes);

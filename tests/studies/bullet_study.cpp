@@ -16,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <set>
@@ -32,7 +33,7 @@ using namespace supple;
 namespace {
 
 constexpr double side = 0.55;            // half of the box's width [m]
-constexpr double patience_ms = 180'000;  // for a pile in Bullet
+constexpr double patience_ms = 180'000;  // for a film in Bullet
 
 struct Lame {
   double mu, lambda;
@@ -203,6 +204,34 @@ struct Result {
   std::string end = "whole";
 };
 
+// Plays Bullet's world, and calls after() at the end of each frame.
+Result play(BulletWorld& world, const std::vector<Body>& bodies, int frames, const std::function<void()>& after) {
+  Result result;
+  const Stopwatch whole;
+  for (int frame = 0; frame < frames; ++frame) {
+    if (whole.elapsed_ms() > patience_ms) {
+      result.end = fmt::format("given up after {} frames", frame);
+      break;
+    }
+    const Stopwatch watch;
+    world.play();
+    result.ms.push_back(watch.elapsed_ms());
+    const std::vector<Positions> places = world.places();
+    if (!is_finite(places)) {
+      result.end = fmt::format("not finite in frame {}", frame);
+      break;
+    }
+    for (std::size_t b = 0; b < places.size() && result.end == "whole"; ++b) {
+      if (bounds_of(places[b]).diagonal() > 3 * bounds_of(bodies[b].description.mesh.rest).diagonal())
+        result.end = fmt::format("torn in frame {}", frame);
+    }
+    result.depth.push_back(deepest(bodies, places));
+    result.kinetic.push_back(world.kinetic_energy());
+    after();
+  }
+  return result;
+}
+
 void print_times(const char* scene, const char* program, const Result& result, const std::string& more) {
   if (result.ms.empty()) {
     fmt::print("| {} | {} | | | | | {} |\n", scene, program, result.end);
@@ -252,27 +281,12 @@ void compare_head_on(double speed, Threads& threads) {
     BulletWorld world(Vec3::Zero(), margin);
     world.add(bodies[0], lame(1e5, 0.4), 1000, 0, Vec3(speed, 0, 0));
     world.add(bodies[1], lame(1e5, 0.4), 1000, 0, Vec3(-speed, 0, 0));
-    Result result;
     Vec3 before = world.momentum(0);
     double exchanged = 0;
-    for (int frame = 0; frame < frames; ++frame) {
-      const Stopwatch watch;
-      world.play();
-      result.ms.push_back(watch.elapsed_ms());
-      const std::vector<Positions> places = world.places();
-      if (!is_finite(places)) {
-        result.end = fmt::format("not finite in frame {}", frame);
-        break;
-      }
-      for (std::size_t b = 0; b < places.size() && result.end == "whole"; ++b) {
-        if (bounds_of(places[b]).diagonal() > 3 * bounds_of(bodies[b].description.mesh.rest).diagonal())
-          result.end = fmt::format("torn in frame {}", frame);
-      }
-      result.depth.push_back(deepest(bodies, places));
-      result.kinetic.push_back(world.kinetic_energy());
+    const Result result = play(world, bodies, frames, [&] {
       exchanged += (world.momentum(0) - before).norm();
       before = world.momentum(0);
-    }
+    });
     print_times(name.c_str(), fmt::format("Bullet, 8 a frame, margin {:g} mm", 1000 * margin).c_str(), result,
                 more(world.momentum(0), world.momentum(1), world.mass(0), exchanged));
   }
@@ -317,28 +331,7 @@ void compare_pile(const std::string& assets, Threads& threads) {
       world.add_wall(Vec3(sign * (side + 0.5), 1, 0), Vec3(0.5, 3, 3), 0.5);
       world.add_wall(Vec3(0, 1, sign * (side + 0.5)), Vec3(3, 3, 0.5), 0.5);
     }
-    Result result;
-    const Stopwatch whole;
-    for (int frame = 0; frame < frames; ++frame) {
-      if (whole.elapsed_ms() > patience_ms) {
-        result.end = fmt::format("given up after {} frames", frame);
-        break;
-      }
-      const Stopwatch watch;
-      world.play();
-      result.ms.push_back(watch.elapsed_ms());
-      const std::vector<Positions> places = world.places();
-      if (!is_finite(places)) {
-        result.end = fmt::format("not finite in frame {}", frame);
-        break;
-      }
-      for (std::size_t b = 0; b < places.size() && result.end == "whole"; ++b) {
-        if (bounds_of(places[b]).diagonal() > 3 * bounds_of(bodies[b].description.mesh.rest).diagonal())
-          result.end = fmt::format("torn in frame {}", frame);
-      }
-      result.depth.push_back(deepest(bodies, places));
-      result.kinetic.push_back(world.kinetic_energy());
-    }
+    const Result result = play(world, bodies, frames, [] {});
     print_times("pile", fmt::format("Bullet, 8 a frame, margin {:g} mm", 1000 * margin).c_str(), result, "");
   }
 }

@@ -165,8 +165,9 @@ void warn_of_shared_space(const std::vector<Body>& bodies, std::vector<Warning>&
   BodyPassings passings(bodies);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (passings.crosses_itself(b, points[b]))
-      warn(b, b, fmt::format("cloth '{}' crosses itself at the start: contact holds each part on its side",
-                             bodies[b].def.name));
+      warn(b, b,
+           fmt::format("cloth '{}' crosses itself at the start: contact holds each part on its side",
+                       bodies[b].def.name));
   }
   for (const auto& [a, b] : passings.find(points))
     warn(a, b,

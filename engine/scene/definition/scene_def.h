@@ -147,8 +147,8 @@ struct Names<ColorSource> {
                                        Name{ColorSource::body, "body"}};
 };
 
-// Says what a body does with other bodies and with itself (meeting.h). The table solver.contact is about how contact with colliders is
-// computed, and a collider has its own friction.
+// Says what a body does with other bodies and with itself (meeting.h). The table solver.contact is about how contact
+// with colliders is computed, and a collider has its own friction.
 struct BodyContactDef {
   // Names the only bodies that it meets, none where the list is empty. Nothing: it meets all.
   std::optional<std::vector<std::string>> meets;
