@@ -165,24 +165,25 @@ class SurfacePair : public TouchedSurface {
     return place;
   }
 
-  // Returns the place across whose plane all points that begin the step inside leave, where at least half of the part
-  // does so. Each would otherwise leave by what is closest to it, to all sides, and the part would stay, torn. Of the
+  // Returns the place across whose plane all points that begin the step inside leave, where a good part of them is deep
+  // inside. Each would otherwise leave by what is closest to it, to all sides, and the bodies would stay, torn. Of the
   // places that are closest to the points, the one is taken whose plane all have passed first.
   std::optional<Place> common_way_out() const {
-    constexpr std::size_t samples = 16;  // if less than half of so many are inside, no others are asked
-    if (own_.moving == nullptr || points_.empty()) return std::nullopt;
-    if (!is_in_box(own_.moving->bounds_at_start().center())) return std::nullopt;
+    constexpr double deep = 0.02;  // over the size of the smaller body
+    constexpr std::size_t share = 8;
     std::vector<std::size_t> inside;
-    const auto ask = [&](std::size_t index) {
-      const std::optional<Place>& place = beginning(index, q_.row(points_[index]).transpose());
-      if (place && place->distance < 0) inside.push_back(index);
-    };
-    const std::size_t few = std::min(samples, points_.size());
-    for (std::size_t i = 0; i < few; ++i) ask(i * points_.size() / few);
-    if (2 * inside.size() < few) return std::nullopt;
-    inside.clear();
-    for (std::size_t i = 0; i < points_.size(); ++i) ask(i);
-    if (2 * inside.size() < points_.size()) return std::nullopt;
+    std::size_t asked = 0, deep_inside = 0;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (only_sharp_ && !own_.sharp[i]) continue;
+      ++asked;
+      const Vec3 a = q_.row(points_[i]).transpose();
+      if (!is_in_box(a)) continue;
+      const std::optional<Place>& place = beginning(i, a);
+      if (!place || place->distance > 0) continue;
+      inside.push_back(i);
+      deep_inside += place->distance < -deep * size_;
+    }
+    if (deep_inside == 0 || share * deep_inside < asked) return std::nullopt;
     std::optional<Place> best;
     double least = std::numeric_limits<double>::infinity();
     for (const std::size_t i : inside) {
