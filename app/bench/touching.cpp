@@ -8,7 +8,7 @@ namespace supple {
 ReportSection bench_touching(const BenchSetting& setting) {
   ReportSection section{"touching", "Bodies that meet: oracles, cost, error"};
   section.text =
-      "Bodies whose ways come near each other make their steps together, as one model. The first seven tables compare "
+      "Bodies whose ways come near each other make their steps together, as one model. The first six tables compare "
       "what such bodies do with what is known: two equal cubes are each other's wall, momentum is exchanged and not "
       "made, spheres flatten as Hertz says, a block holds or slides as Coulomb says, a stack carries its weight, "
       "linked rings stay linked, and a knot stays tied. Each column of numbers with an aim is followed by it; an aim "

@@ -1,5 +1,5 @@
 // Measures what contact between bodies costs in the scenes that ship, how deep and how exact it is, beside scenes whose
-// bodies touch colliders alone.
+// bodies touch colliders and no other bodies.
 #include <fmt/core.h>
 
 #include <algorithm>

@@ -295,13 +295,17 @@ std::string folded_strip(const char* self) {
       self);
 }
 
+// Returns the surface of the first body, at rest where it is now.
+MovingSurface surface_now(const Played& played) {
+  MovingSurface surface(played.world.body(0).model().surface, played.world.body(0).model().rest);
+  surface.set_end(played.world.body(0).state().x);
+  surface.set_start(played.world.body(0).state().x);
+  return surface;
+}
+
 bool crosses_itself(const Played& played) {
-  const Model& model = played.world.body(0).model();
-  const Positions& x = played.world.body(0).state().x;
-  MovingSurface moving(model.surface, model.rest);
-  moving.set_start(x);
-  moving.set_end(x);
-  return OwnSheet(moving, model.rest).crossing(moving, x).has_value();
+  const MovingSurface surface = surface_now(played);
+  return OwnSheet(surface, played.world.body(0).model().rest).crossing(surface, surface.start()).has_value();
 }
 
 TEST(TouchingWorlds, AClothTouchesItself) {
@@ -332,11 +336,8 @@ std::string squeezed_ring(const char* self) {
 
 bool overlaps_itself(const Played& played) {
   const Model& model = played.world.body(0).model();
-  const Positions& x = played.world.body(0).state().x;
-  MovingSurface moving(model.surface, model.rest);
-  moving.set_start(x);
-  moving.set_end(x);
-  return OwnSurface(tetrahedra_of(model), model.surface, model.rest, model.size).overlaps(moving, x);
+  const MovingSurface surface = surface_now(played);
+  return OwnSurface(tetrahedra_of(model), model.surface, model.rest, model.size).overlaps(surface, surface.start());
 }
 
 TEST(TouchingWorlds, ABodyTouchesItself) {
