@@ -19,8 +19,10 @@ struct MeetingCase {
   std::vector<double> stiffness = {};  // of each body, over the usual one; 1 for those beyond the list
   bool stays_whole = true;             // nothing is inverted or without volume at the end
   bool comes_to_rest = false;          // at the end nothing moves but slowly
-  // The direction in which each body lies from the one before it, at the ends of the first frames; zero: any.
+  // The direction in which each body lies from the one before it, at the ends of the first frames; zero: any. A body
+  // that is further beside the other than `around` has not passed through it, but fallen or flown around it.
   Vec3 order = Vec3::Zero();
+  double around = 0.15;  // [m]
   int ordered_frames = std::numeric_limits<int>::max();
   double alone_from = 0;  // from this time on, nothing does work on the bodies from outside [s]
 };

@@ -142,7 +142,8 @@ void MeetingRun::look_at_places(MeetingOutcome& outcome, int frame) const {
   if (meeting_.order.isZero() || frame >= meeting_.ordered_frames || !outcome.passed.empty()) return;
   for (std::size_t b = 1; b < points.size(); ++b) {
     const Vec3 way = (points[b].colwise().mean() - points[b - 1].colwise().mean()).transpose();
-    if (way.dot(meeting_.order) > 0) continue;
+    const double along = way.dot(meeting_.order);
+    if (along > 0 || (way - along * meeting_.order).norm() > meeting_.around) continue;
     outcome.passed = fmt::format("'{}' and '{}'", world_.bodies()[b - 1].def.name, world_.bodies()[b].def.name);
     return;
   }

@@ -213,6 +213,36 @@ TEST(MovingSurface, FindsTheFirstEntryThatDenseTimesFind) {
   EXPECT_GT(entries, 100);
 }
 
+// Beyond the last exit a line is outside, and right before it inside, whatever the surface does until the end.
+TEST(MovingSurface, FindsTheLastExitOfALineThroughTheStart) {
+  Numbers numbers(14);
+  int exits = 0;
+  for (int i = 0; i < 6; ++i) {
+    const Motion motion = dented_ball(numbers, numbers.in_cube(3));
+    for (int k = 0; k < 60; ++k) {
+      const Vec3 a = numbers.in_cube(1.5), b = numbers.in_cube(1.5);
+      const auto at = [&](double share) -> Vec3 { return (1 - share) * a + share * b; };
+      const auto inside = [&](double share) { return is_inside(motion.rest.triangles, motion.start, at(share)); };
+      const auto exit = motion.surface.last_exit_at_start(a, b);
+      if (!exit) {
+        EXPECT_TRUE(!inside(0) || inside(1));
+        continue;
+      }
+      ++exits;
+      EXPECT_TRUE(inside(exit->share - 1e-9));
+      Vec3 place = Vec3::Zero();
+      for (int c = 0; c < 3; ++c)
+        place += exit->weights[c] * motion.start.row(motion.rest.triangles(exit->triangle, c)).transpose();
+      EXPECT_NEAR((place - at(exit->share)).norm(), 0, 1e-9);
+      EXPECT_GT(exit->normal.dot(b - a), 0);
+      constexpr int samples = 50;
+      for (int s = 1; s <= samples && !inside(1); ++s)
+        EXPECT_FALSE(inside(exit->share + (1 - exit->share) * s / samples));
+    }
+  }
+  EXPECT_GT(exits, 60);
+}
+
 TEST(MovingSurface, APointThatEndsInsideHasEnteredOrWasInsideAllTheTime) {
   Numbers numbers(5);
   int checked = 0;

@@ -12,6 +12,7 @@
 #include "output/run/row_tally.h"
 #include "scene/building/body_depths.h"
 #include "sim/measures/energies.h"
+#include "sim/measures/measures.h"
 #include "sim/solver/open_workspace.h"
 #include "support/scene_text.h"
 #include "world/world.h"
@@ -106,6 +107,31 @@ TEST(TouchingHard, CubesThatStartPartlyInEachOtherComeApart) {
   }
   EXPECT_TRUE(played.overlaps().empty()) << played.depth();
   EXPECT_LT(lowest - start, 2 * given);
+}
+
+// Small steps damp nothing: if each point left by what is closest to it, or if the way changed from step to step, the
+// cubes would be torn and thrown apart with hundreds of joules, or hang in each other.
+TEST(TouchingHard, CubesThatStartDeepInEachOtherComeApartWholeInSmallStepsToo) {
+  for (const int substeps : {1, 12}) {
+    Played played(fmt::format("substeps = {}\ngravity = [0, 0, 0]\n", substeps) + cube("first", 4, 3e4, "") +
+                  cube("second", 3, 3e4, "position = [0.06, -0.02, 0.01]\nstart = { turn_deg = [20, 30, 10] }"));
+    ASSERT_GT(played.depth(), 0.1);
+    const double size = played.world.body(0).model().size;
+    const double mass = played.world.body(0).model().total_mass + played.world.body(1).model().total_mass;
+    const double start = played.energy();
+    double stretch = 1, most = 0;
+    for (int frame = 0; frame < 60; ++frame) {
+      ASSERT_TRUE(played.play(frame)) << frame;
+      most = std::max(most, played.energy() - start);
+      for (std::size_t b = 0; b < 2; ++b) {
+        const MovingBody& body = played.world.body(b);
+        stretch = std::max(stretch, deformation(body.model(), body.state().x).stretch);
+      }
+    }
+    EXPECT_TRUE(played.overlaps().empty()) << substeps << " " << played.depth();
+    EXPECT_LT(stretch, 1.5) << substeps;
+    EXPECT_LT(most, 6 * 0.5 * mass * size * size) << substeps;  // of all mass at one size a second
+  }
 }
 
 // The small cube leaves by one side: if each of its points left by the side that is closest to it, it would stay, torn.

@@ -344,6 +344,22 @@ std::optional<MovingSurface::Entry> MovingSurface::last_exit(const Vec3& a, cons
   return exit;
 }
 
+std::optional<MovingSurface::Entry> MovingSurface::last_exit_at_start(const Vec3& a, const Vec3& b) const {
+  const double roundoff = roundoff_at(a, b);
+  std::optional<Entry> exit;
+  any_triangle(box_of_path(a, b, Vec3::Zero(), roundoff), Vec3::Zero(), [&](std::int32_t t) {
+    SeenTriangle seen;
+    for (std::size_t k = 0; k < 3; ++k) {
+      seen.start[k] = corner(start_, t, int(k)) - b;
+      seen.end[k] = corner(start_, t, int(k)) - a;
+    }
+    take_if_earlier(t, seen, roundoff, 1, exit);
+    return false;
+  });
+  if (exit) exit->share = 1 - exit->share;
+  return exit;
+}
+
 std::optional<MovingSurface::Entry> MovingSurface::first_passing(const Vec3& a, const Vec3& b, const Vec3& carried,
                                                                  double latest, bool is_backwards,
                                                                  const Takes* takes) const {

@@ -102,6 +102,10 @@ class MovingSurface {
   // Finds where a point that moves from a to b last passes through a triangle from inside.
   std::optional<Entry> last_exit(const Vec3& a, const Vec3& b, const Vec3& carried) const;
 
+  // Finds where a straight line from a to b last passes from inside through the surface as it is at the start. The
+  // share is that of the line.
+  std::optional<Entry> last_exit_at_start(const Vec3& a, const Vec3& b) const;
+
   // Tells whether a point that moves from a to b may come nearer than `margin` [m] to the surface, by the boxes in
   // which the point and each triangle move.
   bool is_near(const Vec3& a, const Vec3& b, const Vec3& carried, double margin) const;

@@ -39,10 +39,11 @@ struct SurfaceWork::Parts {
     std::optional<Place> place;  // that may hold it; nothing: outside, far from the surface
     double nearest = 0;          // how far away the surface is at all; 0 where it is far [m]
   };
-  // Holds the place across whose plane a part leaves another one, of which at least half of it begins the step inside.
+  // Holds the way on which all points of a part leave another part, in which a good share of them begins the step deep.
   struct CommonWay {
     bool is_known = false;
-    std::optional<Place> out;
+    Vec3 direction = Vec3::Zero();
+    double length = 0;  // until all are out; 0: each point leaves by what is closest to it [m]
   };
   // Holds what a part knows in a step of the points that may touch it itself.
   struct OwnPoints {

@@ -57,6 +57,8 @@ class TouchedSurface {
   void add(const ContactStencil& stencil, std::int32_t number, const Vec3& normal, double field,
            std::vector<Contact>& list, double layer) const;
 
+  // Makes the stencil of a point before a place.
+  ContactStencil stencil_of(std::int32_t point, const Place& place) const;
   // Makes a stencil of vertices with weights that are not 0.
   template <std::size_t N>
   ContactStencil stencil_of(const std::array<std::int32_t, N>& vertices, const std::array<double, N>& weights) const {
@@ -77,7 +79,6 @@ class TouchedSurface {
 
  private:
   void add_vertex(std::int32_t vertex, double weight, ContactStencil& stencil) const;
-  ContactStencil stencil_of(std::int32_t point, const Place& place) const;
 };
 
 // Tells of each meeting whether only the sharp points of its part are looked at. Of two solids whose points touch each
