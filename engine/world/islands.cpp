@@ -48,7 +48,7 @@ struct Islands::Way {
   Bounds swept;              // of the body from q to y
   Vec3 mean = Vec3::Zero();  // its mean motion [m]
   std::uint64_t structure = 0;
-  double layer = 0;  // of a sheet, at which contact holds others [m]
+  double layer = 0;  // of a sheet, or between a surface and what is drawn: contact holds others there [m]
   mutable std::unique_ptr<MovingSurface> surface;
   mutable bool is_moved = false;  // whether the surface goes the way of this step
 };
@@ -99,7 +99,9 @@ void Islands::find_ways() {
     if (way.structure == body.model().structure) continue;
     way.surface.reset();
     way.structure = body.model().structure;
-    way.layer = body.model().parts.front().solid ? 0 : sheet_layer(mean_edge(body.model().surface, body.model().rest));
+    const Model& model = body.model();
+    way.layer = model.parts.front().solid ? 0 : sheet_layer(mean_edge(model.surface, model.rest));
+    for (const double overhang : model.overhang) way.layer = std::max(way.layer, overhang);
   }
 }
 

@@ -237,6 +237,7 @@ std::vector<Body> assemble(const SceneDef& scene, const SlowWork& work) {
       body.unplaced = body.description.mesh.rest;
       body.placement = placement(def, points_to_place(body));
       apply(body.placement, body.description.mesh.rest);
+      for (double& overhang : body.description.overhang) overhang *= scale_of(body);
       check_distance(body, problems);
       note_size(body);
       if (!def.cloth) body.volume = quality(body.description.mesh).volume;

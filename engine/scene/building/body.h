@@ -2,6 +2,8 @@
 // assemble.h places it and gives it its substance. Not here: what is drawn in the place of its mesh (drawn_body.h).
 #pragma once
 
+#include <cmath>
+
 #include "geometry/meshes/cloth.h"
 #include "geometry/meshes/pose.h"
 #include "geometry/skins/surface_colors.h"
@@ -40,6 +42,9 @@ struct Body {
   Vec3 start_move = Vec3(0, 0, 0);              // the move out of colliders that the body would start in [m]
   Eigen::Affine3d placement = no_placement();   // from the file's frame to the world: turned, scaled, moved
 };
+
+// Returns how many metres one of the file's units is.
+inline double scale_of(const Body& body) { return std::cbrt(body.placement.linear().determinant()); }
 
 // Returns the surface of a body's mesh, by its vertices: the triangles of a cloth, or the boundary of a solid.
 inline Triangles surface_of(const Body& body) {

@@ -17,8 +17,6 @@ namespace {
 
 Mat3 turn_of(const Body& body) { return rotation_from_degrees(body.def.turn_deg).toRotationMatrix(); }
 
-double scale_of(const Body& body) { return std::cbrt(body.placement.linear().determinant()); }
-
 // Returns the edge of the printed squares [m]; 0: nothing is printed.
 double square_of(const Body& body) {
   if (body.def.pattern == Pattern::none) return 0;

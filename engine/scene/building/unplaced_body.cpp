@@ -4,6 +4,7 @@
 #include "geometry/files/mesh_file.h"
 #include "geometry/tetrahedra/meshing.h"
 #include "geometry/tetrahedra/tetrahedralize.h"
+#include "scene/building/skin_overhang.h"
 #include "scene/reading/body_pieces.h"
 #include "scene/reading/shape_reader.h"
 
@@ -114,6 +115,7 @@ Body UnplacedBodies::get(const SceneDef& scene, const BodyDef& asked) {
                 : !def.mesh.empty()   ? body_of_mesh(def)
                 : def.surface.empty() ? body_of_shape(scene, def, work_)
                                       : body_of_surface(def, work_);
+    if (scene.bodies.size() > 1) made.description.overhang = skin_overhang(made);
     known = made_.emplace(key, std::move(made)).first;
   }
   Body body = known->second;

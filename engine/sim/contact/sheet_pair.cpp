@@ -27,7 +27,8 @@ void SheetPair::find(std::size_t index, std::vector<Contact>& list) const {
   if (!is_looked_at(index)) return;
   const std::int32_t v = points_[index];
   const Vec3 a = q_.row(v).transpose(), b = x_.row(v).transpose();
-  const double way = (b - a - surface_.carried).norm(), reach = reach_at(v, way) + layer_;
+  const double layer = std::max(layer_, model_.overhang_at(v));
+  const double way = (b - a - surface_.carried).norm(), reach = reach_at(v, way) + layer;
   if (!surface_.moving->is_near(a, b, surface_.carried, reach)) return;
   const double moved = way + 2 * surface_.own_move;
   const std::optional<Place> before = surface_.moving->closest_at_start(a, reach + moved);
@@ -44,10 +45,10 @@ void SheetPair::find(std::size_t index, std::vector<Contact>& list) const {
   if (!crossing && side_of(*place, b, x_) == 0) return;
   place->normal = side * normal_of(place->triangle, x_);
   if (place->normal.isZero(0)) return;
-  place->distance = place->normal.dot(b - place->point) - layer_;
+  place->distance = place->normal.dot(b - place->point) - layer;
   if (place->distance >= reach) return;
-  const double field = before && !crossing ? side * normal_of(before->triangle, q_).dot(a - before->point) - layer_ : 0;
-  add(v, *place, before ? field : reach, list, layer_);
+  const double field = before && !crossing ? side * normal_of(before->triangle, q_).dot(a - before->point) - layer : 0;
+  add(v, *place, before ? field : reach, list, layer);
 }
 
 double SheetPair::share_to_impact(std::size_t index, double least) const {

@@ -31,7 +31,7 @@ void SolidPair::find(std::size_t index, std::vector<Contact>& list) const {
   const std::int32_t v = points_[index];
   const Vec3 a = q_.row(v).transpose(), b = x_.row(v).transpose();
   const double way = (b - a - surface_.carried).norm();
-  const double reach = reach_at(v, way) + layer_;
+  const double near = reach_at(v, way), reach = near + std::max(layer_, own_.overhang + surface_.overhang);
   const bool is_near = surface_.moving->is_near(a, b, surface_.carried, reach);
   if (!is_near && !is_in_box(a)) return;
   const std::optional<Place>& before = beginning(index, a);
@@ -40,19 +40,34 @@ void SolidPair::find(std::size_t index, std::vector<Contact>& list) const {
   double field = before ? before->distance : reach;
   const std::optional<Place> held = field <= 0 ? leaving(*before, v, b, reach, way)
                                                : arriving(v, a, b, reach, way, beginnings_[index].nearest, field);
-  if (held) add(v, *held, field - layer_, list, layer_);
+  if (!held) return;
+  const double layer = layer_at(v, *held);
+  if (held->distance < near + layer) add(v, *held, field - layer, list, layer);
 }
 
 double SolidPair::share_to_impact(std::size_t index, double least) const {
   if (!is_looked_at(index)) return 1;
   const std::int32_t v = points_[index];
   const Vec3 a = q_.row(v).transpose(), b = x_.row(v).transpose();
-  if (!surface_.moving->is_near(a, b, surface_.carried, 0)) return 1;
+  if (!surface_.moving->is_near(a, b, surface_.carried, std::max(layer_, own_.overhang + surface_.overhang))) return 1;
   const std::optional<Place>& before = beginning(index, a);
-  if (before && before->distance <= 0) return 1;
+  if (before && before->distance <= layer_at(v, *before)) return 1;
   const std::optional<Entry> entry = surface_.moving->first_entry(a, b, surface_.carried, least);
-  if (!entry) return 1;
-  return TouchedSurface::share_to_impact(*entry, a, b);
+  if (!entry) return before ? share_to_layer(v, *before, b) : 1;
+  const Place entered{entry->triangle, entry->weights, Vec3::Zero(), 0, entry->normal};
+  return TouchedSurface::share_to_impact(*entry, a, b, layer_at(v, entered));
+}
+
+// Returns the share of the way at which a point that stays outside is deeper in the layer than it may be; 1: it never
+// is. before: the place that is closest to it where the step begins.
+double SolidPair::share_to_layer(std::int32_t v, const Place& before, const Vec3& b) const {
+  const double allowed = usual_depth(size_), most = std::max(layer_, own_.overhang + surface_.overhang);
+  if (most <= allowed) return 1;
+  const std::optional<Place> here = closest(v, b, most - allowed);
+  if (!here) return 1;
+  const double end = std::max(0.0, layer_at(v, *here) - allowed);
+  if (here->distance >= end || before.distance <= end) return 1;
+  return (before.distance - end) / (before.distance - here->distance);
 }
 
 // Tells whether the points' own surface is that of a solid, which faces outward.
@@ -87,6 +102,12 @@ const MovingSurface::Place* SolidPair::beginning_inside(std::size_t index) const
   return place && place->distance <= 0 ? &*place : nullptr;
 }
 
+// Returns how far from the surface contact begins between a point and a place [m]. The layer of a sheet is there to be
+// seen, so that no overhang of what is drawn comes on top of it.
+double SolidPair::layer_at(std::int32_t v, const Place& place) const {
+  return std::max(layer_, model_.overhang_at(v) + overhang_at(place));
+}
+
 // Returns the way that a point faces at an iterate; 0 for that of a sheet.
 Vec3 SolidPair::facing_at_end(std::int32_t v) const {
   if (!faces()) return Vec3::Zero();
@@ -115,7 +136,8 @@ std::optional<MovingSurface::Place> SolidPair::closest(const Vec3& p, const Vec3
     place = find(&others);
     if (!place) return place;
   }
-  if (is_over_face(*place, p, x)) {
+  const bool is_kept_away = surface_.overhang + own_.overhang > 0 && is_outside;
+  if (!is_kept_away && is_over_face(*place, p, x)) {
     place->normal = normal_of(place->triangle, x);
     place->distance = place->normal.dot(p - place->point);
   } else if (is_outside && place->distance < 0) {
@@ -133,8 +155,9 @@ bool SolidPair::leave_commonly(std::int32_t v, const Vec3& a, double reach, std:
   if (!exit) return false;
   const Place place{exit->triangle, exit->weights, Vec3::Zero(), 0, common_.direction};
   const ContactStencil stencil = stencil_of(v, place);
+  const double layer = layer_at(v, place);
   if (common_.direction.dot(stencil.at(x_)) < reach)
-    add(stencil, v, common_.direction, -exit->share * common_.length - layer_, list, layer_);
+    add(stencil, v, common_.direction, -exit->share * common_.length - layer, list, layer);
   return true;
 }
 

@@ -29,9 +29,11 @@ class SolidPair : public TouchedSurface {
  private:
   using Takes = MovingSurface::Takes;
 
+  double share_to_layer(std::int32_t v, const Place& before, const Vec3& b) const;
   bool faces() const;
   bool is_in_box(const Vec3& a) const;
   const std::optional<Place>& beginning(std::size_t index, const Vec3& a) const;
+  double layer_at(std::int32_t v, const Place& place) const;
   Vec3 facing_at_end(std::int32_t v) const;
   std::optional<Place> closest(std::int32_t v, const Vec3& b, double most) const;
   template <class Find>

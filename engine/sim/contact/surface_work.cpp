@@ -97,6 +97,7 @@ void make_surfaces(const Model& model, const StepInputs& inputs, Work& work) {
       surface.triangles = triangles_of(model, part);
       surface.points = points_of(part, surface.triangles);
       describe_surface(model, part, surface);
+      for (const std::int32_t v : surface.points) surface.overhang = std::max(surface.overhang, model.overhang_at(v));
       if (part.solid) continue;
       surface.layer = sheet_layer(surface.edge);
       list_edges(part, surface);

@@ -22,6 +22,7 @@ struct SurfaceWork::Parts {
     std::vector<char> sharp;           // by point: whether faces at it look very differently at rest
     double edge = 0;                   // the mean length of the surface's edges at rest [m]
     double layer = 0;                  // how far a sheet keeps others from it; 0 for a solid [m]
+    double overhang = 0;               // the largest of its points' [m]
     std::vector<EdgeEnds> edges;       // each edge of a sheet once, by vertices of the joined model; none of a solid
     // Tells by triangle of a sheet where those of its edges begin that no earlier triangle has, and where all end.
     std::vector<std::int32_t> edge_begin;

@@ -53,15 +53,22 @@ double TouchedSurface::way_into(const Entry& entry, const Vec3& a, const Vec3& b
   return -entry.normal.dot(pace);
 }
 
-double TouchedSurface::share_to_impact(const Entry& entry, const Vec3& a, const Vec3& b) const {
-  const double falls = way_into(entry, a, b), allowed = usual_depth(size_);
-  return falls * (1 - entry.share) > allowed ? entry.share + allowed / falls : 1;
+double TouchedSurface::share_to_impact(const Entry& entry, const Vec3& a, const Vec3& b, double layer) const {
+  const double falls = way_into(entry, a, b), allowed = usual_depth(size_) - layer;
+  return falls * (1 - entry.share) > allowed ? std::max(0.0, entry.share + allowed / falls) : 1;
 }
 
 bool TouchedSurface::is_over_face(const Place& place, const Vec3& p, const Positions& x) const {
   const Vec3 normal = normal_of(place.triangle, x), offset = p - place.point;
   const double above = normal.dot(offset), beside = (offset - above * normal).norm();
   return !normal.isZero(0) && above >= -usual_depth(size_) && beside <= usual_depth(size_);
+}
+
+double TouchedSurface::overhang_at(const Place& place) const {
+  if (surface_.overhang == 0) return 0;
+  double overhang = 0;
+  for (int k = 0; k < 3; ++k) overhang += place.weights[k] * model_.overhang_at(corner(place.triangle, k));
+  return overhang;
 }
 
 Vec3 TouchedSurface::normal_of(std::int32_t triangle, const Positions& x) const {
@@ -148,8 +155,8 @@ bool are_apart(const Model& model, const StepInputs& inputs, const Meeting& meet
   const double way = own.own_move + (own.carried - other.carried).norm();
   const double freely = own.free_move + (own.carried_freely - other.carried_freely).norm();
   const double fall = model.time_step * model.time_step * inputs.gravity.norm();
-  const double reach =
-      (1 + 1e-6) * reach_of(way + other.own_move, std::max(freely + other.free_move, fall)) + own.layer + other.layer;
+  const double reach = (1 + 1e-6) * reach_of(way + other.own_move, std::max(freely + other.free_move, fall)) +
+                       own.layer + other.layer + own.overhang + other.overhang;
   const Bounds one = swept(*own.moving), two = swept(*other.moving);
   return ((one.lower.array() - reach > two.upper.array()) || (two.lower.array() - reach > one.upper.array())).any();
 }

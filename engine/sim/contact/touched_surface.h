@@ -36,6 +36,9 @@ class TouchedSurface {
   // boxes on one another have their edges in one place: round-off alone would decide whether a lid carries them.
   bool is_over_face(const Place& place, const Vec3& p, const Positions& x) const;
 
+  // Returns how far what is drawn reaches beyond a place of the surface [m].
+  double overhang_at(const Place& place) const;
+
   // Returns the unit normal of a triangle; zero where it has no area.
   Vec3 normal_of(std::int32_t triangle, const Positions& x) const;
 
@@ -46,8 +49,9 @@ class TouchedSurface {
   // triangle's own motion [m].
   double way_into(const Entry& entry, const Vec3& a, const Vec3& b) const;
 
-  // Returns the share of the way from q to x at which a point that enters is deeper than usual; 1: it never is.
-  double share_to_impact(const Entry& entry, const Vec3& a, const Vec3& b) const;
+  // Returns the share of the way from q to x at which a point that enters is deeper than usual; 1: it never is. layer:
+  // how far above the surface contact begins [m].
+  double share_to_impact(const Entry& entry, const Vec3& a, const Vec3& b, double layer = 0) const;
 
   // Adds the contact with the plane through a place, lowered by as much of the depth as need not be corrected in this
   // step. field: the distance where the step began, negative inside [m]. layer: how far above the place the plane lies

@@ -31,6 +31,8 @@ void place_vertices(const std::vector<const Model*>& bodies, Model& joined) {
   joined.rest.resize(joined.vertices, 3);
   joined.mass.resize(joined.vertices);
   joined.input_of.resize(joined.vertices);
+  if (std::ranges::any_of(bodies, [](const Model* body) { return !body->overhang.empty(); }))
+    joined.overhang.resize(joined.vertices, 0.0);
   std::int32_t inputs = 0;
   for (std::size_t p = 0; p < bodies.size(); ++p) {
     const Model& body = *bodies[p];
@@ -38,6 +40,7 @@ void place_vertices(const std::vector<const Model*>& bodies, Model& joined) {
     for (std::int32_t v = 0; v < body.vertices; ++v) {
       const std::int32_t at = joined_vertex(joined.parts[p], v);
       joined.mass[at] = body.mass[v];
+      if (!body.overhang.empty()) joined.overhang[at] = body.overhang[v];
       joined.input_of[at] = inputs + body.input_of[v];
     }
     inputs += body.vertices;

@@ -38,6 +38,8 @@ void number_vertices(Model& model, const BodyDescription& body, const std::vecto
   for (std::int32_t i = 0; i < model.vertices; ++i) model.internal_of[model.input_of[i]] = i;
   model.rest.resize(model.vertices, 3);
   for (std::int32_t i = 0; i < model.vertices; ++i) model.rest.row(i) = body.mesh.rest.row(model.input_of[i]);
+  for (std::int32_t i = 0; i < model.vertices && !body.overhang.empty(); ++i)
+    model.overhang.push_back(body.overhang[std::size_t(model.input_of[i])]);
 }
 
 // Sorts the triangles, so that neighbours stay together as their vertices do.

@@ -50,8 +50,11 @@ struct BodyDescription {
   std::vector<Fibre> fibres;        // by region tag; empty: none
   std::vector<Spring> springs;      // beside the tetrahedra or, for cloth, instead of them
   Triangles surface;                // the surface that contact sees; empty: the boundary of the tetrahedra
-  double density = 1000;            // of the tetrahedra [kg/m^3]
-  std::vector<double> point_mass;   // by vertex, on top of the tetrahedra's [kg]; empty: none
+  // How far what is drawn reaches beyond this surface, by vertex; contact with other bodies begins there. Empty:
+  // nowhere [m]
+  std::vector<double> overhang;
+  double density = 1000;           // of the tetrahedra [kg/m^3]
+  std::vector<double> point_mass;  // by vertex, on top of the tetrahedra's [kg]; empty: none
   std::vector<Handle> handles;
   double time_step = 1.0 / 30;  // h [s]
   Integrator integrator = Integrator::backward_euler;
@@ -87,6 +90,7 @@ struct Model : System {
   std::vector<std::int32_t> input_of;     // vertex of the input file, by vertex of the model
   std::vector<std::int32_t> internal_of;  // vertex of the model, by vertex of the input file
   Triangles surface;                      // the triangles that contact sees, in the order of their lowest vertices
+  std::vector<double> overhang;           // of what is drawn beyond this surface, by vertex; empty: none [m]
 
   Integrator integrator = Integrator::backward_euler;
   TimeScheme scheme = scheme_of(Integrator::backward_euler);
@@ -136,6 +140,7 @@ struct Model : System {
   SparseRows damping;
 
   ElementChunk chunk(int index) const;
+  double overhang_at(std::int32_t vertex) const { return overhang.empty() ? 0 : overhang[std::size_t(vertex)]; }  // [m]
   std::size_t part_number(std::int32_t vertex) const;  // of the part that a vertex belongs to
   const Part& part_of(std::int32_t vertex) const { return parts[part_number(vertex)]; }
 };
