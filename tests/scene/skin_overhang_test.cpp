@@ -18,7 +18,7 @@ namespace skin_overhang_test {
 
 std::string ball(const std::string& name, double scale, const std::string& keys) {
   return fmt::format(
-      "[[body]]\nname = \"{}\"\nshape = \"shapes/sphere.toml\"\nscale = {}\nvertices = 300\nskin_cells = 24\n"
+      "[[body]]\nname = \"{}\"\nshape = \"shapes/sphere.toml\"\nscale = {}\nvertices = 600\nskin_cells = 24\n"
       "material = {{ model = \"stable-neo-hookean\", young = 1e5, poisson = 0.4 }}\n{}\n",
       name, scale, keys);
 }
@@ -41,13 +41,18 @@ TEST(SkinOverhang, OfABallIsWhatItsTrianglesLackAtMost) {
         most = std::max(most, radius - (center - middle).norm());
       }
     }
-    double largest = 0;
+    // Smoothing moves the overhang from vertex to vertex, and keeps its mean.
+    double sum = 0, expected_sum = 0;
     for (std::size_t v = 0; v < expected.size(); ++v) {
-      EXPECT_GE(body.description.overhang[v], expected[v] - 1e-4 * radius) << v;
-      EXPECT_LE(body.description.overhang[v], 1.3 * expected[v] + 1e-3 * radius) << v;
-      largest = std::max(largest, body.description.overhang[v]);
+      const double overhang = body.description.overhang[v];
+      EXPECT_EQ(overhang > 0, expected[v] > 0) << v;
+      EXPECT_LE(overhang, 0.004 * bounds_of(rest).diagonal()) << v;
+      EXPECT_LE(std::abs(overhang - expected[v]), 0.6 * expected[v]) << v;
+      sum += overhang;
+      expected_sum += expected[v];
     }
-    EXPECT_GT(largest, 5e-3 * radius);
+    EXPECT_GT(expected_sum, 0);
+    EXPECT_NEAR(sum / expected_sum, 1, 0.1);
   }
 }
 
@@ -102,8 +107,8 @@ TEST(SkinOverhang, KeepsTheSkinsOfTwoBallsApartButNotFar) {
     ASSERT_FALSE(world.touches().empty());
     if (!counts) without = depth;
     if (!counts) continue;
-    EXPECT_LT(depth, 1e-3);
-    EXPECT_LT(depth, 0.3 * without);
+    EXPECT_LT(depth, 2e-3);
+    EXPECT_LT(depth, 0.4 * without);
     EXPECT_GT(depth, -6e-3);
   }
   EXPECT_GT(without, 3e-3);

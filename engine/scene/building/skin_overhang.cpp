@@ -10,7 +10,9 @@
 namespace supple {
 namespace {
 
-constexpr double most = 0.01;  // over the body's size
+constexpr double furthest_skin = 0.01;  // over the body's size
+constexpr double most = 0.004;  // the same; deeper than contact usually is, impacts would hide more of the bodies
+constexpr int smoothings = 3;   // a step cannot foresee how the overhang changes along the surface
 
 // Finds how far the skin is from places of the elements' surface, in the file's frame and units.
 class SkinAbove {
@@ -42,6 +44,22 @@ class SkinAbove {
   std::optional<MovingSurface> surface_;
 };
 
+// Puts the mean over the triangles at each vertex in the place of its value.
+void smooth(const Triangles& surface, std::vector<double>& values) {
+  std::vector<double> sum(values.size()), count(values.size());
+  for (const auto& t : surface.rowwise()) {
+    double mean = 0;
+    for (int k = 0; k < 3; ++k) mean += values[std::size_t(t[k])] / 3;
+    for (int k = 0; k < 3; ++k) {
+      sum[std::size_t(t[k])] += mean;
+      count[std::size_t(t[k])] += 1;
+    }
+  }
+  for (std::size_t v = 0; v < values.size(); ++v) {
+    if (count[v] > 0) values[v] = sum[v] / count[v];
+  }
+}
+
 }  // namespace
 
 std::vector<double> skin_overhang(const Body& body) {
@@ -57,7 +75,7 @@ std::vector<double> skin_overhang(const Body& body) {
   const SkinAbove skin(body);
   const Triangles surface = surface_of(body);
   const Positions& points = body.description.mesh.rest;
-  const double furthest = most * bounds_of(points).diagonal();
+  const double size = bounds_of(points).diagonal(), furthest = furthest_skin * size;
   std::vector<double> overhang(std::size_t(points.rows()));
   for (const auto& t : surface.rowwise()) {
     Mat3 corners;  // by column
@@ -65,13 +83,14 @@ std::vector<double> skin_overhang(const Body& body) {
     const Vec3 normal = (corners.col(1) - corners.col(0)).cross(corners.col(2) - corners.col(0));
     if (!(normal.norm() > 0)) continue;
     for (const Vec3& place : places) {
-      const double way = skin.way(corners * place, normal.normalized(), furthest);
+      const double way = std::min(skin.way(corners * place, normal.normalized(), furthest), most * size);
       for (int k = 0; k < 3; ++k) {
         double& most_there = overhang[std::size_t(t[k])];
         most_there = std::max(most_there, way);
       }
     }
   }
+  for (int round = 0; round < smoothings; ++round) smooth(surface, overhang);
   return overhang;
 }
 

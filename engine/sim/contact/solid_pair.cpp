@@ -38,8 +38,12 @@ void SolidPair::find(std::size_t index, std::vector<Contact>& list) const {
   if (!is_near && (!before || before->distance >= 0)) return;
   if (common_.length > 0 && before && before->distance <= 0 && leave_commonly(v, a, reach, list)) return;
   double field = before ? before->distance : reach;
-  const std::optional<Place> held = field <= 0 ? leaving(*before, v, b, reach, way)
-                                               : arriving(v, a, b, reach, way, beginnings_[index].nearest, field);
+  std::optional<Place> held;
+  if (before && field > 0) held = resting(*before, v, a, b);
+  if (!held) {
+    held = field <= 0 ? leaving(*before, v, b, reach, way)
+                      : arriving(v, a, b, reach, way, beginnings_[index].nearest, field);
+  }
   if (!held) return;
   const double layer = layer_at(v, *held);
   if (held->distance < near + layer) add(v, *held, field - layer, list, layer);
@@ -159,6 +163,24 @@ bool SolidPair::leave_commonly(std::int32_t v, const Vec3& a, double reach, std:
   if (common_.direction.dot(stencil.at(x_)) < reach)
     add(stencil, v, common_.direction, -exit->share * common_.length - layer, list, layer);
   return true;
+}
+
+// Returns the place that holds a point which begins the step outside, in the layer where contact begins, and hardly
+// moves beside the surface: the one that is closest to it at the beginning. Above a hollow, which place is closest may
+// change with every iterate, and the normal with it, so that what rests there never comes to rest.
+std::optional<MovingSurface::Place> SolidPair::resting(const Place& before, std::int32_t v, const Vec3& a,
+                                                       const Vec3& b) const {
+  constexpr double hardly = 0.25;  // of the layer
+  if (layer_ + surface_.overhang + own_.overhang == 0) return std::nullopt;
+  const double layer = layer_at(v, before);
+  if (before.distance > (1 + hardly) * layer) return std::nullopt;
+  std::optional<Place> place = place_at_end(before.triangle, before.weights, b);
+  if (!place || ((b - place->point) - (a - before.point)).norm() > hardly * layer) return std::nullopt;
+  const Vec3 turned = before.normal + place->normal - normal_of(before.triangle, q_);
+  if (!(turned.norm() > 0)) return std::nullopt;
+  place->normal = turned.normalized();
+  place->distance = place->normal.dot(b - place->point);
+  return place;
 }
 
 // Finds the place that holds a point which began the step inside.

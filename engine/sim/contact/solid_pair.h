@@ -40,6 +40,7 @@ class SolidPair : public TouchedSurface {
   std::optional<Place> closest(const Vec3& p, const Vec3& facing, const Positions& x, const Find& find,
                                double* nearest = nullptr) const;
   bool leave_commonly(std::int32_t v, const Vec3& a, double reach, std::vector<Contact>& list) const;
+  std::optional<Place> resting(const Place& before, std::int32_t v, const Vec3& a, const Vec3& b) const;
   std::optional<Place> leaving(const Place& before, std::int32_t v, const Vec3& b, double reach, double way) const;
   std::optional<Place> arriving(std::int32_t v, const Vec3& a, const Vec3& b, double reach, double way, double nearest,
                                 double& field) const;
