@@ -203,7 +203,8 @@ def main():
     arguments = read_arguments()
     records = (os.path.join(arguments.run, name) for name in ("run.json", "skins.json"))
     with open(next(filter(os.path.exists, records), "run.json")) as file:
-        scene = json.load(file)["scene"]
+        record = json.load(file)
+    scene = record["scene"]
     motion = os.path.join(arguments.run, "motion")
     names = sorted(name[:-4] for name in os.listdir(motion) if name.endswith(".pc2"))
     for body in list(bpy.data.objects):
@@ -220,7 +221,7 @@ def main():
     sun.rotation_euler = (math.radians(50), 0, math.radians(30))
     bpy.context.scene.collection.objects.link(sun)
     bpy.context.scene.frame_start, bpy.context.scene.frame_end = 0, frames - 1
-    fps = scene.get("fps", 30)
+    fps = record.get("rate", scene.get("fps", 30))
     bpy.context.scene.render.fps = max(1, round(fps))
     bpy.context.scene.render.fps_base = bpy.context.scene.render.fps / fps
     bpy.context.scene.frame_set(arguments.frame)

@@ -38,8 +38,7 @@ std::vector<std::string> names_of(const std::vector<Body>& bodies) {
 void check_folder(const FilmPlan& plan, const LoadedFilm& film, const FilmStart& start) {
   const SceneDef& scene = film.world.script().scene();
   check_save_states(plan.save_states, scene, start.place.path, start.kept_frames());
-  check_rows_and_motion(start.place.path, film.world.bodies(), static_cast<int>(scene.colliders.size()),
-                        start.kept_frames());
+  check_rows_and_motion(start.place.path, film.world.bodies(), scene, start.kept_frames());
   if (plan.pictures == FilmPictures::all && !plan.film_only)
     check_pictures(start.place.path / "frames", start.kept_frames());
 }

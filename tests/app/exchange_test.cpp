@@ -204,7 +204,7 @@ TEST(Fields, AgreeWithTheProfileAndTheMotion) {
   EXPECT_NEAR(springs, row[1]["elastic_energy"].get<double>(), 1e-9 * springs);
 }
 
-TEST(Fields, ChangeNoResultAndHaveNoContactWithoutColliders) {
+TEST(Fields, ChangeNoResultAndHaveNoForcesWhereNothingTouches) {
   const test::TemporaryFolder folder;
   std::filesystem::path out = filmed(folder, scene, {});
   EXPECT_FALSE(std::filesystem::exists(out / "fields"));
@@ -215,8 +215,8 @@ TEST(Fields, ChangeNoResultAndHaveNoContactWithoutColliders) {
   out = filmed(folder, scene, {"--vtu", "4", "--error-every", "3"});
   EXPECT_EQ(hash(out), without);
   const VtuFile box = read_vtu(out / "fields" / "box-000008.vtu");
-  EXPECT_FALSE(box.point_data.contains("contact_force"));
-  EXPECT_EQ(box.point_data.size(), 2u);
+  EXPECT_EQ(norm(box.point_data.at("contact_force"), 0), 0) << "the cloth might touch it";
+  EXPECT_EQ(box.point_data.size(), 3u);
   // In free fall nothing is strained: every vertex moves by g h^2 n (n + 1) / 2 after n steps.
   const double h = 1 / 30.0;
   EXPECT_NEAR(norm(box.point_data.at("displacement"), 0), 9.81 * h * h * 9 * 10 / 2, 1e-4);

@@ -68,6 +68,19 @@ const std::string in_place = "gravity = [0, 0, 0]\n";
 const std::string ground = "[[collider]]\nshape = { half_space = { normal = [0, 1, 0] } }\n";
 const std::string names = R"(["lower", "upper"])";
 
+// Forces do not follow from positions, so that a drawing needs what the run kept of them.
+TEST_F(TouchingBodies, KeepTheirForcesForDrawingsWhereThereIsNoCollider) {
+  const auto bytes_of_forces = [&](const std::string& position) {
+    film("frames = 8\n" + in_place + cube("left", "velocity = [1, 0, 0]") + cube("right", position));
+    const Result drawn = test::run(folder_.path, {"draw", "film", "--frame", "5", "--still", "forces.png", "--field",
+                                                  "force", "--set", "output.width=160", "--set", "output.height=90"});
+    EXPECT_EQ(drawn.status, 0) << drawn.err;
+    return std::filesystem::file_size(folder_.path / "film" / "motion" / "left.forces");
+  };
+  const auto touched = bytes_of_forces("position = [0.25, 0, 0]"), apart = bytes_of_forces("position = [3, 0, 0]");
+  EXPECT_GT(touched, apart);
+}
+
 TEST_F(TouchingBodies, HaveRowsInTheFramesInWhichTheyTouch) {
   const Result result =
       film("frames = 12\n" + cube("lower", "") + cube("upper", "position = [0.02, 0.25, 0.03]") + ground);

@@ -68,8 +68,7 @@ BodyRecorder::BodyRecorder(World& world, std::size_t body, const RunFolder& fold
       motion_(folder.motion(world.bodies()[body].def.name), world.body(body).model().vertices, kept_frames),
       origin_(motion_origin(world.bodies()[body].description.mesh.rest)) {
   const Body& recorded = world.bodies()[body];
-  if (!world.colliders().colliders.empty())
-    forces_.emplace(folder.forces(recorded.def.name), model().vertices, kept_frames);
+  if (world.scene().may_touch()) forces_.emplace(folder.forces(recorded.def.name), model().vertices, kept_frames);
   start_energy_balance({});
   write_obj(folder.surface(recorded.def.name), recorded.description.mesh.rest, surface_of(recorded), origin_);
 }
@@ -189,8 +188,8 @@ void BodyRecorder::save_problem(int frame) {
 }
 
 void BodyRecorder::save_fields(int frame) {
-  if (!fields_) fields_.emplace(body(), model(), folder_, world_.scene().fps);
-  fields_->add(frame, state(), moving().inputs(), moving().workspace());
+  if (!fields_) fields_.emplace(body(), model(), folder_, world_.scene());
+  fields_->add(frame, state(), moving().workspace());
 }
 
 }  // namespace supple

@@ -19,8 +19,8 @@ VtuArray array_of(const char* name, int components, const std::vector<T>& values
 
 }  // namespace
 
-FieldWriter::FieldWriter(const Body& body, const Model& model, const RunFolder& folder, double fps)
-    : body_(body), model_(model), folder_(folder), fps_(fps) {
+FieldWriter::FieldWriter(const Body& body, const Model& model, const RunFolder& folder, const SceneDef& scene)
+    : body_(body), model_(model), folder_(folder), fps_(scene.fps), may_touch_(scene.may_touch()) {
   std::error_code error;
   std::filesystem::create_directories(folder.fields(), error);
   if (error) throw RunError(fmt::format("{}: cannot be made: {}", folder.fields().string(), error.message()));
@@ -41,7 +41,7 @@ void FieldWriter::write_collection() const {
   write_pvd(folder_.field_collection(body_.def.name), entries);
 }
 
-void FieldWriter::add(int frame, const State& state, const StepInputs& inputs, const OpenWorkspace& workspace) {
+void FieldWriter::add(int frame, const State& state, const OpenWorkspace& workspace) {
   const TetMesh& mesh = body_.description.mesh;
   const bool cloth = mesh.tets.rows() == 0;
   const Positions x = in_input_order(model_, state.x);
@@ -51,7 +51,7 @@ void FieldWriter::add(int frame, const State& state, const StepInputs& inputs, c
   grid.points = {x.data(), std::size_t(x.size())};
   grid.point_data = {array_of("displacement", 3, displacement), array_of("velocity", 3, velocity)};
   Floats force, stretch, von_mises;
-  if (inputs.colliders != nullptr && !inputs.colliders->empty()) {
+  if (may_touch_) {
     force = as_floats(contact_forces(model_, workspace, state.x));
     grid.point_data.push_back(array_of("contact_force", 3, force));
   }

@@ -12,12 +12,12 @@ namespace supple {
 class FieldWriter {
  public:
   // Creates the folder; throws RunError when that fails. All that is passed must outlive the writer.
-  FieldWriter(const Body& body, const Model& model, const RunFolder& folder, double fps);
+  FieldWriter(const Body& body, const Model& model, const RunFolder& folder, const SceneDef& scene);
 
   // Writes a frame and updates the collection, so that it can be opened while the film is made. In a film that was
   // resumed, the collection also contains the frames that were written before. workspace: the workspace of the step
-  // that led to the state. Contact forces are written where there are colliders. Throws RunError.
-  void add(int frame, const State& state, const StepInputs& inputs, const OpenWorkspace& workspace);
+  // that led to the state. Contact forces are written where there is anything to touch. Throws RunError.
+  void add(int frame, const State& state, const OpenWorkspace& workspace);
 
  private:
   void find_earlier(int frame);
@@ -27,6 +27,7 @@ class FieldWriter {
   const Model& model_;
   const RunFolder& folder_;
   double fps_;
+  bool may_touch_;
   std::vector<int> written_;  // frames
 };
 

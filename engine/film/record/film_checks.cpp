@@ -87,7 +87,7 @@ std::optional<WorldState> checkpoint_in(const std::filesystem::path& run, const 
   return checkpoint;
 }
 
-void check_rows_and_motion(const std::filesystem::path& run, const std::vector<Body>& bodies, int colliders,
+void check_rows_and_motion(const std::filesystem::path& run, const std::vector<Body>& bodies, const SceneDef& scene,
                            int frames) {
   if (frames == 0) return;
   noted_rows(RunFolder::checkpoint_of(run).parent_path() / "rows.jsonl", frames);
@@ -100,10 +100,11 @@ void check_rows_and_motion(const std::filesystem::path& run, const std::vector<B
     const auto vertices = static_cast<int>(body.description.mesh.rest.rows());
     if (!point_cache_has(motion, vertices, frames)) refuse(motion);
     const std::filesystem::path forces = run / "motion" / (body.def.name + ".forces");
-    if (colliders > 0 && !force_file_has(forces, vertices, frames)) refuse(forces);
+    if (scene.may_touch() && !force_file_has(forces, vertices, frames)) refuse(forces);
   }
   const std::filesystem::path table = run / "motion" / "colliders.csv";
-  if (colliders > 0 && !pose_table_bytes(table, colliders * frames)) refuse(table);
+  const int poses = static_cast<int>(scene.colliders.size()) * frames;
+  if (poses > 0 && !pose_table_bytes(table, poses)) refuse(table);
 }
 
 void check_pictures(const std::filesystem::path& frames, int count) {

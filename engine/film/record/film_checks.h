@@ -19,7 +19,7 @@ std::optional<WorldState> checkpoint_in(const std::filesystem::path& run, const 
                                         const RunInfo& info);
 
 // Checks the rows and the motion of the first frames, which are not made again. check_pictures() checks their pictures.
-void check_rows_and_motion(const std::filesystem::path& run, const std::vector<Body>& bodies, int colliders,
+void check_rows_and_motion(const std::filesystem::path& run, const std::vector<Body>& bodies, const SceneDef& scene,
                            int frames);
 
 // Checks the pictures of frames that are not made again.

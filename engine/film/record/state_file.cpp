@@ -68,7 +68,8 @@ Json solver_json(const StepProblem& problem) {
            {{"stiffness", c.stiffness},
             {"push_out", c.push_out},
             {"stick", c.stick},
-            {"direction", name_of(c.direction)}}}};
+            {"direction", name_of(c.direction)},
+            {"points", name_of(c.points)}}}};
 }
 
 Json json_of(const Eigen::Isometry3d& pose) {

@@ -142,7 +142,7 @@ std::vector<PointCacheReader> motion_of(const RunRecord& run, const LoadedFilm& 
 std::vector<ForceFileReader> forces_of(const RunRecord& run, const LoadedFilm& film) {
   std::vector<ForceFileReader> forces;
   const SceneDef& scene = film.world.script().scene();
-  if (scene.field.quantity != FieldQuantity::force || scene.colliders.empty()) return forces;
+  if (scene.field.quantity != FieldQuantity::force || !scene.may_touch()) return forces;
   for (const Body& body : film.world.bodies()) {
     const std::filesystem::path file = run.forces(body.def.name);
     std::error_code error;

@@ -361,6 +361,8 @@ struct SceneDef {
   std::filesystem::path assets;
 
   double time_step() const { return 1 / (fps * substeps); }
+  // Tells whether there is anything that a body may touch, besides itself. Runs keep contact forces where there is.
+  bool may_touch() const { return !colliders.empty() || bodies.size() > 1; }
 };
 
 }  // namespace supple

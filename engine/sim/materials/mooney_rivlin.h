@@ -29,7 +29,7 @@ struct MooneyRivlin {
   // modulus goes to mu_2, as is usual for rubber.
   static MooneyRivlin from(const Lame& lame) { return {0.8 * lame.mu, 0.2 * lame.mu, lame.lambda - 0.4 * lame.mu}; }
   const char* problem() const {
-    return lambda < 0 ? "Poisson's ratio is too small for mooney-rivlin: lambda would be negative (at least 0.15)"
+    return lambda < 0 ? "Poisson's ratio is too small for mooney-rivlin: lambda would be negative (at least 1/7)"
                       : nullptr;
   }
 
