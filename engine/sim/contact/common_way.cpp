@@ -71,9 +71,9 @@ double way_out(const Inside& inside, const Vec3& direction) {
 
 }  // namespace
 
-// Of the normals of the places that are closest to points inside, the one is taken along which the parts have the
-// shortest way. A way on which they already move counts as shorter: they would otherwise be pushed to and fro between
-// ways that are about equally long.
+// Tries the normals of the places that are closest to points inside, and takes the one along which the parts have to go
+// least far. A way on which they already move counts as shorter: they would otherwise be pushed to and fro between ways
+// that are about equally long.
 void find_common_way(const Model& model, const StepInputs& inputs, std::size_t meeting, const Positions& q,
                      const Positions& y, const Positions& x, Work& work) {
   if (work.common_ways[meeting].is_known) return;

@@ -31,7 +31,7 @@ void SolidPair::find(std::size_t index, std::vector<Contact>& list) const {
   const std::int32_t v = points_[index];
   const Vec3 a = q_.row(v).transpose(), b = x_.row(v).transpose();
   const double way = (b - a - surface_.carried).norm();
-  const double near = reach_at(v, way), reach = near + std::max(layer_, own_.overhang + surface_.overhang);
+  const double near = reach_at(v, way), reach = near + most_layer();
   const bool is_near = surface_.moving->is_near(a, b, surface_.carried, reach);
   if (!is_near && !is_in_box(a)) return;
   const std::optional<Place>& before = beginning(index, a);
@@ -53,7 +53,7 @@ double SolidPair::share_to_impact(std::size_t index, double least) const {
   if (!is_looked_at(index)) return 1;
   const std::int32_t v = points_[index];
   const Vec3 a = q_.row(v).transpose(), b = x_.row(v).transpose();
-  if (!surface_.moving->is_near(a, b, surface_.carried, std::max(layer_, own_.overhang + surface_.overhang))) return 1;
+  if (!surface_.moving->is_near(a, b, surface_.carried, most_layer())) return 1;
   const std::optional<Place>& before = beginning(index, a);
   if (before && before->distance <= layer_at(v, *before)) return 1;
   const std::optional<Entry> entry = surface_.moving->first_entry(a, b, surface_.carried, least);
@@ -65,7 +65,7 @@ double SolidPair::share_to_impact(std::size_t index, double least) const {
 // Returns the share of the way at which a point that stays outside is deeper in the layer than it may be; 1: it never
 // is. before: the place that is closest to it where the step begins.
 double SolidPair::share_to_layer(std::int32_t v, const Place& before, const Vec3& b) const {
-  const double allowed = usual_depth(size_), most = std::max(layer_, own_.overhang + surface_.overhang);
+  const double allowed = usual_depth(size_), most = most_layer();
   if (most <= allowed) return 1;
   const std::optional<Place> here = closest(v, b, most - allowed);
   if (!here) return 1;

@@ -3,6 +3,8 @@
 // inside, by the closest place, or by the one to which the common way of its part leads (common_way.h).
 #pragma once
 
+#include <algorithm>
+
 #include "sim/contact/touched_surface.h"
 
 namespace supple {
@@ -34,6 +36,7 @@ class SolidPair : public TouchedSurface {
   bool is_in_box(const Vec3& a) const;
   const std::optional<Place>& beginning(std::size_t index, const Vec3& a) const;
   double layer_at(std::int32_t v, const Place& place) const;
+  double most_layer() const { return std::max(layer_, own_.overhang + surface_.overhang); }  // of any place [m]
   Vec3 facing_at_end(std::int32_t v) const;
   std::optional<Place> closest(std::int32_t v, const Vec3& b, double most) const;
   template <class Find>
