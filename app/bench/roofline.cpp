@@ -97,12 +97,16 @@ double bytes_of(const List& list) {
   return double(sizeof(*list.data())) * double(list.size());
 }
 
-Stage evaluation(const Model& model, OpenWorkspace& w) {
-  Stage stage{"evaluate", Precision::double_precision};
+Stage evaluation(const Model& model, OpenWorkspace& w, Precision precision) {
+  const bool is_single = precision == Precision::single_precision;
+  Stage stage{is_single ? "evaluate, single" : "evaluate", precision};
+  w.elements = precision;
   stage.ms = least_ms(25, [&] { evaluate(model, w, w.current, Wanted::gradient); });
-  stage.bytes = bytes_of(model.field) + bytes_of(model.corner) + bytes_of(model.chunk_vertex) + bytes_of(model.slots) +
-                bytes_of(model.slot_begin) + 2 * bytes_of(w.force) + bytes_of(w.current.energy) +
-                bytes_of(w.current.x) + bytes_of(w.y) + bytes_of(model.mass) + bytes_of(w.current.gradient);
+  w.elements = Precision::double_precision;
+  stage.bytes = (is_single ? bytes_of(model.single_field) : bytes_of(model.field)) + bytes_of(model.corner) +
+                bytes_of(model.chunk_vertex) + bytes_of(model.slots) + bytes_of(model.slot_begin) +
+                2 * bytes_of(w.force) + bytes_of(w.current.energy) + bytes_of(w.current.x) + bytes_of(w.y) +
+                bytes_of(model.mass) + bytes_of(w.current.gradient);
   if (const auto element = operations_an_element(model, w.current.x))
     stage.operations = *element * model.elements + 3.0 * double(model.slots.size()) + 12.0 * model.free;
   return stage;
@@ -149,6 +153,53 @@ void add_rows(ReportTable& table, const Subject& subject, const std::vector<Stag
   }
 }
 
+// Returns the time of the kernels for one tetrahedron, without what is done by vertex [ns].
+double element_time(const Model& model, const Positions& x, Precision precision) {
+  const ElementKernels& kernels = element_kernels();
+  const auto elements = precision == Precision::single_precision ? kernels.elements_single : kernels.elements;
+  AlignedVector<double> energy(std::size_t(model.blocks) * block_width), force(model.chunk_vertex.size() * list_stride),
+      local(std::size_t(model.largest_chunk) * list_stride);
+  const double ms = least_ms(25, [&] {
+    for (std::size_t c = 0; c < model.chunks.size(); ++c) {
+      const Model::ChunkRange& range = model.chunks[c];
+      elements(model.chunk(int(c)), x.data(), nullptr, energy.data() + std::size_t(range.first_block) * block_width,
+               force.data() + list_stride * std::size_t(range.first_vertex), local.data());
+    }
+  });
+  return 1e6 * ms / model.elements;
+}
+
+// Compares materials on the elements of one body in one pose. The limit is that of the peak alone.
+ReportTable elements_by_material(const Model& body, const Positions& x, const Peak& peaks) {
+  ReportTable table{"elements", "Energy and forces of one tetrahedron by material, on one thread"};
+  table.columns = {"material",
+                   "double [ns]",
+                   "single [ns]",
+                   "single / double",
+                   "double, at the peak [ns]",
+                   "single, at the peak [ns]"};
+  const Lame lame{3e4, 7e4};  // [Pa]
+  const std::vector<Material> materials = {AsRigidAsPossible{lame.mu},    Polynomial{100 * lame.mu},
+                                           Corotated::from(lame),         FixedCorotated::from(lame),
+                                           StVenantKirchhoff::from(lame), NeoHookean::from(lame),
+                                           StableNeoHookean::from(lame),  MooneyRivlin::from(lame),
+                                           Spline::preset_a(lame),        StrainLimiting{lame.mu, 0.9, 1.1}};
+  Model model = body;
+  for (const Material& material : materials) {
+    std::fill(model.materials.begin(), model.materials.end(), material);
+    const double plain = element_time(model, x, Precision::double_precision),
+                 single = element_time(model, x, Precision::single_precision);
+    const std::optional<double> operations = operations_an_element(model, x);
+    const auto limit = [&](Precision precision) {
+      return operations ? number_text(1e9 * *operations / peaks.at(precision)) : "";
+    };
+    table.rows.push_back({std::string(name_of(material)), number_text(plain), number_text(single),
+                          number_text(single / plain), limit(Precision::double_precision),
+                          limit(Precision::single_precision)});
+  }
+  return table;
+}
+
 }  // namespace
 
 ReportSection bench_roofline(const BenchSetting& setting) {
@@ -166,6 +217,7 @@ ReportSection bench_roofline(const BenchSetting& setting) {
                    "reached [GFLOP/s]",
                    "bound by",
                    "share of the bound"};
+  ReportTable by_material;
   for (const SubjectChoice& choice :
        std::vector<SubjectChoice>{{"twisting-bar", "bar"},
                                   {"squirrel", "polynomial"},
@@ -177,9 +229,12 @@ ReportSection bench_roofline(const BenchSetting& setting) {
     const StepInputs inputs = subject.inputs(state);
     OpenWorkspace w;
     const Stage lbfgs = recursion(subject.model(), inputs, state.before, w);
-    add_rows(table, subject, {evaluation(subject.model(), w), solve(subject.model(), w), lbfgs}, peak);
+    const Stage plain = evaluation(subject.model(), w, Precision::double_precision),
+                single = evaluation(subject.model(), w, Precision::single_precision);
+    add_rows(table, subject, {plain, single, solve(subject.model(), w), lbfgs}, peak);
+    if (choice.body == "soft") by_material = elements_by_material(subject.model(), w.current.x, peak);
   }
-  section.tables.push_back(std::move(table));
+  section.tables = {std::move(table), std::move(by_material)};
   section.text = fmt::format(
       "A loop of fused multiplications and additions in registers makes {:.1f} GFLOP/s in double and {:.1f} in single "
       "precision on one core here. Data are what a stage must read and write at least once each time; the read loop "

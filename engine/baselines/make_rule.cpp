@@ -45,6 +45,7 @@ class LbfgsFrom final : public SearchRule {
     rule_.accepted(model, inputs, w);
   }
   bool measures_last_iterate() const override { return rule_.measures_last_iterate(); }
+  bool takes_single() const override { return rule_.takes_single(); }
   bool forget() override { return rule_.forget(); }
 
  private:
@@ -77,6 +78,7 @@ class ChebyshevRule final : public SearchRule {
     omega_ = tried_;
     ++iteration_;
   }
+  bool takes_single() const override { return true; }
 
   bool forget() override { return std::exchange(iteration_, 0) > 0; }
 

@@ -128,7 +128,8 @@ ElementChunk CornerChunk::view(const Model& model) const {
           static_cast<int>(vertex.size()),
           vertex.data(),
           corner.data(),
-          field.data()};
+          field.data(),
+          nullptr};
 }
 
 std::vector<VertexColor> vertex_colors(const Model& model) {

@@ -1,5 +1,7 @@
 #include "world/moving_body.h"
 
+#include <limits>
+
 #include "base/error.h"
 #include "base/trace.h"
 #include "sim/measures/measures.h"
@@ -112,6 +114,7 @@ void MovingBody::take_step(const Positions& x, Positions v, double time, std::ve
   w.prepare(model_, inputs_.solver);
   w.current.x = x;
   w.current.contacts = std::move(contacts);
+  w.current.elastic = std::numeric_limits<double>::quiet_NaN();
   w.report = std::move(report);
   if (w.report.failed) return;
   state_.x = x;

@@ -78,7 +78,7 @@ TEST(StabilityMatrix, ACaseThatIsTurnedHasTheSameAnswerTurned) {
         EXPECT_GT(copies[copy].turned_apart, 0) << "it was turned";
         // The polynomial has no stiffness at rest, so that its motion amplifies round-off; searches that turn parts of the
         // body forget their pairs, or do not, by a threshold.
-        EXPECT_LT(copies[copy].turned_apart, material.name == "polynomial" ? 1e-2 : 1e-5)
+        EXPECT_LT(copies[copy].turned_apart, material.name == "polynomial" ? 1e-2 : 1e-4)
             << hard << ", " << material.name;
       }
     }

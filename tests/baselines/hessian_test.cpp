@@ -290,6 +290,7 @@ TEST(Methods, ThePapersRecursionMakesOurIterates) {
   ShakenBar bar(5);
   bar.inputs.solver.levels = 1;
   bar.inputs.solver.rounds = 1;
+  bar.inputs.solver.elements = Precision::double_precision;
   const auto paper = make_paper_rule(bar.model);
   const ShakenBar::Stepped plain = bar.by(*paper, bar.inputs.solver), ours = bar.by_ours();
   EXPECT_GT(plain.report.iterations, 3);

@@ -105,6 +105,7 @@ TEST(Step, WithWindowZeroOnAsRigidAsPossibleEqualsLocalGlobalAndNeverRejectsATri
     inputs.solver.levels = 1;
     inputs.solver.history = 0;
     inputs.solver.rounds = 1;
+    inputs.solver.elements = Precision::double_precision;
     // Without gravity, y leaves the handle where its target is, so that the first iterate is y itself.
     inputs.gravity.setZero();
     inputs.solver.armijo = 0.5;
@@ -259,7 +260,7 @@ TEST(Step, EndsWhereABudgetEndedAnEarlierOne) {
     EXPECT_EQ(report.stop_reason, cuts ? StopReason::budget : StopReason::iterations);
     return state;
   };
-  for (const int iterations : {1, 4, 9})
+  for (const int iterations : {4, 9, 15})  // steps of fewer iterations evaluate elements in double precision alone
     EXPECT_EQ(stepped(40, BudgetCuts{{iterations, -1}}).x, stepped(iterations, std::nullopt).x) << iterations;
 }
 

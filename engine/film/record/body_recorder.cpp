@@ -148,7 +148,7 @@ void BodyRecorder::measure_contact() {
 
 void BodyRecorder::end_frame() {
   const Zone zone("measure", body().def.name);
-  const Deformation shape = deformation(model(), state().x);
+  const Deformation shape = deformation(model(), state().x, moving().workspace().threads);
   row_->stretch = shape.stretch;
   row_->inverted = shape.inverted;
   row_->collapsed = shape.collapsed;

@@ -61,6 +61,7 @@ Json solver_json(const StepProblem& problem) {
           {"line_search", name_of(s.line_search)},
           {"armijo", s.armijo},
           {"target_error", s.target_error},
+          {"elements", name_of(s.elements)},
           {"fit_from", problem.body.fit.start},
           {"fit_to", problem.body.fit.end},
           {"factor", name_of(problem.body.precision)},
@@ -100,6 +101,7 @@ Json state_json(const StepLabel& label, const StepProblem& problem) {
                {"handled", problem.handled.size()},
                {"regions", regions_json(problem)},
                {"solver", solver_json(problem)},
+               {"began_in_single", problem.began_in_single},
                {"colliders", Json::array()},
                {"state_hash", hash_text_form(problem.hash)}};
   for (const StepProblem::Obstacle& collider : problem.colliders) {
@@ -139,7 +141,8 @@ template <class T>
 T value_of(const nlohmann::json& json, const std::string& file, const char* key) {
   const auto found = json.find(key);
   if (found == json.end()) throw InputError(file, fmt::format("'{}' is missing", key));
-  const bool right = std::is_integral_v<T>         ? found->is_number_integer()
+  const bool right = std::is_same_v<T, bool>       ? found->is_boolean()
+                     : std::is_integral_v<T>       ? found->is_number_integer()
                      : std::is_floating_point_v<T> ? found->is_number()
                                                    : found->is_string();
   if (!right) throw InputError(file, fmt::format("'{}' cannot be {}", key, found->dump()));
@@ -211,7 +214,8 @@ StoredState read_state(const std::filesystem::path& folder) {
                      value_of<int>(json, file, "frame"),
                      value_of<double>(json, file, "time"),
                      read_positions(folder / "q.npy", vertices),
-                     read_positions(folder / "v.npy", vertices)};
+                     read_positions(folder / "v.npy", vertices),
+                     value_of<bool>(json, file, "began_in_single")};
   Positions both(2 * vertices, 3);
   both << stored.q, stored.v;
   const std::string hash = hash_text_form(hash_bytes(both.data(), sizeof(double) * std::size_t(both.size())));
@@ -234,6 +238,7 @@ State state_for(const Model& model, const StoredState& stored) {
     state.v.row(i) = stored.v.row(model.input_of[i]);
   }
   state.time = stored.time;
+  state.memory.began_in_single = stored.began_in_single;
   return state;
 }
 

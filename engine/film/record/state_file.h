@@ -25,8 +25,9 @@ struct StoredState {
   std::filesystem::path folder;  // the folder from which it was read
   std::string body;
   int frame = 0;
-  double time = 0;  // [s]
-  Positions q, v;   // in the order of the input file [m], [m/s]
+  double time = 0;               // [s]
+  Positions q, v;                // in the order of the input file [m], [m/s]
+  bool began_in_single = false;  // SolverMemory::began_in_single
 };
 
 // Reads a stored state. Throws InputError with the name of the file when it is missing or damaged, when it has another

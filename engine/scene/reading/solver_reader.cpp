@@ -138,6 +138,11 @@ SolverSettings read_settings(const ConfigTable& table, SolverSettings s) {
                               "no iteration of a step begins that would probably end later, except for the first; runs "
                               "then differ, unless --repeat takes their numbers from an earlier run; 0: no bound"},
                              s.budget_ms, Range::at_least(0));
+  s.elements = table.word<Precision>({"elements", "",
+                                      "single: elements are evaluated in single precision where that is enough; what a "
+                                      "step leaves and reports is always "
+                                      "double"},
+                                     s.elements);
   s.rounds = table.integer({"rounds", "",
                             "a step whose answer gains energy from nothing goes on, for so many times `iterations` in "
                             "all; one that still does, or is far from its minimum, is finished by Newton's method; 1: "

@@ -28,6 +28,7 @@ constexpr auto patterns = std::to_array<LivePattern>({
     {"solver.history", nothing},
     {"solver.levels", nothing},
     {"solver.matrix", nothing},
+    {"solver.elements", nothing},
     {"solver.rounds", nothing},
     {"solver.untangle", nothing},
     {"solver.chebyshev_delay", nothing},

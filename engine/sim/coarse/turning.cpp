@@ -55,8 +55,8 @@ void Turning::correct(const Model& model, const CoarseSystem& system, const Posi
   for (int v = 0; v < model.vertices; ++v) by_vertex_[v] = system.mean_at(v, by_cluster_);
   right_.setZero(model.free, 3);
   const auto add = [&](std::int32_t i, std::int32_t j, double entry) {
-    const Vec3 edge = (x.row(i) - x.row(j)).transpose();
-    const Vec3 part = -0.5 * entry * (by_vertex_[i] * edge + by_vertex_[j] * edge);
+    const Vec3 edge = -0.5 * entry * (x.row(i) - x.row(j)).transpose();
+    const Vec3 part = (by_vertex_[i] + by_vertex_[j]) * edge;
     right_.row(i) += part.transpose();
     if (j < model.free) right_.row(j) -= part.transpose();
   };

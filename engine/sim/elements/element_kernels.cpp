@@ -2,6 +2,7 @@
 #include "sim/elements/element_kernels.h"
 
 #include "base/variants.h"
+#include "sim/elements/element_corners.h"
 #include "sim/elements/element_registers.h"
 #include "sim/elements/tetrahedron_scalar_stiffness.h"
 
@@ -10,55 +11,38 @@ namespace {
 
 static_assert(block_width % lanes == 0);
 
-template <bool with_force, class Formula>
+// Takes the fields of the elements in a register.
+template <class V>
+V load_field(const ElementChunk& chunk, int at) {
+  if constexpr (is_single<V>) {
+    return V::load_aligned(chunk.single_field + at);
+  } else {
+    return V::load_aligned(chunk.field + at);
+  }
+}
+
+template <class V, bool with_force, class Formula>
 double run_blocks(const Formula& formula, const ElementChunk& chunk, const double* previous, double* energy,
                   double* force, const double* local) {
-  constexpr int corners = Formula::corners, fields = Formula::fields;
-  Lanes change(0.0);
+  constexpr int corners = Formula::corners, fields = Formula::fields, width = V::size;
+  using Values = Wide<double, width>;
+  Values change{};
   for (int block = 0; block < chunk.blocks; ++block) {
-    for (int lane = 0; lane < block_width; lane += lanes) {
+    for (int lane = 0; lane < block_width; lane += width) {
       const std::uint16_t* corner = chunk.corner + block * corners * block_width + lane;
-      alignas(64) double gathered[3 * corners][lanes];
-      for (int k = 0; k < corners; ++k) {
-        for (int i = 0; i < lanes; ++i) {
-          const double* p = local + 3 * corner[k * block_width + i];
-          gathered[3 * k][i] = p[0];
-          gathered[3 * k + 1][i] = p[1];
-          gathered[3 * k + 2][i] = p[2];
-        }
-      }
-      Lanes x[corners][3], field[fields], gradient[corners - 1][3];
-      for (int k = 0; k < corners; ++k) {
-        for (int c = 0; c < 3; ++c) x[k][c] = Lanes::load_aligned(gathered[3 * k + c]);
-      }
-      for (int i = 0; i < fields; ++i)
-        field[i] = Lanes::load_aligned(chunk.field + (block * fields + i) * block_width + lane);
-      const Lanes value = formula.energy(x, field, gradient);
+      V x[corners][3], field[fields], gradient[corners - 1][3];
+      load_corners<V, corners>(local, corner, x);
+      for (int i = 0; i < fields; ++i) field[i] = load_field<V>(chunk, (block * fields + i) * block_width + lane);
+      const auto value = __builtin_convertvector(row_of(formula.energy(x, field, gradient)), Values);
       const long at = long(block) * block_width + lane;
-      change += previous != nullptr ? value - Lanes::load_aligned(previous + at) : value;
-      value.store_aligned(energy + at);
-      if constexpr (with_force) {
-        alignas(64) double out[3 * (corners - 1)][lanes];
-        for (int k = 0; k < corners - 1; ++k) {
-          for (int c = 0; c < 3; ++c) gradient[k][c].store_aligned(out[3 * k + c]);
-        }
-        for (int i = 0; i < lanes; ++i) {
-          double* f0 = force + 3 * corner[i];
-          double sum[3] = {0, 0, 0};
-          for (int k = 0; k < corners - 1; ++k) {
-            double* fk = force + 3 * corner[(k + 1) * block_width + i];
-            for (int c = 0; c < 3; ++c) {
-              const double value_c = out[3 * k + c][i];
-              fk[c] += value_c;
-              sum[c] += value_c;
-            }
-          }
-          for (int c = 0; c < 3; ++c) f0[c] -= sum[c];
-        }
-      }
+      change += previous != nullptr ? value - row_at<Values>(previous + at) : value;
+      __builtin_memcpy(energy + at, &value, sizeof value);
+      if constexpr (with_force) add_forces<V, corners>(gradient, corner, force);
     }
   }
-  return sum_in_order(change);
+  double sum = change[0];
+  for (int i = 1; i < width; ++i) sum += change[i];
+  return sum;
 }
 
 // Calls run(formula) with the formula of a chunk.
@@ -73,20 +57,20 @@ double dispatch(const ElementChunk& chunk, const Run& run) {
       *chunk.material);
 }
 
+template <class V>
 double elements(const ElementChunk& chunk, const double* x, const double* previous, double* energy, double* force,
                 double* local) {
   for (int v = 0; v < chunk.vertices; ++v) {
     const double* p = x + 3 * long(chunk.vertex[v]);
-    local[3 * v] = p[0];
-    local[3 * v + 1] = p[1];
-    local[3 * v + 2] = p[2];
+    const Quad<double> row = {p[0], p[1], p[2], 0};
+    __builtin_memcpy(local + list_stride * v, &row, sizeof row);
   }
   if (force != nullptr) {
-    for (int i = 0; i < 3 * chunk.vertices; ++i) force[i] = 0;
+    for (int i = 0; i < list_stride * chunk.vertices; ++i) force[i] = 0;
   }
   return dispatch(chunk, [&](const auto& formula) {
-    return force != nullptr ? run_blocks<true>(formula, chunk, previous, energy, force, local)
-                            : run_blocks<false>(formula, chunk, previous, energy, nullptr, local);
+    return force != nullptr ? run_blocks<V, true>(formula, chunk, previous, energy, force, local)
+                            : run_blocks<V, false>(formula, chunk, previous, energy, nullptr, local);
   });
 }
 
@@ -148,6 +132,7 @@ void rotations(double* matrices, int blocks) {
 }  // namespace
 
 extern const ElementKernels SUPPLE_TABLE(element);
-const ElementKernels SUPPLE_TABLE(element) = {elements, stiffness, scalar_stiffness, stretches, rotations};
+const ElementKernels SUPPLE_TABLE(element) = {
+    elements<Lanes>, elements<SingleLanes>, stiffness, scalar_stiffness, stretches, rotations};
 
 }  // namespace supple

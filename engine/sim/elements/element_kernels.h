@@ -11,7 +11,10 @@ namespace supple {
 
 // Elements are stored in blocks of this many for every width of the registers: field by field, one element in each
 // lane.
-constexpr int block_width = 8;
+constexpr int block_width = 16;
+
+// Lists of a chunk's vertices have this many numbers for each of them: x, y, z, and one that completes a register.
+constexpr int list_stride = 4;
 
 // Describes a run of blocks of one kind and material with its own short list of vertices. It is small enough that its
 // positions and forces stay in the first-level cache, and it is the unit of work of a thread.
@@ -24,14 +27,21 @@ struct ElementChunk {
   const std::int32_t* vertex;   // the list: mesh vertices
   const std::uint16_t* corner;  // blocks x corners x block_width indices into the list
   const double* field;          // blocks x fields x block_width: what the kind needs to know of an element
+  const float* single_field;  // the same numbers in single precision; null: only kernels of double precision are called
 };
 
 struct ElementKernels {
   // Writes the energies by element [J] to energy (blocks x block_width); returns the sum of energy - previous (previous
-  // may be null: 0). Where force is not null, writes the gradient by list vertex to it (vertices x 3) [N]. local:
-  // scratch of vertices x 3.
+  // may be null: 0). Where force is not null, writes the gradient by list vertex to it (vertices x list_stride) [N].
+  // local: scratch of vertices x list_stride.
   double (*elements)(const ElementChunk& chunk, const double* x, const double* previous, double* energy, double* force,
                      double* local);
+
+  // Does the same in single precision: an element's edges are subtracted in double precision, and its forces are added
+  // up in double precision; between these, all is single. Energies are off by some round-off of the element's own
+  // energy and of the work that its stress does on strains as small.
+  double (*elements_single)(const ElementChunk& chunk, const double* x, const double* previous, double* energy,
+                            double* force, double* local);
 
   // Writes the second derivatives of each element's energy, or the nearest positive semi-definite ones: for each lane
   // the packed lower triangle over the coordinates of all corners but the first (stiffness_numbers of them); the first

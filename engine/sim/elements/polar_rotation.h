@@ -21,21 +21,26 @@ Matrix3<V> polar_rotation(const Matrix3<V>& f) {
   const V norm2 = squared_norm(f);
   const V second = squared_norm(cofactors);
   const V two(2.0);
-  const V constant = madd(norm2, norm2, V(-4.0) * second);
-  V root = sqrt(madd(two, sqrt(V(3.0) * second), norm2));
+  const V constant = madd(norm2, norm2, V(-4.0) * second), eight_determ = V(8.0) * determ;
+  V root = sqrt(V(3.0) * norm2);
+  // A step of Halley's method leaves the third power of what was left, over the gap to the other roots squared: after
+  // such a small step, round-off is left.
+  constexpr double small_step = is_single<V> ? 2e-3 : 1e-5;
+  constexpr double least_denominator = is_single<V> ? 1e-2 : 1e-3;
   auto moving = root > root;
   for (int step = 0; step < 12; ++step) {
     const V square = root * root;
-    const V value = madd(square, square - two * norm2, madd(V(-8.0) * determ, root, constant));
-    const V quarter_slope = madd(root, square - norm2, V(-2.0) * determ);
-    const V change = V(0.25) * value / quarter_slope;
+    const V value = madd(square, square - two * norm2, madd(V(0.0) - eight_determ, root, constant));
+    const V slope = madd(root, square - norm2, V(-2.0) * determ);  // a quarter of it
+    const V bend = madd(V(3.0), square, V(0.0) - norm2);           // a quarter of it
+    const V change = two * value * slope / madd(V(8.0) * slope, slope, V(0.0) - value * bend);
     root = root - change;
-    moving = abs(change) > V(1e-9) * root;  // Newton squares what is left: 1e-9 is followed by round-off
+    moving = abs(change) > V(small_step) * root;
     if (!some(moving)) break;
   }
   const V square = root * root;
   const V denominator = madd(root, square - norm2, V(-2.0) * determ);
-  const auto safe = (denominator > V(1e-3) * square * root) && !moving;
+  const auto safe = (denominator > V(least_denominator) * square * root) && !moving;
 
   const Symmetric3<V> c = symmetric_product(f, f);
   const Matrix3<V> fc = product(f, c);

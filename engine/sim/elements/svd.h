@@ -37,7 +37,8 @@ bool turn(Columns<V>& columns, int p, int q) {
   using std::sqrt;
   const V squared_p = dot(columns.b[p], columns.b[p]), squared_q = dot(columns.b[q], columns.b[q]);
   const V product = dot(columns.b[p], columns.b[q]);
-  constexpr double orthogonal = 0x1p-50;  // cosine; a dot product's own round-off is half of it
+  constexpr double orthogonal =
+      is_single<V> ? 0x1p-21 : 0x1p-50;  // cosine; a dot product's own round-off is half of it
   const auto turning = product * product > V(orthogonal * orthogonal) * squared_p * squared_q;
   if (!some(turning)) return false;
   // This is the smaller root t of t^2 + 2 zeta t - 1 = 0, zeta = (q.q - p.p) / (2 p.q), written so that nothing
@@ -96,11 +97,12 @@ Svd3<V> svd(const Matrix3<V>& f) {
   using std::max;
   using std::sqrt;
   using namespace svd_detail;
-  // Matrices whose entries are so far from 1 that fourth powers would leave the range of doubles are scaled first.
+  // Matrices whose entries are so far from 1 that fourth powers would leave the range of the numbers are scaled first.
   V largest = abs(f.m[0]);
   for (int i = 1; i < 9; ++i) largest = max(largest, abs(f.m[i]));
   V scale(1.0);
-  const auto far = ((largest > V(1e60)) | (largest < V(1e-60))) & (largest > V(0.0));
+  constexpr double least = is_single<V> ? 1e-4 : 1e-60, most = is_single<V> ? 1e8 : 1e60;
+  const auto far = ((largest > V(most)) | (largest < V(least))) & (largest > V(0.0));
   const bool scaled = some(far);
   if (scaled) scale = choose(far, largest, scale);
   Columns<V> columns;
@@ -121,7 +123,8 @@ Svd3<V> svd(const Matrix3<V>& f) {
   order(columns, length2, 0, 2);
   order(columns, length2, 1, 2);
 
-  // The directions of zero columns are free; below 1e-280 a squared length has lost digits.
+  // The directions of zero columns are free; below this a squared length has lost digits.
+  constexpr double least_squared = is_single<V> ? 1e-30 : 1e-280;
   V u[3][3], other[3];
   const auto first = length2[0] > V(0.0);
   const V inverse0 = V(1.0) / sqrt(choose(first, length2[0], V(1.0)));
@@ -129,7 +132,7 @@ Svd3<V> svd(const Matrix3<V>& f) {
   const V along = dot(u[0], columns.b[1]);
   for (int i = 0; i < 3; ++i) u[1][i] = columns.b[1][i] - along * u[0][i];
   const V left = dot(u[1], u[1]);
-  const auto second = (left > V(0.25) * length2[1]) & (left > V(1e-280));
+  const auto second = (left > V(0.25) * length2[1]) & (left > V(least_squared));
   const V inverse1 = V(1.0) / sqrt(choose(second, left, V(1.0)));
   for (int i = 0; i < 3; ++i) u[1][i] = u[1][i] * inverse1;
   if (some(!second)) {

@@ -13,10 +13,10 @@
 #include <Eigen/SparseCore>
 
 #include "base/aligned.h"
-#include "base/names.h"
 #include "base/types.h"
 #include "sim/linear/elimination.h"
 #include "sim/linear/linear_kernels.h"
+#include "sim/linear/precision.h"
 
 namespace supple {
 
@@ -24,13 +24,6 @@ namespace supple {
 // edges: pairs of different unknowns below `count` that share a matrix entry, each at least once.
 std::vector<std::int32_t> fill_reducing_order(int count,
                                               const std::vector<std::pair<std::int32_t, std::int32_t>>& edges);
-
-enum class Precision { single_precision, double_precision };
-template <>
-struct Names<Precision> {
-  static constexpr std::array table = {Name{Precision::single_precision, "single"},
-                                       Name{Precision::double_precision, "double"}};
-};
 
 // Returns a power of two that brings the largest of some numbers near 1, so that single precision neither overflows nor
 // falls into denormals.

@@ -62,6 +62,12 @@ bool energy_may_be_negative(const Material& material) {
       material);
 }
 
+bool has_slack(const Material& material) {
+  constexpr double near = 1e-3;
+  return std::visit([](const auto& m) { return m.axial_stress(1 - near) == 0 && m.axial_stress(1 + near) == 0; },
+                    material);
+}
+
 double fitted_stiffness(const Material& material, const StretchInterval& interval) {
   static const GaussLegendre rule;
   const auto stress = [&](double s) { return std::visit([s](const auto& m) { return m.axial_stress(s); }, material); };

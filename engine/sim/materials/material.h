@@ -27,6 +27,9 @@ std::string_view name_of(const Material& material);
 // Tells whether some deformation has less energy than rest.
 bool energy_may_be_negative(const Material& material);
 
+// Tells whether a material has no stress in an interval around rest. Only inertia holds it there.
+bool has_slack(const Material& material);
+
 // Holds the stretch interval of equation 11.
 struct StretchInterval {
   double start = 0.5;

@@ -9,6 +9,10 @@
 
 namespace supple {
 
+// Tells whether numbers of this type have single precision.
+template <class V>
+constexpr bool is_single = requires { requires sizeof(typename V::value_type) == sizeof(float); };
+
 // Returns a b + c: fused for registers where the machine can do that, and plain for the oracle.
 inline double madd(double a, double b, double c) { return a * b + c; }
 template <class V>
@@ -42,9 +46,9 @@ struct Symmetric3 {
 
 template <class V>
 V squared_norm(const Matrix3<V>& a) {
-  V sum = a.m[0] * a.m[0];
-  for (int i = 1; i < 9; ++i) sum = madd(a.m[i], a.m[i], sum);
-  return sum;
+  V row[3];  // summed apart, so that no sum waits for another one
+  for (int i = 0; i < 3; ++i) row[i] = madd(a(i, 0), a(i, 0), madd(a(i, 1), a(i, 1), a(i, 2) * a(i, 2)));
+  return row[0] + row[1] + row[2];
 }
 
 // Returns the sum of all a_ij^2 of a symmetric matrix.

@@ -37,19 +37,21 @@ bool is_tangled(const Model& model, const Positions& x) {
   return shape.inverted + shape.collapsed > 0;
 }
 
-Deformation deformation(const Model& model, const Positions& x) {
+Deformation deformation(const Model& model, const Positions& x, Threads* threads) {
   std::vector<std::pair<double, double>> stretches;  // stretch, weight
   std::vector<double> inverted, collapsed;           // their volumes
   stretches.reserve(model.elements);
-  std::vector<double> largest, ratio;
+  std::vector<double> all_largest(std::size_t(model.blocks) * block_width), all_ratios(all_largest.size());
+  run_chunks(threads, static_cast<int>(model.chunks.size()), long(model.elements) * 4, [&](int c) {
+    const std::size_t first = std::size_t(model.chunks[c].first_block) * block_width;
+    element_kernels().stretches(model.chunk(c), x.data(), &all_largest[first], &all_ratios[first]);
+  });
   double total = 0, volume = 0;
   int solids = 0;
-  for (std::size_t c = 0; c < model.chunks.size(); ++c) {
-    const Model::ChunkRange& range = model.chunks[c];
+  for (const Model::ChunkRange& range : model.chunks) {
     const std::size_t lanes = std::size_t(range.blocks) * block_width;
-    largest.resize(lanes);
-    ratio.resize(lanes);
-    element_kernels().stretches(model.chunk(static_cast<int>(c)), x.data(), largest.data(), ratio.data());
+    const double *largest = &all_largest[std::size_t(range.first_block) * block_width],
+                 *ratio = &all_ratios[std::size_t(range.first_block) * block_width];
     const bool solid = range.kind == ElementKind::tetrahedron;
     const std::size_t fields = fields_of(range.kind), weight_field = solid ? 9 : 0;
     for (std::size_t lane = 0; lane < lanes; ++lane) {

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include "base/threads.h"
 #include "sim/model/inputs.h"
 #include "sim/model/model.h"
 
@@ -17,7 +18,8 @@ struct Deformation {
   int inverted = 0;    // tetrahedra with det F < 0 whose rest volume is above 1e-6 of the mean
   int collapsed = 0;   // such tetrahedra with |det F| < without_volume
 };
-Deformation deformation(const Model& model, const Positions& x);
+// threads: null: the calling one alone.
+Deformation deformation(const Model& model, const Positions& x, Threads* threads = nullptr);
 
 // Tells whether any tetrahedra are inverted or collapsed.
 bool is_tangled(const Model& model, const Positions& x);

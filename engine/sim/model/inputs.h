@@ -11,6 +11,7 @@
 #include "base/names.h"
 #include "geometry/meshes/pose.h"
 #include "geometry/shapes/shape.h"
+#include "sim/linear/precision.h"
 #include "sim/model/budget_cuts.h"
 #include "sim/model/start_matrix.h"
 
@@ -84,9 +85,11 @@ struct SolverSettings {
   LineSearch line_search = LineSearch::armijo;
   double armijo = 0.3;      // gamma
   double target_error = 0;  // stop when the error estimate falls below; 0: do all iterations
-  double budget_ms = 0;     // of one step: an iteration that would probably end later does not begin; 0: no bound
-  int rounds = 5;           // most rounds of `iterations`, where the answer so far is far from the minimum
-  bool newton = true;       // Newton's method may finish hard steps (solver/newton_finish.h)
+  // Single: elements may be evaluated in single precision while that is enough (solver/element_precision.h).
+  Precision elements = Precision::single_precision;
+  double budget_ms = 0;  // of one step: an iteration that would probably end later does not begin; 0: no bound
+  int rounds = 5;        // most rounds of `iterations`, where the answer so far is far from the minimum
+  bool newton = true;    // Newton's method may finish hard steps (solver/newton_finish.h)
   ContactSettings contact;
   ChebyshevSettings chebyshev;
 };

@@ -82,8 +82,10 @@ void add_elements(const Model& body, const Part& part, Model& joined) {
     joined.fibres.insert(joined.fibres.end(), body.fibres.begin(), body.fibres.end());
   }
   joined.energy_may_be_negative |= body.energy_may_be_negative;
+  joined.has_slack |= body.has_slack;
   joined.corner.insert(joined.corner.end(), body.corner.begin(), body.corner.end());
   joined.field.insert(joined.field.end(), body.field.begin(), body.field.end());
+  joined.single_field.insert(joined.single_field.end(), body.single_field.begin(), body.single_field.end());
   joined.element_of_lane.insert(joined.element_of_lane.end(), body.element_of_lane.begin(), body.element_of_lane.end());
   const auto slots = static_cast<std::int32_t>(joined.chunk_vertex.size());
   for (const std::int32_t v : body.chunk_vertex) joined.chunk_vertex.push_back(joined_vertex(part, v));
@@ -181,6 +183,7 @@ Model join(const std::vector<const Model*>& bodies) {
     add_elements(*bodies[p], joined.parts[p], joined);
     add_handles(*bodies[p], joined.parts[p], joined);
     stiffness += bodies[p]->mean_stiffness * bodies[p]->elements;
+    joined.strain_stiffness += bodies[p]->strain_stiffness;
   }
   if (!joined.fibres.empty()) joined.fibres.resize(joined.materials.size());
   joined.mean_stiffness = stiffness / joined.elements;

@@ -10,7 +10,7 @@ namespace supple {
 namespace {
 
 constexpr int blocks_a_chunk =
-    32;  // 256 elements and about 130 vertices: positions and forces fit the first-level cache
+    16;  // 256 elements and about 130 vertices: positions and forces fit the first-level cache
 
 void number_vertices(Model& model, const BodyDescription& body, const std::vector<char>& held) {
   std::vector<std::int32_t> compact(model.vertices, -1), free_input;
@@ -83,9 +83,11 @@ void pack_chunk(Model& model, const ElementRecord* begin, const ElementRecord* e
   model.corner.resize(chunk.first_corner + std::size_t(blocks) * corners * block_width);
   model.field.resize(chunk.first_field + std::size_t(blocks) * fields * block_width);
   for (int place = 0; place < blocks * block_width; ++place) {
-    const bool padding = place >= count;
-    const ElementRecord& element = begin[padding ? 0 : place];
     const std::size_t block = place / block_width, lane = place % block_width;
+    // Neighbours come into different blocks, so that the lanes of a block add forces to different vertices.
+    const int record = static_cast<int>(lane) * blocks + static_cast<int>(block);
+    const bool padding = record >= count;
+    const ElementRecord& element = begin[padding ? 0 : record];
     for (int k = 0; k < corners; ++k) {
       model.corner[chunk.first_corner + (block * corners + k) * block_width + lane] =
           static_cast<std::uint16_t>(local[element.corner[k]]);
@@ -134,7 +136,8 @@ ElementChunk Model::chunk(int index) const {
           c.vertices,
           chunk_vertex.data() + c.first_vertex,
           corner.data() + c.first_corner,
-          field.data() + c.first_field};
+          field.data() + c.first_field,
+          single_field.data() + c.first_field};
 }
 
 std::size_t Model::part_number(std::int32_t vertex) const {

@@ -95,7 +95,11 @@ struct Model : System {
   Integrator integrator = Integrator::backward_euler;
   TimeScheme scheme = scheme_of(Integrator::backward_euler);
   bool energy_may_be_negative = false;
+  bool has_slack = false;     // some material has none of its stiffness around rest
   double mean_stiffness = 0;  // trace of L over the number of elements [N/m]
+  // The sum of k V over the tetrahedra and of k r^2 over the springs: the work of the stress k, or of the force k r, on
+  // a strain of 1 [J].
+  double strain_stiffness = 0;
 
   std::vector<Material> materials;         // by region
   std::vector<Fibre> fibres;               // by region; empty: none
@@ -107,6 +111,7 @@ struct Model : System {
   std::vector<std::int32_t> element_of_lane;  // by lane: number among the input's elements of this kind; -1: padding
   std::vector<std::uint16_t> corner;
   AlignedVector<double> field;
+  AlignedVector<float> single_field;  // the same numbers in single precision
   std::vector<std::int32_t> chunk_vertex;  // all chunks' lists, one after the other
   struct ChunkRange {
     ElementKind kind;

@@ -158,6 +158,17 @@ void ModelValues::add_up_elastic(const Model& model) {
   }
 }
 
+namespace {
+
+// Returns an element's part of Model::strain_stiffness [J].
+double strain_stiffness(const Model& model, const ElementRecord& element) {
+  if (element.kind == ElementKind::spring) return element.field[1] * element.field[0] * element.field[0];
+  const double fibre = model.fibres.empty() ? 0 : model.fibres[element.region].kappa;
+  return (model.stiffness[element.region].k + fibre) * element.field[9];
+}
+
+}  // namespace
+
 // Returns the lower triangle of A over the free vertices. Entries that couple these to held vertices go to
 // model.couplings, and the rows that damping needs go to model.damping.
 Eigen::SparseMatrix<double> ModelValues::system_matrix(Model& model, double damping) const {
@@ -202,19 +213,23 @@ void ModelValues::set(Model& model, const BodyDescription& body) {
     model.fibres = body.fibres;
   }
   model.stiffness.clear();
-  model.energy_may_be_negative = false;
+  model.energy_may_be_negative = model.has_slack = false;
   for (const Material& material : model.materials) {
     model.stiffness.push_back(system_stiffness(material, body.fit));
     model.energy_may_be_negative |= energy_may_be_negative(material);
+    model.has_slack |= has_slack(material);
   }
   SUPPLE_CHECK(elements_.size(), ==, std::size_t(body.mesh.tets.rows()) + body.springs.size());
   for (ElementRecord& element : elements_) {
     if (element.kind == ElementKind::spring) element.field[1] = body.springs[element.input].stiffness;
   }
   set_spring_fields(model, body.springs);
+  model.single_field.assign(model.field.begin(), model.field.end());
   set_masses(model, body);
   set_handle_springs(model, body);
   add_up_elastic(model);
+  model.strain_stiffness = 0;
+  for (const ElementRecord& element : elements_) model.strain_stiffness += strain_stiffness(model, element);
   try {
     model.matrix = system_matrix(model, body.damping);
     const Eigen::VectorXd diagonal = model.matrix.diagonal();

@@ -1,5 +1,6 @@
-// Holds what the solver remembers of the earlier steps of a body, as a part of its State. Only the rule of the matrix
-// (solver/matrix_rule.h) reads and writes what is in it; everybody else copies it, and files keep its bytes.
+// Holds what the solver remembers of the earlier steps of a body, as a part of its State. Only the rules of the matrix
+// (solver/matrix_rule.h) and of the precision (solver/element_precision.h) read and write what is in it; everybody else
+// copies it, and files keep its bytes.
 #pragma once
 
 #include <optional>
@@ -16,6 +17,7 @@ struct SolverMemory {
   // The factor by which one evaluation reduced the error (its estimate to the power of one over their number) in the
   // last step that started directions from the turned Hessian, and in the last that started them from A; 0: not known.
   double turned_hessian_progress = 0, system_progress = 0;
+  bool began_in_single = false;  // the last step's first direction was worth single precision
 };
 
 // Returns the memory as bytes, for files that a program of the same version reads on a machine with the same order of

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int entries = 9;
 constexpr int row_numbers = 4, rotation_numbers = 3 * row_numbers;
-constexpr int rotation_blocks_a_chunk = 16;
+constexpr int rotation_blocks_a_chunk = 8;
 
 // Holds a row in a register, which the compiler splits where registers are narrower.
 typedef double RowOfFour __attribute__((vector_size(row_numbers * sizeof(double))));

@@ -15,7 +15,7 @@ double work_of_handles(const Model& model, const Positions& q, OpenWorkspace& w)
   for (std::size_t slot = 0; slot < model.chunk_vertex.size(); ++slot) {
     const std::int32_t v = model.chunk_vertex[slot];
     if (v < model.free) continue;
-    for (int c = 0; c < 3; ++c) work += w.force[3 * slot + c] * (x(v, c) - q(v, c));
+    for (int c = 0; c < 3; ++c) work += w.force[list_stride * slot + c] * (x(v, c) - q(v, c));
   }
   return work;
 }

@@ -15,6 +15,7 @@ struct Iterate {
   AlignedVector<double> energy;   // of the elements, by lane [J]
   std::vector<Contact> contacts;  // found at x; empty without colliders
   double g = 0;                   // the objective at x, with these contacts [J]
+  double elastic = 0;             // the share in g of the elements [J]; not finite: not known
 };
 
 }  // namespace supple

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sim/solver/bow_search.h"
+#include "sim/solver/element_precision.h"
 #include "sim/solver/lbfgs.h"
 #include "sim/solver/line_search.h"
 #include "sim/solver/place_iterate.h"
@@ -35,14 +36,9 @@ bool absurd(const Model& model, double objective, double start) {
   return !std::isfinite(objective) || objective > 1e6 * (0.5 * model.total_mass * speed * speed + std::abs(start));
 }
 
-struct Descent {
-  bool done = false;
-  double slope = 0;
-};
-
 // Asks the rule for a direction that leads downhill. If it does not, asks again after the rule has forgotten what it
 // learned.
-Descent next_direction(const Model& model, const StepInputs& inputs, OpenWorkspace& w, SearchRule& rule) {
+FoundDirection next_direction(const Model& model, const StepInputs& inputs, OpenWorkspace& w, SearchRule& rule) {
   const TimedPhase timed(w.clock, Phase::other, "direction");
   for (;;) {
     w.report.slope = rule.direction(model, inputs, w);
@@ -79,7 +75,7 @@ Search find_next(const Model& model, const StepInputs& inputs, OpenWorkspace& w,
     } else {
       return search;
     }
-    const Descent again = next_direction(model, inputs, w, rule);
+    const FoundDirection again = next_direction(model, inputs, w, rule);
     if (again.done) return Search::exhausted;
     slope = again.slope;
   }
@@ -160,12 +156,14 @@ void Iterations::run(const SearchLimits& limits) {
   while (!reaches(limits)) {
     if (advance(limits)) continue;
     end_ = SearchEnd::settled;
-    return;
+    break;
   }
+  go_over_to_double(model_, w_);
 }
 
 void Iterations::look_further(const SearchLimits& limits) {
   if (end_ == SearchEnd::settled || !rule_.measures_last_iterate()) return;
+  has_begun_ = true;
   if (!has_direction(limits)) end_ = SearchEnd::settled;
 }
 
@@ -185,11 +183,20 @@ bool Iterations::reaches(const SearchLimits& limits) {
   return true;
 }
 
+// Sets the direction at the current iterate, and the precision that it is worth.
+FoundDirection Iterations::find_direction(const SearchLimits& limits) {
+  const FoundDirection descent = next_direction(model_, inputs_, w_, rule_);
+  if (limits.begins_in_single && !std::exchange(has_begun_, true) && !descent.done)
+    begin_in_single(model_, descent.slope, w_);
+  const bool is_enough = !descent.done && is_single_enough(model_, descent.slope);
+  return is_enough || !go_over_to_double(model_, w_) ? descent : next_direction(model_, inputs_, w_, rule_);
+}
+
 // Sets the direction at the current iterate, and estimates what is left there. Returns false where the search ends
 // because it promises too little, or failed.
 bool Iterations::has_direction(const SearchLimits& limits) {
   StepReport& report = w_.report;
-  const Descent descent = next_direction(model_, inputs_, w_, rule_);
+  const FoundDirection descent = find_direction(limits);
   if (!std::isfinite(descent.slope)) {
     fail(model_, w_, "solve", descent.slope);
     return false;
@@ -214,6 +221,7 @@ bool Iterations::advance(const SearchLimits& limits) {
   IterationRecord record;
   const double before = w_.current.g, slope = report.slope;
   const Search found = find_next(model_, inputs_, w_, rule_, slope, change, record);
+  if (found != Search::found && go_over_to_double(model_, w_)) return true;
   const bool is_taken = found == Search::worse && limits.worse_iterate == WorseIterate::taken;
   if (found != Search::found && !is_taken) {
     // A first search that finds nothing above round-off leaves nothing to gain, and nothing to compare it with.

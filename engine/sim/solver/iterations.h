@@ -25,7 +25,8 @@ struct SearchLimits {
   double enough = 0;                             // the search ends at a direction that promises less, -tr(grad^T d) [J]
   int least_iterations = 0;                      // iterations that the search makes whatever they promise
   WorseIterate worse_iterate = WorseIterate::taken;
-  TimeBudget* budget = nullptr;  // null: time has no bound
+  TimeBudget* budget = nullptr;   // null: time has no bound
+  bool begins_in_single = false;  // elements may be evaluated in single precision first (element_precision.h)
 };
 
 // Tells why a search ended.
@@ -44,6 +45,12 @@ struct SearchOrigin {
 
 inline SearchOrigin origin_of(const StepContext& c) { return {&c.state.x, c.above_start}; }
 
+// Tells what a direction promises.
+struct FoundDirection {
+  bool done = false;  // nothing that is worth a search
+  double slope = 0;   // tr(grad^T d) [J]
+};
+
 // Goes from iterate to iterate. The report's iterations are this search's; its decrease is the sum over all searches.
 class Iterations {
  public:
@@ -55,8 +62,9 @@ class Iterations {
   // limits.
   void run(const SearchLimits& limits);
 
-  // Computes the direction at the last iterate, where the rule asks for that. The direction tells what is left to gain,
-  // which may be nothing. To be called after the last run(); does nothing to a search that has settled.
+  // Computes the direction at the last iterate, in double precision, where the rule asks for that. The direction tells
+  // what is left to gain, which may be nothing. To be called after the last run(); does nothing to a search that has
+  // settled.
   void look_further(const SearchLimits& limits);
 
   SearchEnd end() const { return end_; }
@@ -64,6 +72,7 @@ class Iterations {
  private:
   bool reaches(const SearchLimits& limits);
   bool has_direction(const SearchLimits& limits);
+  FoundDirection find_direction(const SearchLimits& limits);
   bool advance(const SearchLimits& limits);
 
   const Model& model_;
@@ -72,9 +81,10 @@ class Iterations {
   SearchRule& rule_;
   SearchOrigin origin_;
   SearchEnd end_ = SearchEnd::settled;
-  std::size_t first_;  // place of the search's first iterate in the report's objectives
-  double start_;       // g at the first iterate [J]
-  int tried_;          // points that earlier searches tried
+  std::size_t first_;       // place of the search's first iterate in the report's objectives
+  double start_;            // g at the first iterate [J]
+  int tried_;               // points that earlier searches tried
+  bool has_begun_ = false;  // it is too late to begin in single precision
   Decrements decrements_;
 };
 

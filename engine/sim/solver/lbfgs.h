@@ -74,6 +74,7 @@ class LbfgsRule : public SearchRule {
     remember_pair(model, workspace, history_);
   }
   bool measures_last_iterate() const override { return initial_.measures_last_iterate(); }
+  bool takes_single() const override { return true; }
   bool forget() override { return history_.forget() || initial_.forget(); }
 
  private:

@@ -37,7 +37,9 @@ bool contacts_accept(const Model& model, const StepInputs& inputs, OpenWorkspace
 Search search_line(const Model& model, const StepInputs& inputs, OpenWorkspace& w, double slope, bool may_learn,
                    Change& change, IterationRecord& record) {
   const SolverSettings& solver = inputs.solver;
-  const double noise = noise_of(model, w.current.g, extent_of(model, w));
+  const bool is_single = w.elements == Precision::single_precision;
+  const double noise =
+      noise_of(model, w.current.g, extent_of(model, w)) + (is_single ? single_noise_of(model, w.current.elastic) : 0);
   double alpha = 1;
   int refused = 0;
   for (int halving = 0; halving <= most_halvings; ++halving, alpha /= 2) {
@@ -53,12 +55,15 @@ Search search_line(const Model& model, const StepInputs& inputs, OpenWorkspace& 
                                    : change.value <= solver.armijo * alpha * slope;
     if (halving == 0) record.full = {accepted, change.slope / slope};
     if (!accepted || !std::isfinite(change.value)) {
+      if (is_single && !std::isfinite(change.value)) return Search::failed;  // the range of single precision is small
       // Where slopes are lost in round-off too, shorter steps only repeat the noise. A thousandth of the noise stands
       // for a negligible distance, and a slope below the energy of the positions' last bits is noise itself.
       if (by_slope && -slope < 1e-3 * noise + noise_of(model, 0, extent_of(model, w))) return Search::exhausted;
       continue;
     }
     if (!with_gradient) change = evaluate_trial(model, w, Wanted::gradient);
+    if (is_single && by_slope && !w.is_bowed)
+      change.value = 0.5 * alpha * (slope + change.slope);  // nearer than values can tell
     if (contacts_accept(model, inputs, w, change.value, noise)) return Search::found;
     if (refused == 0 && may_learn && learn_contacts(model, inputs, w)) return Search::unforeseen;
     // A shorter step helps against contacts of which the current iterate can't learn, but not where the energy itself

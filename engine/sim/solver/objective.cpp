@@ -99,16 +99,17 @@ struct VertexTerms {
 // from those of a reference (null: none).
 double evaluate_elements(const Model& model, OpenWorkspace& workspace, const Positions& place,
                          AlignedVector<double>& energy, Wanted wanted, const AlignedVector<double>* reference) {
-  const ElementKernels& kernel = element_kernels();
+  const auto evaluate_chunk = workspace.elements == Precision::single_precision ? element_kernels().elements_single
+                                                                                : element_kernels().elements;
   const int chunks = static_cast<int>(model.chunks.size());
   double* partial = workspace.partial.data();
   run_chunks(workspace.threads, chunks, long(model.elements) * 4, [&](int c) {
     const Model::ChunkRange& range = model.chunks[c];
     const std::size_t first = std::size_t(range.first_block) * block_width;
-    partial[c] = kernel.elements(
+    partial[c] = evaluate_chunk(
         model.chunk(c), place.data(), reference != nullptr ? reference->data() + first : nullptr, energy.data() + first,
-        wanted == Wanted::gradient ? workspace.force.data() + 3 * std::size_t(range.first_vertex) : nullptr,
-        workspace.local.data() + std::size_t(c) * model.largest_chunk * 3);
+        wanted == Wanted::gradient ? workspace.force.data() + list_stride * std::size_t(range.first_vertex) : nullptr,
+        workspace.local.data() + std::size_t(c) * model.largest_chunk * list_stride);
   });
   double sum = 0;
   for (int c = 0; c < chunks; ++c) sum += partial[c];
@@ -129,7 +130,7 @@ void add_vertices(const Model& model, OpenWorkspace& workspace, const VertexTerm
       if (gradient == nullptr) continue;
       // Elastic forces are added without a factor, because e theta = 1 for both integrators.
       for (std::int32_t s = model.slot_begin[v]; s < model.slot_begin[v + 1]; ++s) {
-        const double* f = workspace.force.data() + 3 * std::size_t(model.slots[s]);
+        const double* f = workspace.force.data() + list_stride * std::size_t(model.slots[s]);
         for (int k = 0; k < 3; ++k) sum[k] += f[k];
       }
       double* g = gradient->data() + 3 * std::size_t(v);
@@ -157,6 +158,7 @@ Change evaluate_against(const Model& model, OpenWorkspace& workspace, Iterate& a
   Change change{evaluate_elements(model, workspace, theta < 1 ? workspace.middle : at.x, at.energy, wanted,
                                   reference != nullptr ? &reference->energy : nullptr),
                 0};
+  at.elastic = change.value + (reference != nullptr ? reference->elastic : 0);
   Positions* gradient = wanted == Wanted::gradient ? &at.gradient : nullptr;
   const Positions* reference_x = reference != nullptr ? &reference->x : nullptr;
   const VertexTerms terms{model,
@@ -202,6 +204,15 @@ double noise_of(const Model& model, double objective, double extent) {
   return epsilon * 32 * std::abs(objective) +
          last_bit * (4 * std::sqrt(2 * std::abs(objective) * model.mean_stiffness) +
                      4 * last_bit * model.mean_stiffness * model.elements);
+}
+
+// The strains of elements are rounded to single precision, and the stress does work on what is lost; over all elements,
+// at random, this work grows with the square root of their energy times their mean stiffness. Energies themselves are
+// rounded, too.
+double single_noise_of(const Model& model, double elastic) {
+  const double energy = std::abs(elastic), stiffness = model.strain_stiffness;
+  return single_round_off *
+         (energy + 4 * std::sqrt(2 * energy * stiffness / model.elements) + 4 * single_round_off * stiffness);
 }
 
 double inertial_energy(const Model& model, const OpenWorkspace& workspace, const Positions& x) {

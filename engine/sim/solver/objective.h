@@ -33,6 +33,13 @@ Change evaluate_trial(const Model& model, OpenWorkspace& workspace, Wanted wante
 // Returns the round-off of differences of g at a point with this objective and largest coordinate [J].
 double noise_of(const Model& model, double objective, double extent);
 
+// Half of the distance between 1 and the next number of single precision.
+constexpr double single_round_off = 0x1p-24;
+
+// Returns the round-off of differences of g where elements are evaluated in single precision; elastic: their energy
+// [J].
+double single_noise_of(const Model& model, double elastic);
+
 // Returns the share of inertia in g at x, sum of w m |x - y|^2 / (2 h^2), where w is the integrator's weight [J].
 double inertial_energy(const Model& model, const OpenWorkspace& workspace, const Positions& x);
 

@@ -34,7 +34,11 @@ struct OpenWorkspace {
 
   // The solver is at the current iterate, and tries the trial iterate.
   Iterate current, trial;
-  Positions direction;  // from the current iterate, n_free x 3 [m]
+  // The precision in which the elements of iterates are evaluated (element_precision.h). Outside of searches it is
+  // double.
+  Precision elements = Precision::double_precision;
+  bool began_in_single = false;  // whether the first direction of the step was worth single precision
+  Positions direction;           // from the current iterate, n_free x 3 [m]
 
   // The matrix that directions of the present step start from: the model's own A, or the one that follows the body.
   // Where turned_hessian_serves is true, directions from iterates without contacts start from the turned Hessian
@@ -68,8 +72,8 @@ struct OpenWorkspace {
   // The following members are memory within one call and hold nothing between calls.
   Positions middle;             // where forces are evaluated, n x 3 [m]; empty where that is the iterate itself
   Positions scratch;            // n_free x 3
-  AlignedVector<double> force;  // by slot, x 3 [N]
-  AlignedVector<double> local;  // positions by chunk, x 3 [m]
+  AlignedVector<double> force;  // by slot, x list_stride [N]
+  AlignedVector<double> local;  // positions by chunk, x list_stride [m]
   SolveScratch solve_scratch;
   std::vector<double> partial;  // partial sums, by chunk
 

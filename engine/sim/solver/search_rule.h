@@ -31,6 +31,9 @@ class SearchRule {
   // computed.
   virtual bool needs_gradient() const { return true; }
 
+  // Tells whether gradients of single precision serve the rule (element_precision.h).
+  virtual bool takes_single() const { return false; }
+
   // Forgets what was learned in earlier iterations, when the direction was of no use. Returns false when there was
   // nothing to forget.
   virtual bool forget() { return false; }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/trace.h"
+#include "sim/solver/element_precision.h"
 #include "sim/solver/error_estimate.h"
 #include "sim/solver/first_iterate.h"
 #include "sim/solver/from_staying.h"
@@ -82,7 +83,10 @@ void estimate_errors(const StepContext& c) {
 void iterate(StepContext& c) {
   TimeBudget budget(c.inputs, c.w, TimeBudget::from_first_iterate);
   const int iterations = c.inputs.solver.iterations;
-  SearchLimits limits = {.iterations = iterations, .trials = trials_before_newton(c, iterations), .budget = &budget};
+  SearchLimits limits = {.iterations = iterations,
+                         .trials = trials_before_newton(c, iterations),
+                         .budget = &budget,
+                         .begins_in_single = may_begin_in_single(c)};
   Iterations search(c.model, c.inputs, c.w, c.rule, origin_of(c));
   search.run(limits);
   while (needs_another_round(c, search, limits)) search.run(limits = with_another_round(c, limits));
@@ -102,6 +106,7 @@ void make_searches(StepContext& c) {
 // Changes the state to that at the end of the step.
 void take_answer(const StepContext& c, State& state) {
   remember_matrix(c.model, c.inputs.solver, c.w, state.memory);
+  state.memory.began_in_single = c.w.began_in_single;
   set_velocity(c.model, c.w.current.x, state);
   state.x = c.w.current.x;
   state.time += c.model.time_step;
@@ -126,6 +131,7 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   begin_step(model, inputs, state, w);
   choose_matrix(model, inputs, state, w);
   zone.next("first iterate");
+  expect_precision(c);
   set_first_iterate(c);
   choose_turned_hessian(model, inputs, state, w);
   report.start_ms = w.clock.elapsed_ms();
@@ -133,6 +139,7 @@ const StepReport& step(const Model& model, const StepInputs& inputs, State& stat
   zone.next("iterate");
   make_searches(c);
   zone.next("end step");
+  w.elements = Precision::double_precision;
   if (!report.failed && !w.current.x.allFinite()) fail(model, w, "step", std::numeric_limits<double>::quiet_NaN());
   if (!report.failed) take_answer(c, state);
   if (may_touch(inputs)) report_contacts(inputs, w);

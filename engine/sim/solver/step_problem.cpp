@@ -21,6 +21,7 @@ StepProblem problem_of(const BodyDescription& body, const Model& model, const St
   problem.v = in_input_order(model, state.v);
   problem.y = in_input_order(model, y);
   problem.hash = state_hash(model, state);
+  problem.began_in_single = state.memory.began_in_single;
   problem.solver = inputs.solver;
   std::vector<Eigen::Index> rows;  // of targets, without those of handles that have let go
   for (std::size_t i = 0; i < model.handled.size(); ++i) {

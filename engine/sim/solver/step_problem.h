@@ -17,6 +17,7 @@ struct StepProblem {
   Vec3 gravity = Vec3(0, 0, 0);   // [m/s^2]
   Positions q, v, y;              // start, its velocities, and where inertia alone leads, n x 3 [m], [m/s], [m]
   std::uint64_t hash = 0;         // state_hash of q and v
+  bool began_in_single = false;   // whether the step before was worth single precision (solver/element_precision.h)
   SolverSettings solver;
 
   struct Handled {
