@@ -27,23 +27,23 @@ template <class T>
 using Quad = Wide<T, 4>;
 
 template <class R>
-[[gnu::always_inline]] inline R row_at(const void* from) {
-  R row;
+[[gnu::always_inline]] inline void load_row(const void* from, R& row) {
   __builtin_memcpy(&row, from, sizeof row);
-  return row;
+}
+template <class R>
+[[gnu::always_inline]] inline void store_row(const R& row, void* to) {
+  __builtin_memcpy(to, &row, sizeof row);
 }
 
-// Joins the rows of elements i and i + 4, for i = 0 to 3, where there are eight.
-inline Quad<double> joined(const Quad<double>& a) { return a; }
-inline Quad<float> joined(const Quad<float>& a) { return a; }
-inline Wide<double, 8> joined(const Quad<double>& a, const Quad<double>& b) {
-  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+// Joins rows side by side. (A function that returned so wide a vector would be one that other files call with other
+// registers in mind.)
+template <class T>
+[[gnu::always_inline]] inline void join(const Wide<T, 4>& a, const Wide<T, 4>& b, Wide<T, 8>& out) {
+  out = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
 }
-inline Wide<float, 8> joined(const Quad<float>& a, const Quad<float>& b) {
-  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
-}
-inline Wide<float, 16> joined(const Wide<float, 8>& a, const Wide<float, 8>& b) {
-  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+template <class T>
+[[gnu::always_inline]] inline void join(const Wide<T, 8>& a, const Wide<T, 8>& b, Wide<T, 16>& out) {
+  out = __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
 }
 
 // Transposes each four columns of four rows.
@@ -107,12 +107,16 @@ template <class V>
   } else {
     Wide<T, V::size> r[4];
     for (int i = 0; i < 4; ++i) {
+      // Elements i, i + 4, ... come into one register, in which each four columns are transposed.
       if constexpr (V::size == 16) {
-        r[i] = joined(joined(row[i], row[i + 4]), joined(row[i + 8], row[i + 12]));
+        Wide<T, 8> low, high;
+        join<T>(row[i], row[i + 4], low);
+        join<T>(row[i + 8], row[i + 12], high);
+        join<T>(low, high, r[i]);
       } else if constexpr (V::size == 8) {
-        r[i] = joined(row[i], row[i + 4]);
+        join<T>(row[i], row[i + 4], r[i]);
       } else {
-        r[i] = joined(row[i]);
+        r[i] = row[i];
       }
     }
     transpose<T>(r);
@@ -155,8 +159,7 @@ template <class V, int corners>
 [[gnu::always_inline]] inline void load_corners(const double* list, const std::uint16_t* corner, V (&x)[corners][3]) {
   using T = typename V::value_type;
   Quad<double> first[V::size];
-  for (std::size_t i = 0; i < V::size; ++i)
-    first[i] = row_at<Quad<double>>(list + list_stride * std::size_t(corner[i]));
+  for (std::size_t i = 0; i < V::size; ++i) load_row(list + list_stride * std::size_t(corner[i]), first[i]);
 #pragma GCC unroll 4
   for (int k = 0; k < corners; ++k) {
     if constexpr (is_single<V>) {
@@ -167,7 +170,8 @@ template <class V, int corners>
     }
     Quad<T> row[V::size];
     for (std::size_t i = 0; i < V::size; ++i) {
-      const auto at = row_at<Quad<double>>(list + list_stride * std::size_t(corner[k * block_width + int(i)]));
+      Quad<double> at;
+      load_row(list + list_stride * std::size_t(corner[k * block_width + int(i)]), at);
       if constexpr (is_single<V>) {
         row[i] = __builtin_convertvector(at - first[i], Quad<float>);
       } else {
@@ -190,13 +194,15 @@ template <class V, int corners>
     for (int k = 0; k < corners - 1; ++k) {
       const auto added = __builtin_convertvector(row[k][i], Quad<double>);
       double* to = list + list_stride * std::size_t(corner[(k + 1) * block_width + int(i)]);
-      const auto now = row_at<Quad<double>>(to) + added;
-      __builtin_memcpy(to, &now, sizeof now);
+      Quad<double> now;
+      load_row(to, now);
+      store_row(now + added, to);
       sum += added;
     }
     double* to = list + list_stride * std::size_t(corner[i]);
-    const auto now = row_at<Quad<double>>(to) - sum;
-    __builtin_memcpy(to, &now, sizeof now);
+    Quad<double> now;
+    load_row(to, now);
+    store_row(now - sum, to);
   }
 }
 

@@ -35,8 +35,10 @@ double run_blocks(const Formula& formula, const ElementChunk& chunk, const doubl
       for (int i = 0; i < fields; ++i) field[i] = load_field<V>(chunk, (block * fields + i) * block_width + lane);
       const auto value = __builtin_convertvector(row_of(formula.energy(x, field, gradient)), Values);
       const long at = long(block) * block_width + lane;
-      change += previous != nullptr ? value - row_at<Values>(previous + at) : value;
-      __builtin_memcpy(energy + at, &value, sizeof value);
+      Values before{};
+      if (previous != nullptr) load_row(previous + at, before);
+      change += value - before;
+      store_row(value, energy + at);
       if constexpr (with_force) add_forces<V, corners>(gradient, corner, force);
     }
   }
@@ -63,7 +65,7 @@ double elements(const ElementChunk& chunk, const double* x, const double* previo
   for (int v = 0; v < chunk.vertices; ++v) {
     const double* p = x + 3 * long(chunk.vertex[v]);
     const Quad<double> row = {p[0], p[1], p[2], 0};
-    __builtin_memcpy(local + list_stride * v, &row, sizeof row);
+    store_row(row, local + list_stride * v);
   }
   if (force != nullptr) {
     for (int i = 0; i < list_stride * chunk.vertices; ++i) force[i] = 0;
