@@ -16,9 +16,9 @@ class TimeBudget {
  public:
   enum Which { from_first_iterate, from_staying };
   TimeBudget(const StepInputs& inputs, OpenWorkspace& w, Which search)
-      : limit_ms_(inputs.solver.budget_ms), clock_(w.clock), cut_(w.report.cuts.after[search]) {
+      : limit_ms_(inputs.solver.budget_ms), w_(w), cut_(w.report.cuts.after[search]) {
     if (inputs.repeated_cuts) repeated_ = inputs.repeated_cuts->after[search];
-    if (limit_ms_ > 0) last_ms_ = clock_.elapsed_ms();
+    if (limit_ms_ > 0) last_ms_ = w.clock.elapsed_ms();
   }
 
   // Tells whether no further iteration fits after so many iterations. The next one is expected to take as long as the
@@ -31,13 +31,15 @@ class TimeBudget {
 
  private:
   bool would_end_late() {
-    const double now = clock_.elapsed_ms();
+    const double now = w_.clock.elapsed_ms();
     longest_ms_ = std::max(longest_ms_, now - std::exchange(last_ms_, now));
-    return now + longest_ms_ > limit_ms_;
+    // A search in single precision ends with an evaluation in double, which takes no longer than an iteration.
+    const int iterations = w_.elements == Precision::single_precision ? 2 : 1;
+    return now + iterations * longest_ms_ > limit_ms_;
   }
 
   double limit_ms_, last_ms_ = 0, longest_ms_ = 0;
-  const StepClock& clock_;
+  const OpenWorkspace& w_;
   int& cut_;
   std::optional<int> repeated_;  // -1: the earlier run's budget did not end this search
 };
