@@ -11,7 +11,8 @@ namespace supple {
 
 // Tells whether the rule and the settings let the first search of a step begin in single precision. A step with a
 // target of error often ends after an iteration or two. Bodies with slack amplify round-off: turned copies of one that
-// hangs were 1e-3 of its size apart after 60 steps in single precision, and 1e-6 in double.
+// hangs were 1e-3 of its size apart after 60 steps in single precision, and below 1e-5 in
+// double.
 bool may_begin_in_single(const StepContext& c);
 
 // Takes single precision for the first iterate of a step where the last step began in it.
