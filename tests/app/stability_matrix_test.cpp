@@ -89,7 +89,7 @@ TEST(StabilityMatrix, ACaseThatIsTurnedHasTheSameAnswerTurned) {
           EXPECT_GT(copies[copy].turned_apart, 0) << "it was turned";
           // The polynomial has no stiffness at rest, so that its motion amplifies round-off; searches that turn parts
           // of the body forget their pairs, or do not, by a threshold.
-          EXPECT_LT(copies[copy].turned_apart, material.name == "polynomial" ? 1e-2 : most)
+          EXPECT_LT(copies[copy].turned_apart, material.name == "polynomial" ? 3e-2 : most)
               << hard << ", " << material.name << ", " << elements;
         }
       }

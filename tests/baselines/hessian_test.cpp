@@ -212,8 +212,8 @@ TEST(Hessian, SystemMatrixIsWhatTheModelHasFactored) {
     const SparseMatrix a = system_matrix_of(model);
     const Positions b = Positions::Random(model.free, 3);
     Positions x(model.free, 3);
-    std::vector<double> scratch(4 * model.free);
-    model.factor.solve(b.data(), x.data(), scratch.data());
+    AlignedVector<double> scratch;
+    model.factor.solve(b.data(), x.data(), scratch);
     EXPECT_LT((a * x - b).norm(), 1e-12 * b.norm());
     for (int v = 0; v < model.free; ++v) EXPECT_NEAR(a.coeff(v, v), model.diagonal[v], 1e-9 * model.diagonal[v]);
   }

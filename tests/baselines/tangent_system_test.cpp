@@ -131,9 +131,9 @@ TEST(TangentSystem, IsTheSameMatrixAsAWhereItsShareIsZero) {
   tangent.make(model, test::shaken(model.rest, 0.02, 1), {0, 1, 0}, nullptr);
   EXPECT_EQ(full(tangent.system().matrix), full(model.matrix));
   Positions b = test::shaken(Positions::Zero(model.free, 3), 1, 3), x = b, y = b;
-  std::vector<double> scratch(4 * std::size_t(model.free));
-  model.factor.solve(b.data(), x.data(), scratch.data());
-  tangent.system().factor.solve(b.data(), y.data(), scratch.data());
+  AlignedVector<double> scratch;
+  model.factor.solve(b.data(), x.data(), scratch);
+  tangent.system().factor.solve(b.data(), y.data(), scratch);
   EXPECT_EQ(x, y);
 }
 
@@ -143,9 +143,9 @@ TEST(TangentSystem, HasTheSameBitsOnAnyNumberOfThreadsAndAfterOtherMatrices) {
   TangentSystem alone;
   alone.make(model, x, {}, nullptr);
   const Positions b = test::shaken(Positions::Zero(model.free, 3), 1, 3);
-  std::vector<double> scratch(4 * std::size_t(model.free));
+  AlignedVector<double> scratch;
   Positions expected = b, found = b;
-  alone.system().factor.solve(b.data(), expected.data(), scratch.data());
+  alone.system().factor.solve(b.data(), expected.data(), scratch);
   for (const int count : {1, 2, 4}) {
     Threads threads(count);
     TangentSystem other;
@@ -153,7 +153,7 @@ TEST(TangentSystem, HasTheSameBitsOnAnyNumberOfThreadsAndAfterOtherMatrices) {
     const std::uint64_t before = other.system().id;
     other.make(model, x, {}, &threads);
     EXPECT_NE(other.system().id, before);
-    other.system().factor.solve(b.data(), found.data(), scratch.data());
+    other.system().factor.solve(b.data(), found.data(), scratch);
     EXPECT_EQ(found, expected);
     const std::uint64_t made = other.system().id;
     other.make(model, x, {}, &threads);  // it is there already

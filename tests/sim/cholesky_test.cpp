@@ -10,6 +10,8 @@
 #include <thread>
 
 #include "base/error.h"
+#include "base/variants.h"
+#include "sim/linear/parted_solve.h"
 #include "support/bodies.h"
 #include "support/sparse_matrices.h"
 
@@ -24,11 +26,11 @@ using test::Sparse;
 Eigen::MatrixX3d solve(const CholeskyFactor& factor, const Eigen::MatrixX3d& b) {
   const int size = factor.size();
   std::vector<double> right(3 * size), x(3 * size);
-  AlignedVector<double> scratch(4 * size + 8);
+  AlignedVector<double> scratch;
   for (int i = 0; i < size; ++i) {
     for (int c = 0; c < 3; ++c) right[3 * i + c] = b(i, c);
   }
-  factor.solve(right.data(), x.data(), scratch.data());
+  factor.solve(right.data(), x.data(), scratch);
   Eigen::MatrixX3d out(size, 3);
   for (int i = 0; i < size; ++i) {
     for (int c = 0; c < 3; ++c) out(i, c) = x[3 * i + c];
@@ -166,6 +168,68 @@ TEST(CholeskyFactor, OfNewNumbersIsTheFactorMadeAnew) {
   }
 }
 
+// Solves L x = b and L^T x = b, with all strips and with those on the path of one unknown to the root.
+template <class T>
+void expect_halves(const Sparse& matrix, LinearKernels::Solve<T> down, LinearKernels::Solve<T> up,
+                   void (*down_many)(const FactorView&, const std::int32_t*, int, T*), double tolerance) {
+  const Precision precision = sizeof(T) == 4 ? Precision::single_precision : Precision::double_precision;
+  const CholeskyFactor factor(matrix, precision);
+  const FactorView view = factor.view();
+  const int size = factor.size();
+  const Eigen::MatrixXd lower = dense(matrix).llt().matrixL();
+  using Rows = Eigen::Matrix<T, Eigen::Dynamic, 4, Eigen::RowMajor>;
+  const Rows b = Rows::Random(size, 4);
+  AlignedVector<T> scratch(factor.front_numbers());
+  const auto distance = [&](const Rows& found, const Eigen::MatrixXd& expected) {
+    return (found.template cast<double>() - expected).leftCols(3).norm() / expected.leftCols(3).norm();
+  };
+  Rows x = b;
+  down(view, nullptr, 0, x.data(), scratch.data());
+  EXPECT_LT(distance(x, lower.triangularView<Eigen::Lower>().solve(b.template cast<double>())), tolerance);
+  Rows whole = b;
+  up(view, nullptr, 0, whole.data(), scratch.data());
+  EXPECT_LT(distance(whole, lower.transpose().triangularView<Eigen::Upper>().solve(b.template cast<double>())),
+            tolerance);
+
+  for (const int unknown : {0, size / 3, size - 1}) {
+    const FactorPart part = paths_to_root(factor, {unknown});
+    const auto count = static_cast<int>(part.size());
+    Rows some = b;
+    up(view, part.data(), count, some.data(), scratch.data());
+    Eigen::VectorXd unit = Eigen::VectorXd::Zero(size);
+    unit[unknown] = 1;
+    const Eigen::VectorXd column = lower.triangularView<Eigen::Lower>().solve(unit);
+    Rows from_unit = Rows::Zero(size, 4);
+    from_unit.row(unknown).setOnes();
+    down(view, part.data(), count, from_unit.data(), scratch.data());
+    AlignedVector<T> many(std::size_t(size) * columns_together, T(0));
+    many[std::size_t(unknown) * columns_together + 5] = 1;
+    down_many(view, part.data(), count, many.data());
+    for (const std::int32_t strip : part) {
+      for (int i = factor.first_column(strip); i < factor.first_column(strip) + factor.width(strip); ++i) {
+        EXPECT_EQ(some.row(i).template head<3>(), whole.row(i).template head<3>());
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(from_unit(i, c), column[i], tolerance * column.norm());
+        EXPECT_NEAR(many[std::size_t(i) * columns_together + 5], column[i], tolerance * column.norm());
+      }
+    }
+  }
+}
+
+TEST(Kernels, SolveForThreeRightHandSidesWithAllStripsOrThoseOfAPath) {
+  std::vector<Sparse> matrices = {grid_matrix(7, true, 0.01)};
+  for (const double links : {0.3, 1.0, 3.0, 20.0}) {
+    for (const int size : {1, 5, 8, 9, 17, 40, 150})
+      matrices.push_back(random_matrix(size, links, static_cast<unsigned>(size)));
+  }
+  for (int v = 0; v < runnable_variants(); ++v) {
+    const LinearKernels& k = linear_kernels(v);
+    for (const Sparse& matrix : matrices) {
+      expect_halves<float>(matrix, k.down_float, k.up_float, k.down_many_float, 1e-4);
+      expect_halves<double>(matrix, k.down_double, k.up_double, k.down_many_double, 1e-13);
+    }
+  }
+}
+
 TEST(CholeskyFactor, NamesTheUnknownWhosePivotIsNotPositive) {
   Sparse matrix = random_matrix(60, 1.5, 5);
   const Sparse sound = matrix;
@@ -191,9 +255,9 @@ TEST(Cholesky, SolvesTheSystemOfABodyInBothPrecisions) {
   const Model single = build_model(rough);
   const Positions b = test::shaken(Positions::Zero(exact.free, 3), 1, 9);
   Positions x(exact.free, 3), y(exact.free, 3);
-  AlignedVector<double> scratch(4 * exact.free);
-  exact.factor.solve(b.data(), x.data(), scratch.data());
-  single.factor.solve(b.data(), y.data(), scratch.data());
+  AlignedVector<double> scratch;
+  exact.factor.solve(b.data(), x.data(), scratch);
+  single.factor.solve(b.data(), y.data(), scratch);
   EXPECT_LT((x - y).norm(), 1e-4 * x.norm());
 
   // Solves A x = b, with A applied as the second derivative of the quadratic part: M/h^2 x + L x, element by element.

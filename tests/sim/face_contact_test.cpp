@@ -113,7 +113,7 @@ TEST(FaceContact, LowRankDirectionsSolveTheSystem) {
   for (int column = 0; column < 3 * n; ++column) {
     r.setZero();
     r.data()[column] = 1;
-    scene.model.factor.solve(r.data(), z.data(), scene.w.solve_scratch.data());
+    scene.model.factor.solve(r.data(), z.data(), scene.w.solve_scratch);
     inverse.col(column) = Eigen::Map<const Eigen::VectorXd>(z.data(), z.size());
   }
   Eigen::MatrixXd system = inverse.inverse();

@@ -61,7 +61,7 @@ TEST(Integrators, TheSystemMatrixIsTheHessianOfTheQuadraticPart) {
     w.current.x.col(1) *= 1 - 0.5 * strain;
     evaluate(model, w, w.current, Wanted::gradient);
     Positions solved(model.free, 3);
-    model.factor.solve(w.current.gradient.data(), solved.data(), w.solve_scratch.data());
+    model.factor.solve(w.current.gradient.data(), solved.data(), w.solve_scratch);
     EXPECT_LT((solved - (w.current.x - model.rest).topRows(model.free)).norm(),
               1e-6 * (w.current.x - model.rest).norm());
   }
@@ -202,7 +202,7 @@ TEST(Springs, AndFibresAreWholeInTheSystemMatrix) {
     w.current.x = state.x;
     evaluate(model, w, w.current, Wanted::gradient);
     Positions left(model.free, 3);
-    model.factor.solve(w.current.gradient.data(), left.data(), w.solve_scratch.data());
+    model.factor.solve(w.current.gradient.data(), left.data(), w.solve_scratch);
     EXPECT_LT(w.current.gradient.cwiseProduct(left).sum(), 1e-6 * std::max(gained, 1e-12)) << body.name;
   }
 }

@@ -28,7 +28,7 @@ TEST(MatrixRule, TheSystemIsThePapersToTheLastBit) {
   // A solve with the model's factor and nothing else.
   struct PlainInverse final : InitialInverse {
     void apply(const Model& model, const StepInputs&, OpenWorkspace& w, Positions& r, Positions& z) override {
-      model.factor.solve(r.data(), z.data(), w.solve_scratch.data());
+      model.factor.solve(r.data(), z.data(), w.solve_scratch);
       restore_translation(model, r, z);
     }
   };

@@ -6,23 +6,6 @@
 
 namespace supple {
 
-void invert_triangles(FrontShape front, double* columns) {
-  for (int strip = 0; strip < strips_of(front); ++strip) {
-    double* triangle = columns + strip_begin(front, strip);
-    const int width = strip_width(front, strip);
-    double inverse[block_rows][block_rows] = {};  // by columns
-    for (int j = 0; j < width; ++j) {
-      inverse[j][j] = 1 / triangle[j * block_rows + j];
-      for (int i = j + 1; i < width; ++i) {
-        double sum = 0;
-        for (int k = j; k < i; ++k) sum += triangle[k * block_rows + i] * inverse[j][k];
-        inverse[j][i] = -sum / triangle[i * block_rows + i];
-      }
-    }
-    for (int j = 0; j < width; ++j) std::copy_n(inverse[j], block_rows, triangle + j * block_rows);
-  }
-}
-
 void ChangingFactor::analyze(const Eigen::SparseMatrix<double>& matrix) {
   elimination_ = std::make_unique<Elimination>(Elimination::of(matrix));
   fronts_ = std::make_unique<Multifrontal>(*elimination_);

@@ -14,9 +14,6 @@
 
 namespace supple {
 
-// Inverts the triangles on the diagonals of a front's strips in its columns of L: a solve then multiplies with them.
-void invert_triangles(FrontShape front, double* columns);
-
 class ChangingFactor {
  public:
   // The precision is that of the solves; factors are always computed in double precision.

@@ -84,7 +84,6 @@ bool CholeskyFactor::has_pattern_of(const Eigen::SparseMatrix<double>& matrix) c
          std::equal(inner_.begin(), inner_.end(), matrix.innerIndexPtr());
 }
 
-// Cuts supernodes into panels of equal width; the rows below a panel are the supernode's later columns and its rows.
 void CholeskyFactor::analyze(const Eigen::SparseMatrix<double>& matrix) {
   *this = {};
   size_ = static_cast<int>(matrix.rows());
@@ -92,36 +91,41 @@ void CholeskyFactor::analyze(const Eigen::SparseMatrix<double>& matrix) {
   inner_.assign(matrix.innerIndexPtr(), matrix.innerIndexPtr() + matrix.nonZeros());
   elimination_ = Elimination::of(matrix);
   operations_ = elimination_.operations();
-  first_row_.push_back(0);
-  first_panel_.push_back(0);
-  std::int64_t value_count = 0;
+  rows_ = elimination_.rows;
+  strip_of_.reserve(size_);
   for (const Supernode& node : elimination_.nodes) {
-    const int parts = (node.width() + panel_width - 1) / panel_width;
-    for (int part = 0; part < parts; ++part) {
-      const int first = node.first + node.width() * part / parts;
-      const int end = node.first + node.width() * (part + 1) / parts;
-      first_column_.push_back(first);
-      width_.push_back(end - first);
-      panel_of_.insert(panel_of_.end(), end - first, static_cast<std::int32_t>(width_.size()) - 1);
-      for (int j = end; j <= node.last; ++j) rows_.push_back(j);
-      const auto below = elimination_.rows.begin() + node.first_row;
-      rows_.insert(rows_.end(), below, below + node.row_count);
-      first_value_.push_back(value_count);
-      const auto row_count = static_cast<std::int64_t>(rows_.size()) - first_row_.back();
-      value_count += (end - first) * (end - first + row_count);
-      first_row_.push_back(static_cast<std::int64_t>(rows_.size()));
-    }
-    first_panel_.push_back(static_cast<std::int32_t>(width_.size()));
-    node_of_.insert(node_of_.end(), parts, static_cast<std::int32_t>(first_panel_.size()) - 2);
+    const FrontShape shape = node.front();
+    const auto first_strip = static_cast<std::int32_t>(front_of_.size());
+    for (int i = 0; i < shape.pivots; ++i) strip_of_.push_back(first_strip + i / block_rows);
+    front_of_.insert(front_of_.end(), strips_of(shape), static_cast<std::int32_t>(fronts_.size()));
+    fronts_.push_back({shape, node.first, first_strip, node.first_row, number_count_});
+    number_count_ += column_numbers(shape);
+    most_rows_ = std::max(most_rows_, row_blocks_of(shape) * block_rows);
   }
-  first_value_.push_back(value_count);
 }
 
-// The panels of a supernode follow each other on a path, and those of a later one are closer to the root.
+std::int32_t CholeskyFactor::first_column(int strip) const {
+  const FactorFront& front = fronts_[front_of_[strip]];
+  return front.first + (strip - front.first_strip) * block_rows;
+}
+
+int CholeskyFactor::width(int strip) const {
+  const FactorFront& front = fronts_[front_of_[strip]];
+  return strip_width(front.shape, strip - front.first_strip);
+}
+
+std::int32_t CholeskyFactor::parent_of(int strip) const {
+  const FactorFront& front = fronts_[front_of_[strip]];
+  if (strip + 1 < front.first_strip + strips_of(front.shape)) return strip + 1;
+  return front.shape.rows > 0 ? strip_of_[rows_[front.first_row]] : -1;
+}
+
+// The strips of a front follow each other on a path, and those of a later one are closer to the root.
 std::int32_t CholeskyFactor::meeting_of(std::int32_t a, std::int32_t b) const {
-  while (a >= 0 && b >= 0 && node_of_[a] != node_of_[b]) {
+  while (a >= 0 && b >= 0 && front_of_[a] != front_of_[b]) {
     std::int32_t& earlier = a < b ? a : b;
-    earlier = parent_of(first_panel_[node_of_[earlier] + 1] - 1);
+    const FactorFront& front = fronts_[front_of_[earlier]];
+    earlier = parent_of(front.first_strip + strips_of(front.shape) - 1);
   }
   return a >= 0 && b >= 0 ? std::max(a, b) : -1;
 }
@@ -129,8 +133,8 @@ std::int32_t CholeskyFactor::meeting_of(std::int32_t a, std::int32_t b) const {
 void CholeskyFactor::factorize(const Eigen::SparseMatrix<double>& matrix, Precision precision) {
   if (!has_pattern_of(matrix)) analyze(matrix);
   precision_ = precision;
-  single_.resize(precision == Precision::single_precision ? first_value_.back() : 0);
-  double_.resize(precision == Precision::double_precision ? first_value_.back() : 0);
+  single_.resize(precision == Precision::single_precision ? number_count_ : 0);
+  double_.resize(precision == Precision::double_precision ? number_count_ : 0);
   Room room;
   if (!renew(matrix, room))
     throw RunError(fmt::format("the stiffness matrix is not positive definite (unknown {})", room.failed_));
@@ -139,33 +143,32 @@ void CholeskyFactor::factorize(const Eigen::SparseMatrix<double>& matrix, Precis
 namespace {
 
 // Appends numbers, each raised by an amount.
-template <class List, class Number>
-void append(List& list, const List& more, Number raise, std::size_t skip = 0) {
-  for (std::size_t i = skip; i < more.size(); ++i)
-    list.push_back(static_cast<typename List::value_type>(more[i] + raise));
+void append(std::vector<std::int32_t>& list, const std::vector<std::int32_t>& more, std::size_t raise) {
+  for (const std::int32_t number : more) list.push_back(number + static_cast<std::int32_t>(raise));
 }
 
 }  // namespace
 
 CholeskyFactor CholeskyFactor::block_diagonal(const std::vector<const CholeskyFactor*>& blocks) {
   CholeskyFactor all;
-  all.first_panel_ = {0};
-  all.first_row_ = all.first_value_ = {0};
   if (!blocks.empty()) all.precision_ = blocks.front()->precision_;
   for (const CholeskyFactor* block : blocks) {
     SUPPLE_CHECK(int(block->precision_), ==, int(all.precision_));
-    const auto panels = static_cast<std::int32_t>(all.width_.size());
-    const auto nodes = static_cast<std::int32_t>(all.first_panel_.size()) - 1;
-    append(all.panel_of_, block->panel_of_, panels);
-    append(all.node_of_, block->node_of_, nodes);
-    append(all.first_panel_, block->first_panel_, panels, 1);
-    append(all.first_column_, block->first_column_, all.size_);
-    append(all.width_, block->width_, 0);
-    append(all.first_row_, block->first_row_, all.rows_.size(), 1);
+    const std::size_t strips = all.front_of_.size();
+    append(all.strip_of_, block->strip_of_, strips);
+    append(all.front_of_, block->front_of_, all.fronts_.size());
+    for (FactorFront front : block->fronts_) {
+      front.first += all.size_;
+      front.first_strip += static_cast<std::int32_t>(strips);
+      front.first_row += std::ssize(all.rows_);
+      front.first_number += all.number_count_;
+      all.fronts_.push_back(front);
+    }
     append(all.rows_, block->rows_, all.size_);
-    append(all.first_value_, block->first_value_, all.first_value_.back(), 1);
     all.single_.insert(all.single_.end(), block->single_.begin(), block->single_.end());
     all.double_.insert(all.double_.end(), block->double_.begin(), block->double_.end());
+    all.number_count_ += block->number_count_;
+    all.most_rows_ = std::max(all.most_rows_, block->most_rows_);
     all.operations_ += block->operations_;
     all.size_ += block->size_;
   }
@@ -178,57 +181,56 @@ CholeskyFactor::Room::~Room() = default;
 bool CholeskyFactor::renew(const Eigen::SparseMatrix<double>& matrix, Room& room) {
   SUPPLE_CHECK(matrix.nonZeros(), ==, Eigen::Index(inner_.size()));
   if (!room.fronts_) room.fronts_ = std::make_unique<Multifrontal>(elimination_);
-  room.columns_.resize(elimination_.most_column_numbers);
+  if (precision_ == Precision::single_precision) room.columns_.resize(elimination_.most_column_numbers);
   room.fronts_->begin();
   for (const std::int32_t s : elimination_.order) {
-    room.failed_ = room.fronts_->eliminate(matrix, s, room.columns_.data());
+    const bool narrow = precision_ == Precision::single_precision;
+    double* columns = narrow ? room.columns_.data() : double_.data() + fronts_[s].first_number;
+    room.failed_ = room.fronts_->eliminate(matrix, s, columns);
     if (room.failed_ >= 0) return false;
-    precision_ == Precision::single_precision ? store_panels(s, room.columns_.data(), single_)
-                                              : store_panels(s, room.columns_.data(), double_);
+    invert_triangles(fronts_[s].shape, columns);
+    if (narrow) std::copy_n(columns, column_numbers(fronts_[s].shape), single_.data() + fronts_[s].first_number);
   }
   return true;
 }
 
-// Stores columns of a front as rows of its panels, with the diagonal inverted and 0 above it.
+FactorView CholeskyFactor::view() const {
+  const void* numbers =
+      precision_ == Precision::single_precision ? static_cast<const void*>(single_.data()) : double_.data();
+  return {static_cast<int>(fronts_.size()),
+          static_cast<int>(front_of_.size()),
+          fronts_.data(),
+          front_of_.data(),
+          rows_.data(),
+          numbers};
+}
+
 template <class T>
-void CholeskyFactor::store_panels(int s, const double* columns, AlignedVector<T>& out) const {
-  const Supernode& node = elimination_.nodes[s];
-  const FrontShape front = node.front();
-  for (int panel = first_panel_[s]; panel < first_panel_[s + 1]; ++panel) {
-    const int first = first_column_[panel] - node.first, width = width_[panel];
-    T* target = out.data() + first_value_[panel];
-    for (int from = 0, to = 0; from < width; from = to) {  // columns of one strip
-      const int strip = (first + from) / block_rows, block = block_rows * strip_width(front, strip);
-      to = std::min(width, (strip + 1) * block_rows - first);
-      const double* column = columns + strip_begin(front, strip) + (first + from) % block_rows * block_rows;
-      const auto store_rows = [&](int row, int end) {
-        for (int place = padded_place(front, row); row < end; ++row, ++place) {
-          const double* source = column + (place / block_rows - strip) * block + place % block_rows;
-          T* stored = target + std::int64_t(row - first) * width;
-          for (int j = from; j < to; ++j) stored[j] = static_cast<T>(source[(j - from) * block_rows]);
-        }
-      };
-      store_rows(first + from, front.pivots);
-      store_rows(front.pivots, front.pivots + front.rows);
-      for (int j = from; j < to; ++j) {
-        for (int i = 0; i < j; ++i) target[i * width + j] = 0;
-        target[j * width + j] = static_cast<T>(1 / column[(j - from) * block_rows + (first + j) % block_rows]);
-      }
-    }
+void CholeskyFactor::down(const std::vector<std::int32_t>* strips, T* x, T* scratch) const {
+  const std::int32_t* list = strips != nullptr ? strips->data() : nullptr;
+  const int count = strips != nullptr ? static_cast<int>(strips->size()) : 0;
+  if constexpr (std::is_same_v<T, float>) {
+    linear_kernels().down_float(view(), list, count, x, scratch);
+  } else {
+    linear_kernels().down_double(view(), list, count, x, scratch);
   }
 }
 
-PanelsView CholeskyFactor::view() const {
-  const void* values =
-      precision_ == Precision::single_precision ? static_cast<const void*>(single_.data()) : double_.data();
-  return {static_cast<int>(width_.size()),
-          first_column_.data(),
-          width_.data(),
-          first_row_.data(),
-          rows_.data(),
-          first_value_.data(),
-          values};
+template <class T>
+void CholeskyFactor::up(const std::vector<std::int32_t>* strips, T* x, T* scratch) const {
+  const std::int32_t* list = strips != nullptr ? strips->data() : nullptr;
+  const int count = strips != nullptr ? static_cast<int>(strips->size()) : 0;
+  if constexpr (std::is_same_v<T, float>) {
+    linear_kernels().up_float(view(), list, count, x, scratch);
+  } else {
+    linear_kernels().up_double(view(), list, count, x, scratch);
+  }
 }
+
+template void CholeskyFactor::down(const std::vector<std::int32_t>*, float*, float*) const;
+template void CholeskyFactor::down(const std::vector<std::int32_t>*, double*, double*) const;
+template void CholeskyFactor::up(const std::vector<std::int32_t>*, float*, float*) const;
+template void CholeskyFactor::up(const std::vector<std::int32_t>*, double*, double*) const;
 
 double solve_scale(const double* b, int count) {
   double largest = 0;
@@ -238,32 +240,35 @@ double solve_scale(const double* b, int count) {
 
 namespace {
 
-template <class T, class Solve>
-void solve_interleaved(int size, const double* b, double* x, T* four, double scale, const Solve& solve) {
-  for (int i = 0; i < size; ++i) {
+template <class T>
+void solve_interleaved(const CholeskyFactor& factor, const double* b, double* x, T* scratch, double scale) {
+  const std::int64_t size = factor.size();
+  const double back = 1 / scale;  // exact: the scale is a power of two
+  T* const four = scratch + factor.front_numbers();
+  for (std::int64_t i = 0; i < size; ++i) {
     for (int c = 0; c < 3; ++c) four[4 * i + c] = static_cast<T>(scale * b[3 * i + c]);
     four[4 * i + 3] = 0;
   }
-  solve(four);
-  for (int i = 0; i < size; ++i) {
-    for (int c = 0; c < 3; ++c) x[3 * i + c] = static_cast<double>(four[4 * i + c]) / scale;
+  factor.down<T>(nullptr, four, scratch);
+  factor.up<T>(nullptr, four, scratch);
+  for (std::int64_t i = 0; i < size; ++i) {
+    for (int c = 0; c < 3; ++c) x[3 * i + c] = back * static_cast<double>(four[4 * i + c]);
   }
 }
 
 }  // namespace
 
-void CholeskyFactor::solve(const double* b, double* x, double* scratch) const {
-  const PanelsView panels = view();
+std::size_t CholeskyFactor::scratch_numbers() const {
+  const std::size_t numbers = front_numbers() + 4 * std::size_t(size_);
+  return precision_ == Precision::single_precision ? (numbers + 1) / 2 : numbers;
+}
+
+void CholeskyFactor::solve(const double* b, double* x, AlignedVector<double>& scratch) const {
+  if (scratch.size() < scratch_numbers()) scratch.resize(scratch_numbers());
   if (precision_ == Precision::single_precision) {
-    solve_interleaved(size_, b, x, reinterpret_cast<float*>(scratch), solve_scale(b, 3 * size_), [&](float* four) {
-      linear_kernels().down_float(panels, nullptr, 0, four);
-      linear_kernels().up_float(panels, nullptr, 0, four);
-    });
+    solve_interleaved(*this, b, x, reinterpret_cast<float*>(scratch.data()), solve_scale(b, 3 * size_));
   } else {
-    solve_interleaved(size_, b, x, scratch, 1.0, [&](double* four) {
-      linear_kernels().down_double(panels, nullptr, 0, four);
-      linear_kernels().up_double(panels, nullptr, 0, four);
-    });
+    solve_interleaved(*this, b, x, scratch.data(), 1.0);
   }
 }
 

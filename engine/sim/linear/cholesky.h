@@ -1,6 +1,6 @@
 // Factors a sparse symmetric positive definite matrix that is solved many times: CHOLMOD orders it, fronts of our own
 // compute the numbers (multifrontal.h; the bits depend on the matrix and the instruction set, on no BLAS and no number
-// of threads), and panels of our own solve for three right-hand sides at once. No other part of the program uses
+// of threads), and loops of our own solve for three right-hand sides at once. No other part of the program uses
 // CHOLMOD. An object is not thread-safe: build it on one thread. For a matrix that changes with each solve:
 // changing_factor.h.
 #pragma once
@@ -68,37 +68,47 @@ class CholeskyFactor {
   // Counts the multiplications and additions of one factorisation.
   double operations() const { return operations_; }
 
-  // Computes x = A^-1 b for b and x with `size` rows, interleaved. scratch: 4 * size doubles.
-  void solve(const double* b, double* x, double* scratch) const;
+  // Computes x = A^-1 b for b and x with `size` rows, interleaved. Allocates where scratch has less than
+  // scratch_numbers().
+  void solve(const double* b, double* x, AlignedVector<double>& scratch) const;
+  std::size_t scratch_numbers() const;
 
-  // Returns the panels by which systems are solved (linear_kernels.h), for code that solves in parts (parted_solve.h).
-  PanelsView view() const;
+  // These functions solve a half of the system in place (LinearKernels::Solve), for code that solves in parts
+  // (parted_solve.h). T: the type of precision(). strips: null for all. scratch: of front_numbers().
+  template <class T>
+  void down(const std::vector<std::int32_t>* strips, T* x, T* scratch) const;
+  template <class T>
+  void up(const std::vector<std::int32_t>* strips, T* x, T* scratch) const;
+  // Returns three times the padded rows of the largest front.
+  std::size_t front_numbers() const { return 3 * std::size_t(most_rows_); }
+
+  FactorView view() const;
   Precision precision() const { return precision_; }
-  std::int32_t panel_of(int unknown) const { return panel_of_[unknown]; }
-  // Returns the panel of the first row below a panel, which is the next one on the path to the root of the elimination
+  std::int32_t strip_of(int unknown) const { return strip_of_[unknown]; }
+  // Returns the first unknown of a strip, and how many it has.
+  std::int32_t first_column(int strip) const;
+  int width(int strip) const;
+  // Returns the strip of the first row below a strip, which is the next one on the path to the root of the elimination
   // tree; -1: none.
-  std::int32_t parent_of(int panel) const {
-    return first_row_[panel] < first_row_[panel + 1] ? panel_of_[rows_[first_row_[panel]]] : -1;
-  }
-  // Returns the first panel that the paths of two panels to the root have in common; -1: none.
+  std::int32_t parent_of(int strip) const;
+  // Returns the first strip that the paths of two strips to the root have in common; -1: none.
   std::int32_t meeting_of(std::int32_t a, std::int32_t b) const;
 
  private:
   bool has_pattern_of(const Eigen::SparseMatrix<double>& matrix) const;
   void analyze(const Eigen::SparseMatrix<double>& matrix);
-  template <class T>
-  void store_panels(int node, const double* columns, AlignedVector<T>& out) const;
 
   int size_ = 0;
   Precision precision_ = Precision::double_precision;
   double operations_ = 0;
   std::vector<int> outer_, inner_;  // the pattern that was analysed
   Elimination elimination_;
-  std::vector<std::int32_t> first_panel_;  // by supernode; one more entry than supernodes
-  std::vector<std::int32_t> first_column_, width_, rows_;
-  std::vector<std::int32_t> panel_of_;  // by unknown
-  std::vector<std::int32_t> node_of_;   // by panel: its supernode
-  std::vector<std::int64_t> first_row_, first_value_;
+  std::vector<FactorFront> fronts_;     // by supernode
+  std::vector<std::int32_t> rows_;      // below the fronts
+  std::vector<std::int32_t> front_of_;  // by strip
+  std::vector<std::int32_t> strip_of_;  // by unknown
+  std::int64_t number_count_ = 0;
+  int most_rows_ = 0;  // padded, of the largest front
   AlignedVector<float> single_;
   AlignedVector<double> double_;
 };

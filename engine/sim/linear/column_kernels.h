@@ -9,39 +9,48 @@
 namespace supple {
 namespace {
 
-// Solves L x = b with one panel for columns_together right-hand sides, as many at a time as a register holds.
+// Solves L x = b with one strip for columns_together right-hand sides, as many at a time as a register holds.
 template <class T, int width>
-void forward_many(const PanelsView& view, int panel, T* x) {
+void forward_many(const FactorView& view, int strip, T* x) {
   using Part = xsimd::batch<T>;
-  const T* triangle = static_cast<const T*>(view.values) + view.first_value[panel];
-  const std::int32_t* rows = view.rows + view.first_row[panel];
-  const long count = view.first_row[panel + 1] - view.first_row[panel];
+  const FactorFront& front = view.fronts[view.front_of[strip]];
+  const int place = strip - front.first_strip;  // among the front's strips
+  const T* inverse = static_cast<const T*>(view.numbers) + front.first_number + strip_begin(front.shape, place);
+  const std::int32_t* rows = view.rows + front.first_row;
   for (int slice = 0; slice < columns_together; slice += static_cast<int>(Part::size)) {
-    T* top = x + columns_together * long(view.first_column[panel]) + slice;
+    const auto at = [&](std::int64_t unknown) { return x + columns_together * unknown + slice; };
+    const std::int64_t own = front.first + place * block_rows;
     Part known[width];
-    for (int j = 0; j < width; ++j) {
-      Part sum = Part::load_aligned(top + columns_together * j);
-      for (int k = 0; k < j; ++k) sum = fnma(Part(triangle[j * width + k]), known[k], sum);
-      known[j] = sum * Part(triangle[j * width + j]);
-      known[j].store_aligned(top + columns_together * j);
+    for (int j = width - 1; j >= 0; --j) {
+      known[j] = Part(T(0));
+      for (int k = 0; k <= j; ++k)
+        known[j] = fma(Part(inverse[k * block_rows + j]), Part::load_aligned(at(own + k)), known[j]);
+      known[j].store_aligned(at(own + j));
     }
-    const T* value = triangle + width * width;
-    for (long i = 0; i < count; ++i, value += width) {
-      T* target = x + columns_together * long(rows[i]) + slice;
-      Part sum = Part::load_aligned(target);
-      for (int k = 0; k < width; ++k) sum = fnma(Part(value[k]), known[k], sum);
-      sum.store_aligned(target);
-    }
+    const auto take = [&](const T* numbers, int i, std::int64_t unknown) {
+      Part sum = Part::load_aligned(at(unknown));
+      for (int j = 0; j < width; ++j) sum = fnma(Part(numbers[j * block_rows + i]), known[j], sum);
+      sum.store_aligned(at(unknown));
+    };
+    const T* numbers = inverse + block_rows * width;
+    for (int i = block_rows; i < front.shape.pivots - place * block_rows; ++i)
+      take(numbers + (i / block_rows - 1) * block_rows * width, i % block_rows, own + i);
+    numbers += (strips_of(front.shape) - place - 1) * block_rows * width;
+    for (int i = 0; i < front.shape.rows; ++i)
+      take(numbers + i / block_rows * block_rows * width, i % block_rows, rows[i]);
   }
 }
 
 template <class T>
-void down_many(const PanelsView& view, const std::int32_t* list, int count, T* x) {
-  using Step = void (*)(const PanelsView&, int, T*);
-  static constexpr Step step[panel_width] = {forward_many<T, 1>, forward_many<T, 2>, forward_many<T, 3>,
-                                             forward_many<T, 4>, forward_many<T, 5>, forward_many<T, 6>,
-                                             forward_many<T, 7>, forward_many<T, 8>};
-  for (int i = 0; i < count; ++i) step[view.width[list[i]] - 1](view, list[i], x);
+void down_many(const FactorView& view, const std::int32_t* list, int count, T* x) {
+  using Step = void (*)(const FactorView&, int, T*);
+  static constexpr Step step[block_rows] = {forward_many<T, 1>, forward_many<T, 2>, forward_many<T, 3>,
+                                            forward_many<T, 4>, forward_many<T, 5>, forward_many<T, 6>,
+                                            forward_many<T, 7>, forward_many<T, 8>};
+  for (int i = 0; i < count; ++i) {
+    const FactorFront& front = view.fronts[view.front_of[list[i]]];
+    step[strip_width(front.shape, list[i] - front.first_strip) - 1](view, list[i], x);
+  }
 }
 
 using Floats = xsimd::batch<float>;

@@ -1,5 +1,5 @@
 // Solves with the columns of fronts (front_layout.h) for one right-hand side, in single or double precision. The
-// triangles on the diagonals of strips are inverted beforehand (changing_factor.h), so that no unknown waits for
+// triangles on the diagonals of strips are inverted beforehand (multifrontal.h), so that no unknown waits for
 // another one. Like lanes.h it is only for files that are compiled once for each instruction set.
 #pragma once
 

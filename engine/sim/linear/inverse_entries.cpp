@@ -15,15 +15,15 @@ constexpr std::size_t line = 64 / sizeof(float);  // numbers of a cache line
 
 void InverseEntries::prepare(const CholeskyFactor& factor) {
   if (!to_root_.empty()) return;
-  const PanelsView view = factor.view();
+  const int strips = factor.view().strip_count;
   place_of_.assign(factor.size(), {});
-  to_root_.resize(view.panels);
-  tree_of_.resize(view.panels);
+  to_root_.resize(strips);
+  tree_of_.resize(strips);
   std::int32_t trees = 0;
-  for (int panel = view.panels - 1; panel >= 0; --panel) {
-    const std::int32_t parent = factor.parent_of(panel);
-    to_root_[panel] = view.width[panel] + (parent >= 0 ? to_root_[parent] : 0);
-    tree_of_[panel] = parent >= 0 ? tree_of_[parent] : trees++;
+  for (int strip = strips - 1; strip >= 0; --strip) {
+    const std::int32_t parent = factor.parent_of(strip);
+    to_root_[strip] = factor.width(strip) + (parent >= 0 ? to_root_[parent] : 0);
+    tree_of_[strip] = parent >= 0 ? tree_of_[parent] : trees++;
   }
   trees_.resize(trees);
 }
@@ -55,11 +55,11 @@ void InverseEntries::learn(const CholeskyFactor& factor, const std::vector<std::
 void InverseEntries::learn_columns(const CholeskyFactor& factor, Threads* threads) {
   if (fresh_.empty()) return;
   for (const std::int32_t unknown : fresh_) {
-    const std::int32_t panel = factor.panel_of(unknown), tree = tree_of_[panel];
+    const std::int32_t strip = factor.strip_of(unknown), tree = tree_of_[strip];
     std::vector<Column>& columns = trees_[tree].columns;
     place_of_[unknown] = {tree, static_cast<std::int32_t>(columns.size())};
-    columns.push_back({panel, to_root_[panel], {}});
-    stored_ += to_root_[panel] + std::ssize(columns);
+    columns.push_back({strip, to_root_[strip], {}});
+    stored_ += to_root_[strip] + std::ssize(columns);
   }
   for (Tree& tree : trees_) {
     tree.products.resize(first_product(static_cast<std::int32_t>(tree.columns.size())),
@@ -85,27 +85,27 @@ void InverseEntries::learn_columns(const CholeskyFactor& factor, Threads* thread
 
 template <class T>
 void InverseEntries::learn_together(const CholeskyFactor& factor, int first, int count, void* room) {
-  const PanelsView view = factor.view();
+  const FactorView view = factor.view();
   T* x = static_cast<T*>(room);
   const std::int32_t* unknowns = fresh_.data() + first;
   const FactorPart part = paths_to_root(factor, {unknowns, unknowns + count});
-  for (const std::int32_t panel : part)
-    std::fill_n(x + columns_together * long(view.first_column[panel]), columns_together * view.width[panel], T(0));
+  for (const std::int32_t strip : part)
+    std::fill_n(x + columns_together * long(factor.first_column(strip)), columns_together * factor.width(strip), T(0));
   for (int k = 0; k < count; ++k) x[columns_together * long(unknowns[k]) + k] = 1;
-  const int panels = static_cast<int>(part.size());
+  const int strips = static_cast<int>(part.size());
   if constexpr (sizeof(T) == sizeof(float)) {
-    linear_kernels().down_many_float(view, part.data(), panels, x);
+    linear_kernels().down_many_float(view, part.data(), strips, x);
   } else {
-    linear_kernels().down_many_double(view, part.data(), panels, x);
+    linear_kernels().down_many_double(view, part.data(), strips, x);
   }
   for (int k = 0; k < count; ++k) {
     const Place place = place_of_[unknowns[k]];
     Column& column = trees_[place.tree].columns[place.slot];
     column.numbers.resize((std::size_t(column.size) + line - 1) / line * line);
     float* to = column.numbers.data() + column.numbers.size() - column.size;
-    for (std::int32_t panel = column.panel; panel >= 0; panel = factor.parent_of(panel)) {
-      const T* from = x + columns_together * long(view.first_column[panel]) + k;
-      for (int i = 0; i < view.width[panel]; ++i) *to++ = static_cast<float>(from[columns_together * i]);
+    for (std::int32_t strip = column.strip; strip >= 0; strip = factor.parent_of(strip)) {
+      const T* from = x + columns_together * long(factor.first_column(strip)) + k;
+      for (int i = 0; i < factor.width(strip); ++i) *to++ = static_cast<float>(from[columns_together * i]);
     }
   }
 }
@@ -140,7 +140,7 @@ void InverseEntries::learn_tile(const CholeskyFactor& factor, Tree& tree, int ro
     a[i] = own.end();
     b[i] = tree.columns[slot(column, i)].end();
     for (int j = 0; j < product_tile; ++j) {
-      const std::int32_t meeting = factor.meeting_of(own.panel, tree.columns[slot(column, j)].panel);
+      const std::int32_t meeting = factor.meeting_of(own.strip, tree.columns[slot(column, j)].strip);
       count[i * product_tile + j] = meeting >= 0 ? to_root_[meeting] : 0;
     }
   }

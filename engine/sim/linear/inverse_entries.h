@@ -40,8 +40,8 @@ class InverseEntries {
     std::int32_t slot = -1;  // in the tree; -1: not known
   };
   struct Column {
-    std::int32_t panel;            // panel of the column's unknown
-    std::int32_t size;             // numbers from the panel's first unknown to the root's last one
+    std::int32_t strip;            // strip of the column's unknown
+    std::int32_t size;             // numbers from the strip's first unknown to the root's last one
     AlignedVector<float> numbers;  // the numbers of the column, at the end of whole cache lines
     const float* end() const { return numbers.data() + numbers.size(); }
   };
@@ -58,9 +58,9 @@ class InverseEntries {
   void learn_products(const CholeskyFactor& factor, Threads* threads);
   void learn_tile(const CholeskyFactor& factor, Tree& tree, int row, int column) const;
 
-  std::vector<std::int32_t> tree_of_;  // by panel
+  std::vector<std::int32_t> tree_of_;  // by strip
   std::vector<Place> place_of_;        // by unknown
-  std::vector<std::int32_t> to_root_;  // by panel: unknowns on the path from it to the root
+  std::vector<std::int32_t> to_root_;  // by strip: unknowns on the path from it to the root
   std::vector<Tree> trees_;
   std::int64_t stored_ = 0;
   // Scratch memory

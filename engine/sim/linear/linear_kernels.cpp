@@ -7,10 +7,7 @@
 #include "base/variants.h"
 #include "sim/linear/column_kernels.h"
 #include "sim/linear/front_solve.h"
-
-#if defined(__FMA__) || defined(__AVX__)
-#include <immintrin.h>
-#endif
+#include "sim/linear/three_solve.h"
 
 namespace supple {
 namespace {
@@ -176,100 +173,6 @@ int eliminate(FrontShape front, double* columns, double* update) {
     }
   }
   return -1;
-}
-
-// Holds four right-hand sides side by side: x, y, z and an unused one that completes the register.
-template <class T>
-struct Four {
-  typedef T Register __attribute__((vector_size(4 * sizeof(T))));
-  Register v;
-
-  static Four load(const T* p) {
-    Four f;
-    __builtin_memcpy(&f.v, p, sizeof f.v);
-    return f;
-  }
-  void store(T* p) const { __builtin_memcpy(p, &v, sizeof v); }
-  // Subtracts a times x from this.
-  void subtract_scaled(T a, const Four& x) {
-#if defined(__FMA__)
-    if constexpr (sizeof(T) == 4) {
-      v = _mm_fnmadd_ps(_mm_set1_ps(a), x.v, v);
-    } else {
-      v = _mm256_fnmadd_pd(_mm256_set1_pd(a), x.v, v);
-    }
-#else
-    v -= a * x.v;
-#endif
-  }
-};
-
-template <class T, int width>
-void forward(const PanelsView& view, int panel, T* x) {
-  const T* value = static_cast<const T*>(view.values) + view.first_value[panel];
-  T* top = x + 4 * long(view.first_column[panel]);
-  Four<T> known[width];
-  for (int j = 0; j < width; ++j) {
-    Four<T> sum = Four<T>::load(top + 4 * j);
-    for (int k = 0; k < j; ++k) sum.subtract_scaled(value[j * width + k], known[k]);
-    sum.v *= value[j * width + j];
-    sum.store(top + 4 * j);
-    known[j] = sum;
-  }
-  value += width * width;
-  const std::int32_t* rows = view.rows + view.first_row[panel];
-  const long count = view.first_row[panel + 1] - view.first_row[panel];
-  for (long i = 0; i < count; ++i, value += width) {
-    T* target = x + 4 * long(rows[i]);
-    Four<T> sum = Four<T>::load(target);
-    for (int k = 0; k < width; ++k) sum.subtract_scaled(value[k], known[k]);
-    sum.store(target);
-  }
-}
-
-template <class T, int width>
-void backward(const PanelsView& view, int panel, T* x) {
-  const T* triangle = static_cast<const T*>(view.values) + view.first_value[panel];
-  const T* value = triangle + width * width;
-  T* top = x + 4 * long(view.first_column[panel]);
-  Four<T> sum[width];
-  for (int j = 0; j < width; ++j) sum[j] = Four<T>::load(top + 4 * j);
-  const std::int32_t* rows = view.rows + view.first_row[panel];
-  const long count = view.first_row[panel + 1] - view.first_row[panel];
-  for (long i = 0; i < count; ++i, value += width) {
-    const Four<T> known = Four<T>::load(x + 4 * long(rows[i]));
-    for (int k = 0; k < width; ++k) sum[k].subtract_scaled(value[k], known);
-  }
-  for (int j = width - 1; j >= 0; --j) {
-    for (int k = j + 1; k < width; ++k) sum[j].subtract_scaled(triangle[k * width + j], sum[k]);
-    sum[j].v *= triangle[j * width + j];
-    sum[j].store(top + 4 * j);
-  }
-}
-
-template <class T>
-using PanelStep = void (*)(const PanelsView&, int, T*);
-
-template <class T>
-void down(const PanelsView& view, const std::int32_t* list, int count, T* x) {
-  static constexpr PanelStep<T> step[panel_width] = {forward<T, 1>, forward<T, 2>, forward<T, 3>, forward<T, 4>,
-                                                     forward<T, 5>, forward<T, 6>, forward<T, 7>, forward<T, 8>};
-  if (list == nullptr) {
-    for (int panel = 0; panel < view.panels; ++panel) step[view.width[panel] - 1](view, panel, x);
-    return;
-  }
-  for (int i = 0; i < count; ++i) step[view.width[list[i]] - 1](view, list[i], x);
-}
-
-template <class T>
-void up(const PanelsView& view, const std::int32_t* list, int count, T* x) {
-  static constexpr PanelStep<T> step[panel_width] = {backward<T, 1>, backward<T, 2>, backward<T, 3>, backward<T, 4>,
-                                                     backward<T, 5>, backward<T, 6>, backward<T, 7>, backward<T, 8>};
-  if (list == nullptr) {
-    for (int panel = view.panels - 1; panel >= 0; --panel) step[view.width[panel] - 1](view, panel, x);
-    return;
-  }
-  for (int i = count - 1; i >= 0; --i) step[view.width[list[i]] - 1](view, list[i], x);
 }
 
 void dots(const double* const* a, int count, const double* b, long begin, long end, double* result) {

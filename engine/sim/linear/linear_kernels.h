@@ -8,20 +8,26 @@
 
 namespace supple {
 
-constexpr int panel_width = 8;
-constexpr int columns_together = 16;  // right-hand sides of down_many_float
+constexpr int columns_together = 16;  // right-hand sides of down_many
 constexpr int product_tile = 4;       // vectors on either side of end_products
 
-// Describes a Cholesky factor that is cut into panels of adjacent columns with one row pattern. It is row-major: each
-// row of a panel holds its `width` values.
-struct PanelsView {
-  int panels;
-  const std::int32_t* first_column;  // by panel
-  const std::int32_t* width;         // by panel, 1 to panel_width
-  const std::int64_t* first_row;     // by panel, into rows; panels + 1 entries
-  const std::int32_t* rows;          // below the triangle
-  const std::int64_t* first_value;  // by panel, into values: triangle (width x width, inverted diagonal), then the rows
-  const void* values;               // float or double
+// Describes where the columns and unknowns of one front of a Cholesky factor are.
+struct FactorFront {
+  FrontShape shape;
+  std::int32_t first;         // unknown of the first pivot
+  std::int32_t first_strip;   // the front's strips have successive numbers
+  std::int64_t first_row;     // into FactorView::rows: the unknowns below the pivots
+  std::int64_t first_number;  // into FactorView::numbers
+};
+
+// Describes a Cholesky factor: the columns of its fronts (front_layout.h), with the triangle on the diagonal of each
+// strip inverted (invert_triangles in multifrontal.h).
+struct FactorView {
+  int front_count, strip_count;
+  const FactorFront* fronts;     // by their pivots
+  const std::int32_t* front_of;  // by strip
+  const std::int32_t* rows;
+  const void* numbers;  // float or double
 };
 
 struct LinearKernels {
@@ -32,7 +38,7 @@ struct LinearKernels {
   int (*eliminate)(FrontShape front, double* columns, double* update);
 
   // These functions solve the part of one front in L x = b, in place, and in L^T x = b. The triangle on the diagonal of
-  // each strip is inverted (invert_triangles in changing_factor.h). `own`: x at the front's first
+  // each strip is inverted (invert_triangles in multifrontal.h). `own`: x at the front's first
   // pivot; rows: the index in x of each row below the pivots. scratch: as many numbers as the front has padded rows,
   // aligned like the columns.
   template <class T>
@@ -40,18 +46,20 @@ struct LinearKernels {
   FrontStep<float> front_down_float, front_up_float;
   FrontStep<double> front_down_double, front_up_double;
 
-  // Solves L x = b (down) or L^T x = b (up) in place for four interleaved right-hand sides (n x 4), by panels of up to
-  // panel_width columns: those of an ascending list, or all of them (null). Numbers that belong to other panels are
-  // read only by down, as targets, and are not used by up if the list contains all panels on which its own depend.
-  void (*down_float)(const PanelsView& panels, const std::int32_t* list, int count, float* x);
-  void (*up_float)(const PanelsView& panels, const std::int32_t* list, int count, float* x);
-  void (*down_double)(const PanelsView& panels, const std::int32_t* list, int count, double* x);
-  void (*up_double)(const PanelsView& panels, const std::int32_t* list, int count, double* x);
+  // These functions solve L x = b (down) or L^T x = b (up) in place for three right-hand sides. x: n x 4, of which the
+  // last column is unused. They use the strips of an ascending list, which contains all later strips of each of its
+  // fronts, or all strips (null). Numbers that belong to other strips are read only by down, as targets, and are not
+  // used by up if the list contains all strips on which its own depend. scratch: three times the padded rows of the
+  // largest front, aligned to cache lines.
+  template <class T>
+  using Solve = void (*)(const FactorView& factor, const std::int32_t* list, int count, T* x, T* scratch);
+  Solve<float> down_float, up_float;
+  Solve<double> down_double, up_double;
 
-  // Does what down_float does for columns_together interleaved right-hand sides, on a list of panels. x is aligned to
-  // cache lines.
-  void (*down_many_float)(const PanelsView& panels, const std::int32_t* list, int count, float* x);
-  void (*down_many_double)(const PanelsView& panels, const std::int32_t* list, int count, double* x);
+  // Does what down does for columns_together interleaved right-hand sides, on a list of strips. x is aligned to cache
+  // lines.
+  void (*down_many_float)(const FactorView& factor, const std::int32_t* list, int count, float* x);
+  void (*down_many_double)(const FactorView& factor, const std::int32_t* list, int count, double* x);
 
   // products[i * product_tile + j] = a_i . b_j over the last count[i * product_tile + j] numbers of both. Vectors are
   // given by their ends, which are aligned to cache lines. A product does not depend on the others.

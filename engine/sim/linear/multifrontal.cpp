@@ -21,6 +21,23 @@ double* column_of(FrontShape front, double* columns, int column) {
 
 }  // namespace
 
+void invert_triangles(FrontShape front, double* columns) {
+  for (int strip = 0; strip < strips_of(front); ++strip) {
+    double* triangle = columns + strip_begin(front, strip);
+    const int width = strip_width(front, strip);
+    double inverse[block_rows][block_rows] = {};  // by columns
+    for (int j = 0; j < width; ++j) {
+      inverse[j][j] = 1 / triangle[j * block_rows + j];
+      for (int i = j + 1; i < width; ++i) {
+        double sum = 0;
+        for (int k = j; k < i; ++k) sum += triangle[k * block_rows + i] * inverse[j][k];
+        inverse[j][i] = -sum / triangle[i * block_rows + i];
+      }
+    }
+    for (int j = 0; j < width; ++j) std::copy_n(inverse[j], block_rows, triangle + j * block_rows);
+  }
+}
+
 Multifrontal::Multifrontal(const Elimination& elimination) : elimination_(elimination), place_(elimination.size) {
   waiting_.reserve(elimination.nodes.size());
   for (int i = 0; i < 2; ++i) stack_[i].resize(elimination.deepest_stack[i]);

@@ -10,6 +10,9 @@
 
 namespace supple {
 
+// Inverts the triangles on the diagonals of a front's strips in its columns of L: a solve then multiplies with them.
+void invert_triangles(FrontShape front, double* columns);
+
 class Multifrontal {
  public:
   // The elimination must outlive this object.

@@ -6,12 +6,12 @@
 namespace supple {
 
 FactorPart paths_to_root(const CholeskyFactor& factor, const std::vector<std::int32_t>& unknowns) {
-  std::vector<bool> met(factor.view().panels, false);
+  std::vector<bool> met(factor.view().strip_count, false);
   FactorPart part;
   for (const std::int32_t unknown : unknowns) {
-    for (std::int32_t panel = factor.panel_of(unknown); panel >= 0 && !met[panel]; panel = factor.parent_of(panel)) {
-      met[panel] = true;
-      part.push_back(panel);
+    for (std::int32_t strip = factor.strip_of(unknown); strip >= 0 && !met[strip]; strip = factor.parent_of(strip)) {
+      met[strip] = true;
+      part.push_back(strip);
     }
   }
   std::sort(part.begin(), part.end());
@@ -20,61 +20,50 @@ FactorPart paths_to_root(const CholeskyFactor& factor, const std::vector<std::in
 
 namespace {
 
-// Holds the two buffers of a solve, and the kernels of its precision.
+// Holds the buffers of a solve, in its precision.
 template <class T>
 struct Buffers {
-  PanelsView view;
-  long size;
-  T* main;
-  T* other;
+  const CholeskyFactor& factor;
+  T *scratch, *main, *other;
+  long size = factor.size();
 
-  void down(const FactorPart* part, T* x) const {
-    const std::int32_t* list = part != nullptr ? part->data() : nullptr;
-    const int count = part != nullptr ? static_cast<int>(part->size()) : 0;
-    if constexpr (sizeof(T) == 4) {
-      linear_kernels().down_float(view, list, count, x);
-    } else {
-      linear_kernels().down_double(view, list, count, x);
-    }
-  }
-  void up(const FactorPart* part, T* x) const {
-    const std::int32_t* list = part != nullptr ? part->data() : nullptr;
-    const int count = part != nullptr ? static_cast<int>(part->size()) : 0;
-    if constexpr (sizeof(T) == 4) {
-      linear_kernels().up_float(view, list, count, x);
-    } else {
-      linear_kernels().up_double(view, list, count, x);
-    }
-  }
-  // Calls work(first, end) for the numbers of each panel of a part.
+  Buffers(const CholeskyFactor& of, void* room)
+      : factor(of),
+        scratch(static_cast<T*>(room)),
+        main(scratch + of.front_numbers()),
+        other(main + 4 * std::size_t(of.size())) {}
+  static std::size_t numbers(const CholeskyFactor& of) { return of.front_numbers() + 8 * std::size_t(of.size()); }
+
+  void down(const FactorPart* part, T* x) const { factor.down(part, x, scratch); }
+  void up(const FactorPart* part, T* x) const { factor.up(part, x, scratch); }
+  // Calls work(first, end) for the numbers of each strip of a part.
   template <class Work>
   void numbers_of(const FactorPart& part, const Work& work) const {
-    for (const std::int32_t panel : part) {
-      const long first = 4 * long(view.first_column[panel]);
-      work(first, first + 4 * view.width[panel]);
+    for (const std::int32_t strip : part) {
+      const long first = 4 * long(factor.first_column(strip));
+      work(first, first + 4 * factor.width(strip));
     }
   }
 };
+
+std::size_t room_for(const CholeskyFactor& factor) {
+  return factor.precision() == Precision::single_precision ? (Buffers<float>::numbers(factor) + 1) / 2
+                                                           : Buffers<double>::numbers(factor);
+}
 
 }  // namespace
 
 template <class Work>
 void PartedSolve::by_precision(const Work& work) {
-  const long size = factor_->size();
-  const PanelsView view = factor_->view();
-  if (factor_->precision() == Precision::single_precision) {
-    float* room = reinterpret_cast<float*>(room_.data());
-    work(Buffers<float>{view, size, room, room + 4 * size});
-  } else {
-    work(Buffers<double>{view, size, room_.data(), room_.data() + 4 * size});
-  }
+  factor_->precision() == Precision::single_precision ? work(Buffers<float>(*factor_, room_.data()))
+                                                      : work(Buffers<double>(*factor_, room_.data()));
 }
 
 void PartedSolve::begin(const CholeskyFactor& factor, const double* b) {
   factor_ = &factor;
   const bool single = factor.precision() == Precision::single_precision;
   scale_ = single ? solve_scale(b, 3 * factor.size()) : 1.0;
-  room_.resize((single ? 4 : 8) * std::size_t(factor.size()));
+  room_.resize(room_for(factor));
   by_precision([&]<class T>(const Buffers<T>& k) {
     for (long i = 0; i < k.size; ++i) {
       for (int c = 0; c < 3; ++c) k.main[4 * i + c] = static_cast<T>(scale_ * b[3 * i + c]);
@@ -88,7 +77,7 @@ void PartedSolve::begin_from_zero(const CholeskyFactor& factor, double magnitude
   factor_ = &factor;
   const bool single = factor.precision() == Precision::single_precision;
   scale_ = single ? solve_scale(&magnitude, 1) : 1.0;
-  room_.resize((single ? 4 : 8) * std::size_t(factor.size()));
+  room_.resize(room_for(factor));
   by_precision([&]<class T>(const Buffers<T>& k) { std::fill_n(k.main, 4 * k.size, T(0)); });
 }
 

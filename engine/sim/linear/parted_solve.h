@@ -1,5 +1,5 @@
 // Solves A x = b in parts, where an amount is added to b at a few unknowns, and this amount depends on x at a few
-// unknowns. These unknowns involve only the panels on their paths to the root of the elimination tree (Gilbert 1994,
+// unknowns. These unknowns involve only the columns on their paths to the root of the elimination tree (Gilbert 1994,
 // "Predicting structure in sparse matrix computations"; Davis 2006, "Direct methods for sparse linear systems", section
 // 3.2). Reading x and adding to b at these unknowns therefore cost as much as this part of the factor, and the whole
 // solve is made once.
@@ -12,10 +12,11 @@
 
 namespace supple {
 
-// Lists panels of a factor, ascending. The list contains the whole path of each of its panels to the root.
+// Lists strips of a factor (front_layout.h), ascending. The list contains the whole path of each of its strips to the
+// root.
 using FactorPart = std::vector<std::int32_t>;
 
-// Returns the panels on the paths from these unknowns to the root.
+// Returns the strips on the paths from these unknowns to the root.
 FactorPart paths_to_root(const CholeskyFactor& factor, const std::vector<std::int32_t>& unknowns);
 
 // Solves for three right-hand sides at once, as CholeskyFactor::solve does. Parts must belong to the factor with which
@@ -44,7 +45,8 @@ class PartedSolve {
 
   const CholeskyFactor* factor_ = nullptr;
   double scale_ = 1;
-  AlignedVector<double> room_;  // L^-1 b and what is looked at or added, both n x 4 of the factor's precision
+  // Scratch memory of a front, L^-1 b, and what is looked at or added, both n x 4; all of the factor's precision.
+  AlignedVector<double> room_;
 };
 
 }  // namespace supple

@@ -21,8 +21,7 @@ void solve_system(const Model& model, const Positions& r, Positions& z, SolveScr
 }
 
 void solve_system(const Model& model, const System& system, const Positions& r, Positions& z, SolveScratch& scratch) {
-  scratch.resize(4 * std::size_t(model.free));
-  system.factor.solve(r.data(), z.data(), scratch.data());
+  system.factor.solve(r.data(), z.data(), scratch);
   restore_translation(model, r, z);
 }
 

@@ -77,7 +77,7 @@ bool spread_handles(OpenWorkspace& w) {
   }
   if (right.isZero(0)) return false;
   const TimedPhase timed(w.clock, Phase::solve, "solve");
-  w.system->factor.solve(right.data(), w.direction.data(), w.solve_scratch.data());
+  w.system->factor.solve(right.data(), w.direction.data(), w.solve_scratch);
   return true;
 }
 
@@ -117,7 +117,7 @@ void turn_with_handles(StepContext& c) {
   Positions& shares = w.scratch;
   shares.setZero();
   for (const Model::Coupling& entry : model.couplings) shares(entry.free, 0) -= entry.value;
-  model.factor.solve(shares.data(), w.direction.data(), w.solve_scratch.data());
+  model.factor.solve(shares.data(), w.direction.data(), w.solve_scratch);
   shares = w.direction;
   timed.next(Phase::evaluate, "turn with handles");
   for (const bool wholly : {false, true}) {

@@ -37,7 +37,7 @@ void OpenWorkspace::prepare(const Model& model, const SolverSettings& solver) {
   scratch.resize(model.free, 3);
   force.resize(model.chunk_vertex.size() * list_stride);
   local.resize(std::size_t(model.chunks.size()) * model.largest_chunk * list_stride);
-  solve_scratch.resize(std::size_t(model.free) * 4);
+  solve_scratch.resize(model.factor.scratch_numbers());
   const std::size_t chunks = std::max<std::size_t>(model.chunks.size(), vertex_chunks(model));
   partial.resize(chunks * (2 * window_ + 4));
   step_pairs.resize(window_);
