@@ -11,6 +11,11 @@
 #include "base/trace.h"
 
 namespace supple {
+namespace {
+
+thread_local bool in_chunk = false;
+
+}  // namespace
 
 class Threads::Workers {
  public:
@@ -54,7 +59,9 @@ Threads::Workers::~Workers() {
 }
 
 void Threads::Workers::take_chunks(Call call, const void* context, int chunks) {
+  in_chunk = true;
   for (int chunk; (chunk = next_chunk_.fetch_add(1, std::memory_order_relaxed)) < chunks;) call(context, chunk);
+  in_chunk = false;
 }
 
 void Threads::Workers::run(int chunks, Call call, const void* context) {
@@ -101,6 +108,8 @@ void Threads::Workers::work(int number) {
 Threads::Threads(int count)
     : count_(std::max(1, count)), workers_(count_ > 1 ? std::make_unique<Workers>(count_ - 1) : nullptr) {}
 Threads::~Threads() = default;
+
+bool Threads::is_in_chunk() { return in_chunk; }
 
 void Threads::run_shared(int chunks, Call call, const void* context) { workers_->run(chunks, call, context); }
 

@@ -1,7 +1,8 @@
 // A small pool runs numbered chunks of work. The caller fixes the chunks, never the number of threads, and each chunk
 // writes only its own output, so the same bits come out however many threads take part. Waiting threads sleep. The
 // calling thread takes chunks itself, and a worker that wakes late finds nothing to do; a core that another process
-// occupies therefore costs a little time but holds up no barrier.
+// occupies therefore costs a little time but holds up no barrier. A chunk that asks for threads itself does that work
+// alone.
 #pragma once
 
 #include <memory>
@@ -23,7 +24,7 @@ class Threads {
   template <class Body>
   void run(int chunks, const Body& body) {
     if (chunks <= 0) return;
-    if (count_ == 1 || chunks == 1) {
+    if (count_ == 1 || chunks == 1 || is_in_chunk()) {
       for (int chunk = 0; chunk < chunks; ++chunk) body(chunk);
       return;
     }
@@ -35,6 +36,7 @@ class Threads {
   using Call = void (*)(const void* context, int chunk);
 
   void run_shared(int chunks, Call call, const void* context);
+  static bool is_in_chunk();  // whether the calling thread is in a chunk that is shared
 
   class Workers;  // in threads.cpp, which alone compiles the library's headers for threads
   int count_;

@@ -72,6 +72,7 @@ std::string FrameLoop::compare_with_record(int frame) {
 void FrameLoop::record(int frame, FrameRow& row) {
   for (const auto& body : recorders_) body->end_frame();
   for (const BodyRow& body : row.bodies) row.step_ms += body.step_ms;
+  row.step_ms -= world_.saved_ms();
   for (std::size_t b = 0; states_ && b < world_.size(); ++b)
     states_->add(world_.body(b).model(), world_.body(b).state());
   row.state_hash = world_.hash();

@@ -8,6 +8,9 @@
 // comes through its own surface (sim/contact/own_surface.h), the step is made again, with contact of the body with
 // itself. So a body that does not touch itself pays for the look alone, and keeps its bits. A cloth is asked by
 // sim/contact/own_sheet.h.
+//
+// Bodies that make their own steps make them at the same time, one on each thread, where that takes less time than one
+// after the other with all threads inside each step. The bits are the same.
 #pragma once
 
 #include <memory>
@@ -50,6 +53,15 @@ class Islands {
   // Returns the step that several bodies, or one that touches itself, made last.
   const JoinedStep& last_step() const { return last_step_; }
 
+  // Returns the bodies of islands of one that should make their steps at the same time, the one with most work first;
+  // none where that would not be faster.
+  std::vector<std::size_t> find_independent(const std::vector<std::vector<std::size_t>>& islands) const;
+  // Makes the steps of such bodies, on all threads. Returns those whose steps are made. For the others, which touch
+  // themselves or whose step failed, step() is to be called: their states have not changed.
+  std::vector<std::size_t> step_at_once(const std::vector<std::size_t>& independent);
+  // Returns how much shorter the steps that were made since find() took together than one after the other [ms].
+  double saved_ms() const { return saved_ms_; }
+
   // Makes the step of an island. Returns the body whose step failed, or -1; if one failed, no state changes.
   int step(const std::vector<std::size_t>& island);
 
@@ -68,6 +80,7 @@ class Islands {
   Together& together(const std::vector<std::size_t>& island);
   int step_once(const std::vector<std::size_t>& island, const Selves& selves);
   int step_together(const std::vector<std::size_t>& island, const Selves& selves);
+  bool step_alone(std::size_t body);
   Own& own_of(std::size_t body);
   bool begins_in_itself(std::size_t body, const Positions& q);
   bool comes_through_itself(std::size_t body, const Positions& q);
@@ -79,9 +92,11 @@ class Islands {
   const std::vector<std::unique_ptr<MovingBody>>& bodies_;
   Solvers solvers_;
   Threads* threads_;
-  std::vector<Way> ways_;  // by body
-  std::vector<Own> owns_;  // by body
+  std::vector<Way> ways_;       // by body
+  std::vector<Own> owns_;       // by body
+  std::vector<double> wasted_;  // by body: time of a step at once that must be made again [ms]
   std::vector<BodyTouch> touches_;
+  double saved_ms_ = 0;
   JoinedStep last_step_;
   std::vector<std::unique_ptr<Together>> together_;  // of the last steps, the latest used first
 };

@@ -1,5 +1,7 @@
 #include "world/world.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/trace.h"
@@ -17,6 +19,7 @@ struct World::Parts {
   std::vector<std::unique_ptr<MovingBody>> moving;  // by body, once the world is started
   std::unique_ptr<Islands> islands;                 // once the world is started
   int frame = -1;                                   // that was entered last
+  double saved_ms = 0;                              // of the frame's steps
 
   Parts(std::optional<Script> script, SceneDef at_start, std::vector<Body> bodies)
       : script(std::move(script)),
@@ -33,7 +36,10 @@ struct World::Parts {
   }
   void apply(SceneDef changed, const std::vector<TimedChange>& changes);
   // Makes the step of an island that was prepared. Returns whether it succeeded.
-  bool step(const std::vector<std::size_t>& island, int substep, const StepWatch& watch);
+  // is_known: whether the watch has been told that it was prepared.
+  bool step(const std::vector<std::size_t>& island, int substep, const StepWatch& watch, bool is_known);
+  // Makes the steps of all islands.
+  bool step_all(const std::vector<std::vector<std::size_t>>& all, int substep, const StepWatch& watch);
 };
 
 void World::Parts::apply(SceneDef changed, const std::vector<TimedChange>& changes) {
@@ -62,6 +68,7 @@ const SceneDef& World::scene() const { return parts_->scene; }
 const std::vector<Body>& World::bodies() const { return parts_->bodies; }
 const CollisionSet& World::colliders() const { return parts_->colliders; }
 const std::vector<BodyTouch>& World::touches() const { return parts_->islands->touches(); }
+double World::saved_ms() const { return parts_->saved_ms; }
 const JoinedStep& World::joined_step() const { return parts_->islands->last_step(); }
 std::size_t World::size() const { return parts_->bodies.size(); }
 MovingBody& World::body(std::size_t index) { return *parts_->moving.at(index); }
@@ -110,9 +117,9 @@ void World::prepare(int substep) {
   for (const auto& body : parts_->moving) body->prepare_step(parts_->frame, substep);
 }
 
-bool World::Parts::step(const std::vector<std::size_t>& island, int substep, const StepWatch& watch) {
+bool World::Parts::step(const std::vector<std::size_t>& island, int substep, const StepWatch& watch, bool is_known) {
   for (const std::size_t b : island) {
-    if (watch.prepared) watch.prepared(b, substep);
+    if (watch.prepared && !is_known) watch.prepared(b, substep);
   }
   const int failed = islands->step(island);
   for (const std::size_t b : island) {
@@ -121,12 +128,30 @@ bool World::Parts::step(const std::vector<std::size_t>& island, int substep, con
   return failed < 0;
 }
 
+bool World::Parts::step_all(const std::vector<std::vector<std::size_t>>& all, int substep, const StepWatch& watch) {
+  const std::vector<std::size_t> independent = islands->find_independent(all);
+  std::vector<char> known(bodies.size(), 0), made = known;
+  if (!independent.empty()) {
+    for (const std::size_t b : independent) {
+      known[b] = 1;
+      if (watch.prepared) watch.prepared(b, substep);
+    }
+    for (const std::size_t b : islands->step_at_once(independent)) {
+      made[b] = 1;
+      if (watch.made) watch.made(b, substep);
+    }
+    saved_ms += islands->saved_ms();
+  }
+  return std::ranges::all_of(all, [&](const std::vector<std::size_t>& island) {
+    return made[island.front()] != 0 || step(island, substep, watch, known[island.front()] != 0);
+  });
+}
+
 bool World::step(const StepWatch& watch) {
+  parts_->saved_ms = 0;
   for (int substep = 0; substep < parts_->scene.substeps; ++substep) {
     prepare(substep);
-    for (const std::vector<std::size_t>& island : parts_->islands->find()) {
-      if (!parts_->step(island, substep, watch)) return false;
-    }
+    if (!parts_->step_all(parts_->islands->find(), substep, watch)) return false;
   }
   return true;
 }

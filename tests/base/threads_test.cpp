@@ -21,6 +21,15 @@ TEST(Threads, RunEveryChunkOnceHoweverOftenTheyAreAsked) {
   }
 }
 
+TEST(Threads, ServeAChunkThatAsksForThemItself) {
+  Threads threads(4);
+  for (int round = 0; round < 200; ++round) {
+    std::vector<int> runs(3 * 17, 0);
+    threads.run(3, [&](int outer) { threads.run(17, [&](int inner) { ++runs[17 * outer + inner]; }); });
+    for (const int times : runs) ASSERT_EQ(times, 1);
+  }
+}
+
 TEST(BoundedQueue, GivesItemsInOrderAndEndsWhenItIsClosed) {
   BoundedQueue<int> queue(2);
   std::thread producer([&] {

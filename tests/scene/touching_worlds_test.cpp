@@ -380,6 +380,57 @@ TEST(TouchingWorlds, ABodyThatTouchesItselfKeepsItsBits) {
   }
 }
 
+// Two of the cubes meet, the ring touches itself, and one cube is alone.
+TEST(TouchingWorlds, BodiesThatStepAtTheSameTimeKeepTheirBits) {
+  const std::string scene = squeezed_ring("true") + cube("left", 1, 0.4) + cube("right", 1.6, -0.4) +
+                            cube("alone", 3, 1) + cube("also", 4, 0.5) + cube("last", 5, 0.2);
+  Played one(scene, 1), two(scene, 2), four(scene, 4);
+  int joined = 0;
+  for (int frame = 0; frame < 34; ++frame) {
+    std::vector<std::size_t> prepared, made;
+    std::size_t most_waiting = 0;  // bodies whose inputs were known and whose steps were not
+    ASSERT_TRUE(two.world.play(frame, {[&](std::size_t b, int) { prepared.push_back(b); },
+                                       [&](std::size_t b, int) {
+                                         most_waiting = std::max(most_waiting, prepared.size() - made.size());
+                                         made.push_back(b);
+                                       }}));
+    EXPECT_GE(most_waiting, frame == 0 ? 2u : 1u);  // later on, the times of the steps decide
+    for (std::vector<std::size_t>* told : {&prepared, &made}) {
+      std::ranges::sort(*told);
+      EXPECT_EQ(*told, (std::vector<std::size_t>{0, 1, 2, 3, 4, 5})) << frame;
+    }
+    one.play(frame, frame + 1);
+    four.play(frame, frame + 1);
+    joined += one.world.body(1).is_in_island();
+    ASSERT_EQ(one.world.hash(), two.world.hash()) << frame;
+    ASSERT_EQ(one.world.hash(), four.world.hash()) << frame;
+  }
+  EXPECT_TRUE(one.world.body(0).is_in_island());
+  EXPECT_GT(joined, 0);
+  EXPECT_LT(joined, 34);
+}
+
+TEST(TouchingWorlds, AStepThatFailsBesideOthersIsTold) {
+  std::string wild = cube("wild", 3, 0,
+                          "[body.solver]\nline_search = \"none\"\nlevels = 1\n[[body.handles]]\nname = \"hook\"\n"
+                          "select = { box = [[0, 0, 0], [0.1, 1, 1]] }\n");
+  const std::size_t material = wild.find("model = ");
+  wild.replace(material, wild.find(" }", material) - material, "model = \"polynomial\", mu = 1e9");
+  const std::string scene = "gravity = [0, -2000, 0]\n" + cube("sound", 0, 0) + wild + cube("other", 6, 0);
+  std::vector<int> failed_in;
+  for (const int threads : {1, 2}) {
+    Played played(scene, threads);
+    std::vector<std::size_t> made;
+    int frame = 0;
+    while (frame < 200 && played.world.play(frame, {{}, [&](std::size_t b, int) { made.push_back(b); }})) ++frame;
+    EXPECT_TRUE(played.world.body(1).report().failed);
+    EXPECT_EQ(made.back(), 1u);
+    failed_in.push_back(frame);
+  }
+  EXPECT_LT(failed_in[0], 200);
+  EXPECT_EQ(failed_in[0], failed_in[1]);
+}
+
 TEST(TouchingWorlds, ABodyThatDoesNotTouchItselfMakesItsOwnStep) {
   std::string apart = squeezed_ring("true");
   apart.replace(apart.find("-0.32"), 5, "-0.10");

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <mutex>
 
 #include "base/error.h"
 #include "base/signals.h"
@@ -68,6 +69,8 @@ std::vector<std::int32_t> fill_reducing_order(int count,
 
   Cholmod cholmod;
   cholmod_sparse view = pattern_of(pattern);
+  static std::mutex one_at_a_time;  // METIS draws from the C library's random numbers, which all threads share
+  const std::lock_guard lock(one_at_a_time);
   // METIS takes SIGTERM for an error of its own and gives up. CHOLMOD then continues with another order, which changes
   // the last bits of results, and the signal is lost.
   const BlockedSignals meanwhile;
