@@ -13,7 +13,8 @@ double SkinLimit::largest_stretch(const Positions& skin) const {
   double most = 0;
   for (const Edge& edge : edges) {
     const auto at = [&](std::int32_t node) { return skin.row(copies[std::size_t(begin[std::size_t(node)])]); };
-    most = std::max(most, (at(edge.from) - at(edge.to)).squaredNorm() / (edge.length * edge.length));
+    const double now = (at(edge.from) - at(edge.to)).squaredNorm(), rest = edge.length * edge.length;
+    if (now > most * rest) most = now / rest;
   }
   return std::sqrt(most);
 }

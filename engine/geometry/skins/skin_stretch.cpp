@@ -16,13 +16,15 @@ double mean_edge(const TetMesh& mesh) {
 
 StretchedEdge most_stretched_edge(const TriMesh& rest, const Positions& now, double shortest) {
   StretchedEdge most;
+  double square = most.factor * most.factor;
   for (Eigen::Index t = 0; t < rest.triangles.rows(); ++t) {
     for (int k = 0; k < 3; ++k) {
       const std::int32_t from = rest.triangles(t, k), to = rest.triangles(t, (k + 1) % 3);
-      const double before = (rest.points.row(from) - rest.points.row(to)).norm();
-      if (!(before > 0) || before < shortest) continue;
-      const double factor = (now.row(from) - now.row(to)).norm() / before;
-      if (factor > most.factor) most = {from, to, factor};
+      const double before = (rest.points.row(from) - rest.points.row(to)).squaredNorm();
+      const double after = (now.row(from) - now.row(to)).squaredNorm();
+      if (!(after > square * before) || !(before > 0) || before < shortest * shortest) continue;
+      square = after / before;
+      most = {from, to, std::sqrt(square)};
     }
   }
   return most;

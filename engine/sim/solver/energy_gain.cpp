@@ -10,14 +10,7 @@ namespace supple {
 double work_of_handles(const Model& model, const Positions& q, OpenWorkspace& w) {
   const Positions& x = w.current.x;
   if ((x.bottomRows(model.vertices - model.free) - q.bottomRows(model.vertices - model.free)).isZero(0)) return 0;
-  elastic_forces(model, w, x);
-  double work = 0;
-  for (std::size_t slot = 0; slot < model.chunk_vertex.size(); ++slot) {
-    const std::int32_t v = model.chunk_vertex[slot];
-    if (v < model.free) continue;
-    for (int c = 0; c < 3; ++c) work += w.force[list_stride * slot + c] * (x(v, c) - q(v, c));
-  }
-  return work;
+  return work_on_held(model, w, x, q);
 }
 
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "sim/solver/element_precision.h"
 #include "sim/solver/iterations.h"
 #include "sim/solver/line_search.h"
 #include "sim/solver/newton_finish.h"
@@ -54,8 +55,15 @@ std::optional<double> gain_of_staying(const StepContext& c) {
   set_staying(c);
   if (reached <= inertial_energy(c.model, w, w.trial.x) && !c.model.energy_may_be_negative) return std::nullopt;
   find_contacts_of(c.model, c.inputs, w, w.trial);
-  evaluate(c.model, w, w.trial, Wanted::value);
   const double friction_staying = friction_energy(w.trial.contacts, w.trial.x);
+  // Mostly staying is far worse, and single precision tells so.
+  if (may_begin_in_single(c)) {
+    w.elements = Precision::single_precision;
+    evaluate(c.model, w, w.trial, Wanted::value);
+    w.elements = Precision::double_precision;
+    if (w.trial.g - friction_staying > reached + single_noise_of(c.model, w.trial.elastic)) return std::nullopt;
+  }
+  evaluate(c.model, w, w.trial, Wanted::value);
   const double staying = w.trial.g - friction_staying;
   if (!(staying < reached - noise_of(c.model, reached, extent_of(c.model, w)))) return std::nullopt;
   return reached + friction_reached - staying - friction_staying;

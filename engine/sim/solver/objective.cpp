@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "sim/model/vertex_chunks.h"
 
@@ -227,9 +228,23 @@ double elastic_energy(const Model& model, OpenWorkspace& workspace, const Positi
   return evaluate_elements(model, workspace, x, workspace.trial.energy, Wanted::value, nullptr) / model.scheme.energy;
 }
 
-double elastic_forces(const Model& model, OpenWorkspace& workspace, const Positions& x) {
-  return evaluate_elements(model, workspace, x, workspace.trial.energy, Wanted::gradient, nullptr) /
-         model.scheme.energy;
+double work_on_held(const Model& model, OpenWorkspace& workspace, const Positions& x, const Positions& q) {
+  double work = 0;
+  for (int c = 0; c < static_cast<int>(model.chunks.size()); ++c) {
+    const Model::ChunkRange& range = model.chunks[c];
+    const std::span<const std::int32_t> vertices(&model.chunk_vertex[range.first_vertex], std::size_t(range.vertices));
+    if (std::ranges::none_of(vertices, [&](std::int32_t v) { return v >= model.free; })) continue;
+    double* force = workspace.force.data() + list_stride * std::size_t(range.first_vertex);
+    element_kernels().elements(model.chunk(c), x.data(), nullptr,
+                               workspace.trial.energy.data() + std::size_t(range.first_block) * block_width, force,
+                               workspace.local.data());
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      const std::int32_t v = vertices[i];
+      if (v < model.free) continue;
+      for (int k = 0; k < 3; ++k) work += force[list_stride * i + k] * (x(v, k) - q(v, k));
+    }
+  }
+  return work;
 }
 
 }  // namespace supple

@@ -46,7 +46,8 @@ double inertial_energy(const Model& model, const OpenWorkspace& workspace, const
 // Returns E(x) of all elements [J]. Overwrites the energies of the trial iterate.
 double elastic_energy(const Model& model, OpenWorkspace& workspace, const Positions& x);
 
-// Does the same, and leaves the forces of the elements in the workspace, by slot.
-double elastic_forces(const Model& model, OpenWorkspace& workspace, const Positions& x);
+// Returns the work of the elements' forces at x on held vertices along their ways from q [J]. Evaluates the chunks that
+// have such vertices alone; overwrites energies of the trial iterate.
+double work_on_held(const Model& model, OpenWorkspace& workspace, const Positions& x, const Positions& q);
 
 }  // namespace supple
