@@ -1,8 +1,7 @@
-// Finds which bodies of a world may touch each other in a step, and makes the steps of these together. Bodies that may
-// touch, directly or through others, are an island; its step is that of one model whose parts they are
-// (sim/model/joined_model.h), and ends in the bodies' own states and reports. A body that nothing may touch makes its
-// own step. Islands depend on the states where a step begins, and nothing of an island's solver outlives a step, so
-// that a film that is resumed finds the same ones.
+// Makes the steps of a world's bodies. The step of an island of bodies that may touch (island_finder.h) is that of one
+// model whose parts they are (sim/model/joined_model.h), and ends in the bodies' own states and reports. A body that
+// nothing may touch makes its own step. Nothing of an island's solver outlives a step, so that a film that is resumed
+// has the same bits.
 //
 // Whether a body touches itself is seen by the step that it makes without regard to that: where it begins in itself, or
 // comes through its own surface (sim/contact/own_surface.h), the step is made again, with contact of the body with
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "geometry/triangles/moving_surface.h"
+#include "world/island_finder.h"
 #include "world/moving_body.h"
 
 namespace supple {
@@ -43,8 +43,7 @@ class Islands {
           Threads* threads);
   ~Islands();
 
-  // Returns the islands of the step that was prepared, each as its bodies in the order of the scene, in the order of
-  // their first bodies. Bodies that nothing may touch are islands of their own.
+  // Returns the islands of the step that was prepared (island_finder.h).
   std::vector<std::vector<std::size_t>> find();
 
   // Returns the touches of the steps that were made since find(), ordered by body.
@@ -66,17 +65,11 @@ class Islands {
   int step(const std::vector<std::size_t>& island);
 
  private:
-  struct Way;       // of a body over the step that was prepared
   struct Together;  // a joined model, with what its steps need
   struct Own;       // what a body needs to know whether it touches itself
   // Tells by body of an island which touch themselves.
   using Selves = std::vector<char>;
 
-  void find_ways();
-  bool may_touch(std::size_t a, std::size_t b, double pushed) const;
-  bool is_within(std::size_t inner, std::size_t outer) const;
-  bool may_be_stopped(std::size_t body) const;
-  MovingSurface& surface_of(std::size_t body) const;
   Together& together(const std::vector<std::size_t>& island);
   int step_once(const std::vector<std::size_t>& island, const Selves& selves);
   int step_together(const std::vector<std::size_t>& island, const Selves& selves);
@@ -92,7 +85,7 @@ class Islands {
   const std::vector<std::unique_ptr<MovingBody>>& bodies_;
   Solvers solvers_;
   Threads* threads_;
-  std::vector<Way> ways_;       // by body
+  IslandFinder finder_;
   std::vector<Own> owns_;       // by body
   std::vector<double> wasted_;  // by body: time of a step at once that must be made again [ms]
   std::vector<BodyTouch> touches_;

@@ -41,10 +41,6 @@ void add_up(ContactRow& row, const StepReport& report) {
   row.cycles += report.contacts.cycles;
 }
 
-bool has_time_budget(const StepInputs& inputs) {
-  return inputs.solver.budget_ms > 0 || inputs.repeated_cuts.has_value();
-}
-
 // Returns nothing for a step that had no budget in the earlier run.
 std::optional<BudgetCuts> cuts_at(const CutsByFrame& cuts, int frame, int substep) {
   const std::vector<BudgetCuts>& of_frame = cuts.at(std::size_t(frame));

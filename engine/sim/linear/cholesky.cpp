@@ -9,6 +9,7 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <type_traits>
 
 #include "base/error.h"
 #include "base/signals.h"
@@ -208,26 +209,31 @@ FactorView CholeskyFactor::view() const {
           numbers};
 }
 
+namespace {
+
+// Solves with a half of the factor, in the precision of T. single, twice: the loops of both precisions.
 template <class T>
-void CholeskyFactor::down(const std::vector<std::int32_t>* strips, T* x, T* scratch) const {
+void solve_half(LinearKernels::Solve<float> single, LinearKernels::Solve<double> twice, const FactorView& view,
+                const std::vector<std::int32_t>* strips, T* x, T* scratch) {
   const std::int32_t* list = strips != nullptr ? strips->data() : nullptr;
   const int count = strips != nullptr ? static_cast<int>(strips->size()) : 0;
   if constexpr (std::is_same_v<T, float>) {
-    linear_kernels().down_float(view(), list, count, x, scratch);
+    single(view, list, count, x, scratch);
   } else {
-    linear_kernels().down_double(view(), list, count, x, scratch);
+    twice(view, list, count, x, scratch);
   }
+}
+
+}  // namespace
+
+template <class T>
+void CholeskyFactor::down(const std::vector<std::int32_t>* strips, T* x, T* scratch) const {
+  solve_half(linear_kernels().down_float, linear_kernels().down_double, view(), strips, x, scratch);
 }
 
 template <class T>
 void CholeskyFactor::up(const std::vector<std::int32_t>* strips, T* x, T* scratch) const {
-  const std::int32_t* list = strips != nullptr ? strips->data() : nullptr;
-  const int count = strips != nullptr ? static_cast<int>(strips->size()) : 0;
-  if constexpr (std::is_same_v<T, float>) {
-    linear_kernels().up_float(view(), list, count, x, scratch);
-  } else {
-    linear_kernels().up_double(view(), list, count, x, scratch);
-  }
+  solve_half(linear_kernels().up_float, linear_kernels().up_double, view(), strips, x, scratch);
 }
 
 template void CholeskyFactor::down(const std::vector<std::int32_t>*, float*, float*) const;

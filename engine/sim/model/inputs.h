@@ -116,6 +116,11 @@ struct StepInputs {
   std::optional<BudgetCuts> repeated_cuts = {};  // cuts of an earlier run, in place of the clock, for the same bits
 };
 
+// Tells whether a budget of time may end the step's searches: its own, or that of an earlier run whose cuts it repeats.
+inline bool has_time_budget(const StepInputs& inputs) {
+  return inputs.solver.budget_ms > 0 || inputs.repeated_cuts.has_value();
+}
+
 inline std::size_t collider_count(const StepInputs& inputs) {
   return inputs.colliders == nullptr ? 0 : inputs.colliders->size();
 }

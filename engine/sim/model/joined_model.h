@@ -1,6 +1,6 @@
 // Joins the models of bodies that touch each other into one, whose parts they are, so that their steps are made
 // together. Nothing is computed or factored anew: the elements and the factors of the bodies follow one another. Not
-// here: what the parts do to each other (contact/surface_contacts.h), which bodies are joined (world/islands.h).
+// here: what the parts do to each other (contact/surface_contacts.h), which bodies are joined (world/island_finder.h).
 #pragma once
 
 #include <vector>

@@ -14,7 +14,7 @@ bool may_finish_by_newton(const Model& model, const StepInputs& inputs) {
   const SolverSettings& solver = inputs.solver;
   if (model.parts.size() > 1) return false;  // the matrix has no room for contacts between parts
   if (!solver.newton || solver.rounds < 2 || solver.line_search == LineSearch::none) return false;
-  if (solver.budget_ms > 0 || inputs.repeated_cuts || model.integrator != Integrator::backward_euler) return false;
+  if (has_time_budget(inputs) || model.integrator != Integrator::backward_euler) return false;
   const bool solid = std::any_of(model.chunks.begin(), model.chunks.end(),
                                  [](const Model::ChunkRange& chunk) { return chunk.kind == ElementKind::tetrahedron; });
   return solid && newton_cost(model) <= most_cost;
