@@ -1,4 +1,4 @@
-# What `cmake --install` puts where, in two components: the program, of which the Debian package is made, and the libraries
+# What `cmake --install` puts where, in three components: the program and the Python module, of which Debian packages are made, and the libraries
 # for other programs (docs/library.md).
 install(TARGETS supple COMPONENT program)
 install(TARGETS supple-read-surface supple-bench DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/supple COMPONENT program)
@@ -46,4 +46,15 @@ set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "ffmpeg, libosmesa6")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "fonts-lato, gnuplot-nox, libegl1, libgl1-mesa-dri, libopenblas0-serial")
+if(TARGET supple_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  math(EXPR next_minor "${Python3_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-supple)
+  set(CPACK_DEBIAN_PYTHON_FILE_NAME DEB-DEFAULT)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+      "supple (= ${PROJECT_VERSION}), python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${next_minor}), python3-numpy")
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "films of soft bodies, for Python\nScenes in time, bodies made of arrays, and pictures.")
+endif()
 include(CPack)

@@ -7,7 +7,8 @@
 
 namespace supple {
 
-// Returns the file of the running program; empty where the system does not tell.
+// Returns the file of the running program, or of the shared object that has this code in another program; empty where
+// the system does not tell.
 std::filesystem::path this_program();
 
 // Looks beside the running program, where a build leaves it, and in the folder that an installation has for programs

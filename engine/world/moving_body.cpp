@@ -53,6 +53,30 @@ bool MovingBody::hold_as_state_says() {
   return changed;
 }
 
+void MovingBody::add_handle() {
+  Handle& handle = body_.description.handles.back();
+  const auto number = static_cast<std::int32_t>(body_.description.handles.size()) - 1;
+  handle.holds = false;
+  const auto had = static_cast<Eigen::Index>(model_.handled.size());
+  for (const std::int32_t v : handle.vertices) model_.handled.push_back({model_.internal_of[v], number, false});
+  state_.anchors.points.conservativeResize(std::ssize(model_.handled), 3);
+  for (Eigen::Index i = had; i < std::ssize(model_.handled); ++i)
+    state_.anchors.points.row(i) = model_.rest.row(model_.handled[std::size_t(i)].vertex);
+  state_.anchors.centers.push_back(body_.motions.back().center);
+  state_.anchors.holds.push_back(0);
+}
+
+void MovingBody::keep_handles(std::size_t count) {
+  body_.def.handles.resize(count);
+  body_.description.handles.resize(count);
+  body_.motions.resize(count);
+  std::erase_if(model_.handled, [&](const Model::HandleVertex& one) { return one.handle >= std::int32_t(count); });
+  state_.anchors.points.conservativeResize(std::ssize(model_.handled), 3);
+  state_.anchors.centers.resize(count);
+  state_.anchors.holds.resize(count);
+  renew_model();
+}
+
 void MovingBody::switch_handles(double time) {
   for (std::size_t h = 0; h < body_.def.handles.size(); ++h) {
     const HandleDef& def = body_.def.handles[h];

@@ -79,6 +79,11 @@ class MovingBody {
   void renew_model();
   const Model& rigid_model();
 
+  // Takes the handle that was added to the body last into the model and the state. It does not hold yet.
+  void add_handle();
+  // Removes all handles but the first `count` from body, model and state.
+  void keep_handles(std::size_t count);
+
   const SceneDef& scene_;
   Body& body_;
   Model& model_;

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/text.h"
 #include "base/trace.h"
 #include "sim/solver/step.h"
 
@@ -19,6 +20,8 @@ struct World::Parts {
   std::vector<std::unique_ptr<MovingBody>> moving;  // by body, once the world is started
   std::unique_ptr<Islands> islands;                 // once the world is started
   int frame = -1;                                   // that was entered last
+  int substep = 0;                                  // of that frame: the next one to be made
+  bool has_failed = false;                          // a step of that frame
   double saved_ms = 0;                              // of the frame's steps
 
   Parts(std::optional<Script> script, SceneDef at_start, std::vector<Body> bodies)
@@ -35,6 +38,14 @@ struct World::Parts {
     for (Body& body : bodies) body.earlier.clear();
   }
   void apply(SceneDef changed, const std::vector<TimedChange>& changes);
+  void begin_frame() {
+    substep = 0;
+    has_failed = false;
+  }
+  // Returns when the next frame begins [s].
+  double next_time() const { return (frame + 1) / scene.fps; }
+  std::size_t body_named(const std::string& name) const;
+  void take_edits(LiveEdits edits);
   // Makes the step of an island that was prepared. Returns whether it succeeded.
   // is_known: whether the watch has been told that it was prepared.
   bool step(const std::vector<std::size_t>& island, int substep, const StepWatch& watch, bool is_known);
@@ -102,6 +113,7 @@ std::vector<TimedChange> World::enter(int frame) {
     for (const TimedChange* change : parts.script->at_work(next)) changes.push_back(*change);
   }
   parts.frame = frame;
+  parts.begin_frame();
   if (!changes.empty()) parts.apply(parts.script->scene_at(frame), changes);
   return changes;
 }
@@ -111,6 +123,112 @@ void World::rewind() {
   if (parts.script && !parts.script->changes().empty()) parts.apply(parts.start, parts.script->changes());
   parts.end_last_changes();
   parts.frame = -1;
+  parts.begin_frame();
+}
+
+std::size_t World::Parts::body_named(const std::string& name) const {
+  std::vector<std::string> names;
+  for (const Body& body : bodies) names.push_back(body.def.name);
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) {
+    throw InputError(name,
+                     fmt::format("there is no such body: there is {}{}", word_list(names), did_you_mean(name, names)));
+  }
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+void World::change(TimedChange change) {
+  Parts& parts = *parts_;
+  Script& script = parts.script.value();
+  change.at = parts.next_time();
+  script.add(std::move(change));
+  const TimedChange& added = script.edits().changes.back();
+  try {
+    SceneDef scene = parts.frame < 0 ? script.scene() : script.scene_at(parts.frame + 1);
+    for (std::size_t b = 0; b < size() && added.cost.factor; ++b) {
+      if (!added.object.empty() && added.object != parts.bodies[b].def.name) continue;
+      Body trial = parts.bodies[b];
+      update_body(trial, scene, scene.bodies[b]);
+    }
+    if (parts.frame >= 0 || added.over > 0) return;  // enter() will apply it
+    parts.start = scene;
+    parts.apply(std::move(scene), {added});
+    parts.end_last_changes();
+  } catch (const InputError&) {
+    LiveEdits before = script.edits();
+    before.changes.pop_back();
+    script.set_edits(std::move(before));
+    throw;
+  }
+}
+
+void World::grab(LiveGrab grab) {
+  Parts& parts = *parts_;
+  Script& script = parts.script.value();
+  const std::size_t b = parts.body_named(grab.body);
+  Body& body = parts.bodies[b];
+  grab.from = parts.next_time();
+  grab.until = std::numeric_limits<double>::infinity();
+  script.add(grab);
+  const HandleDef def = script.scene().bodies.at(b).handles.back();
+  std::vector<Problem> problems;
+  body.def.handles.push_back(def);
+  add_handle(body, def, problems);
+  if (!problems.empty()) {
+    body.def.handles.pop_back();
+    body.description.handles.resize(body.def.handles.size());
+    body.motions.resize(body.def.handles.size());
+    LiveEdits before = script.edits();
+    before.grabs.pop_back();
+    script.set_edits(std::move(before));
+    throw InputError(std::move(problems));
+  }
+  parts.start = script.scene();
+  parts.scene.bodies[b].handles.push_back(def);
+  parts.moving[b]->add_handle();
+}
+
+void World::release(const std::string& name, const std::string& handle) {
+  Parts& parts = *parts_;
+  Script& script = parts.script.value();
+  const std::size_t b = parts.body_named(name);
+  const std::string place = fmt::format("handle '{}' of body '{}'", handle, name);
+  const double until = parts.next_time();
+  const auto& grabs = script.edits().grabs;
+  const auto grab = std::ranges::find_if(
+      grabs, [&](const LiveGrab& one) { return one.body == name && one.name == handle && one.until > until; });
+  if (grab == grabs.end()) throw InputError(place, "grabbed nothing in this world, or has let go already");
+  if (grab->from >= until) throw InputError(place, "takes hold in the next step, and can be released after it");
+  script.end_grab(name, handle, until);
+  parts.start = script.scene();
+  for (auto* handles : {&parts.bodies[b].def.handles, &parts.scene.bodies[b].handles})
+    std::ranges::find(*handles, handle, &HandleDef::name)->until = until;
+}
+
+// Puts the world back before its first frame, with other edits. The states stay.
+void World::Parts::take_edits(LiveEdits edits) {
+  std::vector<TimedChange> changes = script->changes();
+  std::vector<std::size_t> kept;  // handles of each body that no edit made
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const auto made = std::ranges::count(script->edits().grabs, bodies[b].def.name, &LiveGrab::body);
+    kept.push_back(bodies[b].def.handles.size() - std::size_t(made));
+  }
+  script->set_edits(std::move(edits));
+  changes.insert(changes.end(), script->changes().begin(), script->changes().end());
+  start = script->scene();
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (kept[b] == bodies[b].def.handles.size() && kept[b] == start.bodies[b].handles.size()) continue;
+    moving[b]->keep_handles(kept[b]);
+    for (std::size_t h = kept[b]; h < start.bodies[b].handles.size(); ++h) {
+      std::vector<Problem> none;  // they were there once
+      bodies[b].def.handles.push_back(start.bodies[b].handles[h]);
+      add_handle(bodies[b], bodies[b].def.handles.back(), none);
+      moving[b]->add_handle();
+    }
+  }
+  apply(start, changes);
+  end_last_changes();
+  frame = -1;
 }
 
 void World::prepare(int substep) {
@@ -148,22 +266,35 @@ bool World::Parts::step_all(const std::vector<std::vector<std::size_t>>& all, in
 }
 
 bool World::step(const StepWatch& watch) {
-  parts_->saved_ms = 0;
-  for (int substep = 0; substep < parts_->scene.substeps; ++substep) {
-    prepare(substep);
-    if (!parts_->step_all(parts_->islands->find(), substep, watch)) return false;
+  Parts& parts = *parts_;
+  if (parts.substep == 0) parts.saved_ms = 0;
+  for (bool first = true; parts.substep < parts.scene.substeps; first = false) {
+    if (!first && watch.stops && watch.stops()) return false;
+    prepare(parts.substep);
+    if (!parts.step_all(parts.islands->find(), parts.substep, watch)) {
+      parts.has_failed = true;
+      return false;
+    }
+    ++parts.substep;
   }
   return true;
 }
 
+int World::frames() const { return parts_->frame + 1; }
+
+bool World::is_within_frame() const {
+  return parts_->has_failed || (parts_->substep > 0 && parts_->substep < parts_->scene.substeps);
+}
+
 WorldState World::state() const {
-  WorldState state{parts_->frame + 1, {}};
+  WorldState state{parts_->frame + 1, {}, parts_->script ? parts_->script->edits() : LiveEdits{}};
   for (const auto& body : parts_->moving) state.bodies.push_back(body->state());
   return state;
 }
 
 void World::restore(const WorldState& state) {
   SUPPLE_CHECK(state.bodies.size(), ==, size());
+  if (parts_->script && !(state.edits.empty() && parts_->script->edits().empty())) parts_->take_edits(state.edits);
   if (parts_->script && state.frames - 1 < parts_->frame) rewind();
   enter(state.frames - 1);
   parts_->end_last_changes();

@@ -26,11 +26,12 @@
 
 namespace supple {
 
-// Looks at a world while it makes the steps of a frame. Both functions may be empty. They are called for each step of
-// each body, with the number of the body and that of the substep.
+// Looks at a world while it makes the steps of a frame. All functions may be empty. The first two are called for each
+// step of each body, with the number of the body and that of the substep.
 struct StepWatch {
   std::function<void(std::size_t body, int substep)> prepared;  // the inputs are known, the step is not made
   std::function<void(std::size_t body, int substep)> made;      // the step was made, or has failed
+  std::function<bool()> stops = {};  // asked before each substep but the first; true: the frame is left unfinished
 };
 
 class World {
@@ -60,14 +61,33 @@ class World {
   // Goes back to the scene before its first frame. The states stay.
   void rewind();
 
-  // Makes all steps of the frame that was entered. Returns false as soon as a step has failed, and the report of that
-  // step says why; the states are then in the middle of the frame.
+  // Makes all steps of the frame that was entered, or those that are left of one that the watch stopped. Returns false
+  // as soon as a step has failed, and the report of that step says why, and when the watch stops it. The states are
+  // then in the middle of the frame.
   bool step(const StepWatch& watch = {});
   // Enters a frame and makes its steps.
   bool play(int frame, const StepWatch& watch = {}) {
     enter(frame);
     return step(watch);
   }
+  // Returns the number of frames that were entered, the present one among them.
+  int frames() const;
+  // Tells whether the steps of the frame that was entered last were begun and not finished, because the watch stopped
+  // them or one failed.
+  bool is_within_frame() const;
+
+  // These three act from the next frame on, as a replay that changes values and grabs vertices would: Script keeps what
+  // was done, and writes it as a replay. They must not be called within a frame. They throw InputError with all that is
+  // wrong, and then change nothing.
+  //
+  // Changes a value; `at` of the change is ignored.
+  void change(TimedChange change);
+  // Makes a handle that holds vertices where they are, with springs; `from` and `until` of the grab are ignored. A
+  // change of body.BODY.handles.NAME.keys moves it.
+  void grab(LiveGrab grab);
+  // Lets the vertices go that grab() holds. Throws InputError where no handle of this name holds any.
+  void release(const std::string& body, const std::string& handle);
+
   // Computes the inputs of one substep of the frame that was entered, for those who make the step themselves. Changes
   // no result.
   void prepare(int substep);

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "scene/replay/live_edits.h"
 #include "sim/model/state.h"
 
 namespace supple {
@@ -10,6 +11,7 @@ namespace supple {
 struct WorldState {
   int frames = 0;  // number of finished frames
   std::vector<State> bodies;
+  LiveEdits edits = {};  // what was done to the world until then; checkpoints have none
 };
 
 }  // namespace supple

@@ -15,8 +15,9 @@ namespace {
 std::filesystem::path shared_folder() {
   std::error_code error;
   const std::filesystem::path folder = this_program().parent_path();
-  // The first way leads to the files from supple itself, the second from a program that supple starts.
-  for (const char* way : {SUPPLE_SHARE_FROM_BIN, SUPPLE_SHARE_FROM_LIBEXEC}) {
+  // The first way leads to the files from supple itself, the second from a program that supple starts, the third from
+  // Python's module. A Python package that pip made has them in its own folder.
+  for (const char* way : {SUPPLE_SHARE_FROM_BIN, SUPPLE_SHARE_FROM_LIBEXEC, SUPPLE_SHARE_FROM_MODULE, "."}) {
     const std::filesystem::path installed = (folder / way).lexically_normal();
     if (std::filesystem::is_directory(installed / "shaders", error)) return installed;
   }

@@ -14,7 +14,6 @@
 #include "sim/measures/measures.h"
 
 namespace supple {
-namespace {
 
 void add_up(StepRow& row, const StepReport& report) {
   row.step_ms += report.step_ms;
@@ -34,6 +33,8 @@ void add_up(StepRow& row, const StepReport& report) {
   row.stop_reason = name_of(report.stop_reason);
 }
 
+namespace {
+
 void add_up(ContactRow& row, const StepReport& report) {
   row.collide_ms += report.collide_ms;
   row.contacts = report.contacts.touching;
@@ -48,12 +49,12 @@ std::optional<BudgetCuts> cuts_at(const CutsByFrame& cuts, int frame, int subste
   return of_frame[std::size_t(substep)];
 }
 
+}  // namespace
+
 std::string failure_text(int frame, const std::string& body, const StepFailure& failure) {
   return fmt::format("frame {}: body '{}' failed while in '{}': {} (vertex {} is furthest out)", frame, body,
                      failure.during, failure.what, failure.vertex + 1);
 }
-
-}  // namespace
 
 BodyRecorder::BodyRecorder(World& world, std::size_t body, const RunFolder& folder, WorldErrors& errors,
                            int kept_frames)

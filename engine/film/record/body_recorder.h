@@ -14,6 +14,12 @@
 
 namespace supple {
 
+// Adds what a step knows of itself to the row of its frame.
+void add_up(StepRow& row, const StepReport& report);
+
+// Says in a line that a step failed, and where.
+std::string failure_text(int frame, const std::string& body, const StepFailure& failure);
+
 class BodyRecorder {
  public:
   // The world must have been started; it and all that is passed by reference must outlive this object. kept_frames: the

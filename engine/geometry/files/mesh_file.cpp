@@ -131,6 +131,27 @@ MeshFile read_mesh(const std::filesystem::path& path) {
   return file;
 }
 
+TetMesh checked_mesh(TetMesh mesh, const std::string& name) {
+  const Eigen::Index vertices = mesh.rest.rows();
+  if (mesh.tets.rows() == 0) throw InputError(name, "has no elements");
+  std::vector<char> used(static_cast<std::size_t>(vertices), 0);
+  for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
+    for (const std::int32_t v : mesh.tets.row(e)) {
+      if (v < 0 || v >= vertices)
+        refuse(e, {}, name, fmt::format("vertex {} does not exist; there are {}", v + 1, vertices));
+      used[static_cast<std::size_t>(v)] = 1;
+    }
+  }
+  for (Eigen::Index v = 0; v < vertices; ++v) {
+    if (!mesh.rest.row(v).allFinite()) throw InputError(name, fmt::format("vertex {} is not finite", v + 1));
+    if (used[std::size_t(v)] == 0) throw InputError(name, fmt::format("vertex {} belongs to no element", v + 1));
+  }
+  MeshFile file{std::move(mesh), {}};
+  check_duplicates(file.mesh, {}, name);
+  orient(file, {}, name);
+  return std::move(file.mesh);
+}
+
 void check_writable(const std::filesystem::path& path) {
   if (is_mesh_file(path)) return;
   const std::string extension = path.extension().string();

@@ -28,6 +28,10 @@ bool is_mesh_file(const std::filesystem::path& path);
 // finite, elements without volume, elements listed twice, or elements of both orientations.
 MeshFile read_mesh(const std::filesystem::path& path);
 
+// Checks a mesh that a program has made, as read_mesh() checks files, and turns elements that are all negative. name:
+// what messages call it; they count elements and vertices from 1. Throws InputError, also for vertices of no element.
+TetMesh checked_mesh(TetMesh mesh, const std::string& name);
+
 // Reads the Triangles of a MEDIT file, for cloth, and ignores its elements. Vertices that no triangle uses are left
 // out. Throws InputError as above, and for triangles without area or listed twice.
 TriMesh read_surface(const std::filesystem::path& path);

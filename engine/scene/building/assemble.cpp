@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/text.h"
 #include "scene/building/overlaps.h"
@@ -43,6 +44,14 @@ std::vector<std::int32_t> selected(const Selection& s, const TetMesh& mesh, cons
   const Bounds box = bounds_of(file_points);
   const Vec3 extent = box.extent().cwiseMax(1e-300);
   std::vector<std::int32_t> result;
+  if (s.kind == Selection::Kind::vertices) {
+    for (const int number : s.vertices) {
+      if (number <= mesh.rest.rows()) result.push_back(number - 1);
+    }
+    std::sort(result.begin(), result.end());
+    result.erase(std::unique(result.begin(), result.end()), result.end());
+    return result;
+  }
   if (s.kind == Selection::Kind::region) {
     const auto tag = std::find(regions.begin(), regions.end(), s.region) - regions.begin();
     std::vector<char> in(mesh.rest.rows(), 0);
@@ -151,38 +160,63 @@ void weave(Body& body) {
   for (double& mass : description.point_mass) mass *= density;
 }
 
-void add_handles(Body& body, std::vector<Problem>& problems) {
-  const TetMesh& mesh = body.description.mesh;
-  std::vector<char> taken(mesh.rest.rows(), 0);
-  Eigen::Index held = 0;
-  for (const HandleDef& def : body.def.handles) {
-    Handle handle{def.name, selected(def.select, mesh, body.unplaced, body.regions), def.stiffness,
-                  !def.grabs || def.holds_at(0)};
-    // When two handles overlap, the first one gets the vertices.
-    std::erase_if(handle.vertices, [&](std::int32_t v) { return taken[v] != 0; });
-    for (const std::int32_t v : handle.vertices) taken[v] = 1;
-    if (handle.vertices.empty()) {
-      const bool by_region = def.select.kind == Selection::Kind::region;
-      problems.push_back(
-          at(def.select.place,
-             fmt::format("handle '{}' of body '{}' selects no vertex{}", def.name, body.def.name,
-                         by_region ? fmt::format(": there is no region '{}'", def.select.region)
-                                   : "; boxes, spheres and planes are relative to the rest bounding box (0 to 1)")));
-    }
-    if (def.stiffness <= 0) held += static_cast<Eigen::Index>(handle.vertices.size());
-    if (def.stiffness <= 0 && held == mesh.rest.rows()) {
-      problems.push_back(at(def.select.place,
-                            fmt::format("with handle '{}' every vertex of body '{}' is held: nothing is left to move",
-                                        def.name, body.def.name)));
-    }
-    KeyedMotion motion{Vec3::Zero(), def.ease, def.keys};
-    Bounds box;
-    for (const std::int32_t v : handle.vertices) box.include(body.description.mesh.rest.row(v).transpose());
-    if (!box.empty()) motion.center = box.center();
-    body.description.handles.push_back(std::move(handle));
-    body.motions.push_back(std::move(motion));
-  }
+// Says why a handle selects no vertex, after "selects no vertex".
+std::string empty_reason(const Selection& select) {
+  if (select.kind == Selection::Kind::region) return fmt::format(": there is no region '{}'", select.region);
+  return "; boxes, spheres and planes are relative to the rest bounding box (0 to 1)";
 }
+
+// Tells which vertices earlier handles have at some time at which another one, `next`, holds. They keep them.
+std::vector<char> taken_before(const Body& body, const HandleDef& next) {
+  std::vector<char> taken(body.description.mesh.rest.rows(), 0);
+  for (std::size_t h = 0; h < body.description.handles.size(); ++h) {
+    const HandleDef& earlier = body.def.handles[h];
+    if (earlier.until <= next.from || next.until <= earlier.from) continue;
+    for (const std::int32_t v : body.description.handles[h].vertices) taken[v] = 1;
+  }
+  return taken;
+}
+
+}  // namespace
+
+void add_handle(Body& body, const HandleDef& def, std::vector<Problem>& problems) {
+  const TetMesh& mesh = body.description.mesh;
+  Handle handle{def.name, selected(def.select, mesh, body.unplaced, body.regions), def.stiffness,
+                !def.grabs || def.holds_at(0)};
+  const auto beyond = std::ranges::find_if(def.select.vertices, [&](int v) { return v > mesh.rest.rows(); });
+  if (beyond != def.select.vertices.end()) {
+    problems.push_back(at(def.select.place, fmt::format("handle '{}': body '{}' has no vertex {}; it has {}", def.name,
+                                                        body.def.name, *beyond, mesh.rest.rows())));
+    return;
+  }
+  const bool selects_none = handle.vertices.empty();
+  const std::vector<char> taken = taken_before(body, def);
+  std::erase_if(handle.vertices, [&](std::int32_t v) { return taken[v] != 0; });
+  if (handle.vertices.empty()) {
+    problems.push_back(
+        at(def.select.place,
+           fmt::format("handle '{}' of body '{}' selects no vertex{}", def.name, body.def.name,
+                       selects_none ? empty_reason(def.select) : " that no other handle holds at that time")));
+  }
+  const Eigen::Index held = std::accumulate(
+      body.description.handles.begin(), body.description.handles.end(),
+      def.stiffness <= 0 ? Eigen::Index(handle.vertices.size()) : 0, [](Eigen::Index sum, const Handle& other) {
+        return sum + (other.stiffness <= 0 ? Eigen::Index(other.vertices.size()) : 0);
+      });
+  if (def.stiffness <= 0 && held == mesh.rest.rows()) {
+    problems.push_back(
+        at(def.select.place, fmt::format("with handle '{}' every vertex of body '{}' is held: nothing is left to move",
+                                         def.name, body.def.name)));
+  }
+  KeyedMotion motion{Vec3::Zero(), def.ease, def.keys};
+  Bounds box;
+  for (const std::int32_t v : handle.vertices) box.include(mesh.rest.row(v).transpose());
+  if (!box.empty()) motion.center = box.center();
+  body.description.handles.push_back(std::move(handle));
+  body.motions.push_back(std::move(motion));
+}
+
+namespace {
 
 // Sets all that follows from the definition once the mesh is in its place, except for the handles.
 void set_values(Body& body, const SceneDef& scene, std::vector<Problem>& problems) {
@@ -246,7 +280,7 @@ std::vector<Body> assemble(const SceneDef& scene, const SlowWork& work) {
         problems.push_back(
             at(def.place, fmt::format("pattern_size of body '{}' is below a thousandth of its size", def.name)));
       }
-      add_handles(body, problems);
+      for (const HandleDef& handle : def.handles) add_handle(body, handle, problems);
       bodies.push_back(std::move(body));
     } catch (const InputError& error) {
       problems.insert(problems.end(), error.problems().begin(), error.problems().end());
@@ -297,7 +331,7 @@ State start_state(const Model& model, const Body& body) {
     state.x.row(v) = start.row(model.input_of[v]);
     state.v.row(v) = body.def.velocity.transpose();
   }
-  for (const auto& [vertex, handle] : model.handled) {
+  for (const auto& [vertex, handle, holds] : model.handled) {
     if (!body.def.handles[handle].grabs) state.v.row(vertex).setZero();
   }
   state.anchors = rest_anchors(model, body);

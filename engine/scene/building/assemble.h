@@ -16,6 +16,10 @@ std::vector<Body> assemble(const SceneDef& scene, const SlowWork& work = {});
 // Throws InputError.
 void update_body(Body& body, const SceneDef& scene, const BodyDef& def);
 
+// Adds a handle to a body, whose definition has it next behind those that the body has already. Where two handles would
+// hold a vertex at the same time, the first one has it. Adds to the problems where no vertex is left, or none free.
+void add_handle(Body& body, const HandleDef& def, std::vector<Problem>& problems);
+
 // Returns the positions in which a body starts, by vertex of its mesh [m].
 Positions first_positions(const Body& body);
 // Returns the state in which a body starts: handled vertices are at rest, and handles move them from there.

@@ -197,6 +197,46 @@ std::optional<ConfigValue> Config::value_at(const std::string& path) const {
   return content_->value_of(*node);
 }
 
+namespace {
+
+// Makes relative names of files that exist absolute, in a node and all below it. folder_of: returns the folder in which
+// the names of a node are looked up.
+template <class FolderOf>
+void make_absolute(toml::node& node, std::string_view key, const FolderOf& folder_of) {
+  static constexpr std::array file_keys = {"surface", "shape", "mesh", "ghost", "reference"};
+  if (toml::table* table = node.as_table()) {
+    const std::string path = (*table)["path"].value_or(std::string());  // of a change, which says what its value is
+    for (auto&& [name, inner] : *table)
+      make_absolute(inner, name == "value" && !path.empty() ? path : name.str(), folder_of);
+  } else if (toml::array* list = node.as_array()) {
+    for (toml::node& inner : *list) make_absolute(inner, key, folder_of);
+  } else if (toml::value<std::string>* text = node.as_string()) {
+    const std::string_view word = key.substr(key.rfind('.') + 1);
+    if (std::ranges::find(file_keys, word) == file_keys.end() || text->get().empty()) return;
+    std::error_code error;
+    const std::filesystem::path file = folder_of(node) / text->get();
+    if (std::filesystem::exists(file, error))
+      text->get() = std::filesystem::absolute(file, error).lexically_normal().string();
+  }
+}
+
+}  // namespace
+
+void Config::put_key(const std::string& table, const std::string& key, const ConfigValue& value) {
+  if (!content_->document.contains(table)) content_->document.insert(table, toml::table{});
+  toml::table* into = content_->document.get_as<toml::table>(table);
+  if (into == nullptr) fail({content_->name}, fmt::format("'{}' is not a table", table));
+  value.content_->node->visit([&](const auto& typed) { into->insert_or_assign(key, typed); });
+  toml::node& node = *into->get(key);
+  content_->settle(node, value);
+  make_absolute(node, key, [](const toml::node&) { return std::filesystem::current_path(); });
+}
+
+void Config::make_files_absolute() {
+  make_absolute(content_->document, "",
+                [this](const toml::node& node) { return content_->folder_of(content_->source_of(node)); });
+}
+
 void Config::remove(const char* key) { content_->document.erase(key); }
 
 Config Config::copy() const {
@@ -258,6 +298,13 @@ const std::string& Config::name() const { return content_->name; }
 std::string Config::as_json() const {
   std::ostringstream out;
   out << toml::json_formatter(content_->document);
+  return out.str();
+}
+
+std::string Config::as_toml() const {
+  std::ostringstream out;
+  out << toml::toml_formatter(content_->document,
+                              toml::toml_formatter::default_flags & ~toml::format_flags::indentation);
   return out.str();
 }
 

@@ -97,7 +97,8 @@ class ConfigValue {
   bool joins(const ConfigValue& other) const;
   bool all_positive() const;
   // Reads a default in the form that KnownKey has. Returns nothing when the default is a description in words.
-  static std::optional<ConfigValue> parse(const std::string& text);
+  // source: what messages name as the value's place.
+  static std::optional<ConfigValue> parse(const std::string& text, const std::string& source = "");
   // Returns the value at a fraction `s` of the way, 0 to 1, interpolated number by number. whole: numbers are rounded.
   static ConfigValue between(const ConfigValue& from, const ConfigValue& to, double s, RampRule by, bool whole);
 
@@ -122,6 +123,9 @@ struct PathList {
   std::vector<ListedValue> values;
   FilePlace place;
 };
+
+// Writes a text in quotes, as TOML reads it.
+std::string toml_text(std::string_view text);
 
 class ConfigTable;
 struct KnownSurfaces;  // surfaces that a Config and its copies have read already (shape_reader.cpp)
@@ -150,6 +154,11 @@ class Config {
   std::optional<ConfigValue> value_at(const std::string& path) const;
   // Appends a table of another file to a list of tables, which is created when it does not exist.
   void append(const std::string& list_path, const ConfigValue& table, const FilePlace& place);
+  // Sets a key, which may contain dots, of a table of the root, which is created when it does not exist. Relative names
+  // of files in the value become absolute ones.
+  void put_key(const std::string& table, const std::string& key, const ConfigValue& value);
+  // Makes the names of files in all values absolute.
+  void make_files_absolute();
   // Removes a key of the root table if it exists.
   void remove(const char* key);
   // Copies the document, but neither the problems nor the record of the keys that readers asked for.
@@ -170,6 +179,7 @@ class Config {
   // Returns every key that a reader asked for, table by table.
   const std::vector<KnownKey>& known() const;
   std::string as_json() const;  // the whole document after set()
+  std::string as_toml() const;  // the same as a file could have it
   std::shared_ptr<KnownSurfaces>& surfaces();
   const std::filesystem::path& assets() const;
   const std::string& name() const;
@@ -234,6 +244,8 @@ class ConfigTable {
   Vec3 color(const Key& key, const Vec3& fallback) const;
   std::optional<Vec3> color_if_given(const Key& key) const;
   std::vector<Vec3> vectors(const Key& key, std::size_t count) const;
+  // Returns a list of at least one whole number from `lowest` on; it is empty when the key is absent or wrong.
+  std::vector<int> integers(const Key& key, int lowest) const;
   // Returns two numbers, both in range.
   Eigen::Vector2d pair(const Key& key, const Range& range) const;
   // Returns a word, or two numbers in range; the fallback, which is a word, when the key is absent or wrong.

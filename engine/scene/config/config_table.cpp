@@ -354,6 +354,22 @@ std::vector<Vec3> ConfigTable::vectors(const Key& key, std::size_t count) const 
   return {};
 }
 
+std::vector<int> ConfigTable::integers(const Key& key, int lowest) const {
+  const std::string allowed = fmt::format("a list of whole numbers, each at least {}", lowest);
+  const toml::node* node = find(key, "list of whole numbers", "none", allowed);
+  if (node == nullptr) return {};
+  std::vector<int> values;
+  if (const toml::array* list = node->as_array()) {
+    for (const toml::node& element : *list) {
+      const auto value = element.is_integer() ? element.value<int>() : std::nullopt;
+      if (value && *value >= lowest) values.push_back(*value);
+    }
+    if (!values.empty() && values.size() == list->size()) return values;
+  }
+  wrong(key, *node, allowed);
+  return {};
+}
+
 Eigen::Vector2d ConfigTable::pair(const Key& key, const Range& range) const {
   const std::string allowed = "two numbers, each " + range.text();
   const toml::node* node = find(key, "two numbers", "required", allowed);

@@ -100,6 +100,20 @@ void find_lists(const toml::table& table, const std::string& prefix, std::vector
 
 }  // namespace
 
+std::string toml_text(std::string_view text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      quoted += {'\\', c};
+    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
+      quoted += fmt::format("\\u{:04x}", int(c));
+    } else {
+      quoted += c;
+    }
+  }
+  return quoted + "\"";
+}
+
 ConfigValue Config::Content::value_of(const toml::node& node) const {
   auto content = std::make_shared<ConfigValue::Content>();
   content->node = clone(node);
@@ -115,11 +129,13 @@ void Config::Content::settle(const toml::node& copy, const ConfigValue& value) {
   });
 }
 
-std::optional<ConfigValue> ConfigValue::parse(const std::string& text) {
+std::optional<ConfigValue> ConfigValue::parse(const std::string& text, const std::string& source) {
   try {
-    const toml::table table = parsed_toml("value = " + text, "");
+    const toml::table table = parsed_toml("value = " + text, source);
     auto content = std::make_shared<Content>();
     content->node = clone(*table.get("value"));
+    const toml::source_region whole{{}, {}, std::make_shared<const std::string>(source)};
+    if (!source.empty()) walk(*content->node, [&](const toml::node&) { content->places.push_back(whole); });
     return ConfigValue(std::move(content));
   } catch (const InputError&) {
     return std::nullopt;

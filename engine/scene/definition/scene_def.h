@@ -24,11 +24,12 @@
 
 namespace supple {
 
-// Selects vertices of a body by a box, ball, half space or region. Coordinates are relative to the rest bounding box (0
-// to 1 along each axis).
+// Selects vertices of a body by a box, ball, half space or region, or by their numbers. Coordinates are relative to the
+// rest bounding box (0 to 1 along each axis).
 struct Selection {
-  enum class Kind { region, box, sphere, plane } kind = Kind::box;
+  enum class Kind { region, box, sphere, plane, vertices } kind = Kind::box;
   std::string region;
+  std::vector<int> vertices;                          // numbers, counted from 1
   Vec3 lower = Vec3(0, 0, 0), upper = Vec3(1, 1, 1);  // box
   Vec3 center = Vec3(0, 0, 0);                        // sphere; a point of the plane
   double radius = 0;                                  // sphere; relative to the longest side
@@ -40,7 +41,8 @@ template <>
 struct Names<Selection::Kind> {
   using Kind = Selection::Kind;
   static constexpr std::array table = {Name{Kind::region, "region"}, Name{Kind::box, "box"},
-                                       Name{Kind::sphere, "sphere"}, Name{Kind::plane, "plane"}};
+                                       Name{Kind::sphere, "sphere"}, Name{Kind::plane, "plane"},
+                                       Name{Kind::vertices, "vertices"}};
 };
 
 struct MotionKey {

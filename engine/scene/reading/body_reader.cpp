@@ -30,8 +30,8 @@ namespace {
 Selection read_selection(const ConfigTable& handle) {
   Selection s;
   s.place = handle.place("select");
-  const auto table =
-      handle.table({"select", "", "which vertices, by exactly one of region, box, sphere, plane"}, "required");
+  const auto table = handle.table(
+      {"select", "", "which vertices, by exactly one of region, box, sphere, plane, vertices"}, "required");
   if (!table) {
     if (!handle.has("select"))
       handle.complain("'select' is missing: such as select = { box = [[0, 0, 0], [1, 0.1, 1]] }");
@@ -70,6 +70,9 @@ Selection read_selection(const ConfigTable& handle) {
     s.normal = plane->vector({"normal", "", "points to the side that is picked"}, std::nullopt);
     if (s.normal.norm() < 1e-9) plane->complain("normal", "normal: must not be zero");
   }
+  s.vertices =
+      table->integers(key_of(Kind::vertices, "numbers of vertices, counted from 1 in the order of the mesh"), 1);
+  if (table->has(name_of(Kind::vertices).data())) pick(Kind::vertices);
   if (given != 1) table->complain(fmt::format("a selection is one of {}", word_list(all_names<Kind>())));
   return s;
 }

@@ -4,22 +4,14 @@
 #include "scene/reading/scene_reader.h"
 
 namespace supple {
-namespace {
-
-// Loads the scene that a replay names: the name of one that ships, or a file in the replay's folder.
-Config load_replayed_scene(Config& replay, const std::filesystem::path& assets) {
+std::filesystem::path replayed_scene(Config& replay, const std::filesystem::path& assets) {
   const ConfigTable root = replay.root();
   const Key key = {"scene", "", "a scene file, or the name of one that ships"};
   const std::string name = root.text(key, std::nullopt);
-  const std::filesystem::path shipped = assets / "scenes" / (name + ".toml");
+  std::filesystem::path shipped = assets / "scenes" / (name + ".toml");
   std::error_code error;
-  if (!name.empty() && std::filesystem::is_regular_file(shipped, error)) return Config::load(shipped, assets);
-  const std::filesystem::path file = root.file(key);
-  if (file.empty()) throw InputError(replay.complaints());
-  return load_document(file, assets);
+  return !name.empty() && std::filesystem::is_regular_file(shipped, error) ? shipped : root.file(key);
 }
-
-}  // namespace
 
 bool is_replay(Config& document) {
   const ConfigTable root = document.root();
@@ -28,7 +20,9 @@ bool is_replay(Config& document) {
 
 Config start_of_replay(Config& replay, const std::filesystem::path& assets, std::vector<Problem>& problems,
                        const PutsValue& put) {
-  Config scene_file = load_replayed_scene(replay, assets);
+  const std::filesystem::path file = replayed_scene(replay, assets);
+  if (file.empty()) throw InputError(replay.complaints());
+  Config scene_file = load_document(file, assets);
   const ConfigTable root = replay.root();
   if (const auto title = root.value({"title", "", "for people"}, "the scene's"))
     scene_file.put("title", *title, root.place("title"), {});

@@ -1,7 +1,10 @@
 #include "scene/replay/script.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 #include "base/frame_time.h"
 #include "base/text.h"
@@ -68,12 +71,33 @@ std::optional<double> TimedChange::done_at(double time) const {
   return s >= 1 - time_tolerance ? 1 : ease == Ease::smooth ? s * s * (3 - 2 * s) : s;
 }
 
+namespace {
+
+// Tells for each of the first `count` changes whether it is a jump that the next jump of the same value replaces, with
+// no other change near it in between. A program that sets a value in every frame has thousands of these.
+std::vector<char> replaced_jumps(const std::vector<TimedChange>& changes, std::size_t count, double time,
+                                 std::optional<std::size_t> left_out) {
+  std::vector<char> replaced(count, 0);
+  std::unordered_map<std::string, const TimedChange*> next_in_table;
+  for (std::size_t i = count; i-- > 0;) {
+    const TimedChange& change = changes[i];
+    if (i == left_out || !change.done_at(time)) continue;
+    const TimedChange*& next = next_in_table[table_of(change.path)];
+    replaced[i] = next != nullptr && next->path == change.path && next->over <= 0 && change.over <= 0;
+    next = &change;
+  }
+  return replaced;
+}
+
+}  // namespace
+
 Config Script::Parts::document_at(double time, std::size_t count, std::optional<std::size_t> left_out) const {
   Config document = scene_file.copy();
+  const std::vector<char> replaced = replaced_jumps(changes, count, time, left_out);
   for (std::size_t i = 0; i < count; ++i) {
     const TimedChange& change = changes[i];
     const auto done = change.done_at(time);
-    if (i == left_out || !done) continue;
+    if (i == left_out || !done || replaced[i] != 0) continue;
     document.put(
         change.path,
         change.over > 0 ? ConfigValue::between(*change.from, change.to, *done, change.by, change.whole) : change.to,
@@ -159,7 +183,8 @@ void Script::Parts::read_replay(const std::filesystem::path& assets, const std::
 
 Script Script::load(const SceneSource& source, const std::filesystem::path& assets,
                     const std::vector<std::string>& settings, std::optional<std::size_t> sweep_point) {
-  auto parts = std::make_unique<Parts>(Parts{std::nullopt, load_document(source, assets), {}, {}, {}});
+  auto parts = std::make_unique<Parts>(
+      Parts{source, settings, std::nullopt, load_document(source, assets), {}, {}, {}, {}, std::nullopt});
   if (supple::is_replay(parts->scene_file)) {
     parts->replay = parts->scene_file.copy();
     parts->read_replay(assets, settings, sweep_point);
@@ -197,6 +222,111 @@ std::vector<const TimedChange*> Script::at_work(int frame) const {
 SceneDef Script::scene_at(int frame) const {
   Config document = parts_->document_at(frame_time(frame, parts_->start.fps), parts_->changes.size());
   return parts_->read(document);
+}
+
+namespace {
+
+// Returns the table of a grab, as [[body.handles]] has it.
+ConfigValue table_of_grab(const LiveGrab& grab, const std::string& source) {
+  const std::string until = std::isfinite(grab.until) ? fmt::format(", until = {}", grab.until) : "";
+  const auto table = ConfigValue::parse(
+      fmt::format("{{ name = {}, select = {{ vertices = [{}] }}, stiffness = {}, from = {}{} }}", toml_text(grab.name),
+                  fmt::join(grab.vertices, ", "), grab.stiffness, grab.from, until),
+      source);
+  if (!table) throw InputError(source, fmt::format("'{}' cannot be the name of a handle", grab.name));
+  return *table;
+}
+
+}  // namespace
+
+void Script::Parts::apply_edits() {
+  if (!unedited) unedited.emplace(Unedited{scene_file.copy(), changes});
+  scene_file = unedited->scene_file.copy();
+  for (const LiveGrab& grab : edits.grabs) {
+    const std::string source = fmt::format("grab of body '{}'", grab.body);
+    scene_file.append("body." + grab.body + ".handles", table_of_grab(grab, source), {source});
+  }
+  changes = unedited->changes;
+  changes.insert(changes.end(), edits.changes.begin(), edits.changes.end());
+  std::ranges::stable_sort(changes, {}, &TimedChange::at);
+  Config document = document_at(at_start, changes.size());
+  start = read(document);
+}
+
+void Script::add(TimedChange change) {
+  const auto cost = cost_of_change(change.path);
+  if (!cost) {
+    throw InputError({Problem{change.place, fmt::format("'{}' cannot change while the film runs; `supple info --live "
+                                                        "SCENE` lists what can",
+                                                        change.path)}});
+  }
+  change.object = object_of(change.path);
+  change.cost = *cost;
+  if (change.over > 0) {
+    Config plain = parts_->scene_file.copy();
+    open_tables(plain);
+    open_table_of(plain, change.path);
+    (void)read_scene(plain);
+    change.whole = is_whole_number(plain, change.path);
+  }
+  if (!parts_->unedited) parts_->unedited.emplace(Parts::Unedited{parts_->scene_file.copy(), parts_->changes});
+  parts_->add_change(change);
+  const bool from_start = change.at <= time_tolerance;
+  // A ramp was given its beginning meanwhile.
+  const auto place = std::ranges::upper_bound(parts_->changes, change.at, {}, &TimedChange::at);
+  parts_->edits.changes.push_back(*std::prev(place));
+  if (!from_start) return;
+  Config document = parts_->document_at(at_start, parts_->changes.size());
+  parts_->start = parts_->read(document);
+}
+
+void Script::add(const LiveGrab& grab) {
+  parts_->edits.grabs.push_back(grab);
+  try {
+    parts_->apply_edits();
+  } catch (const InputError&) {
+    parts_->edits.grabs.pop_back();
+    parts_->apply_edits();
+    throw;
+  }
+}
+
+void Script::end_grab(const std::string& body, const std::string& name, double until) {
+  LiveEdits& edits = parts_->edits;
+  const auto grab =
+      std::ranges::find_if(edits.grabs, [&](const LiveGrab& one) { return one.body == body && one.name == name; });
+  SUPPLE_CHECK(grab == edits.grabs.end(), ==, false);
+  grab->until = until;
+  if (grab->until <= grab->from) {
+    const std::string prefix = "body." + body + ".handles." + name + ".";
+    std::erase_if(edits.changes, [&](const TimedChange& change) { return change.path.starts_with(prefix); });
+    edits.grabs.erase(grab);
+  }
+  parts_->apply_edits();
+}
+
+const LiveEdits& Script::edits() const { return parts_->edits; }
+
+void Script::set_edits(LiveEdits edits) {
+  parts_->edits = std::move(edits);
+  parts_->apply_edits();
+}
+
+Script Script::with(const std::vector<std::string>& settings) const {
+  auto parts = std::make_unique<Parts>(Parts{parts_->source,
+                                             parts_->settings,
+                                             std::nullopt,
+                                             parts_->scene_file.copy(),
+                                             {},
+                                             parts_->changes,
+                                             {},
+                                             {},
+                                             std::nullopt});
+  for (const std::string& setting : settings) parts->scene_file.set(setting, exclusive_keys());
+  parts->start.name = parts_->start.name;
+  Config document = parts->document_at(at_start, parts->changes.size());
+  parts->start = parts->read(document);
+  return Script(std::move(parts));
 }
 
 namespace {

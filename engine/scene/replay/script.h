@@ -4,30 +4,16 @@
 
 #include "scene/definition/scene_def.h"
 #include "scene/reading/scene_source.h"
-#include "scene/replay/live_keys.h"
+#include "scene/replay/live_edits.h"
 
 namespace supple {
 
-// Describes a change of one value while the film runs.
-struct TimedChange {
-  std::string path;    // as --set takes it
-  std::string object;  // the name of the body or collider that the value belongs to; empty: the whole scene
-  double at = 0;       // when the change begins [s]
-  double over = 0;     // how long the change takes; 0: a jump [s]
-  Ease ease = Ease::smooth;
-  RampRule by = RampRule::difference;
-  bool whole = false;  // the values of a ramp are rounded to whole numbers
-  ChangeCost cost;
-  std::optional<ConfigValue> from;  // where a ramp begins
-  ConfigValue to;
-  FilePlace place;
-
-  // Returns the share of the change that is done at a time [s], 0 to 1, or nothing before the change begins.
-  std::optional<double> done_at(double time) const;
+// Holds the text of a replay, and that of its scene where the scene has no file.
+struct ReplayFiles {
+  std::string replay_text;
+  std::filesystem::path scene;  // the file that scene_text is for; empty: the replay names a scene that exists
+  std::string scene_text;
 };
-
-// Returns all that these changes require to be recomputed for one body or collider.
-ChangeCost cost_for(const std::string& name, const std::vector<TimedChange>& changes);
 
 class Script {
  public:
@@ -52,6 +38,24 @@ class Script {
   // Returns warnings about changes and handles that are legal but have no effect in this film, or less than they
   // specify.
   std::vector<Problem> warnings() const;
+
+  // These edit the film while it is made: a film of the replay that replay_files() returns is the same to the last bit.
+  // They throw InputError with all that is wrong, and then change nothing.
+  //
+  // Adds a change as if the replay's file had it behind all others that begin at that time, which must be the beginning
+  // of a frame. Fills in its object, its cost and, for a ramp, where it begins.
+  void add(TimedChange change);
+  // Adds a handle to a body, behind those that it has.
+  void add(const LiveGrab& grab);
+  // Lets a grab end [s]; one that ends when it begins is taken back.
+  void end_grab(const std::string& body, const std::string& name, double until);
+  const LiveEdits& edits() const;
+  // Replaces all edits by those that were in force once.
+  void set_edits(LiveEdits edits);
+  // Returns the replay with all edits, which `file` will have. frames: the length of its film.
+  ReplayFiles replay_files(const std::filesystem::path& file, int frames) const;
+  // Returns the scene of a frame with more settings, as --set takes them. Throws InputError.
+  Script with(const std::vector<std::string>& settings) const;
 
   std::string scene_json() const;   // as the film starts
   std::string replay_json() const;  // the file of the replay itself; empty for a scene

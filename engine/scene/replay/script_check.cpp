@@ -1,6 +1,8 @@
 // Checks the changes of a replay. All problems are found at once, and each message points to a line of the replay.
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "base/frame_time.h"
 #include "scene/reading/scene_reader.h"
@@ -155,11 +157,11 @@ void Script::Parts::check_at(double time, const std::string& when, Reported& rep
   for (Problem& problem : found) report(std::move(problem), when, reported);
 }
 
-// Checks the frames in which changes are at work. Where there are more than most_checked, checks evenly spread ones,
-// and those between where one of them is wrong.
-void Script::Parts::check_frames(Reported& reported) {
+// Checks the frames from `first` to before `end` in which changes are at work. Where there are more than most_checked,
+// checks evenly spread ones, and those between where one of them is wrong.
+void Script::Parts::check_frames(int first, int end, Reported& reported) {
   std::vector<int> frames;
-  for (int frame = 0; frame < start.frames; ++frame) {
+  for (int frame = first; frame < end; ++frame) {
     if (std::any_of(changes.begin(), changes.end(), [&](const TimedChange& c) { return at_work(c, frame); }))
       frames.push_back(frame);
   }
@@ -167,10 +169,10 @@ void Script::Parts::check_frames(Reported& reported) {
     check_at(frame_time(frames[i], start.fps), fmt::format(" (first in frame {})", frames[i]), reported);
   };
   const std::size_t stride = 1 + frames.size() / most_checked;
-  for (std::size_t first = 0; first < frames.size() && problems.size() < most_problems; first += stride) {
-    const std::size_t last = std::min(first + stride, frames.size()) - 1;
+  for (std::size_t i = 0; i < frames.size() && problems.size() < most_problems; i += stride) {
+    const std::size_t last = std::min(i + stride, frames.size()) - 1;
     if (stride > 1 && problems_of(document_at(frame_time(frames[last], start.fps), changes.size())).empty()) continue;
-    for (std::size_t i = first; i <= last; ++i) check(i);
+    for (std::size_t between = i; between <= last; ++between) check(between);
   }
 }
 
@@ -180,7 +182,7 @@ void Script::Parts::check_changes() {
     prepare_ramps();
     Reported reported;
     check_at(at_start, "", reported);
-    check_frames(reported);
+    check_frames(0, start.frames, reported);
   } catch (const InputError& error) {  // a change depends on one that was removed
     if (problems.empty()) throw;
   }
@@ -188,6 +190,30 @@ void Script::Parts::check_changes() {
   std::stable_sort(problems.begin(), problems.end(),
                    [](const Problem& a, const Problem& b) { return a.place < b.place; });
   throw InputError(std::move(problems));
+}
+
+void Script::Parts::add_change(TimedChange change) {
+  const auto place = std::ranges::upper_bound(changes, change.at, {}, &TimedChange::at);
+  const auto index = static_cast<std::size_t>(place - changes.begin());
+  const int first = static_cast<int>(std::lround(change.at * start.fps));
+  const int end = std::max(start.frames, 1 + static_cast<int>(std::ceil((change.at + change.over) * start.fps)));
+  changes.insert(place, std::move(change));
+  problems.clear();
+  try {
+    TimedChange& added = changes[index];
+    Config document = document_at(added.at + at_start, index);
+    if (put(document, added.path, added.to, added.place) && added.over > 0) add_problems(prepare(added, index));
+    if (problems.empty()) {
+      Reported reported;
+      if (first == 0) check_at(at_start, "", reported);
+      check_frames(first, end, reported);
+    }
+  } catch (const InputError& error) {
+    add_problems(error.problems());
+  }
+  if (problems.empty()) return;
+  changes.erase(changes.begin() + std::ptrdiff_t(index));
+  throw InputError(std::exchange(problems, {}));
 }
 
 }  // namespace supple

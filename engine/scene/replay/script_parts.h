@@ -14,11 +14,19 @@ constexpr double time_tolerance = 1e-9;
 constexpr double at_start = 2 * time_tolerance;
 
 struct Script::Parts {
+  SceneSource source;
+  std::vector<std::string> settings;  // that were given beside the source
   std::optional<Config> replay;
   Config scene_file;  // the scene before any change
   SceneDef start;
   std::vector<TimedChange> changes;  // in the order of their beginnings
   std::vector<Problem> problems;     // of the replay, while it is read
+  LiveEdits edits;                   // they are in scene_file and changes, too
+  struct Unedited {
+    Config scene_file;
+    std::vector<TimedChange> changes;
+  };
+  std::optional<Unedited> unedited;  // nothing: there was no edit yet
 
   // Returns the scene's document at a time, with the first `count` changes applied. One of them can be left out.
   Config document_at(double time, std::size_t count, std::optional<std::size_t> left_out = {}) const;
@@ -35,6 +43,11 @@ struct Script::Parts {
   // problem is removed, so that the others can still be checked. Throws InputError with all problems, earlier ones too.
   void check_changes();
 
+  // Adds a change of a film that is being made, and checks it in all frames from its beginning on.
+  void add_change(TimedChange change);
+  // Takes scene and changes from `unedited` and `edits`, without a check.
+  void apply_edits();
+
  private:
   // Holds the places and texts of the problems that have been reported, so that each is reported once.
   struct Reported {
@@ -43,7 +56,7 @@ struct Script::Parts {
   void add_problems(std::vector<Problem> more);
   void report(Problem problem, const std::string& when, Reported& reported);
   void put_each();
-  void check_frames(Reported& reported);
+  void check_frames(int first, int end, Reported& reported);
   void prepare_ramps();
   std::vector<Problem> prepare(TimedChange& ramp, std::size_t index) const;
   void check_at(double time, const std::string& when, Reported& reported);

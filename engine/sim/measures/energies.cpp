@@ -21,7 +21,7 @@ double spring_energy(const Model& model, const Positions& targets, const Positio
   double sum = 0;
   for (std::size_t i = 0; i < model.handled.size(); ++i) {
     const std::int32_t v = model.handled[i].vertex;
-    if (v < model.free)
+    if (v < model.free && model.handled[i].holds)
       sum += 0.5 * model.handle_stiffness[v] * (x.row(v) - targets.row(static_cast<Eigen::Index>(i))).squaredNorm();
   }
   return sum;

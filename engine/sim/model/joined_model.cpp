@@ -96,8 +96,8 @@ void add_elements(const Model& body, const Part& part, Model& joined) {
 
 void add_handles(const Model& body, const Part& part, Model& joined) {
   const std::int32_t handles = joined.handled.empty() ? 0 : joined.handled.back().handle + 1;
-  for (const auto& [vertex, handle] : body.handled)
-    joined.handled.push_back({joined_vertex(part, vertex), handles + handle});
+  for (const auto& [vertex, handle, holds] : body.handled)
+    joined.handled.push_back({joined_vertex(part, vertex), handles + handle, holds});
   if (body.handle_stiffness.empty()) return;
   joined.handle_stiffness.resize(joined.free, 0.0);
   std::copy(body.handle_stiffness.begin(), body.handle_stiffness.end(),

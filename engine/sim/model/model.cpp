@@ -150,6 +150,10 @@ std::size_t Model::part_number(std::int32_t vertex) const {
   return static_cast<std::size_t>(std::prev(after) - parts.begin());
 }
 
+void refuse_second_handle(const BodyDescription& body, const Handle& handle) {
+  throw InputError(body.name, fmt::format("handle '{}' holds a vertex that another handle holds already", handle.name));
+}
+
 Model build_model(const BodyDescription& body) {
   Model model;
   model.structure = new_structure();
@@ -158,14 +162,12 @@ Model build_model(const BodyDescription& body) {
   for (const int region : body.mesh.regions) SUPPLE_CHECK(std::size_t(region), <, body.materials.size());
   for (const Spring& spring : body.springs) SUPPLE_CHECK(std::max(spring.from, spring.to), <, model.vertices);
 
-  std::vector<char> held(model.vertices, 0), taken(model.vertices, 0);
+  std::vector<char> held(model.vertices, 0), has_spring(model.vertices, 0);
   for (const Handle& handle : body.handles) {
+    const bool hard = handle.stiffness <= 0;
     for (const std::int32_t v : handle.vertices) {
-      if (taken[v])
-        throw InputError(body.name,
-                         fmt::format("handle '{}' holds a vertex that another handle holds already", handle.name));
-      taken[v] = 1;
-      held[v] = handle.stiffness <= 0;
+      if (held[v] || (hard && has_spring[v])) refuse_second_handle(body, handle);
+      (hard ? held : has_spring)[v] = 1;
     }
   }
   if (std::count(held.begin(), held.end(), 0) == 0)

@@ -20,7 +20,8 @@ namespace supple {
 // Describes some vertices that follow a motion given from outside.
 struct Handle {
   std::string name;
-  std::vector<std::int32_t> vertices;  // of the mesh, in its own numbering; one vertex belongs to one handle
+  // Of the mesh, in its own numbering. Handles with springs may have vertices in common as long as one of them holds.
+  std::vector<std::int32_t> vertices;
   double stiffness = 0;  // of the spring from each vertex to its target [N/m]; 0: hard, the rows are eliminated
   bool holds = true;     // false: the springs have been let go and do not pull
 };
@@ -111,7 +112,7 @@ struct Model : System {
   std::vector<std::int32_t> element_of_lane;  // by lane: number among the input's elements of this kind; -1: padding
   std::vector<std::uint16_t> corner;
   AlignedVector<double> field;
-  AlignedVector<float> single_field;  // the same numbers in single precision
+  AlignedVector<float> single_field;       // the same numbers in single precision
   std::vector<std::int32_t> chunk_vertex;  // all chunks' lists, one after the other
   struct ChunkRange {
     ElementKind kind;
@@ -132,6 +133,7 @@ struct Model : System {
   struct HandleVertex {
     std::int32_t vertex;
     std::int32_t handle;
+    bool holds = true;  // false: the handle has let go, and the vertex may belong to another one
   };
   std::vector<HandleVertex> handled;     // the order of StepInputs::targets
   std::vector<double> handle_stiffness;  // of the spring at each free vertex, 0: none [N/m]; empty when all are hard
@@ -149,6 +151,9 @@ struct Model : System {
   std::size_t part_number(std::int32_t vertex) const;  // of the part that a vertex belongs to
   const Part& part_of(std::int32_t vertex) const { return parts[part_number(vertex)]; }
 };
+
+// Throws InputError: the handle holds a vertex that another one holds.
+[[noreturn]] void refuse_second_handle(const BodyDescription& body, const Handle& handle);
 
 // Throws RunError (with the body's name) when A cannot be factored, and InputError when the description contradicts
 // itself.

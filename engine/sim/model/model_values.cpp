@@ -73,11 +73,13 @@ void set_masses(Model& model, const BodyDescription& body) {
 void set_handle_springs(Model& model, const BodyDescription& body) {
   model.handle_stiffness.clear();
   for (Part& part : model.parts) part.floats = part.held == 0;
-  for (const auto& [vertex, h] : model.handled) {
+  for (auto& [vertex, h, holds] : model.handled) {
     const Handle& handle = body.handles[h];
+    holds = handle.holds;
     if (handle.stiffness <= 0) continue;
     if (model.handle_stiffness.empty()) model.handle_stiffness.assign(model.free, 0.0);
-    if (!handle.holds) continue;
+    if (!holds) continue;
+    if (model.handle_stiffness[vertex] > 0) refuse_second_handle(body, handle);
     model.handle_stiffness[vertex] = handle.stiffness;
     for (Part& part : model.parts) part.floats &= vertex < part.first_free || vertex >= part.first_free + part.free;
   }

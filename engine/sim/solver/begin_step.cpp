@@ -22,6 +22,7 @@ void set_targets(const Model& model, const StepInputs& inputs, OpenWorkspace& w)
     SUPPLE_CHECK(inputs.middle_targets.rows(), ==, Eigen::Index(model.handled.size()));
   for (std::size_t i = 0; i < model.handled.size(); ++i) {
     const std::int32_t v = model.handled[i].vertex;
+    if (!model.handled[i].holds) continue;
     if (v < model.free) {
       w.target.row(v) = midway ? inputs.middle_targets.row(i) : inputs.targets.row(i);
     } else {

@@ -1,0 +1,88 @@
+// Writes a script with all its edits as a replay.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "scene/reading/replay_start.h"
+#include "scene/replay/script_parts.h"
+
+namespace supple {
+namespace {
+
+ConfigValue value_of_text(const std::string& text) { return ConfigValue::parse(text).value(); }
+
+ConfigValue frame_or_seconds(double time) { return value_of_text(fmt::format("{}", time)); }
+
+// Returns the scene as a replay names it, which lies in `folder`.
+std::string scene_name(const std::filesystem::path& file, const std::filesystem::path& folder,
+                       const std::filesystem::path& assets) {
+  std::error_code error;
+  const std::filesystem::path scene = std::filesystem::weakly_canonical(std::filesystem::absolute(file), error);
+  if (std::filesystem::equivalent(scene, assets / "scenes" / (scene.stem().string() + ".toml"), error))
+    return scene.stem().string();
+  const std::filesystem::path near =
+      scene.lexically_relative(std::filesystem::weakly_canonical(std::filesystem::absolute(folder), error));
+  return near.empty() || near.native().starts_with("..") ? scene.string() : near.string();
+}
+
+// Returns a change as [[change]] has it.
+ConfigValue table_of_change(const TimedChange& change, double fps) {
+  Config table = Config::parse("", "", "");
+  const auto put = [&table](const char* key, const ConfigValue& value) { table.put(key, value, {}, {}); };
+  put("frame", value_of_text(fmt::format("{}", std::lround(change.at * fps))));
+  put("path", value_of_text(toml_text(change.path)));
+  if (change.over > 0) {
+    put("over", frame_or_seconds(change.over));
+    put("ease", value_of_text(toml_text(name_of(change.ease))));
+    put("by", value_of_text(toml_text(name_of(change.by))));
+    put("from", change.from.value());
+  }
+  put("value", change.to);
+  return table.root().all_but("");
+}
+
+ConfigValue table_of_grab(const LiveGrab& grab) {
+  Config table = Config::parse("", "", "");
+  const auto put = [&table](const char* key, const std::string& text) { table.put(key, value_of_text(text), {}, {}); };
+  put("body", toml_text(grab.body));
+  put("name", toml_text(grab.name));
+  put("select", fmt::format("{{ vertices = [{}] }}", fmt::join(grab.vertices, ", ")));
+  put("stiffness", fmt::format("{}", grab.stiffness));
+  put("from", fmt::format("{}", grab.from));
+  if (std::isfinite(grab.until)) put("until", fmt::format("{}", grab.until));
+  return table.root().all_but("");
+}
+
+}  // namespace
+
+ReplayFiles Script::replay_files(const std::filesystem::path& file, int frames) const {
+  Parts& parts = *parts_;
+  const std::filesystem::path& assets = parts.scene_file.assets();
+  ReplayFiles files;
+  Config replay = parts.replay ? parts.replay->copy() : Config::parse("", file.string(), assets);
+  replay.make_files_absolute();
+  if (parts.source.text && !parts.replay) {
+    files.scene = file.parent_path() / (file.stem().string() + "-scene.toml");
+    files.scene_text = *parts.source.text;
+  }
+  const std::filesystem::path scene =
+      files.scene.empty() ? parts.replay ? replayed_scene(*parts.replay, assets) : parts.source.path : files.scene;
+  replay.put("scene", value_of_text(toml_text(scene_name(scene, file.parent_path(), assets))), {}, {});
+  replay.put("frames", value_of_text(fmt::format("{}", frames)), {}, {});
+  for (const std::string& setting : parts.settings) {
+    const std::size_t equals = setting.find('=');
+    const std::string path = setting.substr(0, equals), text = setting.substr(equals + 1);
+    if (path == "frames") continue;
+    const auto value = ConfigValue::parse(text);
+    replay.put_key("set", path, value ? *value : value_of_text(toml_text(text)));
+  }
+  for (const LiveGrab& grab : parts.edits.grabs) replay.append("grab", table_of_grab(grab), {});
+  for (const TimedChange& change : parts.edits.changes)
+    replay.append("change", table_of_change(change, parts.start.fps), {});
+  replay.make_files_absolute();
+  files.replay_text = replay.as_toml() + "\n";
+  return files;
+}
+
+}  // namespace supple

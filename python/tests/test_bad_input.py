@@ -1,0 +1,238 @@
+"""What is wrong ends in an exception that names it, and never in a crash."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import supple
+from test_model import block
+
+
+def refused(call, *words, kind=supple.InputError):
+    with pytest.raises(kind) as told:
+        call()
+    assert all(word in str(told.value) for word in words), str(told.value)
+    return told.value
+
+
+def test_errors_have_file_line_and_column(tmp_path):
+    (tmp_path / "scene.toml").write_text('[[body]]\nbox = { extent = [1, 1, 0] }\nmaterial = "rubbr"\n')
+    error = refused(lambda: supple.World(tmp_path / "scene.toml"), "scene.toml:2:", "did you mean 'rubber'")
+    assert [(problem.line, problem.file) for problem in error.problems] == [
+        (2, str(tmp_path / "scene.toml")), (3, str(tmp_path / "scene.toml"))]
+    assert isinstance(error, ValueError)
+
+
+@pytest.mark.parametrize("source, kind", [
+    ("no-such-scene", supple.InputError), (3, TypeError), (None, TypeError), ({}, supple.InputError),
+    ({"body": 7}, supple.InputError), ({"body": [{"box": {"extent": [1, 1, 1]}, "weight": object()}]}, supple.InputError),
+    ({"body": [float("nan")]}, supple.InputError), ("\0", (supple.InputError, ValueError)), ("", supple.InputError),
+    ({"a": [[[[[[[[[[[[[[[[[[[[[[1]]]]]]]]]]]]]]]]]]]]]]}, supple.InputError)])
+def test_scenes_that_are_none(source, kind):
+    with pytest.raises(kind):
+        supple.World(source)
+
+
+def test_values_that_cannot_be(cube):
+    world = supple.World(cube)
+    refused(lambda: world.set("body.cub.material.young", 1), "did you mean 'cube'")
+    refused(lambda: world.set("body.cube.material.young", -1), "must be above 0")
+    refused(lambda: world.set("body.cube.material.young", float("nan")), "young")
+    refused(lambda: world.set("body.cube.material.young", "a\nb\"c"), "young")
+    refused(lambda: world.set("body.cube.material.young", 1, start=2), "ramps")
+    refused(lambda: world.set("body.cube.material.young", 1, over=-1), "over")
+    refused(lambda: world.set("body.cube.material.young", 1e4, over=1, ease="slow"), "ease", "smooth")
+    refused(lambda: world.set("body.cube.material.young", object()), "object")
+    refused(lambda: world.set("", 1))
+    refused(lambda: world.set("fps", 60), "cannot change")
+    refused(lambda: world.set("body.cube.solver.method", "newtonn"), "did you mean")
+    refused(lambda: world.step(-1))
+    refused(lambda: world.bodies["cube"].field("colour"), "stretch")
+    refused(lambda: supple.render(world, size=(15, 15)), "width")
+    refused(lambda: supple.render(world, camera={"distance": -1}), "distance")
+    refused(lambda: supple.render(world, set={"look.light": "moon"}), "studio")
+    hashes = []
+    for other in (world, supple.World(cube)):  # nothing of this has changed anything
+        other.step(5)
+        hashes.append(other.hash())
+    assert hashes[0] == hashes[1]
+
+
+def test_grabs_that_cannot_be(cube):
+    world = supple.World(cube)
+    refused(lambda: world.grab("cub", [0], stiffness=10), "did you mean 'cube'")
+    refused(lambda: world.grab("cube", [64], stiffness=10), "no vertex 65", "64")
+    refused(lambda: world.grab("cube", [-1], stiffness=10), "-1")
+    refused(lambda: world.grab("cube", [], stiffness=10), "no vertices")
+    refused(lambda: world.grab("cube", [0], stiffness=0), "stiffness")
+    refused(lambda: world.grab("cube", [0], stiffness=float("inf")), "stiffness")
+    refused(lambda: world.grab("cube", [0], stiffness=1, name="a.b"), "letters")
+    hand = world.grab("cube", [0, 1], stiffness=10, name="hand")
+    refused(lambda: world.grab("cube", [2], stiffness=10, name="hand"), "two handles")
+    refused(lambda: world.grab("cube", [0, 1], stiffness=10), "no other handle holds")
+    refused(hand.release, "after")
+    refused(lambda: hand.move([0, 0]), "three numbers")
+    refused(lambda: hand.move([0, float("nan"), 0]), "finite")
+    world.step()
+    hand.release()
+    refused(hand.release, "let go")
+    world.step(3)
+
+
+def test_states_of_other_worlds(cube):
+    world, other = supple.World(cube), supple.World("rolling")
+    refused(lambda: world.restore(other.state()), "other bodies")
+    with pytest.raises(TypeError):
+        world.restore(None)
+
+
+@pytest.mark.parametrize("change, words", [
+    (dict(vertices=np.zeros((3, 2))), ["n x 3"]), (dict(vertices="text"), ["vertices"]),
+    (dict(vertices=np.full((45, 3), np.nan)), ["row 0 is not finite"]),
+    (dict(tetrahedra=np.array([[0, 1, 2, 99]])), ["vertex 100 does not exist"]),
+    (dict(tetrahedra=np.array([[0, 1, 2, -3]])), ["element 1"]), (dict(tetrahedra=[[0, 1, 2]]), ["m x 4"]),
+    (dict(tetrahedra=np.zeros((0, 4), int)), ["no elements"]), (dict(tetrahedra=[[0.5, 1, 2, 3]]), ["whole numbers"]),
+    (dict(material="rubbr"), ["did you mean 'rubber'"]), (dict(material={"model": "neo-hookean", "young": -1}), ["young"]),
+    (dict(density=0), ["density"]), (dict(time_step=0), ["time_step"]), (dict(pinned=[99]), ["no vertex 99"]),
+    (dict(pinned=[1, 1]), ["twice"]), (dict(pinned=range(45)), ["every vertex"]), (dict(pin_stiffness=-1, pinned=[0]), ["pin"]),
+    (dict(solver={"iterations": 0}), ["iterations"]), (dict(solver={"iteration": 5}), ["did you mean"])])
+def test_models_that_cannot_be(change, words):
+    vertices, tetrahedra = block()
+    arguments = {"vertices": vertices, "tetrahedra": tetrahedra, "material": "rubber", **change}
+    refused(lambda: supple.Model(**arguments), *words)
+
+
+def test_steps_that_cannot_be():
+    vertices, tetrahedra = block()
+    model = supple.Model(vertices, tetrahedra, "rubber", pinned=[0, 1, 2])
+    state = model.state()
+    refused(lambda: supple.step(model, state, targets=np.zeros((2, 3))), "2 x 3", "3 x 3")
+    refused(lambda: supple.step(model, state, gravity=[0, np.inf, 0]), "gravity")
+    refused(lambda: supple.Colliders([{"shape": {"sphere": {"radius": -1}}}]), "radius")
+    refused(lambda: supple.Colliders([{}]), "shape")
+    refused(lambda: supple.step(supple.Model(vertices, tetrahedra, "rubber"), state), "another model")
+    with pytest.raises(TypeError):
+        supple.step(model, None)
+    state.positions[5, 1] = np.nan
+    refused(lambda: supple.step(model, state), "row 5")
+    state.positions[5, 1] = 1e200
+    with pytest.raises((supple.StepFailed, supple.InputError)):
+        supple.step(model, state)
+
+
+def test_a_failed_step_is_told_and_undone(cube):
+    del cube["collider"]
+    body = cube["body"][0]
+    body["material"] = {"model": "polynomial", "mu": 1e9}
+    body["solver"] = {"line_search": "none", "levels": 1}  # no search keeps it from growing without bounds
+    body["handles"] = [{"name": "hook", "select": {"box": [[0, 0, 0], [0.1, 1, 1]]}}]
+    world = supple.World(cube)
+    world.step(2)
+    before, hash_before = world.state(), world.hash()
+    world.set("gravity", [0, -1e6, 0])
+    with pytest.raises(supple.StepFailed, match="cube.*beyond all bounds"):
+        world.step(30)
+    with pytest.raises(RuntimeError, match="restore"):
+        world.step()
+    with pytest.raises(RuntimeError, match="restore"):
+        world.state()
+    world.restore(before)
+    assert world.frame == 2 and world.hash() == hash_before
+    world.step()
+
+
+def test_a_world_in_two_threads_is_refused():
+    world = supple.World("bunny-torus", threads=1)
+    told = []
+    thread = threading.Thread(target=lambda: world.step(20))
+    thread.start()
+    while thread.is_alive():
+        try:
+            world.hash()
+        except RuntimeError as error:
+            told.append(str(error))
+        time.sleep(0.001)
+    thread.join()
+    assert any("another thread" in text for text in told)
+    assert world.frame == 20
+
+
+def test_pictures_from_any_thread(cube):
+    world = supple.World(cube)
+    pictures = []
+    for _ in range(3):
+        thread = threading.Thread(target=lambda: pictures.append(supple.render(world, size=(64, 48))))
+        thread.start()
+        thread.join()
+    assert np.array_equal(pictures[0], pictures[2])
+
+
+def test_a_fork_of_the_process_is_told(cube):
+    world = supple.World(cube, threads=2)
+    world.step()
+    child = os.fork()
+    if child == 0:
+        try:
+            world.step()
+            os._exit(1)
+        except RuntimeError as error:
+            fresh = supple.World(cube, threads=2)  # this one is the child's own
+            fresh.step(2)
+            del world
+            os._exit(0 if "another process" in str(error) and fresh.frame == 2 else 2)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+    world.step()
+
+
+INTERRUPTED = """
+import os, signal, threading, supple
+scene = {"fps": 30, "substeps": SUBSTEPS, "body": [{"name": "cube", "box": {"extent": [1, 1, 1], "cells": [10, 10, 10]},
+         "material": "rubber"}]}
+whole = supple.World(scene, threads=1)
+whole.step(3)
+world = supple.World(scene, threads=1)
+threading.Timer(DELAY, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+try:
+    world.step(1000)
+except KeyboardInterrupt:
+    frames = world.frame
+    world.step()   # finishes the frame, or makes the next one
+    while world.frame < 3:
+        world.step()
+    while whole.frame < world.frame:
+        whole.step()
+    assert world.hash() == whole.hash(), (world.frame, frames)
+    print("interrupted in", frames)
+"""
+
+
+@pytest.mark.parametrize("substeps, delay", [(1, 0.3), (400, 1.0)])
+def test_an_interrupt_ends_a_step_cleanly(substeps, delay):
+    text = INTERRUPTED.replace("SUBSTEPS", str(substeps)).replace("DELAY", str(delay))
+    told = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True)
+    assert told.returncode == 0 and "interrupted in" in told.stdout, told.stderr
+
+
+def test_films_that_cannot_be(tmp_path):
+    refused(lambda: supple.Film(tmp_path / "film.txt"), ".mp4")
+    refused(lambda: supple.Film(tmp_path / "film.mp4", fps=0), "fps")
+    film = supple.Film(tmp_path / "film.mp4")
+    refused(lambda: film.add(np.zeros((4, 4), np.uint8)), "height x width x 3")
+    refused(lambda: film.add(np.zeros((3, 3, 3), np.uint8)), "even")
+    film.close()
+    with pytest.raises(RuntimeError, match="closed"):
+        film.add(np.zeros((64, 64, 3), np.uint8))
+
+
+def test_warnings_are_issued():
+    scene = {"body": [{"box": {"extent": [0.2, 0.2, 0.2]}, "material": {"model": "neo-hookean", "young": 10, "poisson": 0.4},
+                       "handles": [{"name": "top", "select": {"box": [[0, 0.99, 0], [1, 1, 1]]}}]}]}
+    with pytest.warns(supple.SuppleWarning):
+        world = supple.World(scene)
+    assert world.warnings
