@@ -300,7 +300,8 @@ std::size_t WorldFace::number_of(const std::string& body) {
 
 // Sorts rows as in the body's mesh.
 static void sort_rows(const Model& model, const Positions& rows, Positions& sorted) {
-  for (int v = 0; v < model.vertices; ++v) sorted.row(model.input_of[std::size_t(v)]) = rows.row(v);
+  for (int v = 0; v < model.vertices; ++v)
+    std::copy_n(rows.data() + 3 * v, 3, sorted.data() + 3 * std::ptrdiff_t(model.input_of[std::size_t(v)]));
 }
 
 void WorldFace::refresh() {
