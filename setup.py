@@ -18,7 +18,7 @@ class BuildWithCMake(build_ext):
         build = pathlib.Path(self.build_temp).resolve()
         options = ["-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS_RELEASE=-O2", "-DCMAKE_UNITY_BUILD=ON",
                    "-DCMAKE_UNITY_BUILD_BATCH_SIZE=10", "-DSUPPLE_TESTS=OFF", "-DSUPPLE_PYTHON=ON",
-                   f"-DPython3_EXECUTABLE={sys.executable}"]
+                   f"-DPython3_EXECUTABLE={sys.executable}", *os.environ.get("CMAKE_ARGS", "").split()]
         try:
             import pybind11
 

@@ -20,7 +20,8 @@ target_link_options(supple_python PRIVATE -Wl,--exclude-libs,ALL)
 set_target_properties(supple_python PROPERTIES OUTPUT_NAME _supple UNITY_BUILD OFF
                       LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/python/supple)
 # The build's folder has the package whole, so that PYTHONPATH=build/release/python finds it.
-file(GLOB supple_python_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/python/supple/*)
+file(GLOB supple_python_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/python/supple/*.py
+     ${PROJECT_SOURCE_DIR}/python/supple/*.pyi ${PROJECT_SOURCE_DIR}/python/supple/py.typed)
 add_custom_command(TARGET supple_python POST_BUILD
                    COMMAND ${CMAKE_COMMAND} -E copy_if_different ${supple_python_files}
                            ${PROJECT_BINARY_DIR}/python/supple)

@@ -22,6 +22,7 @@ struct World::Parts {
   int frame = -1;                                   // that was entered last
   int substep = 0;                                  // of that frame: the next one to be made
   bool has_failed = false;                          // a step of that frame
+  bool has_stepped = false;                         // since the start, or the last state that was restored
   double saved_ms = 0;                              // of the frame's steps
 
   Parts(std::optional<Script> script, SceneDef at_start, std::vector<Body> bodies)
@@ -46,6 +47,12 @@ struct World::Parts {
   double next_time() const { return (frame + 1) / scene.fps; }
   std::size_t body_named(const std::string& name) const;
   void take_edits(LiveEdits edits);
+  // Changes the scene before its first frame.
+  void begin_with(SceneDef scene, const std::vector<TimedChange>& changes) {
+    start = scene;
+    apply(std::move(scene), changes);
+    end_last_changes();
+  }
   // Makes the step of an island that was prepared. Returns whether it succeeded.
   // is_known: whether the watch has been told that it was prepared.
   bool step(const std::vector<std::size_t>& island, int substep, const StepWatch& watch, bool is_known);
@@ -58,7 +65,7 @@ void World::Parts::apply(SceneDef changed, const std::vector<TimedChange>& chang
   scene = std::move(changed);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     update_body(bodies[b], scene, scene.bodies[b]);
-    if (!moving.empty()) moving[b]->apply(cost_for(bodies[b].def.name, changes));
+    if (!moving.empty()) moving[b]->apply(cost_for(bodies[b].def.table, changes));
   }
   CollisionSet now = collision_set(scene);
   now.earlier = std::move(colliders.scene_colliders);
@@ -100,7 +107,8 @@ void World::start(const Solvers& solvers, Threads* threads) {
   for (std::size_t b = 0; b < size(); ++b) {
     parts.moving.push_back(
         std::make_unique<MovingBody>(parts.scene, parts.bodies[b], parts.models[b], parts.colliders, solvers, threads));
-    if (was_played && parts.script) parts.moving[b]->apply(cost_for(parts.bodies[b].def.name, parts.script->changes()));
+    if (was_played && parts.script)
+      parts.moving[b]->apply(cost_for(parts.bodies[b].def.table, parts.script->changes()));
   }
   parts.islands = std::make_unique<Islands>(parts.scene, parts.moving, solvers, threads);
 }
@@ -140,24 +148,23 @@ std::size_t World::Parts::body_named(const std::string& name) const {
 void World::change(TimedChange change) {
   Parts& parts = *parts_;
   Script& script = parts.script.value();
+  const bool begins = parts.frame < 0;  // before the first frame, the scene at the start changes
   change.at = parts.next_time();
   script.add(std::move(change));
-  const TimedChange& added = script.edits().changes.back();
+  const TimedChange added = script.edits().changes.back();
   try {
-    SceneDef scene = parts.frame < 0 ? script.scene() : script.scene_at(parts.frame + 1);
+    SceneDef scene = begins ? script.scene() : script.scene_at(parts.frame + 1);
     for (std::size_t b = 0; b < size() && added.cost.factor; ++b) {
-      if (!added.object.empty() && added.object != parts.bodies[b].def.name) continue;
+      if (!added.object.empty() && added.object != parts.bodies[b].def.table) continue;
       Body trial = parts.bodies[b];
       update_body(trial, scene, scene.bodies[b]);
     }
-    if (parts.frame >= 0 || added.over > 0) return;  // enter() will apply it
-    parts.start = scene;
-    parts.apply(std::move(scene), {added});
-    parts.end_last_changes();
-  } catch (const InputError&) {
+    if (begins) parts.begin_with(std::move(scene), {added});
+  } catch (...) {
     LiveEdits before = script.edits();
     before.changes.pop_back();
     script.set_edits(std::move(before));
+    if (begins) parts.begin_with(script.scene(), {added});
     throw;
   }
 }
@@ -167,6 +174,12 @@ void World::grab(LiveGrab grab) {
   Script& script = parts.script.value();
   const std::size_t b = parts.body_named(grab.body);
   Body& body = parts.bodies[b];
+  if (body.def.table != body.def.name) {
+    throw InputError(grab.body,
+                     fmt::format("is a piece of the surface of '{}', whose pieces have their handles in common: "
+                                 "it cannot be grabbed by itself",
+                                 body.def.table));
+  }
   grab.from = parts.next_time();
   grab.until = std::numeric_limits<double>::infinity();
   script.add(grab);
@@ -183,8 +196,14 @@ void World::grab(LiveGrab grab) {
     script.set_edits(std::move(before));
     throw InputError(std::move(problems));
   }
+  // Vertices that another handle has are left out once and for all, whenever that one ends.
+  LiveEdits edits = script.edits();
+  edits.grabs.back().vertices.clear();
+  for (const std::int32_t v : body.description.handles.back().vertices) edits.grabs.back().vertices.push_back(v + 1);
+  script.set_edits(std::move(edits));
   parts.start = script.scene();
-  parts.scene.bodies[b].handles.push_back(def);
+  parts.scene.bodies[b].handles.push_back(parts.start.bodies[b].handles.back());
+  body.def.handles.back() = parts.start.bodies[b].handles.back();
   parts.moving[b]->add_handle();
 }
 
@@ -226,8 +245,7 @@ void World::Parts::take_edits(LiveEdits edits) {
       moving[b]->add_handle();
     }
   }
-  apply(start, changes);
-  end_last_changes();
+  begin_with(script->scene(), changes);
   frame = -1;
 }
 
@@ -268,6 +286,7 @@ bool World::Parts::step_all(const std::vector<std::vector<std::size_t>>& all, in
 bool World::step(const StepWatch& watch) {
   Parts& parts = *parts_;
   if (parts.substep == 0) parts.saved_ms = 0;
+  parts.has_stepped = true;
   for (bool first = true; parts.substep < parts.scene.substeps; first = false) {
     if (!first && watch.stops && watch.stops()) return false;
     prepare(parts.substep);
@@ -279,6 +298,8 @@ bool World::step(const StepWatch& watch) {
   }
   return true;
 }
+
+bool World::has_stepped() const { return parts_->has_stepped; }
 
 int World::frames() const { return parts_->frame + 1; }
 
@@ -298,6 +319,7 @@ void World::restore(const WorldState& state) {
   if (parts_->script && state.frames - 1 < parts_->frame) rewind();
   enter(state.frames - 1);
   parts_->end_last_changes();
+  parts_->has_stepped = false;
   for (std::size_t b = 0; b < size(); ++b) parts_->moving[b]->restore(state.bodies[b]);
 }
 

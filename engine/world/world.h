@@ -72,6 +72,9 @@ class World {
   }
   // Returns the number of frames that were entered, the present one among them.
   int frames() const;
+  // Tells whether the bodies are where a step has left them, so that its report and its contacts are those of the
+  // present state: not before the first step, nor after restore().
+  bool has_stepped() const;
   // Tells whether the steps of the frame that was entered last were begun and not finished, because the watch stopped
   // them or one failed.
   bool is_within_frame() const;

@@ -67,7 +67,7 @@ ModelFace::ModelFace(const py::object& vertices, const py::object& tetrahedra, c
   body.name = "model";
   body.mesh.rest = positions_of(vertices, "vertices");
   body.mesh.tets = tetrahedra_of(tetrahedra);
-  body.mesh = checked_mesh(std::move(body.mesh), "tetrahedra");
+  body.mesh = checked_mesh(std::move(body.mesh), "tetrahedra", 0);
   body.mesh.regions.assign(std::size_t(body.mesh.tets.rows()), 0);
   py::dict owner;
   owner["material"] = material;
@@ -106,7 +106,7 @@ ModelFace::ModelFace(const py::object& vertices, const py::object& tetrahedra, c
 }
 
 StateFace::StateFace(std::shared_ptr<const ModelFace> model, int threads) : model_(std::move(model)) {
-  if (threads < 1) throw InputError("threads", "must be at least 1");
+  if (threads < 1 || threads > 256) throw InputError("threads", "must be 1 to 256");
   held_ = std::make_unique<Held>(threads);
   held_->state = rest_state(model_->model);
   x_ = std::make_shared<Positions>(in_input_order(model_->model, held_->state.x));
@@ -149,8 +149,8 @@ py::dict StateFace::step(const ModelFace& model, const py::object& gravity, cons
   if (report.failed)
     throw StepFailed(fmt::format("the step failed while in '{}': {} (vertex {} is furthest out)", report.failure.during,
                                  report.failure.what, report.failure.vertex));
-  *x_ = in_input_order(model.model, state.x);
-  *v_ = in_input_order(model.model, state.v);
+  sort_rows(model.model, state.x, *x_);
+  sort_rows(model.model, state.v, *v_);
   py::dict result;
   result["step_ms"] = report.step_ms;
   result["iterations"] = report.iterations;

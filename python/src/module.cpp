@@ -47,6 +47,8 @@ void translate(std::exception_ptr thrown) {
     raise_named("StepFailed", error);
   } catch (const RunError& error) {
     raise_named("RunError", error);
+  } catch (const py::cast_error& error) {
+    PyErr_SetString(PyExc_TypeError, error.what());
   }
 }
 
@@ -107,6 +109,7 @@ class FilmFace {
 
   void close() {
     if (thread_ != std::this_thread::get_id()) throw std::runtime_error("a film is made in one thread");
+    const py::gil_scoped_release others_run;
     if (!std::exchange(closed_, true) && encoder_) end();
   }
 

@@ -5,11 +5,13 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "base/types.h"
+#include "sim/model/model.h"
 
 namespace supple::python {
 
@@ -33,6 +35,13 @@ Vec3 vector_of(const py::handle& array, const std::string& name);
 
 // Returns an array that looks at rows without copying them. It keeps them alive.
 py::array view_of(const std::shared_ptr<Positions>& rows, bool writeable = false);
+
+// Sorts rows as in the body's mesh, in place, because arrays look at `sorted`.
+inline void sort_rows(const Model& model, const Positions& rows, Positions& sorted) {
+  for (int v = 0; v < model.vertices; ++v)
+    std::copy_n(rows.data() + 3 * std::ptrdiff_t(v), 3,
+                sorted.data() + 3 * std::ptrdiff_t(model.input_of[std::size_t(v)]));
+}
 
 // Returns an array of its own.
 template <class Rows>

@@ -31,7 +31,17 @@ SceneSource source_of(const py::object& source) {
 
 void warn(const std::string& text) {
   const py::object kind = py::module_::import("supple").attr("SuppleWarning");
-  if (PyErr_WarnEx(kind.ptr(), text.c_str(), 2) < 0) throw py::error_already_set();
+  if (PyErr_WarnEx(kind.ptr(), text.c_str(), 1) < 0) throw py::error_already_set();
+}
+
+std::size_t number_of(const World& world, const std::string& body) {
+  std::vector<std::string> names;
+  for (const Body& one : world.bodies()) names.push_back(one.def.name);
+  const auto found = std::ranges::find(names, body);
+  if (found == names.end())
+    throw InputError(body,
+                     fmt::format("there is no such body: there is {}{}", word_list(names), did_you_mean(body, names)));
+  return static_cast<std::size_t>(found - names.begin());
 }
 
 py::tuple tuple_of(const Vec3& v) { return py::make_tuple(v.x(), v.y(), v.z()); }
@@ -39,7 +49,7 @@ py::tuple tuple_of(const Vec3& v) { return py::make_tuple(v.x(), v.y(), v.z()); 
 }  // namespace
 
 WorldFace::WorldFace(const py::object& source, const py::dict& set, int threads) {
-  if (threads < 0) throw InputError("threads", "must be at least 1, or 0 for all cores");
+  if (threads < 0 || threads > 256) throw InputError("threads", "must be 1 to 256, or 0 for all cores");
   const SceneSource from = source_of(source);
   const std::vector<std::string> settings = settings_of(set);
   {
@@ -54,7 +64,10 @@ WorldFace::WorldFace(const py::object& source, const py::dict& set, int threads)
   }
   held_->errors.emplace(held_->world, held_->solvers, held_->threads);
   views_.resize(held_->world.size());
-  for (const Body& body : held_->world.bodies()) own_handles_.push_back(body.def.handles.size());
+  for (std::size_t b = 0; b < held_->world.size(); ++b) {
+    own_handles_.push_back(held_->world.bodies()[b].def.handles.size());
+    own_handled_.push_back(std::ssize(held_->world.body(b).model().handled));
+  }
   for (const std::string& text : warnings_) warn(text);
 }
 
@@ -67,7 +80,7 @@ WorldFace::Lock WorldFace::locked() { return {Busy::Use(busy_), held_.get()}; }
 
 WorldFace::Lock WorldFace::whole() {
   Lock held = locked();
-  if (held->world.is_within_frame())
+  if (failed_ || held->world.is_within_frame())
     throw std::runtime_error(
         "a step of this frame has failed or was interrupted: step() finishes a frame that was "
         "interrupted, restore() goes back to a state");
@@ -81,7 +94,7 @@ WorldPictures& WorldFace::Held::drawn() {
 
 int WorldFace::frame() {
   const Lock held = locked();
-  return held->world.frames() - (held->world.is_within_frame() ? 1 : 0);
+  return held->world.frames() - (failed_ || held->world.is_within_frame() ? 1 : 0);
 }
 
 void WorldFace::step(int frames, bool errors) {
@@ -112,6 +125,7 @@ void WorldFace::take_frame(bool errors) {
     interrupted = PyErr_CheckSignals() != 0;
     return interrupted;
   };
+  failed_ = true;  // until the steps are made: a matrix that cannot be factored throws
   {
     const py::gil_scoped_release others_run;
     if (!world.is_within_frame()) {
@@ -120,9 +134,10 @@ void WorldFace::take_frame(bool errors) {
       contacts_.assign(world.size(), 0);
       measured_.assign(errors ? world.size() : 0, std::nullopt);
     }
+    if (errors) measured_.resize(world.size());
     made = world.step(watch);
-    held_->has_stepped = true;
   }
+  failed_ = !made && !interrupted;
   refresh();
   if (interrupted) throw py::error_already_set();
   for (std::size_t b = 0; b < world.size(); ++b) {
@@ -220,13 +235,20 @@ std::string WorldFace::grab(const std::string& body, const std::vector<int>& ver
                             std::string name) {
   const Lock held = whole();
   const std::string place = fmt::format("grab of body '{}'", body);
-  if (name.empty()) name = fmt::format("grab_{}", held->world.script().edits().grabs.size() + 1);
+  const std::size_t number = number_of(held->world, body);
+  const std::vector<HandleDef>& handles = held->world.bodies()[number].def.handles;
+  for (std::size_t i = 1; name.empty(); ++i) {
+    const std::string free = fmt::format("grab_{}", i);
+    if (std::ranges::find(handles, free, &HandleDef::name) == handles.end()) name = free;
+  }
   if (name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") != name.npos)
     throw InputError(place, fmt::format("name '{}': letters, digits, _ and - alone", name));
   if (!(stiffness > 0) || !std::isfinite(stiffness)) throw InputError(place, "stiffness: must be above 0 [N/m]");
   LiveGrab grab{body, name, {}, stiffness};
   for (const int vertex : vertices) {
-    if (vertex < 0) throw InputError(place, fmt::format("there is no vertex {}", vertex));
+    const int last = held->world.body(number).model().vertices - 1;
+    if (vertex < 0 || vertex > last)
+      throw InputError(place, fmt::format("there is no vertex {}: 0 to {}", vertex, last));
     grab.vertices.push_back(vertex + 1);
   }
   if (grab.vertices.empty()) throw InputError(place, "no vertices are given");
@@ -250,17 +272,21 @@ void WorldFace::restore(const WorldState& state) {
   const Lock held = locked();
   bool suits = state.bodies.size() == held->world.size();
   for (std::size_t b = 0; suits && b < state.bodies.size(); ++b) {
-    const Body& body = held->world.bodies()[b];
-    const auto added = std::ranges::count(state.edits.grabs, body.def.name, &LiveGrab::body);
+    std::size_t handles = own_handles_[b];
+    Eigen::Index handled = own_handled_[b];
+    for (const LiveGrab& grab : state.edits.grabs) {
+      if (grab.body != held->world.bodies()[b].def.name) continue;
+      ++handles;
+      handled += std::ssize(grab.vertices);
+    }
     suits = state.bodies[b].x.rows() == held->world.body(b).model().vertices &&
-            state.bodies[b].anchors.holds.size() == own_handles_[b] + std::size_t(added);
+            state.bodies[b].anchors.holds.size() == handles && state.bodies[b].anchors.points.rows() == handled;
   }
   if (!suits) throw InputError("state", "is of a world with other bodies or handles");
   {
     const py::gil_scoped_release others_run;
     held->world.restore(state);
   }
-  held->has_stepped = false;
   failed_ = false;
   rows_.clear();
   measured_.clear();
@@ -270,10 +296,9 @@ void WorldFace::restore(const WorldState& state) {
 void WorldFace::save_replay(const py::object& path) {
   const Lock held = whole();
   if (held->world.frames() == 0) throw std::runtime_error("no frame was made that a replay could repeat");
-  const std::filesystem::path file = path_of(path);
+  const std::filesystem::path file = std::filesystem::absolute(path_of(path));
   const ReplayFiles files = held->world.script().replay_files(file, held->world.frames());
   if (!files.scene.empty()) write_whole_file(files.scene, files.scene_text);
-  (void)Script::load(SceneSource(file, files.replay_text), assets_folder(), {});
   write_whole_file(file, files.replay_text);
 }
 
@@ -287,21 +312,6 @@ std::vector<std::string> WorldFace::names() {
   std::vector<std::string> names;
   for (const Body& body : locked()->world.bodies()) names.push_back(body.def.name);
   return names;
-}
-
-std::size_t WorldFace::number_of(const std::string& body) {
-  const std::vector<std::string> all = names();
-  const auto found = std::ranges::find(all, body);
-  if (found == all.end())
-    throw py::key_error(
-        fmt::format("there is no body '{}': there is {}{}", body, word_list(all), did_you_mean(body, all)));
-  return static_cast<std::size_t>(found - all.begin());
-}
-
-// Sorts rows as in the body's mesh.
-static void sort_rows(const Model& model, const Positions& rows, Positions& sorted) {
-  for (int v = 0; v < model.vertices; ++v)
-    std::copy_n(rows.data() + 3 * v, 3, sorted.data() + 3 * std::ptrdiff_t(model.input_of[std::size_t(v)]));
 }
 
 void WorldFace::refresh() {
@@ -329,7 +339,7 @@ py::array WorldFace::view(std::size_t body, std::shared_ptr<Positions> Views::*r
 py::array WorldFace::forces(std::size_t body) {
   const Lock held = locked();
   MovingBody& moving = held->world.body(body);
-  if (!held->has_stepped || !held->world.scene().may_touch())
+  if (!held->world.has_stepped() || !held->world.scene().may_touch())
     return copy_of(Positions(Positions::Zero(moving.model().vertices, 3)));
   return copy_of(contact_forces(moving.model(), moving.workspace(), moving.state().x));
 }

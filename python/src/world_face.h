@@ -50,7 +50,6 @@ class WorldFace {
 
   // Names the bodies in the order of the scene.
   std::vector<std::string> names();
-  std::size_t number_of(const std::string& body);
   py::array positions(std::size_t body) { return view(body, &Views::x); }
   py::array velocities(std::size_t body) { return view(body, &Views::v); }
   py::array forces(std::size_t body);
@@ -73,7 +72,6 @@ class WorldFace {
     FilmSolvers solvers = all_solvers();
     std::optional<WorldErrors> errors;
     std::unique_ptr<WorldPictures> pictures;
-    bool has_stepped = false;  // since the start, or the last state that was restored
 
     Held(int threads, Script script, std::vector<Body> bodies)
         : threads(threads), world(std::move(script), std::move(bodies)) {}
@@ -99,9 +97,10 @@ class WorldFace {
   std::vector<int> contacts_;                            // by body
   std::vector<std::optional<MeasuredErrors>> measured_;  // by body; empty: not asked for
   std::vector<std::string> warnings_;
-  std::vector<std::size_t> own_handles_;  // by body, without those that were added
-  bool warned_ = false;                   // that a step was not solved
-  bool failed_ = false;                   // a step; until a state is restored
+  std::vector<Eigen::Index> own_handled_;  // by body: vertices of the scene's own handles
+  std::vector<std::size_t> own_handles_;   // by body, without those that were added
+  bool warned_ = false;                    // that a step was not solved
+  bool failed_ = false;                    // a step; until a state is restored
 };
 
 }  // namespace supple::python

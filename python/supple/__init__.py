@@ -85,7 +85,7 @@ class World(_supple.World):
 def render(world, *, camera=None, size=None, set={}):
     """Draws the world as it is: height x width x 3 bytes, or x 4 with coverage for look.backdrop = "transparent".
 
-    camera: a dict with the keys of [camera]. size: (width, height) in pixels. set: other values of the scene, such as
+    camera: a dict with the keys of [camera], in place of the scene's whole table. size: (width, height) in pixels. set: other values of the scene, such as
     {"field.quantity": "stretch"}. Pictures that differ by the camera alone share the preparations."""
     return world._pixels(camera, size, set)
 

@@ -119,3 +119,80 @@ def test_threads_and_substeps_change_no_bit(cube):
     worlds = [supple.World(cube, threads=count) for count in (1, 2, 4)]
     first, *others = [hashes(world, 8) for world in worlds]
     assert all(other == first for other in others)
+
+
+def test_a_table_a_part_of_it_and_the_table_again(cube, hashes_of, tmp_path):
+    cube["body"][0]["material"] = "jelly"  # a preset, which has no part
+    world = supple.World(cube)
+    made = hashes(world, 4)
+    for young in (2e4, 4e4):
+        world.set("body.cube.material", {"model": "neo-hookean", "young": young, "poisson": 0.3})
+        made += hashes(world, 2)
+        world.set("body.cube.material.young", 2 * young)
+        made += hashes(world, 2)
+    world.save_replay(tmp_path / "saved.toml")
+    assert hashes_of("replay", tmp_path / "saved.toml") == made
+
+
+def test_a_ramp_from_the_first_frame_on(cube, hashes_of, tmp_path):
+    world = supple.World(cube)
+    world.set("collider.ground.position", [0, 0.1, 0], over=0.2, start=[0, -0.2, 0])
+    world.set("body.cube.material.young", 1e4, over=0.3, by="ratio", start=1e5)
+    made = hashes(world, 12)
+    world.save_replay(tmp_path / "saved.toml")
+    assert hashes_of("replay", tmp_path / "saved.toml") == made
+
+
+def test_grabs_beside_a_grab_of_the_replay_itself(hashes_of, tmp_path):
+    (tmp_path / "first.toml").write_text('scene = "blob"\n[[grab]]\nbody = "blob"\nname = "own"\nselect = { vertices = '
+                                         '[1, 2, 3] }\nstiffness = 5\nfrom = 0.3\n')
+    world = supple.World(tmp_path / "first.toml")
+    made = hashes(world, 2)
+    hand = world.grab("blob", [1, 2, 3, 4, 5], stiffness=4)  # two of these belong to the other one, later
+    made += hashes(world, 3)
+    held = world.state()
+    hand.release()
+    made += hashes(world, 8)
+    world.save_replay(tmp_path / "saved.toml")
+    assert hashes_of("replay", tmp_path / "saved.toml") == made
+    world.restore(held)
+    hand.release()
+    assert hashes(world, 8) == made[5:]
+
+
+def test_settings_that_reach_a_grab_or_depend_on_their_order(hashes_of, tmp_path, cube, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    world = supple.World("ear-pull", set={"body.bunny.handles.fingers.stiffness": 20, "frames": 50})
+    made = hashes(world, 34)
+    world.save_replay("saved.toml")
+    assert (tmp_path / "saved-scene.toml").exists()
+    assert hashes_of("replay", tmp_path / "saved.toml") == made
+    world = supple.World("blob", set={"body.blob.material.mu": 90, "body.blob.material": {
+        "model": "neo-hookean", "mu": 30, "lambda": 25}})
+    made = hashes(world, 4)
+    world.save_replay("blob.toml")
+    assert hashes_of("replay", tmp_path / "blob.toml") == made
+
+
+def test_pieces_of_a_surface_change_together(hashes_of, tmp_path):
+    def cube_at(x):
+        return [(x + a, b, c) for a in (0, 0.1) for b in (0, 0.1) for c in (0, 0.1)]
+
+    faces = [(1, 2, 4), (1, 4, 3), (5, 7, 8), (5, 8, 6), (1, 5, 6), (1, 6, 2), (3, 4, 8), (3, 8, 7), (1, 3, 7), (1, 7, 5),
+             (2, 6, 8), (2, 8, 4)]
+    lines = [f"v {x} {y} {z}" for x, y, z in cube_at(0) + cube_at(0.3)]
+    lines += ["f " + " ".join(str(v + shift) for v in face) for shift in (0, 8) for face in faces]
+    (tmp_path / "two.obj").write_text("\n".join(lines) + "\n")
+    scene = {"body": [{"name": "p", "surface": str(tmp_path / "two.obj"), "pieces": "bodies", "vertices": 300,
+                       "material": {"model": "neo-hookean", "young": 2e4, "poisson": 0.3}}]}
+    world = supple.World(scene)
+    assert list(world.bodies) == ["p_1", "p_2"]
+    made = hashes(world, 2)
+    mass = world.bodies["p_2"].masses.sum()
+    world.set("body.p.density", 300)
+    made += hashes(world, 3)
+    assert world.bodies["p_2"].masses.sum() == pytest.approx(0.3 * mass)
+    world.save_replay(tmp_path / "saved.toml")
+    assert hashes_of("replay", tmp_path / "saved.toml") == made
+    with pytest.raises(supple.InputError, match="piece"):
+        world.grab("p_1", [0], stiffness=1)

@@ -166,3 +166,31 @@ def test_paths_that_can_change(cube):
     world.set("collider.ground.position", [0, 0.05, 0], over=0.2)
     world.step(10)
     assert world.bodies["cube"].positions[:, 1].min() > 0.04
+
+
+def test_pictures_follow_a_state_back(cube):
+    world = supple.World(cube)
+    world.step(2)
+    middle = world.state()
+    before = supple.render(world, size=(160, 90))
+    world.set("collider.ground.shape", {"sphere": {"radius": 0.3}})
+    world.step(2)
+    assert not np.array_equal(before, supple.render(world, size=(160, 90)))
+    world.restore(middle)
+    assert np.array_equal(before, supple.render(world, size=(160, 90)))
+
+
+def test_settings_of_a_picture_hold_whatever_changes(cube):
+    world = supple.World(cube)
+    first = supple.render(world, size=(160, 90), camera={"azimuth": 80})
+    world.set("camera.azimuth", 10)
+    world.set("look.exposure", 0.5)
+    assert np.array_equal(first, supple.render(world, size=(160, 90), camera={"azimuth": 80}, set={"look.exposure": 1}))
+
+
+def test_warnings_point_to_the_caller():
+    scene = {"body": [{"box": {"extent": [0.2, 0.2, 0.2]}, "material": {"model": "neo-hookean", "young": 10, "poisson": 0.4},
+                       "handles": [{"name": "top", "select": {"box": [[0, 0.99, 0], [1, 1, 1]]}}]}]}
+    with pytest.warns(supple.SuppleWarning) as told:
+        supple.World(scene)
+    assert told[0].filename == __file__

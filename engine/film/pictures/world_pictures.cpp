@@ -4,6 +4,7 @@
 #include <exception>
 #include <future>
 #include <thread>
+#include <utility>
 
 #include "base/queue.h"
 #include "base/signals.h"
@@ -35,6 +36,12 @@ class WorldPictures::Studio {
 
   const std::string& key() const { return key_; }
   DrawnFilm& film() { return film_; }
+  // Follows what changes have made of the colliders, also those that hold no more because a state was restored.
+  void follow(const std::vector<TimedChange>& changes, const World& world) {
+    std::vector<TimedChange> all = std::exchange(followed_, changes);
+    all.insert(all.end(), changes.begin(), changes.end());
+    if (!all.empty()) film_.follow(all, world.colliders(), world.bodies());
+  }
   // Tells whether the skins are fine enough for a camera: they are fitted to the one that they were made for.
   bool suits(const Camera& camera) const { return distance_of(camera) > 0.8 * nearest_; }
 
@@ -64,6 +71,7 @@ class WorldPictures::Studio {
 
   std::string key_;
   DrawnFilm film_;
+  std::vector<TimedChange> followed_;
   double nearest_;  // distance of the camera that the skins are fitted to [m]
   BoundedQueue<Order> orders_{1};
   std::thread thread_;
@@ -85,7 +93,7 @@ WorldPictures::Pose WorldPictures::present_pose() {
     MovingBody& body = world_.body(b);
     pose.motion.push_back(in_input_order(body.model(), body.state().x));
     pose.before.push_back(pose.motion.back() - in_input_order(body.model(), body.state().v) / world_.scene().fps);
-    if (world_.scene().may_touch() && frames > 0) {
+    if (world_.scene().may_touch() && world_.has_stepped()) {
       pose.forces.push_back(contact_forces(body.model(), body.workspace(), body.state().x));
     } else {
       pose.forces.push_back(Positions::Zero(pose.motion.back().rows(), 3));
@@ -119,7 +127,7 @@ Image WorldPictures::draw(const std::vector<std::string>& settings) {
   for (const bool fresh : {false, true}) {
     if (fresh || !studio_ || studio_->key() != key) studio_ = std::make_unique<Studio>(script, world_, drawn, key);
     DrawnFilm& film = studio_->film();
-    if (!script.changes().empty()) film.follow(script.changes(), world_.colliders(), world_.bodies());
+    studio_->follow(script.changes(), world_);
     DrawList list = film.list(scene, pose.frame, world_.colliders(), threads_);
     if (fresh || studio_->suits(list.camera)) return studio_->draw(std::move(list));
   }

@@ -14,14 +14,19 @@
 namespace supple {
 namespace {
 
-// Refuses an element by its line, or by its number where the format has no lines.
-[[noreturn]] void refuse(Eigen::Index element, const std::vector<int>& lines, const std::string& name,
-                         const std::string& message) {
-  if (lines.empty()) throw InputError(name, fmt::format("element {}: {}", element + 1, message));
-  throw InputError({Problem{{name, lines[static_cast<std::size_t>(element)]}, message}});
-}
+// Says how messages name the elements of a mesh.
+struct ElementNames {
+  const std::string& mesh;        // its file, or what else it is called
+  const std::vector<int>& lines;  // the line of each element; empty where the mesh has none
+  int first = 1;                  // the number of the first element
 
-void check_duplicates(const TetMesh& mesh, const std::vector<int>& lines, const std::string& name) {
+  [[noreturn]] void refuse(Eigen::Index element, const std::string& message) const {
+    if (lines.empty()) throw InputError(mesh, fmt::format("element {}: {}", element + first, message));
+    throw InputError({Problem{{mesh, lines[static_cast<std::size_t>(element)]}, message}});
+  }
+};
+
+void check_duplicates(const TetMesh& mesh, const ElementNames& names) {
   std::vector<std::pair<std::array<std::int32_t, 4>, Eigen::Index>> keys;
   for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
     std::array<std::int32_t, 4> key{mesh.tets(e, 0), mesh.tets(e, 1), mesh.tets(e, 2), mesh.tets(e, 3)};
@@ -32,21 +37,21 @@ void check_duplicates(const TetMesh& mesh, const std::vector<int>& lines, const 
   for (std::size_t i = 1; i < keys.size(); ++i) {
     if (keys[i].first != keys[i - 1].first) continue;
     const Eigen::Index first = keys[i - 1].second, second = keys[i].second;
-    refuse(second, lines, name,
-           lines.empty() ? fmt::format("the element repeats element {}", first + 1)
-                         : fmt::format("the element repeats the one at line {}", lines[std::size_t(first)]));
+    names.refuse(second, names.lines.empty()
+                             ? fmt::format("the element repeats element {}", first + names.first)
+                             : fmt::format("the element repeats the one at line {}", names.lines[std::size_t(first)]));
   }
 }
 
 // Flips all elements when all of them are negative; a mixture of orientations is refused.
-void orient(MeshFile& file, const std::vector<int>& lines, const std::string& name) {
+void orient(MeshFile& file, const ElementNames& names) {
   TetMesh& mesh = file.mesh;
   const double edge = bounds_of(mesh.rest).diagonal();
   Eigen::Index negative = 0, first_negative = -1;
   for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
     const double volume = tet_volume(mesh, e);
     // An element below 1e-18 of the box's cube is flat in double coordinates; the flattest sliver in use has 1e-14.
-    if (!(std::abs(volume) > 1e-18 * edge * edge * edge)) refuse(e, lines, name, "the element has no volume");
+    if (!(std::abs(volume) > 1e-18 * edge * edge * edge)) names.refuse(e, "the element has no volume");
     if (volume < 0) {
       ++negative;
       if (first_negative < 0) first_negative = e;
@@ -54,9 +59,9 @@ void orient(MeshFile& file, const std::vector<int>& lines, const std::string& na
   }
   if (negative == 0) return;
   if (negative != mesh.tets.rows()) {
-    refuse(first_negative, lines, name,
-           fmt::format("{} of {} elements are turned inside out, the first here; all must be oriented alike", negative,
-                       mesh.tets.rows()));
+    names.refuse(first_negative,
+                 fmt::format("{} of {} elements are turned inside out, the first here; all must be oriented alike",
+                             negative, mesh.tets.rows()));
   }
   mesh.tets.col(2).swap(mesh.tets.col(3));
   file.notes.push_back("all elements were oriented the other way round, and have been turned");
@@ -125,30 +130,33 @@ MeshFile read_mesh(const std::filesystem::path& path) {
     raw = (format != nullptr ? *format : formats.front()).read(mesh_text(path), name);
   }
   MeshFile file{std::move(raw.mesh), std::move(raw.notes)};
-  check_duplicates(file.mesh, raw.lines, name);
-  orient(file, raw.lines, name);
+  const ElementNames names{name, raw.lines};
+  check_duplicates(file.mesh, names);
+  orient(file, names);
   drop_unused(file);
   return file;
 }
 
-TetMesh checked_mesh(TetMesh mesh, const std::string& name) {
+TetMesh checked_mesh(TetMesh mesh, const std::string& name, int first) {
+  const std::vector<int> no_lines;
+  const ElementNames names{name, no_lines, first};
   const Eigen::Index vertices = mesh.rest.rows();
   if (mesh.tets.rows() == 0) throw InputError(name, "has no elements");
   std::vector<char> used(static_cast<std::size_t>(vertices), 0);
   for (Eigen::Index e = 0; e < mesh.tets.rows(); ++e) {
     for (const std::int32_t v : mesh.tets.row(e)) {
       if (v < 0 || v >= vertices)
-        refuse(e, {}, name, fmt::format("vertex {} does not exist; there are {}", v + 1, vertices));
+        names.refuse(e, fmt::format("vertex {} does not exist; there are {}", v + std::int64_t(first), vertices));
       used[static_cast<std::size_t>(v)] = 1;
     }
   }
   for (Eigen::Index v = 0; v < vertices; ++v) {
-    if (!mesh.rest.row(v).allFinite()) throw InputError(name, fmt::format("vertex {} is not finite", v + 1));
-    if (used[std::size_t(v)] == 0) throw InputError(name, fmt::format("vertex {} belongs to no element", v + 1));
+    if (!mesh.rest.row(v).allFinite()) throw InputError(name, fmt::format("vertex {} is not finite", v + first));
+    if (used[std::size_t(v)] == 0) throw InputError(name, fmt::format("vertex {} belongs to no element", v + first));
   }
   MeshFile file{std::move(mesh), {}};
-  check_duplicates(file.mesh, {}, name);
-  orient(file, {}, name);
+  check_duplicates(file.mesh, names);
+  orient(file, names);
   return std::move(file.mesh);
 }
 

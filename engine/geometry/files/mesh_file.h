@@ -29,8 +29,9 @@ bool is_mesh_file(const std::filesystem::path& path);
 MeshFile read_mesh(const std::filesystem::path& path);
 
 // Checks a mesh that a program has made, as read_mesh() checks files, and turns elements that are all negative. name:
-// what messages call it; they count elements and vertices from 1. Throws InputError, also for vertices of no element.
-TetMesh checked_mesh(TetMesh mesh, const std::string& name);
+// what messages call it. first: the number of the first element and vertex in messages. Throws InputError, also for
+// vertices of no element.
+TetMesh checked_mesh(TetMesh mesh, const std::string& name, int first = 1);
 
 // Reads the Triangles of a MEDIT file, for cloth, and ignores its elements. Vertices that no triangle uses are left
 // out. Throws InputError as above, and for triangles without area or listed twice.

@@ -163,7 +163,8 @@ struct BodySurface;  // body_pieces.h
 
 struct BodyDef {
   std::string name;
-  std::string label;               // the caption in pictures; empty: there is none
+  std::string table;  // the name that paths have: that of the body's table, which pieces of a surface share
+  std::string label;  // the caption in pictures; empty: there is none
   std::vector<WarningKind> meant;  // warnings that need not be said
   // One of these five members gives the mesh. The regions of a mesh file are named by their reference numbers.
   std::filesystem::path shape;

@@ -235,6 +235,7 @@ BodyDef read_body(const ConfigTable& table, const SolverDef& defaults) {
   body.place = table.place(nullptr);
   body.name = table.text({"name", "", "addresses the body in --set and in reports"}, "body");
   check_name(table, body.name);
+  body.table = body.name;
   body.meant = table.words<WarningKind>({"meant", "", "warnings about the body that need not be said"});
   body.label = table.text(
       {"label", "",

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "base/frame_time.h"
 #include "base/text.h"
@@ -74,17 +75,22 @@ std::optional<double> TimedChange::done_at(double time) const {
 namespace {
 
 // Tells for each of the first `count` changes whether it is a jump that the next jump of the same value replaces, with
-// no other change near it in between. A program that sets a value in every frame has thousands of these.
+// no other change of the same table, or of a part of the value, in between. A program that sets a value in every frame
+// has thousands of these.
 std::vector<char> replaced_jumps(const std::vector<TimedChange>& changes, std::size_t count, double time,
                                  std::optional<std::size_t> left_out) {
   std::vector<char> replaced(count, 0);
   std::unordered_map<std::string, const TimedChange*> next_in_table;
+  std::unordered_set<std::string> changed_in_part;  // values whose parts change before the next jump of the whole
   for (std::size_t i = count; i-- > 0;) {
     const TimedChange& change = changes[i];
     if (i == left_out || !change.done_at(time)) continue;
     const TimedChange*& next = next_in_table[table_of(change.path)];
-    replaced[i] = next != nullptr && next->path == change.path && next->over <= 0 && change.over <= 0;
+    const bool has_parts = changed_in_part.erase(change.path) > 0;
+    replaced[i] = next != nullptr && next->path == change.path && next->over <= 0 && change.over <= 0 && !has_parts;
     next = &change;
+    for (std::string whole = table_of(change.path); !whole.empty(); whole = table_of(whole))
+      changed_in_part.insert(whole);
   }
   return replaced;
 }
@@ -103,6 +109,7 @@ Config Script::Parts::document_at(double time, std::size_t count, std::optional<
         change.over > 0 ? ConfigValue::between(*change.from, change.to, *done, change.by, change.whole) : change.to,
         change.place, exclusive_keys());
   }
+  for (const std::string& setting : last_settings) document.set(setting, exclusive_keys());
   return document;
 }
 
@@ -184,7 +191,7 @@ void Script::Parts::read_replay(const std::filesystem::path& assets, const std::
 Script Script::load(const SceneSource& source, const std::filesystem::path& assets,
                     const std::vector<std::string>& settings, std::optional<std::size_t> sweep_point) {
   auto parts = std::make_unique<Parts>(
-      Parts{source, settings, std::nullopt, load_document(source, assets), {}, {}, {}, {}, std::nullopt});
+      Parts{source, settings, std::nullopt, load_document(source, assets), {}, {}, {}, {}, std::nullopt, {}});
   if (supple::is_replay(parts->scene_file)) {
     parts->replay = parts->scene_file.copy();
     parts->read_replay(assets, settings, sweep_point);
@@ -260,6 +267,10 @@ void Script::add(TimedChange change) {
                                                         "SCENE` lists what can",
                                                         change.path)}});
   }
+  constexpr double most_frames = 1e6;  // as the file of a replay may say
+  if (!(change.over * parts_->start.fps <= most_frames))
+    throw InputError(
+        {Problem{change.place, fmt::format("over = {:g} s: {:g} frames are the most", change.over, most_frames)}});
   change.object = object_of(change.path);
   change.cost = *cost;
   if (change.over > 0) {
@@ -308,22 +319,23 @@ void Script::end_grab(const std::string& body, const std::string& name, double u
 const LiveEdits& Script::edits() const { return parts_->edits; }
 
 void Script::set_edits(LiveEdits edits) {
-  parts_->edits = std::move(edits);
-  parts_->apply_edits();
+  std::swap(parts_->edits, edits);
+  try {
+    parts_->apply_edits();
+    Config last = parts_->document_at(infinity, parts_->changes.size());
+    (void)parts_->read(last);
+  } catch (const InputError&) {
+    parts_->edits = std::move(edits);
+    parts_->apply_edits();
+    throw;
+  }
 }
 
 Script Script::with(const std::vector<std::string>& settings) const {
-  auto parts = std::make_unique<Parts>(Parts{parts_->source,
-                                             parts_->settings,
-                                             std::nullopt,
-                                             parts_->scene_file.copy(),
-                                             {},
-                                             parts_->changes,
-                                             {},
-                                             {},
-                                             std::nullopt});
-  for (const std::string& setting : settings) parts->scene_file.set(setting, exclusive_keys());
-  parts->start.name = parts_->start.name;
+  const Parts& own = *parts_;
+  auto parts = std::make_unique<Parts>(Parts{
+      own.source, own.settings, std::nullopt, own.scene_file.copy(), {}, own.changes, {}, {}, std::nullopt, settings});
+  parts->start.name = own.start.name;
   Config document = parts->document_at(at_start, parts->changes.size());
   parts->start = parts->read(document);
   return Script(std::move(parts));

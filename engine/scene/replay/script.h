@@ -8,7 +8,7 @@
 
 namespace supple {
 
-// Holds the text of a replay, and that of its scene where the scene has no file.
+// Holds the text of a replay, and that of its scene where no file has this scene.
 struct ReplayFiles {
   std::string replay_text;
   std::filesystem::path scene;  // the file that scene_text is for; empty: the replay names a scene that exists
@@ -50,11 +50,13 @@ class Script {
   // Lets a grab end [s]; one that ends when it begins is taken back.
   void end_grab(const std::string& body, const std::string& name, double until);
   const LiveEdits& edits() const;
-  // Replaces all edits by those that were in force once.
+  // Replaces all edits by those that were in force once. Throws InputError, and changes nothing, where they are of
+  // another scene.
   void set_edits(LiveEdits edits);
-  // Returns the replay with all edits, which `file` will have. frames: the length of its film.
+  // Returns the replay with all edits, which `file` will have. frames: the length of its film. Throws InputError where
+  // `file`, or the one beside it that the scene needs, is the scene that was loaded.
   ReplayFiles replay_files(const std::filesystem::path& file, int frames) const;
-  // Returns the scene of a frame with more settings, as --set takes them. Throws InputError.
+  // Returns the same with settings, as --set takes them, that hold at any time, whatever changes. Throws InputError.
   Script with(const std::vector<std::string>& settings) const;
 
   std::string scene_json() const;   // as the film starts

@@ -26,7 +26,8 @@ struct Script::Parts {
     Config scene_file;
     std::vector<TimedChange> changes;
   };
-  std::optional<Unedited> unedited;  // nothing: there was no edit yet
+  std::optional<Unedited> unedited;        // nothing: there was no edit yet
+  std::vector<std::string> last_settings;  // that replace what the scene has at any time (Script::with)
 
   // Returns the scene's document at a time, with the first `count` changes applied. One of them can be left out.
   Config document_at(double time, std::size_t count, std::optional<std::size_t> left_out = {}) const;

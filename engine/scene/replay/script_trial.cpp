@@ -33,7 +33,7 @@ void try_changes(const Script& script, std::vector<Body> bodies) {
       try {
         update_body(bodies[b], scene, scene.bodies[b]);
       } catch (const InputError& error) {
-        const TimedChange* change = only_change(at_work, scene.bodies[b].name);
+        const TimedChange* change = only_change(at_work, scene.bodies[b].table);
         for (const Problem& problem : error.problems())
           tell({change != nullptr ? change->place : problem.place, problem.message});
         bodies[b].def = scene.bodies[b];  // so that later changes answer for themselves alone

@@ -56,30 +56,59 @@ ConfigValue table_of_grab(const LiveGrab& grab) {
 
 }  // namespace
 
+namespace {
+
+// Returns a document without the parts that a replay sets by itself, for comparisons.
+std::string comparable(const Config& document) {
+  Config copy = document.copy();
+  copy.make_files_absolute();
+  for (const char* key : {"frames", "title"}) copy.remove(key);
+  return copy.as_json();
+}
+
+}  // namespace
+
+// Names the scene and has its settings in [set] where this says the same. Otherwise, the scene is written anew:
+// settings may reach a grab, or depend on their order.
 ReplayFiles Script::replay_files(const std::filesystem::path& file, int frames) const {
   Parts& parts = *parts_;
   const std::filesystem::path& assets = parts.scene_file.assets();
-  ReplayFiles files;
+  const std::filesystem::path scene = parts.replay ? replayed_scene(*parts.replay, assets) : parts.source.path;
+  std::error_code error;
+  if (!parts.source.text && std::filesystem::equivalent(scene, file, error))
+    throw InputError(file.string(), "is the scene itself, which the replay would write over");
   Config replay = parts.replay ? parts.replay->copy() : Config::parse("", file.string(), assets);
   replay.make_files_absolute();
-  if (parts.source.text && !parts.replay) {
-    files.scene = file.parent_path() / (file.stem().string() + "-scene.toml");
-    files.scene_text = *parts.source.text;
-  }
-  const std::filesystem::path scene =
-      files.scene.empty() ? parts.replay ? replayed_scene(*parts.replay, assets) : parts.source.path : files.scene;
-  replay.put("scene", value_of_text(toml_text(scene_name(scene, file.parent_path(), assets))), {}, {});
   replay.put("frames", value_of_text(fmt::format("{}", frames)), {}, {});
-  for (const std::string& setting : parts.settings) {
-    const std::size_t equals = setting.find('=');
-    const std::string path = setting.substr(0, equals), text = setting.substr(equals + 1);
-    if (path == "frames") continue;
-    const auto value = ConfigValue::parse(text);
-    replay.put_key("set", path, value ? *value : value_of_text(toml_text(text)));
-  }
-  for (const LiveGrab& grab : parts.edits.grabs) replay.append("grab", table_of_grab(grab), {});
   for (const TimedChange& change : parts.edits.changes)
     replay.append("change", table_of_change(change, parts.start.fps), {});
+  if (!parts.source.text) {
+    Config named = replay.copy();
+    named.put("scene", value_of_text(toml_text(scene_name(scene, file.parent_path(), assets))), {}, {});
+    for (const std::string& setting : parts.settings) {
+      const std::size_t equals = setting.find('=');
+      const auto value = ConfigValue::parse(setting.substr(equals + 1));
+      named.put_key("set", setting.substr(0, equals),
+                    value ? *value : value_of_text(toml_text(setting.substr(equals + 1))));
+    }
+    for (const LiveGrab& grab : parts.edits.grabs) named.append("grab", table_of_grab(grab), {});
+    named.make_files_absolute();
+    const std::string text = named.as_toml() + "\n";
+    try {
+      const Script read = load(SceneSource(file, text), assets, {});
+      if (comparable(read.parts_->scene_file) == comparable(parts.scene_file)) return {text, {}, {}};
+    } catch (const InputError&) {  // as it does where a setting reaches a grab
+    }
+  }
+  ReplayFiles files;
+  files.scene = file.parent_path() / (file.stem().string() + "-scene.toml");
+  if (std::filesystem::equivalent(scene, files.scene, error))
+    throw InputError(files.scene.string(), "is the scene itself, which the replay would write over");
+  Config whole = parts.scene_file.copy();
+  whole.make_files_absolute();
+  files.scene_text = whole.as_toml() + "\n";
+  for (const char* key : {"set", "grab"}) replay.remove(key);
+  replay.put("scene", value_of_text(toml_text(files.scene.filename().string())), {}, {});
   replay.make_files_absolute();
   files.replay_text = replay.as_toml() + "\n";
   return files;
